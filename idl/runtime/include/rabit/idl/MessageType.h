@@ -1,0 +1,59 @@
+#pragma once
+
+#include <rabit/RabitMessage.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace Rabit
+{
+
+// What is known of one IDL type at run time: how to make its messages and how to turn them into bytes and back.
+//
+// The bytes are what a DDS sample of the type holds: a 4-byte encapsulation header (CDR, in the byte order that
+// it names; we write little endian), then plain XCDR1 (OMG DDS-XTypes 1.3, 7.4.1), with no header of Rabit's own.
+// One object exists for each generated message class; it lives as long as the process, is immutable, and may be
+// used from any thread.
+class MessageType
+{
+public:
+    virtual ~MessageType() = default;
+    MessageType(const MessageType &) = delete;
+    MessageType &operator=(const MessageType &) = delete;
+
+    // The IDL name with its modules, for instance `Uav::Pose`. It is also the DDS type name.
+    virtual const std::string &Name() const = 0;
+    // The IDL that this type was generated from, the types it uses included: it compiles by itself.
+    virtual const std::string &IdlText() const = 0;
+    // A message of this type with default values; its dynamic type is the generated class.
+    virtual std::unique_ptr<RabitMessage> Create() const = 0;
+    // Whether this is the type of that message (its dynamic type, not a base of it).
+    virtual bool IsTypeOf(const RabitMessage &message) const = 0;
+
+    // Bytes that Serialize will write for this message, the header included. Throws std::invalid_argument if the
+    // message is of another type.
+    virtual std::size_t SerializedSize(const RabitMessage &message) const = 0;
+    // Writes the message. Returns the bytes written; 0 if the buffer is too small or the message cannot be
+    // expressed in IDL (a bounded string or sequence that is too long). Throws as SerializedSize.
+    virtual std::size_t Serialize(const RabitMessage &message, std::span<std::uint8_t> buffer) const = 0;
+    // Reads a message from borrowed bytes of either byte order. Returns false if they are not a sample of this
+    // type (truncated, out of bounds, an unknown encoding, an impossible value); the message then has valid but
+    // unspecified contents. Never throws on account of the bytes, never reads past them, and never allocates more
+    // than the bytes account for. The message's time stamp and global reference stay as they are.
+    virtual bool Deserialize(std::span<const std::uint8_t> bytes, RabitMessage &message) const = 0;
+
+    // Whether the type, or a base of it, has @key members.
+    virtual bool HasKey() const = 0;
+    // The key hash of OMG DDSI-RTPS 2.3, 9.6.3.8, of a serialized sample. False if the bytes do not decode, or
+    // the type has no key.
+    virtual bool KeyHashOf(std::span<const std::uint8_t> bytes, std::array<std::uint8_t, 16> &hash) const = 0;
+
+protected:
+    MessageType() = default;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <rabit/RabitMessage.h>
+
+#include <string>
+#include <vector>
+
+namespace Rabit
+{
+class MessageType;
+
+// The generated message types that are linked into this process, by IDL name, so that a configuration file can
+// name them. Generated code adds its types before main() runs. All functions may be called from any thread.
+class MessageTypeRegistry
+{
+public:
+    // Adds a type; it must live until the process ends. Adding a second, different type of the same name throws
+    // std::logic_error (two libraries that define one IDL type differently).
+    static void Add(const MessageType &type);
+    // The type of that IDL name, or null.
+    static const MessageType *Find(const std::string &name);
+    // The type of a message (its dynamic type), or null if it was not generated from IDL.
+    static const MessageType *Of(const RabitMessage &message);
+    // All names, sorted.
+    static std::vector<std::string> Names();
+};
+
+}  // namespace Rabit

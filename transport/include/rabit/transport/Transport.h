@@ -1,0 +1,239 @@
+// The cut between Rabit and a network.
+//
+// A backend implements the abstract classes below and nothing else; the gateway uses them and nothing else.
+// Bytes cross the cut, never message classes and never a vendor's types. The same conformance suite
+// (tests/transport) runs over every backend: what is written here is what it checks.
+//
+// Threads
+//   Every method may be called from any thread, except from inside a handler (see below).
+//   Handlers run on a thread of the backend. Two handlers of one reader never run at once; handlers of
+//   different readers may. A handler must be quick, must not block, must not throw (what it throws is
+//   caught, counted and logged) and must not call back into the transport: signal another thread instead.
+//
+// Lifetime
+//   A session owns its participant in the network. Writers and readers belong to their session and must be
+//   destroyed before it. Destroying a reader (or closing the session) returns only when no handler of it runs
+//   any more; none starts afterwards.
+//
+// Errors
+//   Opening something with impossible settings throws TransportError with one clear line. What can fail in
+//   normal operation is a return value. Nothing that arrives from the network throws or ends the process.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace Rabit
+{
+
+// Settings that a backend cannot honour: a bad interface name, an unparsable peer, an exhausted domain.
+class TransportError : public std::runtime_error
+{
+public:
+    using std::runtime_error::runtime_error;
+};
+
+// Settings common to all backends.
+struct TransportSettings
+{
+    // Unique name of this node, 1 to 200 bytes of UTF-8. Becomes the participant's name.
+    std::string Node;
+    // Which life of the node this is; peers see it in SampleInfo and PeerEvent.
+    std::uint64_t Incarnation = 0;
+    // DDS domain, 0 to 232.
+    int Domain = 0;
+    // Network interfaces to use, by name or address; empty: all that the backend finds.
+    std::vector<std::string> Interfaces;
+    // Addresses of peers for unicast discovery, `host` or `host:port`; empty: discovery by multicast alone.
+    std::vector<std::string> Peers;
+    // Whether multicast may be used for discovery and data.
+    bool Multicast = true;
+    // Largest datagram in bytes. The default stays below the MTU of radios, because one lost IP fragment of a
+    // larger datagram loses the whole of it. Use 65000 on loopback and wired networks.
+    std::size_t MaxDatagram = 1400;
+    // Use shared memory between processes of one host. Off by default: a killed process leaves files behind.
+    bool SharedMemory = false;
+    // A peer that says nothing for this long is lost; it announces itself every AnnouncementPeriod.
+    std::chrono::milliseconds Lease{3000};
+    std::chrono::milliseconds AnnouncementPeriod{1000};
+    // A vendor's own configuration file, for the expert; empty: none.
+    std::string BackendConfig;
+};
+
+enum class Reliability
+{
+    BestEffort,
+    Reliable
+};
+
+enum class Durability
+{
+    Volatile,       // a reader gets what is written while it is matched
+    TransientLocal  // a late reader also gets the writer's history
+};
+
+// Quality of service of a writer or reader, in the terms of the OMG DDS specification, section 2.2.3.
+// The history is always keep-last: a slow reader never blocks a writer for ever.
+struct TopicQos
+{
+    Rabit::Reliability Reliability = Rabit::Reliability::Reliable;
+    Rabit::Durability Durability = Rabit::Durability::Volatile;
+    // Samples kept by the writer for repair and for late readers (for each key if the topic is keyed).
+    // A reader hands each sample over as it arrives and keeps none back: samples of one writer never push out
+    // those of another, keyed topic or not.
+    int Depth = 1;
+};
+
+// 16 bytes that name an instance of a keyed topic, computed as in the OMG DDSI-RTPS specification, 9.6.3.8.
+using KeyHash = std::array<std::uint8_t, 16>;
+
+// A sample as it is on the wire: the 4-byte encapsulation header, then XCDR1.
+using SampleBytes = std::span<const std::uint8_t>;
+
+// What a topic is. Writer and reader match if Name and TypeName are equal and the QoS and partitions fit.
+struct TopicDescription
+{
+    std::string Name;      // for instance `Pose`
+    std::string TypeName;  // the IDL name, for instance `Uav::Pose`
+    // Set if and only if the type has a key. Computes the key hash of a sample; returns false if the bytes do
+    // not decode. Called on any thread, also several at once; must not throw.
+    std::function<bool(SampleBytes, KeyHash &)> KeyOf;
+};
+
+// 16 bytes that identify one writer in the network (an RTPS GUID), unlike those of all other writers.
+using WriterId = std::array<std::uint8_t, 16>;
+
+// What comes with a sample. Valid only during the handler's call.
+struct SampleInfo
+{
+    WriterId Writer{};
+    // Name of the node that wrote it; empty if the writer is not a Rabit node (a plain DDS program).
+    std::string_view Node;
+    // Incarnation of that node; 0 if the writer is not a Rabit node.
+    std::uint64_t Incarnation = 0;
+    // When it was written by the writer's clock, in nanoseconds since 1970-01-01 UTC.
+    std::int64_t SourceTime = 0;
+    // Rises with each sample of this writer, by one unless samples were lost or filtered.
+    std::uint64_t Sequence = 0;
+    // False: the instance named by Key was disposed or has no writer any more; the bytes are empty.
+    bool Alive = true;
+    // The instance of a keyed topic; zero for one without a key.
+    KeyHash Key{};
+};
+
+// Called once for each sample. The bytes are borrowed: they are valid only during the call.
+using SampleHandler = std::function<void(SampleBytes, const SampleInfo &)>;
+
+// A sample that is still to be encoded: the backend asks how big it is and has it fill the backend's buffer, so
+// that encoding is the only pass over the data.
+class SampleEncoder
+{
+public:
+    // Bytes that Encode will write, the encapsulation header included; at least 4.
+    virtual std::size_t EncodedSize() const = 0;
+    // Fills exactly EncodedSize() bytes. The buffer is aligned to 8. Returns false if it cannot.
+    virtual bool Encode(std::span<std::uint8_t> buffer) const = 0;
+
+protected:
+    ~SampleEncoder() = default;
+};
+
+enum class WriteResult
+{
+    Ok,        // handed to the network; a reliable writer repairs it as long as it is in its history
+    TimedOut,  // the network did not take it in time; the sample was not written
+    TooLarge,  // larger than the backend can send
+    Failed     // the encoder failed, or the session is closed; the backend logged why
+};
+
+// Writes samples of one topic. Thread-safe.
+class TransportWriter
+{
+public:
+    virtual ~TransportWriter() = default;
+    // Encodes and sends one sample; may wait for the network for at most 100 ms. sourceTime is in nanoseconds
+    // since 1970-01-01 UTC and reaches the readers unchanged (to within a microsecond).
+    virtual WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
+    // Says that the instance that this sample names is no more. Only for keyed topics, Failed otherwise.
+    virtual WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
+    // Readers matched now, in other sessions.
+    virtual int MatchedReaders() const = 0;
+};
+
+// Receives samples of one topic until it is destroyed.
+class TransportReader
+{
+public:
+    virtual ~TransportReader() = default;
+    // Writers matched now, in other sessions.
+    virtual int MatchedWriters() const = 0;
+};
+
+// A session of another node that came or went.
+struct PeerEvent
+{
+    enum class Kind
+    {
+        Appeared,
+        Left,  // closed its session
+        Lost   // said nothing for its lease
+    };
+    Kind What = Kind::Appeared;
+    std::string Node;
+    std::uint64_t Incarnation = 0;
+};
+
+// Called when a Rabit node's session appears or goes; never for this session itself. Runs under the rules for
+// handlers above.
+using PeerHandler = std::function<void(const PeerEvent &)>;
+
+// Things that went wrong below the cut since the session was opened. They only rise.
+struct TransportCounters
+{
+    std::uint64_t WriteTimeouts = 0;      // writes that ended TimedOut
+    std::uint64_t WriteFailures = 0;      // writes that ended Failed or TooLarge
+    std::uint64_t HandlerExceptions = 0;  // handlers that threw
+    std::uint64_t IncompatibleQos = 0;    // endpoints of our topics that did not match for their QoS
+    std::uint64_t SamplesLost = 0;        // samples that a reader knows it has missed
+};
+
+// One participant in the network.
+class TransportSession
+{
+public:
+    // Closes: peers see PeerEvent::Left. All writers and readers must be gone.
+    virtual ~TransportSession() = default;
+    // Makes a writer on a topic. The partitions are those of the OMG DDS specification, 2.2.3.13: names, matched
+    // by equal names or by the other side's `*` and `?` patterns; "" is the default partition. An empty list
+    // means {""}. Throws TransportError if the same topic name was opened with another type in this session.
+    virtual std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
+                                                          const std::vector<std::string> &partitions) = 0;
+    // Makes a reader on a topic; the handler may be called before this returns. Samples of this session's own
+    // writers are never handed over. Same rules as CreateWriter.
+    virtual std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
+                                                          const std::vector<std::string> &partitions,
+                                                          SampleHandler handler) = 0;
+    virtual TransportCounters Counters() const = 0;
+};
+
+// A backend.
+class Transport
+{
+public:
+    virtual ~Transport() = default;
+    // The name that a configuration file uses: `fastdds`, `cyclonedds`, `simulated`.
+    virtual std::string Name() const = 0;
+    // Joins the network. The peer handler may be called before this returns. Throws TransportError.
+    virtual std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) = 0;
+};
+
+}  // namespace Rabit
