@@ -1,0 +1,97 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Rabit
+{
+
+// How a mirrored message travels. Both ends of a message must agree; a subscription takes over what the publisher
+// announces unless it names one itself.
+enum class QosProfile
+{
+    // Reliable, the last value reaches late joiners, repeated once a second: for what must be known.
+    State,
+    // Best effort, nothing is repeated: for what is soon replaced by a newer value.
+    Telemetry
+};
+
+// A local message that other nodes may see.
+struct PublishRule
+{
+    std::string Message;                 // local message name = topic name
+    std::string Type;                    // IDL name
+    QosProfile Qos = QosProfile::State;  //
+    double MaxRate = 0.0;                // samples a second at most, up to 1e6; 0: no limit
+    int Line = 0;                        // where it stands in the file, for error messages; 0: made in code
+};
+
+// A message of other nodes that appears here as `<node>/<message>`.
+struct SubscribeRule
+{
+    std::string Message;
+    std::string Type;
+    std::vector<std::string> From = {"*"};  // node names; `*` and `?` are wildcards
+    std::optional<QosProfile> Qos{};        // unset: as the publisher announces
+    int Line = 0;
+};
+
+// A local queue into which other nodes may put messages.
+struct AcceptRule
+{
+    std::string Queue;               // name of a local RabitMessageQueue<std::shared_ptr<RabitMessage>>
+    std::vector<std::string> Types;  // IDL names, at least one
+    int Line = 0;
+};
+
+// How messages to queues of other nodes are kept. Needed only to change the defaults. The first rule that fits a
+// link holds.
+struct SendRule
+{
+    std::string To = "*";                   // node name; `*` and `?` are wildcards
+    std::string Queue = "*";                // queue name, likewise
+    std::size_t Capacity = 1000;            // messages that may wait, 1 to 1,000,000
+    std::size_t CapacityBytes = 16u << 20;  // bytes that may wait, 1 to 2^40
+    std::chrono::milliseconds Expire{0};    // a message older than this is never delivered; 0: never too old
+    std::size_t Window = 64;                // messages under way at once, 1 to 4096
+    bool RedeliverInDoubt = false;          // send again, flagged, what a restart left in doubt
+    int Line = 0;
+};
+
+// Everything a gateway is told. Fill it in code, or load it with LoadGatewayConfig.
+struct GatewayConfig
+{
+    std::string Node;  // 1 to 64 of the characters A-Z a-z 0-9 _ . -
+    int Domain = 0;    // DDS domain, 0 to 232
+    std::string Transport = "fastdds";
+
+    // Network settings; TransportSettings says what each one means.
+    std::vector<std::string> Interfaces;
+    std::vector<std::string> Peers;
+    bool Multicast = true;
+    std::size_t MaxDatagram = 1400;
+    bool SharedMemory = false;
+    std::chrono::milliseconds Lease{3000};
+    std::string BackendConfig;
+
+    // Folder of the incarnation counter; empty: none, the wall clock numbers the lives of this node.
+    std::string StateDir;
+
+    std::vector<PublishRule> Publish;
+    std::vector<SubscribeRule> Subscribe;
+    std::vector<AcceptRule> Accept;
+    std::vector<SendRule> Send;
+
+    // The file it came from, for error messages; empty: made in code.
+    std::string File;
+};
+
+// Checks ranges, names used twice, and that every type is linked into this process. Throws ConfigError. The
+// constructor of GatewayManager calls it; call it earlier to fail earlier.
+void ValidateGatewayConfig(const GatewayConfig &config);
+
+}  // namespace Rabit
