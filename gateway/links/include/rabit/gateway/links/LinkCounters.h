@@ -1,0 +1,66 @@
+#pragma once
+
+#include <rabit/gateway/links/LinkTime.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace Rabit
+{
+
+// One link to another node, seen from the sender. The counters only rise.
+// Accepted = Delivered + Expired + InDoubt + RefusedThere + Pending at any time.
+struct LinkSenderCounters
+{
+    std::uint64_t Accepted = 0;
+    std::uint64_t RefusedFullByCount = 0;  // Enqueue: LinkRefusal::FullByCount
+    std::uint64_t RefusedFullByBytes = 0;  // Enqueue: LinkRefusal::FullByBytes
+    std::uint64_t RefusedTooLarge = 0;     // Enqueue: LinkRefusal::TooLarge
+    std::uint64_t Delivered = 0;
+    std::uint64_t Expired = 0;
+    std::uint64_t InDoubt = 0;
+    std::uint64_t RefusedThere = 0;
+    std::uint64_t MessagesSent = 0;  // in datagrams, resent ones included
+    std::uint64_t MessagesResent = 0;
+    std::uint64_t DatagramsSent = 0;
+    std::uint64_t Timeouts = 0;  // times the resend timer ran out with something unacknowledged
+    std::uint64_t Restarts = 0;  // times the stream was started anew (receiver's or own new incarnation)
+    // Present state.
+    std::size_t Pending = 0;         // messages without an outcome
+    std::size_t PendingBytes = 0;    // bytes of their payloads
+    std::size_t Unacknowledged = 0;  // of them, sent at least once
+    LinkTime RoundTrip{0};           // smoothed (RFC 6298 SRTT); 0: not measured yet
+};
+
+// One link from another node, seen from the receiver. The counters only rise.
+struct LinkReceiverCounters
+{
+    std::uint64_t Delivered = 0;
+    std::uint64_t Skipped = 0;             // consumed as expired
+    std::uint64_t RefusedUnknown = 0;      // consumed, LocalQueueResult::Unknown
+    std::uint64_t RefusedWrongType = 0;    // consumed, LocalQueueResult::WrongType
+    std::uint64_t RefusedUndecodable = 0;  // consumed, LocalQueueResult::Undecodable
+    std::uint64_t HeldBackFull = 0;        // not consumed: the local queue was full (rule R7)
+    std::uint64_t HeldBackLate = 0;        // not consumed: too late by the echoed clock (rules R5 and R6)
+    std::uint64_t Duplicates = 0;          // messages consumed before, or not yet due (rule R4)
+    std::uint64_t Stale = 0;               // datagrams for or from another life (rules R1 to R3)
+    std::uint64_t SessionsOpened = 0;
+    std::uint64_t AcksSent = 0;
+};
+
+// What concerns the node and no single link. The counters only rise.
+struct LinkNodeCounters
+{
+    std::uint64_t Malformed = 0;       // datagrams dropped because a field was impossible
+    std::uint64_t NotForUs = 0;        // datagrams dropped because another node was addressed
+    std::uint64_t TooManyPeers = 0;    // datagrams dropped because of LinkSettings::MaxPeers
+    std::uint64_t TooManyLinks = 0;    // datagrams dropped because of LinkSettings::MaxLinksPerPeer
+    std::uint64_t NoSuchLink = 0;      // acknowledgements of links that this node does not have
+    std::uint64_t RefusedBadName = 0;  // Enqueue: LinkRefusal::BadName
+    std::uint64_t RefusedTooMany = 0;  // Enqueue: LinkRefusal::TooManyPeers and TooManyLinks
+    std::uint64_t Raises = 0;        // incarnations taken because a peer knew a higher one (rules R1 and S6)
+    std::uint64_t PeerRestarts = 0;  // peers seen with a new incarnation
+    std::uint64_t HellosSent = 0;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <rabit/gateway/links/LinkMessages.h>
+#include <rabit/gateway/links/LinkOutcome.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace Rabit
+{
+
+// What became of a message that the receiver wanted to put into a local queue.
+enum class LocalQueueResult : std::uint8_t
+{
+    Ok,    // it is in the queue
+    Full,  // not now: the sender holds it (and all behind it) back until there is room. Also the right answer
+           // for a queue that is accepted but does not exist yet
+    Unknown,     // this node accepts no such queue
+    WrongType,   // the queue does not accept this type, or the type is not known here
+    Undecodable  // the payload is not a message of its type
+};
+
+// The local queues, as the receivers of the links see them. Called inside calls of LinkNode, on their thread;
+// must not call LinkNode and must not throw.
+class LocalQueues
+{
+public:
+    // Puts one message into a local queue, or says why not. Names and payload are borrowed for the call. Full
+    // holds the link back; Unknown, WrongType and Undecodable consume the message for good, and the sender
+    // learns of it as LinkOutcome::RefusedThere. `redelivered`: an earlier life of this node may have put it
+    // into the queue already (only from links with LinkOptions::RedeliverInDoubt).
+    virtual LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
+                                     std::span<const std::uint8_t> payload, bool redelivered) = 0;
+    // Messages that the queue would take now; a hint for the sender's window, not a promise. For a queue that
+    // this node does not accept: anything above 0, so that the messages come and are refused.
+    virtual std::size_t Room(std::string_view queue) const = 0;
+
+protected:
+    ~LocalQueues() = default;
+};
+
+// What the links tell their driver. Called inside calls of LinkNode, on their thread; must not call LinkNode
+// and must not throw. Sending may fail or lose the datagram: the links repair it.
+class LinkOutput
+{
+public:
+    // Sends to the gateway of the node data.Destination.
+    virtual void Send(const LinkData &data) = 0;
+    // Sends to the gateway of the node ack.Source.
+    virtual void Send(const LinkAck &ack) = 0;
+    // Sends to the gateway of the node hello.Destination.
+    virtual void Send(const LinkHello &hello) = 0;
+    // The outcome of an accepted message is known.
+    virtual void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
+                           LinkOutcome outcome) = 0;
+
+protected:
+    ~LinkOutput() = default;
+};
+
+// Makes incarnations. IncarnationStore is the real one. Called inside calls of LinkNode.
+class IncarnationSource
+{
+public:
+    // Returns an incarnation above `floor`, after it is safely stored if there is a store, so that no later
+    // life of this node starts below it. Called for the first incarnation (floor 0) and when a peer knows a
+    // higher one.
+    virtual std::uint64_t Above(std::uint64_t floor) = 0;
+
+protected:
+    ~IncarnationSource() = default;
+};
+
+}  // namespace Rabit

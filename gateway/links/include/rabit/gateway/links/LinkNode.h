@@ -1,0 +1,100 @@
+#pragma once
+
+#include <rabit/gateway/links/LinkCounters.h>
+#include <rabit/gateway/links/LinkHost.h>
+#include <rabit/gateway/links/LinkMessages.h>
+#include <rabit/gateway/links/LinkOptions.h>
+#include <rabit/gateway/links/LinkOutcome.h>
+#include <rabit/gateway/links/LinkPayload.h>
+#include <rabit/gateway/links/LinkTime.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace Rabit
+{
+
+class LinkPeer;
+
+// All queue links of one node: the state machine that a gateway drives. Messages enqueued here reach a queue
+// of another node exactly once and in order as long as both live, whatever the network does in between; each
+// gets one outcome. gateway/links/README.md has the protocol.
+//
+// It does no I/O and reads no clock. The driver hands in what happens and the time (LinkTime, never lower
+// than before), and is called back through LinkOutput, LocalQueues and IncarnationSource during these calls.
+// The usual loop: hand in what has come, call Run, wait until NextDue() or until something comes.
+//
+// Threads: none of its own, and not thread-safe: the driver calls from one thread at a time. Enqueue sends
+// nothing and reports only outcomes, so that it may be called under a lock by any thread; the sending is done
+// by Run. Not re-entrant: the callbacks must not call back into the object.
+//
+// Lifetime: the three hosts must outlive the object. Destroying it reports no outcomes; see Close.
+//
+// Memory: names, outboxes and windows are bounded by LinkOptions and LinkSettings. In the steady state no
+// memory is allocated for a message.
+class LinkNode
+{
+public:
+    // Takes its first incarnation from the source. Throws std::invalid_argument if a setting is out of range.
+    LinkNode(LinkSettings settings, LinkOutput &output, LocalQueues &queues, IncarnationSource &incarnations,
+             LinkTime now);
+    ~LinkNode();
+    LinkNode(const LinkNode &) = delete;
+    LinkNode &operator=(const LinkNode &) = delete;
+
+    // Sets the options for a link before its first message; has no effect on one already in use and then
+    // returns false. Throws std::invalid_argument if an option is out of range.
+    bool Configure(std::string_view destination, std::string_view queue, const LinkOptions &options,
+                   LinkTime now);
+
+    // Accepts a message for a queue of another node, or refuses it at once. The link is made on first use,
+    // with the options of Configure or else the given defaults. Rule S1. Call Run soon afterwards.
+    LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
+                         LinkPayload payload, LinkTime now);
+
+    // A datagram has come from a peer's gateway. What is malformed or meant for another node is dropped and
+    // counted and changes nothing else.
+    void OnData(const LinkData &data, LinkTime now);
+    void OnAck(const LinkAck &ack, LinkTime now);
+    void OnHello(const LinkHello &hello, LinkTime now);
+
+    // A message was taken out of this local queue, or the queue has come into being.
+    void OnRoom(std::string_view queue, LinkTime now);
+
+    // A node is there (discovery found it): starts the exchange of hellos, so that the first message for it
+    // need not wait for one. Never needed for correctness. False: LinkSettings::MaxPeers are known already.
+    bool AddPeer(std::string_view node, LinkTime now);
+
+    // Does everything that is due: expiry, sending, resending, acknowledging, hellos.
+    void Run(LinkTime now);
+    // When Run has something to do: now or earlier if at once, LinkNever if nothing until the next input.
+    LinkTime NextDue() const;
+
+    // Ends all links to other nodes in an orderly way: what was never sent is reported as Expired (it will
+    // never be delivered), what was sent and not acknowledged as InDoubt. The object must not be used
+    // afterwards, except for its counters.
+    void Close();
+
+    const std::string &Name() const;
+    // The life this node is in. It rises when a peer remembers a higher one (rules R1 and S6).
+    std::uint64_t Incarnation() const;
+    // The alarm of rule S6: incarnations had to be taken so often that another live node must have this name.
+    bool NameInUseElsewhere() const;
+
+    LinkNodeCounters Counters() const;
+    // Calls the function for each link to another node / from another node, in the order of their names.
+    void VisitSenders(const std::function<void(std::string_view destination, std::string_view queue,
+                                               const LinkSenderCounters &)> &visit) const;
+    void VisitReceivers(const std::function<void(std::string_view source, std::string_view queue,
+                                                 const LinkReceiverCounters &)> &visit) const;
+    // The whole state except the counters as text, one line per peer and link: for logs, and for tests that
+    // state did not change.
+    std::string Describe() const;
+};
+
+}  // namespace Rabit
