@@ -1,0 +1,68 @@
+// The fleet as text: pure functions from rows to lines. Text that came from the network is made printable
+// first.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Ground
+{
+
+enum class RowState
+{
+    Waiting,  // never heard
+    Up,
+    Stale,  // not heard lately: what is shown grows old
+    Lost
+};
+
+std::string ToText(RowState state);
+
+// What is known of one aircraft.
+struct FleetRow
+{
+    std::string Node;
+    RowState State = RowState::Waiting;
+    std::optional<double> AgeS;  // of the last pose, since it was true; none: no pose has come
+    double LatitudeDeg = 0;
+    double LongitudeDeg = 0;
+    double AltitudeM = 0;
+    double SpeedMps = 0;
+    std::string Mission;  // empty: not known
+    std::uint64_t Sent = 0;
+    std::uint64_t Acknowledged = 0;
+
+    // A pose older than this is marked as old even if the aircraft is UP.
+    static constexpr double FreshS = 1.0;
+    // Whether pose and mission may be read as the present.
+    bool IsFresh() const { return State == RowState::Up && AgeS && *AgeS <= FreshS; }
+};
+
+// How a line of the table stands out on a terminal that can show it.
+enum class Emphasis
+{
+    None,
+    Heading,
+    Warning,
+    Alarm
+};
+
+struct TableLine
+{
+    std::string Text;  // one line of ASCII, no line end
+    Emphasis Shown = Emphasis::None;
+};
+
+// The table with a title and a heading, for a screen. What is not fresh stands in parentheses and its age
+// behind an exclamation mark, so that it is told apart without colours too.
+std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS);
+
+// One self-contained line for each row, for a log: time, then the same columns as in the table, named.
+std::vector<std::string> FleetLogLines(const std::vector<FleetRow> &rows, double elapsedS);
+
+// The text with everything but printable ASCII replaced by `?`, and cut to a length.
+std::string Printable(const std::string &text, std::size_t longest);
+
+}  // namespace Ground

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "FleetTable.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace Ground
+{
+
+// Draws lines over the lines drawn before, by ECMA-48 control sequences that every Linux terminal knows. It
+// only makes the text; the caller writes it, and writes nothing in between.
+class TerminalScreen
+{
+public:
+    struct Size
+    {
+        std::size_t Columns = 80;
+        std::size_t Rows = 24;
+
+        bool operator==(const Size &) const = default;
+    };
+
+    // What to write so that the terminal shows these lines in place of the last ones. Lines too wide are cut,
+    // because a wrapped line would spoil the next redraw; if there are too many, the last line shown says how
+    // many are not.
+    std::string Redraw(const std::vector<TableLine> &lines, const Size &size);
+
+private:
+    std::size_t _drawn = 0;
+    Size _size;
+};
+
+}  // namespace Ground

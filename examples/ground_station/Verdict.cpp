@@ -1,0 +1,85 @@
+#include "Verdict.h"
+
+#include <array>
+#include <cstdio>
+
+namespace Ground
+{
+namespace
+{
+std::string OneDecimal(double value)
+{
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.1f", value);
+    return text.data();
+}
+
+std::string Percent(const AircraftResult &result)
+{
+    if (result.Published == 0)
+        return "-";
+    return OneDecimal(100.0 * static_cast<double>(result.Heard) / static_cast<double>(result.Published)) +
+           " %";
+}
+
+bool HeardEnough(const AircraftResult &result)
+{
+    return static_cast<double>(result.Heard) >= RequiredShare * static_cast<double>(result.Published);
+}
+
+std::string SummaryLine(const AircraftResult &result)
+{
+    const CommandLog::Tally &c = result.Commands;
+    return "  " + result.Node + "  " + ToText(result.State) + "  heard " + std::to_string(result.Heard) +
+           " of " + std::to_string(result.Published) + " poses (" + Percent(result) +
+           ")  commands: " + std::to_string(c.Sent) + " sent, " + std::to_string(c.Acknowledged) +
+           " acknowledged, " + std::to_string(c.Declined) + " declined, " + std::to_string(c.Refused) +
+           " refused";
+}
+
+void JudgeAircraft(const AircraftResult &result, std::vector<std::string> &failures)
+{
+    if (result.State != RowState::Up)
+        failures.push_back(result.Node + " was " + ToText(result.State) + " at the end");
+    if (result.Published == 0)
+        failures.push_back(result.Node + ": no poses to judge, it was not heard for long enough");
+    else if (!HeardEnough(result))
+        failures.push_back(result.Node + ": only " + Percent(result) + " of its poses were heard, not " +
+                           OneDecimal(100 * RequiredShare) + " %");
+}
+}  // namespace
+
+Verdict Judge(const std::vector<AircraftResult> &aircraft, const CommandLog &commands, double elapsedS)
+{
+    Verdict verdict;
+    std::vector<std::string> &failures = verdict.Failures;
+    if (aircraft.empty())
+        failures.push_back("no aircraft was heard");
+    for (const AircraftResult &result : aircraft)
+        JudgeAircraft(result, failures);
+    for (const CommandLog::Command &command : commands.Outstanding())
+        failures.push_back("command " + std::to_string(command.Id) + " to " + command.Node + ", sent at " +
+                           OneDecimal(command.SentAtS) + " s, was not acknowledged");
+    for (const AircraftResult &result : aircraft)
+        if (result.Commands.Refused > 0)
+            failures.push_back(result.Node + ": " + std::to_string(result.Commands.Refused) +
+                               " commands were refused for sending");
+    if (commands.WrongNode() > 0)
+        failures.push_back(std::to_string(commands.WrongNode()) +
+                           " acknowledgements came from the wrong aircraft");
+    if (commands.Repeated() > 0)
+        failures.push_back(std::to_string(commands.Repeated()) + " acknowledgements came more than once");
+
+    verdict.Summary.push_back("Summary after " + OneDecimal(elapsedS) + " s");
+    for (const AircraftResult &result : aircraft)
+        verdict.Summary.push_back(SummaryLine(result));
+    if (commands.Unknown() > 0)
+        verdict.Summary.push_back("  " + std::to_string(commands.Unknown()) +
+                                  " acknowledgements of commands that this ground station did not send");
+    for (const std::string &failure : failures)
+        verdict.Summary.push_back("  FAILED: " + failure);
+    verdict.Summary.push_back(verdict.Passed() ? "Passed" : "Failed");
+    return verdict;
+}
+
+}  // namespace Ground

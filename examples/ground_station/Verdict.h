@@ -1,0 +1,37 @@
+#pragma once
+
+#include "CommandLog.h"
+#include "FleetTable.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace Ground
+{
+
+// What a run has shown of one aircraft.
+struct AircraftResult
+{
+    std::string Node;
+    RowState State = RowState::Waiting;  // at the end
+    std::uint64_t Published = 0;         // poses, as PoseCount says
+    std::uint64_t Heard = 0;
+    CommandLog::Tally Commands;
+};
+
+// A run passes if every aircraft is UP at its end, at least 90 % of the poses that each published were heard,
+// and every command was acknowledged once by the aircraft it was meant for.
+struct Verdict
+{
+    std::vector<std::string> Failures;  // one line for each thing that is wrong
+    std::vector<std::string> Summary;   // for people: aircraft, outstanding commands, failures, result
+
+    bool Passed() const { return Failures.empty(); }
+};
+
+inline constexpr double RequiredShare = 0.9;
+
+Verdict Judge(const std::vector<AircraftResult> &aircraft, const CommandLog &commands, double elapsedS);
+
+}  // namespace Ground

@@ -1,0 +1,140 @@
+#include "FleetTable.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+using Ground::Emphasis;
+using Ground::FleetLogLines;
+using Ground::FleetRow;
+using Ground::FleetTableLines;
+using Ground::RowState;
+
+FleetRow Fresh()
+{
+    FleetRow row;
+    row.Node = "uav1";
+    row.State = RowState::Up;
+    row.AgeS = 0.052;
+    row.LatitudeDeg = 49.2574181;
+    row.LongitudeDeg = -123.2432101;
+    row.AltitudeM = 91.23;
+    row.SpeedMps = 3.44;
+    row.Mission = "GOTO 3";
+    row.Sent = 3;
+    row.Acknowledged = 2;
+    return row;
+}
+
+FleetRow WithState(RowState state, double age)
+{
+    FleetRow row = Fresh();
+    row.State = state;
+    row.AgeS = age;
+    return row;
+}
+
+TEST(FleetTable, ShowsAFreshRow)
+{
+    const auto lines = FleetTableLines({Fresh()}, 12.4);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0].Text, "Fleet after 12 s: 1 UP, 0 STALE, 0 LOST, 0 WAITING");
+    EXPECT_EQ(lines[1].Text,
+              "NODE         STATE   POSE AGE     LATITUDE    LONGITUDE    ALT m    m/s  MISSION          "
+              "SENT  ACKED");
+    EXPECT_EQ(lines[2].Text,
+              "uav1         UP        0.05 s   49.2574181 -123.2432101     91.2    3.4  GOTO 3              "
+              "3      2");
+    EXPECT_EQ(lines[2].Shown, Emphasis::None);
+}
+
+TEST(FleetTable, MarksALostRowAndPutsItsOldValuesInParentheses)
+{
+    const auto lines = FleetTableLines({WithState(RowState::Lost, 6.31)}, 0);
+    EXPECT_EQ(lines[2].Text,
+              "uav1         LOST   !  6.31 s ( 49.2574181 -123.2432101     91.2    3.4  GOTO 3)             "
+              "3      2");
+    EXPECT_EQ(lines[2].Shown, Emphasis::Alarm);
+}
+
+TEST(FleetTable, MarksAStaleRow)
+{
+    const auto lines = FleetTableLines({WithState(RowState::Stale, 1.9)}, 0);
+    EXPECT_THAT(lines[2].Text, testing::HasSubstr("STALE  !  1.90 s ("));
+    EXPECT_EQ(lines[2].Shown, Emphasis::Warning);
+}
+
+TEST(FleetTable, MarksAnOldPoseOfANodeThatIsUp)
+{
+    const auto lines = FleetTableLines({WithState(RowState::Up, 1.5)}, 0);
+    EXPECT_THAT(lines[2].Text, testing::HasSubstr("UP     !  1.50 s ("));
+    EXPECT_EQ(lines[2].Shown, Emphasis::Warning);
+}
+
+TEST(FleetTable, NeverTakesAnUnknownAgeForFresh)
+{
+    EXPECT_FALSE(WithState(RowState::Up, std::nan("")).IsFresh());
+}
+
+TEST(FleetTable, ShowsNoPositionBeforeTheFirstPose)
+{
+    FleetRow row = Fresh();
+    row.State = RowState::Waiting;
+    row.AgeS.reset();
+    row.Mission.clear();
+    const auto lines = FleetTableLines({row}, 0);
+    EXPECT_EQ(lines[2].Text,
+              "uav1         WAITING        -            -            -        -      -  -                   "
+              "3      2");
+    EXPECT_EQ(lines[2].Shown, Emphasis::Warning);
+}
+
+TEST(FleetTable, CountsTheStates)
+{
+    const auto lines = FleetTableLines({WithState(RowState::Up, 0), WithState(RowState::Up, 0),
+                                        WithState(RowState::Stale, 0), WithState(RowState::Lost, 0)},
+                                       0);
+    EXPECT_THAT(lines[0].Text, testing::HasSubstr("2 UP, 1 STALE, 1 LOST, 0 WAITING"));
+}
+
+TEST(FleetTable, KeepsItsColumnsWithLongNamesAndAges)
+{
+    FleetRow row = WithState(RowState::Lost, 86400);
+    row.Node = "a.very.long.name.of.a.node";
+    row.Mission = "a mission with a long name";
+    const auto lines = FleetTableLines({Fresh(), row}, 0);
+    EXPECT_EQ(lines[2].Text.size(), lines[3].Text.size());
+}
+
+TEST(FleetTable, NeverPrintsControlCharactersFromTheNetwork)
+{
+    FleetRow row = Fresh();
+    row.Mission = "\x1b[2J\n\xff";
+    EXPECT_THAT(FleetTableLines({row}, 0)[2].Text, testing::HasSubstr("?[2J??"));
+    EXPECT_THAT(FleetLogLines({row}, 0)[0], testing::HasSubstr("?[2J??"));
+}
+
+TEST(FleetLog, ShowsOneLineForEachRow)
+{
+    const auto lines = FleetLogLines({Fresh(), WithState(RowState::Lost, 6.31)}, 12.4);
+    EXPECT_THAT(lines,
+                testing::ElementsAre(
+                    "   12.4 s  uav1   UP      pose (age 0.05 s) 49.2574181 -123.2432101 91.2 m 3.4 m/s, "
+                    "mission GOTO 3, commands 3 sent 2 acknowledged",
+                    "   12.4 s  uav1   LOST    OLD pose (age 6.31 s) 49.2574181 -123.2432101 91.2 m 3.4 m/s, "
+                    "mission GOTO 3, commands 3 sent 2 acknowledged"));
+}
+
+TEST(FleetLog, SaysThatThereIsNoPoseYet)
+{
+    FleetRow row;
+    row.Node = "uav2";
+    EXPECT_THAT(FleetLogLines({row}, 0),
+                testing::ElementsAre("    0.0 s  uav2   WAITING no pose yet, mission "
+                                     "unknown, commands 0 sent 0 acknowledged"));
+}
+
+}  // namespace
