@@ -67,6 +67,9 @@ struct TransportSettings
     std::chrono::milliseconds AnnouncementPeriod{1000};
     // A vendor's own configuration file, for the expert; empty: none.
     std::string BackendConfig;
+    // Takes the session's log lines (handlers that threw, writes that failed, types that differ ...), without
+    // a newline; called on any thread, must be quick and thread-safe. Not set: they go to standard error.
+    std::function<void(const std::string &)> Log;
 };
 
 enum class Reliability
@@ -96,7 +99,10 @@ struct TopicQos
 // 16 bytes that name an instance of a keyed topic, computed as in the OMG DDSI-RTPS specification, 9.6.3.8.
 using KeyHash = std::array<std::uint8_t, 16>;
 
-// A sample as it is on the wire: the 4-byte encapsulation header, then XCDR1.
+// A sample as it is on the wire: the 4-byte encapsulation header, then XCDR1. The two low bits of the
+// header's last byte may be set on the way: the number of padding bytes that RTPS added (OMG
+// DDS-XTypes 1.3, 7.6.3.1.2), which are not part of the bytes handed over. A writer of another make that does
+// not set them may leave up to three zero bytes at the end.
 using SampleBytes = std::span<const std::uint8_t>;
 
 // What a topic is. Writer and reader match if Name and TypeName are equal and the QoS and partitions fit.
@@ -124,7 +130,8 @@ struct SampleInfo
     std::int64_t SourceTime = 0;
     // Rises with each sample of this writer, by one unless samples were lost or filtered.
     std::uint64_t Sequence = 0;
-    // False: the instance named by Key was disposed or has no writer any more; the bytes are empty.
+    // False: the instance named by Key was disposed, or the last writer that wrote it is gone; the bytes are
+    // empty. In the second case Writer is that last writer, and SourceTime and Sequence are 0.
     bool Alive = true;
     // The instance of a keyed topic; zero for one without a key.
     KeyHash Key{};
@@ -133,8 +140,8 @@ struct SampleInfo
 // Called once for each sample. The bytes are borrowed: they are valid only during the call.
 using SampleHandler = std::function<void(SampleBytes, const SampleInfo &)>;
 
-// A sample that is still to be encoded: the backend asks how big it is and has it fill the backend's buffer, so
-// that encoding is the only pass over the data.
+// A sample that is still to be encoded: the backend asks how big it is and has it fill the backend's buffer,
+// so that encoding is the only pass over the data.
 class SampleEncoder
 {
 public:
@@ -204,6 +211,8 @@ struct TransportCounters
     std::uint64_t HandlerExceptions = 0;  // handlers that threw
     std::uint64_t IncompatibleQos = 0;    // endpoints of our topics that did not match for their QoS
     std::uint64_t SamplesLost = 0;        // samples that a reader knows it has missed
+    std::uint64_t InconsistentTypes = 0;  // endpoints of our topics elsewhere that have another type name
+    std::uint64_t MalformedSamples = 0;   // samples dropped: too short, too large, or without a readable key
 };
 
 // One participant in the network.
@@ -212,9 +221,10 @@ class TransportSession
 public:
     // Closes: peers see PeerEvent::Left. All writers and readers must be gone.
     virtual ~TransportSession() = default;
-    // Makes a writer on a topic. The partitions are those of the OMG DDS specification, 2.2.3.13: names, matched
-    // by equal names or by the other side's `*` and `?` patterns; "" is the default partition. An empty list
-    // means {""}. Throws TransportError if the same topic name was opened with another type in this session.
+    // Makes a writer on a topic. The partitions are those of the OMG DDS specification, 2.2.3.13: names,
+    // matched by equal names or by the other side's `*` and `?` patterns; "" is the default partition. An
+    // empty list means {""}. Throws TransportError if the same topic name was opened with another type in
+    // this session.
     virtual std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
                                                           const std::vector<std::string> &partitions) = 0;
     // Makes a reader on a topic; the handler may be called before this returns. Samples of this session's own

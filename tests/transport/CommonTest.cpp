@@ -1,0 +1,211 @@
+// What the backends share.
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/HandlerGate.h"
+#include "common/InstanceTable.h"
+#include "common/ParticipantIdentity.h"
+#include "common/SettingsCheck.h"
+#include "common/TopicRegistry.h"
+
+namespace
+{
+
+using namespace Rabit;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::vector<std::uint8_t> ToBytes(const std::string &text)
+{
+    return {text.begin(), text.end()};
+}
+
+TransportSettings SettingsThatLogTo(std::vector<std::string> &lines)
+{
+    TransportSettings settings;
+    settings.Node = "uav1";
+    settings.Log = [&lines](const std::string &line) { lines.push_back(line); };
+    return settings;
+}
+
+TEST(ParticipantIdentity, IncarnationSurvivesTheUserData)
+{
+    for (const std::uint64_t incarnation : {0ull, 1ull, 18446744073709551615ull})
+    {
+        EXPECT_EQ(ParseUserData(ToBytes(MakeUserData(incarnation))), incarnation);
+    }
+}
+
+TEST(ParticipantIdentity, OtherUserDataIsNotARabitNode)
+{
+    for (const char *text : {"", "enclave=/;", "rabit=1;", "rabit=1;incarnation=", "rabit=1;incarnation=;",
+                             "rabit=1;incarnation=12", "rabit=1;incarnation=18446744073709551616;",
+                             "rabit=1;incarnation=-1;", "rabit=2;incarnation=1;"})
+    {
+        EXPECT_EQ(ParseUserData(ToBytes(text)), std::nullopt) << text;
+    }
+}
+
+TEST(InstanceTable, TellsAnInstanceOnlyWhenItsLastWriterIsGone)
+{
+    InstanceTable table;
+    table.Alive({7}, {1});
+    table.Alive({7}, {2});
+    table.Alive({8}, {2});
+    EXPECT_THAT(table.WriterGone({1}), IsEmpty());
+    EXPECT_THAT(table.WriterGone({2}), ElementsAre(KeyHash{7}, KeyHash{8}));
+    EXPECT_THAT(table.WriterGone({2}), IsEmpty());
+}
+
+TEST(InstanceTable, ForgetsDisposedAndUnregisteredInstances)
+{
+    InstanceTable table;
+    table.Alive({7}, {1});
+    table.Disposed({7});
+    table.Alive({8}, {1});
+    EXPECT_FALSE(table.Unregistered({8}, {2}));
+    EXPECT_TRUE(table.Unregistered({8}, {1}));
+    EXPECT_FALSE(table.Unregistered({8}, {1}));
+    EXPECT_THAT(table.WriterGone({1}), IsEmpty());
+}
+
+TEST(HandlerGate, CountsAndLogsWhatAHandlerThrows)
+{
+    std::vector<std::string> lines;
+    const auto log = std::make_shared<SessionLog>(SettingsThatLogTo(lines));
+    HandlerGate gate(log, "the reader of Pose");
+    gate.Run([] { throw std::runtime_error("no battery"); });
+    gate.Run([] { throw 7; });
+    EXPECT_EQ(log->Read().HandlerExceptions, 2u);
+    ASSERT_THAT(lines, SizeIs(2));
+    EXPECT_THAT(lines[0], HasSubstr("the reader of Pose threw: no battery"));
+}
+
+TEST(HandlerGate, RunsNothingOnceClosed)
+{
+    std::vector<std::string> lines;
+    HandlerGate gate(std::make_shared<SessionLog>(SettingsThatLogTo(lines)), "the reader of Pose");
+    gate.Close();
+    bool ran = false;
+    gate.Run([&] { ran = true; });
+    EXPECT_FALSE(ran);
+}
+
+TEST(SessionLog, LogsARepeatedFaultLessAndLessOften)
+{
+    std::vector<std::string> lines;
+    SessionLog log(SettingsThatLogTo(lines));
+    for (int i = 0; i < 1000; ++i)
+    {
+        log.WriteTimedOut("Pose");
+    }
+    EXPECT_EQ(log.Read().WriteTimeouts, 1000u);
+    EXPECT_THAT(lines, SizeIs(10));  // 1, 2, 4 ... 512
+}
+
+TEST(SessionLog, SurvivesASinkThatThrows)
+{
+    TransportSettings settings;
+    settings.Log = [](const std::string &) { throw std::runtime_error("disk full"); };
+    SessionLog log(settings);
+    log.WriteTimedOut("Pose");
+    EXPECT_EQ(log.Read().WriteTimeouts, 1u);
+}
+
+TEST(TopicRegistry, RefusesAnotherTypeAsLongAsTheTopicIsOpen)
+{
+    std::vector<std::string> lines;
+    TopicRegistry topics(std::make_shared<SessionLog>(SettingsThatLogTo(lines)));
+    {
+        const TopicRegistry::Use first(topics, {"Pose", "Uav::Pose", {}});
+        const TopicRegistry::Use second(topics, {"Pose", "Uav::Pose", {}});
+        EXPECT_THROW(TopicRegistry::Use(topics, {"Pose", "Uav::Goto", {}}), TransportError);
+    }
+    EXPECT_NO_THROW(TopicRegistry::Use(topics, {"Pose", "Uav::Goto", {}}));
+}
+
+TEST(TopicRegistry, RefusesNamesThatDdsCannotCarry)
+{
+    std::vector<std::string> lines;
+    TopicRegistry topics(std::make_shared<SessionLog>(SettingsThatLogTo(lines)));
+    EXPECT_THROW(TopicRegistry::Use(topics, {"", "Uav::Pose", {}}), TransportError);
+    EXPECT_THROW(TopicRegistry::Use(topics, {std::string(256, 'x'), "Uav::Pose", {}}), TransportError);
+    EXPECT_THROW(TopicRegistry::Use(topics, {"Pose", "", {}}), TransportError);
+    EXPECT_THROW(TopicRegistry::Use(topics, {std::string("a\0b", 3), "Uav::Pose", {}}), TransportError);
+}
+
+TEST(TopicRegistry, CountsATypeThatDiffersElsewhereWhicheverCameFirst)
+{
+    std::vector<std::string> lines;
+    const auto log = std::make_shared<SessionLog>(SettingsThatLogTo(lines));
+    TopicRegistry topics(log);
+    topics.RemoteAppeared({1}, "Pose", "Uav::Goto");
+    EXPECT_EQ(log->Read().InconsistentTypes, 0u);
+    const TopicRegistry::Use use(topics, {"Pose", "Uav::Pose", {}});
+    EXPECT_EQ(log->Read().InconsistentTypes, 1u);
+    topics.RemoteAppeared({2}, "Pose", "Uav::Pose");
+    topics.RemoteAppeared({3}, "Pose", "Uav::State");
+    EXPECT_EQ(log->Read().InconsistentTypes, 2u);
+    EXPECT_THAT(lines.back(), HasSubstr("topic Pose has type Uav::Pose here, but Uav::State elsewhere"));
+}
+
+TEST(Settings, OutOfRangeIsRefused)
+{
+    TransportSettings good;
+    good.Node = "uav1";
+    EXPECT_NO_THROW(CheckSettings(good));
+    auto bad = [&](auto change)
+    {
+        TransportSettings settings = good;
+        change(settings);
+        return settings;
+    };
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Node = ""; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Node = std::string(201, 'x'); })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Domain = -1; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Domain = 233; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.MaxDatagram = 999; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.MaxDatagram = 65001; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Lease = s.AnnouncementPeriod; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.AnnouncementPeriod = std::chrono::milliseconds(0); })),
+                 TransportError);
+}
+
+TEST(Settings, AnInterfaceIsFoundByNameAndByAddress)
+{
+    EXPECT_THAT(ResolveInterfaces({"lo"}), ElementsAre("127.0.0.1"));
+    EXPECT_THAT(ResolveInterfaces({"127.0.0.1", "lo"}), ElementsAre("127.0.0.1"));
+    EXPECT_THAT(ResolveInterfaces({}), IsEmpty());
+}
+
+TEST(Settings, AnInterfaceThatDoesNotExistIsRefusedByName)
+{
+    try
+    {
+        ResolveInterfaces({"lo", "radio99"});
+        FAIL() << "there is no such interface";
+    }
+    catch (const TransportError &error)
+    {
+        EXPECT_THAT(error.what(), HasSubstr("radio99"));
+    }
+}
+
+TEST(Settings, PeersAreParsed)
+{
+    EXPECT_EQ(ResolvePeer("127.0.0.1").Address, "127.0.0.1");
+    EXPECT_EQ(ResolvePeer("127.0.0.1").Port, 0);
+    EXPECT_EQ(ResolvePeer("127.0.0.1:7410").Port, 7410);
+    for (const char *bad :
+         {"", ":7410", "127.0.0.1:", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:x", "127.0.0.1:7410x"})
+    {
+        EXPECT_THROW(ResolvePeer(bad), TransportError) << bad;
+    }
+}
+
+}  // namespace

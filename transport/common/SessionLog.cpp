@@ -1,0 +1,100 @@
+#include "common/SessionLog.h"
+
+#include <iostream>
+
+namespace Rabit
+{
+
+namespace
+{
+
+void WriteToStandardError(const std::string &line)
+{
+    std::cerr << line + "\n";
+}
+
+}  // namespace
+
+SessionLog::SessionLog(const TransportSettings &settings)
+    : _node(settings.Node), _sink(settings.Log ? settings.Log : WriteToStandardError)
+{
+}
+
+void SessionLog::Line(const std::string &line) noexcept
+{
+    try
+    {
+        _sink("transport of " + _node + ": " + line);
+    }
+    catch (...)  // a sink that fails leaves nowhere to say so; the counters still tell
+    {
+        return;
+    }
+}
+
+// Logs the 1st, 2nd, 4th, 8th ... event of a kind, so that a fault at full data rate does not flood the log.
+template <typename MakeLine>
+void SessionLog::Count(std::atomic<std::uint64_t> &counter, MakeLine &&makeLine) noexcept
+{
+    const std::uint64_t count = ++counter;
+    if ((count & (count - 1)) != 0)
+    {
+        return;
+    }
+    try
+    {
+        const std::string times = count > 1 ? " (" + std::to_string(count) + " of this kind so far)" : "";
+        Line(makeLine() + times);
+    }
+    catch (...)  // out of memory for the text
+    {
+        return;
+    }
+}
+
+void SessionLog::HandlerThrew(const std::string &what, const char *error) noexcept
+{
+    Count(_handlerExceptions, [&] { return "the handler of " + what + " threw: " + error; });
+}
+
+void SessionLog::WriteTimedOut(const std::string &topic) noexcept
+{
+    Count(_writeTimeouts, [&] { return "a write to " + topic + " timed out"; });
+}
+
+void SessionLog::WriteFailed(const std::string &topic, const char *why) noexcept
+{
+    Count(_writeFailures, [&] { return "a write to " + topic + " failed: " + why; });
+}
+
+void SessionLog::IncompatibleQos(const std::string &topic) noexcept
+{
+    Count(_incompatibleQos, [&] { return "the other side of " + topic + " has an incompatible QoS"; });
+}
+
+void SessionLog::InconsistentType(const std::string &topic, const std::string &ours,
+                                  const std::string &theirs) noexcept
+{
+    Count(_inconsistentTypes,
+          [&] { return "topic " + topic + " has type " + ours + " here, but " + theirs + " elsewhere"; });
+}
+
+void SessionLog::MalformedSample(const std::string &topic, const char *why) noexcept
+{
+    Count(_malformedSamples, [&] { return "a sample of " + topic + " was dropped: " + why; });
+}
+
+TransportCounters SessionLog::Read() const
+{
+    TransportCounters counters;
+    counters.WriteTimeouts = _writeTimeouts;
+    counters.WriteFailures = _writeFailures;
+    counters.HandlerExceptions = _handlerExceptions;
+    counters.IncompatibleQos = _incompatibleQos;
+    counters.SamplesLost = _samplesLost;
+    counters.InconsistentTypes = _inconsistentTypes;
+    counters.MalformedSamples = _malformedSamples;
+    return counters;
+}
+
+}  // namespace Rabit

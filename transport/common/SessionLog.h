@@ -1,0 +1,49 @@
+// Counts what goes wrong in a session and tells the user of it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include <rabit/transport/Transport.h>
+
+namespace Rabit
+{
+
+// One per session, shared with its writers and readers. Thread-safe.
+class SessionLog
+{
+public:
+    explicit SessionLog(const TransportSettings &settings);
+
+    // Each counts one event and logs it, when `worthALine` says that its kind has not been logged too often.
+    void HandlerThrew(const std::string &what, const char *error) noexcept;
+    void WriteTimedOut(const std::string &topic) noexcept;
+    void WriteFailed(const std::string &topic, const char *why) noexcept;
+    void IncompatibleQos(const std::string &topic) noexcept;
+    void InconsistentType(const std::string &topic, const std::string &ours,
+                          const std::string &theirs) noexcept;
+    void MalformedSample(const std::string &topic, const char *why) noexcept;
+    void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
+
+    // Logs one line, without counting.
+    void Line(const std::string &line) noexcept;
+
+    TransportCounters Read() const;
+
+private:
+    template <typename MakeLine>
+    void Count(std::atomic<std::uint64_t> &counter, MakeLine &&makeLine) noexcept;
+
+    const std::string _node;
+    const std::function<void(const std::string &)> _sink;
+    std::atomic<std::uint64_t> _writeTimeouts{0};
+    std::atomic<std::uint64_t> _writeFailures{0};
+    std::atomic<std::uint64_t> _handlerExceptions{0};
+    std::atomic<std::uint64_t> _incompatibleQos{0};
+    std::atomic<std::uint64_t> _samplesLost{0};
+    std::atomic<std::uint64_t> _inconsistentTypes{0};
+    std::atomic<std::uint64_t> _malformedSamples{0};
+};
+
+}  // namespace Rabit

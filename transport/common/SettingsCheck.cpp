@@ -1,0 +1,125 @@
+#include "common/SettingsCheck.h"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <netdb.h>
+#include <netinet/in.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+namespace Rabit
+{
+
+namespace
+{
+
+constexpr std::size_t MaxNodeName = 200;
+constexpr int MaxDomain = 232;
+constexpr std::size_t SmallestDatagram = 1000;
+constexpr std::size_t LargestDatagram = 65000;
+
+std::string ToText(const sockaddr *address)
+{
+    const auto *ipv4 = reinterpret_cast<const sockaddr_in *>(address);
+    char text[INET_ADDRSTRLEN] = "";
+    inet_ntop(AF_INET, &ipv4->sin_addr, text, sizeof text);
+    return text;
+}
+
+}  // namespace
+
+void CheckSettings(const TransportSettings &settings)
+{
+    if (settings.Node.empty() || settings.Node.size() > MaxNodeName)
+    {
+        throw TransportError("the node name must have 1 to 200 bytes, not " +
+                             std::to_string(settings.Node.size()));
+    }
+    if (settings.Node.find('\0') != std::string::npos)
+    {
+        throw TransportError("the node name contains a zero byte");
+    }
+    if (settings.Domain < 0 || settings.Domain > MaxDomain)
+    {
+        throw TransportError("the domain must be 0 to 232, not " + std::to_string(settings.Domain));
+    }
+    if (settings.MaxDatagram < SmallestDatagram || settings.MaxDatagram > LargestDatagram)
+    {
+        throw TransportError("the largest datagram must be 1000 to 65000 bytes, not " +
+                             std::to_string(settings.MaxDatagram));
+    }
+    if (settings.AnnouncementPeriod.count() <= 0 || settings.Lease <= settings.AnnouncementPeriod)
+    {
+        throw TransportError("the lease must be longer than the announcement period, and both positive");
+    }
+}
+
+std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &interfaces)
+{
+    ifaddrs *head = nullptr;
+    if (!interfaces.empty() && getifaddrs(&head) != 0)
+    {
+        throw TransportError("the network interfaces of this host cannot be listed");
+    }
+    const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(head, &freeifaddrs);
+    std::vector<std::string> addresses;
+    for (const auto &wanted : interfaces)
+    {
+        bool found = false;
+        for (const ifaddrs *entry = head; entry != nullptr; entry = entry->ifa_next)
+        {
+            if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET)
+            {
+                continue;
+            }
+            const std::string address = ToText(entry->ifa_addr);
+            if (wanted != entry->ifa_name && wanted != address)
+            {
+                continue;
+            }
+            found = true;
+            if (std::find(addresses.begin(), addresses.end(), address) == addresses.end())
+            {
+                addresses.push_back(address);
+            }
+        }
+        if (!found)
+        {
+            throw TransportError("this host has no network interface with an IPv4 address that is called " +
+                                 wanted);
+        }
+    }
+    return addresses;
+}
+
+PeerAddress ResolvePeer(const std::string &peer)
+{
+    PeerAddress result;
+    std::string host = peer;
+    if (const auto colon = peer.find(':'); colon != std::string::npos)
+    {
+        host = peer.substr(0, colon);
+        const char *begin = peer.data() + colon + 1;
+        const char *end = peer.data() + peer.size();
+        const auto [stop, error] = std::from_chars(begin, end, result.Port);
+        if (error != std::errc() || stop != end || result.Port == 0)
+        {
+            throw TransportError("the peer " + peer + " is not of the form host or host:port");
+        }
+    }
+    addrinfo hints{};
+    hints.ai_family = AF_INET;
+    hints.ai_socktype = SOCK_DGRAM;
+    addrinfo *head = nullptr;
+    if (host.empty() || getaddrinfo(host.c_str(), nullptr, &hints, &head) != 0 || head == nullptr)
+    {
+        throw TransportError("the peer " + peer + " has no IPv4 address");
+    }
+    const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> list(head, &freeaddrinfo);
+    result.Address = ToText(head->ai_addr);
+    return result;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,29 @@
+// Checks and resolves the settings that mean the same to every DDS backend.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <rabit/transport/Transport.h>
+
+namespace Rabit
+{
+
+// Throws TransportError if a setting is out of its range.
+void CheckSettings(const TransportSettings &settings);
+
+// The IPv4 addresses of the named interfaces; each entry is a name (`eth0`) or an address (`10.0.0.1`) of
+// this host. Throws TransportError for one that does not exist here or has no IPv4 address.
+std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &interfaces);
+
+struct PeerAddress
+{
+    std::string Address;     // IPv4, dotted
+    std::uint16_t Port = 0;  // 0: not given
+};
+
+// Resolves `host` or `host:port`; throws TransportError if it does not parse or resolve.
+PeerAddress ResolvePeer(const std::string &peer);
+
+}  // namespace Rabit

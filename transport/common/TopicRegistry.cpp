@@ -1,0 +1,94 @@
+#include "common/TopicRegistry.h"
+
+#include <vector>
+
+namespace Rabit
+{
+
+namespace
+{
+
+constexpr std::size_t MaxName = 255;
+
+void CheckName(const char *what, const std::string &name)
+{
+    if (name.empty() || name.size() > MaxName || name.find('\0') != std::string::npos)
+    {
+        throw TransportError(std::string("a ") + what +
+                             " name must have 1 to 255 bytes and no zero byte: \"" + name + "\"");
+    }
+}
+
+}  // namespace
+
+TopicRegistry::Use::Use(TopicRegistry &registry, const TopicDescription &topic)
+    : _registry(registry), _topic(topic.Name)
+{
+    registry.Open(topic);
+}
+
+void TopicRegistry::Open(const TopicDescription &topic)
+{
+    CheckName("topic", topic.Name);
+    CheckName("type", topic.TypeName);
+    std::vector<std::string> others;
+    {
+        const std::lock_guard lock(_mutex);
+        auto &open = _open.try_emplace(topic.Name, OpenTopic{topic.TypeName}).first->second;
+        if (open.Type != topic.TypeName)
+        {
+            throw TransportError("topic " + topic.Name + " is open in this session with type " + open.Type +
+                                 ", so it cannot be opened with type " + topic.TypeName);
+        }
+        if (++open.Count == 1)
+        {
+            for (const auto &[id, remote] : _remote)
+            {
+                if (remote.Topic == topic.Name && remote.Type != topic.TypeName)
+                {
+                    others.push_back(remote.Type);
+                }
+            }
+        }
+    }
+    for (const auto &other : others)
+    {
+        _log->InconsistentType(topic.Name, topic.TypeName, other);
+    }
+}
+
+void TopicRegistry::Close(const std::string &topic)
+{
+    const std::lock_guard lock(_mutex);
+    const auto open = _open.find(topic);
+    if (open != _open.end() && --open->second.Count == 0)
+    {
+        _open.erase(open);
+    }
+}
+
+void TopicRegistry::RemoteAppeared(const WriterId &endpoint, std::string topic, std::string type)
+{
+    std::string ours;
+    {
+        const std::lock_guard lock(_mutex);
+        const bool isNew = _remote.insert_or_assign(endpoint, RemoteEndpoint{topic, type}).second;
+        const auto open = _open.find(topic);
+        if (isNew && open != _open.end() && open->second.Type != type)
+        {
+            ours = open->second.Type;
+        }
+    }
+    if (!ours.empty())
+    {
+        _log->InconsistentType(topic, ours, type);
+    }
+}
+
+void TopicRegistry::RemoteGone(const WriterId &endpoint)
+{
+    const std::lock_guard lock(_mutex);
+    _remote.erase(endpoint);
+}
+
+}  // namespace Rabit

@@ -1,0 +1,55 @@
+#include <rabit/transport/TransportFactory.h>
+
+#ifdef RABIT_WITH_FASTDDS
+#include <rabit/fastdds/FastDdsTransport.h>
+#endif
+
+#include <map>
+
+namespace Rabit
+{
+
+namespace
+{
+
+using Maker = std::unique_ptr<Transport> (*)();
+
+const std::map<std::string, Maker> &Makers()
+{
+    static const std::map<std::string, Maker> makers = {
+#ifdef RABIT_WITH_FASTDDS
+        {"fastdds", [] { return std::unique_ptr<Transport>(std::make_unique<FastDdsTransport>()); }},
+#endif
+    };
+    return makers;
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> MakeTransport(const std::string &name)
+{
+    const auto maker = Makers().find(name);
+    if (maker != Makers().end())
+    {
+        return maker->second();
+    }
+    std::string built;
+    for (const auto &available : AvailableTransports())
+    {
+        built += (built.empty() ? "" : ", ") + available;
+    }
+    throw TransportError("there is no transport called " + name +
+                         "; this build has: " + (built.empty() ? "none" : built));
+}
+
+std::vector<std::string> AvailableTransports()
+{
+    std::vector<std::string> names;
+    for (const auto &[name, maker] : Makers())
+    {
+        names.push_back(name);
+    }
+    return names;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Rabit
+{
+
+// The backends by name, for programs that take theirs from a configuration. Only main() programs link this
+// (Rabit::Transports): it pulls in every backend that was built.
+
+// The backend that a configuration calls `name`, for instance `fastdds`. Throws TransportError, naming those
+// that were built, if there is none. The simulated transport is not among them: it has no network of its own.
+std::unique_ptr<Transport> MakeTransport(const std::string &name);
+
+// The names that MakeTransport knows, in alphabetical order; depends on the options RABIT_WITH_FASTDDS and
+// RABIT_WITH_CYCLONEDDS of the build.
+std::vector<std::string> AvailableTransports();
+
+}  // namespace Rabit

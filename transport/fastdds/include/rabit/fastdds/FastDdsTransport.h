@@ -1,0 +1,31 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+#include <string>
+
+namespace Rabit
+{
+
+// The backend on eProsima Fast DDS (RTPS over UDPv4; shared memory on request).
+//
+// It uses the vendor's RTPS layer: a sample is encoded into the buffer it is sent from, and handed over in
+// the buffer it was received in, on the vendor's receiving thread. Samples are limited to 64 MiB.
+//
+// TransportSettings::BackendConfig is a Fast DDS XML profiles file; its default participant profile is the
+// base on which the other settings are laid. Transports that it defines replace ours, interfaces included.
+//
+// Process-wide effect: the first Open switches Fast DDS's intraprocess delivery off, because with it a
+// handler would run inside another session's Write. Environment variables that Fast DDS itself reads stay in
+// force.
+class FastDdsTransport final : public Transport
+{
+public:
+    // `fastdds`
+    std::string Name() const override;
+    // Any number of sessions may be open in one process. Thread-safe.
+    std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,98 @@
+#include "EndpointSettings.h"
+
+#include <algorithm>
+
+namespace Rabit::FastDds
+{
+
+namespace rtps = eprosima::fastrtps::rtps;
+namespace dds = eprosima::fastdds::dds;
+
+namespace
+{
+
+constexpr std::uint32_t Milliseconds = 1000 * 1000;  // in the nanoseconds of the vendor's durations
+
+rtps::TopicKind_t KindOf(const TopicDescription &topic)
+{
+    return topic.KeyOf ? rtps::WITH_KEY : rtps::NO_KEY;
+}
+
+void Apply(const TopicDescription &topic, const TopicQos &qos, rtps::EndpointAttributes &endpoint)
+{
+    endpoint.topicKind = KindOf(topic);
+    endpoint.reliabilityKind = qos.Reliability == Reliability::Reliable ? rtps::RELIABLE : rtps::BEST_EFFORT;
+    endpoint.durabilityKind =
+        qos.Durability == Durability::TransientLocal ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
+}
+
+template <typename EndpointQos>
+void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, EndpointQos &result)
+{
+    result.m_reliability.kind = qos.Reliability == Reliability::Reliable ? dds::RELIABLE_RELIABILITY_QOS
+                                                                         : dds::BEST_EFFORT_RELIABILITY_QOS;
+    result.m_durability.kind = qos.Durability == Durability::TransientLocal
+                                   ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
+                                   : dds::VOLATILE_DURABILITY_QOS;
+    // An empty list is written out as the default partition: with it, another make would not match `*`.
+    std::vector<std::string> names = partitions.empty() ? std::vector<std::string>{""} : partitions;
+    result.m_partition.names(names);
+    result.data_sharing.off();
+}
+
+}  // namespace
+
+eprosima::fastrtps::TopicAttributes MakeTopicAttributes(const TopicDescription &topic)
+{
+    eprosima::fastrtps::TopicAttributes attributes(topic.Name.c_str(), topic.TypeName.c_str(), KindOf(topic));
+    attributes.auto_fill_type_object = false;
+    attributes.auto_fill_type_information = false;
+    return attributes;
+}
+
+rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos)
+{
+    rtps::WriterAttributes attributes;
+    Apply(topic, qos, attributes.endpoint);
+    // The vendor's defaults (3 s, 5 ms) suit a wire that loses nothing: here they would make every repair,
+    // and the end of every replay, seconds late.
+    attributes.times.heartbeatPeriod = {0, 20 * Milliseconds};
+    attributes.times.initialHeartbeatDelay = {0, 5 * Milliseconds};
+    attributes.times.nackResponseDelay = {0, 1 * Milliseconds};
+    attributes.times.nackSupressionDuration = {0, 0};
+    attributes.mode = rtps::SYNCHRONOUS_WRITER;
+    return attributes;
+}
+
+eprosima::fastrtps::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+{
+    eprosima::fastrtps::WriterQos result;
+    ApplyQos(qos, partitions, result);
+    return result;
+}
+
+rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos)
+{
+    rtps::ReaderAttributes attributes;
+    Apply(topic, qos, attributes.endpoint);
+    attributes.times.heartbeatResponseDelay = {0, 1 * Milliseconds};
+    attributes.times.initialAcknackDelay = {0, 10 * Milliseconds};
+    return attributes;
+}
+
+eprosima::fastrtps::ReaderQos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+{
+    eprosima::fastrtps::ReaderQos result;
+    ApplyQos(qos, partitions, result);
+    return result;
+}
+
+WriterId ToWriterId(const rtps::GUID_t &guid)
+{
+    WriterId id;
+    const auto next = std::copy_n(guid.guidPrefix.value, rtps::GuidPrefix_t::size, id.begin());
+    std::copy_n(guid.entityId.value, rtps::EntityId_t::size, next);
+    return id;
+}
+
+}  // namespace Rabit::FastDds

@@ -1,0 +1,69 @@
+#include <rabit/fastdds/FastDdsTransport.h>
+
+#include <memory>
+#include <utility>
+
+#include "FastDdsReader.h"
+#include "FastDdsWriter.h"
+#include "SessionCore.h"
+
+namespace Rabit
+{
+
+namespace
+{
+
+void CheckQos(const TopicDescription &topic, const TopicQos &qos)
+{
+    constexpr int DeepestHistory = 1000000;
+    if (qos.Depth < 1 || qos.Depth > DeepestHistory)
+    {
+        throw TransportError("the depth of topic " + topic.Name + " must be 1 to 1000000, not " +
+                             std::to_string(qos.Depth));
+    }
+}
+
+class FastDdsSession final : public TransportSession
+{
+public:
+    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer)
+        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer)))
+    {
+    }
+    ~FastDdsSession() override { _core->Close(); }
+
+    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
+                                                  const std::vector<std::string> &partitions) override
+    {
+        CheckQos(topic, qos);
+        return std::make_unique<FastDds::FastDdsWriter>(_core, topic, qos, partitions);
+    }
+
+    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
+                                                  const std::vector<std::string> &partitions,
+                                                  SampleHandler handler) override
+    {
+        CheckQos(topic, qos);
+        return std::make_unique<FastDds::FastDdsReader>(_core, topic, qos, partitions, std::move(handler));
+    }
+
+    TransportCounters Counters() const override { return _core->Log()->Read(); }
+
+private:
+    const std::shared_ptr<FastDds::SessionCore> _core;
+};
+
+}  // namespace
+
+std::string FastDdsTransport::Name() const
+{
+    return "fastdds";
+}
+
+std::unique_ptr<TransportSession> FastDdsTransport::Open(const TransportSettings &settings,
+                                                         PeerHandler onPeer)
+{
+    return std::make_unique<FastDdsSession>(settings, std::move(onPeer));
+}
+
+}  // namespace Rabit

@@ -1,0 +1,193 @@
+#include "FastDdsWriter.h"
+
+#include <fastdds/rtps/RTPSDomain.h>
+#include <fastdds/rtps/common/WriteParams.h>
+#include <fastdds/rtps/participant/RTPSParticipant.h>
+#include <fastdds/rtps/writer/RTPSWriter.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "EndpointSettings.h"
+
+namespace Rabit::FastDds
+{
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace
+{
+
+constexpr std::chrono::milliseconds LongestWait{100};
+constexpr std::size_t HeaderSize = 4;
+
+// Tells readers how many bytes RTPS will add at the end (OMG DDS-XTypes 1.3, 7.6.3.1.2).
+void MarkPadding(std::uint8_t *data, std::uint32_t size)
+{
+    const std::uint32_t padding = (4 - size % 4) % 4;
+    data[3] = static_cast<std::uint8_t>((data[3] & ~3u) | padding);
+}
+
+}  // namespace
+
+FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
+                             const TopicQos &qos, const std::vector<std::string> &partitions)
+    : _core(std::move(core)),
+      _topic(topic),
+      _use(_core->Topics(), topic),
+      _pool(std::make_shared<PayloadPool>([] {})),
+      _history(qos.Depth, static_cast<bool>(topic.KeyOf))
+{
+    auto attributes = MakeWriterAttributes(topic, qos);
+    _writer = rtps::RTPSDomain::createRTPSWriter(&_core->Participant(), attributes, _pool, &_history, this);
+    if (_writer == nullptr)
+    {
+        throw TransportError("Fast DDS cannot make a writer of topic " + topic.Name);
+    }
+    if (!_core->Participant().registerWriter(_writer, MakeTopicAttributes(topic),
+                                             MakeWriterQos(qos, partitions)))
+    {
+        rtps::RTPSDomain::removeRTPSWriter(_writer);
+        throw TransportError("Fast DDS cannot announce a writer of topic " + topic.Name);
+    }
+}
+
+FastDdsWriter::~FastDdsWriter()
+{
+    rtps::RTPSDomain::removeRTPSWriter(_writer);
+}
+
+WriteResult FastDdsWriter::Write(const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    return Send(sample, sourceTime, false);
+}
+
+WriteResult FastDdsWriter::Dispose(const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    if (!_topic.KeyOf)
+    {
+        return Fail("it has no key, so nothing of it can be disposed");
+    }
+    return Send(sample, sourceTime, true);
+}
+
+WriteResult FastDdsWriter::Fail(const char *why, WriteResult result)
+{
+    _core->Log()->WriteFailed(_topic.Name, why);
+    return result;
+}
+
+WriteResult FastDdsWriter::Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose)
+{
+    if (_core->IsClosed())
+    {
+        return Fail("the session is closed");
+    }
+    const std::size_t size = sample.EncodedSize();
+    if (size > MaxSample)
+    {
+        return Fail("the sample is larger than 64 MiB", WriteResult::TooLarge);
+    }
+    if (size < HeaderSize)
+    {
+        return Fail("the encoded sample is shorter than its header");
+    }
+    // Encoded before the vendor's lock is taken: other threads that write encode at the same time.
+    const auto size32 = static_cast<std::uint32_t>(size);
+    const PayloadPool::Buffer buffer = _pool->Acquire(size32);
+    KeyHash key{};
+    bool encoded = false;
+    try
+    {
+        encoded = sample.Encode({buffer.Data, size});
+    }
+    catch (...)
+    {
+        _pool->Release(buffer);
+        throw;
+    }
+    if (!encoded)
+    {
+        _pool->Release(buffer);
+        return Fail("the sample cannot be encoded");
+    }
+    if (_topic.KeyOf && !_topic.KeyOf({buffer.Data, size}, key))
+    {
+        _pool->Release(buffer);
+        return Fail("the encoded sample has no readable key");
+    }
+    MarkPadding(buffer.Data, size32);
+    return SendEncoded(buffer, size32, key, sourceTime, dispose);
+}
+
+WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t size, const KeyHash &key,
+                                       std::int64_t sourceTime, bool dispose)
+{
+    const auto deadline = std::chrono::steady_clock::now() + LongestWait;
+    const std::unique_lock lock(_writer->getMutex(), deadline);
+    if (!lock.owns_lock())
+    {
+        _pool->Release(buffer);
+        _core->Log()->WriteTimedOut(_topic.Name);
+        return WriteResult::TimedOut;
+    }
+    rtps::CacheChange_t *change = _writer->new_change(dispose ? rtps::NOT_ALIVE_DISPOSED : rtps::ALIVE);
+    if (change == nullptr)
+    {
+        _pool->Release(buffer);
+        return Fail("Fast DDS has no room for it");
+    }
+    // A disposal carries the key hash alone.
+    _pool->Adopt(buffer, dispose ? 0 : size, *change);
+    change->serializedPayload.encapsulation = (buffer.Data[1] & 1u) != 0 ? CDR_LE : CDR_BE;
+    if (_topic.KeyOf)
+    {
+        rtps::octet *handle = change->instanceHandle.value;
+        std::copy(key.begin(), key.end(), handle);
+    }
+    rtps::WriteParams params;
+    params.source_timestamp().from_ns(sourceTime);
+    if (!_history.Add(*change, params, deadline))
+    {
+        _writer->release_change(change);
+        return Fail("Fast DDS refused it");
+    }
+    return WriteResult::Ok;
+}
+
+int FastDdsWriter::MatchedReaders() const
+{
+    const std::lock_guard lock(_mutex);
+    return static_cast<int>(_matched.size());
+}
+
+void FastDdsWriter::onWriterMatched(rtps::RTPSWriter *writer, rtps::MatchingInfo &info)
+{
+    if (_core->IsOwn(info.remoteEndpointGuid.guidPrefix))
+    {
+        // This version has no setting to ignore the own endpoints, so the match is undone.
+        if (info.status == rtps::MATCHED_MATCHING)
+        {
+            writer->matched_reader_remove(info.remoteEndpointGuid);
+        }
+        return;
+    }
+    const std::lock_guard lock(_mutex);
+    if (info.status == rtps::MATCHED_MATCHING)
+    {
+        _matched.insert(info.remoteEndpointGuid);
+    }
+    else
+    {
+        _matched.erase(info.remoteEndpointGuid);
+    }
+}
+
+void FastDdsWriter::on_offered_incompatible_qos(rtps::RTPSWriter * /*writer*/,
+                                                eprosima::fastdds::dds::PolicyMask /*qos*/)
+{
+    _core->Log()->IncompatibleQos(_topic.Name);
+}
+
+}  // namespace Rabit::FastDds

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <fastdds/rtps/common/Guid.h>
+#include <fastdds/rtps/common/MatchingInfo.h>
+#include <fastdds/rtps/writer/WriterListener.h>
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+#include <mutex>
+#include <set>
+
+#include "KeepLastHistory.h"
+#include "PayloadPool.h"
+#include "SessionCore.h"
+
+namespace Rabit::FastDds
+{
+
+class FastDdsWriter final : public TransportWriter, private eprosima::fastrtps::rtps::WriterListener
+{
+public:
+    FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic, const TopicQos &qos,
+                  const std::vector<std::string> &partitions);
+    ~FastDdsWriter() override;
+
+    WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    int MatchedReaders() const override;
+
+private:
+    WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose);
+    WriteResult SendEncoded(PayloadPool::Buffer buffer, std::uint32_t size, const KeyHash &key,
+                            std::int64_t sourceTime, bool dispose);
+    WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed);
+
+    void onWriterMatched(eprosima::fastrtps::rtps::RTPSWriter *writer,
+                         eprosima::fastrtps::rtps::MatchingInfo &info) override;
+    void on_offered_incompatible_qos(eprosima::fastrtps::rtps::RTPSWriter *writer,
+                                     eprosima::fastdds::dds::PolicyMask qos) override;
+
+    const std::shared_ptr<SessionCore> _core;
+    const TopicDescription _topic;
+    const TopicRegistry::Use _use;
+    const std::shared_ptr<PayloadPool> _pool;
+    KeepLastHistory _history;
+    mutable std::mutex _mutex;
+    std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex
+    eprosima::fastrtps::rtps::RTPSWriter *_writer = nullptr;
+};
+
+}  // namespace Rabit::FastDds

@@ -1,0 +1,151 @@
+#include "ParticipantSettings.h"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
+#include <fastrtps/attributes/ParticipantAttributes.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+
+#include "common/ParticipantIdentity.h"
+#include "common/SettingsCheck.h"
+
+namespace Rabit::FastDds
+{
+
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using eprosima::fastrtps::xmlparser::XMLP_ret;
+using eprosima::fastrtps::xmlparser::XMLProfileManager;
+
+namespace
+{
+
+// The kernel caps them at net.core.rmem_max and wmem_max.
+constexpr std::uint32_t SocketBuffer = 4u << 20;
+// A peer without a port is looked for at the ports of this many participants of its host.
+constexpr std::uint32_t ParticipantsPerPeer = 16;
+// RTPS 2.3, 9.6.1.4.1
+constexpr const char *DiscoveryMulticastAddress = "239.255.0.1";
+
+eprosima::fastrtps::Duration_t ToDuration(std::chrono::milliseconds time)
+{
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
+    return {static_cast<std::int32_t>(seconds.count()),
+            static_cast<std::uint32_t>(std::chrono::nanoseconds(time - seconds).count())};
+}
+
+rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
+{
+    // The vendor's table of profiles is one for the process: load and read it in one go.
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    if (!std::filesystem::is_regular_file(file))
+    {
+        throw TransportError("there is no Fast DDS profiles file " + file);
+    }
+    if (XMLProfileManager::loadXMLFile(file) != XMLP_ret::XML_OK)
+    {
+        throw TransportError("Fast DDS does not accept the profiles file " + file);
+    }
+    eprosima::fastrtps::ParticipantAttributes profile;
+    XMLProfileManager::getDefaultParticipantAttributes(profile);
+    return profile.rtps;
+}
+
+void AddTransports(const TransportSettings &settings, rtps::RTPSParticipantAttributes &attributes)
+{
+    auto udp = std::make_shared<UDPv4TransportDescriptor>();
+    udp->maxMessageSize = static_cast<std::uint32_t>(settings.MaxDatagram);
+    udp->sendBufferSize = SocketBuffer;
+    udp->receiveBufferSize = SocketBuffer;
+    udp->interfaceWhiteList = ResolveInterfaces(settings.Interfaces);
+    udp->maxInitialPeersRange = ParticipantsPerPeer;
+    attributes.useBuiltinTransports = false;
+    attributes.userTransports.push_back(udp);
+    if (settings.SharedMemory)
+    {
+        auto memory = std::make_shared<SharedMemTransportDescriptor>();
+        memory->maxMessageSize = static_cast<std::uint32_t>(settings.MaxDatagram);
+        attributes.userTransports.push_back(memory);
+    }
+}
+
+void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes &attributes)
+{
+    auto &builtin = attributes.builtin;
+    builtin.avoid_builtin_multicast = true;
+    if (!settings.Multicast)
+    {
+        // An own unicast locator, of any address and the well-known port, keeps the vendor from adding the
+        // multicast one.
+        rtps::Locator_t anyAddress;
+        builtin.metatrafficUnicastLocatorList.push_back(anyAddress);
+    }
+    if (settings.Peers.empty())
+    {
+        return;
+    }
+    for (const auto &peer : settings.Peers)
+    {
+        const PeerAddress address = ResolvePeer(peer);
+        rtps::Locator_t locator;
+        rtps::IPLocator::setIPv4(locator, address.Address);
+        locator.port = address.Port;
+        builtin.initialPeersList.push_back(locator);
+    }
+    if (settings.Multicast)
+    {
+        // A list of peers replaces the default one, which is the multicast group.
+        rtps::Locator_t group;
+        rtps::IPLocator::setIPv4(group, DiscoveryMulticastAddress);
+        builtin.initialPeersList.push_back(group);
+    }
+}
+
+}  // namespace
+
+rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings)
+{
+    CheckSettings(settings);
+    rtps::RTPSParticipantAttributes attributes;
+    if (!settings.BackendConfig.empty())
+    {
+        attributes = LoadProfile(settings.BackendConfig);
+    }
+    attributes.setName(settings.Node.c_str());
+    const std::string userData = MakeUserData(settings.Incarnation);
+    attributes.userData.assign(userData.begin(), userData.end());
+    auto &discovery = attributes.builtin.discovery_config;
+    discovery.leaseDuration = ToDuration(settings.Lease);
+    discovery.leaseDuration_announcementperiod = ToDuration(settings.AnnouncementPeriod);
+    discovery.initial_announcements.count = 5;
+    discovery.initial_announcements.period =
+        ToDuration(std::min(std::chrono::milliseconds(100), settings.AnnouncementPeriod));
+    if (attributes.userTransports.empty())
+    {
+        AddTransports(settings, attributes);
+    }
+    AddPeers(settings, attributes);
+    return attributes;
+}
+
+void SetLibraryDefaults()
+{
+    static std::once_flag once;
+    std::call_once(once,
+                   []
+                   {
+                       eprosima::fastrtps::LibrarySettingsAttributes library;
+                       library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+                       XMLProfileManager::library_settings(library);
+                   });
+}
+
+}  // namespace Rabit::FastDds

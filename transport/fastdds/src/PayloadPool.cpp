@@ -1,0 +1,137 @@
+#include "PayloadPool.h"
+
+#include <cstring>
+#include <new>
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+// Buffers up to this size are kept for reuse, so that small samples need no allocation in the steady state.
+constexpr std::uint32_t LargestKept = 16u << 10;
+constexpr std::uint32_t SmallestBuffer = 512;
+constexpr std::size_t MostKept = 64;
+constexpr std::align_val_t Alignment{16};
+
+std::uint32_t CapacityFor(std::uint32_t size)
+{
+    if (size > LargestKept)
+    {
+        // The vendor keeps a list of missing fragments inside the buffer, rounded up to 4 bytes.
+        return (size + 15u) & ~15u;
+    }
+    std::uint32_t capacity = SmallestBuffer;
+    while (capacity < size)
+    {
+        capacity *= 2;
+    }
+    return capacity;
+}
+
+void Free(PayloadPool::Buffer buffer)
+{
+    ::operator delete(buffer.Data, Alignment);
+}
+
+}  // namespace
+
+PayloadPool::~PayloadPool()
+{
+    for (const auto &buffer : _free)
+    {
+        Free(buffer);
+    }
+}
+
+PayloadPool::Buffer PayloadPool::Acquire(std::uint32_t size)
+{
+    const std::uint32_t capacity = CapacityFor(size);
+    if (capacity <= LargestKept)
+    {
+        const std::lock_guard lock(_mutex);
+        for (std::size_t i = _free.size(); i-- > 0;)
+        {
+            if (_free[i].Capacity >= capacity)
+            {
+                const Buffer found = _free[i];
+                _free[i] = _free.back();
+                _free.pop_back();
+                return found;
+            }
+        }
+    }
+    return {static_cast<std::uint8_t *>(::operator new(capacity, Alignment)), capacity};
+}
+
+void PayloadPool::Release(Buffer buffer)
+{
+    if (buffer.Capacity <= LargestKept)
+    {
+        const std::lock_guard lock(_mutex);
+        if (_free.size() < MostKept)
+        {
+            _free.push_back(buffer);
+            return;
+        }
+    }
+    Free(buffer);
+}
+
+void PayloadPool::Adopt(Buffer buffer, std::uint32_t length, Change &change)
+{
+    auto &payload = change.serializedPayload;
+    payload.data = buffer.Data;
+    payload.max_size = buffer.Capacity;
+    payload.length = length;
+    payload.pos = 0;
+    change.payload_owner(this);
+}
+
+bool PayloadPool::get_payload(std::uint32_t size, Change &change)
+{
+    if (size > MaxSample)
+    {
+        _onRefused();
+        return false;
+    }
+    try
+    {
+        Adopt(Acquire(size), size, change);
+        return true;
+    }
+    catch (const std::bad_alloc &)
+    {
+        return false;
+    }
+}
+
+bool PayloadPool::get_payload(Payload &data, IPayloadPool *& /*owner*/, Change &change)
+{
+    // The data lies in the receiving thread's buffer: this copy is the one that every RTPS reader makes.
+    if (!get_payload(data.length, change))
+    {
+        return false;
+    }
+    change.serializedPayload.encapsulation = data.encapsulation;
+    if (data.length > 0)
+    {
+        std::memcpy(change.serializedPayload.data, data.data, data.length);
+    }
+    return true;
+}
+
+bool PayloadPool::release_payload(Change &change)
+{
+    auto &payload = change.serializedPayload;
+    Release({payload.data, payload.max_size});
+    payload.data = nullptr;
+    payload.max_size = 0;
+    payload.length = 0;
+    payload.pos = 0;
+    change.payload_owner(nullptr);
+    return true;
+}
+
+}  // namespace Rabit::FastDds

@@ -1,0 +1,151 @@
+#include "SessionCore.h"
+
+#include <fastdds/rtps/RTPSDomain.h>
+#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
+#include <fastdds/rtps/builtin/data/ReaderProxyData.h>
+#include <fastdds/rtps/builtin/data/WriterProxyData.h>
+#include <fastdds/rtps/participant/RTPSParticipant.h>
+
+#include <utility>
+
+#include "EndpointSettings.h"
+#include "ParticipantSettings.h"
+
+namespace Rabit::FastDds
+{
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
+    : _log(std::make_shared<SessionLog>(settings)),
+      _topics(_log),
+      _peerGate(_log, "peer events"),
+      _onPeer(std::move(onPeer))
+{
+    const auto attributes = MakeParticipantAttributes(settings);
+    SetLibraryDefaults();
+    // Disabled at first, so that nothing is discovered before _participant is known here.
+    _participant = rtps::RTPSDomain::createParticipant(static_cast<std::uint32_t>(settings.Domain), false,
+                                                       attributes, this);
+    if (_participant == nullptr)
+    {
+        throw TransportError("Fast DDS cannot join domain " + std::to_string(settings.Domain) +
+                             ": no free port, or no usable network interface");
+    }
+    _participant->enable();
+}
+
+SessionCore::~SessionCore()
+{
+    Close();
+    rtps::RTPSDomain::removeRTPSParticipant(_participant);
+}
+
+void SessionCore::Close()
+{
+    _closed = true;
+    _peerGate.Close();
+}
+
+bool SessionCore::IsOwn(const GuidPrefix &prefix) const
+{
+    return prefix == _participant->getGuid().guidPrefix;
+}
+
+std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const GuidPrefix &prefix) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _peers.find(prefix);
+    return found == _peers.end() ? nullptr : found->second;
+}
+
+void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/,
+                                         rtps::ParticipantDiscoveryInfo &&info)
+{
+    switch (info.status)
+    {
+        case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
+        case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
+            PeerAppeared(info.info);
+            break;
+        case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
+            PeerGone(info.info.m_guid.guidPrefix, PeerEvent::Kind::Left);
+            break;
+        case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT:
+            PeerGone(info.info.m_guid.guidPrefix, PeerEvent::Kind::Lost);
+            break;
+    }
+}
+
+void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
+{
+    const auto incarnation = ParseUserData(peer.m_userData.data_vec());
+    if (!incarnation || IsOwn(peer.m_guid.guidPrefix))
+    {
+        return;
+    }
+    const auto identity = std::make_shared<const ParticipantIdentity>(
+        ParticipantIdentity{peer.m_participantName.to_string(), *incarnation});
+    {
+        const std::lock_guard lock(_mutex);
+        if (!_peers.emplace(peer.m_guid.guidPrefix, identity).second)
+        {
+            return;
+        }
+    }
+    _peerGate.Run(
+        [&]
+        {
+            if (_onPeer)
+            {
+                _onPeer({PeerEvent::Kind::Appeared, identity->Node, identity->Incarnation});
+            }
+        });
+}
+
+void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
+{
+    std::shared_ptr<const ParticipantIdentity> identity;
+    {
+        const std::lock_guard lock(_mutex);
+        const auto found = _peers.find(prefix);
+        if (found == _peers.end())
+        {
+            return;
+        }
+        identity = found->second;
+        _peers.erase(found);
+    }
+    _peerGate.Run(
+        [&]
+        {
+            if (_onPeer)
+            {
+                _onPeer({how, identity->Node, identity->Incarnation});
+            }
+        });
+}
+
+void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::ReaderDiscoveryInfo &&info)
+{
+    const WriterId endpoint = ToWriterId(info.info.guid());
+    if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER)
+    {
+        _topics.RemoteGone(endpoint);
+        return;
+    }
+    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string());
+}
+
+void SessionCore::onWriterDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::WriterDiscoveryInfo &&info)
+{
+    const WriterId endpoint = ToWriterId(info.info.guid());
+    if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER)
+    {
+        _topics.RemoteGone(endpoint);
+        return;
+    }
+    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string());
+}
+
+}  // namespace Rabit::FastDds

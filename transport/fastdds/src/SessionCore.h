@@ -1,0 +1,67 @@
+// What a session shares with its writers and readers: the participant and what it knows of the network.
+#pragma once
+
+#include <fastdds/rtps/common/Guid.h>
+#include <fastdds/rtps/participant/RTPSParticipantListener.h>
+#include <rabit/transport/Transport.h>
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "common/HandlerGate.h"
+#include "common/ParticipantIdentity.h"
+#include "common/SessionLog.h"
+#include "common/TopicRegistry.h"
+
+namespace Rabit::FastDds
+{
+
+// Lives until the session and all its writers and readers are gone, so that a writer that outlives its
+// session fails instead of touching freed memory. Thread-safe.
+class SessionCore final : private eprosima::fastrtps::rtps::RTPSParticipantListener
+{
+public:
+    using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+
+    // Joins the network. Throws TransportError.
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer);
+    // Leaves it.
+    ~SessionCore() override;
+    SessionCore(const SessionCore &) = delete;
+    SessionCore &operator=(const SessionCore &) = delete;
+
+    // No peer handler runs afterwards, and writes fail.
+    void Close();
+    bool IsClosed() const { return _closed; }
+
+    eprosima::fastrtps::rtps::RTPSParticipant &Participant() { return *_participant; }
+    bool IsOwn(const GuidPrefix &prefix) const;
+    // Who a participant is; nullptr if it is not a Rabit node, or unknown.
+    std::shared_ptr<const ParticipantIdentity> IdentityOf(const GuidPrefix &prefix) const;
+    const std::shared_ptr<SessionLog> &Log() const { return _log; }
+    TopicRegistry &Topics() { return _topics; }
+
+private:
+    void onParticipantDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo &&info) override;
+    void onReaderDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
+                           eprosima::fastrtps::rtps::ReaderDiscoveryInfo &&info) override;
+    void onWriterDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
+                           eprosima::fastrtps::rtps::WriterDiscoveryInfo &&info) override;
+    void PeerAppeared(const eprosima::fastrtps::rtps::ParticipantProxyData &peer);
+    void PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how);
+
+    const std::shared_ptr<SessionLog> _log;
+    TopicRegistry _topics;
+    HandlerGate _peerGate;
+    const PeerHandler _onPeer;
+    std::atomic<bool> _closed{false};
+    mutable std::mutex _mutex;
+    std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>
+        _peers;  // Rabit nodes; guarded by _mutex
+    eprosima::fastrtps::rtps::RTPSParticipant *_participant = nullptr;
+};
+
+}  // namespace Rabit::FastDds
