@@ -46,6 +46,8 @@ struct LinkReceiverCounters
     std::uint64_t Stale = 0;               // datagrams for or from another life (rules R1 to R3)
     std::uint64_t SessionsOpened = 0;
     std::uint64_t AcksSent = 0;
+    // Present state.
+    bool HeldBack = false;  // the local queue was full: the stream waits for room
 };
 
 // What concerns the node and no single link. The counters only rise.

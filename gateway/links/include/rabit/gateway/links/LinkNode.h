@@ -20,6 +20,8 @@ namespace Rabit
 {
 
 class LinkPeer;
+class LinkSender;
+struct LinkContext;
 
 // All queue links of one node: the state machine that a gateway drives. Messages enqueued here reach a queue
 // of another node exactly once and in order as long as both live, whatever the network does in between; each
@@ -41,19 +43,19 @@ class LinkNode
 {
 public:
     // Takes its first incarnation from the source. Throws std::invalid_argument if a setting is out of range.
-    LinkNode(LinkSettings settings, LinkOutput &output, LocalQueues &queues, IncarnationSource &incarnations,
-             LinkTime now);
+    LinkNode(LinkSettings settings, LinkOutput &output, LocalQueues &queues, IncarnationSource &incarnations);
     ~LinkNode();
     LinkNode(const LinkNode &) = delete;
     LinkNode &operator=(const LinkNode &) = delete;
 
-    // Sets the options for a link before its first message; has no effect on one already in use and then
-    // returns false. Throws std::invalid_argument if an option is out of range.
-    bool Configure(std::string_view destination, std::string_view queue, const LinkOptions &options,
-                   LinkTime now);
+    // Makes a link to a queue of another node with these options, if there is none yet; one that is in use
+    // keeps its options. Returns LinkRefusal::None if the link is there now. Throws std::invalid_argument if
+    // an option is out of range.
+    LinkRefusal Configure(std::string_view destination, std::string_view queue, const LinkOptions &options,
+                          LinkTime now);
 
     // Accepts a message for a queue of another node, or refuses it at once. The link is made on first use,
-    // with the options of Configure or else the given defaults. Rule S1. Call Run soon afterwards.
+    // with the options of Configure or else default ones. Rule S1. Call Run soon afterwards.
     LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
                          LinkPayload payload, LinkTime now);
 
@@ -95,6 +97,25 @@ public:
     // The whole state except the counters as text, one line per peer and link: for logs, and for tests that
     // state did not change.
     std::string Describe() const;
+
+private:
+    using Peers = std::map<std::string, std::unique_ptr<LinkPeer>, std::less<>>;
+
+    bool IsPossiblePeer(std::string_view name) const;
+    LinkPeer *FindPeer(std::string_view name) const;
+    LinkPeer *FindOrAddPeer(std::string_view name, LinkTime now);
+    LinkRefusal FindOrAddSender(std::string_view destination, std::string_view queue,
+                                const LinkOptions &options, LinkTime now, LinkPeer *&peer,
+                                LinkSender *&sender);
+    bool IsForUs(std::string_view name);
+    void CountMalformed();
+    void HeardOfMyself(std::uint64_t incarnation, LinkTime now);
+
+    IncarnationSource &_incarnations;
+    std::unique_ptr<LinkContext> _context;
+    Peers _peers;
+    std::set<std::string, std::less<>> _types;  // type names that messages in outboxes point to
+    std::uint64_t _nextId = 1;
 };
 
 }  // namespace Rabit

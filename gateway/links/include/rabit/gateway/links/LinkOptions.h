@@ -46,8 +46,12 @@ struct LinkSettings
     LinkTime MinResend{std::chrono::milliseconds(20)};
     LinkTime FirstResend{std::chrono::milliseconds(200)};
     LinkTime MaxResend{std::chrono::seconds(1)};
-    // A LinkHello goes to each peer at this period, and at SilentHelloPeriod to a peer that was not heard for
-    // SilentAfter. Answers do not follow each other faster than HelloGap.
+    // Bytes per second that the slowest path is assumed to carry: what is on its way is sent again only after
+    // the time that it needs at this rate, on top of the resend timer.
+    std::size_t SlowPath = 512 * 1024;
+    // A LinkHello goes to each peer at this period. A peer that was not heard for SilentAfter is silent: it
+    // gets no messages, and hellos only while messages wait for it, at SilentHelloPeriod. Hellos to one peer
+    // do not follow each other faster than HelloGap.
     LinkTime HelloPeriod{std::chrono::milliseconds(500)};
     LinkTime SilentAfter{std::chrono::seconds(10)};
     LinkTime SilentHelloPeriod{std::chrono::seconds(2)};

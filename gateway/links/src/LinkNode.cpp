@@ -1,0 +1,336 @@
+#include <rabit/gateway/links/LinkNode.h>
+
+#include "LinkContext.h"
+#include "LinkPeer.h"
+#include "LinkValidation.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+namespace Rabit
+{
+
+LinkNode::LinkNode(LinkSettings settings, LinkOutput &output, LocalQueues &queues,
+                   IncarnationSource &incarnations)
+    : _incarnations(incarnations)
+{
+    RequireValid(settings);
+    _context = std::make_unique<LinkContext>(
+        LinkContext{std::move(settings), output, queues, incarnations.Above(0), {}, {}});
+}
+
+LinkNode::~LinkNode() = default;
+
+const std::string &LinkNode::Name() const
+{
+    return _context->Settings.Node;
+}
+
+std::uint64_t LinkNode::Incarnation() const
+{
+    return _context->Incarnation;
+}
+
+bool LinkNode::NameInUseElsewhere() const
+{
+    return _context->Counters.Raises >= _context->Settings.AlarmAfterRaises;
+}
+
+LinkPeer *LinkNode::FindPeer(std::string_view name) const
+{
+    const auto found = _peers.find(name);
+    return found == _peers.end() ? nullptr : found->second.get();
+}
+
+LinkPeer *LinkNode::FindOrAddPeer(std::string_view name, LinkTime now)
+{
+    if (LinkPeer *peer = FindPeer(name))
+    {
+        return peer;
+    }
+    if (_peers.size() >= _context->Settings.MaxPeers)
+    {
+        return nullptr;
+    }
+    auto peer = std::make_unique<LinkPeer>(*_context, std::string(name), now);
+    return _peers.emplace(std::string(name), std::move(peer)).first->second.get();
+}
+
+bool LinkNode::IsPossiblePeer(std::string_view name) const
+{
+    return IsPossibleName(name) && name != _context->Settings.Node;
+}
+
+bool LinkNode::AddPeer(std::string_view node, LinkTime now)
+{
+    LinkPeer *peer = IsPossiblePeer(node) ? FindOrAddPeer(node, now) : nullptr;
+    if (peer == nullptr)
+    {
+        return false;
+    }
+    peer->HelloSoon(now);
+    return true;
+}
+
+LinkRefusal LinkNode::FindOrAddSender(std::string_view destination, std::string_view queue,
+                                      const LinkOptions &options, LinkTime now, LinkPeer *&peer,
+                                      LinkSender *&sender)
+{
+    if (!IsPossiblePeer(destination) || !IsPossibleName(queue))
+    {
+        return LinkRefusal::BadName;
+    }
+    peer = FindOrAddPeer(destination, now);
+    if (peer == nullptr)
+    {
+        return LinkRefusal::TooManyPeers;
+    }
+    sender = peer->FindSender(queue);
+    if (sender == nullptr)
+    {
+        if (peer->AllSenders().size() >= _context->Settings.MaxLinksPerPeer)
+        {
+            return LinkRefusal::TooManyLinks;
+        }
+        sender = &peer->AddSender(queue, options);
+    }
+    return LinkRefusal::None;
+}
+
+LinkRefusal LinkNode::Configure(std::string_view destination, std::string_view queue,
+                                const LinkOptions &options, LinkTime now)
+{
+    RequireValid(options);
+    LinkPeer *peer = nullptr;
+    LinkSender *sender = nullptr;
+    return FindOrAddSender(destination, queue, options, now, peer, sender);
+}
+
+LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
+                               LinkPayload payload, LinkTime now)
+{
+    if (!IsPossibleName(type))
+    {
+        ++_context->Counters.RefusedBadName;
+        return {.Refusal = LinkRefusal::BadName};
+    }
+    LinkPeer *peer = nullptr;
+    LinkSender *sender = nullptr;
+    LinkRefusal refusal = FindOrAddSender(destination, queue, LinkOptions(), now, peer, sender);
+    if (refusal != LinkRefusal::None)
+    {
+        ++(refusal == LinkRefusal::BadName ? _context->Counters.RefusedBadName
+                                           : _context->Counters.RefusedTooMany);
+        return {.Refusal = refusal};
+    }
+    auto known = _types.find(type);
+    if (known == _types.end())
+    {
+        known = _types.emplace(type).first;
+    }
+    refusal = sender->Enqueue(_nextId, *known, std::move(payload), now);
+    if (refusal != LinkRefusal::None)
+    {
+        return {.Refusal = refusal};
+    }
+    peer->OnEnqueued(now);
+    return {.Refusal = LinkRefusal::None, .Id = _nextId++};
+}
+
+bool LinkNode::IsForUs(std::string_view name)
+{
+    if (name == _context->Settings.Node)
+    {
+        return true;
+    }
+    ++_context->Counters.NotForUs;
+    return false;
+}
+
+void LinkNode::CountMalformed()
+{
+    ++_context->Counters.Malformed;
+}
+
+// Rules R1 and S6, and the rule for hellos: a peer that remembers a higher life of this node than its present
+// one makes it take a yet higher one. Nothing received or sent in the old one is continued.
+void LinkNode::HeardOfMyself(std::uint64_t incarnation, LinkTime now)
+{
+    if (incarnation <= _context->Incarnation)
+    {
+        return;
+    }
+    _context->Incarnation = _incarnations.Above(incarnation);
+    ++_context->Counters.Raises;
+    for (const auto &[name, peer] : _peers)
+    {
+        peer->OnOwnRaise(now);
+    }
+}
+
+void LinkNode::OnData(const LinkData &data, LinkTime now)
+{
+    if (!IsWellFormed(data))
+    {
+        CountMalformed();
+        return;
+    }
+    if (!IsForUs(data.Destination))
+    {
+        return;
+    }
+    HeardOfMyself(data.ReceiverIncarnation, now);  // rule R1
+    LinkPeer *peer = FindOrAddPeer(data.Source, now);
+    if (peer == nullptr)
+    {
+        ++_context->Counters.TooManyPeers;
+        return;
+    }
+    peer->HeardOf(data.SenderIncarnation, now);
+    LinkReceiver *receiver = peer->FindReceiver(data.Queue);
+    if (receiver == nullptr)
+    {
+        if (peer->AllReceivers().size() >= _context->Settings.MaxLinksPerPeer)
+        {
+            ++_context->Counters.TooManyLinks;
+            return;
+        }
+        receiver = &peer->AddReceiver(data.Queue);
+    }
+    receiver->OnData(data, now);
+}
+
+void LinkNode::OnAck(const LinkAck &ack, LinkTime now)
+{
+    if (!IsWellFormed(ack))
+    {
+        CountMalformed();
+        return;
+    }
+    if (!IsForUs(ack.Source))
+    {
+        return;
+    }
+    LinkPeer *peer = FindPeer(ack.Destination);
+    LinkSender *sender = peer == nullptr ? nullptr : peer->FindSender(ack.Queue);
+    if (sender == nullptr)
+    {
+        ++_context->Counters.NoSuchLink;
+        return;
+    }
+    if (ack.ReceiverIncarnation == peer->Incarnation() && !sender->IsPossible(ack))
+    {
+        CountMalformed();
+        return;
+    }
+    if (peer->HeardOf(ack.ReceiverIncarnation, now))  // rule S5
+    {
+        peer->TakeToken(ack.Clock, ack.Time, now);
+        sender->OnAck(ack, now);  // rule S4
+    }
+    HeardOfMyself(ack.YourIncarnation, now);  // rule S6
+}
+
+void LinkNode::OnHello(const LinkHello &hello, LinkTime now)
+{
+    if (!IsWellFormed(hello))
+    {
+        CountMalformed();
+        return;
+    }
+    if (!IsForUs(hello.Destination))
+    {
+        return;
+    }
+    HeardOfMyself(hello.YourIncarnation, now);
+    LinkPeer *peer = FindOrAddPeer(hello.Source, now);
+    if (peer == nullptr)
+    {
+        ++_context->Counters.TooManyPeers;
+        return;
+    }
+    peer->OnHello(hello, now);
+}
+
+void LinkNode::OnRoom(std::string_view queue, LinkTime now)
+{
+    for (const auto &[name, peer] : _peers)
+    {
+        if (LinkReceiver *receiver = peer->FindReceiver(queue))
+        {
+            receiver->OnRoom(now);
+        }
+    }
+}
+
+void LinkNode::Run(LinkTime now)
+{
+    for (const auto &[name, peer] : _peers)
+    {
+        peer->Run(now);
+    }
+}
+
+LinkTime LinkNode::NextDue() const
+{
+    LinkTime due = LinkNever;
+    for (const auto &[name, peer] : _peers)
+    {
+        due = std::min(due, peer->NextDue());
+    }
+    return due;
+}
+
+void LinkNode::Close()
+{
+    for (const auto &[name, peer] : _peers)
+    {
+        for (const auto &[queue, sender] : peer->AllSenders())
+        {
+            sender->Close();
+        }
+    }
+}
+
+LinkNodeCounters LinkNode::Counters() const
+{
+    return _context->Counters;
+}
+
+void LinkNode::VisitSenders(
+    const std::function<void(std::string_view, std::string_view, const LinkSenderCounters &)> &visit) const
+{
+    for (const auto &[name, peer] : _peers)
+    {
+        for (const auto &[queue, sender] : peer->AllSenders())
+        {
+            visit(name, queue, sender->Counters());
+        }
+    }
+}
+
+void LinkNode::VisitReceivers(
+    const std::function<void(std::string_view, std::string_view, const LinkReceiverCounters &)> &visit) const
+{
+    for (const auto &[name, peer] : _peers)
+    {
+        for (const auto &[queue, receiver] : peer->AllReceivers())
+        {
+            visit(name, queue, receiver->Counters());
+        }
+    }
+}
+
+std::string LinkNode::Describe() const
+{
+    std::ostringstream out;
+    out << "node " << Name() << ": life " << Incarnation() << " next id " << _nextId << '\n';
+    for (const auto &[name, peer] : _peers)
+    {
+        out << peer->Describe();
+    }
+    return out.str();
+}
+
+}  // namespace Rabit

@@ -1,0 +1,23 @@
+// Checks on what comes from the wire, made before anything changes. They use the message alone.
+#pragma once
+
+#include <rabit/gateway/links/LinkMessages.h>
+#include <rabit/gateway/links/LinkOptions.h>
+
+namespace Rabit
+{
+
+// 1 to LinkMaxName bytes.
+bool IsPossibleName(std::string_view name);
+// Not 0, and such that a higher one exists.
+bool IsPossibleIncarnation(std::uint64_t incarnation);
+
+bool IsWellFormed(const LinkData &data);
+bool IsWellFormed(const LinkAck &ack);
+bool IsWellFormed(const LinkHello &hello);
+
+// Throw std::invalid_argument, naming the field, if a value is out of its range.
+void RequireValid(const LinkSettings &settings);
+void RequireValid(const LinkOptions &options);
+
+}  // namespace Rabit

@@ -1,0 +1,46 @@
+#include "ResendTimer.h"
+
+#include <algorithm>
+
+namespace Rabit
+{
+
+ResendTimer::ResendTimer(const LinkSettings &settings)
+    : _first(settings.FirstResend), _min(settings.MinResend), _max(settings.MaxResend)
+{
+}
+
+void ResendTimer::Measured(LinkTime roundTrip)
+{
+    roundTrip = std::max(roundTrip, LinkTime(1));
+    if (_smoothed == LinkTime(0))
+    {
+        _smoothed = roundTrip;
+        _variation = roundTrip / 2;
+        return;
+    }
+    const LinkTime error = roundTrip > _smoothed ? roundTrip - _smoothed : _smoothed - roundTrip;
+    _variation = (_variation * 3 + error) / 4;
+    _smoothed = std::max((_smoothed * 7 + roundTrip) / 8, LinkTime(1));
+}
+
+void ResendTimer::BackOff()
+{
+    if (Timeout() < _max)
+    {
+        ++_backOff;
+    }
+}
+
+LinkTime ResendTimer::PlainTimeout() const
+{
+    const LinkTime timeout = _smoothed == LinkTime(0) ? _first : _smoothed + 4 * _variation;
+    return std::clamp(timeout, _min, _max);
+}
+
+LinkTime ResendTimer::Timeout() const
+{
+    return std::min<LinkTime>(PlainTimeout() * (1LL << _backOff), _max);
+}
+
+}  // namespace Rabit

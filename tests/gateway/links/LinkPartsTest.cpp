@@ -1,0 +1,147 @@
+// The small parts that the rules are made of.
+#include "OutcomeHistory.h"
+#include "ResendTimer.h"
+#include "RingBuffer.h"
+
+#include <rabit/gateway/links/LinkOutcome.h>
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <memory>
+
+namespace Rabit::Test
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+TEST(RingBuffer, behaves_as_a_deque_while_it_grows_and_wraps)
+{
+    RingBuffer<int> ring;
+    std::deque<int> model;
+    unsigned random = 12345;
+    for (int i = 0; i < 100000; ++i)
+    {
+        random = random * 1664525 + 1013904223;
+        const unsigned choice = (random >> 16) % 8;
+        if (choice < 4)
+        {
+            ring.PushBack(i);
+            model.push_back(i);
+        }
+        else if (choice == 4)
+        {
+            ring.PushFront(i);
+            model.push_front(i);
+        }
+        else if (!model.empty() && choice == 5)
+        {
+            ASSERT_EQ(ring.PopBack(), model.back());
+            model.pop_back();
+        }
+        else if (!model.empty())
+        {
+            ASSERT_EQ(ring.PopFront(), model.front());
+            model.pop_front();
+        }
+        ASSERT_EQ(ring.Size(), model.size());
+        ASSERT_EQ(ring.Empty(), model.empty());
+        if (!model.empty())
+        {
+            ASSERT_EQ(ring[(random >> 8) % model.size()], model[(random >> 8) % model.size()]);
+        }
+    }
+}
+
+TEST(RingBuffer, keeps_nothing_of_what_was_taken_out)
+{
+    RingBuffer<std::shared_ptr<int>> ring;
+    const auto value = std::make_shared<int>(1);
+    ring.PushBack(value);
+    ring.PushBack(value);
+    ring.PopFront();
+    ring.PopBack();
+    EXPECT_EQ(value.use_count(), 1);
+}
+
+TEST(OutcomeHistory, remembers_the_last_256_and_no_more)
+{
+    OutcomeHistory history;
+    history.Push(OutcomeHistory::Entry::Refused);
+    for (int i = 0; i < 254; ++i)
+    {
+        history.Push(i % 3 == 0 ? OutcomeHistory::Entry::Delivered : OutcomeHistory::Entry::Skipped);
+    }
+    EXPECT_TRUE(OutcomeHistory::Test(history.Refused(), 254));
+    EXPECT_TRUE(OutcomeHistory::Test(history.Delivered(), 253));
+    EXPECT_FALSE(OutcomeHistory::Test(history.Delivered(), 252));
+    EXPECT_TRUE(OutcomeHistory::Test(history.Delivered(), 253 - 64 * 3));
+    history.Push(OutcomeHistory::Entry::Delivered);
+    EXPECT_TRUE(OutcomeHistory::Test(history.Refused(), 255));
+    history.Push(OutcomeHistory::Entry::Delivered);
+    EXPECT_FALSE(OutcomeHistory::Test(history.Refused(), 255));
+    EXPECT_FALSE(OutcomeHistory::Test(history.Refused(), 256));
+    history.Clear();
+    EXPECT_EQ(history.Delivered(), LinkBitmap{});
+}
+
+// The figures of RFC 6298, section 2, worked out by hand.
+TEST(ResendTimer, follows_rfc_6298)
+{
+    ResendTimer timer{LinkSettings()};
+    EXPECT_EQ(timer.Timeout(), 200ms) << "before the first measurement";
+    timer.Measured(100ms);
+    EXPECT_EQ(timer.RoundTrip(), 100ms);
+    EXPECT_EQ(timer.Timeout(), 300ms) << "SRTT + 4 * R/2";
+    timer.Measured(180ms);
+    EXPECT_EQ(timer.RoundTrip(), 110ms) << "7/8 * 100 + 1/8 * 180";
+    EXPECT_EQ(timer.Timeout(), 110ms + 4 * 57500us) << "RTTVAR = 3/4 * 50 + 1/4 * 80";
+}
+
+TEST(ResendTimer, doubles_up_to_the_bound_and_is_restored)
+{
+    ResendTimer timer{LinkSettings()};
+    timer.Measured(50ms);
+    for (const LinkTime expected : {150ms, 300ms, 600ms, 1000ms, 1000ms})
+    {
+        EXPECT_EQ(timer.Timeout(), expected);
+        timer.BackOff();
+    }
+    EXPECT_EQ(timer.PlainTimeout(), 150ms);
+    EXPECT_TRUE(timer.IsBackedOff());
+    timer.Restore();
+    EXPECT_EQ(timer.Timeout(), 150ms);
+    EXPECT_FALSE(timer.IsBackedOff());
+}
+
+TEST(ResendTimer, stays_within_its_bounds)
+{
+    ResendTimer fast{LinkSettings()};
+    for (int i = 0; i < 100; ++i)
+    {
+        fast.Measured(100us);
+    }
+    EXPECT_EQ(fast.Timeout(), 20ms);
+    ResendTimer slow{LinkSettings()};
+    slow.Measured(30s);
+    EXPECT_EQ(slow.Timeout(), 1s);
+    for (int i = 0; i < 1000; ++i)
+    {
+        slow.BackOff();
+    }
+    EXPECT_EQ(slow.Timeout(), 1s);
+    ResendTimer zero{LinkSettings()};
+    zero.Measured(0ns);
+    EXPECT_EQ(zero.Timeout(), 20ms);
+}
+
+TEST(LinkOutcome, has_words_for_logs)
+{
+    EXPECT_EQ(ToString(LinkOutcome::InDoubt), "in doubt");
+    EXPECT_EQ(ToString(LinkRefusal::FullByBytes), "outbox full by bytes");
+}
+
+}  // namespace
+}  // namespace Rabit::Test
