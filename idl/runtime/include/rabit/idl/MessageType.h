@@ -8,16 +8,19 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <typeindex>
 
 namespace Rabit
 {
 
-// What is known of one IDL type at run time: how to make its messages and how to turn them into bytes and back.
+// What is known of one IDL type at run time: how to make its messages and how to turn them into bytes and
+// back.
 //
-// The bytes are what a DDS sample of the type holds: a 4-byte encapsulation header (CDR, in the byte order that
-// it names; we write little endian), then plain XCDR1 (OMG DDS-XTypes 1.3, 7.4.1), with no header of Rabit's own.
-// One object exists for each generated message class; it lives as long as the process, is immutable, and may be
-// used from any thread.
+// The bytes are what a DDS sample of the type holds: a 4-byte encapsulation header (CDR, in the byte order
+// that it names; we write little endian), then plain XCDR1 (OMG DDS-XTypes 1.3, 7.4.1), with no header of
+// Rabit's own, filled up with zeros to a multiple of 4 bytes. The last two bits of the header give the number
+// of these zeros (XTypes 1.3, 7.6.3.1.2). Equal messages give equal bytes. One object exists for each
+// generated message class; it lives as long as the process, is immutable, and may be used from any thread.
 class MessageType
 {
 public:
@@ -31,25 +34,29 @@ public:
     virtual const std::string &IdlText() const = 0;
     // A message of this type with default values; its dynamic type is the generated class.
     virtual std::unique_ptr<RabitMessage> Create() const = 0;
+    // The C++ class of its messages.
+    virtual std::type_index CppType() const = 0;
     // Whether this is the type of that message (its dynamic type, not a base of it).
     virtual bool IsTypeOf(const RabitMessage &message) const = 0;
 
-    // Bytes that Serialize will write for this message, the header included. Throws std::invalid_argument if the
-    // message is of another type.
+    // Bytes that Serialize will write for this message, the header included. Throws std::invalid_argument if
+    // the message is of another type.
     virtual std::size_t SerializedSize(const RabitMessage &message) const = 0;
     // Writes the message. Returns the bytes written; 0 if the buffer is too small or the message cannot be
-    // expressed in IDL (a bounded string or sequence that is too long). Throws as SerializedSize.
+    // expressed in IDL (a bounded string or sequence that is too long, a string with a zero byte in it, an
+    // enum or bitmask value that is not declared). Throws as SerializedSize.
     virtual std::size_t Serialize(const RabitMessage &message, std::span<std::uint8_t> buffer) const = 0;
-    // Reads a message from borrowed bytes of either byte order. Returns false if they are not a sample of this
-    // type (truncated, out of bounds, an unknown encoding, an impossible value); the message then has valid but
-    // unspecified contents. Never throws on account of the bytes, never reads past them, and never allocates more
-    // than the bytes account for. The message's time stamp and global reference stay as they are.
+    // Reads a message from borrowed bytes of either byte order. Returns false if they are not a sample of
+    // this type (truncated, more than 3 bytes too long, out of bounds, an unknown encoding, an impossible
+    // value); the message then has valid but unspecified contents. Never throws on account of the bytes,
+    // never reads past them, and never allocates more than the bytes account for. The message's time stamp,
+    // its three ints and its global reference stay as they are. Throws as SerializedSize.
     virtual bool Deserialize(std::span<const std::uint8_t> bytes, RabitMessage &message) const = 0;
 
     // Whether the type, or a base of it, has @key members.
     virtual bool HasKey() const = 0;
-    // The key hash of OMG DDSI-RTPS 2.3, 9.6.3.8, of a serialized sample. False if the bytes do not decode, or
-    // the type has no key.
+    // The key hash of OMG DDSI-RTPS 2.3, 9.6.3.8, of a serialized sample. False if Deserialize would refuse
+    // the bytes, or the type has no key. Stores nothing of the sample and allocates nothing.
     virtual bool KeyHashOf(std::span<const std::uint8_t> bytes, std::array<std::uint8_t, 16> &hash) const = 0;
 
 protected:

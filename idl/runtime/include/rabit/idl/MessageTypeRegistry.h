@@ -9,13 +9,14 @@ namespace Rabit
 {
 class MessageType;
 
-// The generated message types that are linked into this process, by IDL name, so that a configuration file can
-// name them. Generated code adds its types before main() runs. All functions may be called from any thread.
+// The generated message types that are linked into this process, by IDL name, so that a configuration file
+// can name them. Generated code adds its types before main() runs. All functions may be called from any
+// thread.
 class MessageTypeRegistry
 {
 public:
-    // Adds a type; it must live until the process ends. Adding a second, different type of the same name throws
-    // std::logic_error (two libraries that define one IDL type differently).
+    // Adds a type; it must live until the process ends. A second type of the same name and the same IDL is
+    // passed over (two libraries with one IDL file); a second one with other IDL throws std::logic_error.
     static void Add(const MessageType &type);
     // The type of that IDL name, or null.
     static const MessageType *Find(const std::string &name);

@@ -1,0 +1,64 @@
+# rabit_add_messages(<target> <file.idl>... [DEPENDS <target>...])
+#
+# Makes a library target from IDL files: for each `name.idl` the header `name.idl.h` and its implementation.
+# Linking the target gives its headers and puts all of its types into the program, so that they can be found by name
+# even if no code mentions them. DEPENDS names other targets made by this function whose IDL files these include.
+#
+# Works in Rabit's own build and from an installed package; needs idlc (Debian: cyclonedds-tools).
+include_guard(GLOBAL)
+
+find_program(RABIT_IDLC idlc REQUIRED)
+mark_as_advanced(RABIT_IDLC)
+
+function(rabit_add_messages target)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "DEPENDS")
+  if(NOT ARG_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "rabit_add_messages(${target}): no IDL files given")
+  endif()
+
+  set(directory ${CMAKE_CURRENT_BINARY_DIR}/${target}_idl)
+  file(MAKE_DIRECTORY ${directory})
+  set(include_options "$<TARGET_GENEX_EVAL:${target},$<TARGET_PROPERTY:${target},RABIT_IDL_DIRECTORIES>>")
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    list(APPEND include_options "$<TARGET_GENEX_EVAL:${dependency},$<TARGET_PROPERTY:${dependency},RABIT_IDL_DIRECTORIES>>")
+  endforeach()
+  set(include_options "$<FILTER:${include_options},INCLUDE,.>")
+
+  set(sources)
+  set(idl_directories)
+  foreach(file IN LISTS ARG_UNPARSED_ARGUMENTS)
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+    cmake_path(GET file FILENAME name)
+    cmake_path(GET file PARENT_PATH idl_directory)
+    list(APPEND idl_directories ${idl_directory})
+    set(header ${directory}/${name}.h)
+    set(source ${directory}/${name}.cpp)
+    add_custom_command(
+      OUTPUT ${header} ${source}
+      COMMAND ${RABIT_IDLC} -W no-implicit-extensibility -W no-enum-consecutive -I "$<JOIN:${include_options},;-I;>"
+              -l $<TARGET_FILE:Rabit::IdlcPlugin> -o ${directory} ${file}
+      DEPENDS ${file} Rabit::IdlcPlugin $<TARGET_FILE:Rabit::IdlcPlugin>
+      DEPFILE ${directory}/${name}.d
+      COMMENT "Generating messages from ${name}"
+      COMMAND_EXPAND_LISTS VERBATIM)
+    list(APPEND sources ${header} ${source})
+  endforeach()
+
+  # The objects are linked directly, not from an archive, which would leave out those that nothing refers to and
+  # with them their registration.
+  add_library(${target}_objects OBJECT ${sources})
+  target_include_directories(${target}_objects PUBLIC $<BUILD_INTERFACE:${directory}>)
+  target_compile_features(${target}_objects PRIVATE cxx_std_20)
+  target_link_libraries(${target}_objects PUBLIC Rabit::Idl)
+  add_library(${target} INTERFACE)
+  list(REMOVE_DUPLICATES idl_directories)
+  set_target_properties(${target} PROPERTIES RABIT_IDL_DIRECTORIES "${idl_directories}")
+  target_sources(${target} INTERFACE $<TARGET_OBJECTS:${target}_objects>)
+  target_link_libraries(${target} INTERFACE Rabit::Idl)
+  target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${directory}>)
+  add_dependencies(${target} ${target}_objects)
+  if(ARG_DEPENDS)
+    target_link_libraries(${target}_objects PUBLIC ${ARG_DEPENDS})
+    target_link_libraries(${target} INTERFACE ${ARG_DEPENDS})
+  endif()
+endfunction()

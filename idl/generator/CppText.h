@@ -1,0 +1,29 @@
+// C++ spellings of the types and values of a model.
+#pragma once
+
+#include "Model.h"
+
+#include <string>
+
+namespace RabitIdl
+{
+
+// The C++ type of a primitive, for instance `::std::uint16_t`.
+std::string CppPrimitive(Primitive primitive);
+// The C++ type, fully qualified: `::std::vector<::Uav::Pose>`.
+std::string CppType(const Type &type);
+// The codec that runs over values of the type: `::Rabit::Idl::List<::Rabit::Idl::Codec<::Uav::Pose>, 0>`.
+std::string CodecOf(const Type &type);
+// A value of the type.
+std::string CppLiteral(const Literal &value, const Type &type);
+// A value of a union's discriminator.
+std::string CppLabel(std::int64_t value, const Type &discriminator);
+// What follows a member's name in its declaration: ` = 5`, `{}` or nothing.
+std::string Initializer(const Member &member);
+// Whether a function should take the type by value.
+bool IsSmall(const Type &type);
+// A string literal of C++ with that content.
+std::string Quote(const std::string &text);
+std::string Number(double value);
+
+}  // namespace RabitIdl

@@ -1,0 +1,290 @@
+#include "HeaderEmitter.h"
+
+#include "CppText.h"
+#include "Layout.h"
+#include "Names.h"
+#include "TextBuilder.h"
+#include "UnionEmitter.h"
+
+namespace RabitIdl
+{
+namespace
+{
+
+std::string UnsignedOf(unsigned bitBound)
+{
+    return bitBound <= 8    ? "::std::uint8_t"
+           : bitBound <= 16 ? "::std::uint16_t"
+           : bitBound <= 32 ? "::std::uint32_t"
+                            : "::std::uint64_t";
+}
+
+// Keeps the text inside the namespaces of the definition that comes next.
+class Namespaces
+{
+public:
+    explicit Namespaces(TextBuilder &text) : _text(text) {}
+    ~Namespaces() { Enter({}); }
+    Namespaces(const Namespaces &) = delete;
+    Namespaces &operator=(const Namespaces &) = delete;
+
+    void Enter(const std::vector<std::string> &scope)
+    {
+        if (scope == _scope)
+        {
+            return;
+        }
+        if (!_scope.empty())
+        {
+            _text.Line("}  // namespace " + Joined(_scope));
+            _text.Line();
+        }
+        if (!scope.empty())
+        {
+            _text.Line("namespace " + Joined(scope));
+            _text.Line("{");
+            _text.Line();
+        }
+        _scope = scope;
+    }
+
+private:
+    static std::string Joined(const std::vector<std::string> &scope)
+    {
+        std::string text;
+        for (const std::string &part : scope)
+        {
+            text += (text.empty() ? "" : "::") + part;
+        }
+        return text;
+    }
+
+    TextBuilder &_text;
+    std::vector<std::string> _scope;
+};
+
+void EmitComparison(TextBuilder &out, const std::string &name)
+{
+    out.Line("bool operator==(const " + name + " &a, const " + name + " &b);");
+    out.Line("inline bool operator!=(const " + name + " &a, const " + name + " &b)");
+    out.Open();
+    out.Line("return !(a == b);");
+    out.Close();
+}
+
+void EmitMembers(TextBuilder &out, const StructDefinition &definition)
+{
+    for (const Member &member : definition.Members)
+    {
+        out.Line(CppType(member.Type) + " " + member.Name + Initializer(member) + ";");
+    }
+}
+
+void EmitPlainStruct(TextBuilder &out, const StructDefinition &definition)
+{
+    const std::string base = definition.Base == nullptr ? ""
+                                                        : " : public " + CppScopedName(definition.Base->Scope,
+                                                                                       definition.Base->Name);
+    out.Line("struct " + definition.Name + base);
+    out.Open();
+    EmitMembers(out, definition);
+    out.Close(";");
+    out.Line("// For people.");
+    out.Line("::std::string ToString(const " + definition.Name + " &value);");
+    out.Line("// IEEE 754 comparison of floating point members: NaN is unlike everything.");
+    EmitComparison(out, definition.Name);
+    out.Line();
+}
+
+void EmitMessage(TextBuilder &out, const StructDefinition &definition)
+{
+    std::string bases = "public ::Rabit::RabitMessage";
+    if (definition.Base != nullptr)
+    {
+        const std::string base = "public " + CppScopedName(definition.Base->Scope, definition.Base->Name);
+        bases = IsMessage(*definition.Base) ? base : bases + ", " + base;
+    }
+    out.Line("class " + definition.Name + " : " + bases);
+    out.Open();
+    out.Label("public:");
+    EmitMembers(out, definition);
+    out.Line();
+    out.Line("// What is known of " + ScopedName(definition.Scope, definition.Name) + " at run time.");
+    out.Line("static const ::Rabit::MessageType &IdlType();");
+    out.Line();
+    out.Line("::std::unique_ptr<::Rabit::RabitMessage> Clone() const override;");
+    out.Line("bool CopyMessage(::Rabit::RabitMessage *msg) override;");
+    out.Line("void Clear() override;");
+    out.Line("::std::string ToString() const override;");
+    out.Line("// The bytes of a DDS sample, as ::Rabit::MessageType has them. stype must be 0.");
+    out.Line("int Serialize(::std::uint8_t *buf, int maxBufSize, int stype = 0) override;");
+    out.Line("int DeSerialize(::std::uint8_t *buf, int len, int stype = 0) override;");
+    out.Close(";");
+    out.Line("// Compares the members above, not the time stamp. IEEE 754: NaN is unlike everything.");
+    EmitComparison(out, definition.Name);
+    out.Line();
+}
+
+void EmitEnum(TextBuilder &out, const EnumDefinition &definition)
+{
+    out.Line("enum class " + definition.Name + " : " + UnsignedOf(definition.BitBound));
+    out.Open();
+    for (const auto &enumerator : definition.Enumerators)
+    {
+        out.Line(enumerator.Name + " = " + std::to_string(enumerator.Value) + "U,");
+    }
+    out.Close(";");
+    out.Line("// The enumerator's name, or the number if it is not declared.");
+    out.Line("::std::string ToString(" + definition.Name + " value);");
+    out.Line();
+}
+
+void EmitBitmask(TextBuilder &out, const BitmaskDefinition &definition)
+{
+    const std::string &name = definition.Name;
+    const std::string bits = UnsignedOf(definition.BitBound);
+    out.Line("enum class " + name + " : " + bits);
+    out.Open();
+    for (const auto &bit : definition.Bits)
+    {
+        out.Line(bit.Name + " = " + std::to_string(1ULL << bit.Position) + "U" +
+                 (definition.BitBound > 32 ? "LL" : "") + ",");
+    }
+    out.Close(";");
+    const std::string wide = definition.BitBound > 32 ? "::std::uint64_t" : "::std::uint32_t";
+    for (const char *sign : {"|", "&", "^"})
+    {
+        const std::string text = sign;
+        out.Line("constexpr " + name + " operator" + text + "(" + name + " a, " + name + " b)");
+        out.Open();
+        out.Line("return static_cast<" + name + ">(static_cast<" + wide + ">(a) " + text + " static_cast<" +
+                 wide + ">(b));");
+        out.Close();
+        out.Line("constexpr " + name + " &operator" + text + "=(" + name + " &a, " + name + " b)");
+        out.Open();
+        out.Line("return a = a " + text + " b;");
+        out.Close();
+    }
+    out.Line("// The names of the bits that are set, joined with `|`.");
+    out.Line("::std::string ToString(" + name + " value);");
+    out.Line();
+}
+
+void EmitConst(TextBuilder &out, const ConstDefinition &definition)
+{
+    const Type &type = Unalias(definition.Type);
+    const std::string cppType =
+        type.What == Type::Kind::String ? "::std::string_view" : CppType(definition.Type);
+    out.Line("inline constexpr " + cppType + " " + definition.Name + " = " +
+             CppLiteral(definition.Value, type) + ";");
+    out.Line();
+}
+
+void EmitDefinition(TextBuilder &out, const Definition &definition)
+{
+    if (const auto *structure = dynamic_cast<const StructDefinition *>(&definition))
+    {
+        IsMessage(*structure) ? EmitMessage(out, *structure) : EmitPlainStruct(out, *structure);
+    }
+    else if (const auto *choice = dynamic_cast<const UnionDefinition *>(&definition))
+    {
+        EmitUnionClass(out, *choice);
+        EmitComparison(out, choice->Name);
+        out.Line();
+    }
+    else if (const auto *enumeration = dynamic_cast<const EnumDefinition *>(&definition))
+    {
+        EmitEnum(out, *enumeration);
+    }
+    else if (const auto *bitmask = dynamic_cast<const BitmaskDefinition *>(&definition))
+    {
+        EmitBitmask(out, *bitmask);
+    }
+    else if (const auto *alias = dynamic_cast<const TypedefDefinition *>(&definition))
+    {
+        out.Line("using " + alias->Name + " = " + CppType(alias->Type) + ";");
+        out.Line();
+    }
+    else
+    {
+        EmitConst(out, dynamic_cast<const ConstDefinition &>(definition));
+    }
+}
+
+void EmitCodecDeclaration(TextBuilder &out, const Definition &definition)
+{
+    if (dynamic_cast<const TypedefDefinition *>(&definition) != nullptr ||
+        dynamic_cast<const ConstDefinition *>(&definition) != nullptr)
+    {
+        return;
+    }
+    const std::string name = CppScopedName(definition.Scope, definition.Name);
+    const auto *structure = dynamic_cast<const StructDefinition *>(&definition);
+    const bool small = dynamic_cast<const EnumDefinition *>(&definition) != nullptr ||
+                       dynamic_cast<const BitmaskDefinition *>(&definition) != nullptr;
+    const std::string value = small ? name + " value" : "const " + name + " &value";
+    out.Line("template <>");
+    out.Line("struct Rabit::Idl::Codec<" + name + ">");
+    out.Open();
+    out.Line("static constexpr ::std::size_t MinSize = " + std::to_string(MinSize(definition)) + ";");
+    if (structure != nullptr)
+    {
+        const std::optional<std::uint64_t> keySize = MaxKeySize(*structure);
+        out.Line("static constexpr ::std::size_t FixedSize = " +
+                 std::to_string(FixedSize(*structure).value_or(0)) + ";");
+        out.Line(std::string("static constexpr bool HasKey = ") + (HasKey(*structure) ? "true;" : "false;"));
+        out.Line(std::string("static constexpr bool KeyFitsHash = ") +
+                 (keySize && *keySize <= 16 ? "true;" : "false;"));
+    }
+    out.Line("static bool Write(CdrWriter &writer, " + value + ");");
+    out.Line("static bool Read(CdrReader &reader, " + name + " &value);");
+    out.Line("static bool Scan(CdrReader &reader, KeyHasher *key);");
+    out.Line("static void Size(CdrSizer &sizer, " + value + ");");
+    out.Line("static void Print(TextWriter &text, " + value + ");");
+    out.Close(";");
+    out.Line();
+}
+
+}  // namespace
+
+std::string EmitHeader(const Model &model)
+{
+    TextBuilder out;
+    out.Line("// Generated from " + model.MainFile + " by Rabit's IDL generator. Do not edit.");
+    out.Line("#pragma once");
+    out.Line();
+    out.Line("#include <rabit/RabitMessage.h>");
+    out.Line("#include <rabit/idl/Codec.h>");
+    out.Line();
+    for (const std::string &include : model.Includes)
+    {
+        out.Line("#include \"" + include + ".h\"");
+    }
+    for (const char *header :
+         {"array", "cstddef", "cstdint", "limits", "memory", "string", "string_view", "variant", "vector"})
+    {
+        out.Line(std::string("#include <") + header + ">");
+    }
+    out.Line();
+    {
+        Namespaces namespaces(out);
+        for (const auto &definition : model.Definitions)
+        {
+            if (definition->InMainFile)
+            {
+                namespaces.Enter(definition->Scope);
+                EmitDefinition(out, *definition);
+            }
+        }
+    }
+    for (const auto &definition : model.Definitions)
+    {
+        if (definition->InMainFile)
+        {
+            EmitCodecDeclaration(out, *definition);
+        }
+    }
+    return out.Text();
+}
+
+}  // namespace RabitIdl

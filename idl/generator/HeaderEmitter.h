@@ -1,0 +1,13 @@
+// Writes the generated header, `<name>.idl.h`: what users of the messages see.
+#pragma once
+
+#include "Model.h"
+
+#include <string>
+
+namespace RabitIdl
+{
+
+std::string EmitHeader(const Model &model);
+
+}  // namespace RabitIdl

@@ -1,0 +1,15 @@
+// Writes one struct back as IDL, together with all that it uses, in one fixed form: what MessageType::IdlText
+// gives.
+#pragma once
+
+#include "Model.h"
+
+#include <string>
+
+namespace RabitIdl
+{
+
+// IDL that compiles by itself. Depends on the definitions alone, not on comments, layout, constants or files.
+std::string EmitIdlText(const Model &model, const StructDefinition &definition);
+
+}  // namespace RabitIdl

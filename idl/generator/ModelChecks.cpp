@@ -1,0 +1,165 @@
+// The rules by which ModelReader refuses what parses but has no faithful C++ class or no plain XCDR1
+// encoding.
+#include "ModelReader.h"
+#include "Names.h"
+
+#include <algorithm>
+
+namespace RabitIdl
+{
+
+void ModelReader::CheckName(TreeNode node, const std::string &name)
+{
+    const std::string reason = WhyNotCpp(name);
+    if (!reason.empty())
+    {
+        Refuse(node, "'" + name + "' " + reason);
+    }
+}
+
+void ModelReader::CheckTypeName(TreeNode node, const std::string &name)
+{
+    CheckName(node, name);
+    if (IsGeneratorName(name))
+    {
+        Refuse(node, "'" + name + "' is the name of a function that is generated beside the types");
+    }
+    const bool inRabit = (_scope.size() == 1 && _scope[0] == "Rabit") ||
+                         (_scope.size() >= 2 && _scope[0] == "Rabit" && _scope[1] == "Idl");
+    if (inRabit)
+    {
+        Refuse(node, "'" + ScopedName(_scope, name) +
+                         "' is in a namespace of the Rabit library; use another module");
+    }
+}
+
+void ModelReader::CheckMemberNames(TreeNode node, const StructDefinition &definition)
+{
+    for (const Member *member : AllMembers(definition))
+    {
+        if (member->Name == definition.Name)
+        {
+            _refusals.Add(member->File, member->Line,
+                          "member '" + member->Name + "' has the name of its struct");
+        }
+        if (IsMessage(definition) && IsMessageMember(member->Name))
+        {
+            _refusals.Add(member->File, member->Line,
+                          "member '" + member->Name + "' has the name of a member of every Rabit message");
+        }
+    }
+    if (IsMessage(definition) && IsMessageMember(definition.Name))
+    {
+        Refuse(node, "'" + definition.Name + "' is the name of a member of every Rabit message");
+    }
+}
+
+void ModelReader::CheckAnnotations(TreeNode node)
+{
+    static const std::set<std::string> refused{"external",     "must_understand", "optional",   "max",
+                                               "min",          "range",           "appendable", "mutable",
+                                               "try_construct"};
+    for (TreeNode item = TreeAnnotations(node); item != nullptr; item = TreeNext(item))
+    {
+        const std::string name = TreeAnnotationName(item);
+        if (refused.count(name) != 0)
+        {
+            Refuse(item, "annotation @" + name + " is not supported");
+        }
+    }
+}
+
+// The order of the keys in a key hash goes by member id (OMG DDS-XTypes 1.3, 7.6.8); without @id that is the
+// order of declaration, which the generator keeps.
+void ModelReader::CheckIds(TreeNode structure, const StructDefinition &definition)
+{
+    if (!HasKey(definition))
+    {
+        return;
+    }
+    const auto check = [&](TreeNode node)
+    {
+        for (TreeNode item = TreeAnnotations(node); item != nullptr; item = TreeNext(item))
+        {
+            const std::string name = TreeAnnotationName(item);
+            if (name == "id" || name == "hashid" || name == "autoid")
+            {
+                Refuse(item, "annotation @" + name + " is not supported in a struct with keys");
+            }
+        }
+    };
+    check(structure);
+    for (TreeNode member = TreeMembers(structure); member != nullptr; member = TreeNext(member))
+    {
+        check(member);
+    }
+}
+
+void ModelReader::CheckExtensibility(TreeNode node)
+{
+    const std::string name = TreeName(node);
+    if (TreeExtensibilityOf(node) != TreeFinal)
+    {
+        Refuse(node, "'" + name + "' is not @final; only @final types are supported");
+    }
+    if (!TreeAllowsXcdr1(node))
+    {
+        Refuse(node, "'" + name + "' excludes the data representation XCDR1, the only one supported");
+    }
+}
+
+void ModelReader::CheckKey(TreeNode place, const Type &type)
+{
+    const Type &real = Unalias(type);
+    switch (real.What)
+    {
+        case Type::Kind::Primitive:
+        case Type::Kind::String:
+            return;
+        case Type::Kind::Array:
+            CheckKey(place, *real.Element);
+            return;
+        case Type::Kind::Sequence:
+            Refuse(place, "a key that is or contains a sequence is not supported");
+            return;
+        case Type::Kind::Named:
+            break;
+    }
+    if (dynamic_cast<const UnionDefinition *>(real.Named) != nullptr)
+    {
+        Refuse(place, "a key that is or contains a union is not supported");
+    }
+    if (const auto *structure = dynamic_cast<const StructDefinition *>(real.Named))
+    {
+        const bool some = HasKey(*structure);
+        for (const Member *member : AllMembers(*structure))
+        {
+            if (!some || member->Key)
+            {
+                CheckKey(place, member->Type);
+            }
+        }
+    }
+}
+
+void ModelReader::CheckDefault(TreeNode place, const Member &member)
+{
+    const Type &type = Unalias(member.Type);
+    if (type.What != Type::Kind::Primitive && type.What != Type::Kind::String)
+    {
+        Refuse(place,
+               "@default on '" + member.Name + "' is not supported, its type is not a primitive or a string");
+        return;
+    }
+    const auto *text = std::get_if<std::string>(member.Default.get());
+    if ((type.What == Type::Kind::String) != (text != nullptr))
+    {
+        Refuse(place, "the @default of '" + member.Name + "' is not of its type");
+    }
+    else if (text != nullptr && type.Bound != 0 && text->size() > type.Bound)
+    {
+        Refuse(place, "the @default of '" + member.Name + "' is longer than its bound");
+    }
+}
+
+}  // namespace RabitIdl

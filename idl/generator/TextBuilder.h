@@ -1,0 +1,48 @@
+// Text that is written line by line, for the emitters.
+#pragma once
+
+#include <string>
+
+namespace RabitIdl
+{
+
+class TextBuilder
+{
+public:
+    // Appends a line at the current depth; an empty one without blanks.
+    void Line(const std::string &text = "")
+    {
+        if (!text.empty())
+        {
+            _text.append(4 * _depth, ' ');
+        }
+        _text += text + "\n";
+    }
+    void Open()
+    {
+        Line("{");
+        ++_depth;
+    }
+    void Close(const std::string &after = "")
+    {
+        --_depth;
+        Line("}" + after);
+    }
+    // A line one step to the left, for labels.
+    void Label(const std::string &text)
+    {
+        --_depth;
+        Line(text);
+        ++_depth;
+    }
+    // Deeper and back, without braces.
+    void Indent() { ++_depth; }
+    void Outdent() { --_depth; }
+    const std::string &Text() const { return _text; }
+
+private:
+    std::string _text;
+    std::size_t _depth = 0;
+};
+
+}  // namespace RabitIdl

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace Rabit::Idl
+{
+
+// Reads the body of a sample (what follows the encapsulation header) as plain XCDR1, OMG
+// DDS-XTypes 1.3, 7.4.1, of either byte order, from borrowed bytes. Alignment is relative to the begin of the
+// bytes. Everything is checked against the bytes that are left before it is read and before anything is
+// allocated for it; what does not fit is a false, never an exception of Fast-CDR, which does the decoding.
+// Used by one thread at a time.
+class CdrReader
+{
+public:
+    CdrReader(std::span<const std::uint8_t> bytes, bool littleEndian)
+        : _bytes(bytes),
+          // Fast-CDR takes no constant buffer, but does not write to it when reading.
+          _buffer(const_cast<char *>(reinterpret_cast<const char *>(bytes.data())), bytes.size()),
+          _cdr(_buffer,
+               littleEndian ? eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS
+                            : eprosima::fastcdr::Cdr::BIG_ENDIANNESS,
+               eprosima::fastcdr::Cdr::DDS_CDR)
+    {
+    }
+    CdrReader(const CdrReader &) = delete;
+    CdrReader &operator=(const CdrReader &) = delete;
+
+    std::size_t Used() const { return _cdr.getSerializedDataLength(); }
+    std::size_t Left() const { return _bytes.size() - Used(); }
+
+    // Reads one primitive value, aligned to its size.
+    template <class T>
+    bool Get(T &value)
+    {
+        if (!Align(sizeof(T), sizeof(T)))
+        {
+            return false;
+        }
+        _cdr.deserialize(value);
+        return true;
+    }
+    // Reads a boolean; false if it is neither 0 nor 1.
+    bool GetBool(bool &value)
+    {
+        std::uint8_t byte = 0;
+        if (!Get(byte) || byte > 1)
+        {
+            return false;
+        }
+        value = byte != 0;
+        return true;
+    }
+    // Reads count primitive values side by side. A count that the bytes cannot hold is a false.
+    template <class T>
+    bool GetArray(T *values, std::size_t count)
+    {
+        if (count == 0)
+        {
+            return true;
+        }
+        if (count > Left() / sizeof(T) || !Align(sizeof(T), count * sizeof(T)))
+        {
+            return false;
+        }
+        _cdr.deserializeArray(values, count);
+        return true;
+    }
+    // Reads the length of a sequence; false if it is above bound (0: no bound) or if the bytes left are too
+    // few for that many elements of at least minSize bytes.
+    bool GetLength(std::size_t bound, std::size_t minSize, std::size_t &length)
+    {
+        std::uint32_t value = 0;
+        if (!Get(value) || (bound != 0 && value > bound) || value > Left() / minSize)
+        {
+            return false;
+        }
+        length = value;
+        return true;
+    }
+    // Reads a string as a view of the bytes, without its terminating zero. False if it has none, contains
+    // another, or is longer than bound (0: no bound).
+    bool GetString(std::size_t bound, std::string_view &text)
+    {
+        std::size_t length = 0;
+        if (!GetLength(0, 1, length) || length == 0 || (bound != 0 && length - 1 > bound))
+        {
+            return false;
+        }
+        const char *begin = reinterpret_cast<const char *>(_bytes.data()) + Used();
+        if (std::memchr(begin, 0, length) != begin + length - 1)
+        {
+            return false;
+        }
+        text = std::string_view(begin, length - 1);
+        return _cdr.jump(length);
+    }
+    // Passes by count primitive values side by side.
+    bool Skip(std::size_t size, std::size_t count)
+    {
+        if (count == 0)
+        {
+            return true;
+        }
+        return count <= Left() / size && Align(size, count * size) && _cdr.jump(count * size);
+    }
+
+private:
+    // Makes sure that size bytes are left after aligning, and passes by the alignment.
+    bool Align(std::size_t alignment, std::size_t size)
+    {
+        const std::size_t gap = (alignment - Used() % alignment) % alignment;
+        return Left() >= gap + size && (gap == 0 || _cdr.jump(gap));
+    }
+
+    std::span<const std::uint8_t> _bytes;
+    eprosima::fastcdr::FastBuffer _buffer;
+    eprosima::fastcdr::Cdr _cdr;
+};
+
+}  // namespace Rabit::Idl

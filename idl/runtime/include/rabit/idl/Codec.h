@@ -1,0 +1,36 @@
+#pragma once
+
+// What generated headers need of the runtime: names only, so that including a message costs little.
+
+#include <cstddef>
+
+namespace Rabit
+{
+class MessageType;
+}
+
+namespace Rabit::Idl
+{
+class CdrReader;
+class CdrSizer;
+class CdrWriter;
+class KeyHasher;
+class TextWriter;
+
+// How values of one generated type become XCDR1 and back. Specialised by generated code for every struct,
+// union, enum and bitmask, with these members:
+//   MinSize           bytes that every value takes at least
+//   Write, Read       false if the value cannot be expressed, or the bytes are not such a value
+//   Scan              passes by a value without storing it, by the rules of Read; adds its key to the hasher,
+//   if
+//                     that is not null
+//   Size              adds what Write would write
+//   Print             appends the value for people
+// and for structs also
+//   FixedSize         bytes of every value at offset 0, 0 if values differ in size
+//   HasKey            whether there are @key members
+//   KeyFitsHash       whether no key takes more than 16 bytes, so that the key hash is the key itself
+template <class T>
+struct Codec;
+
+}  // namespace Rabit::Idl

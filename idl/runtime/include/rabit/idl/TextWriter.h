@@ -1,0 +1,69 @@
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace Rabit::Idl
+{
+
+// Appends values to a text for people: `{id: 3, reply_to: "ground/Commands", points: [1.5, 2]}`. Used by the
+// generated ToString functions.
+class TextWriter
+{
+public:
+    // Elements of an array or sequence that are shown; of the others only the number.
+    static constexpr std::size_t ShownElements = 16;
+
+    const std::string &Text() const { return _text; }
+
+    void Put(bool value) { _text += value ? "true" : "false"; }
+    void Put(char value) { Quoted(std::string_view(&value, 1), '\''); }
+    void Put(std::string_view value) { Quoted(value, '"'); }
+    // Integers in decimal; floating point with the fewest digits that give the same value back.
+    template <class T,
+              std::enable_if_t<
+                  std::is_arithmetic_v<T> && !std::is_same_v<T, bool> && !std::is_same_v<T, char>, int> = 0>
+    void Put(T value)
+    {
+        char digits[32];
+        const auto result = std::to_chars(digits, digits + sizeof digits, value);
+        _text.append(digits, result.ptr);
+    }
+    // Text as it is.
+    void Raw(std::string_view text) { _text += text; }
+
+private:
+    // Control characters, the quote and the backslash are escaped; all else is left as it is, as UTF-8 needs.
+    void Quoted(std::string_view text, char quote)
+    {
+        static constexpr char hex[] = "0123456789abcdef";
+        _text += quote;
+        for (const char letter : text)
+        {
+            const auto code = static_cast<std::uint8_t>(letter);
+            if (letter == quote || letter == '\\')
+            {
+                _text += '\\';
+                _text += letter;
+            }
+            else if (code < 0x20 || code == 0x7f)
+            {
+                _text += "\\x";
+                _text += hex[code >> 4];
+                _text += hex[code & 15];
+            }
+            else
+            {
+                _text += letter;
+            }
+        }
+        _text += quote;
+    }
+
+    std::string _text;
+};
+
+}  // namespace Rabit::Idl

@@ -1,0 +1,75 @@
+#include <rabit/idl/MessageType.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <map>
+#include <mutex>
+#include <shared_mutex>
+#include <stdexcept>
+#include <typeindex>
+#include <unordered_map>
+
+namespace Rabit
+{
+namespace
+{
+
+struct Types
+{
+    std::shared_mutex Mutex;
+    std::map<std::string, const MessageType *> ByName;
+    std::unordered_map<std::type_index, const MessageType *> ByClass;
+};
+
+// Made on first use, because types are added while static objects are initialised, and never destroyed,
+// because threads may still ask when they are destroyed.
+Types &All()
+{
+    static Types &types = *new Types;
+    return types;
+}
+
+}  // namespace
+
+void MessageTypeRegistry::Add(const MessageType &type)
+{
+    Types &types = All();
+    const std::unique_lock lock(types.Mutex);
+    const auto [entry, isNew] = types.ByName.emplace(type.Name(), &type);
+    if (!isNew && entry->second->IdlText() != type.IdlText())
+    {
+        throw std::logic_error("MessageTypeRegistry: two different definitions of the IDL type " +
+                               type.Name());
+    }
+    types.ByClass.emplace(type.CppType(), entry->second);
+}
+
+const MessageType *MessageTypeRegistry::Find(const std::string &name)
+{
+    Types &types = All();
+    const std::shared_lock lock(types.Mutex);
+    const auto entry = types.ByName.find(name);
+    return entry == types.ByName.end() ? nullptr : entry->second;
+}
+
+const MessageType *MessageTypeRegistry::Of(const RabitMessage &message)
+{
+    Types &types = All();
+    const std::shared_lock lock(types.Mutex);
+    const auto entry = types.ByClass.find(typeid(message));
+    return entry == types.ByClass.end() ? nullptr : entry->second;
+}
+
+std::vector<std::string> MessageTypeRegistry::Names()
+{
+    Types &types = All();
+    const std::shared_lock lock(types.Mutex);
+    std::vector<std::string> names;
+    names.reserve(types.ByName.size());
+    for (const auto &[name, type] : types.ByName)
+    {
+        names.push_back(name);
+    }
+    return names;
+}
+
+}  // namespace Rabit
