@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace Rabit
+{
+
+enum EndianOrder_e
+{
+    Endian_Little,
+    Endian_Big
+};
+
+typedef unsigned char byte;
+
+// The byte order of this computer.
+EndianOrder_e GetSystemEndianness();
+
+// Writes values one after the other into a buffer that the caller owns and keeps alive, in the given byte
+// order. The write functions return true on error (no room), and then write nothing. A negative size or a
+// null buffer is taken as a buffer of no bytes. Not thread-safe.
+class ByteArrayWriter
+{
+public:
+    ByteArrayWriter(std::uint8_t *byteArray, int size, EndianOrder_e endianOrder);
+
+    std::uint8_t *ByteArray;
+    int ByteArraySize;
+    int Idx;  // where the next value goes; equals the number of bytes written
+    const int MaxStringSize = 65535;
+
+    // Zeroes the buffer and starts again at its beginning.
+    void Clear();
+    std::uint8_t *GetByteArrayAddrPtrAtIdx();
+    int GetNumberBytesAvailable();
+    // Copies up to NoBytes bytes from data[startIdx] on: no more than the source has (arraySize) and than
+    // there is room for. Returns the number of bytes written.
+    int WriteBytes(std::uint8_t data[], int arraySize, int startIdx, int NoBytes);
+
+    bool writeByte(byte value);
+    bool writeBool(bool value);
+    bool writeChar(char value);
+    bool writeInt8(std::int8_t value);
+    bool writeUInt8(std::uint8_t value);
+    bool writeInt16(std::int16_t value);
+    bool writeUInt16(std::uint16_t value);
+    bool writeInt32(std::int32_t value);
+    bool writeUInt32(std::uint32_t value);
+    bool writeInt64(std::int64_t value);
+    bool writeUInt64(std::uint64_t value);
+    bool writeFloat(float value);
+    bool writeDouble(double value);
+    // A string is its length as uint16, then its bytes; one longer than MaxStringSize is an error.
+    bool writeString(const std::string &value);
+    bool writeString(const char *value, int length);
+
+private:
+    template <typename T>
+    bool WriteValue(T value);
+    bool HasRoomFor(std::int64_t bytes) const;
+
+    EndianOrder_e _endianOrder;
+};
+
+// Reads what a ByteArrayWriter of the same byte order wrote. Past the end of the buffer, and after a value
+// that does not fit any more, it returns 0 and stays where it is. Never reads outside the buffer. Not
+// thread-safe.
+class ByteArrayReader
+{
+public:
+    ByteArrayReader(std::uint8_t *byteArray, int size, EndianOrder_e endianOrder);
+
+    std::uint8_t *ByteArray;
+    int ByteArraySize;
+    int Idx;
+    const int MaxStringSize = 65535;
+
+    // Starts again at the beginning of the buffer, whose contents stay.
+    void Clear();
+    std::uint8_t *GetByteArrayAddrPtrAtIdx();
+    int GetNumberBytesAvailable();
+
+    byte readByte();
+    bool readBool();
+    char readChar();
+    std::int8_t readInt8();
+    std::uint8_t readUInt8();
+    std::int16_t readInt16();
+    std::uint16_t readUInt16();
+    std::int32_t readInt32();
+    std::uint32_t readUInt32();
+    std::int64_t readInt64();
+    std::uint64_t readUInt64();
+    float readFloat();
+    double readDouble();
+    // Empty if the string does not lie within the buffer.
+    std::string readString();
+    // These return true on error and then leave the target and the position as they are. The array gets a
+    // terminating zero, for which it must have room.
+    bool readString(std::string *value);
+    bool readString(char value[], int maxSize);
+
+private:
+    template <typename T>
+    T ReadValue();
+    int StringLengthAtIdx() const;
+
+    EndianOrder_e _endianOrder;
+};
+
+}  // namespace Rabit

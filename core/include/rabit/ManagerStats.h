@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+namespace Rabit
+{
+
+// What a manager counts and measures about itself. All times in seconds.
+struct ManagerStats_t
+{
+    int TotalNumberOfExecuteCycles = 0;  // since the manager was made; never cleared
+    int NumberOfExecuteCycles = 0;
+    double TimeSinceLastStatsReset_Sec = 0.0;
+    double MinExecuteUnitOfWorkTime_Sec = 0.0;
+    double MaxExecuteUnitOfWorkTime_Sec = 0.0;
+    double AveExecuteUnitOfWorkTime_Sec = 0.0;
+    double TotalExecuteUnitOfWorkTime_Sec = 0.0;
+    double MinSleepTime_Sec = 0.0;
+    double MaxSleepTime_Sec = 0.0;
+    double AveSleepTime_Sec = 0.0;
+    double TotalSleepTime_Sec = 0.0;
+    int NumberOfWakeUpCallsWhileAsleep = 0;
+    int NumberOfWakeUpCallsWhileAwake = 0;
+
+    // How many times the minima, maxima and averages are of.
+    int NumberOfExecuteTimes = 0;
+    int NumberOfSleepTimes = 0;
+
+    // Zeroes everything but TotalNumberOfExecuteCycles.
+    void Clear();
+    void UpdateExeUnitOfWorkTimeStats(double executeTime_Sec);
+    void UpdateSleepTimeStats(double sleepTime_Sec);
+    std::string ToString() const;
+};
+
+}  // namespace Rabit

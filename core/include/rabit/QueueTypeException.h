@@ -1,0 +1,22 @@
+#pragma once
+
+#include <any>
+#include <string>
+#include <typeindex>
+
+namespace Rabit
+{
+
+// Thrown when a queue is used as one of another type: it was asked for under another type, or an element was
+// offered to it that is not, and does not convert to, what it holds.
+class QueueTypeException : public std::bad_any_cast
+{
+public:
+    QueueTypeException(const std::string &queueName, std::type_index held, std::type_index wanted);
+    const char *what() const noexcept override;
+
+private:
+    std::string _text;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+
+namespace Rabit
+{
+
+// When something was posted, by both of a node's clocks.
+struct PostTime
+{
+    // GPS seconds since 1980-01-06: the time stamp that messages carry. Can step when the wall clock is set.
+    double GpsTimeSeconds = 0.0;
+    // The same moment by the monotonic clock of the workspace: what ages are computed from.
+    std::chrono::nanoseconds Monotonic{0};
+};
+
+// A source of time. A RabitWorkspace has one; everything in it that depends on time asks it, so that a test
+// or a simulation can put another one in its place (ManualClock).
+//
+// All methods may be called from any thread at any time and do not throw.
+class RabitClock
+{
+public:
+    virtual ~RabitClock() = default;
+    RabitClock(const RabitClock &) = delete;
+    RabitClock &operator=(const RabitClock &) = delete;
+
+    // Time since some fixed moment; never goes back.
+    virtual std::chrono::nanoseconds Monotonic() const = 0;
+    // GPS seconds since 1980-01-06. Follows the wall clock: it may step in either direction.
+    virtual double GpsTimeSeconds() const = 0;
+    // Both, of the same moment. The system clock overrides it to pay for one clock read only.
+    virtual PostTime Now() const { return PostTime{GpsTimeSeconds(), Monotonic()}; }
+
+    // The clocks of this computer: std::chrono::steady_clock, and SystemTimeClock for GPS seconds.
+    static const std::shared_ptr<RabitClock> &System();
+
+protected:
+    RabitClock() = default;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace Rabit
+{
+
+// What is called when an event happens.
+using RabitHandler = std::function<void()>;
+
+namespace Detail
+{
+struct EventSlot;
+struct EventState;
+}  // namespace Detail
+
+// A handler's connection to an event. Copies stand for the same connection; dropping them all leaves it in
+// place. Thread-safe as a shared pointer is: one object belongs to one thread at a time.
+class RabitConnection
+{
+public:
+    RabitConnection() = default;
+
+    // The handler is not called again, except by a thread that is just calling it: that call may still be
+    // running when this returns. A handler must therefore own (share) what it uses, or be known to be quiet.
+    // Does nothing if already disconnected or if the event is gone. May be called from inside the handler.
+    void Disconnect();
+    bool IsConnected() const;
+
+private:
+    friend class RabitEvent;
+    std::weak_ptr<Detail::EventState> _event;
+    std::weak_ptr<Detail::EventSlot> _slot;
+};
+
+// A connection that ends with its scope.
+class RabitScopedConnection
+{
+public:
+    RabitScopedConnection() = default;
+    RabitScopedConnection(RabitConnection connection) : _connection(std::move(connection)) {}
+    RabitScopedConnection(RabitScopedConnection &&other) noexcept;
+    RabitScopedConnection &operator=(RabitScopedConnection &&other) noexcept;
+    ~RabitScopedConnection() { _connection.Disconnect(); }
+
+    void Disconnect() { _connection.Disconnect(); }
+    bool IsConnected() const { return _connection.IsConnected(); }
+
+private:
+    RabitConnection _connection;
+};
+
+// Something that happens, and the handlers that are to be told.
+//
+// Handlers run on the thread that fires, in the order of their connection, with no lock held: they may
+// connect, disconnect, post and fire. What a handler throws is caught and logged, and the other handlers
+// still run. All methods may be called from any thread.
+class RabitEvent
+{
+public:
+    // The handlers that were connected at one moment.
+    class Handlers
+    {
+    public:
+        // Calls them all. No lock may be held.
+        void Call() const
+        {
+            if (_slots)
+            {
+                CallAll();
+            }
+        }
+
+    private:
+        friend class RabitEvent;
+        void CallAll() const;
+        std::shared_ptr<const std::vector<std::shared_ptr<Detail::EventSlot>>> _slots;
+    };
+
+    RabitEvent();
+    // An event whose list of handlers is guarded by the owner's mutex: the owner can then change its own
+    // state and take the snapshot of handlers in one step (Snapshot).
+    explicit RabitEvent(std::shared_ptr<std::mutex> mutex);
+    RabitEvent(const RabitEvent &) = delete;
+    RabitEvent &operator=(const RabitEvent &) = delete;
+
+    // Throws std::invalid_argument if the handler is empty.
+    RabitConnection Connect(RabitHandler handler);
+    // Tells all handlers. Takes no lock if there are none.
+    void Fire() const;
+    // The handlers connected now. The caller holds the mutex that was given to the constructor.
+    Handlers Snapshot() const;
+
+private:
+    std::shared_ptr<Detail::EventState> _state;
+};
+
+namespace Detail
+{
+
+struct EventSlot
+{
+    explicit EventSlot(RabitHandler handler) : Handler(std::move(handler)) {}
+    RabitHandler Handler;
+    std::atomic<bool> Connected{true};
+};
+
+struct EventState
+{
+    explicit EventState(std::shared_ptr<std::mutex> mutex) : Mutex(std::move(mutex)) {}
+    std::shared_ptr<std::mutex> Mutex;
+    // Replaced as a whole under the mutex, never changed: a snapshot of it stays valid without a lock.
+    std::shared_ptr<const std::vector<std::shared_ptr<EventSlot>>> Slots;
+    std::atomic<int> Count{0};
+};
+
+}  // namespace Detail
+
+inline RabitEvent::Handlers RabitEvent::Snapshot() const
+{
+    Handlers handlers;
+    handlers._slots = _state->Slots;
+    return handlers;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,258 @@
+#pragma once
+
+#include <rabit/ManagerControlMessage.h>
+#include <rabit/ManagerStats.h>
+#include <rabit/ManagerStatusMessage.h>
+#include <rabit/RabitMessage.h>
+#include <rabit/RabitMessageQueue.h>
+#include <rabit/RabitNonBlockingSPSCQueue.h>
+#include <rabit/RabitStopWatch.h>
+#include <rabit/RabitWakeup.h>
+#include <rabit/RabitWorkspace.h>
+
+#include <boost/bind/bind.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace Rabit
+{
+class ManagerLease;
+
+// A manager: a thread that runs a unit of work, sleeps, and is woken by a timer or an event. Derive from it,
+// and give it to a RabitReactor.
+//
+// Life: Startup; then ExecuteUnitOfWork again and again until the manager is told to shut down; then
+// Shutdown. All three run on the manager's own thread, never two at once. Between two units of work the
+// manager sleeps for its delay (1 s unless set), unless something wakes it: a post of a chosen message, a
+// message added to or taken from a queue, or a call of WakeUpManagerEH. Events that come during the unit of
+// work cause one more pass instead of the sleep, however many they are.
+//
+// Exceptions of any type that leave one of the three are caught, logged, and reported in the status message
+// (ManagerStatusMessage::ErrorCode_e). After a unit of work that threw the manager sleeps as usual, at least
+// 10 ms and, if it otherwise would not sleep, 100 ms. A manager whose Startup threw does not run its unit of
+// work: it goes on to Shutdown.
+//
+// Threads: the public methods may be called from any thread unless they say otherwise. The messages and
+// queues that the protected members point to are the manager's own; others attach to the same names.
+// Lifetime: a started manager must be joined before it is destroyed (a reactor does it). Names that it
+// registered and its wake-ups end with it.
+class RabitManager
+{
+public:
+    typedef RabitMessageQueue<std::shared_ptr<RabitMessage>> RabitQueue;
+
+    // Registers, in the default workspace: the manager's own queue under its name, with a wake-up on what is
+    // added to it; "ManagerControlMessage" and "<name>:ManagerControlMessage", with a wake-up on posts; and
+    // "<name>:ManagerStatusMessage", which it posts. Throws std::invalid_argument if one of these names
+    // belongs to a message of another type.
+    explicit RabitManager(std::string name);
+    // The same in another workspace, which must outlive the manager.
+    RabitManager(std::string name, RabitWorkspace &workspace);
+    virtual ~RabitManager();
+    RabitManager(const RabitManager &) = delete;
+    RabitManager &operator=(const RabitManager &) = delete;
+
+    virtual void Startup() {}
+    virtual void ExecuteUnitOfWork() = 0;
+    virtual void Shutdown() {}
+
+    std::string GetManagerName() { return _name; }
+    RabitWorkspace &GetWorkspace() const { return _workspace; }
+
+    std::shared_ptr<ManagerControlMessage> GetControlAllManagersMessage() { return _mgrControlAllMgrs_sptr; }
+    std::shared_ptr<ManagerControlMessage> GetControlThisManagerMessage() { return _mgrControlThisMgr_sptr; }
+    std::shared_ptr<ManagerStatusMessage> GetManagerStatusMessage() { return _mgrStatus_sptr; }
+    std::shared_ptr<RabitQueue> GetManagerMessageQueue() { return _mgrMessageQueue_sptr; }
+
+    // Whether the manager is woken when a message is added to its own queue; it is, unless this says
+    // otherwise.
+    void SetWakeupManagerUponMessagePostedToManagersMessageQueue(bool wakeUp);
+    void SetWakeupManagerUponMessagePostedToManagersMessageQueue();
+
+    // The longest sleep between two units of work. 0 or less: do not sleep, for a manager that blocks in its
+    // unit of work. May be set at any time; a sleep that is under way follows at once. More than about 31
+    // years is taken as that. NaN throws std::invalid_argument.
+    void SetWakeupTimeDelayMSec(int delay_MSec);
+    void SetWakeupTimeDelaySec(double delay_Sec);
+    // Rounded to milliseconds, but not to 0 if the manager does sleep; at most the largest int.
+    int GetWakeupTimeDelayMSec() const;
+    double GetWakeupTimeDelaySec() const;
+
+    // Registers a message (a shared pointer to a class derived from RabitMessage) and attaches it to the
+    // name's global copy. False if the name belongs to a message of another type. See RabitWorkspace.
+    template <typename T>
+    bool AddPublishSubscribeMessage(std::string name, T msg)
+    {
+        return RegisterMessage(name, std::move(msg));
+    }
+    // Fetching by name, see RabitWorkspace.
+    bool FetchMessage(std::string name, RabitMessage *msg);
+    bool ForceFetchMessage(std::string name, RabitMessage *msg);
+
+    // The managers of all reactors of the workspace, see RabitWorkspace.
+    bool DoesManagerExist(std::string managerName);
+    int GetManagerIndexNumber(std::string managerName);
+    int GetManagerIndexNumber();
+    std::vector<std::string> GetListOfManagerNames();
+
+    // Has this manager woken after each post of the message, which must be registered: otherwise throws
+    // GlobalPublishSubscribeException. Doing it twice has no effect.
+    template <typename T>
+    void WakeUpManagerOnMessagePost(T msg)
+    {
+        AddMessageWakeup(std::move(msg));
+    }
+    // Queues, see RabitWorkspace. T is a shared pointer to either kind of queue.
+    template <typename T>
+    void AddManagerMessageQueue(std::string name, T queue)
+    {
+        RegisterQueue(std::move(name), RabitWorkspace::MakeQueueHandle(std::move(queue)));
+    }
+    template <typename T>
+    T GetManagerMessageQueue(std::string name)
+    {
+        return _workspace.template GetManagerMessageQueue<T>(std::move(name));
+    }
+    // Have this manager woken after each message that is added to, or taken from, the queue.
+    template <typename T>
+    void WakeUpManagerOnEnqueue(T queue)
+    {
+        AddQueueWakeup(std::addressof(*queue), QueueEvent::Enqueued,
+                       [&](RabitHandler handler)
+                       { return queue->ConnectSomethingEnqueued(std::move(handler)); });
+    }
+    template <typename T>
+    void WakeUpManagerOnDequeue(T queue)
+    {
+        AddQueueWakeup(std::addressof(*queue), QueueEvent::Dequeued,
+                       [&](RabitHandler handler)
+                       { return queue->ConnectSomethingDequeued(std::move(handler)); });
+    }
+    // See RabitWorkspace. False: no such queue, or it is full.
+    template <typename T>
+    bool AddMessageToQueue(std::string name, T msg)
+    {
+        return _workspace.AddMessageToQueue(std::move(name), std::move(msg));
+    }
+
+    // Starts the thread and returns. Throws std::logic_error if it was started and not joined.
+    void Run();
+    // Waits for the thread to end. Throws std::system_error if it was not started.
+    void Join();
+    // Has this manager finish its unit of work and shut down; wakes it. A call before Run has it shut down
+    // right after Startup.
+    void ShutdownManager();
+    // True: has all managers of the workspace shut down, and says so in "ManagerControlMessage". False: only
+    // posts that message with its flag cleared.
+    void ShutdownAllManagers(bool value);
+    // The wake-up, for handlers of the user's own. WakeUpHandler gives one that is safe to call after the
+    // manager is gone; WakeUpManagerEH is not.
+    void WakeUpManagerEH();
+    RabitHandler WakeUpHandler() const;
+
+protected:
+    std::shared_ptr<RabitQueue> _mgrMessageQueue_sptr;
+    std::shared_ptr<ManagerControlMessage> _mgrControlAllMgrs_sptr;
+    std::shared_ptr<ManagerControlMessage> _mgrControlThisMgr_sptr;
+    std::shared_ptr<ManagerStatusMessage> _mgrStatus_sptr;
+
+private:
+    friend class RabitReactor;
+    friend class RabitSteppedReactor;
+
+    enum class QueueEvent
+    {
+        Enqueued,
+        Dequeued
+    };
+    struct MessageWakeup
+    {
+        std::weak_ptr<RabitMessage> Message;
+        std::shared_ptr<PublishSubscribeMessage> Global;
+        RabitScopedConnection Connection;
+    };
+    struct QueueWakeup
+    {
+        const void *Queue;
+        QueueEvent Event;
+        RabitScopedConnection Connection;
+    };
+
+    bool RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg);
+    void RegisterQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle);
+    void AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg);
+    template <typename Connect>
+    void AddQueueWakeup(const void *queue, QueueEvent event, Connect connect)
+    {
+        const std::lock_guard<std::mutex> lock(_wakeupsMutex);
+        if (!HasQueueWakeup(queue, event))
+        {
+            _queueWakeups.push_back(QueueWakeup{queue, event, connect(WakeUpHandler())});
+        }
+    }
+    void RenewMessageWakeups();
+    bool HasQueueWakeup(const void *queue, QueueEvent event) const;
+
+    // The manager's life in steps. Its thread calls them one after the other; a RabitSteppedReactor does so
+    // on its own thread.
+    void PrepareRun();                         // restores the names after an earlier run
+    bool StartupStep();                        // false: go on with ShutdownStep
+    bool CycleStep();                          // one pass; false: go on with ShutdownStep
+    void SleepStep();                          // real sleep until the next pass
+    void BeginSleepStep();                     // the same sleep when stepped
+    std::chrono::nanoseconds NextDue() const;  // by the workspace's clock
+    void EndSleepStep();
+    std::chrono::nanoseconds PauseOfThisSleep() const;
+    void CountSleep(std::chrono::nanoseconds slept);
+    void ShutdownStep();
+    void FinishRun();  // forgets what told it to shut down, ready for another run
+    void ThreadMain();
+
+    void ReadControlMessages();
+    void TakeControlMessagesAsRead();
+    template <typename Work>
+    bool Guard(const char *what, int errorCode, Work work);
+    void ReportFailure(const char *what, int errorCode, const std::string &reason);
+    void UpdateStats(std::chrono::nanoseconds now);
+    void PostStatus();
+    void PostStatusIfDue(std::chrono::nanoseconds now);
+    bool MayTouchOwnMessages() const;
+
+    const std::string _name;
+    RabitWorkspace &_workspace;
+    const std::shared_ptr<RabitWakeup> _wakeup;
+    const std::unique_ptr<ManagerLease> _lease;
+
+    std::mutex _wakeupsMutex;
+    std::vector<MessageWakeup> _messageWakeups;
+    std::vector<QueueWakeup> _queueWakeups;
+
+    std::thread _thread;
+    std::atomic<bool> _loopActive{false};
+    std::atomic<std::thread::id> _loopThread{};
+
+    // Used by the loop alone.
+    ManagerStats_t _stats;
+    std::pair<bool, bool> _resetToggles{false, false};
+    std::chrono::nanoseconds _statsResetAt{0};
+    std::chrono::nanoseconds _statusPostedAt{0};
+    std::chrono::nanoseconds _sleepBegan{0};
+    bool _lastPassFailed = false;
+    bool _startupFailed = false;
+    std::chrono::nanoseconds _failureLoggedAt{0};
+    int _failuresNotLogged = 0;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,158 @@
+#pragma once
+
+#include <rabit/ByteArrayReaderWriter.h>
+#include <rabit/RabitClock.h>
+#include <rabit/SystemTimeClock.h>
+
+#include <boost/function.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <typeindex>
+#include <typeinfo>
+
+namespace Rabit
+{
+class PublishSubscribeMessage;
+
+// Base of all messages. A message of a derived class is both what managers share under a name (post and
+// fetch) and what they put into queues.
+//
+// A message object belongs to one thread at a time, usually its manager's; sharing happens through the global
+// copy (PublishSubscribeMessage) to which registering under a name attaches it. Copying a message
+// (constructor and assignment) copies everything, its attachment included.
+class RabitMessage
+{
+public:
+    // For the user; no meaning to Rabit.
+    int MessageType = 0;
+    int MessageSource = 0;
+    int MessageDestination = 0;
+
+    // Stamped with the current time of the system clock.
+    RabitMessage();
+    RabitMessage(const RabitMessage &) = default;
+    RabitMessage &operator=(const RabitMessage &) = default;
+    virtual ~RabitMessage();
+
+    // A deep copy, of the same dynamic type.
+    virtual std::unique_ptr<RabitMessage> Clone() const = 0;
+    // Takes over the contents of a message of the same type; returns false and changes nothing if it is of
+    // another. The base copies the time stamp and the three ints. Overrides may assign the whole object.
+    virtual bool CopyMessage(RabitMessage *msg);
+    // Back to default values. The base zeroes the three ints and the time stamp.
+    virtual void Clear();
+    // For people. The base gives the type's name and the time stamp.
+    virtual std::string ToString() const;
+    // A private byte format of the derived class; stype is for its own use. Both return the bytes used, 0 if
+    // there is no such format (as in the base) or the buffer is too small.
+    virtual int Serialize(std::uint8_t *buf, int maxBufSize, int stype = 0);
+    virtual int DeSerialize(std::uint8_t *buf, int len, int stype = 0);
+
+    // The global copy that this message is attached to; null if it is not registered.
+    std::shared_ptr<PublishSubscribeMessage> GetGlobalPublishSubscribeMessageRef();
+    void SetGlobalPublishSubscribeMessageRef(std::shared_ptr<PublishSubscribeMessage> val);
+
+    // What the base's CopyMessage copies, and the attachment: for use in Clone.
+    void CopyBase(const RabitMessage *msg);
+    // The dynamic type.
+    std::type_index GetTypeIndex();
+
+    // The time stamp is in GPS seconds since 1980-01-06. A post sets it.
+    void SetTimeNow();
+    double GetTimeStamp() const;
+    void SetTimeStamp(double gpsTimeSeconds);
+    double TimeStampSeconds() const;
+    // True when the time stamps are equal.
+    bool CompareTime(RabitMessage *msg);
+
+    // Seconds since the contents were posted, by the monotonic clock of the workspace (the system's, if the
+    // message is not attached): steps of the wall clock do not matter. Infinite if they were never posted.
+    double GetAgeSeconds() const;
+    // The same by a given clock, which must be the one of the workspace in which the contents were posted.
+    double GetAgeSeconds(const RabitClock &clock) const;
+    // Whether the contents were ever posted: by this message, or where they were fetched or copied from.
+    bool WasPosted() const { return _postedAt != NeverPosted; }
+    // Time stamp, and the moment of the post by the monotonic clock (zero if there was none).
+    PostTime GetPostTime() const;
+
+    // These four work on the global copy and throw GlobalPublishSubscribeException if there is none.
+    //
+    // Has the handler called after each post of this name: on the posting thread, with no lock held, for as
+    // long as the name exists. Returns true.
+    bool Register_SomethingPublished(const boost::function<void()> &handler);
+    // Stamps this message with the current time, copies it to the global copy and calls the handlers.
+    void PostMessage();
+    // Posts with a time that the caller gives, see PublishSubscribeMessage.
+    void PostMessage(const PostTime &time);
+    void PostMessageWin();
+    // Copies the global copy to this message if it is something new; returns whether it was. Takes no lock
+    // when nothing is new. The first fetch after registering is true if anything was ever posted.
+    bool FetchMessage();
+
+    // The common header: the three ints as int32, the time stamp as double.
+    int getSerializedMsgHeaderSize();
+    // Return the bytes used, 0 if they do not fit.
+    int SerializeMsgHeader(ByteArrayWriter &writer);
+    int DeSerializeMsgHeader(ByteArrayReader &reader);
+
+protected:
+    double _timeStamp;
+    std::shared_ptr<PublishSubscribeMessage> _globalPublishSubscribeMessageRef;
+
+private:
+    friend class PublishSubscribeMessage;
+    friend class RabitWorkspace;
+    static constexpr std::chrono::nanoseconds NeverPosted = std::chrono::nanoseconds::min();
+
+    PublishSubscribeMessage &GlobalOrThrow() const;
+    [[noreturn]] void ThrowNotRegistered() const;
+    void CopyStampFrom(const RabitMessage &msg);
+
+    // Which post the contents are: identity and sequence number of the global copy, and the time stamp they
+    // had then. Travels with the time stamp.
+    std::uint64_t _seenSource = 0;
+    std::uint64_t _seenSequence = 0;
+    double _seenTimeStamp = 0.0;
+    std::chrono::nanoseconds _postedAt = NeverPosted;
+};
+
+}  // namespace Rabit
+
+#include <rabit/PublishSubscribeMessage.h>
+
+namespace Rabit
+{
+
+// Inline so that a fetch with nothing new costs a few loads.
+
+inline bool PublishSubscribeMessage::FetchMessage(RabitMessage *msg)
+{
+    if (msg != nullptr && msg->_seenSource == _identity &&
+        msg->_seenSequence == _sequence.load(std::memory_order_acquire) &&
+        msg->_timeStamp == msg->_seenTimeStamp)
+    {
+        return false;
+    }
+    return FetchIfChanged(msg);
+}
+
+inline PublishSubscribeMessage &RabitMessage::GlobalOrThrow() const
+{
+    if (!_globalPublishSubscribeMessageRef)
+    {
+        ThrowNotRegistered();
+    }
+    return *_globalPublishSubscribeMessageRef;
+}
+
+inline bool RabitMessage::FetchMessage()
+{
+    return GlobalOrThrow().FetchMessage(this);
+}
+
+}  // namespace Rabit

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <rabit/RabitEvent.h>
+#include <rabit/RabitRing.h>
+#include <rabit/SafeQueue.h>
+
+#include <boost/bind/bind.hpp>
+#include <boost/function.hpp>
+#include <boost/signals2.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace Rabit
+{
+
+// A named, bounded first-in-first-out queue for any number of threads: the receiver gets each and every
+// message.
+//
+// Handlers run on the thread that added (or took), after it did, with no lock held; what they throw is caught
+// and logged. Elements are destroyed outside the lock.
+template <typename T>
+class RabitMessageQueue
+{
+public:
+    typedef boost::signals2::signal<void()>::slot_type _sigEnqueuSlotType;
+    typedef T ElementType;
+
+    static constexpr int MaxCapacity = 1000000;
+
+    // The capacity is clamped to 1..MaxCapacity. An empty name becomes "MessageQueue".
+    RabitMessageQueue(int maxNoMessages, std::string msgQName)
+        : _name(msgQName.empty() ? "MessageQueue" : std::move(msgQName)),
+          _ring(static_cast<std::size_t>(std::clamp(maxNoMessages, 1, MaxCapacity)))
+    {
+    }
+    RabitMessageQueue(const RabitMessageQueue &) = delete;
+    RabitMessageQueue &operator=(const RabitMessageQueue &) = delete;
+
+    std::string GetMessageQueueName() { return _name; }
+    int GetMaxNoMessagesAllowedInQueue() { return static_cast<int>(_ring.Capacity()); }
+
+    // Have the handler called after each message that was added, or taken, for as long as the queue lives.
+    // Any number of handlers. Throw std::invalid_argument if it is empty.
+    void Register_SomethingEnqueued(const boost::function<void()> &handler)
+    {
+        ConnectSomethingEnqueued(handler);
+    }
+    void Register_SomethingDequeued(const boost::function<void()> &handler)
+    {
+        ConnectSomethingDequeued(handler);
+    }
+    // The same, with a connection that ends it.
+    RabitConnection ConnectSomethingEnqueued(RabitHandler handler)
+    {
+        return _enqueued.Connect(std::move(handler));
+    }
+    RabitConnection ConnectSomethingDequeued(RabitHandler handler)
+    {
+        return _dequeued.Connect(std::move(handler));
+    }
+
+    // False, and no handler called, when full.
+    bool AddMessage(T msg)
+    {
+        RabitEvent::Handlers handlers;
+        {
+            const std::lock_guard<std::mutex> lock(*_mutex);
+            if (!_ring.Push(msg))
+            {
+                return false;
+            }
+            handlers = _enqueued.Snapshot();
+        }
+        handlers.Call();
+        return true;
+    }
+
+    // The same without calling handlers.
+    bool AddMessageNoEventTrigger(T msg)
+    {
+        const std::lock_guard<std::mutex> lock(*_mutex);
+        return _ring.Push(msg);
+    }
+
+    // Takes the oldest message. False, the target untouched and no handler called, when empty.
+    bool GetMessage(T &msg)
+    {
+        std::optional<T> oldest;
+        RabitEvent::Handlers handlers;
+        {
+            const std::lock_guard<std::mutex> lock(*_mutex);
+            oldest = _ring.Pop();
+            if (!oldest)
+            {
+                return false;
+            }
+            handlers = _dequeued.Snapshot();
+        }
+        msg = std::move(*oldest);
+        handlers.Call();
+        return true;
+    }
+
+    // Destroys all messages. Calls no handlers.
+    void ClearMessageQueue()
+    {
+        std::unique_lock<std::mutex> lock(*_mutex);
+        const auto removed = _ring.TakeAll();
+        lock.unlock();
+    }
+
+    int NoMessagesInQueue()
+    {
+        const std::lock_guard<std::mutex> lock(*_mutex);
+        return static_cast<int>(_ring.Size());
+    }
+
+    bool IsEmpty() { return NoMessagesInQueue() == 0; }
+
+private:
+    const std::string _name;
+    // Guards the messages and both lists of handlers.
+    const std::shared_ptr<std::mutex> _mutex = std::make_shared<std::mutex>();
+    RabitRing<T> _ring;
+    RabitEvent _enqueued{_mutex};
+    RabitEvent _dequeued{_mutex};
+};
+
+}  // namespace Rabit

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <rabit/RabitEvent.h>
+
+#include <boost/bind/bind.hpp>
+#include <boost/function.hpp>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <boost/signals2.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace Rabit
+{
+
+// A named, bounded, wait-free first-in-first-out queue for one producer thread and one consumer thread.
+//
+// AddMessage and AddMessageNoEventTrigger belong to the producer; GetMessage and ClearMessageQueue to the
+// consumer; the rest may be called from any thread. T must be default-constructible and copyable. Handlers
+// run as in RabitMessageQueue; when there are some, calling them takes a short lock on their list.
+template <typename T>
+class RabitNonBlockingSPSCQueue
+{
+public:
+    typedef boost::signals2::signal<void()>::slot_type _sigEnqueuSlotType;
+    typedef T ElementType;
+
+    static constexpr int MaxCapacity = 1000000;
+
+    // Holds exactly maxNoMessages, clamped to 1..MaxCapacity. An empty name becomes "MessageQueue".
+    RabitNonBlockingSPSCQueue(int maxNoMessages, std::string msgQName)
+        : _name(msgQName.empty() ? "MessageQueue" : std::move(msgQName)),
+          _capacity(std::clamp(maxNoMessages, 1, MaxCapacity)),
+          _queue(static_cast<std::size_t>(_capacity))
+    {
+    }
+    RabitNonBlockingSPSCQueue(const RabitNonBlockingSPSCQueue &) = delete;
+    RabitNonBlockingSPSCQueue &operator=(const RabitNonBlockingSPSCQueue &) = delete;
+
+    std::string GetMessageQueueName() { return _name; }
+    int GetMaxNoMessagesAllowedInQueue() { return _capacity; }
+
+    void Register_SomethingEnqueued(const boost::function<void()> &handler)
+    {
+        ConnectSomethingEnqueued(handler);
+    }
+    void Register_SomethingDequeued(const boost::function<void()> &handler)
+    {
+        ConnectSomethingDequeued(handler);
+    }
+    RabitConnection ConnectSomethingEnqueued(RabitHandler handler)
+    {
+        return _enqueued.Connect(std::move(handler));
+    }
+    RabitConnection ConnectSomethingDequeued(RabitHandler handler)
+    {
+        return _dequeued.Connect(std::move(handler));
+    }
+
+    // False, and no handler called, when full.
+    bool AddMessage(T const &msg)
+    {
+        if (!_queue.push(msg))
+        {
+            return false;
+        }
+        _enqueued.Fire();
+        return true;
+    }
+
+    // The same without calling handlers.
+    bool AddMessageNoEventTrigger(T const &msg) { return _queue.push(msg); }
+
+    // Takes the oldest message. False, the target untouched and no handler called, when empty.
+    bool GetMessage(T &msg)
+    {
+        if (!_queue.pop(msg))
+        {
+            return false;
+        }
+        _dequeued.Fire();
+        return true;
+    }
+
+    // Destroys all messages. Calls no handlers. For the consumer.
+    void ClearMessageQueue()
+    {
+        _queue.consume_all([](T &) {});
+    }
+
+private:
+    const std::string _name;
+    const int _capacity;
+    boost::lockfree::spsc_queue<T> _queue;
+    RabitEvent _enqueued;
+    RabitEvent _dequeued;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,252 @@
+#pragma once
+
+#include <rabit/MessageNotRegisteredException.h>
+#include <rabit/PublishSubscribeMessage.h>
+#include <rabit/QueueForwarder.h>
+#include <rabit/QueueTypeException.h>
+#include <rabit/RabitClock.h>
+#include <rabit/RabitMessage.h>
+#include <rabit/RabitMessageQueue.h>
+#include <rabit/RabitNonBlockingSPSCQueue.h>
+#include <rabit/RabitQueueHandle.h>
+
+#include <boost/function.hpp>
+
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <typeindex>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace Rabit
+{
+class WorkspaceRegistry;
+
+// What came of registering a message under a name.
+enum class MessageRegistrationResult
+{
+    Created,   // the name is new: the message was cloned to become the global copy
+    Attached,  // the name has a global copy of the same type
+    OtherType  // the name has a global copy of another type; the message is left as it was
+};
+
+struct MessageRegistration
+{
+    MessageRegistrationResult Result;
+    // The global copy of that name, also for OtherType. Never null.
+    std::shared_ptr<PublishSubscribeMessage> Global;
+};
+
+// Entries of the lists of what is registered.
+struct MessageInfo
+{
+    std::string Name;
+    std::type_index Type;
+    std::uint64_t NumberOfPosts;
+};
+struct QueueInfo
+{
+    std::string Name;
+    std::type_index ElementType;
+    int Capacity;
+};
+
+// The names by which managers find each other's messages and queues. Most programs have the one of
+// GetWorkspace(); others may be made, for instance one for each simulated vehicle in a process. Managers of
+// different workspaces share nothing.
+//
+// Threads: all methods may be called from any thread at any time. No lock is held while handlers, queues or
+// the forwarder are called. Lifetime: a workspace must outlive its managers and reactors. Messages and queues
+// are shared: whoever holds one may go on using it after its name is gone. Errors: null messages and queues
+// throw std::invalid_argument.
+class RabitWorkspace
+{
+public:
+    // The default workspace; lives as long as the process.
+    static RabitWorkspace *GetWorkspace();
+
+    // Posts are stamped by this clock, and managers take time from it; without one, by RabitClock::System().
+    explicit RabitWorkspace(std::shared_ptr<RabitClock> clock = nullptr);
+    ~RabitWorkspace();
+    RabitWorkspace(const RabitWorkspace &) = delete;
+    RabitWorkspace &operator=(const RabitWorkspace &) = delete;
+
+    RabitClock &GetClock() const { return *_clock; }
+
+    // Forgets every message and queue name; manager names stay. A reactor forgets the names of its own
+    // managers when its Run ends, and all of them if no manager of another reactor is left in the workspace.
+    void LeavingReactor();
+
+    // The names of the managers that were given to a reactor, in that order, each once. -1: no such name.
+    int GetManagerIndexNumber(std::string managerName);
+    bool DoesManagerExist(std::string managerName);
+    std::vector<std::string> GetListOfManagerNames();
+
+    // Queues. Registering replaces a former queue of that name.
+    template <typename T>
+    void AddManagerMessageQueue(std::string name, std::shared_ptr<RabitMessageQueue<T>> queue)
+    {
+        AddQueue(std::move(name), MakeQueueHandle(std::move(queue)), 0);
+    }
+    template <typename T>
+    void AddManagerMessageQueue(std::string name, std::shared_ptr<RabitNonBlockingSPSCQueue<T>> queue)
+    {
+        AddQueue(std::move(name), MakeQueueHandle(std::move(queue)), 0);
+    }
+
+    // T is the type of the shared pointer, such as std::shared_ptr<RabitMessageQueue<int>>. Throws
+    // MessageNotRegisteredException if there is no such name, QueueTypeException (a std::bad_any_cast) if the
+    // queue is of another type.
+    template <typename T>
+    T GetManagerMessageQueue(std::string name)
+    {
+        using QueueT = typename T::element_type;
+        const std::shared_ptr<RabitQueueHandle> handle = FindQueueOrThrow(name);
+        if (handle->QueueType() != typeid(QueueT))
+        {
+            throw QueueTypeException(name, handle->QueueType(), typeid(QueueT));
+        }
+        return std::static_pointer_cast<QueueT>(handle->Queue());
+    }
+
+    // Adds a message to the queue of that name. The message is of the queue's element type, or a shared
+    // pointer to a class derived from the one the queue holds pointers to, or something that converts to
+    // std::string for a queue of those. If there is no such queue, a message that converts to a shared
+    // pointer to RabitMessage is offered to the forwarder. False if the name is unknown, the queue full, or
+    // the forwarder refuses. Throws QueueTypeException if the queue holds something else.
+    template <typename T>
+    bool AddMessageToQueue(std::string name, T msg);
+
+    // Adds a message knowing only the name of the queue. Does not ask the forwarder. For adapters that get
+    // messages from elsewhere and must tell what went wrong.
+    QueueAddResult DeliverToQueue(const std::string &name, const std::shared_ptr<RabitMessage> &message);
+    // The queue of that name as a handle; null if there is none.
+    std::shared_ptr<RabitQueueHandle> FindQueue(const std::string &name) const;
+
+    // Has the handler called after each message that is added to (taken from) the queue registered under that
+    // name now, whatever its type (T is ignored). Returns true; throws MessageNotRegisteredException if there
+    // is none.
+    template <typename T>
+    bool Register_EnqueuedEvent(std::string name, const boost::function<void()> &handler)
+    {
+        FindQueueOrThrow(name)->ConnectEnqueued(handler);
+        return true;
+    }
+    template <typename T>
+    bool Register_DequeuedEvent(std::string name, const boost::function<void()> &handler)
+    {
+        FindQueueOrThrow(name)->ConnectDequeued(handler);
+        return true;
+    }
+    // The same with a connection that ends it; unconnected if there is no such queue.
+    RabitConnection ConnectEnqueuedEvent(const std::string &name, RabitHandler handler);
+    RabitConnection ConnectDequeuedEvent(const std::string &name, RabitHandler handler);
+
+    // Sets who takes messages for names that are not queues here; null: nobody. Returns only when no call of
+    // the former one is in progress any more; so it must not be called from inside one.
+    void SetQueueForwarder(std::shared_ptr<QueueForwarder> forwarder);
+
+    // Registers the message under the name and attaches it to the name's global copy, see
+    // MessageRegistration. The message is kept alive as long as the name. True if it is attached now; false
+    // if the name belongs to a message of another type (also logged).
+    bool AddPublishSubscribeMessage(std::string name, std::shared_ptr<RabitMessage> msg);
+    // The same, telling what happened.
+    MessageRegistration RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg);
+    // The global copy of that name; null if there is none.
+    std::shared_ptr<PublishSubscribeMessage> FindGlobalMessage(const std::string &name) const;
+
+    // By name: a clone of the global copy (null if there is no such name); and fetching to any message of the
+    // right type (false if there is no such name, or as PublishSubscribeMessage::FetchMessage).
+    std::unique_ptr<RabitMessage> GetMessage(std::string name);
+    bool FetchMessage(std::string name, RabitMessage *msg);
+    bool ForceFetchMessage(std::string name, RabitMessage *msg);
+
+    // What is registered now, sorted by name.
+    std::vector<MessageInfo> GetListOfMessages() const;
+    std::vector<QueueInfo> GetListOfQueues() const;
+
+private:
+    friend class RabitReactor;
+    friend class RabitSteppedReactor;
+    friend class RabitManager;
+    friend class ManagerLease;
+
+    void AddManagerName(const std::string &managerName);
+
+    // global is what becomes the global copy if the name is new; null: a clone of the message.
+    MessageRegistration RegisterMessageFor(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
+                                           std::uint64_t owner,
+                                           std::shared_ptr<PublishSubscribeMessage> global);
+    // Owner is the number of the manager that registers, 0 if it is nobody in particular.
+    void AddQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner);
+    std::shared_ptr<RabitQueueHandle> FindQueueOrThrow(const std::string &name) const;
+    bool ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message);
+
+    template <typename QueueT>
+    static std::shared_ptr<RabitQueueHandle> MakeQueueHandle(std::shared_ptr<QueueT> queue)
+    {
+        if (!queue)
+        {
+            return nullptr;  // AddQueue throws
+        }
+        return std::make_shared<Detail::TypedQueueHandle<QueueT>>(std::move(queue));
+    }
+
+    template <typename T>
+    static QueueAddResult AddToHandle(RabitQueueHandle &handle, T &msg);
+
+    const std::shared_ptr<RabitClock> _clock;
+    const std::unique_ptr<WorkspaceRegistry> _registry;
+};
+
+template <typename T>
+QueueAddResult RabitWorkspace::AddToHandle(RabitQueueHandle &handle, T &msg)
+{
+    QueueAddResult result = handle.AddElement(typeid(T), &msg);
+    if (result == QueueAddResult::WrongType)
+    {
+        if constexpr (std::is_convertible_v<T, std::shared_ptr<RabitMessage>>)
+        {
+            result = handle.AddMessage(std::shared_ptr<RabitMessage>(std::move(msg)));
+        }
+        else if constexpr (Detail::IsSharedPointer<T>::value)
+        {
+            using Pointee = typename T::element_type;
+            result = handle.AddPointer(
+                std::const_pointer_cast<std::remove_const_t<Pointee>>(msg),
+                [](void *object) { throw static_cast<Pointee *>(object); },
+                const_cast<std::remove_const_t<Pointee> *>(msg.get()));
+        }
+        else if constexpr (std::is_convertible_v<T, std::string>)
+        {
+            result = handle.AddString(std::string(std::move(msg)));
+        }
+    }
+    return result;
+}
+
+template <typename T>
+bool RabitWorkspace::AddMessageToQueue(std::string name, T msg)
+{
+    const std::shared_ptr<RabitQueueHandle> handle = FindQueue(name);
+    if (handle)
+    {
+        const QueueAddResult result = AddToHandle(*handle, msg);
+        if (result == QueueAddResult::WrongType)
+        {
+            throw QueueTypeException(name, handle->ElementType(), typeid(T));
+        }
+        return result == QueueAddResult::Ok;
+    }
+    if constexpr (std::is_convertible_v<T, std::shared_ptr<RabitMessage>>)
+    {
+        return ForwardMessage(name, std::shared_ptr<RabitMessage>(std::move(msg)));
+    }
+    return false;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,77 @@
+#include <rabit/ManualClock.h>
+#include <rabit/RabitClock.h>
+#include <rabit/SystemTimeClock.h>
+
+#include <stdexcept>
+
+namespace Rabit
+{
+namespace
+{
+
+class SystemRabitClock final : public RabitClock
+{
+public:
+    std::chrono::nanoseconds Monotonic() const override
+    {
+        return std::chrono::steady_clock::now().time_since_epoch();
+    }
+    double GpsTimeSeconds() const override { return Now().GpsTimeSeconds; }
+    PostTime Now() const override { return _clock->Now(); }
+
+private:
+    SystemTimeClock *const _clock = SystemTimeClock::GetSystemTimeClock();
+};
+
+double InSeconds(std::chrono::nanoseconds duration)
+{
+    return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+const std::shared_ptr<RabitClock> &RabitClock::System()
+{
+    // Never destroyed: messages may be stamped while the process ends.
+    static const auto *const clock = new std::shared_ptr<RabitClock>(std::make_shared<SystemRabitClock>());
+    return *clock;
+}
+
+ManualClock::ManualClock(double gpsTimeSeconds, std::chrono::nanoseconds monotonic)
+    : _monotonic(monotonic.count()), _gpsAtZero(gpsTimeSeconds - InSeconds(monotonic))
+{
+}
+
+std::chrono::nanoseconds ManualClock::Monotonic() const
+{
+    return std::chrono::nanoseconds(_monotonic.load());
+}
+
+double ManualClock::GpsTimeSeconds() const
+{
+    return _gpsAtZero.load() + InSeconds(Monotonic());
+}
+
+void ManualClock::Advance(std::chrono::nanoseconds duration)
+{
+    if (duration < std::chrono::nanoseconds::zero())
+    {
+        throw std::invalid_argument("ManualClock::Advance: a monotonic clock does not go back");
+    }
+    _monotonic.fetch_add(duration.count());
+}
+
+void ManualClock::AdvanceTo(std::chrono::nanoseconds monotonic)
+{
+    std::int64_t now = _monotonic.load();
+    while (now < monotonic.count() && !_monotonic.compare_exchange_weak(now, monotonic.count()))
+    {
+    }
+}
+
+void ManualClock::SetGpsTimeSeconds(double gpsTimeSeconds)
+{
+    _gpsAtZero.store(gpsTimeSeconds - InSeconds(Monotonic()));
+}
+
+}  // namespace Rabit

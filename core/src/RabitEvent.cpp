@@ -1,0 +1,128 @@
+#include <rabit/RabitEvent.h>
+
+#include "ExceptionText.h"
+
+#include <rabit/RabitLog.h>
+
+#include <stdexcept>
+
+namespace Rabit
+{
+namespace
+{
+
+using SlotList = std::vector<std::shared_ptr<Detail::EventSlot>>;
+
+}  // namespace
+
+void RabitConnection::Disconnect()
+{
+    const std::shared_ptr<Detail::EventSlot> slot = std::exchange(_slot, {}).lock();
+    const std::shared_ptr<Detail::EventState> event = std::exchange(_event, {}).lock();
+    if (!slot || !event || !slot->Connected.exchange(false))
+    {
+        return;
+    }
+    // What the handler owns is destroyed after the lock is given back.
+    std::shared_ptr<const SlotList> former;
+    const std::lock_guard<std::mutex> lock(*event->Mutex);
+    auto remaining = std::make_shared<SlotList>();
+    for (const auto &other : *event->Slots)
+    {
+        if (other != slot)
+        {
+            remaining->push_back(other);
+        }
+    }
+    former = std::move(event->Slots);
+    event->Slots = remaining->empty() ? nullptr : std::move(remaining);
+    event->Count.fetch_sub(1, std::memory_order_acq_rel);
+}
+
+bool RabitConnection::IsConnected() const
+{
+    const std::shared_ptr<Detail::EventSlot> slot = _slot.lock();
+    return slot && slot->Connected.load() && !_event.expired();
+}
+
+RabitScopedConnection::RabitScopedConnection(RabitScopedConnection &&other) noexcept
+    : _connection(std::exchange(other._connection, {}))
+{
+}
+
+RabitScopedConnection &RabitScopedConnection::operator=(RabitScopedConnection &&other) noexcept
+{
+    if (this != &other)
+    {
+        _connection.Disconnect();
+        _connection = std::exchange(other._connection, {});
+    }
+    return *this;
+}
+
+RabitEvent::RabitEvent() : RabitEvent(std::make_shared<std::mutex>()) {}
+
+RabitEvent::RabitEvent(std::shared_ptr<std::mutex> mutex)
+    : _state(std::make_shared<Detail::EventState>(std::move(mutex)))
+{
+}
+
+RabitConnection RabitEvent::Connect(RabitHandler handler)
+{
+    if (!handler)
+    {
+        throw std::invalid_argument("an empty handler cannot be connected to an event");
+    }
+    const auto slot = std::make_shared<Detail::EventSlot>(std::move(handler));
+    std::shared_ptr<const SlotList> former;
+    {
+        const std::lock_guard<std::mutex> lock(*_state->Mutex);
+        auto slots =
+            _state->Slots ? std::make_shared<SlotList>(*_state->Slots) : std::make_shared<SlotList>();
+        slots->push_back(slot);
+        former = std::move(_state->Slots);
+        _state->Slots = std::move(slots);
+        _state->Count.fetch_add(1, std::memory_order_acq_rel);
+    }
+    RabitConnection connection;
+    connection._event = _state;
+    connection._slot = slot;
+    return connection;
+}
+
+void RabitEvent::Fire() const
+{
+    // A read-modify-write, so that either this sees a handler that was connected, or whoever connects it sees
+    // what happened before this.
+    if (_state->Count.fetch_add(0, std::memory_order_acq_rel) == 0)
+    {
+        return;
+    }
+    Handlers handlers;
+    {
+        const std::lock_guard<std::mutex> lock(*_state->Mutex);
+        handlers = Snapshot();
+    }
+    handlers.Call();
+}
+
+void RabitEvent::Handlers::CallAll() const
+{
+    for (const auto &slot : *_slots)
+    {
+        if (!slot->Connected.load(std::memory_order_acquire))
+        {
+            continue;
+        }
+        try
+        {
+            slot->Handler();
+        }
+        catch (...)
+        {
+            RabitLog::Write(RabitLogLevel::Error, "an event handler threw: " + CurrentExceptionText());
+        }
+    }
+}
+
+}  // namespace Rabit

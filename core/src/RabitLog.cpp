@@ -1,0 +1,98 @@
+#include <rabit/RabitLog.h>
+
+#include <atomic>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace Rabit
+{
+namespace
+{
+
+struct LogState
+{
+    std::mutex Mutex;
+    std::shared_ptr<const RabitLog::Sink> Sink;
+    std::atomic<RabitLogLevel> Level{RabitLogLevel::Warning};
+};
+
+// Never destroyed: threads may log while the process ends.
+LogState &State()
+{
+    static LogState *const state = new LogState();
+    return *state;
+}
+
+const char *NameOf(RabitLogLevel level)
+{
+    switch (level)
+    {
+        case RabitLogLevel::Debug:
+            return "debug";
+        case RabitLogLevel::Info:
+            return "info";
+        case RabitLogLevel::Warning:
+            return "warning";
+        default:
+            return "error";
+    }
+}
+
+void WriteToStderr(RabitLogLevel level, const std::string &text)
+{
+    // One call for the whole line: lines of several threads do not mix.
+    std::fprintf(stderr, "rabit: %s: %s\n", NameOf(level), text.c_str());
+}
+
+}  // namespace
+
+void RabitLog::SetSink(Sink sink)
+{
+    auto shared = sink ? std::make_shared<const Sink>(std::move(sink)) : nullptr;
+    LogState &state = State();
+    {
+        const std::lock_guard<std::mutex> lock(state.Mutex);
+        state.Sink.swap(shared);
+    }
+    // The former sink goes here, outside the lock.
+}
+
+void RabitLog::SetLevel(RabitLogLevel level)
+{
+    State().Level.store(level);
+}
+
+RabitLogLevel RabitLog::GetLevel()
+{
+    return State().Level.load();
+}
+
+void RabitLog::Write(RabitLogLevel level, const std::string &text) noexcept
+{
+    LogState &state = State();
+    if (level < state.Level.load() || level == RabitLogLevel::Off)
+    {
+        return;
+    }
+    try
+    {
+        std::shared_ptr<const Sink> sink;
+        {
+            const std::lock_guard<std::mutex> lock(state.Mutex);
+            sink = state.Sink;
+        }
+        if (sink)
+        {
+            (*sink)(level, text);
+            return;
+        }
+    }
+    catch (...)  // a broken sink must not cost the line, nor end the process
+    {
+    }
+    WriteToStderr(level, text);
+}
+
+}  // namespace Rabit

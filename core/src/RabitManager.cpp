@@ -1,0 +1,235 @@
+#include <rabit/RabitManager.h>
+
+#include "ManagerLease.h"
+
+#include <rabit/GlobalPublishSubscribeException.h>
+#include <rabit/RabitLog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+// Names, messages, queues and wake-ups of a manager. Its life is in RabitManagerRun.cpp.
+namespace Rabit
+{
+namespace
+{
+
+constexpr int OwnQueueCapacity = 1000;
+constexpr double LongestDelay_Sec = 1e9;
+
+template <typename T>
+std::shared_ptr<T> RegisterOrThrow(ManagerLease &lease, const std::string &name)
+{
+    auto message = std::make_shared<T>();
+    if (!lease.AddMessage(name, message))
+    {
+        throw std::invalid_argument("message name \"" + name + "\", which every manager needs, is taken");
+    }
+    return message;
+}
+
+}  // namespace
+
+RabitManager::RabitManager(std::string name) : RabitManager(std::move(name), *RabitWorkspace::GetWorkspace())
+{
+}
+
+RabitManager::RabitManager(std::string name, RabitWorkspace &workspace)
+    : _name(std::move(name)),
+      _workspace(workspace),
+      _wakeup(std::make_shared<RabitWakeup>()),
+      _lease(std::make_unique<ManagerLease>(workspace, _wakeup))
+{
+    _mgrMessageQueue_sptr = std::make_shared<RabitQueue>(OwnQueueCapacity, _name);
+    RegisterQueue(_name, RabitWorkspace::MakeQueueHandle(_mgrMessageQueue_sptr));
+    WakeUpManagerOnEnqueue(_mgrMessageQueue_sptr);
+
+    _mgrControlAllMgrs_sptr = RegisterOrThrow<ManagerControlMessage>(*_lease, "ManagerControlMessage");
+    _mgrControlThisMgr_sptr =
+        RegisterOrThrow<ManagerControlMessage>(*_lease, _name + ":ManagerControlMessage");
+    AddMessageWakeup(_mgrControlAllMgrs_sptr);
+    AddMessageWakeup(_mgrControlThisMgr_sptr);
+    TakeControlMessagesAsRead();
+
+    _mgrStatus_sptr = RegisterOrThrow<ManagerStatusMessage>(*_lease, _name + ":ManagerStatusMessage");
+    _mgrStatus_sptr->ManagerName = _name;
+    _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Startup;
+    _mgrStatus_sptr->PostMessage();
+}
+
+RabitManager::~RabitManager()
+{
+    if (!_thread.joinable())
+    {
+        return;
+    }
+    // The derived class is gone already: this is too late to be safe, and only better than std::terminate.
+    RabitLog::Write(RabitLogLevel::Error, "manager \"" + _name + "\" was destroyed without being joined");
+    _wakeup->RequestShutdown();
+    if (_thread.get_id() == std::this_thread::get_id())
+    {
+        _thread.detach();
+    }
+    else
+    {
+        _thread.join();
+    }
+}
+
+void RabitManager::SetWakeupManagerUponMessagePostedToManagersMessageQueue()
+{
+    SetWakeupManagerUponMessagePostedToManagersMessageQueue(true);
+}
+
+void RabitManager::SetWakeupManagerUponMessagePostedToManagersMessageQueue(bool wakeUp)
+{
+    if (wakeUp)
+    {
+        WakeUpManagerOnEnqueue(_mgrMessageQueue_sptr);
+        return;
+    }
+    const void *const own = _mgrMessageQueue_sptr.get();
+    const std::lock_guard<std::mutex> lock(_wakeupsMutex);
+    _queueWakeups.erase(std::remove_if(_queueWakeups.begin(), _queueWakeups.end(),
+                                       [&](const QueueWakeup &wakeup) {
+                                           return wakeup.Queue == own && wakeup.Event == QueueEvent::Enqueued;
+                                       }),
+                        _queueWakeups.end());
+}
+
+void RabitManager::SetWakeupTimeDelayMSec(int delay_MSec)
+{
+    _wakeup->SetDelay(std::chrono::milliseconds(delay_MSec));
+}
+
+void RabitManager::SetWakeupTimeDelaySec(double delay_Sec)
+{
+    if (std::isnan(delay_Sec))
+    {
+        throw std::invalid_argument("the wake-up delay of manager \"" + _name + "\" cannot be NaN");
+    }
+    const std::chrono::duration<double> delay(std::clamp(delay_Sec, 0.0, LongestDelay_Sec));
+    auto rounded = std::chrono::duration_cast<std::chrono::nanoseconds>(delay);
+    if (delay_Sec > 0.0)
+    {
+        rounded = std::max(rounded, std::chrono::nanoseconds(1));
+    }
+    _wakeup->SetDelay(rounded);
+}
+
+int RabitManager::GetWakeupTimeDelayMSec() const
+{
+    const std::chrono::nanoseconds delay = _wakeup->GetDelay();
+    if (delay <= std::chrono::nanoseconds::zero())
+    {
+        return 0;
+    }
+    const auto rounded = std::chrono::round<std::chrono::milliseconds>(delay).count();
+    return static_cast<int>(std::clamp<std::int64_t>(rounded, 1, std::numeric_limits<int>::max()));
+}
+
+double RabitManager::GetWakeupTimeDelaySec() const
+{
+    return std::chrono::duration<double>(_wakeup->GetDelay()).count();
+}
+
+bool RabitManager::RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg)
+{
+    return _lease->AddMessage(name, msg);
+}
+
+void RabitManager::RegisterQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle)
+{
+    _lease->AddQueue(name, handle);
+}
+
+bool RabitManager::FetchMessage(std::string name, RabitMessage *msg)
+{
+    return _workspace.FetchMessage(std::move(name), msg);
+}
+
+bool RabitManager::ForceFetchMessage(std::string name, RabitMessage *msg)
+{
+    return _workspace.ForceFetchMessage(std::move(name), msg);
+}
+
+bool RabitManager::DoesManagerExist(std::string managerName)
+{
+    return _workspace.DoesManagerExist(std::move(managerName));
+}
+
+int RabitManager::GetManagerIndexNumber(std::string managerName)
+{
+    return _workspace.GetManagerIndexNumber(std::move(managerName));
+}
+
+int RabitManager::GetManagerIndexNumber()
+{
+    return _workspace.GetManagerIndexNumber(_name);
+}
+
+std::vector<std::string> RabitManager::GetListOfManagerNames()
+{
+    return _workspace.GetListOfManagerNames();
+}
+
+void RabitManager::AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg)
+{
+    if (!msg)
+    {
+        throw std::invalid_argument("manager \"" + _name + "\" cannot be woken by a null message");
+    }
+    const std::shared_ptr<PublishSubscribeMessage> global = msg->GetGlobalPublishSubscribeMessageRef();
+    if (!global)
+    {
+        throw GlobalPublishSubscribeException("manager \"" + _name +
+                                              "\" cannot be woken by a message that is not registered");
+    }
+    const std::lock_guard<std::mutex> lock(_wakeupsMutex);
+    const bool known = std::any_of(_messageWakeups.begin(), _messageWakeups.end(),
+                                   [&](const MessageWakeup &wakeup)
+                                   { return wakeup.Global == global && wakeup.Connection.IsConnected(); });
+    if (!known)
+    {
+        _messageWakeups.push_back(
+            MessageWakeup{msg, global, global->ConnectSomethingPublished(WakeUpHandler())});
+    }
+}
+
+// After the names came back a message may be attached to another global copy than before.
+void RabitManager::RenewMessageWakeups()
+{
+    const std::lock_guard<std::mutex> lock(_wakeupsMutex);
+    for (MessageWakeup &wakeup : _messageWakeups)
+    {
+        const std::shared_ptr<RabitMessage> message = wakeup.Message.lock();
+        const auto global = message ? message->GetGlobalPublishSubscribeMessageRef() : nullptr;
+        if (global && global != wakeup.Global)
+        {
+            wakeup.Connection = global->ConnectSomethingPublished(WakeUpHandler());
+            wakeup.Global = global;
+        }
+    }
+}
+
+bool RabitManager::HasQueueWakeup(const void *queue, QueueEvent event) const
+{
+    return std::any_of(
+        _queueWakeups.begin(), _queueWakeups.end(),
+        [&](const QueueWakeup &wakeup)
+        { return wakeup.Queue == queue && wakeup.Event == event && wakeup.Connection.IsConnected(); });
+}
+
+void RabitManager::WakeUpManagerEH()
+{
+    _wakeup->Signal();
+}
+
+RabitHandler RabitManager::WakeUpHandler() const
+{
+    return [wakeup = _wakeup] { wakeup->Signal(); };
+}
+
+}  // namespace Rabit

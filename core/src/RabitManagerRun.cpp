@@ -1,0 +1,330 @@
+#include "ExceptionText.h"
+#include "ManagerLease.h"
+
+#include <rabit/RabitLog.h>
+#include <rabit/RabitManager.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include <pthread.h>
+
+// The life of a manager: its thread, or a stepped reactor, goes through the steps below.
+namespace Rabit
+{
+namespace
+{
+
+// The least sleep after a unit of work that threw, and that of a manager that otherwise does not sleep.
+constexpr std::chrono::milliseconds PauseAfterFailure(10);
+constexpr std::chrono::milliseconds PauseAfterFailureWithoutDelay(100);
+// A manager that fails again and again is logged at most this often.
+constexpr std::chrono::seconds FailureLogPeriod(1);
+
+double InSeconds(std::chrono::nanoseconds duration)
+{
+    return std::chrono::duration<double>(duration).count();
+}
+
+void Increment(int &counter)
+{
+    if (counter < std::numeric_limits<int>::max())
+    {
+        ++counter;
+    }
+}
+
+}  // namespace
+
+void RabitManager::Run()
+{
+    if (_thread.joinable())
+    {
+        throw std::logic_error("manager \"" + _name + "\" is running already");
+    }
+    PrepareRun();
+    try
+    {
+        _thread = std::thread([this] { ThreadMain(); });
+    }
+    catch (...)
+    {
+        _loopActive.store(false);
+        throw;
+    }
+}
+
+void RabitManager::Join()
+{
+    _thread.join();
+}
+
+void RabitManager::ShutdownManager()
+{
+    _wakeup->RequestShutdown();
+}
+
+void RabitManager::ShutdownAllManagers(bool value)
+{
+    // The manager's own copy may be in use by its thread: another thread posts a copy of the copy.
+    if (MayTouchOwnMessages())
+    {
+        _mgrControlAllMgrs_sptr->ShutdownManager(value);
+        _mgrControlAllMgrs_sptr->PostMessage();
+    }
+    else
+    {
+        const auto global = _mgrControlAllMgrs_sptr->GetGlobalPublishSubscribeMessageRef();
+        ManagerControlMessage control;
+        global->ForceFetchMessage(&control);
+        control.ShutdownManager(value);
+        global->PostMessage(&control);
+    }
+    if (value)
+    {
+        _lease->RequestShutdownOfAllManagers();
+    }
+}
+
+bool RabitManager::MayTouchOwnMessages() const
+{
+    return !_loopActive.load() || _loopThread.load() == std::this_thread::get_id();
+}
+
+void RabitManager::ThreadMain()
+{
+    pthread_setname_np(pthread_self(), _name.substr(0, 15).c_str());
+    if (StartupStep())
+    {
+        while (CycleStep())
+        {
+            SleepStep();
+        }
+    }
+    ShutdownStep();
+}
+
+void RabitManager::PrepareRun()
+{
+    _lease->Return();
+    RenewMessageWakeups();
+    _startupFailed = false;
+    _lastPassFailed = false;
+    _loopThread.store(std::thread::id());
+    _loopActive.store(true);
+}
+
+bool RabitManager::StartupStep()
+{
+    _loopThread.store(std::this_thread::get_id());
+    _mgrStatus_sptr->ErrorCondition = false;
+    _mgrStatus_sptr->ErrorCode = ManagerStatusMessage::Error_None;
+    const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
+    _statsResetAt = now;
+    _statusPostedAt = now;
+    _startupFailed = !Guard("Startup", ManagerStatusMessage::Error_Startup, [this] { Startup(); });
+    if (_startupFailed)
+    {
+        return false;
+    }
+    _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Running;
+    PostStatus();
+    return true;
+}
+
+bool RabitManager::CycleStep()
+{
+    ReadControlMessages();
+    if (_wakeup->IsShutdownRequested())
+    {
+        return false;
+    }
+    Increment(_stats.TotalNumberOfExecuteCycles);
+    Increment(_stats.NumberOfExecuteCycles);
+    const RabitClock &clock = _workspace.GetClock();
+    const std::chrono::nanoseconds start = clock.Monotonic();
+    const bool good = Guard("ExecuteUnitOfWork", ManagerStatusMessage::Error_ExecuteUnitOfWork,
+                            [this] { ExecuteUnitOfWork(); });
+    const std::chrono::nanoseconds end = clock.Monotonic();
+    _stats.UpdateExeUnitOfWorkTimeStats(InSeconds(end - start));
+    if (good && _lastPassFailed)
+    {
+        _mgrStatus_sptr->ErrorCondition = false;
+        _mgrStatus_sptr->ErrorCode = ManagerStatusMessage::Error_None;
+        PostStatus();
+    }
+    _lastPassFailed = !good;
+    PostStatusIfDue(end);
+    return true;
+}
+
+std::chrono::nanoseconds RabitManager::PauseOfThisSleep() const
+{
+    if (!_lastPassFailed)
+    {
+        return std::chrono::nanoseconds::zero();
+    }
+    return _wakeup->GetDelay() > std::chrono::nanoseconds::zero() ? PauseAfterFailure
+                                                                  : PauseAfterFailureWithoutDelay;
+}
+
+void RabitManager::SleepStep()
+{
+    CountSleep(_wakeup->Sleep(PauseOfThisSleep()));
+}
+
+void RabitManager::BeginSleepStep()
+{
+    _sleepBegan = _workspace.GetClock().Monotonic();
+    _wakeup->BeginSleep();
+}
+
+std::chrono::nanoseconds RabitManager::NextDue() const
+{
+    if (_wakeup->IsShutdownRequested())
+    {
+        return _sleepBegan;
+    }
+    const std::chrono::nanoseconds sleep =
+        _wakeup->IsSignalled() ? std::chrono::nanoseconds::zero() : _wakeup->GetDelay();
+    return _sleepBegan + std::max(PauseOfThisSleep(), sleep);
+}
+
+void RabitManager::EndSleepStep()
+{
+    _wakeup->EndSleep();
+    CountSleep(_workspace.GetClock().Monotonic() - _sleepBegan);
+}
+
+void RabitManager::CountSleep(std::chrono::nanoseconds slept)
+{
+    if (slept > std::chrono::nanoseconds::zero())
+    {
+        _stats.UpdateSleepTimeStats(InSeconds(slept));
+    }
+}
+
+void RabitManager::ShutdownStep()
+{
+    _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Shutdown;
+    UpdateStats(_workspace.GetClock().Monotonic());
+    PostStatus();
+    Guard("Shutdown", ManagerStatusMessage::Error_Shutdown, [this] { Shutdown(); });
+    _loopActive.store(false);
+}
+
+void RabitManager::FinishRun()
+{
+    TakeControlMessagesAsRead();
+    _wakeup->Reset();
+}
+
+// What was posted so far is not for this manager: it was not there, or not running, at that time.
+void RabitManager::TakeControlMessagesAsRead()
+{
+    for (const auto &control : {_mgrControlAllMgrs_sptr, _mgrControlThisMgr_sptr})
+    {
+        control->GetGlobalPublishSubscribeMessageRef()->ForceFetchMessage(control.get());
+        control->ShutdownManager(false);
+    }
+    _resetToggles = {_mgrControlAllMgrs_sptr->ResetMgrStatsToggle,
+                     _mgrControlThisMgr_sptr->ResetMgrStatsToggle};
+}
+
+void RabitManager::ReadControlMessages()
+{
+    _mgrControlAllMgrs_sptr->FetchMessage();
+    _mgrControlThisMgr_sptr->FetchMessage();
+    if (_mgrControlAllMgrs_sptr->GetShutdownManager() || _mgrControlThisMgr_sptr->GetShutdownManager())
+    {
+        _wakeup->RequestShutdown();
+    }
+    const std::pair<bool, bool> toggles{_mgrControlAllMgrs_sptr->ResetMgrStatsToggle,
+                                        _mgrControlThisMgr_sptr->ResetMgrStatsToggle};
+    if (toggles != _resetToggles)
+    {
+        _resetToggles = toggles;
+        _stats.Clear();
+        _wakeup->TakeCounts();
+        _statsResetAt = _workspace.GetClock().Monotonic();
+    }
+}
+
+template <typename Work>
+bool RabitManager::Guard(const char *what, int errorCode, Work work)
+{
+    try
+    {
+        work();
+        return true;
+    }
+    catch (...)
+    {
+        ReportFailure(what, errorCode, CurrentExceptionText());
+        return false;
+    }
+}
+
+void RabitManager::ReportFailure(const char *what, int errorCode, const std::string &reason)
+{
+    const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
+    const bool repeated = errorCode == ManagerStatusMessage::Error_ExecuteUnitOfWork && _lastPassFailed;
+    if (repeated && now - _failureLoggedAt < FailureLogPeriod)
+    {
+        Increment(_failuresNotLogged);
+    }
+    else
+    {
+        const std::string count =
+            repeated && _failuresNotLogged > 0
+                ? " (and " + std::to_string(_failuresNotLogged) + " times since this was last logged)"
+                : "";
+        RabitLog::Write(RabitLogLevel::Error,
+                        "manager \"" + _name + "\": " + what + " threw: " + reason + count);
+        _failureLoggedAt = now;
+        _failuresNotLogged = 0;
+    }
+    if (!repeated)
+    {
+        _mgrStatus_sptr->ErrorCondition = true;
+        _mgrStatus_sptr->ErrorCode = errorCode;
+        PostStatus();
+    }
+}
+
+void RabitManager::UpdateStats(std::chrono::nanoseconds now)
+{
+    const RabitWakeup::Counts counts = _wakeup->TakeCounts();
+    _stats.NumberOfWakeUpCallsWhileAsleep += counts.WhileAsleep;
+    _stats.NumberOfWakeUpCallsWhileAwake += counts.WhileAwake;
+    _stats.TimeSinceLastStatsReset_Sec = InSeconds(now - _statsResetAt);
+    _mgrStatus_sptr->ManagerStats = _stats;
+}
+
+void RabitManager::PostStatus()
+{
+    try
+    {
+        _mgrStatus_sptr->PostMessage();
+    }
+    catch (...)  // out of memory, at most: the manager goes on
+    {
+        RabitLog::Write(RabitLogLevel::Error,
+                        "manager \"" + _name + "\" cannot post its status: " + CurrentExceptionText());
+    }
+}
+
+void RabitManager::PostStatusIfDue(std::chrono::nanoseconds now)
+{
+    const double period = std::min(_mgrControlAllMgrs_sptr->PublishMgrStatsTime_Sec,
+                                   _mgrControlThisMgr_sptr->PublishMgrStatsTime_Sec);
+    if (period > 0.0 && InSeconds(now - _statusPostedAt) >= period)
+    {
+        _statusPostedAt = now;
+        UpdateStats(now);
+        PostStatus();
+    }
+}
+
+}  // namespace Rabit

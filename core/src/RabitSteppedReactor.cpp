@@ -1,0 +1,207 @@
+#include <rabit/RabitSteppedReactor.h>
+
+#include "ManagerLease.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace Rabit
+{
+
+RabitSteppedReactor::RabitSteppedReactor(RabitWorkspace &workspace) : _workspace(workspace) {}
+
+RabitSteppedReactor::~RabitSteppedReactor()
+{
+    Stop();
+    while (!_entries.empty())
+    {
+        _entries.pop_back();
+    }
+}
+
+void RabitSteppedReactor::AddManager(std::unique_ptr<RabitManager> manager)
+{
+    if (!manager)
+    {
+        return;
+    }
+    if (&manager->GetWorkspace() != &_workspace)
+    {
+        throw std::invalid_argument("manager \"" + manager->GetManagerName() +
+                                    "\" belongs to another workspace than its reactor");
+    }
+    _workspace.AddManagerName(manager->GetManagerName());
+    _entries.emplace_back();
+    _entries.back().Manager = std::move(manager);
+    if (_started)
+    {
+        _entries.back().Manager->PrepareRun();
+        StartEntry(_entries.back());
+    }
+}
+
+void RabitSteppedReactor::Start()
+{
+    if (_started)
+    {
+        throw std::logic_error("the reactor is started already");
+    }
+    _started = true;
+    for (Entry &entry : _entries)
+    {
+        entry.Manager->PrepareRun();
+    }
+    for (Entry &entry : _entries)
+    {
+        StartEntry(entry);
+    }
+}
+
+void RabitSteppedReactor::StartEntry(Entry &entry)
+{
+    entry.Running = true;
+    entry.FirstPass = true;
+    if (entry.Manager->StartupStep())
+    {
+        entry.Manager->BeginSleepStep();
+    }
+    else
+    {
+        EndEntry(entry);
+    }
+}
+
+void RabitSteppedReactor::EndEntry(Entry &entry)
+{
+    entry.Manager->ShutdownStep();
+    entry.Running = false;
+}
+
+std::chrono::nanoseconds RabitSteppedReactor::DueOf(const Entry &entry) const
+{
+    const RabitManager &manager = *entry.Manager;
+    if (entry.FirstPass)
+    {
+        return manager._sleepBegan;
+    }
+    const std::chrono::nanoseconds due = manager.NextDue();
+    const bool noSleep = due == manager._sleepBegan && !manager._wakeup->IsSignalled() &&
+                         !manager._wakeup->IsShutdownRequested();
+    return noSleep ? due + NoSleepStep : due;
+}
+
+std::optional<std::chrono::nanoseconds> RabitSteppedReactor::NextDue() const
+{
+    std::optional<std::chrono::nanoseconds> next;
+    const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
+    for (const Entry &entry : _entries)
+    {
+        if (entry.Running)
+        {
+            const std::chrono::nanoseconds due = std::max(now, DueOf(entry));
+            next = next ? std::min(*next, due) : due;
+        }
+    }
+    return next;
+}
+
+int RabitSteppedReactor::RunDue()
+{
+    int passes = 0;
+    bool again = _started;
+    while (again)
+    {
+        again = false;
+        // By index: a unit of work may add managers.
+        for (std::size_t i = 0; i < _entries.size(); ++i)
+        {
+            Entry &entry = _entries[i];
+            if (!entry.Running || DueOf(entry) > _workspace.GetClock().Monotonic())
+            {
+                continue;
+            }
+            again = true;
+            if (RunPass(entry) && ++passes > MaxPassesAtOneMoment)
+            {
+                throw std::runtime_error("managers wake each other for ever; the last one was \"" +
+                                         entry.Manager->GetManagerName() + "\"");
+            }
+        }
+    }
+    LeaveIfAllEnded();
+    return passes;
+}
+
+bool RabitSteppedReactor::RunPass(Entry &entry)
+{
+    if (!std::exchange(entry.FirstPass, false))
+    {
+        entry.Manager->EndSleepStep();
+    }
+    if (!entry.Manager->CycleStep())
+    {
+        EndEntry(entry);
+        return false;
+    }
+    entry.Manager->BeginSleepStep();
+    return true;
+}
+
+int RabitSteppedReactor::RunUntil(ManualClock &clock, std::chrono::nanoseconds until)
+{
+    if (&_workspace.GetClock() != &clock)
+    {
+        throw std::invalid_argument("the clock is not that of the reactor's workspace");
+    }
+    int passes = 0;
+    for (auto due = NextDue(); due && *due <= until; due = NextDue())
+    {
+        clock.AdvanceTo(*due);
+        passes += RunDue();
+    }
+    clock.AdvanceTo(until);
+    return passes;
+}
+
+int RabitSteppedReactor::RunFor(ManualClock &clock, std::chrono::nanoseconds duration)
+{
+    return RunUntil(clock, clock.Monotonic() + duration);
+}
+
+bool RabitSteppedReactor::IsRunning() const
+{
+    return std::any_of(_entries.begin(), _entries.end(), [](const Entry &entry) { return entry.Running; });
+}
+
+void RabitSteppedReactor::Stop()
+{
+    for (std::size_t i = 0; i < _entries.size(); ++i)
+    {
+        if (_entries[i].Running)
+        {
+            _entries[i].Manager->ShutdownManager();
+            EndEntry(_entries[i]);
+        }
+    }
+    LeaveIfAllEnded();
+}
+
+// As at the end of RabitReactor::Run.
+void RabitSteppedReactor::LeaveIfAllEnded()
+{
+    if (!_started || IsRunning())
+    {
+        return;
+    }
+    _started = false;
+    std::vector<ManagerLease *> leases;
+    for (const Entry &entry : _entries)
+    {
+        entry.Manager->FinishRun();
+        leases.push_back(entry.Manager->_lease.get());
+    }
+    ManagerLease::Leave(_workspace, leases);
+}
+
+}  // namespace Rabit

@@ -1,0 +1,186 @@
+#include <rabit/RabitWorkspace.h>
+
+#include "WorkspaceRegistry.h"
+
+#include <rabit/RabitLog.h>
+
+#include <boost/core/demangle.hpp>
+
+#include <algorithm>
+#include <iterator>
+
+namespace Rabit
+{
+
+RabitWorkspace *RabitWorkspace::GetWorkspace()
+{
+    // Never destroyed: objects of any lifetime may use it while the process ends.
+    static RabitWorkspace *const workspace = new RabitWorkspace();
+    return workspace;
+}
+
+RabitWorkspace::RabitWorkspace(std::shared_ptr<RabitClock> clock)
+    : _clock(clock ? std::move(clock) : RabitClock::System()),
+      _registry(std::make_unique<WorkspaceRegistry>(_clock))
+{
+}
+
+RabitWorkspace::~RabitWorkspace() = default;
+
+void RabitWorkspace::LeavingReactor()
+{
+    _registry->ForgetAllNames();
+}
+
+int RabitWorkspace::GetManagerIndexNumber(std::string managerName)
+{
+    const std::vector<std::string> names = _registry->ManagerNames();
+    const auto found = std::find(names.begin(), names.end(), managerName);
+    return found == names.end() ? -1 : static_cast<int>(std::distance(names.begin(), found));
+}
+
+bool RabitWorkspace::DoesManagerExist(std::string managerName)
+{
+    return GetManagerIndexNumber(std::move(managerName)) >= 0;
+}
+
+std::vector<std::string> RabitWorkspace::GetListOfManagerNames()
+{
+    return _registry->ManagerNames();
+}
+
+void RabitWorkspace::AddManagerName(const std::string &managerName)
+{
+    _registry->AddManagerName(managerName);
+}
+
+void RabitWorkspace::AddQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner)
+{
+    _registry->AddQueue(name, std::move(handle), owner);
+}
+
+std::shared_ptr<RabitQueueHandle> RabitWorkspace::FindQueue(const std::string &name) const
+{
+    return _registry->FindQueue(name);
+}
+
+std::shared_ptr<RabitQueueHandle> RabitWorkspace::FindQueueOrThrow(const std::string &name) const
+{
+    std::shared_ptr<RabitQueueHandle> handle = _registry->FindQueue(name);
+    if (!handle)
+    {
+        throw MessageNotRegisteredException("no queue is registered as \"" + name + "\"");
+    }
+    return handle;
+}
+
+QueueAddResult RabitWorkspace::DeliverToQueue(const std::string &name,
+                                              const std::shared_ptr<RabitMessage> &message)
+{
+    if (!message)
+    {
+        throw std::invalid_argument("a null message cannot be delivered to queue \"" + name + "\"");
+    }
+    const std::shared_ptr<RabitQueueHandle> handle = _registry->FindQueue(name);
+    return handle ? handle->AddMessage(message) : QueueAddResult::UnknownQueue;
+}
+
+RabitConnection RabitWorkspace::ConnectEnqueuedEvent(const std::string &name, RabitHandler handler)
+{
+    const std::shared_ptr<RabitQueueHandle> queue = _registry->FindQueue(name);
+    return queue ? queue->ConnectEnqueued(std::move(handler)) : RabitConnection();
+}
+
+RabitConnection RabitWorkspace::ConnectDequeuedEvent(const std::string &name, RabitHandler handler)
+{
+    const std::shared_ptr<RabitQueueHandle> queue = _registry->FindQueue(name);
+    return queue ? queue->ConnectDequeued(std::move(handler)) : RabitConnection();
+}
+
+void RabitWorkspace::SetQueueForwarder(std::shared_ptr<QueueForwarder> forwarder)
+{
+    _registry->SetForwarder(std::move(forwarder));
+}
+
+bool RabitWorkspace::ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message)
+{
+    return _registry->Forward(name, message);
+}
+
+bool RabitWorkspace::AddPublishSubscribeMessage(std::string name, std::shared_ptr<RabitMessage> msg)
+{
+    return RegisterMessage(name, msg).Result != MessageRegistrationResult::OtherType;
+}
+
+MessageRegistration RabitWorkspace::RegisterMessage(const std::string &name,
+                                                    const std::shared_ptr<RabitMessage> &msg)
+{
+    return RegisterMessageFor(name, msg, 0, nullptr);
+}
+
+MessageRegistration RabitWorkspace::RegisterMessageFor(const std::string &name,
+                                                       const std::shared_ptr<RabitMessage> &msg,
+                                                       std::uint64_t owner,
+                                                       std::shared_ptr<PublishSubscribeMessage> global)
+{
+    MessageRegistration registration = _registry->AddMessage(name, msg, owner, std::move(global));
+    const bool attachedBefore = msg->_globalPublishSubscribeMessageRef == registration.Global;
+    if (attachedBefore && registration.Result == MessageRegistrationResult::Created)
+    {
+        return registration;  // the name comes back: the message still is what it was
+    }
+    switch (registration.Result)
+    {
+        case MessageRegistrationResult::Created:
+            registration.Global->AttachAsCurrent(*msg);
+            msg->SetGlobalPublishSubscribeMessageRef(registration.Global);
+            break;
+        case MessageRegistrationResult::Attached:
+            msg->_seenSource = 0;  // so that the first fetch gets what was posted before
+            msg->SetGlobalPublishSubscribeMessageRef(registration.Global);
+            break;
+        case MessageRegistrationResult::OtherType:
+            RabitLog::Write(RabitLogLevel::Error,
+                            "message \"" + name + "\" is of type " +
+                                boost::core::demangle(registration.Global->MsgTypeIndex().name()) +
+                                ": a message of type " + boost::core::demangle(msg->GetTypeIndex().name()) +
+                                " was not attached to it");
+            break;
+    }
+    return registration;
+}
+
+std::shared_ptr<PublishSubscribeMessage> RabitWorkspace::FindGlobalMessage(const std::string &name) const
+{
+    return _registry->FindMessage(name);
+}
+
+std::unique_ptr<RabitMessage> RabitWorkspace::GetMessage(std::string name)
+{
+    const std::shared_ptr<PublishSubscribeMessage> global = _registry->FindMessage(name);
+    return global ? global->GetCopyOfMessage() : nullptr;
+}
+
+bool RabitWorkspace::FetchMessage(std::string name, RabitMessage *msg)
+{
+    const std::shared_ptr<PublishSubscribeMessage> global = _registry->FindMessage(name);
+    return global && global->FetchMessage(msg);
+}
+
+bool RabitWorkspace::ForceFetchMessage(std::string name, RabitMessage *msg)
+{
+    const std::shared_ptr<PublishSubscribeMessage> global = _registry->FindMessage(name);
+    return global && global->ForceFetch(msg);
+}
+
+std::vector<MessageInfo> RabitWorkspace::GetListOfMessages() const
+{
+    return _registry->Messages();
+}
+
+std::vector<QueueInfo> RabitWorkspace::GetListOfQueues() const
+{
+    return _registry->Queues();
+}
+
+}  // namespace Rabit

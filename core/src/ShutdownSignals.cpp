@@ -1,0 +1,188 @@
+#include "ShutdownSignals.h"
+
+#include <rabit/RabitLog.h>
+
+#include <array>
+#include <cerrno>
+#include <mutex>
+
+#include <csignal>
+
+namespace Rabit
+{
+namespace
+{
+
+constexpr std::array<int, 2> Signals{SIGINT, SIGTERM};
+
+// The handler uses lock-free atomics, sem_post and sigaction only: all async-signal-safe
+// (POSIX.1-2017, 2.4.3).
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+struct SignalState
+{
+    std::array<ShutdownSignals::Place, 64> Places;
+    std::array<std::atomic<bool>, Signals.size()> Installed{};
+    std::mutex Mutex;  // for what follows; never taken by the handler
+    int Listeners = 0;
+};
+
+// Never destroyed; made before the handler is installed.
+SignalState &State()
+{
+    static SignalState *const state = []
+    {
+        auto *made = new SignalState();
+        for (ShutdownSignals::Place &place : made->Places)
+        {
+            sem_init(&place.Semaphore, 0, 0);
+        }
+        return made;
+    }();
+    return *state;
+}
+
+void RestoreDefault(int signal)
+{
+    struct sigaction action = {};
+    action.sa_handler = SIG_DFL;
+    sigemptyset(&action.sa_mask);
+    sigaction(signal, &action, nullptr);
+}
+
+extern "C" void OnShutdownSignal(int)
+{
+    const int savedErrno = errno;
+    SignalState &state = State();
+    for (std::size_t i = 0; i < Signals.size(); ++i)
+    {
+        if (state.Installed[i].exchange(false))
+        {
+            RestoreDefault(Signals[i]);
+        }
+    }
+    for (ShutdownSignals::Place &place : state.Places)
+    {
+        if (place.InUse.load())
+        {
+            place.SignalCame.store(true);
+            sem_post(&place.Semaphore);
+        }
+    }
+    errno = savedErrno;
+}
+
+void InstallHandlers(SignalState &state)
+{
+    for (std::size_t i = 0; i < Signals.size(); ++i)
+    {
+        struct sigaction current = {};
+        sigaction(Signals[i], nullptr, &current);
+        if ((current.sa_flags & SA_SIGINFO) != 0 || current.sa_handler != SIG_DFL)
+        {
+            continue;  // the program handles or ignores it
+        }
+        struct sigaction action = {};
+        action.sa_handler = OnShutdownSignal;
+        sigemptyset(&action.sa_mask);
+        for (const int signal : Signals)
+        {
+            sigaddset(&action.sa_mask, signal);
+        }
+        action.sa_flags = SA_RESTART;
+        state.Installed[i].store(true);
+        sigaction(Signals[i], &action, nullptr);
+    }
+}
+
+void RemoveHandlers(SignalState &state)
+{
+    for (std::size_t i = 0; i < Signals.size(); ++i)
+    {
+        if (!state.Installed[i].exchange(false))
+        {
+            continue;
+        }
+        struct sigaction current = {};
+        sigaction(Signals[i], nullptr, &current);
+        if ((current.sa_flags & SA_SIGINFO) == 0 && current.sa_handler == OnShutdownSignal)
+        {
+            RestoreDefault(Signals[i]);
+        }
+    }
+}
+
+// Null if all places are taken.
+ShutdownSignals::Place *TakePlace(SignalState &state)
+{
+    for (ShutdownSignals::Place &place : state.Places)
+    {
+        if (!place.InUse.load())
+        {
+            while (sem_trywait(&place.Semaphore) == 0)
+            {
+            }
+            place.SignalCame.store(false);
+            place.InUse.store(true);
+            return &place;
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+ShutdownSignals::ShutdownSignals(bool handle) : _place(&_own)
+{
+    sem_init(&_own.Semaphore, 0, 0);
+    if (!handle)
+    {
+        return;
+    }
+    SignalState &state = State();
+    const std::lock_guard<std::mutex> lock(state.Mutex);
+    Place *const place = TakePlace(state);
+    if (place == nullptr)
+    {
+        RabitLog::Write(RabitLogLevel::Warning,
+                        "too many reactors run: one does not react to SIGINT and SIGTERM");
+        return;
+    }
+    _place = place;
+    if (++state.Listeners == 1)
+    {
+        InstallHandlers(state);
+    }
+}
+
+ShutdownSignals::~ShutdownSignals()
+{
+    if (_place != &_own)
+    {
+        SignalState &state = State();
+        const std::lock_guard<std::mutex> lock(state.Mutex);
+        _place->InUse.store(false);
+        if (--state.Listeners == 0)
+        {
+            RemoveHandlers(state);
+        }
+    }
+    sem_destroy(&_own.Semaphore);
+}
+
+void ShutdownSignals::Wait()
+{
+    sem_wait(&_place->Semaphore);  // interrupted by another signal: returns for no reason, as it may
+}
+
+void ShutdownSignals::Wake()
+{
+    sem_post(&_place->Semaphore);
+}
+
+bool ShutdownSignals::SignalCame() const
+{
+    return _place->SignalCame.load();
+}
+
+}  // namespace Rabit

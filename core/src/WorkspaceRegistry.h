@@ -1,0 +1,103 @@
+#pragma once
+
+#include <rabit/QueueForwarder.h>
+#include <rabit/RabitClock.h>
+#include <rabit/RabitWorkspace.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+namespace Rabit
+{
+class RabitWakeup;
+
+// The tables behind a RabitWorkspace: names, who registered them, the managers present, the forwarder.
+// Thread-safe; calls nothing of the user's while it holds its lock, except that a message is cloned when it
+// becomes a global copy.
+//
+// A name has owners: the managers that registered it (by number), or nobody in particular (number 0). That is
+// how the names of one reactor go without disturbing those of another.
+class WorkspaceRegistry
+{
+public:
+    explicit WorkspaceRegistry(std::shared_ptr<const RabitClock> clock) : _clock(std::move(clock)) {}
+
+    // Managers. A manager is present from its construction until it is destroyed or its reactor has left.
+    std::uint64_t AddManager(const std::shared_ptr<RabitWakeup> &wakeup);
+    void ManagerReturns(std::uint64_t owner, const std::shared_ptr<RabitWakeup> &wakeup);
+    // Forgets the queues of a manager that is destroyed. Its messages stay until a reactor leaves.
+    void ManagerIsGone(std::uint64_t owner);
+    // Forgets what only these managers registered, and everything if no manager is present any more.
+    void ManagersLeave(const std::vector<std::uint64_t> &owners);
+    void RequestShutdownOfAllManagers();
+
+    void AddManagerName(const std::string &name);
+    std::vector<std::string> ManagerNames() const;
+
+    // global is what becomes the global copy if the name is new; null: a clone of the message.
+    MessageRegistration AddMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
+                                   std::uint64_t owner,
+                                   std::shared_ptr<PublishSubscribeMessage> global = nullptr);
+    std::shared_ptr<PublishSubscribeMessage> FindMessage(const std::string &name) const;
+    std::vector<MessageInfo> Messages() const;
+
+    void AddQueue(const std::string &name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner);
+    std::shared_ptr<RabitQueueHandle> FindQueue(const std::string &name) const;
+    std::vector<QueueInfo> Queues() const;
+
+    void ForgetAllNames();
+
+    void SetForwarder(std::shared_ptr<QueueForwarder> forwarder);
+    bool Forward(const std::string &name, const std::shared_ptr<RabitMessage> &message);
+
+private:
+    using Owners = std::unordered_set<std::uint64_t>;
+    struct MessageEntry
+    {
+        std::shared_ptr<PublishSubscribeMessage> Global;
+        std::shared_ptr<RabitMessage> First;  // the message that the name was made with, kept alive
+        Owners OwnedBy;
+    };
+    struct QueueEntry
+    {
+        std::shared_ptr<RabitQueueHandle> Handle;
+        Owners OwnedBy;
+    };
+    struct ForwarderSlot
+    {
+        std::shared_ptr<QueueForwarder> Forwarder;
+        int CallsInProgress = 0;
+    };
+    using MessageMap = std::unordered_map<std::string, MessageEntry>;
+    using QueueMap = std::unordered_map<std::string, QueueEntry>;
+    // What was taken out of the tables; destroyed by its holder after the lock is given back.
+    struct Removed
+    {
+        std::vector<MessageEntry> Messages;
+        std::vector<QueueEntry> Queues;
+    };
+
+    template <typename Map, typename List>
+    static void RemoveOwned(Map &map, const std::vector<std::uint64_t> &owners, List &removed);
+
+    const std::shared_ptr<const RabitClock> _clock;
+
+    mutable std::mutex _mutex;
+    MessageMap _messages;
+    QueueMap _queues;
+    std::vector<std::string> _managerNames;
+    std::unordered_map<std::uint64_t, std::shared_ptr<RabitWakeup>> _present;
+    std::uint64_t _lastOwner = 0;
+
+    std::mutex _forwarderMutex;
+    std::condition_variable _forwarderIdle;
+    std::shared_ptr<ForwarderSlot> _forwarder;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,266 @@
+#include "TestMessages.h"
+
+#include <rabit/GlobalPublishSubscribeException.h>
+#include <rabit/ManualClock.h>
+#include <rabit/PublishSubscribeMessage.h>
+#include <rabit/RabitWorkspace.h>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+namespace
+{
+
+using namespace Rabit;
+using namespace RabitTest;
+using namespace std::chrono_literals;
+
+// Two local copies of one name in a workspace whose clock stands still.
+template <typename Message>
+struct Pair
+{
+    std::shared_ptr<ManualClock> Clock = std::make_shared<ManualClock>(1000.0);
+    RabitWorkspace Workspace{Clock};
+    std::shared_ptr<Message> Poster = std::make_shared<Message>();
+    std::shared_ptr<Message> Reader = std::make_shared<Message>();
+
+    Pair()
+    {
+        Workspace.AddPublishSubscribeMessage("Name", Poster);
+        Workspace.AddPublishSubscribeMessage("Name", Reader);
+    }
+};
+
+TEST(PublishSubscribe, AFetchAfterAPostBringsItsContents)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->Number = 7;
+    pair.Poster->PostMessage();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+    EXPECT_EQ(pair.Reader->Number, 7);
+    EXPECT_TRUE(pair.Reader->CompareTime(pair.Poster.get()));
+}
+
+TEST(PublishSubscribe, ASecondFetchOfOnePostIsFalse)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->PostMessage();
+    pair.Reader->FetchMessage();
+    EXPECT_FALSE(pair.Reader->FetchMessage());
+}
+
+TEST(PublishSubscribe, ThePostersOwnFetchIsFalse)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->PostMessage();
+    EXPECT_FALSE(pair.Poster->FetchMessage());
+}
+
+TEST(PublishSubscribe, TwoPostsWithinOneTickOfTheClockAreBothSeen)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->Number = 1;
+    pair.Poster->PostMessage();
+    ASSERT_TRUE(pair.Reader->FetchMessage());
+    pair.Poster->Number = 2;
+    pair.Poster->PostMessage();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+    EXPECT_EQ(pair.Reader->Number, 2);
+}
+
+TEST(PublishSubscribe, TimeStampsOfOneNameStrictlyIncreaseWhenTheClockStandsStillOrGoesBack)
+{
+    Pair<NumberMessage> pair;
+    double last = 0.0;
+    for (int i = 0; i < 10; ++i)
+    {
+        pair.Clock->SetGpsTimeSeconds(1000.0 - i);
+        pair.Poster->PostMessage();
+        ASSERT_GT(pair.Poster->GetTimeStamp(), last);
+        last = pair.Poster->GetTimeStamp();
+    }
+}
+
+TEST(PublishSubscribe, TheFirstFetchOfALaterSubscriberIsTrueWhenSomethingWasPosted)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->Number = 3;
+    pair.Poster->PostMessage();
+    const auto later = std::make_shared<NumberMessage>();
+    later->SetTimeStamp(pair.Poster->GetTimeStamp());  // the very tick of the post
+    pair.Workspace.AddPublishSubscribeMessage("Name", later);
+    EXPECT_TRUE(later->FetchMessage());
+    EXPECT_EQ(later->Number, 3);
+}
+
+TEST(PublishSubscribe, ACloneWithAnEqualStampIsNotFetchedToAndOneWithAnotherIs)
+{
+    NumberMessage original;
+    original.Number = 5;
+    PublishSubscribeMessage global(original.Clone());
+    const auto clone = original.Clone();
+    EXPECT_FALSE(global.FetchMessage(clone.get()));
+    clone->SetTimeStamp(clone->GetTimeStamp() + 1.0);
+    EXPECT_TRUE(global.FetchMessage(clone.get()));
+    EXPECT_TRUE(clone->CompareTime(global.GetTestMessage().get()));
+}
+
+TEST(PublishSubscribe, APostGivesTheGlobalCopyThePostersStamp)
+{
+    NumberMessage poster;
+    PublishSubscribeMessage global(poster.Clone());
+    global.PostMessage(&poster);
+    EXPECT_TRUE(poster.CompareTime(global.GetTestMessage().get()));
+}
+
+TEST(PublishSubscribe, AStampThatATestChangesInTheGlobalCopyCountsAsNew)
+{
+    NumberMessage poster;
+    PublishSubscribeMessage global(poster.Clone());
+    global.PostMessage(&poster);
+    global.GetTestMessage()->SetTimeStamp(5.0);
+    EXPECT_TRUE(global.FetchMessage(&poster));
+    EXPECT_EQ(poster.GetTimeStamp(), 5.0);
+}
+
+TEST(PublishSubscribe, AStampChangedByHandCountsAsNew)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->PostMessage();
+    pair.Reader->FetchMessage();
+    pair.Reader->SetTimeStamp(1.0);
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+}
+
+TEST(PublishSubscribe, AnOverrideThatAssignsTheWholeObjectKeepsTheMessageAttached)
+{
+    Pair<AssigningMessage> pair;
+    const auto global = pair.Poster->GetGlobalPublishSubscribeMessageRef();
+    pair.Poster->Text = "first";
+    pair.Poster->PostMessage();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+    EXPECT_EQ(pair.Reader->GetGlobalPublishSubscribeMessageRef(), global);
+    EXPECT_FALSE(pair.Reader->FetchMessage());
+    pair.Reader->Text = "second";
+    pair.Reader->PostMessage();
+    EXPECT_TRUE(pair.Poster->FetchMessage());
+    EXPECT_EQ(pair.Poster->Text, "second");
+}
+
+TEST(PublishSubscribe, AnOverrideThatAssignsTheWholeObjectDoesNotMakeTheGlobalCopyOwnItself)
+{
+    std::weak_ptr<PublishSubscribeMessage> global;
+    {
+        Pair<AssigningMessage> pair;
+        pair.Poster->PostMessage();
+        pair.Reader->FetchMessage();
+        global = pair.Poster->GetGlobalPublishSubscribeMessageRef();
+    }
+    EXPECT_TRUE(global.expired());
+}
+
+TEST(PublishSubscribe, AnOverrideThatCopiesNothingOfTheBaseIsFetchedOnce)
+{
+    Pair<ForgetfulMessage> pair;
+    pair.Poster->Number = 9;
+    pair.Poster->PostMessage();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+    EXPECT_EQ(pair.Reader->Number, 9);
+    EXPECT_TRUE(pair.Reader->CompareTime(pair.Poster.get()));
+    EXPECT_FALSE(pair.Reader->FetchMessage());
+}
+
+TEST(PublishSubscribe, ForceFetchCopiesInAnyCase)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->Number = 4;
+    pair.Poster->PostMessage();
+    pair.Reader->FetchMessage();
+    pair.Reader->Number = 0;
+    EXPECT_TRUE(pair.Workspace.ForceFetchMessage("Name", pair.Reader.get()));
+    EXPECT_EQ(pair.Reader->Number, 4);
+}
+
+TEST(PublishSubscribe, HandlersMayPostAndFetchTheSameName)
+{
+    Pair<NumberMessage> pair;
+    int calls = 0;
+    pair.Poster->Register_SomethingPublished(
+        [&]
+        {
+            if (++calls == 1)
+            {
+                pair.Reader->FetchMessage();
+                pair.Reader->Number += 1;
+                pair.Reader->PostMessage();
+            }
+        });
+    pair.Poster->Number = 1;
+    pair.Poster->PostMessage();
+    EXPECT_EQ(calls, 2);
+    EXPECT_TRUE(pair.Poster->FetchMessage());
+    EXPECT_EQ(pair.Poster->Number, 2);
+}
+
+TEST(PublishSubscribe, AMessageOfAnotherTypeIsNotPosted)
+{
+    NumberMessage number;
+    PublishSubscribeMessage global(number.Clone());
+    AssigningMessage other;
+    const double stamp = other.GetTimeStamp();
+    EXPECT_THROW(global.PostMessage(&other), std::invalid_argument);
+    EXPECT_EQ(global.GetNumberOfPosts(), 0u);
+    EXPECT_EQ(other.GetTimeStamp(), stamp);
+    EXPECT_FALSE(global.FetchMessage(&other));
+}
+
+TEST(PublishSubscribe, AnUnregisteredMessageThrows)
+{
+    NumberMessage message;
+    EXPECT_THROW(message.PostMessage(), GlobalPublishSubscribeException);
+    EXPECT_THROW(message.FetchMessage(), GlobalPublishSubscribeException);
+    EXPECT_THROW(message.Register_SomethingPublished([] {}), GlobalPublishSubscribeException);
+}
+
+TEST(PublishSubscribe, APostWithAGivenTimeKeepsItAndIsNeverMissedThoughTheTimeRepeatsOrGoesBack)
+{
+    Pair<NumberMessage> pair;
+    for (const double stamp : {500.0, 500.0, 400.0})
+    {
+        pair.Poster->PostMessage(PostTime{stamp, 3s});
+        EXPECT_TRUE(pair.Reader->FetchMessage());
+        EXPECT_EQ(pair.Reader->GetTimeStamp(), stamp);
+    }
+}
+
+TEST(MessageAge, IsTheTimeSinceThePostByTheMonotonicClockWhateverTheWallClockDoes)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->PostMessage();
+    pair.Clock->Advance(250ms);
+    pair.Clock->SetGpsTimeSeconds(5.0);
+    pair.Reader->FetchMessage();
+    EXPECT_DOUBLE_EQ(pair.Reader->GetAgeSeconds(), 0.25);
+    EXPECT_DOUBLE_EQ(pair.Poster->GetAgeSeconds(), 0.25);
+}
+
+TEST(MessageAge, IsInfiniteForContentsThatWereNeverPosted)
+{
+    Pair<NumberMessage> pair;
+    EXPECT_FALSE(pair.Reader->WasPosted());
+    EXPECT_EQ(pair.Reader->GetAgeSeconds(), std::numeric_limits<double>::infinity());
+}
+
+TEST(MessageAge, OfAMirroredMessageCountsFromItsOrigin)
+{
+    Pair<NumberMessage> pair;
+    pair.Clock->Advance(10s);
+    pair.Poster->PostMessage(PostTime{123.0, 9s});
+    pair.Reader->FetchMessage();
+    EXPECT_DOUBLE_EQ(pair.Reader->GetAgeSeconds(), 1.0);
+}
+
+}  // namespace
