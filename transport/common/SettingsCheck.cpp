@@ -56,6 +56,16 @@ void CheckSettings(const TransportSettings &settings)
     }
 }
 
+void CheckQos(const TopicDescription &topic, const TopicQos &qos)
+{
+    constexpr int DeepestHistory = 1000000;
+    if (qos.Depth < 1 || qos.Depth > DeepestHistory)
+    {
+        throw TransportError("the depth of topic " + topic.Name + " must be 1 to 1000000, not " +
+                             std::to_string(qos.Depth));
+    }
+}
+
 std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &interfaces)
 {
     ifaddrs *head = nullptr;

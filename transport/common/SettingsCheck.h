@@ -13,6 +13,9 @@ namespace Rabit
 // Throws TransportError if a setting is out of its range.
 void CheckSettings(const TransportSettings &settings);
 
+// Throws TransportError if the depth is out of its range, 1 to 1,000,000.
+void CheckQos(const TopicDescription &topic, const TopicQos &qos);
+
 // The IPv4 addresses of the named interfaces; each entry is a name (`eth0`) or an address (`10.0.0.1`) of
 // this host. Throws TransportError for one that does not exist here or has no IPv4 address.
 std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &interfaces);

@@ -6,22 +6,13 @@
 #include "FastDdsReader.h"
 #include "FastDdsWriter.h"
 #include "SessionCore.h"
+#include "common/SettingsCheck.h"
 
 namespace Rabit
 {
 
 namespace
 {
-
-void CheckQos(const TopicDescription &topic, const TopicQos &qos)
-{
-    constexpr int DeepestHistory = 1000000;
-    if (qos.Depth < 1 || qos.Depth > DeepestHistory)
-    {
-        throw TransportError("the depth of topic " + topic.Name + " must be 1 to 1000000, not " +
-                             std::to_string(qos.Depth));
-    }
-}
 
 class FastDdsSession final : public TransportSession
 {

@@ -81,7 +81,8 @@ enum class Reliability
 enum class Durability
 {
     Volatile,       // a reader gets what is written while it is matched
-    TransientLocal  // a late reader also gets the writer's history
+    TransientLocal  // a late reader also gets the writer's history; so may one that had lost the writer, once
+                    // more
 };
 
 // Quality of service of a writer or reader, in the terms of the OMG DDS specification, section 2.2.3.

@@ -1,0 +1,47 @@
+// The base of the conformance suite: tests of what Transport.h promises, the same for every backend.
+//
+// A backend joins by an own test program that links rabit_transport_conformance and says
+//   INSTANTIATE_TEST_SUITE_P(Its, Conformance, testing::Values(&MakeItsHarness));
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "Recorder.h"
+#include "TestSample.h"
+#include "TransportHarness.h"
+
+namespace Rabit::Conformance
+{
+
+class Conformance : public testing::TestWithParam<HarnessMaker>
+{
+protected:
+    using SessionPtr = std::unique_ptr<TransportSession>;
+    using WriterPtr = std::unique_ptr<TransportWriter>;
+    using ReaderPtr = std::unique_ptr<TransportReader>;
+
+    SessionPtr Open(const std::string &node, std::uint64_t incarnation = 1, PeerHandler onPeer = {})
+    {
+        return Net().Backend().Open(Net().SettingsFor(node, incarnation), std::move(onPeer));
+    }
+    TransportHarness &Net() { return *_harness; }
+    bool Until(const std::function<bool()> &condition) { return Net().Until(condition); }
+
+    // Until both sides know of the match, so that nothing written from now on is missed.
+    bool Matched(const WriterPtr &writer, const ReaderPtr &reader)
+    {
+        return Until([&] { return writer->MatchedReaders() == 1 && reader->MatchedWriters() == 1; });
+    }
+
+    // That a sample with a body of that many bytes comes across whole.
+    void ExpectArrivalOf(std::size_t size);
+
+private:
+    const std::unique_ptr<TransportHarness> _harness = GetParam()();
+};
+
+}  // namespace Rabit::Conformance

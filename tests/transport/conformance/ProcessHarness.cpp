@@ -1,0 +1,148 @@
+#include "ProcessHarness.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace Rabit::Conformance
+{
+
+namespace
+{
+
+// Above 100, the ports of a domain fall into the range from which the kernel gives ports away.
+constexpr int FirstDomain = 20;
+constexpr int LastDomain = 100;
+
+// Far longer than anything takes, also with sanitizers on a busy machine.
+constexpr std::chrono::seconds Deadline{90};
+
+// The peer program. It ends by itself when its standard input does, so it cannot outlive the test.
+class PeerProcess final : public RemoteNode
+{
+public:
+    explicit PeerProcess(std::vector<std::string> arguments)
+    {
+        std::array<int, 2> pipe{};
+        if (pipe2(pipe.data(), O_CLOEXEC) != 0)
+        {
+            throw std::runtime_error("pipe failed");
+        }
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_adddup2(&actions, pipe[0], STDIN_FILENO);
+        std::vector<char *> argv;
+        for (auto &argument : arguments)
+        {
+            argv.push_back(argument.data());
+        }
+        argv.push_back(nullptr);
+        const int error = posix_spawn(&_pid, argv[0], &actions, nullptr, argv.data(), environ);
+        posix_spawn_file_actions_destroy(&actions);
+        close(pipe[0]);
+        _standardInput = pipe[1];
+        if (error != 0)
+        {
+            close(_standardInput);
+            throw std::runtime_error("cannot start " + arguments[0]);
+        }
+    }
+    ~PeerProcess() override
+    {
+        close(_standardInput);
+        Wait();
+    }
+    void Kill() override
+    {
+        kill(_pid, SIGKILL);
+        Wait();
+    }
+
+private:
+    void Wait()
+    {
+        if (_pid > 0)
+        {
+            waitpid(_pid, nullptr, 0);
+            _pid = 0;
+        }
+    }
+    pid_t _pid = 0;
+    int _standardInput = -1;
+};
+
+}  // namespace
+
+DomainLease::DomainLease()
+{
+    for (int domain = FirstDomain; domain <= LastDomain; ++domain)
+    {
+        const std::string name = "/tmp/rabit-test-domain-" + std::to_string(domain);
+        const int lock = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0)
+        {
+            _domain = domain;
+            _lock = lock;
+            return;
+        }
+        if (lock >= 0)
+        {
+            close(lock);
+        }
+    }
+    throw std::runtime_error("all DDS domains for tests are taken");
+}
+
+DomainLease::~DomainLease()
+{
+    close(_lock);
+}
+
+TransportSettings ProcessHarness::SettingsFor(const std::string &node, std::uint64_t incarnation)
+{
+    TransportSettings settings;
+    settings.Node = node;
+    settings.Incarnation = incarnation;
+    settings.Domain = _domain.Domain();
+    settings.Interfaces = {"lo"};
+    // Long, so that a busy machine does not lose a peer that lives.
+    settings.Lease = std::chrono::seconds(60);
+    settings.AnnouncementPeriod = std::chrono::milliseconds(500);
+    return settings;
+}
+
+bool ProcessHarness::Until(const std::function<bool()> &condition)
+{
+    const auto end = std::chrono::steady_clock::now() + Deadline;
+    while (!condition())
+    {
+        if (std::chrono::steady_clock::now() > end)
+        {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return true;
+}
+
+void ProcessHarness::Settle()
+{
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+}
+
+std::unique_ptr<RemoteNode> ProcessHarness::StartRemote(const std::string &node, std::uint64_t incarnation)
+{
+    return std::make_unique<PeerProcess>(std::vector<std::string>{TRANSPORT_PEER_PROGRAM, _backend->Name(),
+                                                                  node, std::to_string(incarnation),
+                                                                  std::to_string(_domain.Domain())});
+}
+
+}  // namespace Rabit::Conformance

@@ -1,0 +1,45 @@
+// The harness of a backend with a real network: loopback, a DDS domain of the test's own, real time.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "TransportHarness.h"
+
+namespace Rabit::Conformance
+{
+
+// A DDS domain that no other test program on this machine has, as long as the object lives. Throws
+// std::runtime_error if all are taken.
+class DomainLease
+{
+public:
+    DomainLease();
+    ~DomainLease();
+    DomainLease(const DomainLease &) = delete;
+    DomainLease &operator=(const DomainLease &) = delete;
+    int Domain() const { return _domain; }
+
+private:
+    int _domain = 0;
+    int _lock = -1;  // file descriptor that holds a flock
+};
+
+class ProcessHarness final : public TransportHarness
+{
+public:
+    explicit ProcessHarness(std::unique_ptr<Transport> backend) : _backend(std::move(backend)) {}
+
+    Transport &Backend() override { return *_backend; }
+    TransportSettings SettingsFor(const std::string &node, std::uint64_t incarnation) override;
+    bool Until(const std::function<bool()> &condition) override;
+    void Settle() override;
+    std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) override;
+
+private:
+    const DomainLease _domain;
+    const std::unique_ptr<Transport> _backend;
+};
+
+}  // namespace Rabit::Conformance

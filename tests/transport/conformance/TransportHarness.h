@@ -1,0 +1,44 @@
+// What the conformance suite needs to know of a backend.
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace Rabit::Conformance
+{
+
+// A node outside of the test's process, or what stands for it. It has written one sample with key 7 and text
+// "remote" on the topic KeyedText, with the state QoS.
+class RemoteNode
+{
+public:
+    virtual ~RemoteNode() = default;  // ends it, if it lives
+    // Makes it vanish without a word.
+    virtual void Kill() = 0;
+};
+
+// One backend, and one network that no other test is on.
+class TransportHarness
+{
+public:
+    virtual ~TransportHarness() = default;
+
+    virtual Transport &Backend() = 0;
+    // Settings for a node in this test's network.
+    virtual TransportSettings SettingsFor(const std::string &node, std::uint64_t incarnation) = 0;
+    // Lets time pass until the condition holds. False if it does not hold after a time in which anything that
+    // should happen must have happened; never decides by being slow.
+    virtual bool Until(const std::function<bool()> &condition) = 0;
+    // Lets enough time pass for most things that should not happen to happen.
+    virtual void Settle() = 0;
+    // Starts a node elsewhere.
+    virtual std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) = 0;
+};
+
+using HarnessMaker = std::unique_ptr<TransportHarness> (*)();
+
+}  // namespace Rabit::Conformance

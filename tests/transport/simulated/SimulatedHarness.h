@@ -1,0 +1,35 @@
+#pragma once
+
+#include <rabit/simulated/SimulatedNetwork.h>
+#include <rabit/simulated/SimulatedTransport.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "../conformance/TransportHarness.h"
+
+namespace Rabit::Conformance
+{
+
+// A simulated network whose time this harness moves on.
+class SimulatedHarness final : public TransportHarness
+{
+public:
+    explicit SimulatedHarness(std::uint64_t seed = 1) : _network(seed), _backend(_network) {}
+
+    Transport &Backend() override { return _backend; }
+    SimulatedNetwork &Network() { return _network; }
+    TransportSettings SettingsFor(const std::string &node, std::uint64_t incarnation) override;
+    // Moves on by a millisecond at a time, at most 60 simulated seconds.
+    bool Until(const std::function<bool()> &condition) override;
+    void Settle() override { Pass(std::chrono::seconds(2)); }
+    void Pass(std::chrono::nanoseconds time) { _network.AdvanceTo(_network.Now() + time); }
+    std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) override;
+
+private:
+    SimulatedNetwork _network;
+    SimulatedTransport _backend;
+};
+
+}  // namespace Rabit::Conformance

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <rabit/simulated/SimulatedNetwork.h>
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+#include <string>
+
+namespace Rabit
+{
+
+// The backend for tests: its sessions talk over a SimulatedNetwork. Handlers run inside
+// SimulatedNetwork::AdvanceTo, on the thread that calls it, never anywhere else.
+//
+// Of the settings it heeds Node, Incarnation, Domain, MaxDatagram, Lease, AnnouncementPeriod and Log. Samples
+// are limited to 64 MiB, as with Fast DDS.
+class SimulatedTransport final : public Transport
+{
+public:
+    explicit SimulatedTransport(const SimulatedNetwork &network);
+    // `simulated`
+    std::string Name() const override;
+    std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
+
+private:
+    const std::shared_ptr<Simulated::NetworkCore> _core;
+};
+
+}  // namespace Rabit

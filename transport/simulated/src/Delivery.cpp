@@ -1,0 +1,345 @@
+// How samples get from writers to readers: the shape of RTPS 2.3, 8.4, without its encoding.
+#include <algorithm>
+#include <utility>
+
+#include "NetworkCore.h"
+
+namespace Rabit::Simulated
+{
+
+namespace
+{
+
+// An RTPS acknowledgement names at most so many missing samples.
+constexpr std::size_t MostMissing = 256;
+
+auto FindInHistory(const WriterState &writer, std::uint64_t sequence)
+{
+    return std::lower_bound(writer.History.begin(), writer.History.end(), sequence,
+                            [](const SamplePtr &sample, std::uint64_t wanted)
+                            { return sample->Sequence < wanted; });
+}
+
+// The first sample that the reader may still get.
+std::uint64_t FirstFor(const WriterState &writer, const ReaderProxy &reader)
+{
+    const auto first = FindInHistory(writer, reader.Acknowledged + 1);
+    return first == writer.History.end() ? writer.LastSequence + 1 : (*first)->Sequence;
+}
+
+void PutIntoHistory(WriterState &writer, SamplePtr sample)
+{
+    const auto depth = static_cast<std::size_t>(writer.Info->Qos.Depth);
+    auto &history = writer.History;
+    if (!writer.Info->Keyed)
+    {
+        while (history.size() >= depth)
+        {
+            history.pop_front();
+        }
+    }
+    else
+    {
+        const auto same = [&](const SamplePtr &kept) { return kept->Key == sample->Key; };
+        auto count = static_cast<std::size_t>(std::count_if(history.begin(), history.end(), same));
+        for (; count >= depth; --count)
+        {
+            history.erase(std::find_if(history.begin(), history.end(), same));
+        }
+    }
+    history.push_back(std::move(sample));
+}
+
+}  // namespace
+
+bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
+                        const std::shared_ptr<Sample> &sample)
+{
+    const std::lock_guard lock(_mutex);
+    if (participant.Gone)
+    {
+        return false;
+    }
+    sample->Sequence = ++writer.LastSequence;
+    PutIntoHistory(writer, sample);
+    for (auto &[id, reader] : writer.Readers)
+    {
+        SendSample(participant, writer, id, reader, sample);
+    }
+    KeepHeartbeat(writer);
+    return true;
+}
+
+int NetworkCore::MatchedReaders(const WriterState &writer) const
+{
+    const std::lock_guard lock(_mutex);
+    return static_cast<int>(writer.Readers.size());
+}
+
+int NetworkCore::MatchedWriters(const ReaderState &reader) const
+{
+    const std::lock_guard lock(_mutex);
+    return static_cast<int>(reader.Writers.size());
+}
+
+void NetworkCore::SendSample(const ParticipantState &me, const WriterState &writer, const EndpointId &to,
+                             ReaderProxy &reader, const SamplePtr &sample, Time processing)
+{
+    Datagram datagram;
+    datagram.What = Datagram::Kind::Data;
+    datagram.Writer = writer.Info->Id;
+    datagram.Reader = to;
+    datagram.First = FirstFor(writer, reader);
+    datagram.Content = sample;
+    if (sample->Datagrams == 1)
+    {
+        Send(me, to.Participant, std::move(datagram), processing);
+        return;
+    }
+    const auto target = _participants.find(to.Participant);
+    if (target == _participants.end())
+    {
+        return;
+    }
+    // Only the fragments that have not got through are sent; the sample is there when the last of them is.
+    const SimulatedFaults &faults = _faults.Between(me.NodeNumber, target->second->NodeNumber);
+    auto &missing = reader.Missing.try_emplace(sample->Sequence, sample->Datagrams).first->second;
+    std::uint32_t lost = 0;
+    for (std::uint32_t i = 0; i < missing; ++i)
+    {
+        lost += faults.Cut || _random.Happens(faults.Loss) ? 1 : 0;
+    }
+    _traffic.Sent += missing;
+    _traffic.Lost += lost;
+    missing = lost;
+    if (lost == 0 || !reader.Reliable)
+    {
+        reader.Missing.erase(sample->Sequence);
+    }
+    if (lost == 0)
+    {
+        Transmit(faults, me.Id, to.Participant, std::move(datagram), processing);
+    }
+}
+
+void NetworkCore::KeepHeartbeat(WriterState &writer)
+{
+    const auto waits = [&](const auto &entry)
+    { return entry.second.Reliable && entry.second.Acknowledged < writer.LastSequence; };
+    if (!writer.HeartbeatPending && std::any_of(writer.Readers.begin(), writer.Readers.end(), waits))
+    {
+        writer.HeartbeatPending = true;
+        Event event{Event::Kind::HeartbeatTimer, writer.Info->Id.Participant, 0, 0, {}};
+        event.Content.Writer = writer.Info->Id;
+        Later(_timings.HeartbeatPeriod, std::move(event));
+    }
+}
+
+void NetworkCore::SendHeartbeats(const ParticipantState &me, WriterState &writer)
+{
+    writer.HeartbeatPending = false;
+    for (const auto &[id, reader] : writer.Readers)
+    {
+        if (reader.Reliable && reader.Acknowledged < writer.LastSequence)
+        {
+            Datagram datagram;
+            datagram.What = Datagram::Kind::Heartbeat;
+            datagram.Writer = writer.Info->Id;
+            datagram.Reader = id;
+            datagram.First = FirstFor(writer, reader);
+            datagram.Last = writer.LastSequence;
+            Send(me, id.Participant, std::move(datagram));
+        }
+    }
+    KeepHeartbeat(writer);
+}
+
+void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &writer,
+                                      const Datagram &datagram)
+{
+    const auto found = writer.Readers.find(datagram.Reader);
+    if (found == writer.Readers.end() || datagram.First == 0)
+    {
+        return;
+    }
+    ReaderProxy &reader = found->second;
+    reader.Acknowledged = std::max(reader.Acknowledged, datagram.First - 1);
+    reader.Missing.erase(reader.Missing.begin(), reader.Missing.upper_bound(reader.Acknowledged));
+    Datagram gap;
+    for (const std::uint64_t sequence : datagram.Sequences)
+    {
+        if (sequence <= reader.Acknowledged)
+        {
+            continue;
+        }
+        const auto sample = FindInHistory(writer, sequence);
+        if (sample != writer.History.end() && (*sample)->Sequence == sequence)
+        {
+            SendSample(me, writer, found->first, reader, *sample, _timings.ResponseDelay);
+        }
+        else
+        {
+            gap.Sequences.push_back(sequence);
+            reader.Missing.erase(sequence);
+        }
+    }
+    if (!gap.Sequences.empty())
+    {
+        gap.What = Datagram::Kind::Gap;
+        gap.Writer = datagram.Writer;
+        gap.Reader = datagram.Reader;
+        Send(me, datagram.Reader.Participant, std::move(gap), _timings.ResponseDelay);
+    }
+}
+
+void NetworkCore::HearSample(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram)
+{
+    const auto found = reader->Writers.find(datagram.Writer);
+    if (found == reader->Writers.end())
+    {
+        return;  // not matched, or not yet
+    }
+    WriterProxy &writer = found->second;
+    const std::uint64_t sequence = datagram.Content->Sequence;
+    if (writer.Reliable)
+    {
+        SkipTo(me, reader, found->first, writer, datagram.First);
+        if (sequence >= writer.Expected)
+        {
+            writer.Early.try_emplace(sequence, datagram.Content);
+        }
+        HandOverInOrder(me, reader, found->first, writer);
+        return;
+    }
+    if (writer.Started && sequence < writer.Expected)
+    {
+        return;  // came twice, or too late
+    }
+    if (writer.Started && sequence > writer.Expected)
+    {
+        me->Log->SamplesLost(sequence - writer.Expected);
+    }
+    writer.Started = true;
+    writer.Expected = sequence + 1;
+    HandOver(reader, found->first, writer, datagram.Content);
+}
+
+void NetworkCore::HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram)
+{
+    const auto found = reader->Writers.find(datagram.Writer);
+    if (found == reader->Writers.end() || !found->second.Reliable)
+    {
+        return;
+    }
+    WriterProxy &writer = found->second;
+    SkipTo(me, reader, found->first, writer, datagram.First);
+    HandOverInOrder(me, reader, found->first, writer);
+    Datagram answer;
+    answer.What = Datagram::Kind::Acknowledgement;
+    answer.Writer = datagram.Writer;
+    answer.Reader = datagram.Reader;
+    answer.First = writer.Expected;
+    for (std::uint64_t sequence = writer.Expected;
+         sequence <= datagram.Last && answer.Sequences.size() < MostMissing; ++sequence)
+    {
+        if (!writer.Early.contains(sequence))
+        {
+            answer.Sequences.push_back(sequence);
+        }
+    }
+    Send(*me, datagram.Writer.Participant, std::move(answer), _timings.ResponseDelay);
+}
+
+void NetworkCore::HearGap(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram)
+{
+    const auto found = reader->Writers.find(datagram.Writer);
+    if (found == reader->Writers.end() || !found->second.Started)
+    {
+        return;
+    }
+    for (const std::uint64_t sequence : datagram.Sequences)
+    {
+        if (sequence >= found->second.Expected)
+        {
+            found->second.Early.try_emplace(sequence, nullptr);
+        }
+    }
+    HandOverInOrder(me, reader, found->first, found->second);
+}
+
+// Nothing below `first` will come any more: hands over what came early of it and gives up the rest.
+void NetworkCore::SkipTo(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
+                         WriterProxy &writer, std::uint64_t first)
+{
+    if (!writer.Started)
+    {
+        writer.Started = true;
+        writer.Expected = first;
+        return;
+    }
+    if (first <= writer.Expected)
+    {
+        return;
+    }
+    std::uint64_t lost = first - writer.Expected;
+    while (!writer.Early.empty() && writer.Early.begin()->first < first)
+    {
+        const auto early = writer.Early.begin();
+        if (early->second != nullptr)
+        {
+            --lost;
+            HandOver(reader, from, writer, early->second);
+        }
+        writer.Early.erase(early);
+    }
+    writer.Expected = first;
+    me->Log->SamplesLost(lost);
+}
+
+void NetworkCore::HandOverInOrder(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
+                                  WriterProxy &writer)
+{
+    while (!writer.Early.empty() && writer.Early.begin()->first == writer.Expected)
+    {
+        const auto next = writer.Early.begin();
+        if (next->second != nullptr)
+        {
+            HandOver(reader, from, writer, next->second);
+        }
+        else
+        {
+            me->Log->SamplesLost(1);
+        }
+        writer.Early.erase(next);
+        ++writer.Expected;
+    }
+}
+
+void NetworkCore::HandOver(const ReaderPtr &reader, const EndpointId &from, const WriterProxy &writer,
+                           const SamplePtr &sample)
+{
+    _calls.push_back(
+        [reader, sample, id = ToWriterId(from), node = writer.Node]
+        {
+            reader->Gate.Run(
+                [&]
+                {
+                    SampleInfo info;
+                    info.Writer = id;
+                    info.Node = node->Node;
+                    info.Incarnation = node->Incarnation;
+                    info.SourceTime = sample->SourceTime;
+                    info.Sequence = sample->Sequence;
+                    info.Alive = sample->Alive;
+                    info.Key = sample->Key;
+                    if (reader->Info->Keyed)
+                    {
+                        sample->Alive ? reader->Instances.Alive(info.Key, id)
+                                      : reader->Instances.Disposed(info.Key);
+                    }
+                    reader->Handler(sample->Bytes, info);
+                });
+        });
+}
+
+}  // namespace Rabit::Simulated

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <rabit/simulated/SimulatedNetwork.h>
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace Rabit::Simulated
+{
+
+// Which faults hold between two nodes. Nodes have numbers here, so that a look-up costs no string comparison.
+class FaultPlan
+{
+public:
+    void Set(const std::string &from, const std::string &to, const SimulatedFaults &faults);
+    void Clear();
+    // The number of a node's name; the same for the same name.
+    std::uint32_t NumberOf(const std::string &node);
+    const SimulatedFaults &Between(std::uint32_t from, std::uint32_t to);
+
+private:
+    struct Rule
+    {
+        std::string From;
+        std::string To;
+        SimulatedFaults Faults;
+    };
+    std::vector<Rule> _rules;
+    std::vector<std::string> _names;
+    std::unordered_map<std::string, std::uint32_t> _numbers;
+    std::unordered_map<std::uint64_t, SimulatedFaults>
+        _found;  // by pair of numbers; emptied when rules change
+};
+
+}  // namespace Rabit::Simulated

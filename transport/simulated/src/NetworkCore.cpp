@@ -1,0 +1,239 @@
+#include "NetworkCore.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace Rabit::Simulated
+{
+
+void NetworkCore::SetFaults(const std::string &from, const std::string &to, const SimulatedFaults &faults)
+{
+    const std::lock_guard lock(_mutex);
+    _faults.Set(from, to, faults);
+}
+
+void NetworkCore::ClearFaults()
+{
+    const std::lock_guard lock(_mutex);
+    _faults.Clear();
+}
+
+Time NetworkCore::Now() const
+{
+    const std::lock_guard lock(_mutex);
+    return _now;
+}
+
+std::optional<Time> NetworkCore::NextEvent() const
+{
+    const std::lock_guard lock(_mutex);
+    if (_events.IsEmpty())
+    {
+        return std::nullopt;
+    }
+    return std::max(_now, _events.NextTime());
+}
+
+SimulatedTraffic NetworkCore::Traffic() const
+{
+    const std::lock_guard lock(_mutex);
+    return _traffic;
+}
+
+void NetworkCore::AdvanceTo(Time time)
+{
+    const std::lock_guard stepping(_stepping);
+    std::unique_lock lock(_mutex);
+    while (!_events.IsEmpty() && _events.NextTime() <= time)
+    {
+        _now = std::max(_now, _events.NextTime());
+        ++_traffic.Events;
+        Handle(_events.Pop());
+        RunCalls(lock);
+    }
+    _now = std::max(_now, time);
+}
+
+void NetworkCore::RunCalls(std::unique_lock<std::mutex> &lock)
+{
+    if (_calls.empty())
+    {
+        return;
+    }
+    const Calls calls = std::exchange(_calls, {});
+    lock.unlock();
+    for (const auto &call : calls)
+    {
+        call();
+    }
+    lock.lock();
+}
+
+ParticipantPtr NetworkCore::Join(const TransportSettings &settings, PeerHandler onPeer)
+{
+    const auto participant = std::make_shared<ParticipantState>(settings, std::move(onPeer));
+    const std::lock_guard lock(_mutex);
+    participant->Id = ++_lastParticipant;
+    participant->NodeNumber = _faults.NumberOf(settings.Node);
+    _participants.emplace(participant->Id, participant);
+    Announce(participant);
+    return participant;
+}
+
+void NetworkCore::Leave(ParticipantState &participant)
+{
+    const std::lock_guard lock(_mutex);
+    if (participant.Gone)
+    {
+        return;
+    }
+    participant.Gone = true;
+    _participants.erase(participant.Id);
+    // To everybody: a peer may know this participant before it is known here.
+    for (const auto &[id, other] : _participants)
+    {
+        if (other->Settings.Domain == participant.Settings.Domain)
+        {
+            Datagram bye;
+            bye.What = Datagram::Kind::Bye;
+            Send(participant, id, std::move(bye));
+        }
+    }
+}
+
+void NetworkCore::CrashNode(const std::string &node)
+{
+    const std::lock_guard lock(_mutex);
+    std::erase_if(_participants,
+                  [&](const auto &entry)
+                  {
+                      ParticipantState &participant = *entry.second;
+                      participant.Gone = participant.Settings.Node == node;
+                      return participant.Gone;
+                  });
+}
+
+void NetworkCore::Handle(Event event)
+{
+    const auto found = _participants.find(event.At);
+    if (found == _participants.end())
+    {
+        return;  // it closed or crashed meanwhile
+    }
+    const ParticipantPtr at = found->second;
+    switch (event.What)
+    {
+        case Event::Kind::Arrival:
+            Arrive(at, event.Other, event.Content);
+            break;
+        case Event::Kind::AnnouncementTimer:
+            Announce(at);
+            break;
+        case Event::Kind::LeaseTimer:
+            CheckLease(at, event.Other, event.Birth);
+            break;
+        case Event::Kind::EndpointRepairTimer:
+            RepairEndpoints(*at, event.Other, event.Birth);
+            break;
+        case Event::Kind::HeartbeatTimer:
+            if (const auto writer = at->Writers.find(event.Content.Writer); writer != at->Writers.end())
+            {
+                SendHeartbeats(*at, *writer->second);
+            }
+            break;
+    }
+}
+
+void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Datagram &datagram)
+{
+    const auto known = at->Peers.find(from);
+    if (known != at->Peers.end())
+    {
+        known->second.LastHeard = _now;
+    }
+    const auto reader = at->Readers.find(datagram.Reader);
+    const auto writer = at->Writers.find(datagram.Writer);
+    switch (datagram.What)
+    {
+        case Datagram::Kind::Announce:
+            HearAnnouncement(at, from, datagram);
+            return;
+        case Datagram::Kind::Bye:
+            LosePeer(at, from, PeerEvent::Kind::Left);
+            return;
+        case Datagram::Kind::Endpoints:
+            HearEndpoints(at, from, datagram);
+            return;
+        case Datagram::Kind::EndpointsAck:
+            if (known != at->Peers.end())
+            {
+                HearEndpointsAck(*at, from, known->second, datagram.First);
+            }
+            return;
+        case Datagram::Kind::Data:
+            if (reader != at->Readers.end())
+            {
+                HearSample(at, reader->second, datagram);
+            }
+            return;
+        case Datagram::Kind::Heartbeat:
+            if (reader != at->Readers.end())
+            {
+                HearHeartbeat(at, reader->second, datagram);
+            }
+            return;
+        case Datagram::Kind::Acknowledgement:
+            if (writer != at->Writers.end())
+            {
+                HearAcknowledgement(*at, *writer->second, datagram);
+            }
+            return;
+        case Datagram::Kind::Gap:
+            if (reader != at->Readers.end())
+            {
+                HearGap(at, reader->second, datagram);
+            }
+            return;
+    }
+}
+
+void NetworkCore::Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing)
+{
+    const auto target = _participants.find(to);
+    ++_traffic.Sent;
+    if (target == _participants.end())
+    {
+        ++_traffic.Lost;
+        return;
+    }
+    const SimulatedFaults &faults = _faults.Between(from.NodeNumber, target->second->NodeNumber);
+    if (faults.Cut || _random.Happens(faults.Loss))
+    {
+        ++_traffic.Lost;
+        return;
+    }
+    Transmit(faults, from.Id, to, std::move(datagram), processing);
+}
+
+// Of a datagram that is not lost.
+void NetworkCore::Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to,
+                           Datagram datagram, Time processing)
+{
+    const auto delay = [&]
+    {
+        Time time = processing + faults.Delay + _random.PartOf(faults.Jitter);
+        if (_random.Happens(faults.Straggle))
+        {
+            time += _random.PartOf(faults.StraggleDelay);
+        }
+        return time;
+    };
+    if (_random.Happens(faults.Duplicate))
+    {
+        ++_traffic.Duplicated;
+        Later(delay(), {Event::Kind::Arrival, to, from, 0, datagram});
+    }
+    Later(delay(), {Event::Kind::Arrival, to, from, 0, std::move(datagram)});
+}
+
+}  // namespace Rabit::Simulated

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <rabit/simulated/SimulatedNetwork.h>
+#include <rabit/transport/Transport.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "EventQueue.h"
+#include "FaultPlan.h"
+#include "Random.h"
+#include "World.h"
+
+namespace Rabit::Simulated
+{
+
+using Time = std::chrono::nanoseconds;
+using ParticipantPtr = std::shared_ptr<ParticipantState>;
+using WriterPtr = std::shared_ptr<WriterState>;
+using ReaderPtr = std::shared_ptr<ReaderState>;
+
+// The simulation behind SimulatedNetwork and the sessions on it. Thread-safe.
+//
+// One mutex guards all state. What leads out of the simulation (handlers, log lines) is collected while it is
+// held and called after it is released.
+class NetworkCore
+{
+public:
+    NetworkCore(std::uint64_t seed, const SimulatedTimings &timings) : _timings(timings), _random(seed) {}
+
+    // For SimulatedNetwork.
+    void SetFaults(const std::string &from, const std::string &to, const SimulatedFaults &faults);
+    void ClearFaults();
+    Time Now() const;
+    std::optional<Time> NextEvent() const;
+    void AdvanceTo(Time time);
+    void CrashNode(const std::string &node);
+    SimulatedTraffic Traffic() const;
+
+    // For sessions.
+    ParticipantPtr Join(const TransportSettings &settings, PeerHandler onPeer);
+    void Leave(ParticipantState &participant);
+    WriterPtr AddWriter(const ParticipantPtr &participant, const TopicDescription &topic, const TopicQos &qos,
+                        const std::vector<std::string> &partitions);
+    ReaderPtr AddReader(const ParticipantPtr &participant, const TopicDescription &topic, const TopicQos &qos,
+                        const std::vector<std::string> &partitions, SampleHandler handler);
+    void RemoveWriter(ParticipantState &participant, const WriterState &writer);
+    void RemoveReader(ParticipantState &participant, const ReaderState &reader);
+    // Gives the sample its sequence number and sends it. False if the session is gone.
+    bool Write(ParticipantState &participant, WriterState &writer, const std::shared_ptr<Sample> &sample);
+    int MatchedReaders(const WriterState &writer) const;
+    int MatchedWriters(const ReaderState &reader) const;
+
+private:
+    struct Event
+    {
+        enum class Kind
+        {
+            Arrival,
+            AnnouncementTimer,
+            LeaseTimer,
+            EndpointRepairTimer,
+            HeartbeatTimer
+        };
+        Kind What = Kind::Arrival;
+        ParticipantId At = 0;     // where it happens
+        ParticipantId Other = 0;  // the sender of what arrives, or the peer that the timer is about
+        std::uint64_t Birth = 0;  // of that peer's entry
+        Datagram Content;         // of an arrival; the heartbeat timer uses its Writer
+    };
+    using Calls = std::vector<std::function<void()>>;
+
+    // NetworkCore.cpp
+    void Handle(Event event);
+    void Arrive(const ParticipantPtr &at, ParticipantId from, const Datagram &datagram);
+    void Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing = Time(0));
+    void Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to, Datagram datagram,
+                  Time processing);
+    void Later(Time delay, Event event) { _events.Push(_now + delay, std::move(event)); }
+    void RunCalls(std::unique_lock<std::mutex> &lock);
+
+    // Discovery.cpp
+    void Announce(const ParticipantPtr &participant);
+    void HearAnnouncement(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
+    void CheckLease(const ParticipantPtr &me, ParticipantId peer, std::uint64_t birth);
+    void LosePeer(const ParticipantPtr &me, ParticipantId peer, PeerEvent::Kind how);
+    void EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed);
+    void SendEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
+    void RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth);
+    void HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
+    void HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer, std::uint64_t version);
+    void EndpointAppeared(const ParticipantPtr &me, const Peer &peer, const EndpointInfo &remote);
+    void EndpointGone(const ParticipantPtr &me, const EndpointId &remote);
+    void TellPeerEvent(const ParticipantPtr &me, const Peer &peer, PeerEvent::Kind what);
+    bool Fits(const ParticipantPtr &me, const EndpointInfo &writer, const EndpointInfo &reader);
+    void MatchReader(const ParticipantPtr &me, WriterState &writer, const EndpointInfo &remote);
+    void MatchWriter(const ParticipantPtr &me, const Peer &peer, ReaderState &reader,
+                     const EndpointInfo &remote);
+    void UnmatchWriter(const ReaderPtr &reader, std::map<EndpointId, WriterProxy>::iterator proxy);
+
+    // Delivery.cpp
+    void SendSample(const ParticipantState &me, const WriterState &writer, const EndpointId &to,
+                    ReaderProxy &reader, const SamplePtr &sample, Time processing = Time(0));
+    void KeepHeartbeat(WriterState &writer);
+    void SendHeartbeats(const ParticipantState &me, WriterState &writer);
+    void HearAcknowledgement(const ParticipantState &me, WriterState &writer, const Datagram &datagram);
+    void HearSample(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
+    void HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
+    void HearGap(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
+    void SkipTo(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
+                WriterProxy &writer, std::uint64_t first);
+    void HandOverInOrder(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
+                         WriterProxy &writer);
+    void HandOver(const ReaderPtr &reader, const EndpointId &from, const WriterProxy &writer,
+                  const SamplePtr &sample);
+
+    const SimulatedTimings _timings;
+    std::mutex _stepping;  // held by the one thread that advances the time
+    mutable std::mutex _mutex;
+    // All below are guarded by _mutex.
+    Random _random;
+    Time _now{0};
+    EventQueue<Event> _events;
+    FaultPlan _faults;
+    SimulatedTraffic _traffic;
+    std::map<ParticipantId, ParticipantPtr> _participants;
+    ParticipantId _lastParticipant = 0;
+    std::uint64_t _lastBirth = 0;
+    Calls _calls;
+};
+
+}  // namespace Rabit::Simulated

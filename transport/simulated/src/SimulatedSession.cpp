@@ -1,0 +1,161 @@
+#include "SimulatedSession.h"
+
+#include <utility>
+
+#include "common/SettingsCheck.h"
+
+namespace Rabit::Simulated
+{
+
+namespace
+{
+
+constexpr std::size_t MaxSample = std::size_t{64} << 20;
+constexpr std::size_t HeaderSize = 4;
+
+class SimulatedWriter final : public TransportWriter
+{
+public:
+    SimulatedWriter(std::shared_ptr<NetworkCore> core, ParticipantPtr participant,
+                    const TopicDescription &topic, const TopicQos &qos,
+                    const std::vector<std::string> &partitions)
+        : _core(std::move(core)),
+          _participant(std::move(participant)),
+          _topic(topic),
+          _use(_participant->Topics, topic),
+          _state(_core->AddWriter(_participant, topic, qos, partitions))
+    {
+    }
+    ~SimulatedWriter() override { _core->RemoveWriter(*_participant, *_state); }
+
+    WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override
+    {
+        return Send(sample, sourceTime, true);
+    }
+
+    WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override
+    {
+        if (!_topic.KeyOf)
+        {
+            return Fail("it has no key, so nothing of it can be disposed");
+        }
+        return Send(sample, sourceTime, false);
+    }
+
+    int MatchedReaders() const override { return _core->MatchedReaders(*_state); }
+
+private:
+    WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed)
+    {
+        _participant->Log->WriteFailed(_topic.Name, why);
+        return result;
+    }
+
+    WriteResult Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool alive)
+    {
+        const std::size_t size = encoder.EncodedSize();
+        if (size > MaxSample)
+        {
+            return Fail("the sample is larger than 64 MiB", WriteResult::TooLarge);
+        }
+        if (size < HeaderSize)
+        {
+            return Fail("the encoded sample is shorter than its header");
+        }
+        const auto sample = std::make_shared<Sample>();
+        sample->Bytes.resize(size);
+        if (!encoder.Encode(sample->Bytes))
+        {
+            return Fail("the sample cannot be encoded");
+        }
+        if (_topic.KeyOf && !_topic.KeyOf(sample->Bytes, sample->Key))
+        {
+            return Fail("the encoded sample has no readable key");
+        }
+        const std::size_t datagram = _participant->Settings.MaxDatagram;
+        sample->SourceTime = sourceTime;
+        sample->Alive = alive;
+        sample->Datagrams = static_cast<std::uint32_t>((size + datagram - 1) / datagram);
+        if (!alive)
+        {
+            sample->Bytes.clear();
+            sample->Datagrams = 1;
+        }
+        if (!_core->Write(*_participant, *_state, sample))
+        {
+            return Fail("the session is closed");
+        }
+        return WriteResult::Ok;
+    }
+
+    const std::shared_ptr<NetworkCore> _core;
+    const ParticipantPtr _participant;
+    const TopicDescription _topic;
+    const TopicRegistry::Use _use;
+    const WriterPtr _state;
+};
+
+class SimulatedReader final : public TransportReader
+{
+public:
+    SimulatedReader(std::shared_ptr<NetworkCore> core, ParticipantPtr participant,
+                    const TopicDescription &topic, const TopicQos &qos,
+                    const std::vector<std::string> &partitions, SampleHandler handler)
+        : _core(std::move(core)),
+          _participant(std::move(participant)),
+          _use(_participant->Topics, topic),
+          _state(_core->AddReader(_participant, topic, qos, partitions, std::move(handler)))
+    {
+    }
+    ~SimulatedReader() override
+    {
+        _core->RemoveReader(*_participant, *_state);
+        _state->Gate.Close();
+    }
+
+    int MatchedWriters() const override { return _core->MatchedWriters(*_state); }
+
+private:
+    const std::shared_ptr<NetworkCore> _core;
+    const ParticipantPtr _participant;
+    const TopicRegistry::Use _use;
+    const ReaderPtr _state;
+};
+
+}  // namespace
+
+SimulatedSession::SimulatedSession(std::shared_ptr<NetworkCore> core, const TransportSettings &settings,
+                                   PeerHandler onPeer)
+    : _core(std::move(core)), _participant(_core->Join(settings, std::move(onPeer)))
+{
+}
+
+SimulatedSession::~SimulatedSession()
+{
+    _core->Leave(*_participant);
+    _participant->PeerGate.Close();
+}
+
+std::unique_ptr<TransportWriter> SimulatedSession::CreateWriter(const TopicDescription &topic,
+                                                                const TopicQos &qos,
+                                                                const std::vector<std::string> &partitions)
+{
+    CheckQos(topic, qos);
+    return std::make_unique<SimulatedWriter>(_core, _participant, topic, qos, partitions);
+}
+
+std::unique_ptr<TransportReader> SimulatedSession::CreateReader(const TopicDescription &topic,
+                                                                const TopicQos &qos,
+                                                                const std::vector<std::string> &partitions,
+                                                                SampleHandler handler)
+{
+    CheckQos(topic, qos);
+    return std::make_unique<SimulatedReader>(_core, _participant, topic, qos, partitions, std::move(handler));
+}
+
+TransportCounters SimulatedSession::Counters() const
+{
+    return _participant->Log->Read();
+}
+
+}  // namespace Rabit::Simulated

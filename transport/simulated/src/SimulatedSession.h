@@ -1,0 +1,31 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+
+#include "NetworkCore.h"
+
+namespace Rabit::Simulated
+{
+
+class SimulatedSession final : public TransportSession
+{
+public:
+    SimulatedSession(std::shared_ptr<NetworkCore> core, const TransportSettings &settings,
+                     PeerHandler onPeer);
+    ~SimulatedSession() override;
+
+    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
+                                                  const std::vector<std::string> &partitions) override;
+    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
+                                                  const std::vector<std::string> &partitions,
+                                                  SampleHandler handler) override;
+    TransportCounters Counters() const override;
+
+private:
+    const std::shared_ptr<NetworkCore> _core;
+    const ParticipantPtr _participant;
+};
+
+}  // namespace Rabit::Simulated

@@ -1,0 +1,187 @@
+// What the simulated network consists of. All of it is guarded by the NetworkCore's mutex, unless said
+// otherwise.
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <chrono>
+#include <compare>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/HandlerGate.h"
+#include "common/InstanceTable.h"
+#include "common/ParticipantIdentity.h"
+#include "common/SessionLog.h"
+#include "common/TopicRegistry.h"
+
+namespace Rabit::Simulated
+{
+
+using ParticipantId = std::uint32_t;
+
+struct EndpointId
+{
+    ParticipantId Participant = 0;
+    std::uint32_t Entity = 0;
+    auto operator<=>(const EndpointId &) const = default;
+};
+
+// Never changed once it is in a history.
+struct Sample
+{
+    std::vector<std::uint8_t> Bytes;
+    KeyHash Key{};
+    std::int64_t SourceTime = 0;
+    std::uint64_t Sequence = 0;
+    bool Alive = true;
+    std::uint32_t Datagrams = 1;  // that it travels in
+};
+using SamplePtr = std::shared_ptr<const Sample>;
+
+// What discovery tells of a writer or reader.
+struct EndpointInfo
+{
+    EndpointId Id;
+    bool IsWriter = false;
+    std::string Topic;
+    std::string Type;
+    bool Keyed = false;
+    TopicQos Qos;
+    std::vector<std::string> Partitions;
+};
+using EndpointInfoPtr = std::shared_ptr<const EndpointInfo>;
+using EndpointList = std::vector<EndpointInfoPtr>;  // by rising Id
+
+struct ParticipantState;
+
+struct Datagram
+{
+    enum class Kind
+    {
+        Announce,         // I am here
+        Bye,              // I go
+        Endpoints,        // my endpoints, version First
+        EndpointsAck,     // I know your endpoints of version First
+        Data,             // Content; nothing below First will come any more
+        Heartbeat,        // I have First to Last for you
+        Acknowledgement,  // I have all below First, but miss Sequences
+        Gap               // Sequences will not come any more
+    };
+    Kind What = Kind::Announce;
+    EndpointId Writer;
+    EndpointId Reader;
+    std::uint64_t First = 0;
+    std::uint64_t Last = 0;
+    SamplePtr Content;
+    std::shared_ptr<const EndpointList> Endpoints;
+    std::vector<std::uint64_t> Sequences;
+    std::shared_ptr<const ParticipantState> Sender;  // of an announcement
+};
+
+// How a writer sees a matched reader.
+struct ReaderProxy
+{
+    bool Reliable = false;
+    std::uint64_t Acknowledged = 0;  // it needs nothing up to here
+    // Datagrams of large samples that have not got through yet; absent: all of them.
+    std::map<std::uint64_t, std::uint32_t> Missing;
+};
+
+struct WriterState
+{
+    EndpointInfoPtr Info;
+    std::uint64_t LastSequence = 0;
+    std::deque<SamplePtr> History;
+    std::map<EndpointId, ReaderProxy> Readers;
+    bool HeartbeatPending = false;
+};
+
+// How a reader sees a matched writer.
+struct WriterProxy
+{
+    std::shared_ptr<const ParticipantIdentity> Node;
+    bool Reliable = false;
+    bool Started = false;                      // Expected is known
+    std::uint64_t Expected = 0;                // the next to hand over
+    std::map<std::uint64_t, SamplePtr> Early;  // came before Expected did; nullptr: will not come
+};
+
+struct ReaderState
+{
+    ReaderState(std::shared_ptr<SessionLog> log, EndpointInfoPtr info, SampleHandler handler)
+        : Info(std::move(info)), Handler(std::move(handler)), Gate(log, "the reader of " + Info->Topic)
+    {
+    }
+    const EndpointInfoPtr Info;
+    std::map<EndpointId, WriterProxy> Writers;
+
+    // Not guarded by the network's mutex.
+    const SampleHandler Handler;
+    HandlerGate Gate;
+    InstanceTable Instances;  // under the gate
+};
+
+// How a participant sees another.
+struct Peer
+{
+    std::uint64_t Birth = 0;  // tells this life of the entry from others, for its timers
+    std::shared_ptr<const ParticipantIdentity> Who;
+    std::chrono::nanoseconds Lease{};
+    std::chrono::nanoseconds LastHeard{};
+    std::uint64_t TheirVersion = 0;
+    std::shared_ptr<const EndpointList> TheirEndpoints = std::make_shared<EndpointList>();
+    std::uint64_t ConfirmedVersion = 0;  // of our endpoints, by it
+    bool RepairPending = false;
+};
+
+struct ParticipantState
+{
+    ParticipantState(const TransportSettings &settings, PeerHandler onPeer)
+        : Settings(settings),
+          Who(std::make_shared<ParticipantIdentity>(
+              ParticipantIdentity{settings.Node, settings.Incarnation})),
+          Log(std::make_shared<SessionLog>(settings)),
+          Topics(Log),
+          OnPeer(std::move(onPeer)),
+          PeerGate(Log, "peer events")
+    {
+    }
+    const TransportSettings Settings;
+    const std::shared_ptr<const ParticipantIdentity> Who;
+    ParticipantId Id = 0;
+    std::uint32_t NodeNumber = 0;  // in the fault plan
+    bool Gone = false;             // closed or crashed
+    std::map<ParticipantId, Peer> Peers;
+    std::map<EndpointId, std::shared_ptr<WriterState>> Writers;
+    std::map<EndpointId, std::shared_ptr<ReaderState>> Readers;
+    std::uint32_t LastEntity = 0;
+    std::uint64_t Version = 1;  // of Endpoints
+    std::shared_ptr<const EndpointList> Endpoints = std::make_shared<EndpointList>();
+    int EarlyAnnouncements = 5;  // that are still to be made in quick succession
+
+    // Not guarded by the network's mutex.
+    const std::shared_ptr<SessionLog> Log;
+    TopicRegistry Topics;
+    const PeerHandler OnPeer;
+    HandlerGate PeerGate;
+};
+
+// An RTPS GUID: vendor prefix, participant, entity.
+inline WriterId ToWriterId(const EndpointId &id)
+{
+    WriterId result{};
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        result[8 + i] = static_cast<std::uint8_t>(id.Participant >> (24 - 8 * i));
+        result[12 + i] = static_cast<std::uint8_t>(id.Entity >> (24 - 8 * i));
+    }
+    return result;
+}
+
+}  // namespace Rabit::Simulated
