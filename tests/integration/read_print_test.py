@@ -1,0 +1,143 @@
+"""Drives the read_print tutorial through pipes and checks what its README says.
+
+Usage: read_print_test.py PATH_OF_READ_PRINT
+
+No result depends on how fast anything is: each step waits for a line of output, and a line that never comes ends the
+test after a generous time.
+"""
+
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import unittest
+
+PROGRAM = None
+PATIENCE_SEC = 60
+
+
+class Session:
+    """A running read_print whose output is read by a thread of its own."""
+
+    def __init__(self, *options):
+        self.process = subprocess.Popen([PROGRAM, *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True, bufsize=1)
+        self.seen = []
+        self._lines = queue.Queue()
+        threading.Thread(target=self._read, daemon=True).start()
+        self.wait_for("PrintManager: ready")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+            try:
+                stream.close()
+            except BrokenPipeError:
+                pass
+
+    def _read(self):
+        for line in self.process.stdout:
+            self._lines.put(line.rstrip("\n"))
+        self._lines.put(None)
+
+    def write(self, *lines):
+        """Writes the lines with one system call."""
+        self.process.stdin.write("".join(line + "\n" for line in lines))
+        self.process.stdin.flush()
+
+    def wait_for(self, wanted):
+        while True:
+            try:
+                line = self._lines.get(timeout=PATIENCE_SEC)
+            except queue.Empty:
+                raise AssertionError(f"'{wanted}' was not printed; so far: {self.seen}") from None
+            if line is None:
+                raise AssertionError(f"the program ended before it printed '{wanted}'; it printed {self.seen}")
+            self.seen.append(line)
+            if line == wanted:
+                return
+
+    def finish(self):
+        """Waits for the end of the program; returns its exit code."""
+        while (line := self._lines.get(timeout=PATIENCE_SEC)) is not None:
+            self.seen.append(line)
+        return self.process.wait(timeout=PATIENCE_SEC)
+
+    def seen_with(self, prefix):
+        return [line[len(prefix):] for line in self.seen if line.startswith(prefix)]
+
+
+class ReadPrint(unittest.TestCase):
+
+    def assert_shut_down_cleanly(self, session):
+        self.assertEqual(session.finish(), 0)
+        self.assertEqual(session.seen.count("ReadManager: shut down"), 1)
+        self.assertEqual(session.seen.count("PrintManager: shut down"), 1)
+        self.assertEqual(session.process.stderr.read(), "")
+
+    def test_only_the_last_of_several_quick_posts_is_printed_when_the_timer_is_slow(self):
+        with Session("--period", "3600") as session:
+            session.write("queue first")
+            session.wait_for("queued: queue first")
+            posts = [f"post {i}" for i in range(300)]
+            session.write(*posts)
+            session.write("queue last")
+            session.wait_for("queued: queue last")
+            session.write("quit")
+            self.assert_shut_down_cleanly(session)
+            printed = session.seen_with("posted: ")
+            self.assertEqual(printed[-1], posts[-1])
+            # The wake-up by the first message of the queue may have caused one pass more, somewhere in between.
+            self.assertLessEqual(len(printed), 2)
+
+    def test_each_post_is_printed_at_once_when_posts_wake_the_printing_manager(self):
+        with Session("--period", "3600", "--wake-on-post") as session:
+            for i in range(20):
+                session.write(f"post {i}")
+                session.wait_for(f"posted: post {i}")
+            session.write("quit")
+            self.assert_shut_down_cleanly(session)
+            self.assertEqual(session.seen_with("posted: "), [f"post {i}" for i in range(20)])
+
+    def test_every_message_of_the_queue_is_printed_in_order_and_at_once(self):
+        with Session("--period", "3600") as session:
+            lines = [f"queue {i}" for i in range(500)]
+            session.write(*lines)
+            session.wait_for("queued: " + lines[-1])
+            session.write("quit")
+            self.assert_shut_down_cleanly(session)
+            self.assertEqual(session.seen_with("queued: "), lines)
+
+    def test_without_the_automatic_wake_up_the_messages_of_the_queue_are_printed_when_the_timer_expires(self):
+        with Session("--period", "0.3", "--no-wake-on-queue") as session:
+            lines = [f"queue {i}" for i in range(100)]
+            session.write(*lines)
+            session.wait_for("queued: " + lines[-1])
+            session.write("quit")
+            self.assert_shut_down_cleanly(session)
+            self.assertEqual(session.seen_with("queued: "), lines)
+
+    def test_the_end_of_the_input_shuts_down_and_nothing_is_lost(self):
+        with Session("--period", "3600", "--no-wake-on-queue") as session:
+            session.write("queue 1", "queue 2", "post 1")
+            session.process.stdin.close()
+            self.assert_shut_down_cleanly(session)
+            self.assertEqual(session.seen_with("queued: "), ["queue 1", "queue 2"])
+            self.assertEqual(session.seen_with("posted: "), ["post 1"])
+
+    def test_signals_shut_down_cleanly(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number), Session("--period", "3600") as session:
+                session.process.send_signal(number)
+                self.assert_shut_down_cleanly(session)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main(verbosity=2)
