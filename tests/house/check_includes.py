@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Checks who includes whom, as the folders' architecture says.
+
+Usage: check_includes.py ROOT
+Prints one line `file:line: message` for each violation; exits 1 if there is any.
+"""
+
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+SOURCES = {".h", ".hpp", ".c", ".cpp", ".cc"}
+
+# What a header's path says about where it belongs. The first pattern that fits holds.
+OWNERS = [
+    (r"rabit/idl/", "idl"),
+    (r"rabit/transport/TransportFactory\.h", "factory"),
+    (r"rabit/transport/", "transport"),
+    (r"rabit/fastdds/", "fastdds backend"),
+    (r"rabit/cyclonedds/", "cyclonedds backend"),
+    (r"rabit/simulated/", "simulated backend"),
+    (r"rabit/gateway/links/", "links"),
+    (r"rabit/gateway/", "gateway"),
+    (r"rabit/", "core"),
+    (r"gateway\.idl\.h", "gateway messages"),
+    (r".*\.idl\.h", "user messages"),
+    (r"fastdds/|fastrtps/", "Fast DDS"),
+    (r"fastcdr/", "Fast-CDR"),
+    (r"dds/|ddsc/|idlc/|idl/", "Cyclone DDS"),
+    (r"yaml-cpp/", "yaml-cpp"),
+    (r"CLI/", "CLI11"),
+    (r"boost/asio|boost/beast", "network"),
+    (r"sys/socket\.h|netinet/|arpa/|netdb\.h", "network"),
+]
+
+# Which of those owners the files below a folder may include. The longest folder that fits holds; a header that
+# belongs to nobody (the standard library, Boost, the file's own folder) may be included by everybody.
+ALLOWED = {
+    "core": {"core"},
+    "idl/runtime": {"core", "idl", "Fast-CDR"},
+    "idl/generator": {"Cyclone DDS"},
+    "transport/include": {"transport"},
+    "transport/common": {"transport", "network"},
+    "transport/factory": {"transport", "factory", "fastdds backend", "cyclonedds backend"},
+    "transport/fastdds": {"transport", "fastdds backend", "Fast DDS", "network"},
+    "transport/cyclonedds": {"transport", "cyclonedds backend", "Cyclone DDS", "network"},
+    "transport/simulated": {"transport", "simulated backend"},
+    "gateway": {"core", "idl", "transport", "gateway", "links", "gateway messages", "yaml-cpp"},
+    "gateway/links": {"links"},
+    "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11"},
+}
+
+
+def owner_of(header):
+    for pattern, owner in OWNERS:
+        if re.match(pattern, header):
+            return owner
+    return None
+
+
+def allowed_for(path):
+    best = None
+    for folder in ALLOWED:
+        if path.is_relative_to(folder) and (best is None or len(folder) > len(best)):
+            best = folder
+    return best
+
+
+def violations(root):
+    for path in sorted(root.rglob("*")):
+        relative = path.relative_to(root)
+        folder = allowed_for(relative)
+        if path.suffix not in SOURCES or folder is None or not path.is_file():
+            continue
+        for number, line in enumerate(path.read_text(errors="replace").splitlines(), start=1):
+            match = INCLUDE.match(line)
+            owner = owner_of(match.group(1)) if match else None
+            if owner is not None and owner not in ALLOWED[folder]:
+                yield f"{relative}:{number}: {folder}/ must not include <{match.group(1)}> ({owner})"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    found = list(violations(root))
+    for line in found:
+        print(line)
+    checked = [folder for folder in ALLOWED if (root / folder).is_dir()]
+    print(f"{len(found)} violations in {', '.join(checked)}")
+    return 1 if found or "core" not in checked else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
