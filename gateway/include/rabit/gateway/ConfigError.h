@@ -6,8 +6,9 @@
 namespace Rabit
 {
 
-// A configuration that cannot be used. what() is one line that says where (file:line if it came from a file), what
-// is wrong and what was expected. A program prints it and ends with exit code 2 before it starts anything.
+// A configuration that cannot be used. what() is one line that says where (file:line if it came from a file),
+// what is wrong and what was expected. A program prints it and ends with exit code 2 before it starts
+// anything.
 class ConfigError : public std::runtime_error
 {
 public:

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,8 +11,8 @@
 namespace Rabit
 {
 
-// How a mirrored message travels. Both ends of a message must agree; a subscription takes over what the publisher
-// announces unless it names one itself.
+// How a mirrored message travels. Both ends of a message must agree; a subscription takes over what the
+// publisher announces unless it names one itself.
 enum class QosProfile
 {
     // Reliable, the last value reaches late joiners, repeated once a second: for what must be known.
@@ -48,8 +49,8 @@ struct AcceptRule
     int Line = 0;
 };
 
-// How messages to queues of other nodes are kept. Needed only to change the defaults. The first rule that fits a
-// link holds.
+// How messages to queues of other nodes are kept. Needed only to change the defaults. The first rule that
+// fits a link holds.
 struct SendRule
 {
     std::string To = "*";                   // node name; `*` and `?` are wildcards
@@ -57,7 +58,7 @@ struct SendRule
     std::size_t Capacity = 1000;            // messages that may wait, 1 to 1,000,000
     std::size_t CapacityBytes = 16u << 20;  // bytes that may wait, 1 to 2^40
     std::chrono::milliseconds Expire{0};    // a message older than this is never delivered; 0: never too old
-    std::size_t Window = 64;                // messages under way at once, 1 to 4096
+    std::size_t Window = 128;               // messages under way at once, 1 to 256
     bool RedeliverInDoubt = false;          // send again, flagged, what a restart left in doubt
     int Line = 0;
 };
@@ -86,12 +87,18 @@ struct GatewayConfig
     std::vector<AcceptRule> Accept;
     std::vector<SendRule> Send;
 
-    // The file it came from, for error messages; empty: made in code.
+    // For error messages: the file it came from and the line of each of its top-level keys; empty: made in
+    // code.
     std::string File;
+    std::map<std::string, int> Lines;
 };
 
 // Checks ranges, names used twice, and that every type is linked into this process. Throws ConfigError. The
 // constructor of GatewayManager calls it; call it earlier to fail earlier.
 void ValidateGatewayConfig(const GatewayConfig &config);
+
+// Checks that config.Transport is among the backends that this process has. Throws ConfigError that names the
+// nearest.
+void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available);
 
 }  // namespace Rabit

@@ -15,27 +15,34 @@ inline constexpr const char *FleetMessageName = "Gateway/Fleet";
 // Joins this process to the other nodes of its domain.
 //
 // - Every `publish` message posted locally is written to the DDS topic of its name.
-// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, with the time stamp of its
-//   origin and an age that counts from its post over there, whatever the clocks say. Nothing of a node is posted
-//   before that node has been heard as live, so an old value never looks new.
-// - AddMessageToQueue("<node>/<queue>", message) sends a message to a queue of another node, "*/<queue>" to that
-//   queue of every live node that accepts it. False means refused; Gateway/Fleet counts why. Every accepted message
-//   comes to exactly one outcome (rabit/gateway/links).
-// - `accept` queues receive messages of other nodes in order; a full queue holds the sender back, without loss.
+// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, with the time stamp of
+// its
+//   origin and an age that counts from its post over there, whatever the clocks say. Nothing of a node is
+//   posted before that node has been heard as live, so an old value never looks new.
+// - AddMessageToQueue("<node>/<queue>", message) sends a message to a queue of another node, "*/<queue>" to
+// that
+//   queue of every live node that accepts it. False means refused; Gateway/Fleet counts why. Every accepted
+//   message comes to exactly one outcome (rabit/gateway/links).
+// - `accept` queues receive messages of other nodes in order; a full queue holds the sender back, without
+// loss.
 // - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come.
 //
-// Threads: Startup, ExecuteUnitOfWork and Shutdown run as for every manager. Mirrored messages are posted on the
-// transport's thread, so handlers registered on them run there and must be quick. One gateway serves one workspace.
+// Threads: Startup, ExecuteUnitOfWork and Shutdown run as for every manager. Mirrored messages are posted on
+// the transport's thread, so handlers registered on them run there and must be quick. One gateway serves one
+// workspace.
 //
-// Errors: the constructor throws ConfigError for a configuration that cannot be used (a TransportError of the backend
-// included), and then nothing has been started. Afterwards nothing from the network throws or ends the process.
+// Errors: the constructor throws ConfigError for a configuration that cannot be used (a TransportError of the
+// backend included), and then nothing has been started. Afterwards nothing from the network throws or ends
+// the process.
 class GatewayManager : public RabitManager
 {
 public:
-    // Opens the transport at once. The transport is kept until the gateway is gone; null is a programming error
-    // (std::invalid_argument). The workspace must outlive the gateway; without one it is the default workspace.
+    // Opens the transport at once. The transport is kept until the gateway is gone; null is a programming
+    // error (std::invalid_argument). The workspace must outlive the gateway; without one it is the default
+    // workspace.
     GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport);
-    GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport, RabitWorkspace &workspace);
+    GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
+                   RabitWorkspace &workspace);
     ~GatewayManager() override;
 
     void Startup() final;

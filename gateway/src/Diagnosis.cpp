@@ -1,0 +1,166 @@
+#include "Diagnosis.h"
+
+#include <algorithm>
+
+#include "NamePattern.h"
+
+namespace Rabit::Diagnosis
+{
+namespace
+{
+
+bool Covers(const SubscribeRule &rule, const std::string &node)
+{
+    return std::any_of(rule.From.begin(), rule.From.end(),
+                       [&node](const std::string &pattern) { return MatchesPattern(pattern, node); });
+}
+
+// "`A`, `B`" of the first few names.
+template <typename Items, typename Name>
+std::string Listed(const Items &items, Name name)
+{
+    constexpr std::size_t most = 6;
+    std::string text;
+    for (std::size_t i = 0; i < items.size() && i < most; ++i)
+    {
+        text += (i > 0 ? ", `" : "`") + name(items[i]) + "`";
+    }
+    if (items.size() > most)
+    {
+        text += " and " + std::to_string(items.size() - most) + " more";
+    }
+    return text;
+}
+
+std::string WhyNoMatch(const SubscribeRule &rule, std::uint64_t definition, const PeerTable::Peer &peer)
+{
+    const auto &offered = peer.Offers->publishes;
+    const auto found =
+        std::find_if(offered.begin(), offered.end(),
+                     [&rule](const auto &published) { return published.message == rule.Message; });
+    if (found == offered.end())
+    {
+        return peer.Node + " does not publish `" + rule.Message + "`; it publishes " +
+               (offered.empty() ? std::string("nothing")
+                                : Listed(offered, [](const auto &published) { return published.message; }));
+    }
+    if (found->type != rule.Type)
+    {
+        return peer.Node + " publishes `" + rule.Message + "` as `" + found->type + "`, this node wants `" +
+               rule.Type + "`";
+    }
+    if (found->definition != definition)
+    {
+        return peer.Node + " was built with another definition of `" + rule.Type + "`";
+    }
+    if (rule.Qos == QosProfile::State && found->qos != "state")
+    {
+        return peer.Node + " publishes `" + rule.Message + "` with qos " + found->qos +
+               ", this node wants qos state";
+    }
+    return "";
+}
+
+std::string WhyNoData(const Wanted &wanted, const PeerTable::Peer &peer, std::chrono::nanoseconds now)
+{
+    if (!peer.Offers)
+    {
+        return now - peer.FirstHeard < Patience ? "" : "no announcement of " + peer.Node + " has arrived yet";
+    }
+    const std::string mismatch = WhyNoMatch(*wanted.Rule, wanted.Definition, peer);
+    if (!mismatch.empty())
+    {
+        return mismatch;
+    }
+    const Reception reception = wanted.ReceptionFrom(peer.Node);
+    if (!reception.LocalProblem.empty())
+    {
+        return reception.LocalProblem;
+    }
+    if (reception.Received > 0 || now - peer.OffersSince < Patience || now - peer.FirstHeard < Patience)
+    {
+        return "";
+    }
+    if (reception.MatchedWriters == 0)
+    {
+        return peer.Node + " announces `" + wanted.Rule->Message +
+               "`, but its writer has not been discovered";
+    }
+    return "nothing has been received: " + peer.Node + " has posted no `" + wanted.Rule->Message +
+           "` yet, or its samples do not get through";
+}
+
+}  // namespace
+
+std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTable &peers,
+                                             std::chrono::nanoseconds sinceStart,
+                                             std::chrono::nanoseconds now)
+{
+    std::vector<Gateway::Problem> problems;
+    const auto add = [&problems, &wanted](const std::string &node, const std::string &reason)
+    {
+        Gateway::Problem problem;
+        problem.subject = "subscribe " + wanted.Rule->Message;
+        problem.node = node;
+        problem.reason = reason;
+        problems.push_back(std::move(problem));
+    };
+    bool anyNode = false;
+    for (const PeerTable::Peer *peer : peers.Heard())
+    {
+        if (!Covers(*wanted.Rule, peer->Node))
+        {
+            continue;
+        }
+        anyNode = true;
+        if (peer->State == Gateway::NodeState::LOST)
+        {
+            continue;  // its own row says so
+        }
+        const std::string reason = WhyNoData(wanted, *peer, now);
+        if (!reason.empty())
+        {
+            add(peer->Node, reason);
+        }
+    }
+    if (!anyNode && sinceStart >= Patience)
+    {
+        add("", "no node named " + Listed(wanted.Rule->From, [](const auto &name) { return name; }) +
+                    " has been heard");
+    }
+    return problems;
+}
+
+Acceptance OfQueue(const PeerTable::Peer &peer, const std::string &queue, const std::string &type,
+                   std::uint64_t definition)
+{
+    if (!peer.Offers)
+    {
+        return {false, "no announcement of " + peer.Node + " has arrived yet"};
+    }
+    const auto &queues = peer.Offers->accepts;
+    const auto found = std::find_if(queues.begin(), queues.end(),
+                                    [&queue](const auto &accepted) { return accepted.queue == queue; });
+    if (found == queues.end())
+    {
+        return {false,
+                peer.Node + " accepts no queue `" + queue + "`; it accepts " +
+                    (queues.empty() ? std::string("nothing")
+                                    : Listed(queues, [](const auto &accepted) { return accepted.queue; }))};
+    }
+    const auto fits = std::find_if(found->types.begin(), found->types.end(),
+                                   [&type](const auto &accepted) { return accepted.type == type; });
+    if (fits == found->types.end())
+    {
+        return {true, "queue `" + queue + "` of " + peer.Node + " does not accept `" + type +
+                          "`; it accepts " +
+                          Listed(found->types, [](const auto &accepted) { return accepted.type; })};
+    }
+    if (fits->definition != definition)
+    {
+        return {true, peer.Node + " was built with another definition of `" + type + "`"};
+    }
+    return {true, ""};
+}
+
+}  // namespace Rabit::Diagnosis

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/idl/MessageType.h>
+#include <rabit/transport/Transport.h>
+
+#include <string>
+
+namespace Rabit::GatewayTopics
+{
+
+// The topics that gateways use among themselves. Messages cannot take these names: they contain a slash.
+inline constexpr const char *Announcement = "rabit/Announcement";
+inline constexpr const char *Beat = "rabit/Beat";
+inline constexpr const char *LinkData = "rabit/LinkData";
+inline constexpr const char *LinkAck = "rabit/LinkAck";
+inline constexpr const char *LinkHello = "rabit/LinkHello";
+
+// The type of a message. Throws std::logic_error if it was not made from IDL.
+const MessageType &TypeOf(const RabitMessage &message);
+template <typename Message>
+const MessageType &TypeOf()
+{
+    static const MessageType &type = TypeOf(Message());
+    return type;
+}
+
+// The topic of a message.
+TopicDescription Describe(const std::string &topic, const MessageType &type);
+
+// The DDS settings of a profile.
+TopicQos QosOf(QosProfile profile);
+
+// The word for a profile in configurations and announcements.
+const char *NameOf(QosProfile profile);
+
+}  // namespace Rabit::GatewayTopics

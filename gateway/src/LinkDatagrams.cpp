@@ -1,0 +1,66 @@
+#include "LinkDatagrams.h"
+
+#include "GatewayTopics.h"
+#include "MessageEncoder.h"
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+void LinkDatagrams::Add(LinkTopic topic, std::string_view destination, const MessageType &type,
+                        const RabitMessage &sample)
+{
+    if (_used == _datagrams.size())
+    {
+        _datagrams.emplace_back();
+    }
+    Datagram &datagram = _datagrams[_used];
+    datagram.Topic = topic;
+    datagram.Destination.assign(destination);
+    datagram.Bytes.resize(type.SerializedSize(sample));
+    if (type.Serialize(sample, datagram.Bytes) == datagram.Bytes.size())
+    {
+        ++_used;
+    }
+}
+
+TopicDescription DescribeLinkTopic(LinkTopic topic)
+{
+    switch (topic)
+    {
+        case LinkTopic::Data:
+            return GatewayTopics::Describe(GatewayTopics::LinkData,
+                                           GatewayTopics::TypeOf<Gateway::LinkDataSample>());
+        case LinkTopic::Ack:
+            return GatewayTopics::Describe(GatewayTopics::LinkAck,
+                                           GatewayTopics::TypeOf<Gateway::LinkAckSample>());
+        case LinkTopic::Hello:
+            break;
+    }
+    return GatewayTopics::Describe(GatewayTopics::LinkHello,
+                                   GatewayTopics::TypeOf<Gateway::LinkHelloSample>());
+}
+
+// The links do not rely on DDS's reliability, but its repair is the quicker one. A hello is soon followed by
+// the next.
+TopicQos LinkTopicQos(LinkTopic topic)
+{
+    TopicQos qos;
+    qos.Reliability = topic == LinkTopic::Hello ? Reliability::BestEffort : Reliability::Reliable;
+    qos.Durability = Durability::Volatile;
+    qos.Depth = topic == LinkTopic::Data ? 256 : topic == LinkTopic::Ack ? 16 : 1;
+    return qos;
+}
+
+void LinkWriters::Write(const LinkDatagrams::Datagram &datagram, std::int64_t sourceTime)
+{
+    std::unique_ptr<TransportWriter> &writer = _writers[{datagram.Topic, datagram.Destination}];
+    if (!writer)
+    {
+        writer = _session.CreateWriter(DescribeLinkTopic(datagram.Topic), LinkTopicQos(datagram.Topic),
+                                       {datagram.Destination});
+    }
+    static_cast<void>(writer->Write(BytesEncoder(datagram.Bytes), sourceTime));
+}
+
+}  // namespace Rabit

@@ -1,0 +1,453 @@
+#include "LinkDriver.h"
+
+#include <rabit/RabitLog.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+#include <random>
+#include <stdexcept>
+
+#include "GatewayTopics.h"
+#include "GpsTime.h"
+#include "LinkWire.h"
+#include "NamePattern.h"
+#include "TypeDefinition.h"
+
+namespace Rabit
+{
+namespace
+{
+
+// Links by name that were refused before they existed; names come from this process, but a loop may make them
+// up.
+constexpr std::size_t MaximumRefusals = 1000;
+// What the encapsulation and RTPS headers take of a datagram.
+constexpr std::size_t DatagramOverhead = 100;
+
+std::uint64_t RandomClockName()
+{
+    std::random_device device;
+    std::uint64_t name = 0;
+    while (name == 0)
+    {
+        name = (std::uint64_t{device()} << 32) | device();
+    }
+    return name;
+}
+
+LinkSettings SettingsOf(const GatewayConfig &config)
+{
+    LinkSettings settings;
+    settings.Node = config.Node;
+    settings.Clock = RandomClockName();
+    settings.MaxDatagram =
+        config.MaxDatagram > 2 * DatagramOverhead ? config.MaxDatagram - DatagramOverhead : DatagramOverhead;
+    return settings;
+}
+
+LinkOptions OptionsOf(const SendRule &rule)
+{
+    LinkOptions options;
+    options.Capacity = rule.Capacity;
+    options.CapacityBytes = rule.CapacityBytes;
+    options.Expire = rule.Expire;
+    options.Window = rule.Window;
+    options.RedeliverInDoubt = rule.RedeliverInDoubt;
+    return options;
+}
+
+}  // namespace
+
+LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
+                       IncarnationSource &incarnations, std::function<void()> wake)
+    : _config(config), _workspace(workspace), _remote(remote), _wake(std::move(wake))
+{
+    for (const AcceptRule &rule : config.Accept)
+    {
+        _accepted.try_emplace(rule.Queue, rule, workspace, _wake);
+    }
+    _links = std::make_unique<LinkNode>(SettingsOf(config), static_cast<LinkOutput &>(*this),
+                                        static_cast<LocalQueues &>(*this), incarnations);
+}
+
+LinkDriver::~LinkDriver()
+{
+    Close();
+}
+
+std::uint64_t LinkDriver::Incarnation() const
+{
+    const std::lock_guard lock(_mutex);
+    return _links->Incarnation();
+}
+
+void LinkDriver::Open(TransportSession &session)
+{
+    _writers = std::make_unique<LinkWriters>(session);
+    const std::vector<std::string> own = {_config.Node};
+    const auto open = [this, &session, &own](LinkTopic topic, void (LinkDriver::*input)(SampleBytes))
+    {
+        _readers.push_back(session.CreateReader(DescribeLinkTopic(topic), LinkTopicQos(topic), own,
+                                                [this, input](SampleBytes bytes, const SampleInfo &info)
+                                                {
+                                                    if (info.Alive)
+                                                    {
+                                                        (this->*input)(bytes);
+                                                    }
+                                                }));
+    };
+    open(LinkTopic::Data, &LinkDriver::OnDatagram<Gateway::LinkDataSample, LinkData, &LinkNode::OnData>);
+    open(LinkTopic::Ack, &LinkDriver::OnDatagram<Gateway::LinkAckSample, LinkAck, &LinkNode::OnAck>);
+    open(LinkTopic::Hello, &LinkDriver::OnDatagram<Gateway::LinkHelloSample, LinkHello, &LinkNode::OnHello>);
+}
+
+void LinkDriver::Close()
+{
+    _readers.clear();
+    _writers.reset();
+}
+
+template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
+void LinkDriver::OnDatagram(SampleBytes bytes)
+{
+    // One for each thread of the transport, so that steady traffic allocates nothing for names and lists.
+    static thread_local Sample sample;
+    static thread_local View view;
+    if (!GatewayTopics::TypeOf<Sample>().Deserialize(bytes, sample))
+    {
+        ++_malformed;
+        return;
+    }
+    LinkWire::FromSample(sample, view);
+    bool work = false;
+    {
+        const std::lock_guard lock(_mutex);
+        const LinkTime now = Now();
+        (_links.get()->*Input)(view, now);
+        work = !_outbox.IsEmpty() || _links->NextDue() <= now;
+    }
+    NotifyDelivered();
+    if (work)
+    {
+        _wake();
+    }
+}
+
+void LinkDriver::NotifyDelivered()
+{
+    std::set<AcceptedQueue *> delivered;
+    {
+        const std::lock_guard lock(_mutex);
+        delivered.swap(_delivered);
+    }
+    for (AcceptedQueue *queue : delivered)
+    {
+        queue->Notify();
+    }
+}
+
+void LinkDriver::FindLocalQueues()
+{
+    for (auto &[name, queue] : _accepted)
+    {
+        const bool changed = queue.Find();
+        if (queue.TakeRoomCame() || changed)
+        {
+            _links->OnRoom(name, Now());
+        }
+    }
+}
+
+LinkDriver::Duration LinkDriver::Service()
+{
+    LinkTime next = LinkNever;
+    {
+        const std::lock_guard lock(_mutex);
+        FindLocalQueues();
+        _links->Run(Now());
+        _sending.Swap(_outbox);
+        next = _links->NextDue();
+    }
+    const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
+    for (const LinkDatagrams::Datagram &datagram : _sending)
+    {
+        if (_writers)
+        {
+            _writers->Write(datagram, sourceTime);
+        }
+    }
+    _sending.Clear();
+    return next;
+}
+
+LocalQueueResult LinkDriver::Deliver(std::string_view /*source*/, std::string_view queue,
+                                     std::string_view type, std::span<const std::uint8_t> payload,
+                                     bool /*redelivered*/)
+{
+    const auto found = _accepted.find(queue);
+    if (found == _accepted.end())
+    {
+        return LocalQueueResult::Unknown;
+    }
+    const LocalQueueResult result = found->second.Deliver(type, payload);
+    if (result == LocalQueueResult::Ok)
+    {
+        _delivered.insert(&found->second);
+    }
+    return result;
+}
+
+std::size_t LinkDriver::Room(std::string_view queue) const
+{
+    const auto found = _accepted.find(queue);
+    return found == _accepted.end() ? 1 : found->second.Room();
+}
+
+void LinkDriver::Send(const LinkData &data)
+{
+    static thread_local Gateway::LinkDataSample sample;
+    LinkWire::ToSample(data, sample);
+    _outbox.Add(LinkTopic::Data, data.Destination, GatewayTopics::TypeOf<Gateway::LinkDataSample>(), sample);
+}
+
+void LinkDriver::Send(const LinkAck &ack)
+{
+    static thread_local Gateway::LinkAckSample sample;
+    LinkWire::ToSample(ack, sample);
+    _outbox.Add(LinkTopic::Ack, ack.Source, GatewayTopics::TypeOf<Gateway::LinkAckSample>(), sample);
+}
+
+void LinkDriver::Send(const LinkHello &hello)
+{
+    static thread_local Gateway::LinkHelloSample sample;
+    LinkWire::ToSample(hello, sample);
+    _outbox.Add(LinkTopic::Hello, hello.Destination, GatewayTopics::TypeOf<Gateway::LinkHelloSample>(),
+                sample);
+}
+
+void LinkDriver::OnOutcome(std::uint64_t /*id*/, std::string_view /*destination*/, std::string_view /*queue*/,
+                           LinkOutcome /*outcome*/)
+{
+    // LinkNode counts them by link, and Gateway/Fleet shows the counts.
+}
+
+bool LinkDriver::Handles(const std::string &queueName) const
+{
+    return queueName.find('/') != std::string::npos;
+}
+
+LinkPayload LinkDriver::Encode(const MessageType &type, const RabitMessage &message) const
+{
+    auto payload = std::make_shared<std::vector<std::uint8_t>>(type.SerializedSize(message));
+    const bool encoded = type.Serialize(message, *payload) == payload->size();
+    return encoded ? payload : nullptr;
+}
+
+bool LinkDriver::Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message)
+{
+    const std::size_t slash = queueName.find('/');
+    const std::string node = queueName.substr(0, slash);
+    const std::string queue = queueName.substr(slash + 1);
+    if (node == _config.Node)
+    {
+        return _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
+    }
+    const MessageType *type = MessageTypeRegistry::Of(*message);
+    if (type == nullptr)
+    {
+        Refuse(node, queue, RemoteQueues::Verdict::WrongType,
+               "the message is of a type that was not made from IDL");
+        return false;
+    }
+    const LinkPayload payload = Encode(*type, *message);
+    if (!payload)
+    {
+        Refuse(node, queue, RemoteQueues::Verdict::WrongType,
+               "the message does not fit its IDL type `" + type->Name() +
+                   "`: a bounded string or sequence is too long");
+        return false;
+    }
+    return node == "*" ? ForwardToAll(queue, *type, payload) : ForwardTo(node, queue, *type, payload);
+}
+
+bool LinkDriver::ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload)
+{
+    const std::vector<std::string> nodes =
+        _remote.LiveNodesAccepting(queue, type.Name(), DefinitionHash(type));
+    if (nodes.empty())
+    {
+        Refuse("*", queue, RemoteQueues::Verdict::UnknownNode,
+               "no live node accepts `" + type.Name() + "` for `" + queue + "`");
+        return false;
+    }
+    bool all = true;
+    for (const std::string &node : nodes)
+    {
+        all = ForwardTo(node, queue, type, payload) && all;
+    }
+    return all;
+}
+
+bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
+                           const LinkPayload &payload)
+{
+    const RemoteQueues::Answer answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
+    if (answer.What != RemoteQueues::Verdict::Accepted)
+    {
+        Refuse(node, queue, answer.What, answer.Reason);
+        return false;
+    }
+    LinkEnqueued enqueued;
+    {
+        const std::lock_guard lock(_mutex);
+        ConfigureOnce(node, queue);
+        enqueued = _links->Enqueue(node, queue, type.Name(), payload, Now());
+        const auto refusals = _refusals.find({node, queue});
+        if (refusals != _refusals.end() && enqueued.Accepted())
+        {
+            refusals->second.Reason.clear();
+        }
+    }
+    if (enqueued.Accepted())
+    {
+        _wake();
+    }
+    return enqueued.Accepted();
+}
+
+void LinkDriver::ConfigureOnce(const std::string &node, const std::string &queue)
+{
+    if (!_configured.emplace(node, queue).second)
+    {
+        return;
+    }
+    const auto rule = std::find_if(
+        _config.Send.begin(), _config.Send.end(),
+        [&node, &queue](const SendRule &candidate)
+        { return MatchesPattern(candidate.To, node) && MatchesPattern(candidate.Queue, queue); });
+    if (rule != _config.Send.end())
+    {
+        _links->Configure(node, queue, OptionsOf(*rule), Now());
+    }
+}
+
+void LinkDriver::Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
+                        const std::string &reason)
+{
+    bool isNew = false;
+    {
+        const std::lock_guard lock(_mutex);
+        if (_refusals.size() >= MaximumRefusals && _refusals.count({node, queue}) == 0)
+        {
+            _refusals.erase(_refusals.begin());
+        }
+        Refusals &refusals = _refusals[{node, queue}];
+        ++(verdict == RemoteQueues::Verdict::WrongType ? refusals.Type : refusals.Unknown);
+        isNew = refusals.Reason != reason;
+        refusals.Reason = reason;
+    }
+    if (isNew)
+    {
+        RabitLog::Write(RabitLogLevel::Warning,
+                        "gateway: refused a message for `" + node + "/" + queue + "`: " + reason);
+        _wake();
+    }
+}
+
+std::vector<Gateway::LinkStatus> LinkDriver::OutboundStatus() const
+{
+    const std::lock_guard lock(_mutex);
+    std::map<LinkName, Gateway::LinkStatus> rows;
+    _links->VisitSenders(
+        [&rows](std::string_view node, std::string_view queue, const LinkSenderCounters &counters)
+        {
+            Gateway::LinkStatus &row = rows[{std::string(node), std::string(queue)}];
+            row.outbox = static_cast<std::uint32_t>(counters.Pending);
+            row.accepted = counters.Accepted;
+            row.delivered = counters.Delivered;
+            row.expired = counters.Expired;
+            row.in_doubt = counters.InDoubt;
+            row.undeliverable = counters.RefusedThere;
+            row.refused_full =
+                counters.RefusedFullByCount + counters.RefusedFullByBytes + counters.RefusedTooLarge;
+            row.resent = counters.MessagesResent;
+        });
+    for (const auto &[name, refusals] : _refusals)
+    {
+        rows[name].refused_unknown = refusals.Unknown;
+        rows[name].refused_type = refusals.Type;
+    }
+    std::vector<Gateway::LinkStatus> status;
+    for (auto &[name, row] : rows)
+    {
+        row.node = name.first;
+        row.queue = name.second;
+        status.push_back(row);
+    }
+    return status;
+}
+
+std::vector<Gateway::InboundStatus> LinkDriver::InboundStatus() const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<Gateway::InboundStatus> status;
+    _links->VisitReceivers(
+        [this, &status](std::string_view node, std::string_view queue, const LinkReceiverCounters &counters)
+        {
+            Gateway::InboundStatus row;
+            row.node = node;
+            row.queue = queue;
+            row.delivered = counters.Delivered;
+            row.expired = counters.Skipped;
+            row.undeliverable =
+                counters.RefusedUnknown + counters.RefusedWrongType + counters.RefusedUndecodable;
+            row.held_back = Room(queue) == 0;
+            status.push_back(row);
+        });
+    return status;
+}
+
+std::vector<Gateway::Problem> LinkDriver::Problems() const
+{
+    std::vector<Gateway::Problem> problems;
+    const auto add =
+        [&problems](const std::string &subject, const std::string &node, const std::string &reason)
+    {
+        Gateway::Problem problem;
+        problem.subject = subject;
+        problem.node = node;
+        problem.reason = reason;
+        problems.push_back(std::move(problem));
+    };
+    const std::lock_guard lock(_mutex);
+    for (const auto &[name, queue] : _accepted)
+    {
+        if (!queue.Problem().empty())
+        {
+            add("accept " + name, "", queue.Problem());
+        }
+    }
+    for (const auto &[name, refusals] : _refusals)
+    {
+        if (!refusals.Reason.empty())
+        {
+            add("send " + name.first + "/" + name.second, name.first == "*" ? "" : name.first,
+                refusals.Reason);
+        }
+    }
+    if (_links->NameInUseElsewhere())
+    {
+        add("node " + _config.Node, "",
+            "the incarnation of this node had to be raised again and again: another live "
+            "node must have this name");
+    }
+    return problems;
+}
+
+std::uint64_t LinkDriver::Malformed() const
+{
+    const std::lock_guard lock(_mutex);
+    return _malformed + _links->Counters().Malformed + _links->Counters().NotForUs;
+}
+
+}  // namespace Rabit

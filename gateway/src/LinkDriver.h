@@ -1,0 +1,118 @@
+#pragma once
+
+#include <rabit/QueueForwarder.h>
+#include <rabit/RabitWorkspace.h>
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/links/LinkNode.h>
+#include <rabit/transport/Transport.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "AcceptedQueue.h"
+#include "LinkDatagrams.h"
+#include "RemoteQueues.h"
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+// Joins the queue links (LinkNode, which does no I/O) to the workspace and to the transport.
+//
+// Threads: any manager's thread calls Forward; the transport's threads hand in what arrives and put it
+// straight into the local queues; only the gateway's thread, in Service, writes to the network. One mutex
+// guards the links; while it is held no handler of a queue and nothing of the transport is called, so that a
+// slow network or a handler that sends again delays nobody.
+class LinkDriver final : public QueueForwarder, private LocalQueues, private LinkOutput
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // All references must outlive the object. `wake` makes the gateway's thread call Service soon; called on
+    // any thread.
+    LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
+               IncarnationSource &incarnations, std::function<void()> wake);
+    ~LinkDriver() override;
+
+    // The present life of this node.
+    std::uint64_t Incarnation() const;
+    // Starts to receive, and keeps the session for writing until Close. Throws TransportError.
+    void Open(TransportSession &session);
+    // Sends nothing more and receives nothing more.
+    void Close();
+
+    // Does what is due and writes it. Returns when to call again at the latest. Gateway's thread only.
+    Duration Service();
+
+    bool Handles(const std::string &queueName) const override;
+    bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message) override;
+
+    std::vector<Gateway::LinkStatus> OutboundStatus() const;
+    std::vector<Gateway::InboundStatus> InboundStatus() const;
+    std::vector<Gateway::Problem> Problems() const;
+    std::uint64_t Malformed() const;
+
+private:
+    // What was refused at the call, before it reached a link.
+    struct Refusals
+    {
+        std::uint64_t Unknown = 0;
+        std::uint64_t Type = 0;
+        std::string Reason;  // of the last one; empty once a message was accepted
+    };
+    using LinkName = std::pair<std::string, std::string>;
+
+    // LocalQueues; called by LinkNode with the mutex held.
+    LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
+                             std::span<const std::uint8_t> payload, bool redelivered) override;
+    std::size_t Room(std::string_view queue) const override;
+    // LinkOutput; called by LinkNode with the mutex held.
+    void Send(const LinkData &data) override;
+    void Send(const LinkAck &ack) override;
+    void Send(const LinkHello &hello) override;
+    void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
+                   LinkOutcome outcome) override;
+
+    bool ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
+                   const LinkPayload &payload);
+    bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload);
+    void Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
+                const std::string &reason);
+    void ConfigureOnce(const std::string &node, const std::string &queue);
+    LinkPayload Encode(const MessageType &type, const RabitMessage &message) const;
+
+    template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
+    void OnDatagram(SampleBytes bytes);
+    void NotifyDelivered();
+    void FindLocalQueues();
+    LinkTime Now() const { return _workspace.GetClock().Monotonic(); }
+
+    const GatewayConfig &_config;
+    RabitWorkspace &_workspace;
+    const RemoteQueues &_remote;
+    const std::function<void()> _wake;
+
+    mutable std::mutex _mutex;
+    std::map<std::string, AcceptedQueue, std::less<>> _accepted;
+    std::set<AcceptedQueue *> _delivered;  // queues whose handlers are to be told
+    LinkDatagrams _outbox;
+    std::map<LinkName, Refusals> _refusals;
+    std::set<LinkName> _configured;
+    std::unique_ptr<LinkNode> _links;
+
+    std::atomic<std::uint64_t> _malformed{0};
+
+    LinkDatagrams _sending;  // gateway's thread only
+    std::unique_ptr<LinkWriters> _writers;
+    std::vector<std::unique_ptr<TransportReader>> _readers;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,114 @@
+#include "LinkWire.h"
+
+#include <algorithm>
+
+namespace Rabit::LinkWire
+{
+
+void ToSample(const LinkData &data, Gateway::LinkDataSample &sample)
+{
+    sample.version = data.Version;
+    sample.source.assign(data.Source);
+    sample.destination.assign(data.Destination);
+    sample.queue.assign(data.Queue);
+    sample.sender_incarnation = data.SenderIncarnation;
+    sample.receiver_incarnation = data.ReceiverIncarnation;
+    sample.base = data.Base;
+    sample.first = data.First;
+    sample.echo_clock = data.Echo.Clock;
+    sample.echo_time = data.Echo.Time;
+    sample.echo_held_for = data.Echo.HeldFor;
+    sample.items.resize(data.Items.size());
+    for (std::size_t i = 0; i < data.Items.size(); ++i)
+    {
+        const LinkItem &item = data.Items[i];
+        Gateway::LinkItemSample &wire = sample.items[i];
+        wire.flags = item.Flags;
+        wire.ttl_left = item.TtlLeft;
+        wire.type.assign(item.Type);
+        wire.payload.assign(item.Payload.begin(), item.Payload.end());
+    }
+}
+
+void ToSample(const LinkAck &ack, Gateway::LinkAckSample &sample)
+{
+    sample.version = ack.Version;
+    sample.source.assign(ack.Source);
+    sample.destination.assign(ack.Destination);
+    sample.queue.assign(ack.Queue);
+    sample.receiver_incarnation = ack.ReceiverIncarnation;
+    sample.sender_incarnation = ack.SenderIncarnation;
+    sample.cumulative = ack.Cumulative;
+    std::copy(ack.Delivered.begin(), ack.Delivered.end(), sample.delivered.begin());
+    std::copy(ack.Refused.begin(), ack.Refused.end(), sample.refused.begin());
+    sample.credit = ack.Credit;
+    sample.clock = ack.Clock;
+    sample.time = ack.Time;
+    sample.your_incarnation = ack.YourIncarnation;
+}
+
+void ToSample(const LinkHello &hello, Gateway::LinkHelloSample &sample)
+{
+    sample.version = hello.Version;
+    sample.source.assign(hello.Source);
+    sample.destination.assign(hello.Destination);
+    sample.incarnation = hello.Incarnation;
+    sample.your_incarnation = hello.YourIncarnation;
+    sample.clock = hello.Clock;
+    sample.time = hello.Time;
+}
+
+void FromSample(const Gateway::LinkDataSample &sample, LinkData &data)
+{
+    data.Version = sample.version;
+    data.Source = sample.source;
+    data.Destination = sample.destination;
+    data.Queue = sample.queue;
+    data.SenderIncarnation = sample.sender_incarnation;
+    data.ReceiverIncarnation = sample.receiver_incarnation;
+    data.Base = sample.base;
+    data.First = sample.first;
+    data.Echo.Clock = sample.echo_clock;
+    data.Echo.Time = sample.echo_time;
+    data.Echo.HeldFor = sample.echo_held_for;
+    data.Items.clear();
+    for (const Gateway::LinkItemSample &wire : sample.items)
+    {
+        LinkItem item;
+        item.Flags = wire.flags;
+        item.TtlLeft = wire.ttl_left;
+        item.Type = wire.type;
+        item.Payload = wire.payload;
+        data.Items.push_back(item);
+    }
+}
+
+void FromSample(const Gateway::LinkAckSample &sample, LinkAck &ack)
+{
+    ack.Version = sample.version;
+    ack.Source = sample.source;
+    ack.Destination = sample.destination;
+    ack.Queue = sample.queue;
+    ack.ReceiverIncarnation = sample.receiver_incarnation;
+    ack.SenderIncarnation = sample.sender_incarnation;
+    ack.Cumulative = sample.cumulative;
+    std::copy(sample.delivered.begin(), sample.delivered.end(), ack.Delivered.begin());
+    std::copy(sample.refused.begin(), sample.refused.end(), ack.Refused.begin());
+    ack.Credit = sample.credit;
+    ack.Clock = sample.clock;
+    ack.Time = sample.time;
+    ack.YourIncarnation = sample.your_incarnation;
+}
+
+void FromSample(const Gateway::LinkHelloSample &sample, LinkHello &hello)
+{
+    hello.Version = sample.version;
+    hello.Source = sample.source;
+    hello.Destination = sample.destination;
+    hello.Incarnation = sample.incarnation;
+    hello.YourIncarnation = sample.your_incarnation;
+    hello.Clock = sample.clock;
+    hello.Time = sample.time;
+}
+
+}  // namespace Rabit::LinkWire

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <rabit/gateway/links/LinkMessages.h>
+
+#include "gateway.idl.h"
+
+namespace Rabit::LinkWire
+{
+
+// The queue links' messages as IDL samples and back. Into a sample: copies, reusing what memory the sample
+// has. Out of a sample: views into it, valid as long as it is unchanged.
+void ToSample(const LinkData &data, Gateway::LinkDataSample &sample);
+void ToSample(const LinkAck &ack, Gateway::LinkAckSample &sample);
+void ToSample(const LinkHello &hello, Gateway::LinkHelloSample &sample);
+
+void FromSample(const Gateway::LinkDataSample &sample, LinkData &data);
+void FromSample(const Gateway::LinkAckSample &sample, LinkAck &ack);
+void FromSample(const Gateway::LinkHelloSample &sample, LinkHello &hello);
+
+}  // namespace Rabit::LinkWire

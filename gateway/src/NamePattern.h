@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+namespace Rabit
+{
+
+// Whether a name fits a pattern in which `*` stands for any characters and `?` for one, as DDS partitions
+// match (OMG DDS 1.4, 2.2.3.13).
+bool MatchesPattern(std::string_view pattern, std::string_view name);
+
+// Whether the text is a node name: 1 to 64 of A-Z a-z 0-9 _ . -
+bool IsNodeName(std::string_view text);
+
+// Whether the text can name a message or a queue: 1 to 200 of A-Z a-z 0-9 _ . - : / that are not empty
+// between slashes.
+bool IsMessageName(std::string_view text);
+
+}  // namespace Rabit

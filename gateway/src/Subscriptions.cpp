@@ -1,0 +1,131 @@
+#include "Subscriptions.h"
+
+#include <rabit/RabitLog.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+
+#include "Diagnosis.h"
+#include "GatewayTopics.h"
+#include "NamePattern.h"
+#include "TypeDefinition.h"
+
+namespace Rabit
+{
+namespace
+{
+
+bool Covers(const SubscribeRule &rule, const std::string &node)
+{
+    return std::any_of(rule.From.begin(), rule.From.end(),
+                       [&node](const std::string &pattern) { return MatchesPattern(pattern, node); });
+}
+
+}  // namespace
+
+Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
+                             RabitWorkspace &workspace)
+    : _rules(rules), _origins(origins), _workspace(workspace)
+{
+}
+
+void Subscriptions::Open(TransportSession &session)
+{
+    _session = &session;
+    for (const SubscribeRule &rule : _rules)
+    {
+        if (rule.Qos)
+        {
+            OpenOne(rule, *rule.Qos);
+        }
+    }
+}
+
+void Subscriptions::Close()
+{
+    _subscribers.clear();
+    _session = nullptr;
+}
+
+void Subscriptions::OpenOne(const SubscribeRule &rule, QosProfile profile)
+{
+    std::unique_ptr<TopicSubscriber> &subscriber = _subscribers[{&rule, profile}];
+    if (!subscriber)
+    {
+        auto made = std::make_unique<TopicSubscriber>(rule, profile, *MessageTypeRegistry::Find(rule.Type),
+                                                      _origins, _workspace);
+        made->Open(*_session);
+        subscriber = std::move(made);
+    }
+}
+
+void Subscriptions::OnOffers(const PeerTable &peers)
+{
+    if (_session == nullptr)
+    {
+        return;
+    }
+    for (const SubscribeRule &rule : _rules)
+    {
+        for (const PeerTable::Peer *peer : peers.Heard())
+        {
+            if (rule.Qos || !peer->Offers || !Covers(rule, peer->Node))
+            {
+                continue;
+            }
+            for (const Gateway::PublishedMessage &offer : peer->Offers->publishes)
+            {
+                if (offer.message == rule.Message && offer.type == rule.Type)
+                {
+                    OpenOne(rule, offer.qos == GatewayTopics::NameOf(QosProfile::Telemetry)
+                                      ? QosProfile::Telemetry
+                                      : QosProfile::State);
+                }
+            }
+        }
+    }
+}
+
+void Subscriptions::Report(Gateway::Fleet &fleet) const
+{
+    for (const auto &[key, subscriber] : _subscribers)
+    {
+        if (subscriber)
+        {
+            const auto status = subscriber->Status();
+            fleet.topics.insert(fleet.topics.end(), status.begin(), status.end());
+        }
+    }
+}
+
+std::vector<Gateway::Problem> Subscriptions::Problems(const PeerTable &peers,
+                                                      std::chrono::nanoseconds sinceStart,
+                                                      std::chrono::nanoseconds now) const
+{
+    std::vector<Gateway::Problem> problems;
+    for (const SubscribeRule &rule : _rules)
+    {
+        Diagnosis::Wanted wanted;
+        wanted.Rule = &rule;
+        wanted.Definition = DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
+        wanted.ReceptionFrom = [this, &rule](const std::string &node)
+        {
+            Diagnosis::Reception reception;
+            for (const auto &[key, subscriber] : _subscribers)
+            {
+                if (key.first == &rule && subscriber)
+                {
+                    reception.Received += subscriber->ReceivedFrom(node);
+                    reception.MatchedWriters += subscriber->MatchedWriters();
+                    reception.LocalProblem += subscriber->LocalProblem(node);
+                }
+            }
+            return reception;
+        };
+        const auto found = Diagnosis::OfSubscription(wanted, peers, sinceStart, now);
+        problems.insert(problems.end(), found.begin(), found.end());
+    }
+    return problems;
+}
+
+}  // namespace Rabit

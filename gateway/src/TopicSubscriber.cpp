@@ -1,0 +1,187 @@
+#include "TopicSubscriber.h"
+
+#include <rabit/RabitLog.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "GatewayTopics.h"
+#include "GpsTime.h"
+#include "NamePattern.h"
+
+namespace Rabit
+{
+namespace
+{
+
+std::uint64_t HashOf(SampleBytes bytes)
+{
+    return std::hash<std::string_view>{}(
+        std::string_view(reinterpret_cast<const char *>(bytes.data()), bytes.size()));
+}
+
+}  // namespace
+
+TopicSubscriber::TopicSubscriber(const SubscribeRule &rule, QosProfile profile, const MessageType &type,
+                                 const OriginTable &origins, RabitWorkspace &workspace)
+    : _rule(rule),
+      _profile(profile),
+      _type(type),
+      _origins(origins),
+      _workspace(workspace),
+      _scratch(type.Create())
+{
+}
+
+TopicSubscriber::~TopicSubscriber()
+{
+    _reader.reset();  // first: its handler uses the rest
+}
+
+void TopicSubscriber::Open(TransportSession &session)
+{
+    _reader = session.CreateReader(
+        GatewayTopics::Describe(_rule.Message, _type), GatewayTopics::QosOf(_profile), _rule.From,
+        [this](SampleBytes bytes, const SampleInfo &info) { OnSample(bytes, info); });
+}
+
+int TopicSubscriber::MatchedWriters() const
+{
+    return _reader ? _reader->MatchedWriters() : 0;
+}
+
+TopicSubscriber::Source *TopicSubscriber::SourceOf(std::string_view node)
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _sources.find(node);
+    if (found != _sources.end())
+    {
+        return found->second.get();
+    }
+    if (_sources.size() >= 1000 || (!node.empty() && !IsNodeName(node)))
+    {
+        return nullptr;
+    }
+    auto source = std::make_unique<Source>();
+    source->Counters.message = _rule.Message;
+    source->Counters.node = node;
+    return _sources.emplace(node, std::move(source)).first->second.get();
+}
+
+void TopicSubscriber::Register(Source &source)
+{
+    const std::string name = source.Counters.node + "/" + _rule.Message;
+    const std::shared_ptr<RabitMessage> message = _type.Create();
+    std::string problem;
+    if (!_workspace.AddPublishSubscribeMessage(name, message))
+    {
+        problem = "the local message `" + name + "` is of another type than `" + _type.Name() + "`";
+    }
+    const std::lock_guard lock(_mutex);
+    source.Global = problem.empty() ? message->GetGlobalPublishSubscribeMessageRef() : nullptr;
+    source.Problem = problem;
+}
+
+bool TopicSubscriber::IsRepetition(const Source &source, const SampleInfo &info, std::uint64_t hash) const
+{
+    // Backends may round the time to a microsecond; two posts as close as that differ in content or do not
+    // matter.
+    return _profile == QosProfile::State && source.AnyPosted && source.Incarnation == info.Incarnation &&
+           source.LastHash == hash && std::llabs(source.LastTime - info.SourceTime) <= 2000;
+}
+
+void TopicSubscriber::CountUndecodable(Source &source, std::size_t size)
+{
+    const std::lock_guard lock(_mutex);
+    ++source.Counters.undecodable;
+    if (source.Log.MayPass(_workspace.GetClock().Monotonic()))
+    {
+        RabitLog::Write(
+            RabitLogLevel::Warning,
+            "gateway: a sample of " + std::to_string(size) + " bytes of `" + _rule.Message + "` from " +
+                (source.Counters.node.empty() ? "a program that is no node" : source.Counters.node) +
+                " does not decode as `" + _type.Name() + "` (" + std::to_string(source.Counters.undecodable) +
+                " so far)");
+    }
+}
+
+void TopicSubscriber::OnSample(SampleBytes bytes, const SampleInfo &info)
+{
+    if (!info.Alive)
+    {
+        return;
+    }
+    Source *source = SourceOf(info.Node);
+    if (source == nullptr)
+    {
+        return;
+    }
+    const auto origin = _origins.Find(info.Node);
+    if (info.Node.empty() || !origin || origin->Incarnation != info.Incarnation)
+    {
+        const std::lock_guard lock(_mutex);
+        ++source->Counters.refused;
+        return;
+    }
+    const std::uint64_t hash = _profile == QosProfile::State ? HashOf(bytes) : 0;
+    if (IsRepetition(*source, info, hash))
+    {
+        const std::lock_guard lock(_mutex);
+        ++source->Counters.repeated;
+        return;
+    }
+    if (!_type.Deserialize(bytes, *_scratch))
+    {
+        CountUndecodable(*source, bytes.size());
+        return;
+    }
+    if (!source->Global)
+    {
+        Register(*source);
+    }
+    if (!source->Global)
+    {
+        const std::lock_guard lock(_mutex);
+        ++source->Counters.refused;
+        return;
+    }
+    // An estimate may say that it was posted a little after it arrived.
+    const std::chrono::nanoseconds arrival = _workspace.GetClock().Monotonic();
+    const std::chrono::nanoseconds posted = std::chrono::nanoseconds(info.SourceTime) + origin->WallToLocal;
+    source->Global->PostMessage(_scratch.get(),
+                                PostTime{GpsTime::ToGps(info.SourceTime), std::min(posted, arrival)});
+    source->AnyPosted = true;
+    source->Incarnation = info.Incarnation;
+    source->LastTime = info.SourceTime;
+    source->LastHash = hash;
+    const std::lock_guard lock(_mutex);
+    ++source->Counters.received;
+}
+
+std::uint64_t TopicSubscriber::ReceivedFrom(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _sources.find(node);
+    return found == _sources.end() ? 0 : found->second->Counters.received;
+}
+
+std::vector<Gateway::TopicStatus> TopicSubscriber::Status() const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<Gateway::TopicStatus> status;
+    for (const auto &[node, source] : _sources)
+    {
+        status.push_back(source->Counters);
+    }
+    return status;
+}
+
+std::string TopicSubscriber::LocalProblem(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _sources.find(node);
+    return found == _sources.end() ? "" : found->second->Problem;
+}
+
+}  // namespace Rabit

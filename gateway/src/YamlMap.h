@@ -1,0 +1,59 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Rabit
+{
+
+// One mapping of a YAML file, read with errors that name file, line and what was expected (ConfigError). The
+// values of missing keys stay as they are, so that defaults stand in one place, the structure that is filled.
+class YamlMap
+{
+public:
+    // `what` names the mapping in messages, for instance "a `publish` entry". Refuses anything but a mapping,
+    // keys that are not among the allowed ones, and a key used twice.
+    YamlMap(std::string file, const YAML::Node &node, std::string what,
+            const std::vector<std::string> &allowedKeys);
+
+    bool Has(const std::string &key) const;
+    // 1-based; of the key's value, or of the whole mapping if there is no such key.
+    int Line(const std::string &key = "") const;
+    // The line of each key.
+    std::map<std::string, int> Lines() const;
+    void Require(const std::string &key) const;
+
+    void Read(const std::string &key, std::string &value) const;
+    void Read(const std::string &key, bool &value) const;
+    void Read(const std::string &key, double &value) const;
+    void Read(const std::string &key, int &value, int least, int most) const;
+    void Read(const std::string &key, std::size_t &value, std::size_t least, std::size_t most) const;
+    // `5s`, `200ms`, `2min`; a bare number is refused because its unit would be a guess.
+    void Read(const std::string &key, std::chrono::milliseconds &value) const;
+    // A list of words, or one word alone.
+    void Read(const std::string &key, std::vector<std::string> &value) const;
+    // One of the words; returns its index, or -1 if the key is missing.
+    int ReadChoice(const std::string &key, const std::vector<std::string> &choices) const;
+    // A list of mappings; empty if the key is missing.
+    std::vector<YamlMap> Maps(const std::string &key, const std::string &what,
+                              const std::vector<std::string> &allowedKeys) const;
+
+    [[noreturn]] void Fail(int line, const std::string &message) const;
+
+private:
+    const YAML::Node *Find(const std::string &key) const;
+    const std::string &Scalar(const YAML::Node &node, const std::string &key, const char *expected) const;
+
+    std::string _file;
+    std::string _what;
+    int _line = 0;
+    std::vector<std::pair<std::string, YAML::Node>> _entries;
+};
+
+}  // namespace Rabit

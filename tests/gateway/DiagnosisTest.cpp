@@ -1,0 +1,189 @@
+#include "Diagnosis.h"
+
+#include <gtest/gtest.h>
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Ns = std::chrono::nanoseconds;
+
+class DiagnosisTest : public ::testing::Test
+{
+protected:
+    DiagnosisTest()
+    {
+        rule.Message = "Pose";
+        rule.Type = "Uav::Pose";
+        rule.From = {"uav*"};
+        wanted.Rule = &rule;
+        wanted.Definition = 11;
+        wanted.ReceptionFrom = [this](const std::string &) { return reception; };
+        offers.node = "uav1";
+        offers.incarnation = 5;
+    }
+
+    void Offer(const std::string &message, const std::string &type, const std::string &qos,
+               std::uint64_t definition)
+    {
+        Gateway::PublishedMessage published;
+        published.message = message;
+        published.type = type;
+        published.qos = qos;
+        published.definition = definition;
+        offers.publishes.push_back(published);
+    }
+
+    void Accept(const std::string &queue, const std::string &type, std::uint64_t definition)
+    {
+        Gateway::QueueType accepted;
+        accepted.type = type;
+        accepted.definition = definition;
+        Gateway::AcceptedQueue entry;
+        entry.queue = queue;
+        entry.types.push_back(accepted);
+        offers.accepts.push_back(entry);
+    }
+
+    // uav1 is live from second 1 on.
+    void Hear(bool withOffers = true)
+    {
+        Gateway::Beat beat;
+        beat.node = "uav1";
+        beat.incarnation = 5;
+        beat.monotonic_ns = 1;
+        beat.utc_ns = 1;
+        peers.OnBeat(beat, 1s);
+        if (withOffers)
+        {
+            peers.OnAnnouncement(offers, 1s);
+        }
+    }
+
+    // "node: reason" of the only problem, or how many there are.
+    std::string Problem(Ns now) const
+    {
+        const auto problems = Diagnosis::OfSubscription(wanted, peers, now, now);
+        return problems.size() == 1 ? problems[0].node + ": " + problems[0].reason
+                                    : std::to_string(problems.size()) + " problems";
+    }
+
+    SubscribeRule rule;
+    Diagnosis::Wanted wanted;
+    Diagnosis::Reception reception;
+    Gateway::Announcement offers;
+    PeerTable peers{"ground", 1};
+};
+
+TEST_F(DiagnosisTest, NoNodeOfThatName)
+{
+    EXPECT_EQ(Problem(1400ms), "0 problems");
+    EXPECT_EQ(Problem(1500ms), ": no node named `uav*` has been heard");
+}
+
+TEST_F(DiagnosisTest, NoSuchMessageThere)
+{
+    Offer("MissionState", "Uav::MissionState", "state", 12);
+    Hear();
+    EXPECT_EQ(Problem(1s), "uav1: uav1 does not publish `Pose`; it publishes `MissionState`");
+}
+
+TEST_F(DiagnosisTest, NothingPublishedThere)
+{
+    Hear();
+    EXPECT_EQ(Problem(1s), "uav1: uav1 does not publish `Pose`; it publishes nothing");
+}
+
+TEST_F(DiagnosisTest, OtherType)
+{
+    Offer("Pose", "Uav::Goto", "telemetry", 11);
+    Hear();
+    EXPECT_EQ(Problem(1s), "uav1: uav1 publishes `Pose` as `Uav::Goto`, this node wants `Uav::Pose`");
+}
+
+TEST_F(DiagnosisTest, OtherDefinitionOfTheSameTypeName)
+{
+    Offer("Pose", "Uav::Pose", "telemetry", 99);
+    Hear();
+    EXPECT_EQ(Problem(1s), "uav1: uav1 was built with another definition of `Uav::Pose`");
+}
+
+TEST_F(DiagnosisTest, OtherQos)
+{
+    rule.Qos = QosProfile::State;
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    EXPECT_EQ(Problem(1s), "uav1: uav1 publishes `Pose` with qos telemetry, this node wants qos state");
+}
+
+TEST_F(DiagnosisTest, AStateFitsATelemetrySubscription)
+{
+    rule.Qos = QosProfile::Telemetry;
+    Offer("Pose", "Uav::Pose", "state", 11);
+    Hear();
+    EXPECT_EQ(Problem(1s), "0 problems");
+}
+
+TEST_F(DiagnosisTest, NotAnnounced)
+{
+    Hear(false);
+    EXPECT_EQ(Problem(2s), "0 problems");
+    EXPECT_EQ(Problem(2500ms), "uav1: no announcement of uav1 has arrived yet");
+}
+
+TEST_F(DiagnosisTest, NotDiscovered)
+{
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    EXPECT_EQ(Problem(2s), "0 problems");
+    EXPECT_EQ(Problem(2500ms), "uav1: uav1 announces `Pose`, but its writer has not been discovered");
+}
+
+TEST_F(DiagnosisTest, NothingPostedYet)
+{
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    reception.MatchedWriters = 1;
+    EXPECT_EQ(
+        Problem(2500ms),
+        "uav1: nothing has been received: uav1 has posted no `Pose` yet, or its samples do not get through");
+}
+
+TEST_F(DiagnosisTest, NothingIsWrongWhenDataComes)
+{
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    reception.MatchedWriters = 1;
+    reception.Received = 1;
+    EXPECT_EQ(Problem(60s), "0 problems");
+}
+
+TEST_F(DiagnosisTest, ALostNodeIsNoProblemOfTheSubscription)
+{
+    Offer("Pose", "Uav::Pose", "telemetry", 99);
+    Hear();
+    peers.Advance(60s);
+    EXPECT_EQ(Problem(60s), "0 problems");
+}
+
+TEST_F(DiagnosisTest, WhyAQueueDoesNotTakeAMessage)
+{
+    Accept("MissionControl", "Uav::Goto", 21);
+    Hear();
+    const PeerTable::Peer &uav1 = *peers.Find("uav1");
+    const auto reason = [&uav1](const char *queue, const char *type, std::uint64_t definition)
+    { return Diagnosis::OfQueue(uav1, queue, type, definition).Reason; };
+
+    EXPECT_EQ(reason("MissionControl", "Uav::Goto", 21), "");
+    EXPECT_EQ(reason("Missions", "Uav::Goto", 21),
+              "uav1 accepts no queue `Missions`; it accepts `MissionControl`");
+    EXPECT_EQ(reason("MissionControl", "Uav::Pose", 21),
+              "queue `MissionControl` of uav1 does not accept `Uav::Pose`; it accepts `Uav::Goto`");
+    EXPECT_EQ(reason("MissionControl", "Uav::Goto", 22),
+              "uav1 was built with another definition of `Uav::Goto`");
+}
+
+}  // namespace
+}  // namespace Rabit

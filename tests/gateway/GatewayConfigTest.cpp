@@ -1,0 +1,259 @@
+#include <gtest/gtest.h>
+#include <rabit/gateway/LoadGatewayConfig.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+class GatewayConfigTest : public ::testing::Test
+{
+protected:
+    GatewayConfigTest()
+    {
+        const auto *test = ::testing::UnitTest::GetInstance()->current_test_info();
+        _folder = std::filesystem::path(::testing::TempDir()) /
+                  ("rabit-config-" + std::to_string(std::hash<std::string>{}(test->name())) + "-" +
+                   std::to_string(::getpid()));
+        std::filesystem::create_directories(_folder);
+    }
+
+    ~GatewayConfigTest() override
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(_folder, ignored);
+    }
+
+    GatewayConfig Load(const std::string &yaml, const std::string &node = "") const
+    {
+        const std::string file = (_folder / "node.yaml").string();
+        std::ofstream(file) << yaml;
+        return LoadGatewayConfig(file, node);
+    }
+
+    // The error without the folder.
+    std::string ErrorOf(const std::string &yaml, const std::string &node = "") const
+    {
+        try
+        {
+            Load(yaml, node);
+        }
+        catch (const ConfigError &error)
+        {
+            const std::string text = error.what();
+            const std::string prefix = _folder.string() + "/";
+            EXPECT_EQ(text.rfind(prefix, 0), 0u) << text;
+            return text.substr(prefix.size());
+        }
+        return "no error";
+    }
+
+    std::filesystem::path _folder;
+};
+
+TEST_F(GatewayConfigTest, ReadsEveryKey)
+{
+    const GatewayConfig config = Load(R"(
+node: uav1
+domain: 7
+transport: fastdds
+interfaces: [lo, 127.0.0.1]
+peers: 10.0.0.2
+multicast: off
+max_datagram: 65000
+shared_memory: on
+lease: 2s
+backend_config: vendor.xml
+state_dir: /var/lib/rabit
+publish:
+  - {message: Pose, type: Uav::Pose, qos: telemetry, max_rate: 10}
+  - {message: MissionState, type: Uav::MissionState}
+subscribe:
+  - {message: Pose, type: Uav::Pose, from: ["uav*", ground], qos: telemetry}
+accept:
+  - {queue: MissionControl, types: [Uav::Goto, Uav::TargetReport]}
+send:
+  - {to: "uav?", queue: MissionControl, capacity: 50, capacity_bytes: 100000, expire: 1500ms, window: 8,
+     redeliver_in_doubt: on}
+)");
+    EXPECT_EQ(config.Node, "uav1");
+    EXPECT_EQ(config.Domain, 7);
+    EXPECT_EQ(config.Interfaces, (std::vector<std::string>{"lo", "127.0.0.1"}));
+    EXPECT_EQ(config.Peers, std::vector<std::string>{"10.0.0.2"});
+    EXPECT_FALSE(config.Multicast);
+    EXPECT_EQ(config.MaxDatagram, 65000u);
+    EXPECT_TRUE(config.SharedMemory);
+    EXPECT_EQ(config.Lease, 2s);
+    EXPECT_EQ(config.BackendConfig, "vendor.xml");
+    EXPECT_EQ(config.StateDir, "/var/lib/rabit");
+    ASSERT_EQ(config.Publish.size(), 2u);
+    EXPECT_EQ(config.Publish[0].Qos, QosProfile::Telemetry);
+    EXPECT_EQ(config.Publish[0].MaxRate, 10.0);
+    EXPECT_EQ(config.Publish[1].Qos, QosProfile::State);
+    ASSERT_EQ(config.Subscribe.size(), 1u);
+    EXPECT_EQ(config.Subscribe[0].From, (std::vector<std::string>{"uav*", "ground"}));
+    EXPECT_EQ(config.Subscribe[0].Qos, QosProfile::Telemetry);
+    ASSERT_EQ(config.Accept.size(), 1u);
+    EXPECT_EQ(config.Accept[0].Types, (std::vector<std::string>{"Uav::Goto", "Uav::TargetReport"}));
+    ASSERT_EQ(config.Send.size(), 1u);
+    EXPECT_EQ(config.Send[0].Expire, 1500ms);
+    EXPECT_EQ(config.Send[0].Window, 8u);
+    EXPECT_TRUE(config.Send[0].RedeliverInDoubt);
+}
+
+TEST_F(GatewayConfigTest, TheNodeNameCanBeGivenBesideTheFile)
+{
+    EXPECT_EQ(Load("domain: 3\n", "uav2").Node, "uav2");
+    EXPECT_EQ(Load("node: uav1\n", "uav2").Node, "uav2");
+}
+
+TEST_F(GatewayConfigTest, AFileThatIsNotThereIsNamed)
+{
+    try
+    {
+        LoadGatewayConfig((_folder / "missing.yaml").string());
+        FAIL() << "no error";
+    }
+    catch (const ConfigError &error)
+    {
+        EXPECT_EQ(std::string(error.what()),
+                  (_folder / "missing.yaml").string() +
+                      ": cannot read the configuration: No such file or directory");
+    }
+}
+
+struct BadConfig
+{
+    const char *Name;
+    const char *Yaml;
+    const char *Error;
+};
+
+// The texts are part of the interface: a person reads them on a field, without the documentation.
+const BadConfig BadConfigs[] = {
+    {"UnknownKey", "node: a\ndomian: 3\n",
+     "node.yaml:2: unknown key `domian` in the configuration; did you mean `domain`?"},
+    {"UnknownKeyInEntry", "node: a\npublish:\n  - {message: P, type: Uav::Pose, rate: 3}\n",
+     "node.yaml:3: unknown key `rate` in a `publish` entry; expected one of `message`, `type`, `qos`, "
+     "`max_rate`"},
+    {"RepeatedKey", "node: a\ndomain: 1\ndomain: 2\n",
+     "node.yaml:3: key `domain` stands twice in the configuration"},
+    {"NotYaml", "node: a\npublish: [\n", "node.yaml:3: not YAML: end of sequence flow not found"},
+    {"NotAMapping", "- node\n", "node.yaml:1: the configuration must be a mapping of keys to values"},
+    {"Empty", "", "node.yaml: cannot read the configuration: it is empty"},
+    {"NoNode", "domain: 1\n", "node.yaml:1: the configuration needs the key `node`"},
+    {"BadNode", "domain: 1\nnode: a/b\n",
+     "node.yaml:2: `a/b` is no node name; expected 1 to 64 of A-Z a-z 0-9 _ . -"},
+    {"WordForNumber", "node: a\ndomain: seven\n",
+     "node.yaml:2: `domain` is `seven`; expected a whole number from 0 to 232"},
+    {"NumberOutOfRange", "node: a\ndomain: 233\n",
+     "node.yaml:2: `domain` is `233`; expected a whole number from 0 to 232"},
+    {"ListForWord", "node: [a]\n", "node.yaml:1: `node` must be a word"},
+    {"WordForList", "node: a\npublish: Pose\n",
+     "node.yaml:2: `publish` must be a list; each entry starts with `- `"},
+    {"WordForEntry", "node: a\npublish:\n  - Pose\n",
+     "node.yaml:3: a `publish` entry must be a mapping of keys to values"},
+    {"MissingType", "node: a\npublish:\n  - {message: Pose}\n",
+     "node.yaml:3: a `publish` entry needs the key `type`"},
+    {"UnknownType", "node: a\npublish:\n  - {message: Pose, type: Uav::Poze}\n",
+     "node.yaml:3: unknown IDL type `Uav::Poze`; did you mean `Uav::Pose`?"},
+    {"UnknownQos", "node: a\npublish:\n  - {message: Pose, type: Uav::Pose, qos: best}\n",
+     "node.yaml:3: `qos` is `best`; expected one of `state`, `telemetry`"},
+    {"NegativeRate", "node: a\npublish:\n  - {message: Pose, type: Uav::Pose, max_rate: -1}\n",
+     "node.yaml:3: max_rate is out of range; expected 0 (no limit) to 1000000 a second"},
+    {"PublishedTwice",
+     "node: a\npublish:\n  - {message: Pose, type: Uav::Pose}\n  - {message: Pose, type: Uav::Pose}\n",
+     "node.yaml:4: `Pose` stands twice under `publish` (first in line 3)"},
+    {"PublishOfAMirroredMessage", "node: a\npublish:\n  - {message: b/Pose, type: Uav::Pose}\n",
+     "node.yaml:3: `b/Pose` belongs to another node or to the gateway; expected a name without `/`"},
+    {"AcceptedTwice",
+     "node: a\naccept:\n  - {queue: Q, types: [Uav::Goto]}\n  - {queue: Q, types: [Uav::Goto]}\n",
+     "node.yaml:4: `Q` stands twice under `accept` (first in line 3)"},
+    {"AcceptsNothing", "node: a\naccept:\n  - {queue: Q, types: []}\n",
+     "node.yaml:3: queue `Q` accepts no types; expected a list of IDL types"},
+    {"BadFrom", "node: a\nsubscribe:\n  - {message: Pose, type: Uav::Pose, from: [\"uav 1\"]}\n",
+     "node.yaml:3: `uav 1` in `from` is no node name; `*` and `?` stand for any characters"},
+    {"TimeWithoutUnit", "node: a\nsend:\n  - {expire: 5}\n",
+     "node.yaml:3: `expire` is `5`; expected a time such as 5s, 200ms or 2min"},
+    {"NegativeTime", "node: a\nlease: -1s\n",
+     "node.yaml:2: `lease` is `-1s`; expected a time such as 5s, 200ms or 2min"},
+    {"LeaseTooShort", "node: a\nlease: 1ms\n",
+     "node.yaml:2: the lease is out of range; expected 200ms to 3600s"},
+    {"ZeroCapacity", "node: a\nsend:\n  - {capacity: 0}\n",
+     "node.yaml:3: `capacity` is `0`; expected a whole number from 1 to 1000000"},
+    {"BadSwitch", "node: a\nmulticast: maybe\n",
+     "node.yaml:2: `multicast` is `maybe`; expected one of `off`, `on`, `false`, `true`"},
+    {"EmptyValue", "node:\n", "node.yaml:1: key `node` in the configuration has no value"},
+};
+
+class BadConfigTest : public GatewayConfigTest, public ::testing::WithParamInterface<BadConfig>
+{
+};
+
+TEST_P(BadConfigTest, IsRefusedWithPlaceAndExpectation)
+{
+    EXPECT_EQ(ErrorOf(GetParam().Yaml), GetParam().Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadConfigTest, ::testing::ValuesIn(BadConfigs),
+                         [](const auto &bad) { return std::string(bad.param.Name); });
+
+TEST_F(GatewayConfigTest, AnUnknownTransportIsNamedWithItsLine)
+{
+    const GatewayConfig config = Load("node: a\ntransport: fastdsd\n");
+    try
+    {
+        ValidateTransportName(config, {"fastdds", "cyclonedds"});
+        FAIL() << "no error";
+    }
+    catch (const ConfigError &error)
+    {
+        EXPECT_EQ(std::string(error.what()), (_folder / "node.yaml").string() +
+                                                 ":2: unknown transport `fastdsd`; did you mean `fastdds`?");
+    }
+}
+
+TEST_F(GatewayConfigTest, AConfigurationMadeInCodeIsCheckedAlike)
+{
+    GatewayConfig config;
+    config.Node = "uav1";
+    config.Publish.push_back({.Message = "Pose", .Type = "Uav::Nothing"});
+    EXPECT_THROW(ValidateGatewayConfig(config), ConfigError);
+    config.Publish[0].Type = "Uav::Pose";
+    EXPECT_NO_THROW(ValidateGatewayConfig(config));
+}
+
+TEST_F(GatewayConfigTest, GarbledFilesAreRefusedOrReadButNeverEndTheProcess)
+{
+    const std::string good =
+        "node: a\ndomain: 3\npublish:\n  - {message: Pose, type: Uav::Pose}\nsend:\n  - {expire: 5s}\n";
+    std::uint32_t random = 1;
+    int refused = 0;
+    for (int run = 0; run < 500; ++run)
+    {
+        std::string bad = good;
+        for (int edit = 0; edit < 3; ++edit)
+        {
+            random = random * 1664525u + 1013904223u;
+            bad[(random >> 8) % bad.size()] = static_cast<char>(random >> 24);
+        }
+        try
+        {
+            Load(bad);
+        }
+        catch (const ConfigError &)
+        {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 250);
+}
+
+}  // namespace
+}  // namespace Rabit

@@ -1,0 +1,452 @@
+// Mirrored messages and presence: whole nodes on the simulated network.
+#include <gmock/gmock.h>
+
+#include "SimulatedFleet.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+class MirrorTest : public ::testing::Test
+{
+protected:
+    // Both sides up and matched.
+    void Settle() { fleet.RunFor(3s); }
+
+    SimulatedFleet fleet;
+};
+
+TEST_F(MirrorTest, APostAppearsAtTheOtherNodeUnderTheOriginsName)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    pose->latitude_deg = 49.25;
+    pose->yaw_rad = -0.5F;
+    pose->PostMessage();
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
+    EXPECT_TRUE(*mirrored == *pose);
+}
+
+TEST_F(MirrorTest, AManagerIsWokenByAMirroredMessageAsByALocalOne)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    IdleManager &manager = ground.AddIdleManager("Listener");
+    manager.SetWakeupTimeDelaySec(3600);
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = std::make_shared<Uav::Pose>();
+    manager.AddPublishSubscribeMessage("uav1/Pose", mirrored);
+    manager.WakeUpManagerOnMessagePost(mirrored);
+    Settle();
+    const int before = manager.Passes;
+    pose->PostMessage();
+    fleet.RunFor(100ms);
+    EXPECT_EQ(manager.Passes, before + 1);
+}
+
+TEST_F(MirrorTest, TheTimeStampIsTheOrigins)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"), 1.2e9);
+    SimulatedNode &ground = fleet.Add(GroundConfig(), 1.4e9);
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    pose->PostMessage();
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
+    EXPECT_NEAR(mirrored->GetTimeStamp(), pose->GetTimeStamp(), 1e-6);
+}
+
+TEST_F(MirrorTest, TheAgeCountsFromThePostAtTheOriginHoweverWrongItsClockIs)
+{
+    SimulatedFaults slow;
+    slow.Delay = 30ms;
+    fleet.Network.SetFaults("*", "*", slow);
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"), 0.9e9);
+    SimulatedNode &ground = fleet.Add(GroundConfig(), 1.4e9);
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    pose->PostMessage();
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
+    EXPECT_NEAR(mirrored->GetAgeSeconds(), 0.030, 0.002);
+    fleet.RunFor(2s);
+    EXPECT_NEAR(mirrored->GetAgeSeconds(), 2.030, 0.002);
+}
+
+TEST_F(MirrorTest, TheAgeStaysRightWhenTheOriginsClockIsSet)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    uav.Clock->SetGpsTimeSeconds(1.4e9 - 3600.0);
+    fleet.RunFor(1s);
+    pose->PostMessage();
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
+    EXPECT_LT(mirrored->GetAgeSeconds(), 0.01);
+}
+
+TEST_F(MirrorTest, AStateReachesALateJoinerWithItsTrueAge)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    auto state = uav.Register<Uav::MissionState>("MissionState");
+    state->commands = 17;
+    state->PostMessage();
+    fleet.RunFor(60s);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto mirrored = ground.Register<Uav::MissionState>("uav1/MissionState");
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 5s));
+    EXPECT_EQ(mirrored->commands, 17u);
+    EXPECT_GT(mirrored->GetAgeSeconds(), 59.9);
+}
+
+TEST_F(MirrorTest, TelemetryFromBeforeIsNotShownToALateJoiner)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    fleet.RunFor(1s);
+    pose->PostMessage();
+    fleet.RunFor(10s);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    fleet.RunFor(10s);
+    EXPECT_FALSE(mirrored->FetchMessage() && mirrored->WasPosted());
+}
+
+TEST_F(MirrorTest, ARepeatedStateIsPostedOnce)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto state = uav.Register<Uav::MissionState>("MissionState");
+    Settle();
+    state->PostMessage();
+    fleet.RunFor(20s);
+    EXPECT_EQ(ground.Workspace.FindGlobalMessage("uav1/MissionState")->GetNumberOfPosts(), 1u);
+    // A second post with the same contents is a new one.
+    state->PostMessage();
+    fleet.RunFor(20s);
+    EXPECT_EQ(ground.Workspace.FindGlobalMessage("uav1/MissionState")->GetNumberOfPosts(), 2u);
+}
+
+TEST_F(MirrorTest, AStateGetsThroughALossyNetwork)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    SimulatedFaults lossy;
+    lossy.Loss = 0.4;
+    fleet.Network.SetFaults("*", "*", lossy);
+    auto state = uav.Register<Uav::MissionState>("MissionState");
+    auto mirrored = ground.Register<Uav::MissionState>("uav1/MissionState");
+    fleet.RunFor(10s);
+    for (std::uint32_t i = 1; i <= 20; ++i)
+    {
+        state->commands = i;
+        state->PostMessage();
+        fleet.RunFor(2s);
+        mirrored->FetchMessage();
+        EXPECT_EQ(mirrored->commands, i);
+    }
+}
+
+TEST_F(MirrorTest, MaxRateSkipsValuesButNotTheLastOne)
+{
+    GatewayConfig config = AircraftConfig("uav1");
+    config.Publish[0].MaxRate = 5;
+    SimulatedNode &uav = fleet.Add(config);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    for (int i = 1; i <= 100; ++i)
+    {
+        pose->latitude_deg = i * 0.01;
+        pose->PostMessage();
+        fleet.RunFor(10ms);
+    }
+    fleet.RunFor(1s);
+    const std::uint64_t posts = ground.Workspace.FindGlobalMessage("uav1/Pose")->GetNumberOfPosts();
+    EXPECT_GE(posts, 5u);
+    EXPECT_LE(posts, 7u);
+    mirrored->FetchMessage();
+    EXPECT_DOUBLE_EQ(mirrored->latitude_deg, 1.0);
+}
+
+TEST_F(MirrorTest, AMirroredMessageIsNotMirroredAgain)
+{
+    // Both want and publish Pose: a loop if mirrored messages went out again.
+    GatewayConfig first = AircraftConfig("uav1");
+    first.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose"});
+    GatewayConfig second = AircraftConfig("uav2");
+    second.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose"});
+    SimulatedNode &uav1 = fleet.Add(first);
+    SimulatedNode &uav2 = fleet.Add(second);
+    auto pose = uav1.Register<Uav::Pose>("Pose");
+    Settle();
+    pose->PostMessage();
+    fleet.RunFor(5s);
+    EXPECT_EQ(uav2.Workspace.FindGlobalMessage("uav1/Pose")->GetNumberOfPosts(), 1u);
+    EXPECT_EQ(uav2.Workspace.FindGlobalMessage("Pose")->GetNumberOfPosts(), 0u);
+    EXPECT_EQ(uav1.Workspace.FindGlobalMessage("uav2/Pose"), nullptr);
+}
+
+TEST_F(MirrorTest, AKilledNodeIsStaleThenLostWithinFiveSecondsAndUpAgainWhenItReturns)
+{
+    fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    Settle();
+    EXPECT_EQ(ground.StateOf("uav1"), "UP");
+    fleet.Kill("uav1");
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "STALE"; }, 2500ms));
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "LOST"; }, 2500ms));
+
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "UP"; }, 5s));
+    fleet.RunFor(2s);
+    pose->PostMessage();
+    EXPECT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
+}
+
+TEST_F(MirrorTest, ANodeThatEndsInOrderIsLostAtOnce)
+{
+    fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    Settle();
+    fleet.Stop("uav1");
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "LOST"; }, 1s));
+    EXPECT_EQ(ground.Fleet().nodes.at(0).reason, "left");
+}
+
+TEST_F(MirrorTest, APartitionIsShownAndHeals)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    SimulatedFaults cut;
+    cut.Cut = true;
+    fleet.Network.SetFaults("uav1", "ground", cut);
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "LOST"; }, 5s));
+    fleet.RunFor(30s);
+    fleet.Network.ClearFaults();
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "UP"; }, 5s));
+    fleet.RunFor(3s);
+    pose->PostMessage();
+    EXPECT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
+}
+
+TEST_F(MirrorTest, TheRoundTripIsMeasured)
+{
+    SimulatedFaults slow;
+    slow.Delay = 25ms;
+    fleet.Network.SetFaults("*", "*", slow);
+    fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    Settle();
+    EXPECT_NEAR(ground.Fleet().nodes.at(0).round_trip_s, 0.050, 0.001);
+}
+
+TEST_F(MirrorTest, TwoNodesOfOneNameAreReportedByBothAndByOthers)
+{
+    SimulatedFleet twins;
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    SimulatedNode &first = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode second(AircraftConfig("uav1"), fleet.Network, 77s, 1.5e9);
+    second.Reactor.Start();
+    for (int i = 0; i < 1000; ++i)
+    {
+        fleet.RunFor(10ms);
+        second.Clock->AdvanceTo(fleet.Network.Now() + 77s);
+        second.Reactor.RunDue();
+    }
+    EXPECT_THAT(first.Problems(), HasSubstr("node uav1: another live node has the name of this one"));
+    EXPECT_THAT(second.Problems(), HasSubstr("node uav1: another live node has the name of this one"));
+    EXPECT_THAT(ground.Problems(), HasSubstr("node uav1: two live nodes have this name"));
+}
+
+TEST_F(MirrorTest, WhyNoDataComesIsSaidByNameWithinTwoSeconds)
+{
+    GatewayConfig config = AircraftConfig("uav1");
+    config.Publish.erase(config.Publish.begin());
+    fleet.Add(config);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    EXPECT_TRUE(fleet.RunUntil(
+        [&]
+        {
+            return ground.Problems().find(
+                       "subscribe Pose: uav1 does not publish `Pose`; it publishes `MissionState`") !=
+                   std::string::npos;
+        },
+        2s))
+        << ground.Problems();
+}
+
+TEST_F(MirrorTest, ALocalMessageOfAnotherTypeIsReportedNotOverwritten)
+{
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    ground.Register<Uav::Goto>("uav1/Pose");
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    Settle();
+    pose->PostMessage();
+    fleet.RunFor(2s);
+    EXPECT_THAT(
+        ground.Problems(),
+        HasSubstr("subscribe Pose: the local message `uav1/Pose` is of another type than `Uav::Pose`"));
+}
+
+// A transport session that speaks for a node by hand.
+class RogueNode
+{
+public:
+    RogueNode(SimulatedNetwork &network, const std::string &node) : _node(node)
+    {
+        TransportSettings settings;
+        settings.Node = node;
+        settings.Incarnation = 42;
+        _session = SimulatedTransport(network).Open(settings, [](const PeerEvent &) {});
+        _beats = Writer("rabit/Beat", "Rabit::Gateway::Beat");
+        _announcements = Writer("rabit/Announcement", "Rabit::Gateway::Announcement");
+        _poses = Writer("Pose", "Uav::Pose");
+    }
+
+    void SendBeat(std::chrono::nanoseconds now)
+    {
+        Gateway::Beat beat;
+        beat.node = _node;
+        beat.incarnation = 42;
+        beat.monotonic_ns = now.count();
+        beat.utc_ns = now.count();
+        Send(*_beats, Encoded(beat));
+    }
+
+    void SendAnnouncement()
+    {
+        Gateway::Announcement announcement;
+        announcement.node = _node;
+        announcement.incarnation = 42;
+        Gateway::PublishedMessage pose;
+        pose.message = "Pose";
+        pose.type = "Uav::Pose";
+        pose.qos = "telemetry";
+        announcement.publishes.push_back(pose);
+        Send(*_announcements, Encoded(announcement));
+    }
+
+    void SendPoseBytes(const std::vector<std::uint8_t> &bytes) { Send(*_poses, bytes); }
+    void SendBeatBytes(const std::vector<std::uint8_t> &bytes) { Send(*_beats, bytes); }
+
+    static std::vector<std::uint8_t> Encoded(RabitMessage &message)
+    {
+        std::vector<std::uint8_t> bytes(65536);
+        bytes.resize(
+            static_cast<std::size_t>(message.Serialize(bytes.data(), static_cast<int>(bytes.size()))));
+        return bytes;
+    }
+
+private:
+    struct Bytes final : SampleEncoder
+    {
+        explicit Bytes(const std::vector<std::uint8_t> &data) : Data(data) {}
+        std::size_t EncodedSize() const override { return Data.size(); }
+        bool Encode(std::span<std::uint8_t> buffer) const override
+        {
+            std::copy(Data.begin(), Data.end(), buffer.begin());
+            return true;
+        }
+        const std::vector<std::uint8_t> &Data;
+    };
+
+    std::unique_ptr<TransportWriter> Writer(const std::string &topic, const std::string &type)
+    {
+        TopicDescription description;
+        description.Name = topic;
+        description.TypeName = type;
+        TopicQos qos;
+        qos.Durability = Durability::TransientLocal;
+        return _session->CreateWriter(description, qos, {"", _node});
+    }
+
+    static void Send(TransportWriter &writer, const std::vector<std::uint8_t> &bytes)
+    {
+        EXPECT_EQ(writer.Write(Bytes(bytes), 0), WriteResult::Ok);
+    }
+
+    std::string _node;
+    std::unique_ptr<TransportSession> _session;
+    std::unique_ptr<TransportWriter> _beats;
+    std::unique_ptr<TransportWriter> _announcements;
+    std::unique_ptr<TransportWriter> _poses;
+};
+
+TEST_F(MirrorTest, ASampleThatDoesNotDecodeIsDroppedAndCountedByTopicAndSource)
+{
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    RogueNode rogue(fleet.Network, "uav9");
+    fleet.RunFor(1s);
+    for (int i = 1; i <= 4; ++i)
+    {
+        rogue.SendAnnouncement();
+        rogue.SendBeat(fleet.Network.Now());
+        fleet.RunFor(500ms);
+    }
+    rogue.SendPoseBytes({0, 1, 0, 0, 1, 2, 3});
+    rogue.SendPoseBytes({0, 1, 0, 0});
+    fleet.RunFor(1s);
+    ASSERT_EQ(ground.Fleet().topics.size(), 1u);
+    EXPECT_EQ(ground.Fleet().topics[0].message, "Pose");
+    EXPECT_EQ(ground.Fleet().topics[0].node, "uav9");
+    EXPECT_EQ(ground.Fleet().topics[0].undecodable, 2u);
+    EXPECT_EQ(ground.Fleet().topics[0].received, 0u);
+    ASSERT_EQ(ground.Fleet().nodes.size(), 1u);
+    EXPECT_EQ(ground.Fleet().nodes[0].undecodable, 2u);
+}
+
+TEST_F(MirrorTest, SamplesOfANodeThatIsNotHeardAreNotPosted)
+{
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto mirrored = ground.Register<Uav::Pose>("uav9/Pose");
+    GatewayConfig aircraft = AircraftConfig("uav1");  // so that the ground reads the topic at all
+    fleet.Add(aircraft);
+    RogueNode rogue(fleet.Network, "uav9");
+    Settle();
+    Uav::Pose pose;
+    rogue.SendPoseBytes(RogueNode::Encoded(pose));
+    fleet.RunFor(1s);
+    EXPECT_FALSE(mirrored->FetchMessage() && mirrored->WasPosted());
+    EXPECT_EQ(ground.Fleet().topics.at(0).refused, 1u);
+}
+
+TEST_F(MirrorTest, GarbledGatewayTrafficIsCountedAndChangesNothing)
+{
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    fleet.Add(AircraftConfig("uav1"));
+    RogueNode rogue(fleet.Network, "uav9");
+    Settle();
+    Gateway::Beat beat;
+    beat.node = "uav1";
+    beat.incarnation = 1;
+    beat.monotonic_ns = std::numeric_limits<std::int64_t>::min();
+    rogue.SendBeatBytes(RogueNode::Encoded(beat));
+    beat.node = "no node name";
+    beat.monotonic_ns = 1;
+    rogue.SendBeatBytes(RogueNode::Encoded(beat));
+    rogue.SendBeatBytes({0, 1, 0, 0, 9, 9, 9, 9, 9});
+    fleet.RunFor(1500ms);
+    EXPECT_EQ(ground.Fleet().malformed, 3u);
+    EXPECT_EQ(ground.Fleet().nodes.size(), 1u);
+    EXPECT_EQ(ground.StateOf("uav1"), "UP");
+}
+
+}  // namespace
+}  // namespace Rabit

@@ -1,0 +1,70 @@
+#include "NamePattern.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "NearestWord.h"
+
+namespace Rabit
+{
+namespace
+{
+
+TEST(NamePattern, MatchesAsDdsPartitionsDo)
+{
+    EXPECT_TRUE(MatchesPattern("uav1", "uav1"));
+    EXPECT_TRUE(MatchesPattern("uav*", "uav1"));
+    EXPECT_TRUE(MatchesPattern("uav*", "uav"));
+    EXPECT_TRUE(MatchesPattern("*", "ground"));
+    EXPECT_TRUE(MatchesPattern("uav?", "uav2"));
+    EXPECT_TRUE(MatchesPattern("*.vision", "uav1.vision"));
+    EXPECT_TRUE(MatchesPattern("u*v*n", "uav1.vision"));
+    EXPECT_FALSE(MatchesPattern("uav1", "uav2"));
+    EXPECT_FALSE(MatchesPattern("uav?", "uav12"));
+    EXPECT_FALSE(MatchesPattern("uav*x", "uav1"));
+    EXPECT_FALSE(MatchesPattern("", "uav1"));
+}
+
+TEST(NamePattern, AHostilePatternTakesNoExponentialTime)
+{
+    const std::string pattern = "*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*b";
+    EXPECT_FALSE(MatchesPattern(pattern, std::string(5000, 'a')));
+}
+
+TEST(NamePattern, KnowsNodeNames)
+{
+    EXPECT_TRUE(IsNodeName("uav1.vision-2_b"));
+    EXPECT_FALSE(IsNodeName(""));
+    EXPECT_FALSE(IsNodeName("uav/1"));
+    EXPECT_FALSE(IsNodeName("uav*"));
+    EXPECT_FALSE(IsNodeName("u v"));
+    EXPECT_FALSE(IsNodeName(std::string(65, 'x')));
+}
+
+TEST(NamePattern, KnowsMessageNames)
+{
+    EXPECT_TRUE(IsMessageName("Gateway/Fleet"));
+    EXPECT_TRUE(IsMessageName("Autopilot:ManagerStatusMessage"));
+    EXPECT_FALSE(IsMessageName("/Pose"));
+    EXPECT_FALSE(IsMessageName("Pose/"));
+    EXPECT_FALSE(IsMessageName("a//b"));
+    EXPECT_FALSE(IsMessageName("Po se"));
+    EXPECT_FALSE(IsMessageName(""));
+}
+
+TEST(NearestWord, NamesTheWordOneSlipAway)
+{
+    EXPECT_EQ(NearestWordHint("publsh", {"publish", "subscribe"}), "; did you mean `publish`?");
+    EXPECT_EQ(NearestWordHint("uav::pose", {"Uav::Goto", "Uav::Pose"}), "; did you mean `Uav::Pose`?");
+}
+
+TEST(NearestWord, ListsWhatIsExpectedWhenNothingIsNear)
+{
+    EXPECT_EQ(NearestWordHint("zzzzzz", {"on", "off"}), "; expected one of `on`, `off`");
+    EXPECT_EQ(NearestWordHint("zzzzzz", {"fastdds"}), "; expected `fastdds`");
+    EXPECT_EQ(NearestWordHint("zzzzzz", {}), "");
+}
+
+}  // namespace
+}  // namespace Rabit

@@ -1,0 +1,270 @@
+// Queue messages between nodes: whole nodes on the simulated network. The link protocol has tests of its own.
+#include <gmock/gmock.h>
+
+#include <vector>
+
+#include "SimulatedFleet.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class QueueTest : public ::testing::Test
+{
+protected:
+    QueueTest()
+        : uav(fleet.Add(AircraftConfig("uav1"))),
+          mission(uav.AddIdleManager("MissionControl")),
+          ground(fleet.Add(GroundConfig()))
+    {
+        fleet.RunFor(2s);
+    }
+
+    bool SendGoto(std::uint32_t id, const std::string &address = "uav1/MissionControl")
+    {
+        auto message = std::make_shared<Uav::Goto>();
+        message->id = id;
+        return ground.Workspace.AddMessageToQueue(address, message);
+    }
+
+    // Takes all that is in a manager's queue: the ids of Gotos, the target numbers of reports as negatives.
+    static std::vector<int> Take(RabitManager &manager)
+    {
+        std::vector<int> ids;
+        std::shared_ptr<RabitMessage> message;
+        while (manager.GetManagerMessageQueue()->GetMessage(message))
+        {
+            if (const auto command = std::dynamic_pointer_cast<Uav::Goto>(message))
+            {
+                ids.push_back(static_cast<int>(command->id));
+            }
+            else if (const auto report = std::dynamic_pointer_cast<Uav::TargetReport>(message))
+            {
+                ids.push_back(-static_cast<int>(report->target));
+            }
+        }
+        return ids;
+    }
+
+    SimulatedFleet fleet;
+    SimulatedNode &uav;
+    IdleManager &mission;
+    SimulatedNode &ground;
+};
+
+TEST_F(QueueTest, AMessageArrivesInTheRealQueueAndWakesItsManager)
+{
+    mission.SetWakeupTimeDelaySec(3600);
+    fleet.RunFor(1s);
+    const int before = mission.Passes;
+    EXPECT_TRUE(SendGoto(7));
+    fleet.RunFor(1s);
+    EXPECT_THAT(Take(mission), ElementsAre(7));
+    EXPECT_EQ(mission.Passes, before + 1);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").delivered, 1u);
+}
+
+TEST_F(QueueTest, MessagesOfAllTypesArriveInOrder)
+{
+    for (std::uint32_t i = 1; i <= 4; ++i)
+    {
+        SendGoto(i);
+        auto report = std::make_shared<Uav::TargetReport>();
+        report->target = i;
+        EXPECT_TRUE(ground.Workspace.AddMessageToQueue("uav1/MissionControl", report));
+    }
+    fleet.RunFor(1s);
+    EXPECT_THAT(Take(mission), ElementsAre(1, -1, 2, -2, 3, -3, 4, -4));
+}
+
+TEST_F(QueueTest, LossDoesNotLoseMessages)
+{
+    SimulatedFaults lossy;
+    lossy.Loss = 0.3;
+    lossy.Duplicate = 0.2;
+    lossy.Jitter = 30ms;
+    fleet.Network.SetFaults("*", "*", lossy);
+    std::vector<int> expected;
+    std::vector<int> taken;
+    for (int i = 1; i <= 500; ++i)
+    {
+        EXPECT_TRUE(SendGoto(static_cast<std::uint32_t>(i)));
+        expected.push_back(i);
+        fleet.RunFor(10ms);
+        const std::vector<int> some = Take(mission);
+        taken.insert(taken.end(), some.begin(), some.end());
+    }
+    fleet.RunFor(20s);
+    const std::vector<int> rest = Take(mission);
+    taken.insert(taken.end(), rest.begin(), rest.end());
+    EXPECT_EQ(taken, expected);
+}
+
+TEST_F(QueueTest, AnOutageLongerThanEveryLeaseLosesNothing)
+{
+    SimulatedFaults cut;
+    cut.Cut = true;
+    fleet.Network.SetFaults("*", "*", cut);
+    fleet.RunFor(1s);
+    EXPECT_TRUE(SendGoto(1));
+    fleet.RunFor(20s);
+    EXPECT_EQ(ground.StateOf("uav1"), "LOST");
+    EXPECT_TRUE(SendGoto(2));
+    fleet.RunFor(20s);
+    fleet.Network.ClearFaults();
+    fleet.RunFor(10s);
+    EXPECT_THAT(Take(mission), ElementsAre(1, 2));
+}
+
+TEST_F(QueueTest, AFullRemoteQueueHoldsTheStreamBackWithoutLoss)
+{
+    // The manager's queue holds 1000; the outbox another 1000.
+    for (std::uint32_t i = 1; i <= 1500; ++i)
+    {
+        EXPECT_TRUE(SendGoto(i));
+        fleet.RunFor(1ms);
+    }
+    fleet.RunFor(5s);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").delivered, 1000u);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").outbox, 500u);
+    EXPECT_TRUE(uav.Fleet().inbound.at(0).held_back);
+    EXPECT_EQ(Take(mission).size(), 1000u);
+    fleet.RunFor(5s);
+    EXPECT_EQ(Take(mission).size(), 500u);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").outbox, 0u);
+}
+
+TEST_F(QueueTest, AFullOutboxRefusesAtOnceAndCounts)
+{
+    SimulatedFaults cut;
+    cut.Cut = true;
+    fleet.Network.SetFaults("*", "*", cut);
+    for (std::uint32_t i = 1; i <= 1000; ++i)
+    {
+        EXPECT_TRUE(SendGoto(i));
+    }
+    EXPECT_FALSE(SendGoto(1001));
+    fleet.RunFor(1500ms);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").refused_full, 1u);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").accepted, 1000u);
+}
+
+TEST_F(QueueTest, AnUnknownNodeIsRefusedAndNamed)
+{
+    EXPECT_FALSE(SendGoto(1, "uav7/MissionControl"));
+    fleet.RunFor(1500ms);
+    EXPECT_EQ(ground.LinkTo("uav7", "MissionControl").refused_unknown, 1u);
+    EXPECT_THAT(ground.Problems(),
+                HasSubstr("send uav7/MissionControl: no node `uav7` has announced itself"));
+}
+
+TEST_F(QueueTest, AQueueThatIsNotAcceptedIsRefusedAndNamed)
+{
+    EXPECT_FALSE(SendGoto(1, "uav1/Missions"));
+    fleet.RunFor(1500ms);
+    EXPECT_EQ(ground.LinkTo("uav1", "Missions").refused_unknown, 1u);
+    EXPECT_THAT(
+        ground.Problems(),
+        HasSubstr("send uav1/Missions: uav1 accepts no queue `Missions`; it accepts `MissionControl`"));
+}
+
+TEST_F(QueueTest, ATypeThatTheQueueDoesNotTakeIsRefusedAndNamed)
+{
+    EXPECT_FALSE(ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Pose>()));
+    fleet.RunFor(1500ms);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").refused_type, 1u);
+    EXPECT_THAT(ground.Problems(),
+                HasSubstr("does not accept `Uav::Pose`; it accepts `Uav::Goto`, `Uav::TargetReport`"));
+}
+
+TEST_F(QueueTest, AMessageThatDoesNotFitItsIdlBoundsIsRefused)
+{
+    auto message = std::make_shared<Uav::Goto>();
+    message->reply_to = std::string(65, 'x');
+    EXPECT_FALSE(ground.Workspace.AddMessageToQueue("uav1/MissionControl", message));
+}
+
+TEST_F(QueueTest, AMessageChangedAfterItWasAcceptedArrivesAsItWas)
+{
+    auto message = std::make_shared<Uav::Goto>();
+    message->id = 1;
+    EXPECT_TRUE(ground.Workspace.AddMessageToQueue("uav1/MissionControl", message));
+    message->id = 2;
+    fleet.RunFor(1s);
+    EXPECT_THAT(Take(mission), ElementsAre(1));
+}
+
+TEST_F(QueueTest, AStarSendsToEveryLiveNodeThatAccepts)
+{
+    SimulatedNode &second = fleet.Add(AircraftConfig("uav2"));
+    IdleManager &secondMission = second.AddIdleManager("MissionControl");
+    fleet.Add(AircraftConfig("uav3"));
+    fleet.RunFor(2s);
+    fleet.Stop("uav3");
+    fleet.RunFor(2s);
+    EXPECT_TRUE(SendGoto(5, "*/MissionControl"));
+    EXPECT_FALSE(SendGoto(5, "*/NoSuchQueue"));
+    fleet.RunFor(1s);
+    EXPECT_THAT(Take(mission), ElementsAre(5));
+    EXPECT_THAT(Take(secondMission), ElementsAre(5));
+    EXPECT_EQ(ground.LinkTo("uav3", "MissionControl").accepted, 0u);
+}
+
+TEST_F(QueueTest, ANodeCanAddressItsOwnQueueByItsFullName)
+{
+    EXPECT_TRUE(uav.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
+    EXPECT_EQ(Take(mission).size(), 1u);
+}
+
+TEST_F(QueueTest, MessagesWaitForAManagerThatComesLater)
+{
+    SimulatedNode &late = fleet.Add(AircraftConfig("uav2"));
+    fleet.RunFor(2s);
+    EXPECT_TRUE(SendGoto(9, "uav2/MissionControl"));
+    fleet.RunFor(5s);
+    EXPECT_THAT(late.Problems(),
+                HasSubstr("accept MissionControl: there is no local queue `MissionControl`"));
+    IdleManager &manager = late.AddIdleManager("MissionControl");
+    fleet.RunFor(5s);
+    EXPECT_THAT(Take(manager), ElementsAre(9));
+}
+
+TEST_F(QueueTest, AMessageOlderThanItsExpiryIsNeverDelivered)
+{
+    GatewayConfig config = GroundConfig();
+    config.Node = "ground2";
+    config.Send.push_back({.To = "uav*", .Expire = 5s});
+    SimulatedNode &second = fleet.Add(config);
+    fleet.RunFor(2s);
+    SimulatedFaults cut;
+    cut.Cut = true;
+    fleet.Network.SetFaults("*", "*", cut);
+    EXPECT_TRUE(second.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
+    fleet.RunFor(15s);
+    fleet.Network.ClearFaults();
+    fleet.RunFor(15s);
+    EXPECT_TRUE(Take(mission).empty());
+    EXPECT_EQ(second.LinkTo("uav1", "MissionControl").expired, 1u);
+}
+
+TEST_F(QueueTest, ARestartedReceiverGetsWhatIsSentAfterwards)
+{
+    EXPECT_TRUE(SendGoto(1));
+    fleet.RunFor(1s);
+    fleet.Kill("uav1");
+    fleet.RunFor(10s);
+    SimulatedNode &again = fleet.Add(AircraftConfig("uav1"));
+    IdleManager &manager = again.AddIdleManager("MissionControl");
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "UP"; }, 5s));
+    EXPECT_TRUE(SendGoto(2));
+    fleet.RunFor(5s);
+    EXPECT_THAT(Take(manager), ElementsAre(2));
+}
+
+}  // namespace
+}  // namespace Rabit

@@ -1,0 +1,231 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <rabit/ManualClock.h>
+#include <rabit/RabitManager.h>
+#include <rabit/RabitSteppedReactor.h>
+#include <rabit/RabitWorkspace.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/simulated/SimulatedTransport.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "gateway.idl.h"
+#include "uav.idl.h"
+
+namespace Rabit
+{
+
+// A manager that does nothing but own a queue and messages.
+class IdleManager : public RabitManager
+{
+public:
+    using RabitManager::RabitManager;
+    void ExecuteUnitOfWork() final { ++Passes; }
+    int Passes = 0;
+};
+
+// One node of a simulated fleet: a workspace with a clock of its own, and a gateway.
+class SimulatedNode
+{
+public:
+    // The monotonic clock is ahead of the network's by `monotonic`; the wall clock shows `gps` at the start.
+    SimulatedNode(const GatewayConfig &config, SimulatedNetwork &network, std::chrono::nanoseconds monotonic,
+                  double gps)
+        : Ahead(monotonic),
+          Clock(std::make_shared<ManualClock>(gps, network.Now() + monotonic)),
+          Workspace(Clock),
+          Reactor(Workspace)
+    {
+        Reactor.AddManager(std::make_unique<GatewayManager>(
+            config, std::make_shared<SimulatedTransport>(network), Workspace));
+    }
+
+    IdleManager &AddIdleManager(const std::string &name)
+    {
+        auto manager = std::make_unique<IdleManager>(name, Workspace);
+        IdleManager &added = *manager;
+        Reactor.AddManager(std::move(manager));
+        return added;
+    }
+
+    // A local copy of a message, registered under that name.
+    template <typename Message>
+    std::shared_ptr<Message> Register(const std::string &name)
+    {
+        auto message = std::make_shared<Message>();
+        EXPECT_TRUE(Workspace.AddPublishSubscribeMessage(name, message)) << name;
+        return message;
+    }
+
+    // The newest contents of Gateway/Fleet.
+    Gateway::Fleet Fleet()
+    {
+        Gateway::Fleet fleet;
+        Workspace.ForceFetchMessage(FleetMessageName, &fleet);
+        return fleet;
+    }
+
+    // `UP`, `STALE` or `LOST`; empty if that node is not listed.
+    std::string StateOf(const std::string &node)
+    {
+        for (const Gateway::NodeStatus &status : Fleet().nodes)
+        {
+            if (status.node == node)
+            {
+                return status.state == Gateway::NodeState::UP      ? "UP"
+                       : status.state == Gateway::NodeState::STALE ? "STALE"
+                                                                   : "LOST";
+            }
+        }
+        return "";
+    }
+
+    // The counters of the link to that queue; zeros if there are none.
+    Gateway::LinkStatus LinkTo(const std::string &node, const std::string &queue)
+    {
+        for (const Gateway::LinkStatus &link : Fleet().links)
+        {
+            if (link.node == node && link.queue == queue)
+            {
+                return link;
+            }
+        }
+        return {};
+    }
+
+    // "subject: reason" of every problem, one to a line.
+    std::string Problems()
+    {
+        std::string text;
+        for (const Gateway::Problem &problem : Fleet().problems)
+        {
+            text += problem.subject + ": " + problem.reason + "\n";
+        }
+        return text;
+    }
+
+    const std::chrono::nanoseconds Ahead;
+    const std::shared_ptr<ManualClock> Clock;
+    RabitWorkspace Workspace;
+    RabitSteppedReactor Reactor;
+};
+
+// Nodes in one process, on a simulated network, under one time: the seed decides all that happens.
+class SimulatedFleet
+{
+public:
+    explicit SimulatedFleet(std::uint64_t seed = 1) : Network(seed) {}
+
+    // Adds and starts a node. No two nodes' clocks agree.
+    SimulatedNode &Add(const GatewayConfig &config, double gps = 1.4e9)
+    {
+        _ahead += std::chrono::seconds(1000);
+        auto node = std::make_unique<SimulatedNode>(config, Network, _ahead, gps);
+        SimulatedNode &added = *node;
+        _nodes[config.Node] = std::move(node);
+        added.Reactor.Start();
+        return added;
+    }
+
+    // Ends a node as SIGKILL would.
+    void Kill(const std::string &node)
+    {
+        Network.CrashNode(node);
+        _nodes.erase(node);
+    }
+
+    // Ends a node in an orderly way.
+    void Stop(const std::string &node) { _nodes.erase(node); }
+
+    void RunFor(std::chrono::nanoseconds duration)
+    {
+        RunUntil([] { return false; }, duration);
+    }
+
+    // Runs until the condition holds; returns whether it did within the limit.
+    bool RunUntil(const std::function<bool()> &condition, std::chrono::nanoseconds limit)
+    {
+        const std::chrono::nanoseconds end = Network.Now() + limit;
+        RunDue();
+        while (!condition())
+        {
+            const std::chrono::nanoseconds next = NextDue();
+            if (next > end)
+            {
+                Advance(end);
+                return condition();
+            }
+            Advance(next);
+        }
+        return true;
+    }
+
+    SimulatedNetwork Network;
+
+private:
+    std::chrono::nanoseconds NextDue() const
+    {
+        std::chrono::nanoseconds next = Network.NextEvent().value_or(std::chrono::nanoseconds::max());
+        for (const auto &[name, node] : _nodes)
+        {
+            if (const auto due = node->Reactor.NextDue())
+            {
+                next = std::min(next, *due - node->Ahead);
+            }
+        }
+        return next;
+    }
+
+    void Advance(std::chrono::nanoseconds time)
+    {
+        // The nodes' clocks first: handlers that the network calls read them.
+        for (const auto &[name, node] : _nodes)
+        {
+            node->Clock->AdvanceTo(time + node->Ahead);
+        }
+        Network.AdvanceTo(time);
+        RunDue();
+    }
+
+    void RunDue()
+    {
+        for (const auto &[name, node] : _nodes)
+        {
+            node->Reactor.RunDue();
+        }
+    }
+
+    std::chrono::nanoseconds _ahead{0};
+    std::map<std::string, std::unique_ptr<SimulatedNode>> _nodes;
+};
+
+// An aircraft: publishes Pose (telemetry) and MissionState (state), accepts Goto and TargetReport.
+inline GatewayConfig AircraftConfig(const std::string &node)
+{
+    GatewayConfig config;
+    config.Node = node;
+    config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry});
+    config.Publish.push_back({.Message = "MissionState", .Type = "Uav::MissionState"});
+    config.Accept.push_back({.Queue = "MissionControl", .Types = {"Uav::Goto", "Uav::TargetReport"}});
+    return config;
+}
+
+// A ground station: wants both messages of every aircraft, accepts acknowledgements.
+inline GatewayConfig GroundConfig()
+{
+    GatewayConfig config;
+    config.Node = "ground";
+    config.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose", .From = {"uav*"}});
+    config.Subscribe.push_back({.Message = "MissionState", .Type = "Uav::MissionState", .From = {"uav*"}});
+    config.Accept.push_back({.Queue = "Commands", .Types = {"Uav::CommandAck"}});
+    return config;
+}
+
+}  // namespace Rabit
