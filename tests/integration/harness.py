@@ -1,0 +1,122 @@
+"""What the whole-system tests share: processes that end with the test whatever happens to it, their lines as they
+come, and a network of the test's own where the machine allows it."""
+
+import ctypes
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+IN_NAMESPACE = "RABIT_TEST_IN_NAMESPACE"
+
+
+def enter_namespace():
+    """Starts this script again in a network namespace of its own, which vanishes with it, if that is allowed here;
+    otherwise the test goes on with the machine's loopback."""
+    if os.environ.get(IN_NAMESPACE):
+        return
+    probe = subprocess.run(["unshare", "--net", "ip", "link", "set", "lo", "up", "multicast", "on"],
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+    if probe.returncode != 0:
+        os.environ[IN_NAMESPACE] = "no"
+        return
+    os.environ[IN_NAMESPACE] = "yes"
+    os.execvp("unshare", ["unshare", "--net", "sh", "-c",
+                          "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo && exec \"$@\"",
+                          "sh", sys.executable, *sys.argv])
+
+
+def domain():
+    """A DDS domain: the first one in a namespace, one that depends on the process elsewhere."""
+    return 0 if os.environ.get(IN_NAMESPACE) == "yes" else 100 + os.getpid() % 100
+
+
+def _die_with_parent():
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+
+
+class Process:
+    """A child process and the lines that it has written so far."""
+
+    def __init__(self, argv, env=None):
+        self.argv = [str(a) for a in argv]
+        self.lines = []  # (time, text)
+        self._changed = threading.Condition()
+        self._popen = subprocess.Popen(self.argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                       stderr=subprocess.STDOUT, text=True, bufsize=1, errors="replace",
+                                       env={**os.environ, **(env or {})}, preexec_fn=_die_with_parent)
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    @property
+    def pid(self):
+        return self._popen.pid
+
+    def _read(self):
+        for line in self._popen.stdout:
+            with self._changed:
+                self.lines.append((time.monotonic(), line.rstrip("\n")))
+                self._changed.notify_all()
+        with self._changed:
+            self._changed.notify_all()
+
+    def wait_for(self, found, seconds, since=0.0):
+        """Waits until `found(text)` holds for a line written after `since`; returns (time, what found returned).
+        The limit only keeps a broken test from hanging."""
+        end = time.monotonic() + seconds
+        seen = 0
+        with self._changed:
+            while True:
+                for when, text in self.lines[seen:]:
+                    result = found(text) if when >= since else None
+                    if result:
+                        return when, result
+                seen = len(self.lines)
+                left = end - time.monotonic()
+                if left <= 0 or (self._popen.poll() is not None and not self._reader.is_alive()
+                                 and seen == len(self.lines)):
+                    tail = "\n".join(text for _, text in self.lines[-40:])
+                    raise AssertionError(f"not seen within {seconds} s in the output of {self.argv}:\n{tail}")
+                self._changed.wait(left)
+
+    def kill(self):
+        self._popen.kill()
+        return self._popen.wait()
+
+    def terminate(self, seconds=20):
+        """SIGTERM, and the exit code."""
+        self._popen.send_signal(signal.SIGTERM)
+        return self.exit_code(seconds)
+
+    def exit_code(self, seconds):
+        code = self._popen.wait(timeout=seconds)
+        self._reader.join(timeout=seconds)
+        return code
+
+    def running(self):
+        return self._popen.poll() is None
+
+
+class Processes:
+    """Starts processes and ends those that still run when the block is left."""
+
+    def __init__(self):
+        self._started = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for process in self._started:
+            if process.running():
+                process.kill()
+
+    def start(self, argv, env=None):
+        process = Process(argv, env)
+        self._started.append(process)
+        return process
