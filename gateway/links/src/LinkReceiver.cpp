@@ -11,8 +11,8 @@ namespace
 {
 
 // Two monotonic clocks, each adjusted by at most 500 ppm (what the kernel's clock discipline may do), differ
-// by at most this part of the time passed.
-constexpr std::int64_t DriftPart = 1000;
+// by less than this part of the time passed.
+constexpr std::int64_t DriftPart = 990;
 
 }  // namespace
 

@@ -277,7 +277,6 @@ void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
         }
         _cursor = std::max(_cursor, ack.Cumulative + 1);
         _allowed = std::min(_options.Window, _allowed + static_cast<std::size_t>(ack.Cumulative + 1 - first));
-        _timer.Restore();
         _resendAt = ResendTime(now, _timer.Timeout());
     }
     if (ack.Time < _creditTime)
@@ -297,7 +296,7 @@ void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
 
 void LinkSender::OnPeerHeard(LinkTime now)
 {
-    if (_timer.IsBackedOff())
+    if (_timer.Timeout() >= _context.Settings.HelloPeriod)
     {
         _resendAt = std::min(_resendAt, std::max(now, ResendTime(_lastSentAt, _timer.PlainTimeout())));
     }

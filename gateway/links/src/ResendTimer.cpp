@@ -12,6 +12,7 @@ ResendTimer::ResendTimer(const LinkSettings &settings)
 
 void ResendTimer::Measured(LinkTime roundTrip)
 {
+    _backOff = 0;
     roundTrip = std::max(roundTrip, LinkTime(1));
     if (_smoothed == LinkTime(0))
     {

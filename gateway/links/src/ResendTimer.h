@@ -18,10 +18,8 @@ public:
     void Measured(LinkTime roundTrip);
     // The timer ran out: wait twice as long next time (5.5), but not for ever longer.
     void BackOff();
-    // Something new was acknowledged: the path works.
+    // A new stream begins.
     void Restore() { _backOff = 0; }
-
-    bool IsBackedOff() const { return _backOff > 0; }
 
     // The time to wait, back-off included.
     LinkTime Timeout() const;

@@ -110,10 +110,11 @@ TEST(ResendTimer, doubles_up_to_the_bound_and_is_restored)
         timer.BackOff();
     }
     EXPECT_EQ(timer.PlainTimeout(), 150ms);
-    EXPECT_TRUE(timer.IsBackedOff());
     timer.Restore();
     EXPECT_EQ(timer.Timeout(), 150ms);
-    EXPECT_FALSE(timer.IsBackedOff());
+    timer.BackOff();
+    timer.Measured(50ms);
+    EXPECT_EQ(timer.Timeout(), 50ms + 4 * 18750us) << "a measurement ends the back-off";
 }
 
 TEST(ResendTimer, stays_within_its_bounds)

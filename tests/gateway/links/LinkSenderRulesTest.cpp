@@ -449,6 +449,23 @@ TEST_F(LinkSenderRules, S4_measures_the_round_trip_on_messages_sent_once)
     EXPECT_THAT(a.TakeDatas(), IsEmpty()) << "not resent before the round trip is over";
 }
 
+TEST_F(LinkSenderRules, S4_learns_a_round_trip_longer_than_the_timer)
+{
+    Contact();
+    std::uint64_t acknowledged = 1;
+    for (int i = 0; i < 10; ++i)
+    {
+        a.Enqueue("m");
+        a.Pass(0ms);
+        a.Live(300ms);
+        a.Hear(b.Ack(++acknowledged));
+    }
+    a.TakeDatas();
+    a.Enqueue("m");
+    a.Live(299ms);
+    EXPECT_THAT(SentTexts(), ElementsAre("m")) << "no longer sent twice";
+}
+
 // Rule S5
 
 TEST_F(LinkSenderRules, S5_a_receiver_in_a_new_life_puts_what_was_sent_in_doubt_and_continues_with_the_rest)

@@ -1,0 +1,120 @@
+#pragma once
+
+#include "Scenario.h"
+
+#include <rabit/gateway/links/LinkCounters.h>
+#include <rabit/gateway/links/LinkOutcome.h>
+#include <rabit/gateway/links/LinkTime.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace Rabit::Sim
+{
+
+// One accepted message, as the oracle knows it.
+struct Record
+{
+    std::size_t Link = 0;
+    std::size_t Life = 0;    // which process sent it; see Oracle::StartLife
+    LinkTime EnqueuedAt{0};  // by the clock of that process
+    std::size_t Bytes = 0;
+    std::string_view Type;
+    std::uint32_t Epoch = 0;  // of the link, as its sender knew it when it was enqueued; see Oracle::NewEpoch
+    bool Delivered = false;
+    bool RefusedByQueue = false;
+    bool HasOutcome = false;
+    LinkOutcome Outcome = LinkOutcome::Delivered;
+};
+
+// Knows what was promised, hears of everything that happens, and says what broke the promise. The numbers in
+// its messages are those of the list in tests/simulation/README.md.
+class Oracle
+{
+public:
+    explicit Oracle(const Scenario &scenario);
+
+    // A node's process starts. Returns the name of this life.
+    std::size_t StartLife(std::size_t node);
+    // The node is in a new incarnation, by a crash or because it had to take one: messages that are on their
+    // way to or from it may be in doubt.
+    void NewEpoch(std::size_t node);
+    void EndLife(std::size_t node) { _lifeOf[node] = NoLife; }
+    // A node has heard of the present incarnation of another one.
+    void Knows(std::size_t node, std::size_t peer) { _knownEpoch[node][peer] = _nodeEpoch[peer]; }
+
+    // The payload and type of the next message of a link.
+    std::vector<std::uint8_t> MakePayload(SimRandom &random) const;
+    // What a call of Enqueue did. The outcomes reported during the call come first.
+    void OnEnqueue(std::size_t link, std::string_view type, std::span<const std::uint8_t> payload,
+                   LinkRefusal refusal, std::uint64_t id, LinkTime senderNow);
+    // A message comes out of a link. Returns its record, or null after a violation.
+    Record *Find(std::size_t receiver, std::string_view source, std::string_view queue, std::string_view type,
+                 std::span<const std::uint8_t> payload);
+    // It was put into the queue. `senderNow`: the time by the clock of the process that sent it.
+    void OnDelivered(const Record &record, bool redelivered, LinkTime senderNow);
+    void OnOutcome(std::size_t node, std::uint64_t id, std::string_view destination, std::string_view queue,
+                   LinkOutcome outcome, LinkTime senderNow);
+    // The counters of one link of a live node, after an event.
+    void CheckSender(std::size_t node, std::string_view destination, std::string_view queue,
+                     const LinkSenderCounters &counters);
+    // Messages of live nodes to live nodes without an outcome.
+    std::size_t Undrained(const std::vector<bool> &alive) const;
+
+    void Fail(int invariant, const std::string &what);
+    const std::string &Failure() const { return _failure; }
+
+    std::size_t Accepted() const { return _records.size(); }
+    std::uint64_t Outcomes() const { return _outcomes[0] + _outcomes[1] + _outcomes[2] + _outcomes[3]; }
+    std::uint64_t OutcomesOf(LinkOutcome outcome) const
+    {
+        return _outcomes[static_cast<std::size_t>(outcome)];
+    }
+    std::uint64_t RedeliveredTwice() const { return _redeliveredTwice; }
+    std::uint64_t Refused() const { return _refused; }
+
+private:
+    static constexpr std::size_t NoLife = static_cast<std::size_t>(-1);
+
+    struct Life
+    {
+        std::size_t Node = 0;
+        std::vector<std::size_t> RecordOfId;  // ids rise by one from 1
+    };
+    struct LinkState
+    {
+        std::size_t Life = NoLife;  // which the next two are of
+        std::size_t Pending = 0;
+        std::size_t PendingBytes = 0;
+        std::size_t NextToDeliver = 0;  // records below it must not come any more, unless they are flagged
+        std::size_t NextFlagged = 0;    // the same for flagged ones, within an epoch
+        std::uint32_t FlaggedEpoch = 0;
+    };
+
+    std::size_t FindLink(std::size_t source, std::size_t destination, std::string_view queue) const;
+    std::size_t FindNode(std::string_view name) const;
+    std::uint32_t EpochOf(std::size_t link) const;
+    std::size_t IndexOf(const Record &record) const
+    {
+        return static_cast<std::size_t>(&record - _records.data());
+    }
+
+    const Scenario &_scenario;
+    std::vector<Record> _records;
+    std::vector<Life> _lives;
+    std::vector<std::size_t> _lifeOf;                     // by node
+    std::vector<std::uint32_t> _nodeEpoch;                // by node
+    std::vector<std::vector<std::uint32_t>> _knownEpoch;  // by node and peer
+    std::vector<LinkState> _links;
+    std::vector<std::size_t> _linkIndex;  // by source, destination and queue
+    std::uint64_t _outcomes[4] = {};
+    std::uint64_t _redeliveredTwice = 0;
+    std::uint64_t _refused = 0;
+    std::string _failure;
+};
+
+}  // namespace Rabit::Sim

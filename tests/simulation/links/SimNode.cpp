@@ -1,0 +1,214 @@
+#include "SimNode.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace Rabit::Sim
+{
+
+namespace
+{
+
+// Types of the messages. All queues take the first; the others fail as their names say.
+constexpr std::string_view GoodType = "Good";
+constexpr std::string_view WrongType = "Wrong";
+constexpr std::string_view UnknownType = "Unknown";
+constexpr std::string_view BrokenType = "Broken";
+
+}  // namespace
+
+SimNode::SimNode(SimWorld &world, std::size_t index)
+    : _world(world), _index(index), _wallSeconds(world.Random.Between(1, 4'000'000))
+{
+}
+
+std::size_t SimNode::NodeOf(std::string_view name) const
+{
+    return static_cast<std::size_t>(name.at(1) - '0');
+}
+
+std::size_t SimNode::QueueOf(std::string_view name) const
+{
+    return static_cast<std::size_t>(name.at(1) - '0');
+}
+
+void SimNode::Start(bool storageLost)
+{
+    if (storageLost)
+    {
+        _storedCounter = 0;
+    }
+    _clock = {.StartedAt = _world.Now,
+              .Offset = LinkTime(_world.Random.Between(0, 1'000'000'000'000)),
+              .DriftPpm = _world.Plan.Nodes[_index].DriftPpm};
+    _world.Oracle.StartLife(_index);
+    _world.Oracle.NewEpoch(_index);
+    _world.LifeClocks.push_back(_clock);
+    _queueLengths.assign(_world.Plan.Queues.size(), 0);
+    LinkSettings settings = _world.Plan.Settings;
+    settings.Node = _world.Plan.Nodes[_index].Name;
+    settings.Clock = _world.Random.Next() | 1;
+    _links = std::make_unique<LinkNode>(settings, *this, *this, *this);
+    if (_world.Random.Chance(0.3))
+    {
+        for (const ScenarioNode &node : _world.Plan.Nodes)
+        {
+            _links->AddPeer(node.Name, LocalNow());
+        }
+    }
+}
+
+void SimNode::Crash()
+{
+    _links.reset();
+    _world.Oracle.EndLife(_index);
+    _world.Oracle.NewEpoch(_index);
+}
+
+// IncarnationStore, with the file and the clock of this machine.
+std::uint64_t SimNode::Above(std::uint64_t floor)
+{
+    if (floor != 0)
+    {
+        _world.Oracle.NewEpoch(_index);
+    }
+    const IncarnationMode mode = _world.Plan.Nodes[_index].Incarnations;
+    std::uint64_t counter = (floor >> 32) + 1;
+    if (mode != IncarnationMode::WallClock)
+    {
+        counter = std::max(counter, _storedCounter + 1);
+    }
+    if (mode != IncarnationMode::Counter)
+    {
+        const std::int64_t seconds =
+            std::max<std::int64_t>(_wallSeconds + _world.Now / std::chrono::seconds(1), 0);
+        counter = std::max(counter, static_cast<std::uint64_t>(seconds));
+    }
+    _storedCounter = counter;
+    return (counter << 32) | (_world.Random.Next() >> 32);
+}
+
+void SimNode::Enqueue(std::size_t link)
+{
+    const ScenarioLink &plan = _world.Plan.Links[link];
+    const std::string &destination = _world.Plan.Nodes[plan.Destination].Name;
+    const std::string &queue = _world.Plan.Queues[plan.Queue].Name;
+    const double kind = _world.Random.Unit();
+    const std::string_view type = kind < 0.97   ? GoodType
+                                  : kind < 0.98 ? WrongType
+                                  : kind < 0.99 ? UnknownType
+                                                : BrokenType;
+    const auto payload =
+        std::make_shared<const std::vector<std::uint8_t>>(_world.Oracle.MakePayload(_world.Random));
+    const LinkTime now = LocalNow();
+    _links->Configure(destination, queue, plan.Options, now);
+    const LinkEnqueued result = _links->Enqueue(destination, queue, type, payload, now);
+    _world.Oracle.OnEnqueue(link, type, *payload, result.Refusal, result.Id, now);
+}
+
+void SimNode::Receive(const Packet &packet)
+{
+    struct Visitor
+    {
+        LinkNode &Node;
+        LinkTime Now;
+        void operator()(const Test::StoredHello &hello) const { Node.OnHello(hello.View(), Now); }
+        void operator()(const Test::StoredAck &ack) const { Node.OnAck(ack.View(), Now); }
+        void operator()(const Test::StoredData &data) const { Node.OnData(data.View(), Now); }
+    };
+    std::visit(Visitor{*_links, LocalNow()}, packet.Message);
+}
+
+bool SimNode::Consume(std::size_t queue)
+{
+    const ScenarioQueue &plan = _world.Plan.Queues[queue];
+    std::size_t &length = _queueLengths[queue];
+    if (length > 0)
+    {
+        --length;
+        if (_calm || !_world.Random.Chance(plan.PopEventLoss))
+        {
+            _links->OnRoom(plan.Name, LocalNow());
+        }
+    }
+    if (!_calm && length < plan.Capacity && _world.Random.Chance(plan.LocalFill))
+    {
+        ++length;
+    }
+    return length > 0;
+}
+
+void SimNode::Check()
+{
+    _links->VisitSenders(
+        [this](std::string_view destination, std::string_view queue, const LinkSenderCounters &counters)
+        { _world.Oracle.CheckSender(_index, destination, queue, counters); });
+    std::size_t sessions = 0;
+    _links->VisitReceivers([&](std::string_view, std::string_view, const LinkReceiverCounters &)
+                           { ++sessions; });
+    if (sessions > _world.Plan.Nodes.size() * _world.Plan.Queues.size())
+    {
+        _world.Oracle.Fail(6, "more sessions than links");
+    }
+}
+
+void SimNode::Send(const LinkData &data)
+{
+    _world.Transmit({_index, NodeOf(data.Destination), Test::StoredData(data)});
+}
+
+void SimNode::Send(const LinkAck &ack)
+{
+    _world.Transmit({_index, NodeOf(ack.Source), Test::StoredAck(ack)});
+}
+
+void SimNode::Send(const LinkHello &hello)
+{
+    _world.Transmit({_index, NodeOf(hello.Destination), Test::StoredHello(hello)});
+}
+
+void SimNode::OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
+                        LinkOutcome outcome)
+{
+    _world.Oracle.OnOutcome(_index, id, destination, queue, outcome, LocalNow());
+}
+
+LocalQueueResult SimNode::Deliver(std::string_view source, std::string_view queue, std::string_view type,
+                                  std::span<const std::uint8_t> payload, bool redelivered)
+{
+    Record *record = _world.Oracle.Find(_index, source, queue, type, payload);
+    if (record == nullptr)
+    {
+        return LocalQueueResult::Full;
+    }
+    if (type != GoodType)
+    {
+        record->RefusedByQueue = true;
+        return type == WrongType     ? LocalQueueResult::WrongType
+               : type == UnknownType ? LocalQueueResult::Unknown
+                                     : LocalQueueResult::Undecodable;
+    }
+    const std::size_t index = QueueOf(queue);
+    if (_queueLengths[index] >= _world.Plan.Queues[index].Capacity)
+    {
+        return LocalQueueResult::Full;
+    }
+    if (++_queueLengths[index] == 1)
+    {
+        _world.QueueFilled(_index, index);
+    }
+    _world.Oracle.OnDelivered(*record, redelivered, _world.LifeClocks[record->Life].At(_world.Now));
+    return LocalQueueResult::Ok;
+}
+
+std::size_t SimNode::Room(std::string_view queue) const
+{
+    const std::size_t index = QueueOf(queue);
+    if (_world.Plan.Nodes[_index].RoomIsWrong && !_calm)
+    {
+        return static_cast<std::size_t>(_world.Random.Between(0, 300));
+    }
+    return _world.Plan.Queues[index].Capacity - _queueLengths[index];
+}
+
+}  // namespace Rabit::Sim

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "Oracle.h"
+#include "Packet.h"
+#include "Scenario.h"
+
+#include <rabit/gateway/links/LinkNode.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace Rabit::Sim
+{
+
+// The clock of one process: starts at its own reading and runs at its own rate.
+struct SimClock
+{
+    LinkTime StartedAt{0};  // true time
+    LinkTime Offset{0};
+    std::int64_t DriftPpm = 0;
+
+    LinkTime At(LinkTime trueTime) const
+    {
+        const std::int64_t passed = (trueTime - StartedAt).count();
+        return Offset +
+               LinkTime(passed + passed / 1'000'000 * DriftPpm + passed % 1'000'000 * DriftPpm / 1'000'000);
+    }
+};
+
+// What a node needs of the world around it.
+struct SimWorld
+{
+    const Scenario &Plan;
+    Sim::Oracle &Oracle;
+    SimRandom &Random;
+    std::vector<SimClock> &LifeClocks;  // by life
+    LinkTime Now{0};                    // true time
+    std::function<void(Packet)> Transmit;
+    // A queue of a node is no longer empty.
+    std::function<void(std::size_t node, std::size_t queue)> QueueFilled;
+};
+
+// One node: a machine with a wall clock and perhaps a counter file, on which a process with a LinkNode and
+// local queues runs and crashes.
+class SimNode : public LinkOutput, public LocalQueues, public IncarnationSource
+{
+public:
+    SimNode(SimWorld &world, std::size_t index);
+
+    bool IsAlive() const { return _links != nullptr; }
+    LinkNode &Links() { return *_links; }
+    LinkTime LocalNow() const { return _clock.At(_world.Now); }
+
+    void Start(bool storageLost);
+    void Crash();
+    void StepWallClock(std::int64_t seconds) { _wallSeconds += seconds; }
+
+    void Enqueue(std::size_t link);
+    void Receive(const Packet &packet);
+    // A message is taken out of a queue, and local producers may put one in. Returns whether there are more.
+    bool Consume(std::size_t queue);
+    // From now on no pop event is lost, the room is told rightly, and there are no local producers.
+    void SetCalm() { _calm = true; }
+
+    // Checks what can be checked of this node alone, after an event.
+    void Check();
+
+    void Send(const LinkData &data) override;
+    void Send(const LinkAck &ack) override;
+    void Send(const LinkHello &hello) override;
+    void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
+                   LinkOutcome outcome) override;
+    LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
+                             std::span<const std::uint8_t> payload, bool redelivered) override;
+    std::size_t Room(std::string_view queue) const override;
+    std::uint64_t Above(std::uint64_t floor) override;
+
+private:
+    std::size_t NodeOf(std::string_view name) const;
+    std::size_t QueueOf(std::string_view name) const;
+
+    SimWorld &_world;
+    const std::size_t _index;
+    SimClock _clock;
+    std::unique_ptr<LinkNode> _links;
+    std::vector<std::size_t> _queueLengths;
+    std::uint64_t _storedCounter = 0;
+    std::int64_t _wallSeconds;
+    bool _calm = false;
+};
+
+}  // namespace Rabit::Sim
