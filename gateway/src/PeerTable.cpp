@@ -229,7 +229,7 @@ PeerTable::Change PeerTable::Advance(Duration now)
         const Duration silence = now - peer.LastHeard;
         if (silence > LostAfter && peer.State != NodeState::LOST)
         {
-            change.State |= SetState(peer, NodeState::LOST, "not heard for 4 seconds");
+            change.State |= SetState(peer, NodeState::LOST, "not heard for 3.5 seconds");
         }
         else if (silence > StaleAfter && peer.State == NodeState::UP)
         {

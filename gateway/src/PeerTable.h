@@ -25,7 +25,7 @@ public:
 
     static constexpr Duration BeatPeriod = std::chrono::milliseconds(500);
     static constexpr Duration StaleAfter = std::chrono::milliseconds(1500);
-    static constexpr Duration LostAfter = std::chrono::milliseconds(4000);
+    static constexpr Duration LostAfter = std::chrono::milliseconds(3500);
     // Names come from the network; beyond this many the one LOST for longest is forgotten, or the new one
     // ignored.
     static constexpr std::size_t MaximumPeers = 1000;
