@@ -1,0 +1,183 @@
+// Two nodes with all their threads over a real backend, on loopback: what the simulation cannot show.
+#include <gtest/gtest.h>
+#include <rabit/RabitReactor.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/transport/TransportFactory.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "gateway.idl.h"
+#include "uav.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+constexpr int Messages = 3000;
+// Only keeps a broken build from hanging.
+constexpr auto Limit = 120s;
+
+// Lets a test wait for what managers do on their threads.
+class Condition
+{
+public:
+    template <typename Change>
+    void Set(Change change)
+    {
+        const std::lock_guard lock(_mutex);
+        change();
+        _changed.notify_all();
+    }
+
+    template <typename Holds>
+    bool Wait(Holds holds)
+    {
+        std::unique_lock lock(_mutex);
+        return _changed.wait_for(lock, Limit, holds);
+    }
+
+private:
+    std::mutex _mutex;
+    std::condition_variable _changed;
+};
+
+// Sends numbered Gotos to the other node's manager of the same kind, posts a Pose with each, and checks that
+// what comes from there is complete and in order.
+class TrafficManager : public RabitManager
+{
+public:
+    TrafficManager(RabitWorkspace &workspace, std::string other, Condition &condition)
+        : RabitManager("Traffic", workspace),
+          _address(other + "/Traffic"),
+          _pose(std::make_shared<Uav::Pose>()),
+          _otherPose(std::make_shared<Uav::Pose>()),
+          _condition(condition)
+    {
+        AddPublishSubscribeMessage("Pose", _pose);
+        AddPublishSubscribeMessage(other + "/Pose", _otherPose);
+        WakeUpManagerOnMessagePost(_otherPose);
+        SetWakeupTimeDelayMSec(1);
+    }
+
+    void ExecuteUnitOfWork() final
+    {
+        Receive();
+        while (_sent < Messages)
+        {
+            auto message = std::make_shared<Uav::Goto>();
+            message->id = static_cast<std::uint32_t>(_sent + 1);
+            if (!AddMessageToQueue(_address, message))
+            {
+                break;  // not announced yet, or the outbox is full: again in the next unit of work
+            }
+            ++_sent;
+            _pose->gps_time_s = _sent;
+            _pose->PostMessage();
+        }
+        if (_otherPose->FetchMessage())
+        {
+            EXPECT_GE(_otherPose->gps_time_s, _lastPose) << "an older value came after a newer one";
+            _lastPose = _otherPose->gps_time_s;
+            EXPECT_LT(_otherPose->GetAgeSeconds(), 120.0);
+        }
+        _condition.Set(
+            [this]
+            {
+                Received = _received;
+                LastPose = _lastPose;
+            });
+    }
+
+    // Guarded by the condition.
+    int Received = 0;
+    double LastPose = 0;
+
+private:
+    void Receive()
+    {
+        std::shared_ptr<RabitMessage> message;
+        while (GetManagerMessageQueue()->GetMessage(message))
+        {
+            const auto command = std::dynamic_pointer_cast<Uav::Goto>(message);
+            ASSERT_NE(command, nullptr);
+            EXPECT_EQ(command->id, static_cast<std::uint32_t>(_received + 1));
+            ++_received;
+        }
+    }
+
+    const std::string _address;
+    std::shared_ptr<Uav::Pose> _pose;
+    std::shared_ptr<Uav::Pose> _otherPose;
+    Condition &_condition;
+    int _sent = 0;
+    int _received = 0;
+    double _lastPose = 0;
+};
+
+class RealNodesTest : public ::testing::TestWithParam<std::string>
+{
+protected:
+    struct Node
+    {
+        Node(const std::string &transport, const std::string &name, const std::string &other,
+             Condition &condition)
+            : Reactor(Workspace)
+        {
+            GatewayConfig config;
+            config.Node = name;
+            config.Domain = 10 + ::getpid() % 200;
+            config.Interfaces = {"127.0.0.1"};
+            config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose"});
+            config.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose"});
+            config.Accept.push_back({.Queue = "Traffic", .Types = {"Uav::Goto"}});
+            Reactor.SetHandleSignals(false);
+            auto traffic = std::make_unique<TrafficManager>(Workspace, other, condition);
+            Traffic = traffic.get();
+            Reactor.AddManager(std::move(traffic));
+            Reactor.AddManager(std::make_unique<GatewayManager>(config, MakeTransport(transport), Workspace));
+            Thread = std::thread([this] { Reactor.Run(); });
+        }
+
+        ~Node()
+        {
+            Reactor.ShutdownAllManagers();
+            Thread.join();
+        }
+
+        RabitWorkspace Workspace;
+        RabitReactor Reactor;
+        TrafficManager *Traffic = nullptr;
+        std::thread Thread;
+    };
+
+    Condition condition;
+};
+
+TEST_P(RealNodesTest, QueuesAreCompleteAndInOrderAndTheLastPostArrivesUnderLoadBothWays)
+{
+    Node first(GetParam(), "first", "second", condition);
+    Node second(GetParam(), "second", "first", condition);
+    EXPECT_TRUE(condition.Wait(
+        [&]
+        {
+            return first.Traffic->Received == Messages && second.Traffic->Received == Messages &&
+                   first.Traffic->LastPose == Messages && second.Traffic->LastPose == Messages;
+        }))
+        << "received " << first.Traffic->Received << " and " << second.Traffic->Received << ", last pose "
+        << first.Traffic->LastPose << " and " << second.Traffic->LastPose;
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, RealNodesTest, ::testing::ValuesIn(AvailableTransports()),
+                         [](const auto &backend) { return backend.param; });
+
+}  // namespace
+}  // namespace Rabit
