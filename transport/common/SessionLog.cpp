@@ -32,7 +32,7 @@ void SessionLog::Line(const std::string &line) noexcept
     }
 }
 
-// Logs the 1st, 2nd, 4th, 8th ... event of a kind, so that a fault at full data rate does not flood the log.
+// So that a fault at full data rate does not flood the log.
 template <typename MakeLine>
 void SessionLog::Count(std::atomic<std::uint64_t> &counter, MakeLine &&makeLine) noexcept
 {
@@ -84,6 +84,12 @@ void SessionLog::MalformedSample(const std::string &topic, const char *why) noex
     Count(_malformedSamples, [&] { return "a sample of " + topic + " was dropped: " + why; });
 }
 
+void SessionLog::MalformedDatagram() noexcept
+{
+    Count(_malformedDatagrams,
+          [] { return std::string("a datagram that is no sound RTPS message was dropped"); });
+}
+
 TransportCounters SessionLog::Read() const
 {
     TransportCounters counters;
@@ -94,6 +100,7 @@ TransportCounters SessionLog::Read() const
     counters.SamplesLost = _samplesLost;
     counters.InconsistentTypes = _inconsistentTypes;
     counters.MalformedSamples = _malformedSamples;
+    counters.MalformedDatagrams = _malformedDatagrams;
     return counters;
 }
 

@@ -16,7 +16,7 @@ class SessionLog
 public:
     explicit SessionLog(const TransportSettings &settings);
 
-    // Each counts one event and logs it, when `worthALine` says that its kind has not been logged too often.
+    // Each counts one event, and logs it if it is the 1st, 2nd, 4th, 8th ... of its kind.
     void HandlerThrew(const std::string &what, const char *error) noexcept;
     void WriteTimedOut(const std::string &topic) noexcept;
     void WriteFailed(const std::string &topic, const char *why) noexcept;
@@ -24,6 +24,7 @@ public:
     void InconsistentType(const std::string &topic, const std::string &ours,
                           const std::string &theirs) noexcept;
     void MalformedSample(const std::string &topic, const char *why) noexcept;
+    void MalformedDatagram() noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
 
     // Logs one line, without counting.
@@ -44,6 +45,7 @@ private:
     std::atomic<std::uint64_t> _samplesLost{0};
     std::atomic<std::uint64_t> _inconsistentTypes{0};
     std::atomic<std::uint64_t> _malformedSamples{0};
+    std::atomic<std::uint64_t> _malformedDatagrams{0};
 };
 
 }  // namespace Rabit

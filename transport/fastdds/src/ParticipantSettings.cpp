@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 
+#include "GuardedUdp.h"
 #include "common/ParticipantIdentity.h"
 #include "common/SettingsCheck.h"
 
@@ -59,21 +60,20 @@ rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
     return profile.rtps;
 }
 
-void AddTransports(const TransportSettings &settings, rtps::RTPSParticipantAttributes &attributes)
+void AddTransports(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
+                   rtps::RTPSParticipantAttributes &attributes)
 {
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
-    udp->maxMessageSize = static_cast<std::uint32_t>(settings.MaxDatagram);
     udp->sendBufferSize = SocketBuffer;
     udp->receiveBufferSize = SocketBuffer;
     udp->interfaceWhiteList = ResolveInterfaces(settings.Interfaces);
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
-    attributes.userTransports.push_back(udp);
+    attributes.userTransports.push_back(std::make_shared<GuardedUdpDescriptor>(
+        udp, static_cast<std::uint32_t>(settings.MaxDatagram), [log] { log->MalformedDatagram(); }));
     if (settings.SharedMemory)
     {
-        auto memory = std::make_shared<SharedMemTransportDescriptor>();
-        memory->maxMessageSize = static_cast<std::uint32_t>(settings.MaxDatagram);
-        attributes.userTransports.push_back(memory);
+        attributes.userTransports.push_back(std::make_shared<SharedMemTransportDescriptor>());
     }
 }
 
@@ -102,16 +102,19 @@ void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes
     }
     if (settings.Multicast)
     {
-        // A list of peers replaces the default one, which is the multicast group.
+        // A list of peers replaces the default one, which is the multicast group. Its port is given, because
+        // without it the vendor would take the group for a host and send to the ports of its participants.
         rtps::Locator_t group;
         rtps::IPLocator::setIPv4(group, DiscoveryMulticastAddress);
+        group.port = attributes.port.getMulticastPort(static_cast<std::uint32_t>(settings.Domain));
         builtin.initialPeersList.push_back(group);
     }
 }
 
 }  // namespace
 
-rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings)
+rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings,
+                                                          const std::shared_ptr<SessionLog> &log)
 {
     CheckSettings(settings);
     rtps::RTPSParticipantAttributes attributes;
@@ -130,7 +133,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
         ToDuration(std::min(std::chrono::milliseconds(100), settings.AnnouncementPeriod));
     if (attributes.userTransports.empty())
     {
-        AddTransports(settings, attributes);
+        AddTransports(settings, log, attributes);
     }
     AddPeers(settings, attributes);
     return attributes;

@@ -22,7 +22,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer))
 {
-    const auto attributes = MakeParticipantAttributes(settings);
+    const auto attributes = MakeParticipantAttributes(settings, _log);
     SetLibraryDefaults();
     // Disabled at first, so that nothing is discovered before _participant is known here.
     _participant = rtps::RTPSDomain::createParticipant(static_cast<std::uint32_t>(settings.Domain), false,

@@ -57,8 +57,9 @@ struct TransportSettings
     std::vector<std::string> Peers;
     // Whether multicast may be used for discovery and data.
     bool Multicast = true;
-    // Largest datagram in bytes. The default stays below the MTU of radios, because one lost IP fragment of a
-    // larger datagram loses the whole of it. Use 65000 on loopback and wired networks.
+    // Largest datagram to send, 1000 to 65000 bytes; larger ones are received all the same. The default stays
+    // below the MTU of radios, because one lost IP fragment of a larger datagram loses the whole of it. Use
+    // 65000 on loopback and wired networks.
     std::size_t MaxDatagram = 1400;
     // Use shared memory between processes of one host. Off by default: a killed process leaves files behind.
     bool SharedMemory = false;
@@ -207,13 +208,14 @@ using PeerHandler = std::function<void(const PeerEvent &)>;
 // Things that went wrong below the cut since the session was opened. They only rise.
 struct TransportCounters
 {
-    std::uint64_t WriteTimeouts = 0;      // writes that ended TimedOut
-    std::uint64_t WriteFailures = 0;      // writes that ended Failed or TooLarge
-    std::uint64_t HandlerExceptions = 0;  // handlers that threw
-    std::uint64_t IncompatibleQos = 0;    // endpoints of our topics that did not match for their QoS
-    std::uint64_t SamplesLost = 0;        // samples that a reader knows it has missed
-    std::uint64_t InconsistentTypes = 0;  // endpoints of our topics elsewhere that have another type name
-    std::uint64_t MalformedSamples = 0;   // samples dropped: too short, too large, or without a readable key
+    std::uint64_t WriteTimeouts = 0;       // writes that ended TimedOut
+    std::uint64_t WriteFailures = 0;       // writes that ended Failed or TooLarge
+    std::uint64_t HandlerExceptions = 0;   // handlers that threw
+    std::uint64_t IncompatibleQos = 0;     // endpoints of our topics that did not match for their QoS
+    std::uint64_t SamplesLost = 0;         // samples that a reader knows it has missed
+    std::uint64_t InconsistentTypes = 0;   // endpoints of our topics elsewhere that have another type name
+    std::uint64_t MalformedSamples = 0;    // samples dropped: too short, too large, or without a readable key
+    std::uint64_t MalformedDatagrams = 0;  // datagrams dropped because they are not of the backend's protocol
 };
 
 // One participant in the network.
