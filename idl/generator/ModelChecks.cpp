@@ -56,13 +56,15 @@ void ModelReader::CheckMemberNames(TreeNode node, const StructDefinition &defini
 
 void ModelReader::CheckAnnotations(TreeNode node)
 {
-    static const std::set<std::string> refused{"external",     "must_understand", "optional",   "max",
-                                               "min",          "range",           "appendable", "mutable",
-                                               "try_construct"};
+    static const std::set<std::string> refused{"external", "max",   "min",          "must_understand",
+                                               "optional", "range", "try_construct"};
+    // Structs and unions are asked for what holds in the end, defaults included: CheckExtensibility.
+    const TreeKind kind = TreeKindOf(node);
+    const bool isAggregate = kind == TreeStruct || kind == TreeUnion;
     for (TreeNode item = TreeAnnotations(node); item != nullptr; item = TreeNext(item))
     {
         const std::string name = TreeAnnotationName(item);
-        if (refused.count(name) != 0)
+        if (refused.count(name) != 0 || (!isAggregate && (name == "appendable" || name == "mutable")))
         {
             Refuse(item, "annotation @" + name + " is not supported");
         }

@@ -1,7 +1,7 @@
 #include "ModelReader.h"
 
-#include "AnnotationScan.h"
 #include "Names.h"
+#include "SourceScan.h"
 
 #include <algorithm>
 #include <functional>
@@ -32,7 +32,7 @@ const std::map<TreeKind, Primitive> &Primitives()
 Model ModelReader::Read()
 {
     ReadFiles();
-    RefuseUnknownAnnotations(_model.AllPaths, _refusals);
+    RefuseWhatIdlcMisreads(_model.AllPaths, _refusals);
     ReadDefinitions(TreeRoot(_state));
     return std::move(_model);
 }
@@ -215,10 +215,6 @@ void ModelReader::ReadUnion(TreeNode node)
         entry.Content.File = TreeFileOf(declarator);
         entry.Content.Line = TreeLineOf(declarator);
         CheckName(declarator, entry.Content.Name);
-        if (entry.Content.Name == definition->Name)
-        {
-            Refuse(declarator, "member '" + entry.Content.Name + "' has the name of its union");
-        }
         entry.Content.Type = ReadDeclaredType(TreeTypeSpec(item), declarator);
         for (TreeNode label = TreeLabels(item); label != nullptr; label = TreeNext(label))
         {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 namespace Rabit::Idl
 {
@@ -50,8 +51,11 @@ public:
         {
             boost::uuids::detail::md5::digest_type digest;
             _md5.get_digest(digest);
-            static_assert(sizeof(digest) == 16);
-            std::memcpy(_short.data(), &digest, 16);
+            // Boost gives MD5's bytes as four numbers, the first byte the highest.
+            for (std::size_t i = 0; i < _short.size(); ++i)
+            {
+                _short[i] = static_cast<std::uint8_t>(digest[i / 4] >> (24 - 8 * (i % 4)));
+            }
         }
         return _short;
     }

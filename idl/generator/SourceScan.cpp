@@ -1,5 +1,6 @@
-#include "AnnotationScan.h"
+#include "SourceScan.h"
 
+#include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -21,7 +22,10 @@ struct Found
 class Scanner
 {
 public:
-    Scanner(std::string file, std::string text) : _file(std::move(file)), _text(std::move(text)) {}
+    Scanner(std::string file, std::string text, Refusals &refusals)
+        : _file(std::move(file)), _text(std::move(text)), _refusals(refusals)
+    {
+    }
 
     void Run(std::vector<Found> &used, std::set<std::string> &declared)
     {
@@ -72,21 +76,32 @@ private:
         _at = std::min(_text.size(), _at + (end == "\n" ? 0 : end.size()));
     }
 
+    // A string or character; neither goes on over the end of a line.
     void SkipQuoted(char quote)
     {
-        Step();
-        while (_at < _text.size() && _text[_at] != quote)
+        ++_at;
+        while (_at < _text.size() && _text[_at] != quote && _text[_at] != '\n')
         {
             if (_text[_at] == '\\')
             {
-                Step();
+                CheckEscape();
+                ++_at;
             }
-            if (_at < _text.size())
-            {
-                Step();
-            }
+            ++_at;
         }
-        _at = std::min(_text.size(), _at + 1);
+        _at = std::min(_text.size(), _at + (_at < _text.size() && _text[_at] == quote ? 1 : 0));
+    }
+
+    void CheckEscape()
+    {
+        const auto isHexLetter = [](char letter)
+        { return std::isxdigit(letter) != 0 && std::isdigit(letter) == 0; };
+        if (Peek(1) == 'x' && (isHexLetter(Peek(2)) || (std::isdigit(Peek(2)) != 0 && isHexLetter(Peek(3)))))
+        {
+            _refusals.Add(
+                _file, _line,
+                "hexadecimal escapes with letters are not supported (idlc misreads them), write them octal");
+        }
     }
 
     void SkipSpace()
@@ -140,6 +155,7 @@ private:
 
     std::string _file;
     std::string _text;
+    Refusals &_refusals;
     std::size_t _at = 0;
     std::uint32_t _line = 1;
 };
@@ -176,7 +192,7 @@ const std::set<std::string> &KnownToIdlc()
 
 }  // namespace
 
-void RefuseUnknownAnnotations(const std::vector<std::string> &paths, Refusals &refusals)
+void RefuseWhatIdlcMisreads(const std::vector<std::string> &paths, Refusals &refusals)
 {
     std::vector<Found> used;
     std::set<std::string> declared = KnownToIdlc();
@@ -184,7 +200,7 @@ void RefuseUnknownAnnotations(const std::vector<std::string> &paths, Refusals &r
     {
         std::ifstream file(path, std::ios::binary);
         std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-        Scanner(path, std::move(text)).Run(used, declared);
+        Scanner(path, std::move(text), refusals).Run(used, declared);
     }
     for (const Found &found : used)
     {

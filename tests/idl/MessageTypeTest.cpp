@@ -1,0 +1,82 @@
+#include "SampleTest.h"
+
+#include "constructs.idl.h"
+#include "uav.idl.h"
+
+#include <rabit/idl/MessageType.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <stdexcept>
+
+namespace
+{
+
+TEST_EACH_SAMPLE(MessageType, IsTypeOfItsOwnMessagesAlone)
+{
+    const Rabit::MessageType *type = Rabit::MessageTypeRegistry::Of(message);
+    for (const Sample &other : AllSamples())
+    {
+        EXPECT_EQ(type->IsTypeOf(*other.Message), typeid(*other.Message) == typeid(message)) << other.Name;
+    }
+}
+
+TEST_EACH_SAMPLE(MessageType, CreateMakesAMessageOfTheType)
+{
+    const Rabit::MessageType *type = Rabit::MessageTypeRegistry::Of(message);
+    EXPECT_TRUE(type->IsTypeOf(*type->Create()));
+    EXPECT_EQ(type->CppType(), std::type_index(typeid(message)));
+}
+
+TEST_EACH_SAMPLE(MessageType, AnotherTypesMessageThrows)
+{
+    const Rabit::MessageType *type = Rabit::MessageTypeRegistry::Of(message);
+    Basics::Stamp other;
+    std::vector<std::uint8_t> buffer(100);
+    EXPECT_THROW(type->SerializedSize(other), std::invalid_argument);
+    EXPECT_THROW(type->Serialize(other, buffer), std::invalid_argument);
+    EXPECT_THROW(type->Deserialize(buffer, other), std::invalid_argument);
+}
+
+TEST(MessageType, NameIsTheIdlName)
+{
+    EXPECT_EQ(Uav::Pose::IdlType().Name(), "Uav::Pose");
+    EXPECT_EQ(Constructs::Inner::Empty::IdlType().Name(), "Constructs::Inner::Empty");
+    EXPECT_EQ(Global::IdlType().Name(), "Global");
+}
+
+TEST(MessageType, IdlTextHoldsTheTypeAndAllThatItUses)
+{
+    EXPECT_EQ(Global::IdlType().IdlText(),
+              "module Constructs {\n"
+              "enum Mode {\n"
+              "    @value(0) IDLE,\n"
+              "    @value(100) BUSY,\n"
+              "    @value(101) @default_literal GONE\n"
+              "};\n"
+              "};\n"
+              "module Constructs { module Inner {\n"
+              "@final\n"
+              "struct Empty {\n"
+              "    sequence<octet, 1> nothing;\n"
+              "};\n"
+              "}; };\n"
+              "@final\n"
+              "struct Global {\n"
+              "    ::Constructs::Mode m;\n"
+              "    ::Constructs::Inner::Empty empty;\n"
+              "};\n");
+}
+
+TEST(MessageType, DerivedMessageIsNotOfItsBasesType)
+{
+    const Constructs::Upper derived;
+    EXPECT_FALSE(Constructs::Ground::IdlType().IsTypeOf(derived));
+}
+
+TEST(MessageType, KeyOfABaseCounts)
+{
+    EXPECT_TRUE(Constructs::Upper::IdlType().HasKey());
+    EXPECT_FALSE(Constructs::Derived::IdlType().HasKey());
+}
+
+}  // namespace

@@ -1,0 +1,28 @@
+// Runs idlc with the generator plugin, as the build does.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+struct IdlcResult
+{
+    int ExitCode = 0;
+    std::string Errors;  // what it wrote to its standard error output
+};
+
+// Output goes to the directory.
+IdlcResult RunIdlc(const std::filesystem::path &idl, const std::filesystem::path &output);
+std::string ReadFile(const std::filesystem::path &path);
+// An empty directory that is removed in the end.
+class ScratchDirectory
+{
+public:
+    ScratchDirectory();
+    ~ScratchDirectory();
+    ScratchDirectory(const ScratchDirectory &) = delete;
+    ScratchDirectory &operator=(const ScratchDirectory &) = delete;
+    const std::filesystem::path &Path() const { return _path; }
+
+private:
+    std::filesystem::path _path;
+};
