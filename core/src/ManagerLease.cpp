@@ -15,6 +15,7 @@ ManagerLease::ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeu
 
 ManagerLease::~ManagerLease()
 {
+    EndHandlers();
     _workspace._registry->ManagerIsGone(_owner);
 }
 
@@ -31,6 +32,7 @@ bool ManagerLease::AddMessage(const std::string &name, const std::shared_ptr<Rab
                     [&](const Message &message) { return message.Local == msg && message.Name == name; });
     if (!known)
     {
+        registration.Global->_published.DisownAllOf(msg.get());  // of an earlier message at this address
         _messages.push_back(Message{name, msg, registration.Global});
     }
     return true;
@@ -85,6 +87,19 @@ void ManagerLease::Return()
     for (const Queue &queue : queues)
     {
         _workspace.AddQueue(queue.Name, queue.Handle, _owner);
+    }
+}
+
+void ManagerLease::EndHandlers()
+{
+    std::vector<Message> messages;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        messages = _messages;
+    }
+    for (const Message &message : messages)
+    {
+        message.Global->_published.DisconnectAllOf(message.Local.get());
     }
 }
 

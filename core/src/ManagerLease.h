@@ -29,6 +29,9 @@ public:
     // Registers everything again if it left. A message whose name was taken meanwhile is attached to what is
     // there now.
     void Return();
+    // Disconnects the handlers that were registered through the manager's messages: they usually call the
+    // manager.
+    void EndHandlers();
     // Has all managers that are present in the workspace shut down.
     void RequestShutdownOfAllManagers();
 

@@ -1,6 +1,7 @@
 #include <rabit/ManagerStats.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace Rabit
@@ -10,7 +11,7 @@ namespace
 
 void Update(double time, int &count, double &minimum, double &maximum, double &average, double &total)
 {
-    ++count;
+    count = std::min(count, std::numeric_limits<int>::max() - 1) + 1;
     minimum = (count == 1) ? time : std::min(minimum, time);
     maximum = (count == 1) ? time : std::max(maximum, time);
     total += time;

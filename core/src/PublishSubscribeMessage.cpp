@@ -121,16 +121,14 @@ void PublishSubscribeMessage::Post(RabitMessage &msg, const PostTime &time, bool
             stamp = std::nextafter(_lastOwnStamp, std::numeric_limits<double>::infinity());
         }
         const double formerStamp = std::exchange(msg._timeStamp, stamp);
-        if (&msg != _message.get())
+        try
         {
-            const Keeper<std::shared_ptr<PublishSubscribeMessage>> keepRef(
-                _message->_globalPublishSubscribeMessageRef);
-            // Overrides of one type that return false all the same are taken to have copied.
-            if (!_message->CopyMessage(&msg) && typeid(msg) != _type)
-            {
-                msg._timeStamp = formerStamp;
-                throw std::invalid_argument("a message was posted under a name that holds another type");
-            }
+            CopyFromMessage(msg);
+        }
+        catch (...)
+        {
+            msg._timeStamp = formerStamp;
+            throw;
         }
         _message->_timeStamp = stamp;
         _message->_postedAt = time.Monotonic;
@@ -144,6 +142,21 @@ void PublishSubscribeMessage::Post(RabitMessage &msg, const PostTime &time, bool
         handlers = _published.Snapshot();
     }
     handlers.Call();
+}
+
+void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
+{
+    if (&msg == _message.get())
+    {
+        return;
+    }
+    const Keeper<std::shared_ptr<PublishSubscribeMessage>> keepRef(
+        _message->_globalPublishSubscribeMessageRef);
+    // Overrides of one type that return false all the same are taken to have copied.
+    if (!_message->CopyMessage(&msg) && typeid(msg) != _type)
+    {
+        throw std::invalid_argument("a message was posted under a name that holds another type");
+    }
 }
 
 bool PublishSubscribeMessage::CopyToMessage(RabitMessage &msg)

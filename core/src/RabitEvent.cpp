@@ -15,6 +15,39 @@ using SlotList = std::vector<std::shared_ptr<Detail::EventSlot>>;
 
 }  // namespace
 
+namespace Detail
+{
+
+// Takes the slots that meet the condition out of the list. What their handlers own is destroyed after the
+// lock is given back.
+template <typename Condition>
+void RemoveSlots(EventState &event, Condition condition)
+{
+    std::shared_ptr<const SlotList> former;
+    const std::lock_guard<std::mutex> lock(*event.Mutex);
+    if (!event.Slots)
+    {
+        return;
+    }
+    auto remaining = std::make_shared<SlotList>();
+    for (const auto &slot : *event.Slots)
+    {
+        if (condition(*slot))
+        {
+            slot->Connected.store(false, std::memory_order_release);
+        }
+        else
+        {
+            remaining->push_back(slot);
+        }
+    }
+    event.Count.store(static_cast<int>(remaining->size()), std::memory_order_release);
+    former = std::move(event.Slots);
+    event.Slots = remaining->empty() ? nullptr : std::move(remaining);
+}
+
+}  // namespace Detail
+
 void RabitConnection::Disconnect()
 {
     const std::shared_ptr<Detail::EventSlot> slot = std::exchange(_slot, {}).lock();
@@ -23,20 +56,7 @@ void RabitConnection::Disconnect()
     {
         return;
     }
-    // What the handler owns is destroyed after the lock is given back.
-    std::shared_ptr<const SlotList> former;
-    const std::lock_guard<std::mutex> lock(*event->Mutex);
-    auto remaining = std::make_shared<SlotList>();
-    for (const auto &other : *event->Slots)
-    {
-        if (other != slot)
-        {
-            remaining->push_back(other);
-        }
-    }
-    former = std::move(event->Slots);
-    event->Slots = remaining->empty() ? nullptr : std::move(remaining);
-    event->Count.fetch_sub(1, std::memory_order_acq_rel);
+    Detail::RemoveSlots(*event, [&](const Detail::EventSlot &other) { return &other == slot.get(); });
 }
 
 bool RabitConnection::IsConnected() const
@@ -67,13 +87,13 @@ RabitEvent::RabitEvent(std::shared_ptr<std::mutex> mutex)
 {
 }
 
-RabitConnection RabitEvent::Connect(RabitHandler handler)
+RabitConnection RabitEvent::Connect(RabitHandler handler, const void *owner)
 {
     if (!handler)
     {
         throw std::invalid_argument("an empty handler cannot be connected to an event");
     }
-    const auto slot = std::make_shared<Detail::EventSlot>(std::move(handler));
+    const auto slot = std::make_shared<Detail::EventSlot>(std::move(handler), owner);
     std::shared_ptr<const SlotList> former;
     {
         const std::lock_guard<std::mutex> lock(*_state->Mutex);
@@ -88,6 +108,29 @@ RabitConnection RabitEvent::Connect(RabitHandler handler)
     connection._event = _state;
     connection._slot = slot;
     return connection;
+}
+
+void RabitEvent::DisconnectAllOf(const void *owner)
+{
+    Detail::RemoveSlots(
+        *_state, [&](const Detail::EventSlot &slot) { return owner != nullptr && slot.Owner == owner; });
+}
+
+void RabitEvent::DisconnectAll()
+{
+    Detail::RemoveSlots(*_state, [](const Detail::EventSlot &) { return true; });
+}
+
+void RabitEvent::DisownAllOf(const void *owner)
+{
+    const std::lock_guard<std::mutex> lock(*_state->Mutex);
+    if (_state->Slots)
+    {
+        for (const auto &slot : *_state->Slots)
+        {
+            slot->Owner = (slot->Owner == owner) ? nullptr : slot->Owner;
+        }
+    }
 }
 
 void RabitEvent::Fire() const

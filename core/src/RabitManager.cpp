@@ -61,6 +61,7 @@ RabitManager::RabitManager(std::string name, RabitWorkspace &workspace)
 
 RabitManager::~RabitManager()
 {
+    EndHandlers();
     if (!_thread.joinable())
     {
         return;
@@ -75,6 +76,17 @@ RabitManager::~RabitManager()
     else
     {
         _thread.join();
+    }
+}
+
+// Handlers that the program registered through the manager's messages, or on its own queue, usually call the
+// manager.
+void RabitManager::EndHandlers()
+{
+    _lease->EndHandlers();
+    if (_mgrMessageQueue_sptr)
+    {
+        _mgrMessageQueue_sptr->DisconnectAllHandlers();
     }
 }
 
@@ -214,12 +226,20 @@ void RabitManager::RenewMessageWakeups()
     }
 }
 
+// A queue that is gone may leave its address to another one.
+void RabitManager::ForgetEndedQueueWakeups()
+{
+    _queueWakeups.erase(
+        std::remove_if(_queueWakeups.begin(), _queueWakeups.end(),
+                       [](const QueueWakeup &wakeup) { return !wakeup.Connection.IsConnected(); }),
+        _queueWakeups.end());
+}
+
 bool RabitManager::HasQueueWakeup(const void *queue, QueueEvent event) const
 {
-    return std::any_of(
-        _queueWakeups.begin(), _queueWakeups.end(),
-        [&](const QueueWakeup &wakeup)
-        { return wakeup.Queue == queue && wakeup.Event == event && wakeup.Connection.IsConnected(); });
+    return std::any_of(_queueWakeups.begin(), _queueWakeups.end(),
+                       [&](const QueueWakeup &wakeup)
+                       { return wakeup.Queue == queue && wakeup.Event == event; });
 }
 
 void RabitManager::WakeUpManagerEH()

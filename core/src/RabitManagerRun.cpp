@@ -27,12 +27,16 @@ double InSeconds(std::chrono::nanoseconds duration)
     return std::chrono::duration<double>(duration).count();
 }
 
+// Counters stay at the largest int.
+void Add(int &counter, int count)
+{
+    counter = (counter > std::numeric_limits<int>::max() - count) ? std::numeric_limits<int>::max()
+                                                                  : counter + count;
+}
+
 void Increment(int &counter)
 {
-    if (counter < std::numeric_limits<int>::max())
-    {
-        ++counter;
-    }
+    Add(counter, 1);
 }
 
 }  // namespace
@@ -58,6 +62,7 @@ void RabitManager::Run()
 void RabitManager::Join()
 {
     _thread.join();
+    FinishRun();
 }
 
 void RabitManager::ShutdownManager()
@@ -67,7 +72,7 @@ void RabitManager::ShutdownManager()
 
 void RabitManager::ShutdownAllManagers(bool value)
 {
-    // The manager's own copy may be in use by its thread: another thread posts a copy of the copy.
+    // The manager's own copy may be in use by its thread.
     if (MayTouchOwnMessages())
     {
         _mgrControlAllMgrs_sptr->ShutdownManager(value);
@@ -75,15 +80,23 @@ void RabitManager::ShutdownAllManagers(bool value)
     }
     else
     {
-        const auto global = _mgrControlAllMgrs_sptr->GetGlobalPublishSubscribeMessageRef();
-        ManagerControlMessage control;
-        global->ForceFetchMessage(&control);
-        control.ShutdownManager(value);
-        global->PostMessage(&control);
+        PostControlOfAllManagers(value);
     }
     if (value)
     {
         _lease->RequestShutdownOfAllManagers();
+    }
+}
+
+void RabitManager::PostControlOfAllManagers(bool shutdown)
+{
+    const auto global = _workspace.FindGlobalMessage("ManagerControlMessage");
+    ManagerControlMessage control;
+    if (global && global->MsgTypeIndex() == control.GetTypeIndex())
+    {
+        global->ForceFetchMessage(&control);
+        control.ShutdownManager(shutdown);
+        global->PostMessage(&control);
     }
 }
 
@@ -107,8 +120,13 @@ void RabitManager::ThreadMain()
 
 void RabitManager::PrepareRun()
 {
+    const auto formerControls = ControlGlobals();
     _lease->Return();
     RenewMessageWakeups();
+    if (ControlGlobals() != formerControls)
+    {
+        TakeControlMessagesAsRead();
+    }
     _startupFailed = false;
     _lastPassFailed = false;
     _loopThread.store(std::thread::id());
@@ -118,8 +136,13 @@ void RabitManager::PrepareRun()
 bool RabitManager::StartupStep()
 {
     _loopThread.store(std::this_thread::get_id());
-    _mgrStatus_sptr->ErrorCondition = false;
-    _mgrStatus_sptr->ErrorCode = ManagerStatusMessage::Error_None;
+    if (_mgrStatus_sptr->RunningState != ManagerStatusMessage::MgrState_Startup)
+    {
+        _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Startup;
+        _mgrStatus_sptr->ErrorCondition = false;
+        _mgrStatus_sptr->ErrorCode = ManagerStatusMessage::Error_None;
+        PostStatus();
+    }
     const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
     _statsResetAt = now;
     _statusPostedAt = now;
@@ -130,6 +153,7 @@ bool RabitManager::StartupStep()
     }
     _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Running;
     PostStatus();
+    _wakeup->ForgetSignals();  // the first unit of work sees what they were about
     return true;
 }
 
@@ -220,6 +244,13 @@ void RabitManager::FinishRun()
     _wakeup->Reset();
 }
 
+std::pair<std::shared_ptr<PublishSubscribeMessage>, std::shared_ptr<PublishSubscribeMessage>>
+RabitManager::ControlGlobals() const
+{
+    return {_mgrControlAllMgrs_sptr->GetGlobalPublishSubscribeMessageRef(),
+            _mgrControlThisMgr_sptr->GetGlobalPublishSubscribeMessageRef()};
+}
+
 // What was posted so far is not for this manager: it was not there, or not running, at that time.
 void RabitManager::TakeControlMessagesAsRead()
 {
@@ -296,8 +327,8 @@ void RabitManager::ReportFailure(const char *what, int errorCode, const std::str
 void RabitManager::UpdateStats(std::chrono::nanoseconds now)
 {
     const RabitWakeup::Counts counts = _wakeup->TakeCounts();
-    _stats.NumberOfWakeUpCallsWhileAsleep += counts.WhileAsleep;
-    _stats.NumberOfWakeUpCallsWhileAwake += counts.WhileAwake;
+    Add(_stats.NumberOfWakeUpCallsWhileAsleep, counts.WhileAsleep);
+    Add(_stats.NumberOfWakeUpCallsWhileAwake, counts.WhileAwake);
     _stats.TimeSinceLastStatsReset_Sec = InSeconds(now - _statsResetAt);
     _mgrStatus_sptr->ManagerStats = _stats;
 }

@@ -146,7 +146,7 @@ void RabitMessage::ThrowNotRegistered() const
 
 bool RabitMessage::Register_SomethingPublished(const boost::function<void()> &handler)
 {
-    GlobalOrThrow().Register_SomethingPublished(handler);
+    GlobalOrThrow()._published.Connect(handler, this);
     return true;
 }
 

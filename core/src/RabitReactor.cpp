@@ -47,6 +47,11 @@ RabitReactor::~RabitReactor()
     }
     _state->ShutdownAll();
     _state->JoinAll();
+    // Handlers that call a manager end before the manager begins to.
+    for (const auto &manager : _state->Managers)
+    {
+        manager->EndHandlers();
+    }
     while (!_state->Managers.empty())
     {
         _state->Managers.pop_back();

@@ -14,6 +14,10 @@ RabitSteppedReactor::RabitSteppedReactor(RabitWorkspace &workspace) : _workspace
 RabitSteppedReactor::~RabitSteppedReactor()
 {
     Stop();
+    for (const Entry &entry : _entries)
+    {
+        entry.Manager->EndHandlers();
+    }
     while (!_entries.empty())
     {
         _entries.pop_back();

@@ -113,6 +113,12 @@ bool RabitWakeup::IsSignalled() const
     return _signalled;
 }
 
+void RabitWakeup::ForgetSignals()
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _signalled = false;
+}
+
 RabitWakeup::Counts RabitWakeup::TakeCounts()
 {
     const std::lock_guard<std::mutex> lock(_mutex);

@@ -123,11 +123,11 @@ MessageRegistration RabitWorkspace::RegisterMessageFor(const std::string &name,
                                                        std::uint64_t owner,
                                                        std::shared_ptr<PublishSubscribeMessage> global)
 {
+    const bool comesBack = global != nullptr;
     MessageRegistration registration = _registry->AddMessage(name, msg, owner, std::move(global));
-    const bool attachedBefore = msg->_globalPublishSubscribeMessageRef == registration.Global;
-    if (attachedBefore && registration.Result == MessageRegistrationResult::Created)
+    if (comesBack && msg->_globalPublishSubscribeMessageRef == registration.Global)
     {
-        return registration;  // the name comes back: the message still is what it was
+        return registration;  // nothing changed for the message: it knows what it has seen
     }
     switch (registration.Result)
     {

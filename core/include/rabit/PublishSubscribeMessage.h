@@ -55,6 +55,7 @@ public:
     // Stamps the message with the current time, copies it to the global copy, then calls the handlers. Time
     // stamps of one name strictly increase: by the least step of a double if the clock did not move on.
     // Throws std::invalid_argument, changing nothing, if the message is of another type and refuses the copy.
+    // If CopyMessage throws, that passes to the caller and the post did not happen.
     void PostMessage(RabitMessage *msg);
     // Posts with a time given by the caller: for messages that were posted elsewhere and keep the time of
     // their origin. The time may repeat or go back; the post is never missed for that.
@@ -80,11 +81,13 @@ public:
 private:
     friend class RabitMessage;
     friend class RabitWorkspace;
+    friend class ManagerLease;
     // Set in _sequence when GetTestMessage was called: no message's remembered sequence equals it then.
     static constexpr std::uint64_t Exposed = std::uint64_t{1} << 63;
 
     void Post(RabitMessage &msg, const PostTime &time, bool strictlyIncreasing);
     bool FetchIfChanged(RabitMessage *msg);
+    void CopyFromMessage(RabitMessage &msg);
     bool CopyToMessage(RabitMessage &msg);
     bool ForceFetch(RabitMessage *msg);
     void AttachAsCurrent(RabitMessage &msg);

@@ -1,1 +1,3 @@
 #pragma once
+
+// Empty: programs written for earlier versions include it.

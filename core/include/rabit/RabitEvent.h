@@ -89,8 +89,12 @@ public:
     RabitEvent(const RabitEvent &) = delete;
     RabitEvent &operator=(const RabitEvent &) = delete;
 
-    // Throws std::invalid_argument if the handler is empty.
-    RabitConnection Connect(RabitHandler handler);
+    // Throws std::invalid_argument if the handler is empty. The owner is a mark for DisconnectAllOf.
+    RabitConnection Connect(RabitHandler handler, const void *owner = nullptr);
+    // Disconnect the handlers with that mark (not null), or all; take the mark off them.
+    void DisconnectAllOf(const void *owner);
+    void DisconnectAll();
+    void DisownAllOf(const void *owner);
     // Tells all handlers. Takes no lock if there are none.
     void Fire() const;
     // The handlers connected now. The caller holds the mutex that was given to the constructor.
@@ -105,8 +109,9 @@ namespace Detail
 
 struct EventSlot
 {
-    explicit EventSlot(RabitHandler handler) : Handler(std::move(handler)) {}
-    RabitHandler Handler;
+    EventSlot(RabitHandler handler, const void *owner) : Handler(std::move(handler)), Owner(owner) {}
+    const RabitHandler Handler;
+    const void *Owner;  // guarded by the event's mutex
     std::atomic<bool> Connected{true};
 };
 

@@ -190,6 +190,7 @@ private:
         RabitScopedConnection Connection;
     };
 
+    void EndHandlers();
     bool RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg);
     void RegisterQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle);
     void AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg);
@@ -197,12 +198,14 @@ private:
     void AddQueueWakeup(const void *queue, QueueEvent event, Connect connect)
     {
         const std::lock_guard<std::mutex> lock(_wakeupsMutex);
+        ForgetEndedQueueWakeups();
         if (!HasQueueWakeup(queue, event))
         {
             _queueWakeups.push_back(QueueWakeup{queue, event, connect(WakeUpHandler())});
         }
     }
     void RenewMessageWakeups();
+    void ForgetEndedQueueWakeups();
     bool HasQueueWakeup(const void *queue, QueueEvent event) const;
 
     // The manager's life in steps. Its thread calls them one after the other; a RabitSteppedReactor does so
@@ -222,6 +225,9 @@ private:
 
     void ReadControlMessages();
     void TakeControlMessagesAsRead();
+    std::pair<std::shared_ptr<PublishSubscribeMessage>, std::shared_ptr<PublishSubscribeMessage>>
+    ControlGlobals() const;
+    void PostControlOfAllManagers(bool shutdown);
     template <typename Work>
     bool Guard(const char *what, int errorCode, Work work);
     void ReportFailure(const char *what, int errorCode, const std::string &reason);

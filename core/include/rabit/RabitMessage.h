@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/ByteArrayReaderWriter.h>
+#include <rabit/GlobalPublishSubscribeException.h>
 #include <rabit/RabitClock.h>
 #include <rabit/SystemTimeClock.h>
 

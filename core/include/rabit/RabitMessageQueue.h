@@ -65,6 +65,13 @@ public:
         return _dequeued.Connect(std::move(handler));
     }
 
+    // Disconnects all handlers, for an owner that goes while others may still hold the queue.
+    void DisconnectAllHandlers()
+    {
+        _enqueued.DisconnectAll();
+        _dequeued.DisconnectAll();
+    }
+
     // False, and no handler called, when full.
     bool AddMessage(T msg)
     {

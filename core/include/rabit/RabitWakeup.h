@@ -40,6 +40,7 @@ public:
     void BeginSleep();
     void EndSleep();
     bool IsSignalled() const;
+    void ForgetSignals();
     Counts TakeCounts();
     // Forgets signals and the shutdown request.
     void Reset();

@@ -1,0 +1,79 @@
+#include "CapturedLog.h"
+
+#include <rabit/RabitLog.h>
+#include <rabit/RabitReactor.h>
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace
+{
+
+using namespace Rabit;
+using namespace RabitTest;
+
+TEST(RabitLog, WritesWarningsAndErrorsToStderrAndNothingElse)
+{
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    RabitLog::Write(RabitLogLevel::Debug, "one");
+    RabitLog::Write(RabitLogLevel::Info, "two");
+    RabitLog::Write(RabitLogLevel::Warning, "three");
+    RabitLog::Write(RabitLogLevel::Error, "four");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "rabit: warning: three\nrabit: error: four\n");
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(RabitLog, GivesLinesToTheSinkOfTheProgramAndNotToStderr)
+{
+    testing::internal::CaptureStderr();
+    {
+        const CapturedLog log;
+        RabitLog::Write(RabitLogLevel::Error, "kept");
+        EXPECT_EQ(log.Lines(), std::vector<std::string>{"kept"});
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(RabitLog, TheLevelIsAThreshold)
+{
+    const CapturedLog log;
+    RabitLog::SetLevel(RabitLogLevel::Info);
+    RabitLog::Write(RabitLogLevel::Debug, "debug");
+    RabitLog::Write(RabitLogLevel::Info, "info");
+    RabitLog::SetLevel(RabitLogLevel::Off);
+    RabitLog::Write(RabitLogLevel::Error, "error");
+    RabitLog::SetLevel(RabitLogLevel::Warning);
+    EXPECT_EQ(log.Lines(), std::vector<std::string>{"info"});
+}
+
+TEST(RabitLog, ASinkThatThrowsCostsNoLine)
+{
+    testing::internal::CaptureStderr();
+    RabitLog::SetSink([](RabitLogLevel, const std::string &) { throw std::runtime_error("broken sink"); });
+    RabitLog::Write(RabitLogLevel::Error, "still here");
+    RabitLog::SetSink(nullptr);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "rabit: error: still here\n");
+}
+
+TEST(RabitLog, AReactorThatRunsWellPrintsNothing)
+{
+    class Quiet : public RabitManager
+    {
+    public:
+        explicit Quiet(RabitWorkspace &workspace) : RabitManager("Quiet", workspace) {}
+        void ExecuteUnitOfWork() final { ShutdownAllManagers(true); }
+    };
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    RabitWorkspace workspace;
+    RabitReactor reactor(workspace);
+    reactor.AddManager(std::make_unique<Quiet>(workspace));
+    reactor.Run();
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+}  // namespace
