@@ -13,12 +13,9 @@ namespace
 
 void EmitToString(TextBuilder &out, const Definition &definition, const std::string &parameter)
 {
-    const std::string name = CppScopedName(definition.Scope, definition.Name);
     out.Line("::std::string " + ScopedName(definition.Scope, "ToString") + "(" + parameter + "value)");
     out.Open();
-    out.Line("::Rabit::Idl::TextWriter text;");
-    out.Line("::Rabit::Idl::Codec<" + name + ">::Print(text, value);");
-    out.Line("return text.Text();");
+    out.Line("return ::Rabit::Idl::TextOf(\"\", value);");
     out.Close();
     out.Line();
 }
@@ -103,10 +100,8 @@ void EmitMessageFunctions(TextBuilder &out, const Model &model, const StructDefi
     out.Line();
     out.Line("::std::string " + method + "ToString() const");
     out.Open();
-    out.Line("::Rabit::Idl::TextWriter text;");
-    out.Line("text.Raw(\"" + ScopedName(definition.Scope, definition.Name) + " \");");
-    out.Line("::Rabit::Idl::Codec<" + name + ">::Print(text, *this);");
-    out.Line("return text.Text();");
+    out.Line("return ::Rabit::Idl::TextOf(\"" + ScopedName(definition.Scope, definition.Name) +
+             " \", *this);");
     out.Close();
     out.Line();
     out.Line("int " + method + "Serialize(::std::uint8_t *buf, int maxBufSize, int stype)");

@@ -218,9 +218,7 @@ void EmitUnionFunctions(TextBuilder &out, const UnionDefinition &definition)
     out.Line();
     out.Line("::std::string " + ScopedName(definition.Scope, "ToString") + "(const " + name + " &value)");
     out.Open();
-    out.Line("::Rabit::Idl::TextWriter text;");
-    out.Line("::Rabit::Idl::Codec<" + name + ">::Print(text, value);");
-    out.Line("return text.Text();");
+    out.Line("return ::Rabit::Idl::TextOf(\"\", value);");
     out.Close();
     out.Line();
 }

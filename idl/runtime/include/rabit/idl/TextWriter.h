@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/idl/Codec.h>
+
 #include <charconv>
 #include <cstdint>
 #include <string>
@@ -65,5 +67,15 @@ private:
 
     std::string _text;
 };
+
+// A value of a generated type as a text, behind the prefix.
+template <class T>
+std::string TextOf(std::string_view prefix, const T &value)
+{
+    TextWriter text;
+    text.Raw(prefix);
+    Codec<T>::Print(text, value);
+    return text.Text();
+}
 
 }  // namespace Rabit::Idl
