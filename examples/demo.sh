@@ -32,6 +32,12 @@ is_number() {
     [[ $1 =~ ^[0-9]{1,6}$ ]] && [ "$((10#$1))" -ge "$2" ] && [ "$((10#$1))" -le "$3" ]
 }
 
+# A script that starts this one with & hands it an ignored SIGINT, which bash cannot trap: start again with it restored.
+ignored=$(sed -n 's/^SigIgn:[[:space:]]*//p' /proc/$$/status)
+if ((0x${ignored:-0} & 2)); then
+    exec env --default-signal=INT "$BASH" "${BASH_SOURCE[0]}" "$@"
+fi
+
 uavs=3
 seconds=
 tracks=()

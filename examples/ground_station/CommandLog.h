@@ -17,7 +17,7 @@ public:
         std::uint64_t Sent = 0;          // accepted for sending
         std::uint64_t Acknowledged = 0;  // answered by the aircraft it was meant for
         std::uint64_t Declined = 0;      // those of the acknowledged that the aircraft would not obey
-        std::uint64_t Refused = 0;       // not accepted for sending: it was never under way
+        std::uint64_t Refused = 0;       // attempts that were not accepted: nothing was sent
     };
     struct Command
     {

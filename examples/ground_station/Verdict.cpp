@@ -46,6 +46,8 @@ void JudgeAircraft(const AircraftResult &result, std::vector<std::string> &failu
     else if (!HeardEnough(result))
         failures.push_back(result.Node + ": only " + Percent(result) + " of its poses were heard, not " +
                            OneDecimal(100 * RequiredShare) + " %");
+    if (result.Commands.Sent == 0)
+        failures.push_back(result.Node + ": no command was sent to it");
 }
 }  // namespace
 
@@ -60,10 +62,6 @@ Verdict Judge(const std::vector<AircraftResult> &aircraft, const CommandLog &com
     for (const CommandLog::Command &command : commands.Outstanding())
         failures.push_back("command " + std::to_string(command.Id) + " to " + command.Node + ", sent at " +
                            OneDecimal(command.SentAtS) + " s, was not acknowledged");
-    for (const AircraftResult &result : aircraft)
-        if (result.Commands.Refused > 0)
-            failures.push_back(result.Node + ": " + std::to_string(result.Commands.Refused) +
-                               " commands were refused for sending");
     if (commands.WrongNode() > 0)
         failures.push_back(std::to_string(commands.WrongNode()) +
                            " acknowledgements came from the wrong aircraft");

@@ -18,11 +18,18 @@ AircraftResult Good(const CommandLog &log)
     return {"uav1", RowState::Up, 100, 95, log.Of("uav1")};
 }
 
-TEST(Verdict, PassesWhenEverythingWasHeardAndAcknowledged)
+// One command, sent and acknowledged.
+CommandLog Answered()
 {
     CommandLog log;
     log.Sent("uav1", 1);
     log.Acknowledged(1, "uav1", true);
+    return log;
+}
+
+TEST(Verdict, PassesWhenEverythingWasHeardAndAcknowledged)
+{
+    const CommandLog log = Answered();
     const auto verdict = Judge({Good(log)}, log, 30);
     EXPECT_THAT(verdict.Failures, IsEmpty());
     EXPECT_THAT(verdict.Summary,
@@ -34,24 +41,24 @@ TEST(Verdict, PassesWhenEverythingWasHeardAndAcknowledged)
 
 TEST(Verdict, PassesAtExactlyTheRequiredShare)
 {
-    AircraftResult result = Good({});
+    AircraftResult result = Good(Answered());
     result.Heard = 90;
-    EXPECT_TRUE(Judge({result}, {}, 30).Passed());
+    EXPECT_TRUE(Judge({result}, Answered(), 30).Passed());
 }
 
 TEST(Verdict, FailsBelowTheRequiredShare)
 {
-    AircraftResult result = Good({});
+    AircraftResult result = Good(Answered());
     result.Heard = 89;
-    EXPECT_THAT(Judge({result}, {}, 30).Failures,
+    EXPECT_THAT(Judge({result}, Answered(), 30).Failures,
                 ElementsAre("uav1: only 89.0 % of its poses were heard, not 90.0 %"));
 }
 
 TEST(Verdict, FailsWithoutPosesToJudge)
 {
-    AircraftResult result = Good({});
+    AircraftResult result = Good(Answered());
     result.Published = result.Heard = 0;
-    EXPECT_THAT(Judge({result}, {}, 30).Failures,
+    EXPECT_THAT(Judge({result}, Answered(), 30).Failures,
                 ElementsAre("uav1: no poses to judge, it was not heard for long enough"));
 }
 
@@ -62,9 +69,9 @@ TEST(Verdict, FailsWithoutAircraft)
 
 TEST(Verdict, FailsWhenAnAircraftIsLostAtTheEnd)
 {
-    AircraftResult result = Good({});
+    AircraftResult result = Good(Answered());
     result.State = RowState::Lost;
-    EXPECT_THAT(Judge({result}, {}, 30).Failures, ElementsAre("uav1 was LOST at the end"));
+    EXPECT_THAT(Judge({result}, Answered(), 30).Failures, ElementsAre("uav1 was LOST at the end"));
 }
 
 TEST(Verdict, FailsForACommandWithoutAnswerAndNamesIt)
@@ -89,24 +96,31 @@ TEST(Verdict, FailsForAnAnswerOfTheWrongAircraft)
 
 TEST(Verdict, FailsForARepeatedAnswer)
 {
-    CommandLog log;
-    log.Sent("uav1", 1);
-    log.Acknowledged(1, "uav1", true);
+    CommandLog log = Answered();
     log.Acknowledged(1, "uav1", true);
     EXPECT_THAT(Judge({Good(log)}, log, 30).Failures, ElementsAre("1 acknowledgements came more than once"));
 }
 
-TEST(Verdict, FailsForARefusedCommand)
+TEST(Verdict, FailsForAnAircraftThatWasNeverSentACommand)
 {
     CommandLog log;
     log.Refused("uav1");
-    EXPECT_THAT(Judge({Good(log)}, log, 30).Failures,
-                ElementsAre("uav1: 1 commands were refused for sending"));
+    AircraftResult result = Good(log);
+    EXPECT_THAT(Judge({result}, log, 30).Failures, ElementsAre("uav1: no command was sent to it"));
+}
+
+TEST(Verdict, PassesWhenARefusedCommandWasSentLater)
+{
+    CommandLog log;
+    log.Refused("uav1");
+    log.Sent("uav1", 1);
+    log.Acknowledged(1, "uav1", true);
+    EXPECT_TRUE(Judge({Good(log)}, log, 30).Passed());
 }
 
 TEST(Verdict, OnlyReportsAnswersToTheCommandsOfAnotherRun)
 {
-    CommandLog log;
+    CommandLog log = Answered();
     log.Acknowledged(7, "uav1", true);
     const auto verdict = Judge({Good(log)}, log, 30);
     EXPECT_TRUE(verdict.Passed());

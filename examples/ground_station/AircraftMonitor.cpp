@@ -1,0 +1,85 @@
+#include "AircraftMonitor.h"
+
+#include <rabit/PublishSubscribeMessage.h>
+
+#include <cmath>
+#include <utility>
+
+namespace Ground
+{
+namespace
+{
+std::string MissionText(const Uav::MissionState &mission)
+{
+    const std::string command = std::to_string(mission.last_command);
+    switch (mission.mode)
+    {
+        case Uav::MissionMode::MISSION_IDLE:
+            return "IDLE";
+        case Uav::MissionMode::MISSION_TRACK:
+            return "TRACK";
+        case Uav::MissionMode::MISSION_PATTERN:
+            return "PATTERN";
+        case Uav::MissionMode::MISSION_GOTO:
+            return std::string("GOTO ").append(command);
+        case Uav::MissionMode::MISSION_HOLD:
+            return std::string("HOLD ").append(command);
+    }
+    return "?";
+}
+}  // namespace
+
+AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace)
+{
+    workspace.AddPublishSubscribeMessage(node + "/Pose", _pose);
+    workspace.AddPublishSubscribeMessage(node + "/MissionState", _mission);
+    workspace.AddPublishSubscribeMessage(node + "/Pose", _arrivals->Pose);
+    workspace.AddPublishSubscribeMessage(node + "/MissionState", _arrivals->Mission);
+
+    const auto pose = _arrivals->Pose->GetGlobalPublishSubscribeMessageRef();
+    const auto mission = _arrivals->Mission->GetGlobalPublishSubscribeMessageRef();
+    if (!pose || !mission)
+        return;  // the names are taken by messages of other types, which the workspace has logged
+    _onPose = pose->ConnectSomethingPublished(
+        [arrivals = _arrivals]
+        {
+            const std::lock_guard lock(arrivals->Mutex);
+            if (arrivals->Pose->FetchMessage())
+                arrivals->Count.OnPose(arrivals->Pose->number);
+        });
+    _onMission = mission->ConnectSomethingPublished(
+        [arrivals = _arrivals]
+        {
+            const std::lock_guard lock(arrivals->Mutex);
+            if (arrivals->Mission->FetchMessage())
+                arrivals->Count.OnMissionState(arrivals->Mission->poses);
+        });
+}
+
+void AircraftMonitor::Show(FleetRow &row)
+{
+    if (!_pose->GetGlobalPublishSubscribeMessageRef() || !_mission->GetGlobalPublishSubscribeMessageRef())
+        return;
+    _pose->FetchMessage();
+    _mission->FetchMessage();
+    if (_pose->WasPosted())
+    {
+        row.AgeS = _pose->GetAgeSeconds();
+        row.LatitudeDeg = _pose->latitude_deg;
+        row.LongitudeDeg = _pose->longitude_deg;
+        row.AltitudeM = _pose->altitude_m;
+        row.SpeedMps = std::hypot(static_cast<double>(_pose->velocity_north_mps),
+                                  static_cast<double>(_pose->velocity_east_mps),
+                                  static_cast<double>(_pose->velocity_down_mps));
+    }
+    if (_mission->WasPosted())
+        row.Mission = MissionText(*_mission);
+}
+
+PoseCount AircraftMonitor::Count() const
+{
+    const std::lock_guard lock(_arrivals->Mutex);
+    return _arrivals->Count;
+}
+
+}  // namespace Ground

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "FleetTable.h"
+#include "PoseCount.h"
+#include "uav.idl.h"
+
+#include <rabit/RabitWorkspace.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace Ground
+{
+
+// Follows the mirrored messages <node>/Pose and <node>/MissionState of one aircraft.
+//
+// Fetch gives a manager the latest of each. A manager that sleeps between fetches cannot count messages,
+// though, so each arrival is counted by a handler on the thread that posts it, which is the transport's.
+class AircraftMonitor
+{
+public:
+    // Registers the two names in the workspace, which must outlive this object.
+    AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace);
+
+    // Fills in the row's pose, its age, and the mission. For one thread: the manager's.
+    void Show(FleetRow &row);
+    // Any thread.
+    PoseCount Count() const;
+
+private:
+    // Shared with the handlers, which may still run when this object is gone.
+    struct Arrivals
+    {
+        std::mutex Mutex;
+        std::shared_ptr<Uav::Pose> Pose = std::make_shared<Uav::Pose>();
+        std::shared_ptr<Uav::MissionState> Mission = std::make_shared<Uav::MissionState>();
+        PoseCount Count;
+    };
+
+    std::shared_ptr<Arrivals> _arrivals = std::make_shared<Arrivals>();
+    Rabit::RabitScopedConnection _onPose;
+    Rabit::RabitScopedConnection _onMission;
+    std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
+    std::shared_ptr<Uav::MissionState> _mission = std::make_shared<Uav::MissionState>();
+};
+
+}  // namespace Ground

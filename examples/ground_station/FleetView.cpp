@@ -1,0 +1,131 @@
+#include "FleetView.h"
+
+#include <rabit/gateway/GatewayManager.h>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace Ground
+{
+namespace
+{
+RowState ToRowState(Rabit::Gateway::NodeState state)
+{
+    switch (state)
+    {
+        case Rabit::Gateway::NodeState::UP:
+            return RowState::Up;
+        case Rabit::Gateway::NodeState::STALE:
+            return RowState::Stale;
+        case Rabit::Gateway::NodeState::LOST:
+            return RowState::Lost;
+    }
+    return RowState::Lost;
+}
+
+TerminalScreen::Size TerminalSize()
+{
+    TerminalScreen::Size size;
+    winsize window{};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 && window.ws_row > 0)
+    {
+        size.Columns = window.ws_col;
+        size.Rows = window.ws_row;
+    }
+    return size;
+}
+}  // namespace
+
+FleetView::FleetView(const std::vector<std::string> &expected, Output output,
+                     Rabit::RabitWorkspace &workspace)
+    : RabitManager("FleetView", workspace), _output(output)
+{
+    AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
+    AddPublishSubscribeMessage("CommandTally", _tally);
+    for (const std::string &node : expected)
+        _aircraft[node] = {std::make_unique<AircraftMonitor>(node, workspace), true};
+    SetWakeupTimeDelayMSec(static_cast<int>((_output.IsTerminal ? ScreenPeriod : LogPeriod).count()));
+}
+
+void FleetView::Startup()
+{
+    _start = GetWorkspace().GetClock().Monotonic();
+}
+
+void FleetView::ExecuteUnitOfWork()
+{
+    Look();
+    Print();
+}
+
+void FleetView::Look()
+{
+    _fleet->FetchMessage();
+    _tally->FetchMessage();
+    FollowNewNodes();
+    _seen.clear();
+    for (auto &[node, aircraft] : _aircraft)
+    {
+        Seen seen;
+        seen.Row.Node = node;
+        seen.Row.State = StateOf(node);
+        aircraft.Monitor->Show(seen.Row);
+        if (!aircraft.Expected && !seen.Row.AgeS && seen.Row.Mission.empty())
+            continue;  // not an aircraft, as far as can be told
+        for (const NodeCommands &commands : _tally->nodes)
+        {
+            if (commands.node != node)
+                continue;
+            seen.Row.Sent = commands.sent;
+            seen.Row.Acknowledged = commands.acknowledged;
+        }
+        const PoseCount count = aircraft.Monitor->Count();
+        seen.Published = count.Published();
+        seen.Heard = count.Heard();
+        _seen.push_back(std::move(seen));
+    }
+}
+
+void FleetView::FollowNewNodes()
+{
+    for (const auto &status : _fleet->nodes)
+        if (!_aircraft.contains(status.node))
+            _aircraft[status.node] = {std::make_unique<AircraftMonitor>(status.node, GetWorkspace()), false};
+}
+
+RowState FleetView::StateOf(const std::string &node) const
+{
+    const auto status = std::find_if(_fleet->nodes.begin(), _fleet->nodes.end(),
+                                     [&node](const auto &candidate) { return candidate.node == node; });
+    if (status == _fleet->nodes.end())
+        return RowState::Waiting;
+    const RowState state = ToRowState(status->state);
+    // The gateway posts Fleet every second. If it has stopped, nobody knows whether the node is there.
+    if (state == RowState::Up && _fleet->GetAgeSeconds() > FleetFreshS)
+        return RowState::Stale;
+    return state;
+}
+
+void FleetView::Print()
+{
+    std::vector<FleetRow> rows;
+    for (const Seen &seen : _seen)
+        rows.push_back(seen.Row);
+    const double elapsedS =
+        std::chrono::duration<double>(GetWorkspace().GetClock().Monotonic() - _start).count();
+    if (_output.IsTerminal)
+    {
+        _output.Stream << _screen.Redraw(FleetTableLines(rows, elapsedS), TerminalSize());
+    }
+    else
+    {
+        for (const std::string &line : FleetLogLines(rows, elapsedS))
+            _output.Stream << line << '\n';
+    }
+    _output.Stream.flush();
+}
+
+}  // namespace Ground

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "AircraftMonitor.h"
+#include "FleetTable.h"
+#include "TerminalScreen.h"
+#include "gateway.idl.h"
+#include "ground.idl.h"
+
+#include <rabit/RabitManager.h>
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace Ground
+{
+
+// Shows the fleet on the standard output: the manager `FleetView`. On a terminal it redraws a table in place,
+// else it writes a line a second for each aircraft.
+//
+// Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose and <node>/MissionState of each of
+// them; and CommandTally of the Commander.
+//
+// A node counts as an aircraft once a pose or mission state of it has come, or if it is expected.
+class FleetView : public Rabit::RabitManager
+{
+public:
+    static constexpr std::chrono::milliseconds ScreenPeriod{200};
+    static constexpr std::chrono::milliseconds LogPeriod{1000};
+    // A Fleet older than this tells nothing of the present any more.
+    static constexpr double FleetFreshS = 3.0;
+
+    // Where to show it. The stream must outlive the manager; nobody else may write to it while the manager
+    // runs.
+    struct Output
+    {
+        std::ostream &Stream;
+        bool IsTerminal = false;  // the standard output is one
+    };
+
+    // What was seen of one aircraft, for the summary at the end.
+    struct Seen
+    {
+        FleetRow Row;
+        std::uint64_t Published = 0;
+        std::uint64_t Heard = 0;
+    };
+
+    FleetView(const std::vector<std::string> &expected, Output output,
+              Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
+
+    void Startup() final;
+    void ExecuteUnitOfWork() final;
+
+    // As of the last unit of work. Call it when the reactor's Run has returned.
+    const std::vector<Seen> &Result() const { return _seen; }
+
+private:
+    struct Aircraft
+    {
+        std::unique_ptr<AircraftMonitor> Monitor;
+        bool Expected = false;
+    };
+
+    void Look();
+    void FollowNewNodes();
+    RowState StateOf(const std::string &node) const;
+    void Print();
+
+    const Output _output;
+    std::chrono::nanoseconds _start{0};
+    std::map<std::string, Aircraft> _aircraft;
+    std::vector<Seen> _seen;
+    TerminalScreen _screen;
+    std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
+    std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
+};
+
+}  // namespace Ground

@@ -1,0 +1,126 @@
+#include "FleetView.h"
+
+#include <rabit/ManualClock.h>
+#include <rabit/RabitSteppedReactor.h>
+#include <rabit/gateway/GatewayManager.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace
+{
+using namespace std::chrono_literals;
+using Ground::RowState;
+using Rabit::Gateway::NodeState;
+using testing::HasSubstr;
+
+class FleetView : public testing::Test
+{
+protected:
+    std::shared_ptr<Rabit::ManualClock> _clock = std::make_shared<Rabit::ManualClock>(1.4e9);
+    Rabit::RabitWorkspace _workspace{_clock};
+    std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
+    std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
+    std::ostringstream _out;
+    Rabit::RabitSteppedReactor _reactor{_workspace};
+    const Ground::FleetView *_view = nullptr;
+
+    void SetUp() override
+    {
+        _workspace.AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
+        _workspace.AddPublishSubscribeMessage("uav1/Pose", _pose);
+    }
+    void Start(const std::vector<std::string> &expected)
+    {
+        auto view =
+            std::make_unique<Ground::FleetView>(expected, Ground::FleetView::Output{_out, false}, _workspace);
+        _view = view.get();
+        _reactor.AddManager(std::move(view));
+        _reactor.Start();
+    }
+    // Shows the fleet with uav1 in that state; returns what was printed.
+    std::string Show(NodeState state)
+    {
+        Rabit::Gateway::NodeStatus status;
+        status.node = "uav1";
+        status.state = state;
+        _fleet->nodes = {status};
+        _fleet->PostMessage();
+        return Printed();
+    }
+    std::string Printed()
+    {
+        _out.str("");
+        _reactor.RunFor(*_clock, 1s);
+        return _out.str();
+    }
+    RowState State() const { return _view->Result().at(0).Row.State; }
+};
+
+TEST_F(FleetView, ShowsAnExpectedAircraftBeforeItIsHeard)
+{
+    Start({"uav1"});
+    EXPECT_THAT(Printed(), HasSubstr("uav1   WAITING no pose yet"));
+    ASSERT_EQ(_view->Result().size(), 1u);
+    EXPECT_EQ(State(), RowState::Waiting);
+}
+
+TEST_F(FleetView, DoesNotTakeANodeForAnAircraftUntilItsPoseComes)
+{
+    Start({});
+    Show(NodeState::UP);
+    EXPECT_TRUE(_view->Result().empty());
+    _pose->PostMessage();
+    Show(NodeState::UP);
+    EXPECT_EQ(_view->Result().size(), 1u);
+}
+
+TEST_F(FleetView, FollowsTheStateOfANode)
+{
+    Start({"uav1"});
+    Show(NodeState::UP);
+    EXPECT_EQ(State(), RowState::Up);
+    Show(NodeState::STALE);
+    EXPECT_EQ(State(), RowState::Stale);
+    Show(NodeState::LOST);
+    EXPECT_EQ(State(), RowState::Lost);
+}
+
+TEST_F(FleetView, ShowsTheLastPoseOfALostNodeAsOld)
+{
+    Start({"uav1"});
+    _pose->PostMessage();
+    Show(NodeState::UP);
+    EXPECT_THAT(Show(NodeState::LOST), HasSubstr("LOST    OLD pose (age"));
+}
+
+TEST_F(FleetView, TrustsNoFleetThatHasStoppedComing)
+{
+    Start({"uav1"});
+    Show(NodeState::UP);
+    for (int i = 0; i < 4; ++i)
+        Printed();
+    EXPECT_EQ(State(), RowState::Stale);
+}
+
+TEST_F(FleetView, ShowsWhatTheCommanderHasSent)
+{
+    Start({"uav1"});
+    auto tally = std::make_shared<Ground::CommandTally>();
+    _workspace.AddPublishSubscribeMessage("CommandTally", tally);
+    Ground::NodeCommands commands;
+    commands.node = "uav1";
+    commands.sent = 5;
+    commands.acknowledged = 4;
+    tally->nodes = {commands};
+    tally->PostMessage();
+    EXPECT_THAT(Printed(), HasSubstr("commands 5 sent 4 acknowledged"));
+}
+
+}  // namespace

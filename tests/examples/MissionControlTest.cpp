@@ -1,0 +1,235 @@
+#include "MissionControl.h"
+
+#include <rabit/ManualClock.h>
+#include <rabit/QueueForwarder.h>
+#include <rabit/RabitSteppedReactor.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace
+{
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+Uav::Goto Command(std::uint32_t id)
+{
+    Uav::Goto command;
+    command.id = id;
+    command.reply_to = "ground/Commands";
+    command.latitude_deg = 49.2584;
+    command.longitude_deg = -123.2432;
+    command.altitude_m = 60;
+    command.speed_mps = 10;
+    return command;
+}
+
+// What a gateway does with messages for other nodes.
+class FakeGateway : public Rabit::QueueForwarder
+{
+public:
+    bool Accepts = true;
+    std::vector<std::pair<std::string, Uav::CommandAck>> Accepted;
+    int Refused = 0;
+
+    bool Handles(const std::string &) const override { return true; }
+    bool Forward(const std::string &queue, const std::shared_ptr<Rabit::RabitMessage> &message) override
+    {
+        if (!Accepts)
+        {
+            ++Refused;
+            return false;
+        }
+        Accepted.emplace_back(queue, dynamic_cast<const Uav::CommandAck &>(*message));
+        return true;
+    }
+};
+
+class MissionControl : public testing::Test
+{
+protected:
+    std::shared_ptr<Rabit::ManualClock> _clock = std::make_shared<Rabit::ManualClock>(1.4e9);
+    Rabit::RabitWorkspace _workspace{_clock};
+    std::shared_ptr<Rabit::RabitMessageQueue<std::shared_ptr<Rabit::RabitMessage>>> _autopilot =
+        std::make_shared<Rabit::RabitMessageQueue<std::shared_ptr<Rabit::RabitMessage>>>(2, "Autopilot");
+    std::shared_ptr<FakeGateway> _gateway = std::make_shared<FakeGateway>();
+    Rabit::RabitSteppedReactor _reactor{_workspace};
+    Uav::MissionState _state;
+
+    void SetUp() override
+    {
+        _workspace.AddManagerMessageQueue("Autopilot", _autopilot);
+        _workspace.SetQueueForwarder(_gateway);
+        _reactor.AddManager(std::make_unique<Swarm::MissionControl>("uav1", _workspace));
+        _reactor.Start();
+    }
+    void Receive(const Uav::Goto &command)
+    {
+        ASSERT_TRUE(_workspace.AddMessageToQueue("MissionControl", std::make_shared<Uav::Goto>(command)));
+        Run(0ms);
+    }
+    void Run(std::chrono::milliseconds duration)
+    {
+        _reactor.RunFor(*_clock, duration);
+        _workspace.FetchMessage("MissionState", &_state);
+    }
+};
+
+TEST_F(MissionControl, PassesACommandOnAndAnswersWhoAskedForIt)
+{
+    Receive(Command(5));
+    std::shared_ptr<Rabit::RabitMessage> passed;
+    ASSERT_TRUE(_autopilot->GetMessage(passed));
+    EXPECT_EQ(dynamic_cast<Uav::Goto &>(*passed).id, 5u);
+    ASSERT_EQ(_gateway->Accepted.size(), 1u);
+    const auto &[queue, ack] = _gateway->Accepted[0];
+    EXPECT_EQ(queue, "ground/Commands");
+    EXPECT_EQ(ack.id, 5u);
+    EXPECT_EQ(ack.node, "uav1");
+    EXPECT_TRUE(ack.obeyed);
+    EXPECT_EQ(ack.reason, "");
+}
+
+TEST_F(MissionControl, DeclinesACommandThatCannotBeFlownAndSaysWhy)
+{
+    Uav::Goto command = Command(5);
+    command.speed_mps = 0;
+    Receive(command);
+    EXPECT_TRUE(_autopilot->IsEmpty());
+    ASSERT_EQ(_gateway->Accepted.size(), 1u);
+    EXPECT_FALSE(_gateway->Accepted[0].second.obeyed);
+    EXPECT_EQ(_gateway->Accepted[0].second.reason, "speed_mps is not above 0 and up to 50");
+}
+
+TEST_F(MissionControl, DeclinesACommandThatTheAutopilotDoesNotTake)
+{
+    for (std::uint32_t id = 1; id <= 3; ++id)
+        Receive(Command(id));
+    ASSERT_EQ(_gateway->Accepted.size(), 3u);
+    EXPECT_TRUE(_gateway->Accepted[1].second.obeyed);
+    EXPECT_FALSE(_gateway->Accepted[2].second.obeyed);
+}
+
+TEST_F(MissionControl, SendsNoAnswerThatNobodyWants)
+{
+    Uav::Goto command = Command(5);
+    command.reply_to = "";
+    Receive(command);
+    EXPECT_FALSE(_autopilot->IsEmpty());
+    EXPECT_TRUE(_gateway->Accepted.empty());
+}
+
+TEST_F(MissionControl, KeepsAnAnswerThatIsRefusedAndSendsItLaterOnce)
+{
+    _gateway->Accepts = false;
+    Receive(Command(5));
+    Run(3s);
+    EXPECT_THAT(_state.text, HasSubstr("1 answers wait"));
+    _gateway->Accepts = true;
+    Run(3s);
+    ASSERT_EQ(_gateway->Accepted.size(), 1u);
+    EXPECT_EQ(_gateway->Accepted[0].second.id, 5u);
+    EXPECT_EQ(_state.text, "");
+}
+
+TEST_F(MissionControl, KeepsTheOrderOfRefusedAnswers)
+{
+    _gateway->Accepts = false;
+    Receive(Command(5));
+    Receive(Command(6));
+    _gateway->Accepts = true;
+    Run(1s);
+    ASSERT_EQ(_gateway->Accepted.size(), 2u);
+    EXPECT_EQ(_gateway->Accepted[0].second.id, 5u);
+    EXPECT_EQ(_gateway->Accepted[1].second.id, 6u);
+}
+
+TEST_F(MissionControl, GivesAnAnswerUpAfterHalfAMinuteAndSaysSo)
+{
+    _gateway->Accepts = false;
+    Receive(Command(5));
+    Run(31s);
+    const int refused = _gateway->Refused;
+    Run(5s);
+    EXPECT_EQ(_gateway->Refused, refused);
+    EXPECT_EQ(_state.text, "1 answers given up");
+}
+
+TEST_F(MissionControl, PostsItsStateEverySecond)
+{
+    Run(0ms);
+    const auto posts = _workspace.FindGlobalMessage("MissionState")->GetNumberOfPosts();
+    Run(10s);
+    EXPECT_EQ(_workspace.FindGlobalMessage("MissionState")->GetNumberOfPosts() - posts, 10u);
+}
+
+TEST_F(MissionControl, PostsItsStateAtOnceWhenTheModeChanges)
+{
+    Run(500ms);
+    Uav::FlightMode mode;
+    ASSERT_TRUE(mode.mode != Uav::MissionMode::MISSION_GOTO);
+    auto posted = std::make_shared<Uav::FlightMode>();
+    _workspace.AddPublishSubscribeMessage("FlightMode", posted);
+    posted->mode = Uav::MissionMode::MISSION_GOTO;
+    posted->command = 5;
+    posted->PostMessage();
+    Run(0ms);
+    EXPECT_EQ(_state.mode, Uav::MissionMode::MISSION_GOTO);
+    EXPECT_EQ(_state.text, "command 5");
+}
+
+TEST_F(MissionControl, CountsCommandsAndPoses)
+{
+    auto pose = std::make_shared<Uav::Pose>();
+    _workspace.AddPublishSubscribeMessage("Pose", pose);
+    pose->number = 123;
+    pose->PostMessage();
+    Receive(Command(5));
+    Run(1s);
+    EXPECT_EQ(_state.poses, 123u);
+    EXPECT_EQ(_state.commands, 1u);
+    EXPECT_EQ(_state.last_command, 5u);
+}
+
+TEST_F(MissionControl, IgnoresMessagesThatAreNoCommands)
+{
+    _workspace.AddMessageToQueue("MissionControl", std::make_shared<Uav::TargetReport>());
+    Run(1s);
+    EXPECT_TRUE(_gateway->Accepted.empty());
+    EXPECT_TRUE(_autopilot->IsEmpty());
+}
+
+TEST(WhyNot, AcceptsTheLimits)
+{
+    Uav::Goto command = Command(1);
+    command.latitude_deg = -90;
+    command.longitude_deg = 180;
+    command.altitude_m = 10000;
+    command.speed_mps = 50;
+    EXPECT_EQ(Swarm::WhyNot(command), "");
+}
+
+TEST(WhyNot, RefusesWhatIsOutOfRangeOrNoNumber)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Uav::Goto command = Command(1);
+    command.latitude_deg = nan;
+    EXPECT_THAT(Swarm::WhyNot(command), HasSubstr("latitude_deg"));
+    command = Command(1);
+    command.longitude_deg = 180.1;
+    EXPECT_THAT(Swarm::WhyNot(command), HasSubstr("longitude_deg"));
+    command = Command(1);
+    command.altitude_m = std::numeric_limits<double>::infinity();
+    EXPECT_THAT(Swarm::WhyNot(command), HasSubstr("altitude_m"));
+    command = Command(1);
+    command.speed_mps = 50.5f;
+    EXPECT_THAT(Swarm::WhyNot(command), HasSubstr("speed_mps"));
+}
+
+}  // namespace

@@ -1,0 +1,128 @@
+#!/usr/bin/env bash
+# Runs examples/demo.sh as a user does, on loopback. Usage: demo_test.sh CASE FOLDER_OF_PROGRAMS
+set -uo pipefail
+case=$1
+bin=$2
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+demo_pid=
+trap 'if [ -n "$demo_pid" ]; then kill -TERM "$demo_pid"; wait "$demo_pid"; fi; rm -rf "$work"' EXIT
+
+fail() {
+    echo "FAILED: $1"
+    echo "--- standard output"
+    cat "$work/out"
+    echo "--- standard error"
+    cat "$work/err"
+    exit 1
+}
+
+# demo ARGUMENTS: runs to its end, sets `status`.
+demo() {
+    "$root/examples/demo.sh" --bin "$bin" "$@" >"$work/out" 2>"$work/err"
+    status=$?
+}
+
+start_demo() {
+    "$root/examples/demo.sh" --bin "$bin" "$@" >"$work/out" 2>"$work/err" &
+    demo_pid=$!
+}
+
+# wait_for FILE PATTERN: until a line of the file matches.
+wait_for() {
+    local tries
+    for ((tries = 0; tries < 600; tries++)); do
+        grep -q -- "$2" "$1" && return
+        sleep 0.1
+    done
+    fail "no line '$2' came within a minute"
+}
+
+end_demo() {
+    wait "$demo_pid"
+    status=$?
+    demo_pid=
+}
+
+# The process ids that the demo said it started.
+started() {
+    grep -o '([0-9]*)' "$work/err" | tr -d '()'
+}
+
+expect_status() {
+    [ "$status" -eq "$1" ] || fail "exit code $status instead of $1"
+}
+
+expect_no_processes_left() {
+    local pid
+    [ -n "$(started)" ] || fail "no process ids were printed"
+    for pid in $(started); do
+        ! kill -0 "$pid" 2>/dev/null || fail "process $pid is left over"
+    done
+}
+
+case $case in
+passes)
+    demo --seconds 12
+    expect_status 0
+    for node in uav1 uav2 uav3; do
+        grep -q "$node   UP      pose (age" "$work/out" || fail "$node was not shown as UP"
+    done
+    grep -qx Passed "$work/out" || fail "no summary"
+    expect_no_processes_left
+    ;;
+shows_a_killed_aircraft)
+    start_demo --seconds 40
+    wait_for "$work/out" 'uav2   UP '
+    kill -KILL "$(grep -o 'uav2 ([0-9]*)' "$work/err" | grep -o '[0-9]*)' | tr -d ')')"
+    wait_for "$work/out" 'uav2   STALE   OLD pose'
+    wait_for "$work/out" 'uav2   LOST    OLD pose'
+    kill -INT "$demo_pid"
+    end_demo
+    expect_status 1
+    grep -q 'FAILED: uav2 was LOST at the end' "$work/out" || fail "the summary does not tell of uav2"
+    grep -q 'uav2 ended before its time with exit code 137' "$work/err" || fail "the end of uav2 is not told"
+    expect_no_processes_left
+    ;;
+ends_in_order_when_interrupted)
+    start_demo
+    wait_for "$work/out" 'uav3 .* commands 1 sent 1 acknowledged'
+    wait_for "$work/out" '   8\.[0-9] s .*uav3'
+    kill -INT "$demo_pid"
+    end_demo
+    expect_status 0
+    grep -qx Passed "$work/out" || fail "no summary"
+    expect_no_processes_left
+    ;;
+flies_a_track)
+    {
+        echo time_s,latitude_deg,longitude_deg,altitude_m,velocity_north_mps,velocity_east_mps,velocity_down_mps,roll_rad,pitch_rad,yaw_rad
+        echo 0,12.5,34.5,111,0,0,0,0,0,0
+    } >"$work/track.csv"
+    start_demo --uavs 1 --track "$work/track.csv"
+    wait_for "$work/out" 'uav1   UP .* 12.5[0-9]* 34.5[0-9]* '
+    kill -TERM "$demo_pid"
+    end_demo
+    expect_no_processes_left
+    ;;
+refuses_a_bad_track)
+    echo time_s,latitude_deg,oops >"$work/track.csv"
+    demo --seconds 5 --track "$work/track.csv"
+    expect_status 2
+    [ "$(cat "$work/err")" = "$work/track.csv:1:21: expected the column name longitude_deg, found 'oops'" ] ||
+        fail "another error was expected"
+    [ ! -s "$work/out" ] || fail "something was started"
+    ;;
+refuses_bad_options)
+    for arguments in '--uavs 0' '--uavs 21' '--uavs x' '--seconds 0' '--domain 233' '--transport carrier' --oops; do
+        # shellcheck disable=SC2086 # two words
+        demo $arguments
+        expect_status 2
+        [ "$(wc -l <"$work/err")" -eq 1 ] || fail "one line was expected for $arguments"
+    done
+    ;;
+*)
+    echo "demo_test.sh: no case '$case'" >&2
+    exit 1
+    ;;
+esac
