@@ -1,7 +1,7 @@
 // The base of the conformance suite: tests of what Transport.h promises, the same for every backend.
 //
 // A backend joins by an own test program that links rabit_transport_conformance and says
-//   INSTANTIATE_TEST_SUITE_P(Its, Conformance, testing::Values(&MakeItsHarness));
+//   INSTANTIATE_TEST_SUITE_P(Its, Conformance, testing::Values(HarnessMaker{"its name", &Make}));
 #pragma once
 
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ protected:
     void ExpectArrivalOf(std::size_t size);
 
 private:
-    const std::unique_ptr<TransportHarness> _harness = GetParam()();
+    const std::unique_ptr<TransportHarness> _harness = GetParam().Make();
 };
 
 }  // namespace Rabit::Conformance

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 
 namespace Rabit::Conformance
@@ -39,6 +40,16 @@ public:
     virtual std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) = 0;
 };
 
-using HarnessMaker = std::unique_ptr<TransportHarness> (*)();
+// The parameter of the suite.
+struct HarnessMaker
+{
+    std::string Name;  // of the backend
+    std::unique_ptr<TransportHarness> (*Make)();
+
+    friend std::ostream &operator<<(std::ostream &out, const HarnessMaker &maker)
+    {
+        return out << maker.Name;
+    }
+};
 
 }  // namespace Rabit::Conformance

@@ -16,6 +16,6 @@ std::unique_ptr<TransportHarness> MakeFastDdsHarness()
 
 }  // namespace
 
-INSTANTIATE_TEST_SUITE_P(FastDds, Conformance, testing::Values(&MakeFastDdsHarness));
+INSTANTIATE_TEST_SUITE_P(FastDds, Conformance, testing::Values(HarnessMaker{"fastdds", &MakeFastDdsHarness}));
 
 }  // namespace Rabit::Conformance

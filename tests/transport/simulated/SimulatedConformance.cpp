@@ -14,6 +14,7 @@ std::unique_ptr<TransportHarness> MakeSimulatedHarness()
 
 }  // namespace
 
-INSTANTIATE_TEST_SUITE_P(Simulated, Conformance, testing::Values(&MakeSimulatedHarness));
+INSTANTIATE_TEST_SUITE_P(Simulated, Conformance,
+                         testing::Values(HarnessMaker{"simulated", &MakeSimulatedHarness}));
 
 }  // namespace Rabit::Conformance

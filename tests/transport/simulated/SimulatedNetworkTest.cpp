@@ -327,6 +327,21 @@ TEST_F(SimulatedNetworkTest, ACrashedNodeIsLostAndItsWritesFail)
     EXPECT_EQ(AtUav.CountAll(), 1u);  // that ground appeared, long ago
 }
 
+TEST_F(SimulatedNetworkTest, AnAnnouncementOvertakenByTheGoodbyeRevivesNobody)
+{
+    Net.Settle();
+    SimulatedFaults slow;
+    slow.Delay = 2s;
+    Net.Network().SetFaults("uav1", "ground", slow);
+    Net.Pass(1500ms);  // announcements are under way
+    Net.Network().ClearFaults();
+    Uav.reset();
+    Net.Pass(10s);
+    EXPECT_EQ(AtGround.Count(Kind::Appeared, "uav1", 1), 1);
+    EXPECT_EQ(AtGround.Count(Kind::Left, "uav1", 1), 1);
+    EXPECT_EQ(AtGround.CountAll(), 2u);
+}
+
 TEST_F(SimulatedNetworkTest, ALargeSampleGetsThroughALossyNetworkIfReliable)
 {
     Connect(Stream(2));

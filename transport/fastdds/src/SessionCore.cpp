@@ -6,6 +6,7 @@
 #include <fastdds/rtps/builtin/data/WriterProxyData.h>
 #include <fastdds/rtps/participant/RTPSParticipant.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "EndpointSettings.h"
@@ -15,6 +16,14 @@ namespace Rabit::FastDds
 {
 
 namespace rtps = eprosima::fastrtps::rtps;
+
+namespace
+{
+
+// Announcements are overtaken by milliseconds: nobody closes so many sessions in that time.
+constexpr std::size_t MostDeparted = 64;
+
+}  // namespace
 
 SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
     : _log(std::make_shared<SessionLog>(settings)),
@@ -87,8 +96,11 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
     const auto identity = std::make_shared<const ParticipantIdentity>(
         ParticipantIdentity{peer.m_participantName.to_string(), *incarnation});
     {
+        // An announcement may be overtaken by the goodbye that was sent after it, on another socket. The one
+        // who has gone does not come back: a prefix belongs to one life of one participant.
         const std::lock_guard lock(_mutex);
-        if (!_peers.emplace(peer.m_guid.guidPrefix, identity).second)
+        const auto departed = std::find(_departed.begin(), _departed.end(), peer.m_guid.guidPrefix);
+        if (departed != _departed.end() || !_peers.emplace(peer.m_guid.guidPrefix, identity).second)
         {
             return;
         }
@@ -108,6 +120,14 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
     std::shared_ptr<const ParticipantIdentity> identity;
     {
         const std::lock_guard lock(_mutex);
+        if (how == PeerEvent::Kind::Left)
+        {
+            _departed.push_back(prefix);
+            if (_departed.size() > MostDeparted)
+            {
+                _departed.pop_front();
+            }
+        }
         const auto found = _peers.find(prefix);
         if (found == _peers.end())
         {

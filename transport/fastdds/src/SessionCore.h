@@ -6,6 +6,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <atomic>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -60,7 +61,8 @@ private:
     std::atomic<bool> _closed{false};
     mutable std::mutex _mutex;
     std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>
-        _peers;  // Rabit nodes; guarded by _mutex
+        _peers;                        // Rabit nodes; guarded by _mutex
+    std::deque<GuidPrefix> _departed;  // the last that said goodbye; guarded by _mutex
     eprosima::fastrtps::rtps::RTPSParticipant *_participant = nullptr;
 };
 

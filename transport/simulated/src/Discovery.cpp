@@ -62,6 +62,10 @@ void NetworkCore::Announce(const ParticipantPtr &participant)
 
 void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)
 {
+    if (me->Departed.contains(from))
+    {
+        return;  // sent before the goodbye, and overtaken by it
+    }
     const auto [entry, isNew] = me->Peers.try_emplace(from);
     if (!isNew)
     {

@@ -159,6 +159,7 @@ void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Dat
             HearAnnouncement(at, from, datagram);
             return;
         case Datagram::Kind::Bye:
+            at->Departed.insert(from);
             LosePeer(at, from, PeerEvent::Kind::Left);
             return;
         case Datagram::Kind::Endpoints:

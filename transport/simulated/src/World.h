@@ -10,6 +10,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -158,6 +159,7 @@ struct ParticipantState
     std::uint32_t NodeNumber = 0;  // in the fault plan
     bool Gone = false;             // closed or crashed
     std::map<ParticipantId, Peer> Peers;
+    std::set<ParticipantId> Departed;  // said goodbye: announcements of theirs that come later are void
     std::map<EndpointId, std::shared_ptr<WriterState>> Writers;
     std::map<EndpointId, std::shared_ptr<ReaderState>> Readers;
     std::uint32_t LastEntity = 0;

@@ -193,7 +193,7 @@ struct PeerEvent
     enum class Kind
     {
         Appeared,
-        Left,  // closed its session
+        Left,  // closed its session, for good: another session of the node may appear, this one does not
         Lost   // said nothing for its lease
     };
     Kind What = Kind::Appeared;
