@@ -212,21 +212,29 @@ void LinkNode::OnAck(const LinkAck &ack, LinkTime now)
     {
         return;
     }
-    LinkPeer *peer = FindPeer(ack.Destination);
-    LinkSender *sender = peer == nullptr ? nullptr : peer->FindSender(ack.Queue);
-    if (sender == nullptr)
+    LinkPeer *peer = FindOrAddPeer(ack.Destination, now);
+    if (peer == nullptr)
     {
-        ++_context->Counters.NoSuchLink;
+        ++_context->Counters.TooManyPeers;
         return;
     }
-    if (ack.ReceiverIncarnation == peer->Incarnation() && !sender->IsPossible(ack))
+    LinkSender *sender = peer->FindSender(ack.Queue);
+    if (sender != nullptr && ack.ReceiverIncarnation == peer->Incarnation() && !sender->IsPossible(ack))
     {
         CountMalformed();
         return;
     }
-    if (peer->HeardOf(ack.ReceiverIncarnation, now))  // rule S5
+    const bool present = peer->HeardOf(ack.ReceiverIncarnation, now);  // rule S5
+    if (present)
     {
         peer->TakeToken(ack.Clock, ack.Time, now);
+    }
+    if (sender == nullptr)
+    {
+        ++_context->Counters.NoSuchLink;
+    }
+    else if (present)
+    {
         sender->OnAck(ack, now);  // rule S4
     }
     HeardOfMyself(ack.YourIncarnation, now);  // rule S6

@@ -157,6 +157,34 @@ TEST_F(LinkReceiverRules, R3_a_new_life_of_the_sender_replaces_the_session)
     EXPECT_EQ(a.ReceiverCounters().SessionsOpened, 2U);
 }
 
+TEST_F(LinkReceiverRules, R3_a_new_session_knows_no_outcomes_of_the_old_one)
+{
+    OpenSession();
+    b.Life += 1;
+    StoredData data = Data(1, {""});
+    data.Items[0] = {LinkFlagSkip, 0, "", {}};
+    a.Hear(data);
+    EXPECT_EQ(Acknowledgement().Delivered, LinkBitmap{});
+}
+
+TEST_F(LinkReceiverRules, hello_of_a_peer_that_does_not_know_this_life_is_answered_at_once)
+{
+    a.Hear(b.Hello());
+    a.Pass(30ms);
+    a.TakeHellos();
+    a.Pass(30ms);
+    a.Hear(b.Hello());
+    a.Pass(0ms);
+    EXPECT_THAT(a.TakeHellos(), IsEmpty()) << "it knows";
+    b.KnownLife = 0;
+    a.Hear(b.Hello());
+    a.Pass(0ms);
+    const auto hellos = a.TakeHellos();
+    ASSERT_THAT(hellos, SizeIs(1));
+    EXPECT_EQ(hellos[0].Fields.Incarnation, NodeUnderTest::FirstLife);
+    EXPECT_EQ(hellos[0].Fields.YourIncarnation, b.Life);
+}
+
 // Rule R4
 
 TEST_F(LinkReceiverRules, R4_a_repeated_message_is_acknowledged_only)

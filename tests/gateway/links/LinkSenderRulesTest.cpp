@@ -500,6 +500,31 @@ TEST_F(LinkSenderRules, S5_a_hello_tells_of_the_new_life_as_well)
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(2, LinkOutcome::InDoubt)));
 }
 
+TEST_F(LinkSenderRules, S5_the_token_of_the_old_life_is_forgotten)
+{
+    Contact();
+    b.Life += 1;
+    a.Hear(b.Data(1, {"x"}, a.Now));  // tells of the new life, and brings no token
+    a.TakeDelivered();
+    a.Enqueue("2");
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), IsEmpty());
+    a.Hear(b.Hello());
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), ElementsAre("2"));
+}
+
+TEST_F(LinkSenderRules, S5_the_credit_of_the_old_life_is_forgotten)
+{
+    Contact(100);
+    b.Life += 1;
+    a.Hear(b.Hello());
+    a.Enqueue("2");
+    a.Enqueue("3");
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), ElementsAre("2"));
+}
+
 TEST_F(LinkSenderRules, S5_a_queue_that_opted_in_gets_what_was_in_doubt_again_marked_and_in_order)
 {
     a.Configure({.RedeliverInDoubt = true});

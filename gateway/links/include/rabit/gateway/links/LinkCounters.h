@@ -57,7 +57,7 @@ struct LinkNodeCounters
     std::uint64_t NotForUs = 0;        // datagrams dropped because another node was addressed
     std::uint64_t TooManyPeers = 0;    // datagrams dropped because of LinkSettings::MaxPeers
     std::uint64_t TooManyLinks = 0;    // datagrams dropped because of LinkSettings::MaxLinksPerPeer
-    std::uint64_t NoSuchLink = 0;      // acknowledgements of links that this node does not have
+    std::uint64_t NoSuchLink = 0;      // acknowledgements of links that this life of the node does not have
     std::uint64_t RefusedBadName = 0;  // Enqueue: LinkRefusal::BadName
     std::uint64_t RefusedTooMany = 0;  // Enqueue: LinkRefusal::TooManyPeers and TooManyLinks
     std::uint64_t Raises = 0;        // incarnations taken because a peer knew a higher one (rules R1 and S6)
