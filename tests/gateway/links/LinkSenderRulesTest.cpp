@@ -525,6 +525,23 @@ TEST_F(LinkSenderRules, S5_the_credit_of_the_old_life_is_forgotten)
     EXPECT_THAT(SentTexts(), ElementsAre("2"));
 }
 
+TEST_F(LinkSenderRules, S5_the_clock_of_the_new_life_may_read_less_than_that_of_the_old_one)
+{
+    Contact(100);
+    b.Life += 1;
+    b.Time = 5;
+    a.Hear(b.Hello());
+    for (const char *text : {"2", "3", "4"})
+    {
+        a.Enqueue(text);
+    }
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), ElementsAre("2"));
+    a.Hear(b.Ack(2, 10));
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), ElementsAre("3", "4"));
+}
+
 TEST_F(LinkSenderRules, S5_a_queue_that_opted_in_gets_what_was_in_doubt_again_marked_and_in_order)
 {
     a.Configure({.RedeliverInDoubt = true});

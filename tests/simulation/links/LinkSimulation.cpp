@@ -22,6 +22,8 @@ using namespace std::chrono_literals;
 // All that is accepted must have its outcome this long after the faults have stopped (invariant 11).
 constexpr LinkTime DrainTime = 60s;
 constexpr LinkTime LongestStraggle = 90s;
+// A run has some thousands of events; one with more than this has a node that asks to be run without end.
+constexpr std::uint64_t MostEvents = 1'000'000;
 
 enum class EventKind
 {
@@ -148,6 +150,10 @@ SimResult Simulation::Run()
         if (_oracle.Outcomes() != outcomes)
         {
             _lastOutcomeAt = _world.Now;
+        }
+        if (_statistics.Events > MostEvents)
+        {
+            _oracle.Fail(10, "a node asks to be run without end");
         }
         if (_calm && !_drained && IsDrained())
         {

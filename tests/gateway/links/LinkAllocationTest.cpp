@@ -1,0 +1,100 @@
+// In the steady state a link allocates nothing for a message. A program of its own, because it replaces
+// operator new.
+#include <gtest/gtest.h>
+#include <rabit/gateway/links/LinkNode.h>
+
+#include <cstdlib>
+#include <new>
+
+namespace
+{
+
+// NOLINTNEXTLINE: counted for the whole program
+std::size_t allocations = 0;
+
+}  // namespace
+
+void *operator new(std::size_t size)
+{
+    ++allocations;
+    if (void *memory = std::malloc(size))
+    {
+        return memory;
+    }
+    throw std::bad_alloc();
+}
+
+void operator delete(void *memory) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void *memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+
+namespace Rabit::Test
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+// A node that hands what it sends straight to the other one.
+class Wired : public LinkOutput, public LocalQueues, public IncarnationSource
+{
+public:
+    explicit Wired(const char *name, std::uint64_t clock)
+    {
+        LinkSettings settings;
+        settings.Node = name;
+        settings.Clock = clock;
+        Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
+    }
+    void Send(const LinkData &data) override { Other->Node->OnData(data, *Now); }
+    void Send(const LinkAck &ack) override { Other->Node->OnAck(ack, *Now); }
+    void Send(const LinkHello &hello) override { Other->Node->OnHello(hello, *Now); }
+    void OnOutcome(std::uint64_t, std::string_view, std::string_view, LinkOutcome) override { ++Outcomes; }
+    LocalQueueResult Deliver(std::string_view, std::string_view, std::string_view,
+                             std::span<const std::uint8_t>, bool) override
+    {
+        return LocalQueueResult::Ok;
+    }
+    std::size_t Room(std::string_view) const override { return 1000; }
+    std::uint64_t Above(std::uint64_t floor) override { return floor + (1ULL << 32); }
+
+    std::unique_ptr<LinkNode> Node;
+    Wired *Other = nullptr;
+    const LinkTime *Now = nullptr;
+    std::size_t Outcomes = 0;
+};
+
+TEST(LinkAllocation, a_message_in_the_steady_state_costs_none)
+{
+    LinkTime now = 1s;
+    Wired a("a", 1);
+    Wired b("b", 2);
+    a.Other = &b;
+    b.Other = &a;
+    a.Now = b.Now = &now;
+    const LinkPayload payload = std::make_shared<const std::vector<std::uint8_t>>(100);
+    const auto exchange = [&](int messages)
+    {
+        for (int i = 0; i < messages; ++i)
+        {
+            a.Node->Enqueue("b", "a queue with a long name", "A::Type::With::A::Long::Name", payload, now);
+            a.Node->Enqueue("b", "a queue with a long name", "A::Type::With::A::Long::Name", payload, now);
+            a.Node->Run(now);
+            now += 3ms;
+            b.Node->Run(now);
+        }
+    };
+    exchange(1000);
+    const std::size_t before = allocations;
+    exchange(10000);
+    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(a.Outcomes, 22000U);
+}
+
+}  // namespace
+}  // namespace Rabit::Test

@@ -1,0 +1,270 @@
+// Several nodes on a network without faults of its own: what no random run shows.
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "NodeUnderTest.h"
+
+namespace Rabit::Test
+{
+namespace
+{
+
+using testing::Each;
+using testing::SizeIs;
+
+// Carries everything between nodes in a fixed time; those that nobody answers for are dead peers.
+class Network
+{
+public:
+    struct Member : LinkOutput, LocalQueues, IncarnationSource
+    {
+        Member(Network &network, std::string name, std::uint64_t life) : Net(network), Life(life)
+        {
+            LinkSettings settings;
+            settings.Node = std::move(name);
+            settings.Clock = ++network._clocks;
+            Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
+        }
+        void Send(const LinkData &data) override
+        {
+            Net.Carry(data.Destination, StoredData(data));
+            ++DatasSent;
+        }
+        void Send(const LinkAck &ack) override { Net.Carry(ack.Source, StoredAck(ack)); }
+        void Send(const LinkHello &hello) override { Net.Carry(hello.Destination, StoredHello(hello)); }
+        void OnOutcome(std::uint64_t, std::string_view, std::string_view, LinkOutcome outcome) override
+        {
+            Outcomes.push_back(outcome);
+        }
+        LocalQueueResult Deliver(std::string_view, std::string_view, std::string_view,
+                                 std::span<const std::uint8_t> payload, bool) override
+        {
+            Delivered.emplace_back(Net.Now, std::string(payload.begin(), payload.end()));
+            return LocalQueueResult::Ok;
+        }
+        std::size_t Room(std::string_view) const override { return 1000; }
+        std::uint64_t Above(std::uint64_t floor) override
+        {
+            Life = std::max(Life, ((floor >> 32) + 1) << 32);
+            return Life;
+        }
+
+        Network &Net;
+        std::uint64_t Life;
+        std::unique_ptr<LinkNode> Node;
+        std::vector<std::pair<LinkTime, std::string>> Delivered;
+        std::vector<LinkOutcome> Outcomes;
+        int DatasSent = 0;
+    };
+
+    Member &Add(const std::string &name, std::uint64_t life = 1ULL << 32)
+    {
+        _members.push_back(std::make_unique<Member>(*this, name, life));
+        return *_members.back();
+    }
+    void Live(LinkTime time)
+    {
+        const LinkTime end = Now + time;
+        for (;;)
+        {
+            LinkTime next = _onTheWay.empty() ? LinkNever : _onTheWay.begin()->first.first;
+            for (const auto &member : _members)
+            {
+                next = std::min(next, std::max(member->Node->NextDue(), Now));
+            }
+            if (next > end)
+            {
+                break;
+            }
+            Now = next;
+            while (!_onTheWay.empty() && _onTheWay.begin()->first.first <= Now)
+            {
+                const Letter letter = std::move(_onTheWay.begin()->second);
+                _onTheWay.erase(_onTheWay.begin());
+                Hand(letter);
+            }
+            for (const auto &member : _members)
+            {
+                member->Node->Run(Now);
+            }
+        }
+        Now = end;
+    }
+
+    LinkTime Now{1s};
+    LinkTime Delay{5ms};
+    // Whether a datagram gets lost.
+    std::function<bool()> Loses = [] { return false; };
+
+private:
+    struct Letter
+    {
+        std::string To;
+        std::variant<StoredData, StoredAck, StoredHello> Message;
+    };
+
+    template <typename Message>
+    void Carry(std::string_view to, Message message)
+    {
+        if (!Loses())
+        {
+            _onTheWay.emplace(std::pair(Now + Delay, ++_order), Letter{std::string(to), std::move(message)});
+        }
+    }
+    void Hand(const Letter &letter)
+    {
+        for (const auto &member : _members)
+        {
+            if (member->Node->Name() != letter.To)
+            {
+                continue;
+            }
+            if (const auto *data = std::get_if<StoredData>(&letter.Message))
+            {
+                member->Node->OnData(data->View(), Now);
+            }
+            else if (const auto *ack = std::get_if<StoredAck>(&letter.Message))
+            {
+                member->Node->OnAck(ack->View(), Now);
+            }
+            else
+            {
+                member->Node->OnHello(std::get<StoredHello>(letter.Message).View(), Now);
+            }
+        }
+    }
+
+    std::vector<std::unique_ptr<Member>> _members;
+    std::map<std::pair<LinkTime, int>, Letter> _onTheWay;
+    int _order = 0;
+    std::uint64_t _clocks = 0;
+};
+
+// Sends to a live peer, and before each message fills the outboxes to some dead ones. Returns when what
+// arrived.
+std::vector<std::pair<LinkTime, std::string>> DeliveriesBeside(int deadPeers)
+{
+    Network network;
+    Network::Member &a = network.Add("a");
+    Network::Member &b = network.Add("b");
+    for (int i = 0; i < 50; ++i)
+    {
+        for (int dead = 0; dead < deadPeers; ++dead)
+        {
+            const std::string name("dead" + std::to_string(dead));
+            while (a.Node->Enqueue(name, "q", "T", PayloadOf("x"), network.Now).Accepted())
+            {
+            }
+        }
+        a.Node->Enqueue("b", "q", "T", PayloadOf(std::to_string(i)), network.Now);
+        network.Live(73ms);
+    }
+    EXPECT_THAT(b.Delivered, SizeIs(50));
+    return b.Delivered;
+}
+
+TEST(LinkScenarios, dead_peers_with_full_outboxes_delay_no_other_peer)
+{
+    EXPECT_EQ(DeliveriesBeside(20), DeliveriesBeside(0));
+}
+
+TEST(LinkScenarios, a_first_message_takes_three_ways_and_each_later_one_a_single_way)
+{
+    Network network;
+    Network::Member &a = network.Add("a");
+    Network::Member &b = network.Add("b");
+    const LinkTime start = network.Now;
+    a.Node->Enqueue("b", "q", "T", PayloadOf("1"), network.Now);
+    network.Live(1s);
+    a.Node->Enqueue("b", "q", "T", PayloadOf("2"), network.Now);
+    a.Node->Enqueue("b", "other", "T", PayloadOf("3"), network.Now);
+    const LinkTime second = network.Now;
+    network.Live(1s);
+    ASSERT_THAT(b.Delivered, SizeIs(3));
+    EXPECT_EQ(b.Delivered[0].first - start, 15ms) << "hello, hello, data";
+    EXPECT_EQ(b.Delivered[1].first - second, 5ms);
+    EXPECT_EQ(b.Delivered[2].first - second, 5ms) << "the first of a link to a known peer as well";
+    EXPECT_EQ(a.DatasSent, 3) << "and nothing is sent twice";
+}
+
+TEST(LinkScenarios, two_live_nodes_with_one_name_are_noticed)
+{
+    Network network;
+    Network::Member &first = network.Add("a", 5ULL << 32);
+    Network::Member &second = network.Add("a", 6ULL << 32);
+    Network::Member &b = network.Add("b");
+    for (int i = 0; i < 20; ++i)
+    {
+        first.Node->Enqueue("b", "q", "T", PayloadOf("1"), network.Now);
+        second.Node->Enqueue("b", "q", "T", PayloadOf("2"), network.Now);
+        b.Node->Enqueue("a", "q", "T", PayloadOf("3"), network.Now);
+        network.Live(1s);
+    }
+    EXPECT_TRUE(first.Node->NameInUseElsewhere() || second.Node->NameInUseElsewhere());
+}
+
+TEST(LinkScenarios, one_restart_with_lost_storage_raises_no_alarm)
+{
+    NodeUnderTest restarted({}, 2ULL << 32);
+    PlayedPeer b;
+    b.KnownLife = 9ULL << 32;
+    restarted.Hear(b.Hello());
+    EXPECT_EQ(restarted.Node->Counters().Raises, 1U);
+    EXPECT_FALSE(restarted.Node->NameInUseElsewhere());
+}
+
+TEST(LinkScenarios, a_hundred_seconds_without_a_path_lose_nothing_and_send_little)
+{
+    Network network;
+    Network::Member &a = network.Add("a");
+    Network::Member &b = network.Add("b");
+    a.Node->Enqueue("b", "q", "T", PayloadOf("first"), network.Now);
+    network.Live(1s);
+    network.Loses = [] { return true; };
+    const int before = a.DatasSent;
+    for (int i = 0; i < 900; ++i)
+    {
+        EXPECT_TRUE(a.Node->Enqueue("b", "q", "T", PayloadOf(std::to_string(i)), network.Now).Accepted());
+        network.Live(111ms);
+    }
+    EXPECT_LE(a.DatasSent - before, 128 + 20)
+        << "the window once, then a probe a second until the peer is silent";
+    network.Loses = [] { return false; };
+    network.Live(5s);
+    ASSERT_THAT(b.Delivered, SizeIs(901));
+    for (std::size_t i = 0; i < 900; ++i)
+    {
+        ASSERT_EQ(b.Delivered[i + 1].second, std::to_string(i));
+    }
+    EXPECT_THAT(a.Outcomes, testing::AllOf(SizeIs(901), Each(LinkOutcome::Delivered)));
+}
+
+TEST(LinkScenarios, thirty_percent_loss_resends_less_than_three_times_the_fresh_data)
+{
+    Network network;
+    unsigned random = 1;
+    network.Loses = [&random]
+    {
+        random = random * 1664525 + 1013904223;
+        return (random >> 8) % 10 < 3;
+    };
+    Network::Member &a = network.Add("a");
+    Network::Member &b = network.Add("b");
+    for (int i = 0; i < 1000; ++i)
+    {
+        a.Node->Enqueue("b", "q", "T", PayloadOf("message"), network.Now);
+        network.Live(20ms);
+    }
+    network.Live(60s);
+    EXPECT_THAT(b.Delivered, SizeIs(1000));
+    EXPECT_LE(a.DatasSent, 3000);
+}
+
+}  // namespace
+}  // namespace Rabit::Test
