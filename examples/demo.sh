@@ -181,7 +181,7 @@ echo "DDS domain $domain. Processes: $started, ground ($ground_pid). Ctrl-C ends
 
 while true; do
     seen=$interrupts
-    wait "$ground_pid"
+    wait "$ground_pid" 2>/dev/null # without the shell's own notice of an aircraft that was killed
     status=$?
     [ "$interrupts" -ne "$seen" ] || break
 done
@@ -194,9 +194,9 @@ if [ "$status" -ne 0 ]; then
 fi
 for ((k = 1; k <= uavs; k++)); do
     if ! kill -0 "${uav_pids[k - 1]}" 2>/dev/null; then
-        wait "${uav_pids[k - 1]}"
-        echo "demo.sh: uav$k ended before its time with exit code $?. Its last words:" >&2
-        tail -n 5 "$logs/uav$k" | sed 's/^/    /' >&2
+        wait "${uav_pids[k - 1]}" 2>/dev/null
+        echo "demo.sh: uav$k ended before its time with exit code $?" >&2
+        tail -n 5 "$logs/uav$k" | sed "s/^/    uav$k: /" >&2
         result=1
     fi
 done

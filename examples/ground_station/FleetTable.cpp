@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 
 namespace Ground
 {
 namespace
 {
-constexpr std::size_t NodeWidth = 12;
-constexpr std::size_t MissionWidth = 14;
+// With these widths and names of up to 8 letters the table fits a terminal of 80 columns.
+constexpr std::size_t NodeWidth = 8;
+constexpr std::size_t MaxNodeWidth = 24;
+constexpr std::size_t MissionWidth = 10;
 
 std::string Format(const char *format, double value)
 {
@@ -33,7 +34,7 @@ std::string AgeText(const FleetRow &row)
 {
     if (!row.AgeS)
         return "-";
-    return Format(*row.AgeS < 9.995 ? "%.2f s" : *row.AgeS < 999.95 ? "%.1f s" : "%.0f s", *row.AgeS);
+    return Format(*row.AgeS < 9.995 ? "%.2f" : *row.AgeS < 999.95 ? "%.1f" : "%.0f", *row.AgeS);
 }
 
 Emphasis EmphasisOf(const FleetRow &row)
@@ -43,20 +44,28 @@ Emphasis EmphasisOf(const FleetRow &row)
     return row.IsFresh() ? Emphasis::None : Emphasis::Warning;
 }
 
-std::string TableRow(const FleetRow &row)
+std::string TableHeading(std::size_t nodeWidth)
+{
+    return Left("NODE", nodeWidth) + " " + Left("STATE", 8) + "AGE s" + "  " + Right("LATITUDE", 9) + " " +
+           Right("LONGITUDE", 10) + " " + Right("ALT m", 6) + " " + Right("m/s", 5) + " " +
+           Left("MISSION", MissionWidth + 1) + " SENT ACKED";
+}
+
+std::string TableRow(const FleetRow &row, std::size_t nodeWidth)
 {
     const bool old = row.AgeS && !row.IsFresh();
-    std::string line = Left(Printable(row.Node, NodeWidth), NodeWidth) + " " + Left(ToText(row.State), 7) +
-                       (old ? "!" : " ") + Right(AgeText(row), 8) + (old ? " (" : "  ");
+    std::string line = Left(Printable(row.Node, nodeWidth), nodeWidth) + " " + Left(ToText(row.State), 7) +
+                       (old ? "!" : " ") + Right(AgeText(row), 5) + (old ? " (" : "  ");
     if (row.AgeS)
-        line += Right(Format("%.7f", row.LatitudeDeg), 11) + " " +
-                Right(Format("%.7f", row.LongitudeDeg), 12) + " " + Right(Format("%.1f", row.AltitudeM), 8) +
-                " " + Right(Format("%.1f", row.SpeedMps), 6);
+        line += Right(Format("%.5f", row.LatitudeDeg), 9) + " " +
+                Right(Format("%.5f", row.LongitudeDeg), 10) + " " + Right(Format("%.1f", row.AltitudeM), 6) +
+                " " + Right(Format("%.1f", row.SpeedMps), 5);
     else
-        line += Right("-", 11) + " " + Right("-", 12) + " " + Right("-", 8) + " " + Right("-", 6);
+        line += Right("-", 9) + " " + Right("-", 10) + " " + Right("-", 6) + " " + Right("-", 5);
     const std::string mission = Printable(row.Mission.empty() ? "-" : row.Mission, MissionWidth);
-    line += "  " + Left(mission + (old ? ")" : ""), MissionWidth + 1);
-    return line + " " + Right(std::to_string(row.Sent), 5) + " " + Right(std::to_string(row.Acknowledged), 6);
+    line += ' ';
+    line += Left(mission + (old ? ")" : ""), MissionWidth + 1);
+    return line + " " + Right(std::to_string(row.Sent), 4) + " " + Right(std::to_string(row.Acknowledged), 5);
 }
 
 std::string LogLine(const FleetRow &row, double elapsedS)
@@ -66,7 +75,7 @@ std::string LogLine(const FleetRow &row, double elapsedS)
     if (row.AgeS)
     {
         const bool old = !row.IsFresh();
-        line += (old ? " OLD pose (age " : " pose (age ") + AgeText(row) + ") " +
+        line += (old ? " OLD pose (age " : " pose (age ") + AgeText(row) + " s) " +
                 Format("%.7f", row.LatitudeDeg) + " " + Format("%.7f", row.LongitudeDeg) + " " +
                 Format("%.1f m", row.AltitudeM) + " " + Format("%.1f m/s", row.SpeedMps);
     }
@@ -116,13 +125,12 @@ std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double
     lines.push_back({"Fleet after " + Format("%.0f s", elapsedS) + ": " + count(RowState::Up) + " UP, " +
                      count(RowState::Stale) + " STALE, " + count(RowState::Lost) + " LOST, " +
                      count(RowState::Waiting) + " WAITING"});
-    lines.push_back({Left("NODE", NodeWidth) + " " + Left("STATE", 8) + Right("POSE AGE", 8) + "  " +
-                         Right("LATITUDE", 11) + " " + Right("LONGITUDE", 12) + " " + Right("ALT m", 8) +
-                         " " + Right("m/s", 6) + "  " + Left("MISSION", MissionWidth + 1) + " " +
-                         Right("SENT", 5) + " " + Right("ACKED", 6),
-                     Emphasis::Heading});
+    std::size_t nodeWidth = NodeWidth;
     for (const FleetRow &row : rows)
-        lines.push_back({TableRow(row), EmphasisOf(row)});
+        nodeWidth = std::clamp(row.Node.size(), nodeWidth, MaxNodeWidth);
+    lines.push_back({TableHeading(nodeWidth), Emphasis::Heading});
+    for (const FleetRow &row : rows)
+        lines.push_back({TableRow(row, nodeWidth), EmphasisOf(row)});
     return lines;
 }
 

@@ -36,19 +36,20 @@ std::string TerminalScreen::Redraw(const std::vector<TableLine> &lines, const Si
     else if (_drawn > 0)
         text = "\x1b[" + std::to_string(_drawn) + "A\r";
 
-    // The cursor rests on the line below the last one.
+    // Each line is erased before it is written: behind a line as wide as the terminal, erasing would take its
+    // last character. The cursor rests on the line below the last one.
     const std::size_t room = std::max<std::size_t>(size.Rows, 3) - 1;
     const std::size_t shown = lines.size() <= room ? lines.size() : room - 1;
     for (std::size_t i = 0; i < shown; ++i)
     {
         const std::string style = StyleOf(lines[i].Shown);
         text +=
-            style + lines[i].Text.substr(0, size.Columns) + (style.empty() ? "" : Plain) + EraseLine + "\n";
+            EraseLine + style + lines[i].Text.substr(0, size.Columns) + (style.empty() ? "" : Plain) + "\n";
     }
     if (shown < lines.size())
     {
         const std::string more = "... " + std::to_string(lines.size() - shown) + " more";
-        text += more.substr(0, size.Columns) + EraseLine + "\n";
+        text += EraseLine + more.substr(0, size.Columns) + "\n";
     }
     _drawn = std::min(lines.size(), room);
     _size = size;

@@ -43,11 +43,9 @@ TEST(FleetTable, ShowsAFreshRow)
     ASSERT_EQ(lines.size(), 3u);
     EXPECT_EQ(lines[0].Text, "Fleet after 12 s: 1 UP, 0 STALE, 0 LOST, 0 WAITING");
     EXPECT_EQ(lines[1].Text,
-              "NODE         STATE   POSE AGE     LATITUDE    LONGITUDE    ALT m    m/s  MISSION          "
-              "SENT  ACKED");
+              "NODE     STATE   AGE s   LATITUDE  LONGITUDE  ALT m   m/s MISSION     SENT ACKED");
     EXPECT_EQ(lines[2].Text,
-              "uav1         UP        0.05 s   49.2574181 -123.2432101     91.2    3.4  GOTO 3              "
-              "3      2");
+              "uav1     UP       0.05   49.25742 -123.24321   91.2   3.4 GOTO 3         3     2");
     EXPECT_EQ(lines[2].Shown, Emphasis::None);
 }
 
@@ -55,22 +53,21 @@ TEST(FleetTable, MarksALostRowAndPutsItsOldValuesInParentheses)
 {
     const auto lines = FleetTableLines({WithState(RowState::Lost, 6.31)}, 0);
     EXPECT_EQ(lines[2].Text,
-              "uav1         LOST   !  6.31 s ( 49.2574181 -123.2432101     91.2    3.4  GOTO 3)             "
-              "3      2");
+              "uav1     LOST   ! 6.31 ( 49.25742 -123.24321   91.2   3.4 GOTO 3)        3     2");
     EXPECT_EQ(lines[2].Shown, Emphasis::Alarm);
 }
 
 TEST(FleetTable, MarksAStaleRow)
 {
     const auto lines = FleetTableLines({WithState(RowState::Stale, 1.9)}, 0);
-    EXPECT_THAT(lines[2].Text, testing::HasSubstr("STALE  !  1.90 s ("));
+    EXPECT_THAT(lines[2].Text, testing::HasSubstr("STALE  ! 1.90 ("));
     EXPECT_EQ(lines[2].Shown, Emphasis::Warning);
 }
 
 TEST(FleetTable, MarksAnOldPoseOfANodeThatIsUp)
 {
     const auto lines = FleetTableLines({WithState(RowState::Up, 1.5)}, 0);
-    EXPECT_THAT(lines[2].Text, testing::HasSubstr("UP     !  1.50 s ("));
+    EXPECT_THAT(lines[2].Text, testing::HasSubstr("UP     ! 1.50 ("));
     EXPECT_EQ(lines[2].Shown, Emphasis::Warning);
 }
 
@@ -87,8 +84,7 @@ TEST(FleetTable, ShowsNoPositionBeforeTheFirstPose)
     row.Mission.clear();
     const auto lines = FleetTableLines({row}, 0);
     EXPECT_EQ(lines[2].Text,
-              "uav1         WAITING        -            -            -        -      -  -                   "
-              "3      2");
+              "uav1     WAITING     -          -          -      -     - -              3     2");
     EXPECT_EQ(lines[2].Shown, Emphasis::Warning);
 }
 
@@ -98,6 +94,15 @@ TEST(FleetTable, CountsTheStates)
                                         WithState(RowState::Stale, 0), WithState(RowState::Lost, 0)},
                                        0);
     EXPECT_THAT(lines[0].Text, testing::HasSubstr("2 UP, 1 STALE, 1 LOST, 0 WAITING"));
+}
+
+TEST(FleetTable, FitsATerminalOf80Columns)
+{
+    FleetRow row = WithState(RowState::Stale, 86400);
+    row.Mission = "GOTO 12345";
+    row.AltitudeM = -12.3;
+    for (const auto &line : FleetTableLines({row}, 86400))
+        EXPECT_LE(line.Text.size(), 80u) << line.Text;
 }
 
 TEST(FleetTable, KeepsItsColumnsWithLongNamesAndAges)

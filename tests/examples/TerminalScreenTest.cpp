@@ -10,42 +10,42 @@ using Ground::TerminalScreen;
 TEST(TerminalScreen, DrawsBelowTheCursorTheFirstTime)
 {
     TerminalScreen screen;
-    EXPECT_EQ(screen.Redraw({{"one"}, {"two"}}, {80, 24}), "one\x1b[K\ntwo\x1b[K\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"one"}, {"two"}}, {80, 24}), "\x1b[Kone\n\x1b[Ktwo\n\x1b[J");
 }
 
 TEST(TerminalScreen, GoesBackUpOverTheLinesDrawnBefore)
 {
     TerminalScreen screen;
     screen.Redraw({{"one"}, {"two"}}, {80, 24});
-    EXPECT_EQ(screen.Redraw({{"three"}}, {80, 24}), "\x1b[2A\rthree\x1b[K\n\x1b[J");
-    EXPECT_EQ(screen.Redraw({{"four"}}, {80, 24}), "\x1b[1A\rfour\x1b[K\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"three"}}, {80, 24}), "\x1b[2A\r\x1b[Kthree\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"four"}}, {80, 24}), "\x1b[1A\r\x1b[Kfour\n\x1b[J");
 }
 
 TEST(TerminalScreen, CutsLinesAtTheWidthOfTheTerminal)
 {
     TerminalScreen screen;
-    EXPECT_EQ(screen.Redraw({{"a long line"}}, {6, 24}), "a long\x1b[K\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"a long line"}}, {6, 24}), "\x1b[Ka long\n\x1b[J");
 }
 
 TEST(TerminalScreen, SaysHowManyLinesDoNotFit)
 {
     TerminalScreen screen;
     EXPECT_EQ(screen.Redraw({{"1"}, {"2"}, {"3"}, {"4"}, {"5"}}, {80, 4}),
-              "1\x1b[K\n2\x1b[K\n... 3 more\x1b[K\n\x1b[J");
-    EXPECT_EQ(screen.Redraw({{"1"}}, {80, 4}), "\x1b[3A\r1\x1b[K\n\x1b[J");
+              "\x1b[K1\n\x1b[K2\n\x1b[K... 3 more\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"1"}}, {80, 4}), "\x1b[3A\r\x1b[K1\n\x1b[J");
 }
 
 TEST(TerminalScreen, ClearsEverythingWhenTheTerminalHasChangedItsSize)
 {
     TerminalScreen screen;
     screen.Redraw({{"one"}}, {80, 24});
-    EXPECT_EQ(screen.Redraw({{"one"}}, {60, 24}), "\x1b[2J\x1b[Hone\x1b[K\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"one"}}, {60, 24}), "\x1b[2J\x1b[H\x1b[Kone\n\x1b[J");
 }
 
 TEST(TerminalScreen, EndsTheStyleOfALineWithTheLine)
 {
     TerminalScreen screen;
-    EXPECT_EQ(screen.Redraw({{"lost", Emphasis::Alarm}}, {3, 24}), "\x1b[1;31mlos\x1b[0m\x1b[K\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"lost", Emphasis::Alarm}}, {3, 24}), "\x1b[K\x1b[1;31mlos\x1b[0m\n\x1b[J");
 }
 
 }  // namespace
