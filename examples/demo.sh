@@ -179,9 +179,11 @@ setsid setpriv --pdeathsig TERM "$bin/ground" "${ground_arguments[@]}" </dev/nul
 ground_pid=$!
 echo "DDS domain $domain. Processes: $started, ground ($ground_pid). Ctrl-C ends them." >&2
 
+# From here on the shell's own notices, for instance of an aircraft that was killed, would spoil the table.
+exec 3>&2 2>/dev/null
 while true; do
     seen=$interrupts
-    wait "$ground_pid" 2>/dev/null # without the shell's own notice of an aircraft that was killed
+    wait "$ground_pid"
     status=$?
     [ "$interrupts" -ne "$seen" ] || break
 done
@@ -189,14 +191,14 @@ ground_pid=
 
 result=0
 if [ "$status" -ne 0 ]; then
-    [ "$status" -eq 1 ] || echo "demo.sh: ground ended with exit code $status" >&2
+    [ "$status" -eq 1 ] || echo "demo.sh: ground ended with exit code $status" >&3
     result=1
 fi
 for ((k = 1; k <= uavs; k++)); do
-    if ! kill -0 "${uav_pids[k - 1]}" 2>/dev/null; then
-        wait "${uav_pids[k - 1]}" 2>/dev/null
-        echo "demo.sh: uav$k ended before its time with exit code $?" >&2
-        tail -n 5 "$logs/uav$k" | sed "s/^/    uav$k: /" >&2
+    if ! kill -0 "${uav_pids[k - 1]}"; then
+        wait "${uav_pids[k - 1]}"
+        echo "demo.sh: uav$k ended before its time with exit code $?" >&3
+        tail -n 5 "$logs/uav$k" | sed "s/^/    uav$k: /" >&3
         result=1
     fi
 done

@@ -29,12 +29,16 @@ bool HeardEnough(const AircraftResult &result)
 
 std::string SummaryLine(const AircraftResult &result)
 {
-    const CommandLog::Tally &c = result.Commands;
-    return "  " + result.Node + "  " + ToText(result.State) + "  heard " + std::to_string(result.Heard) +
-           " of " + std::to_string(result.Published) + " poses (" + Percent(result) +
-           ")  commands: " + std::to_string(c.Sent) + " sent, " + std::to_string(c.Acknowledged) +
-           " acknowledged, " + std::to_string(c.Declined) + " declined, " + std::to_string(c.Refused) +
-           " refused";
+    const CommandLog::Tally &commands = result.Commands;
+    std::string line = "  " + result.Node + "  " + ToText(result.State) + "  heard " +
+                       std::to_string(result.Heard) + " of " + std::to_string(result.Published) + " poses (" +
+                       Percent(result) + "), commands " + std::to_string(commands.Sent) + " sent " +
+                       std::to_string(commands.Acknowledged) + " acknowledged";
+    if (commands.Declined > 0)
+        line += ", " + std::to_string(commands.Declined) + " declined";
+    if (commands.Refused > 0)
+        line += ", " + std::to_string(commands.Refused) + " refused for sending";
+    return line;
 }
 
 void JudgeAircraft(const AircraftResult &result, std::vector<std::string> &failures)
