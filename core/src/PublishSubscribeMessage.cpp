@@ -49,6 +49,7 @@ PublishSubscribeMessage::PublishSubscribeMessage(std::unique_ptr<RabitMessage> s
                                                  std::shared_ptr<const RabitClock> clock)
     : _identity(NextIdentity()),
       _clock(clock ? std::move(clock) : RabitClock::System()),
+      _usesSystemClock(_clock == RabitClock::System()),
       _mutex(std::make_shared<std::mutex>()),
       _published(_mutex),
       _message(NotNull(std::move(stMessage))),
@@ -71,13 +72,20 @@ RabitConnection PublishSubscribeMessage::ConnectSomethingPublished(RabitHandler 
     return _published.Connect(std::move(handler));
 }
 
-void PublishSubscribeMessage::MarkAsCurrent(RabitMessage &msg) const
+// The message holds the contents of that post now.
+inline void PublishSubscribeMessage::Mark(RabitMessage &msg, const PostTime &time,
+                                          std::uint64_t sequence) const
 {
-    msg._timeStamp = _message->_timeStamp;
-    msg._postedAt = _message->_postedAt;
+    msg._timeStamp = time.GpsTimeSeconds;
+    msg._postedAt = time.Monotonic;
     msg._seenSource = _identity;
-    msg._seenSequence = Sequence();
-    msg._seenTimeStamp = _message->_timeStamp;
+    msg._seenSequence = sequence;
+    msg._seenTimeStamp = time.GpsTimeSeconds;
+}
+
+inline void PublishSubscribeMessage::MarkAsCurrent(RabitMessage &msg) const
+{
+    Mark(msg, PostTime{_message->_timeStamp, _message->_postedAt}, Sequence());
 }
 
 std::unique_ptr<RabitMessage> PublishSubscribeMessage::GetCopyOfMessage()
@@ -92,13 +100,20 @@ std::unique_ptr<RabitMessage> PublishSubscribeMessage::GetCopyOfMessage()
     return copy;
 }
 
+// The usual clock is called directly, not through its interface.
+inline PostTime PublishSubscribeMessage::Now() const
+{
+    static SystemTimeClock *const systemClock = SystemTimeClock::GetSystemTimeClock();
+    return _usesSystemClock ? systemClock->Now() : _clock->Now();
+}
+
 void PublishSubscribeMessage::PostMessage(RabitMessage *msg)
 {
     if (msg == nullptr)
     {
         throw std::invalid_argument("a null message cannot be posted");
     }
-    Post(*msg, _clock->Now(), true);
+    Post(*msg, Now(), true);
 }
 
 void PublishSubscribeMessage::PostMessage(RabitMessage *msg, const PostTime &time)
@@ -110,53 +125,55 @@ void PublishSubscribeMessage::PostMessage(RabitMessage *msg, const PostTime &tim
     Post(*msg, time, false);
 }
 
-void PublishSubscribeMessage::Post(RabitMessage &msg, const PostTime &time, bool strictlyIncreasing)
+inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
 {
-    RabitEvent::Handlers handlers;
-    {
-        const std::lock_guard<std::mutex> lock(*_mutex);
-        double stamp = time.GpsTimeSeconds;
-        if (strictlyIncreasing && stamp <= _lastOwnStamp)
-        {
-            stamp = std::nextafter(_lastOwnStamp, std::numeric_limits<double>::infinity());
-        }
-        const double formerStamp = std::exchange(msg._timeStamp, stamp);
-        try
-        {
-            CopyFromMessage(msg);
-        }
-        catch (...)
-        {
-            msg._timeStamp = formerStamp;
-            throw;
-        }
-        _message->_timeStamp = stamp;
-        _message->_postedAt = time.Monotonic;
-        if (strictlyIncreasing)
-        {
-            _lastOwnStamp = stamp;
-        }
-        const std::uint64_t sequence = _sequence.load(std::memory_order_relaxed) + 1;
-        _sequence.store(sequence, std::memory_order_release);
-        MarkAsCurrent(msg);
-        handlers = _published.Snapshot();
-    }
-    handlers.Call();
-}
-
-void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
-{
-    if (&msg == _message.get())
-    {
-        return;
-    }
-    const Keeper<std::shared_ptr<PublishSubscribeMessage>> keepRef(
-        _message->_globalPublishSubscribeMessageRef);
     // Overrides of one type that return false all the same are taken to have copied.
     if (!_message->CopyMessage(&msg) && typeid(msg) != _type)
     {
         throw std::invalid_argument("a message was posted under a name that holds another type");
     }
+    // An override may have copied the reference: the global copy must not own itself.
+    if (_message->_globalPublishSubscribeMessageRef)
+    {
+        _message->_globalPublishSubscribeMessageRef.reset();
+    }
+}
+
+void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime time, bool strictlyIncreasing)
+{
+    RabitEvent::Handlers handlers;
+    {
+        const std::lock_guard<std::mutex> lock(*_mutex);
+        if (strictlyIncreasing)
+        {
+            if (time.GpsTimeSeconds <= _lastOwnStamp)
+            {
+                time.GpsTimeSeconds = std::nextafter(_lastOwnStamp, std::numeric_limits<double>::infinity());
+            }
+            _lastOwnStamp = time.GpsTimeSeconds;
+        }
+        const double formerStamp = std::exchange(msg._timeStamp, time.GpsTimeSeconds);
+        if (&msg != _message.get())
+        {
+            try
+            {
+                CopyFromMessage(msg);
+            }
+            catch (...)
+            {
+                msg._timeStamp = formerStamp;
+                _message->_globalPublishSubscribeMessageRef.reset();
+                throw;
+            }
+        }
+        const std::uint64_t sequence = _sequence.load(std::memory_order_relaxed) + 1;
+        _message->_timeStamp = time.GpsTimeSeconds;
+        _message->_postedAt = time.Monotonic;
+        Mark(msg, time, sequence & ~Exposed);
+        _sequence.store(sequence, std::memory_order_release);
+        handlers = _published.Snapshot();
+    }
+    handlers.Call();
 }
 
 bool PublishSubscribeMessage::CopyToMessage(RabitMessage &msg)
@@ -182,7 +199,8 @@ bool PublishSubscribeMessage::FetchIfChanged(RabitMessage *msg)
     const std::lock_guard<std::mutex> lock(*_mutex);
     const bool stampsEqual = msg->_timeStamp == _message->_timeStamp;
     const bool samePost = msg->_seenSource == _identity && msg->_seenSequence == Sequence();
-    const bool neverPosted = Sequence() == 0 && msg->_seenSource != _identity;
+    // A copy that was never registered, with nothing posted yet, differs by its time stamp alone.
+    const bool neverPosted = Sequence() == 0 && msg->_seenSource == 0;
     if (stampsEqual && (samePost || neverPosted))
     {
         MarkAsCurrent(*msg);
@@ -211,7 +229,7 @@ bool PublishSubscribeMessage::ForceFetch(RabitMessage *msg)
 void PublishSubscribeMessage::AttachAsCurrent(RabitMessage &msg)
 {
     const std::lock_guard<std::mutex> lock(*_mutex);
-    msg._seenSource = 0;
+    msg._seenSource = RabitMessage::NothingSeenYet;
     if (Sequence() == 0)
     {
         MarkAsCurrent(msg);

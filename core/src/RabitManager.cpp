@@ -49,8 +49,9 @@ RabitManager::RabitManager(std::string name, RabitWorkspace &workspace)
     _mgrControlAllMgrs_sptr = RegisterOrThrow<ManagerControlMessage>(*_lease, "ManagerControlMessage");
     _mgrControlThisMgr_sptr =
         RegisterOrThrow<ManagerControlMessage>(*_lease, _name + ":ManagerControlMessage");
-    AddMessageWakeup(_mgrControlAllMgrs_sptr);
-    AddMessageWakeup(_mgrControlThisMgr_sptr);
+    const RabitHandler onControl = [wakeup = _wakeup] { wakeup->SignalControlChange(); };
+    AddMessageWakeup(_mgrControlAllMgrs_sptr, onControl);
+    AddMessageWakeup(_mgrControlThisMgr_sptr, onControl);
     TakeControlMessagesAsRead();
 
     _mgrStatus_sptr = RegisterOrThrow<ManagerStatusMessage>(*_lease, _name + ":ManagerStatusMessage");
@@ -187,7 +188,7 @@ std::vector<std::string> RabitManager::GetListOfManagerNames()
     return _workspace.GetListOfManagerNames();
 }
 
-void RabitManager::AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg)
+void RabitManager::AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg, const RabitHandler &handler)
 {
     if (!msg)
     {
@@ -206,7 +207,7 @@ void RabitManager::AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg)
     if (!known)
     {
         _messageWakeups.push_back(
-            MessageWakeup{msg, global, global->ConnectSomethingPublished(WakeUpHandler())});
+            MessageWakeup{msg, handler, global, global->ConnectSomethingPublished(handler)});
     }
 }
 
@@ -220,7 +221,7 @@ void RabitManager::RenewMessageWakeups()
         const auto global = message ? message->GetGlobalPublishSubscribeMessageRef() : nullptr;
         if (global && global != wakeup.Global)
         {
-            wakeup.Connection = global->ConnectSomethingPublished(WakeUpHandler());
+            wakeup.Connection = global->ConnectSomethingPublished(wakeup.Handler);
             wakeup.Global = global;
         }
     }

@@ -159,19 +159,23 @@ bool RabitManager::StartupStep()
 
 bool RabitManager::CycleStep()
 {
-    ReadControlMessages();
+    // The way from a wake-up to the unit of work is kept short: no more is read here than must be.
+    if (_wakeup->TakeControlChange())
+    {
+        FetchControlMessages();
+        ObeyControlMessages();
+    }
     if (_wakeup->IsShutdownRequested())
     {
         return false;
     }
-    Increment(_stats.TotalNumberOfExecuteCycles);
-    Increment(_stats.NumberOfExecuteCycles);
     const RabitClock &clock = _workspace.GetClock();
     const std::chrono::nanoseconds start = clock.Monotonic();
     const bool good = Guard("ExecuteUnitOfWork", ManagerStatusMessage::Error_ExecuteUnitOfWork,
                             [this] { ExecuteUnitOfWork(); });
     const std::chrono::nanoseconds end = clock.Monotonic();
-    _stats.UpdateExeUnitOfWorkTimeStats(InSeconds(end - start));
+    CountPass(start, end);
+    ObeyControlMessages();  // the unit of work may have changed them
     if (good && _lastPassFailed)
     {
         _mgrStatus_sptr->ErrorCondition = false;
@@ -181,6 +185,19 @@ bool RabitManager::CycleStep()
     _lastPassFailed = !good;
     PostStatusIfDue(end);
     return true;
+}
+
+// The sleep before this pass, and the pass.
+void RabitManager::CountPass(std::chrono::nanoseconds start, std::chrono::nanoseconds end)
+{
+    if (std::exchange(_slept, false))
+    {
+        _stats.UpdateSleepTimeStats(InSeconds(start - _sleepBegan));
+    }
+    Increment(_stats.TotalNumberOfExecuteCycles);
+    Increment(_stats.NumberOfExecuteCycles);
+    _stats.UpdateExeUnitOfWorkTimeStats(InSeconds(end - start));
+    _sleepBegan = end;
 }
 
 std::chrono::nanoseconds RabitManager::PauseOfThisSleep() const
@@ -195,7 +212,7 @@ std::chrono::nanoseconds RabitManager::PauseOfThisSleep() const
 
 void RabitManager::SleepStep()
 {
-    CountSleep(_wakeup->Sleep(PauseOfThisSleep()));
+    _slept = _wakeup->Sleep(PauseOfThisSleep());
 }
 
 void RabitManager::BeginSleepStep()
@@ -218,15 +235,7 @@ std::chrono::nanoseconds RabitManager::NextDue() const
 void RabitManager::EndSleepStep()
 {
     _wakeup->EndSleep();
-    CountSleep(_workspace.GetClock().Monotonic() - _sleepBegan);
-}
-
-void RabitManager::CountSleep(std::chrono::nanoseconds slept)
-{
-    if (slept > std::chrono::nanoseconds::zero())
-    {
-        _stats.UpdateSleepTimeStats(InSeconds(slept));
-    }
+    _slept = _workspace.GetClock().Monotonic() > _sleepBegan;
 }
 
 void RabitManager::ShutdownStep()
@@ -263,10 +272,14 @@ void RabitManager::TakeControlMessagesAsRead()
                      _mgrControlThisMgr_sptr->ResetMgrStatsToggle};
 }
 
-void RabitManager::ReadControlMessages()
+void RabitManager::FetchControlMessages()
 {
     _mgrControlAllMgrs_sptr->FetchMessage();
     _mgrControlThisMgr_sptr->FetchMessage();
+}
+
+void RabitManager::ObeyControlMessages()
+{
     if (_mgrControlAllMgrs_sptr->GetShutdownManager() || _mgrControlThisMgr_sptr->GetShutdownManager())
     {
         _wakeup->RequestShutdown();

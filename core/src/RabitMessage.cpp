@@ -16,29 +16,6 @@ RabitMessage::RabitMessage() : _timeStamp(SystemTimeClock::GetSystemTimeClock()-
 
 RabitMessage::~RabitMessage() = default;
 
-// The knowledge which post the contents are of travels with the time stamp.
-void RabitMessage::CopyStampFrom(const RabitMessage &msg)
-{
-    _timeStamp = msg._timeStamp;
-    _seenSource = msg._seenSource;
-    _seenSequence = msg._seenSequence;
-    _seenTimeStamp = msg._seenTimeStamp;
-    _postedAt = msg._postedAt;
-}
-
-bool RabitMessage::CopyMessage(RabitMessage *msg)
-{
-    if (msg == nullptr)
-    {
-        return false;
-    }
-    MessageType = msg->MessageType;
-    MessageSource = msg->MessageSource;
-    MessageDestination = msg->MessageDestination;
-    CopyStampFrom(*msg);
-    return true;
-}
-
 void RabitMessage::CopyBase(const RabitMessage *msg)
 {
     if (msg != nullptr)
@@ -148,11 +125,6 @@ bool RabitMessage::Register_SomethingPublished(const boost::function<void()> &ha
 {
     GlobalOrThrow()._published.Connect(handler, this);
     return true;
-}
-
-void RabitMessage::PostMessage()
-{
-    GlobalOrThrow().PostMessage(this);
 }
 
 void RabitMessage::PostMessage(const PostTime &time)

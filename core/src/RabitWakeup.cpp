@@ -40,6 +40,12 @@ void RabitWakeup::Signal()
     }
 }
 
+void RabitWakeup::SignalControlChange()
+{
+    _controlChanged.store(true, std::memory_order_release);
+    Signal();
+}
+
 void RabitWakeup::RequestShutdown()
 {
     std::unique_lock<std::mutex> lock(_mutex);
@@ -60,7 +66,7 @@ std::chrono::nanoseconds RabitWakeup::GetDelay() const
     return _delay;
 }
 
-std::chrono::nanoseconds RabitWakeup::Sleep(std::chrono::nanoseconds pause)
+bool RabitWakeup::Sleep(std::chrono::nanoseconds pause)
 {
     using Clock = std::chrono::steady_clock;
     std::unique_lock<std::mutex> lock(_mutex);
@@ -69,7 +75,7 @@ std::chrono::nanoseconds RabitWakeup::Sleep(std::chrono::nanoseconds pause)
     if (shutdown() || (!mustPause && (_signalled || _delay == std::chrono::nanoseconds::zero())))
     {
         _signalled = false;
-        return std::chrono::nanoseconds::zero();
+        return false;
     }
     const Clock::time_point start = Clock::now();
     _asleep = true;
@@ -91,7 +97,7 @@ std::chrono::nanoseconds RabitWakeup::Sleep(std::chrono::nanoseconds pause)
     _waiting = false;
     _asleep = false;
     _signalled = false;
-    return Clock::now() - start;
+    return true;
 }
 
 void RabitWakeup::BeginSleep()

@@ -136,7 +136,7 @@ MessageRegistration RabitWorkspace::RegisterMessageFor(const std::string &name,
             msg->SetGlobalPublishSubscribeMessageRef(registration.Global);
             break;
         case MessageRegistrationResult::Attached:
-            msg->_seenSource = 0;  // so that the first fetch gets what was posted before
+            msg->_seenSource = RabitMessage::NothingSeenYet;  // the first fetch gets what was posted before
             msg->SetGlobalPublishSubscribeMessageRef(registration.Global);
             break;
         case MessageRegistrationResult::OtherType:

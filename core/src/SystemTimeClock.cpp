@@ -16,8 +16,6 @@ using std::chrono::nanoseconds;
 using std::chrono::system_clock;
 
 constexpr std::int64_t NanosecondsPerSecond = 1000000000;
-// Age at which the distance of the two clocks is measured anew.
-constexpr std::int64_t MeasurementLifetime = 10000000;
 
 std::int64_t SteadyNow()
 {
@@ -106,19 +104,6 @@ void SystemTimeClock::MeasureWallOffset()
         _wallOffset.store(bestOffset, std::memory_order_relaxed);
     }
     _measuredAt.store(after, std::memory_order_release);
-}
-
-PostTime SystemTimeClock::Now()
-{
-    const std::int64_t monotonic = SteadyNow();
-    if (monotonic - _measuredAt.load(std::memory_order_acquire) >= MeasurementLifetime)
-    {
-        MeasureWallOffset();
-    }
-    const std::int64_t sinceGpsEpoch =
-        monotonic + _wallOffset.load(std::memory_order_relaxed) - GpsEpochUnixSeconds * NanosecondsPerSecond;
-    return PostTime{static_cast<double>(sinceGpsEpoch) * 1e-9 + _addedSeconds.load(std::memory_order_relaxed),
-                    nanoseconds(monotonic)};
 }
 
 double SystemTimeClock::GetCurrentGpsTimeInSeconds()

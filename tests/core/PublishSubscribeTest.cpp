@@ -96,6 +96,22 @@ TEST(PublishSubscribe, TheFirstFetchOfALaterSubscriberIsTrueWhenSomethingWasPost
     EXPECT_EQ(later->Number, 3);
 }
 
+TEST(PublishSubscribe, TheFirstFetchOfALaterSubscriberIsTrueEvenIfNothingWasPosted)
+{
+    RabitWorkspace workspace;
+    const auto first = std::make_shared<NumberMessage>();
+    first->Number = 5;
+    const auto later = std::make_shared<NumberMessage>();
+    later->SetTimeStamp(first->GetTimeStamp());
+    workspace.AddPublishSubscribeMessage("Name", first);
+    workspace.AddPublishSubscribeMessage("Name", later);
+    EXPECT_FALSE(first->FetchMessage());
+    EXPECT_TRUE(later->FetchMessage());
+    EXPECT_EQ(later->Number, 5);
+    EXPECT_FALSE(later->WasPosted());
+    EXPECT_FALSE(later->FetchMessage());
+}
+
 TEST(PublishSubscribe, ACloneWithAnEqualStampIsNotFetchedToAndOneWithAnotherIs)
 {
     NumberMessage original;

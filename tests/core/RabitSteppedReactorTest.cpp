@@ -46,7 +46,7 @@ std::string HistoryOfOneRun()
 
 TEST(SteppedReactor, RunsInAFixedOrderAtTheRightTimes)
 {
-    EXPECT_EQ(HistoryOfOneRun(), "f0 s0 f300 S300 f600 f900 S900 f1200 f1500 S1500 f1800 ");
+    EXPECT_EQ(HistoryOfOneRun(), "f0 S0 f300 S300 f600 f900 S900 f1200 f1500 S1500 f1800 ");
 }
 
 TEST(SteppedReactor, RepeatsItself)

@@ -63,8 +63,9 @@ public:
 
     // Copies the global copy to the message if it holds something else than what it last posted or fetched
     // here. Returns whether it did. Takes no lock if there is nothing new. A message that was never posted or
-    // fetched here gets its copy, unless nothing was ever posted and the time stamps are equal.
-    // False if the message is of another type and refuses the copy.
+    // fetched here gets its copy; only if it was never attached either and nothing was ever posted, an equal
+    // time stamp means that there is nothing new. False if the message is of another type and refuses the
+    // copy.
     bool FetchMessage(RabitMessage *msg);
     // Copies in any case.
     void ForceFetchMessage(RabitMessage *msg);
@@ -85,19 +86,23 @@ private:
     // Set in _sequence when GetTestMessage was called: no message's remembered sequence equals it then.
     static constexpr std::uint64_t Exposed = std::uint64_t{1} << 63;
 
-    void Post(RabitMessage &msg, const PostTime &time, bool strictlyIncreasing);
+    void Post(RabitMessage &msg, PostTime time, bool strictlyIncreasing);
     bool FetchIfChanged(RabitMessage *msg);
     void CopyFromMessage(RabitMessage &msg);
     bool CopyToMessage(RabitMessage &msg);
     bool ForceFetch(RabitMessage *msg);
     void AttachAsCurrent(RabitMessage &msg);
+    void Mark(RabitMessage &msg, const PostTime &time, std::uint64_t sequence) const;
     void MarkAsCurrent(RabitMessage &msg) const;
     std::uint64_t Sequence() const { return _sequence.load(std::memory_order_relaxed) & ~Exposed; }
+
+    PostTime Now() const;
 
     // Read by every fetch without a lock: number of posts, and an identity that no other object ever has.
     std::atomic<std::uint64_t> _sequence{0};
     const std::uint64_t _identity;
     const std::shared_ptr<const RabitClock> _clock;
+    const bool _usesSystemClock;
 
     // Guards what follows, and the list of handlers.
     const std::shared_ptr<std::mutex> _mutex;

@@ -180,6 +180,7 @@ private:
     struct MessageWakeup
     {
         std::weak_ptr<RabitMessage> Message;
+        RabitHandler Handler;
         std::shared_ptr<PublishSubscribeMessage> Global;
         RabitScopedConnection Connection;
     };
@@ -193,7 +194,11 @@ private:
     void EndHandlers();
     bool RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg);
     void RegisterQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle);
-    void AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg);
+    void AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg)
+    {
+        AddMessageWakeup(msg, WakeUpHandler());
+    }
+    void AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg, const RabitHandler &handler);
     template <typename Connect>
     void AddQueueWakeup(const void *queue, QueueEvent event, Connect connect)
     {
@@ -218,12 +223,13 @@ private:
     std::chrono::nanoseconds NextDue() const;  // by the workspace's clock
     void EndSleepStep();
     std::chrono::nanoseconds PauseOfThisSleep() const;
-    void CountSleep(std::chrono::nanoseconds slept);
+    void CountPass(std::chrono::nanoseconds start, std::chrono::nanoseconds end);
     void ShutdownStep();
     void FinishRun();  // forgets what told it to shut down, ready for another run
     void ThreadMain();
 
-    void ReadControlMessages();
+    void FetchControlMessages();
+    void ObeyControlMessages();
     void TakeControlMessagesAsRead();
     std::pair<std::shared_ptr<PublishSubscribeMessage>, std::shared_ptr<PublishSubscribeMessage>>
     ControlGlobals() const;
@@ -255,6 +261,7 @@ private:
     std::chrono::nanoseconds _statsResetAt{0};
     std::chrono::nanoseconds _statusPostedAt{0};
     std::chrono::nanoseconds _sleepBegan{0};
+    bool _slept = false;
     bool _lastPassFailed = false;
     bool _startupFailed = false;
     std::chrono::nanoseconds _failureLoggedAt{0};

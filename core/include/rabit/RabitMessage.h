@@ -114,6 +114,10 @@ private:
     [[noreturn]] void ThrowNotRegistered() const;
     void CopyStampFrom(const RabitMessage &msg);
 
+    // In _seenSource: attached, and not fetched yet. The first fetch then copies whatever the time stamps
+    // are.
+    static constexpr std::uint64_t NothingSeenYet = ~std::uint64_t{0};
+
     // Which post the contents are: identity and sequence number of the global copy, and the time stamp they
     // had then. Travels with the time stamp.
     std::uint64_t _seenSource = 0;
@@ -129,7 +133,7 @@ private:
 namespace Rabit
 {
 
-// Inline so that a fetch with nothing new costs a few loads.
+// Inline, for these run in every post and fetch.
 
 inline bool PublishSubscribeMessage::FetchMessage(RabitMessage *msg)
 {
@@ -142,6 +146,28 @@ inline bool PublishSubscribeMessage::FetchMessage(RabitMessage *msg)
     return FetchIfChanged(msg);
 }
 
+inline void RabitMessage::CopyStampFrom(const RabitMessage &msg)
+{
+    _timeStamp = msg._timeStamp;
+    _seenSource = msg._seenSource;
+    _seenSequence = msg._seenSequence;
+    _seenTimeStamp = msg._seenTimeStamp;
+    _postedAt = msg._postedAt;
+}
+
+inline bool RabitMessage::CopyMessage(RabitMessage *msg)
+{
+    if (msg == nullptr)
+    {
+        return false;
+    }
+    MessageType = msg->MessageType;
+    MessageSource = msg->MessageSource;
+    MessageDestination = msg->MessageDestination;
+    CopyStampFrom(*msg);
+    return true;
+}
+
 inline PublishSubscribeMessage &RabitMessage::GlobalOrThrow() const
 {
     if (!_globalPublishSubscribeMessageRef)
@@ -149,6 +175,11 @@ inline PublishSubscribeMessage &RabitMessage::GlobalOrThrow() const
         ThrowNotRegistered();
     }
     return *_globalPublishSubscribeMessageRef;
+}
+
+inline void RabitMessage::PostMessage()
+{
+    GlobalOrThrow().PostMessage(this);
 }
 
 inline bool RabitMessage::FetchMessage()

@@ -95,7 +95,8 @@ public:
         return _ring.Push(msg);
     }
 
-    // Calls the handlers for what AddMessageNoEventTrigger added: for an adder that may call nobody while it adds.
+    // Calls the handlers for what AddMessageNoEventTrigger added: for an adder that may call nobody while it
+    // adds.
     void NotifyEnqueued() { _enqueued.Fire(); }
 
     // Takes the oldest message. False, the target untouched and no handler called, when empty.

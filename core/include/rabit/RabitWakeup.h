@@ -24,6 +24,10 @@ public:
 
     // From any thread.
     void Signal();
+    // The same, and says that a control message was posted.
+    void SignalControlChange();
+    // Whether one was posted since this was asked last; true at first.
+    bool TakeControlChange() { return _controlChanged.exchange(false, std::memory_order_acq_rel); }
     // Ends the sleep, and every later one until Reset.
     void RequestShutdown();
     bool IsShutdownRequested() const { return _shutdownRequested.load(std::memory_order_acquire); }
@@ -34,8 +38,9 @@ public:
     // For the manager alone.
     //
     // Blocks for the delay, or until a signal or a shutdown request; then forgets the signals. For the first
-    // `pause` of it only a shutdown request counts. Returns how long it slept, zero if there was no need to.
-    std::chrono::nanoseconds Sleep(std::chrono::nanoseconds pause);
+    // `pause` of it only a shutdown request counts. Returns whether it slept: false if there was no need to.
+    // Reads no clock after a signal, which is on its way to a unit of work.
+    bool Sleep(std::chrono::nanoseconds pause);
     // The same sleep for a manager that is stepped: it sleeps between these two calls.
     void BeginSleep();
     void EndSleep();
@@ -56,6 +61,7 @@ private:
     Counts _counts;
     std::chrono::nanoseconds _delay = std::chrono::seconds(1);
     std::atomic<bool> _shutdownRequested{false};
+    std::atomic<bool> _controlChanged{true};
 };
 
 }  // namespace Rabit

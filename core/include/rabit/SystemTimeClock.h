@@ -72,6 +72,9 @@ public:
     void printSystemClockCharacteristics();
 
 private:
+    // Age in nanoseconds at which the distance of the two clocks is measured anew.
+    static constexpr std::int64_t MeasurementLifetime = 10000000;
+
     SystemTimeClock();
     void MeasureWallOffset();
     void UpdateAddedSeconds();
@@ -85,5 +88,19 @@ private:
     std::atomic<std::int64_t> _wallOffset{0};
     std::atomic<std::int64_t> _measuredAt{0};
 };
+
+// Inline for the sake of posting, of which it is the largest part.
+inline PostTime SystemTimeClock::Now()
+{
+    const std::chrono::nanoseconds monotonic = std::chrono::steady_clock::now().time_since_epoch();
+    if (monotonic.count() - _measuredAt.load(std::memory_order_acquire) >= MeasurementLifetime)
+    {
+        MeasureWallOffset();
+    }
+    const std::int64_t sinceGpsEpoch =
+        monotonic.count() + _wallOffset.load(std::memory_order_relaxed) - GpsEpochUnixSeconds * 1000000000;
+    return PostTime{static_cast<double>(sinceGpsEpoch) * 1e-9 + _addedSeconds.load(std::memory_order_relaxed),
+                    monotonic};
+}
 
 }  // namespace Rabit
