@@ -1,3 +1,4 @@
+#include "TestManagers.h"
 #include "TestMessages.h"
 
 #include <rabit/GlobalPublishSubscribeException.h>
@@ -7,9 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <thread>
 
 namespace
 {
@@ -219,6 +222,67 @@ TEST(PublishSubscribe, HandlersMayPostAndFetchTheSameName)
     EXPECT_EQ(calls, 2);
     EXPECT_TRUE(pair.Poster->FetchMessage());
     EXPECT_EQ(pair.Poster->Number, 2);
+}
+
+// Its copying can be held up, which happens under the global copy's lock, or made to fail.
+class TroublesomeMessage : public NumberMessage
+{
+public:
+    struct Trouble
+    {
+        std::atomic<bool> HoldUp{false};
+        std::atomic<bool> HeldUp{false};
+        std::atomic<bool> Throw{false};
+    };
+    std::shared_ptr<Trouble> What = std::make_shared<Trouble>();
+
+    std::unique_ptr<RabitMessage> Clone() const override
+    {
+        return std::make_unique<TroublesomeMessage>(*this);
+    }
+    bool CopyMessage(RabitMessage *msg) override
+    {
+        if (What->Throw)
+        {
+            throw std::runtime_error("cannot copy");
+        }
+        while (What->HoldUp)
+        {
+            What->HeldUp = true;
+            std::this_thread::yield();
+        }
+        return NumberMessage::CopyMessage(msg);
+    }
+};
+
+TEST(PublishSubscribe, AFetchWithNothingNewDoesNotWaitForTheLock)
+{
+    Pair<TroublesomeMessage> pair;
+    pair.Poster->PostMessage();
+    pair.Reader->FetchMessage();
+    // The global copy is a clone of the poster's message and shares its troubles.
+    pair.Poster->What->HoldUp = true;
+    std::thread posting([&] { pair.Poster->PostMessage(); });
+    ASSERT_TRUE(Eventually([&] { return pair.Poster->What->HeldUp.load(); }));
+    EXPECT_FALSE(pair.Reader->FetchMessage());
+    pair.Poster->What->HoldUp = false;
+    posting.join();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+}
+
+TEST(PublishSubscribe, APostWhoseCopyingThrowsDidNotHappen)
+{
+    Pair<TroublesomeMessage> pair;
+    pair.Poster->PostMessage();
+    pair.Reader->FetchMessage();
+    const double stamp = pair.Poster->GetTimeStamp();
+    pair.Poster->What->Throw = true;
+    EXPECT_THROW(pair.Poster->PostMessage(), std::runtime_error);
+    EXPECT_EQ(pair.Poster->GetTimeStamp(), stamp);
+    EXPECT_FALSE(pair.Reader->FetchMessage());
+    pair.Poster->What->Throw = false;
+    pair.Poster->PostMessage();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
 }
 
 TEST(PublishSubscribe, AMessageOfAnotherTypeIsNotPosted)
