@@ -1,8 +1,10 @@
 // What the backends share.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "common/HandlerGate.h"
@@ -94,6 +96,40 @@ TEST(HandlerGate, RunsNothingOnceClosed)
     bool ran = false;
     gate.Run([&] { ran = true; });
     EXPECT_FALSE(ran);
+}
+
+TEST(HandlerGate, ClosingWaitsForTheWorkThatRuns)
+{
+    std::vector<std::string> lines;
+    HandlerGate gate(std::make_shared<SessionLog>(SettingsThatLogTo(lines)), "the reader of Pose");
+    std::atomic<bool> entered{false};
+    std::atomic<bool> closing{false};
+    std::atomic<bool> left{false};
+    std::jthread worker(
+        [&]
+        {
+            gate.Run(
+                [&]
+                {
+                    entered = true;
+                    while (!closing)
+                    {
+                        std::this_thread::yield();
+                    }
+                    for (int i = 0; i < 1000; ++i)
+                    {
+                        std::this_thread::yield();
+                    }
+                    left = true;
+                });
+        });
+    while (!entered)
+    {
+        std::this_thread::yield();
+    }
+    closing = true;
+    gate.Close();
+    EXPECT_TRUE(left);
 }
 
 TEST(SessionLog, LogsARepeatedFaultLessAndLessOften)

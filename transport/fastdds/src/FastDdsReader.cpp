@@ -58,7 +58,7 @@ FastDdsReader::FastDdsReader(std::shared_ptr<SessionCore> core, const TopicDescr
     {
         throw TransportError("Fast DDS cannot make a reader of topic " + topic.Name);
     }
-    // Otherwise a best-effort reader would take what writers of other partitions send.
+    // A sample may come addressed to no reader in particular: only a matched writer's is meant for this one.
     _reader->enableMessagesFromUnkownWriters(false);
     if (!_core->Participant().registerReader(_reader, MakeTopicAttributes(topic),
                                              MakeReaderQos(qos, partitions)))

@@ -66,8 +66,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = SocketBuffer;
     udp->receiveBufferSize = SocketBuffer;
-    // A full send buffer loses the datagram, which a reliable writer repairs, instead of blocking the thread that
-    // writes for as long as a slow link needs to drain the buffer.
+    // A full send buffer loses the datagram, which a reliable writer repairs, instead of blocking the thread
+    // that writes for as long as a slow link needs to drain the buffer.
     udp->non_blocking_send = true;
     udp->interfaceWhiteList = ResolveInterfaces(settings.Interfaces);
     udp->maxInitialPeersRange = ParticipantsPerPeer;

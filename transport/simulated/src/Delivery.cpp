@@ -165,30 +165,16 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
     ReaderProxy &reader = found->second;
     reader.Acknowledged = std::max(reader.Acknowledged, datagram.First - 1);
     reader.Missing.erase(reader.Missing.begin(), reader.Missing.upper_bound(reader.Acknowledged));
-    Datagram gap;
     for (const std::uint64_t sequence : datagram.Sequences)
     {
-        if (sequence <= reader.Acknowledged)
-        {
-            continue;
-        }
+        // What the history no longer has needs no answer: the first that it has comes with everything sent
+        // later.
         const auto sample = FindInHistory(writer, sequence);
-        if (sample != writer.History.end() && (*sample)->Sequence == sequence)
+        if (sequence > reader.Acknowledged && sample != writer.History.end() &&
+            (*sample)->Sequence == sequence)
         {
             SendSample(me, writer, found->first, reader, *sample, _timings.ResponseDelay);
         }
-        else
-        {
-            gap.Sequences.push_back(sequence);
-            reader.Missing.erase(sequence);
-        }
-    }
-    if (!gap.Sequences.empty())
-    {
-        gap.What = Datagram::Kind::Gap;
-        gap.Writer = datagram.Writer;
-        gap.Reader = datagram.Reader;
-        Send(me, datagram.Reader.Participant, std::move(gap), _timings.ResponseDelay);
     }
 }
 
@@ -208,7 +194,7 @@ void NetworkCore::HearSample(const ParticipantPtr &me, const ReaderPtr &reader, 
         {
             writer.Early.try_emplace(sequence, datagram.Content);
         }
-        HandOverInOrder(me, reader, found->first, writer);
+        HandOverInOrder(reader, found->first, writer);
         return;
     }
     if (writer.Started && sequence < writer.Expected)
@@ -233,7 +219,7 @@ void NetworkCore::HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reade
     }
     WriterProxy &writer = found->second;
     SkipTo(me, reader, found->first, writer, datagram.First);
-    HandOverInOrder(me, reader, found->first, writer);
+    HandOverInOrder(reader, found->first, writer);
     Datagram answer;
     answer.What = Datagram::Kind::Acknowledgement;
     answer.Writer = datagram.Writer;
@@ -248,23 +234,6 @@ void NetworkCore::HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reade
         }
     }
     Send(*me, datagram.Writer.Participant, std::move(answer), _timings.ResponseDelay);
-}
-
-void NetworkCore::HearGap(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram)
-{
-    const auto found = reader->Writers.find(datagram.Writer);
-    if (found == reader->Writers.end() || !found->second.Started)
-    {
-        return;
-    }
-    for (const std::uint64_t sequence : datagram.Sequences)
-    {
-        if (sequence >= found->second.Expected)
-        {
-            found->second.Early.try_emplace(sequence, nullptr);
-        }
-    }
-    HandOverInOrder(me, reader, found->first, found->second);
 }
 
 // Nothing below `first` will come any more: hands over what came early of it and gives up the rest.
@@ -285,31 +254,20 @@ void NetworkCore::SkipTo(const ParticipantPtr &me, const ReaderPtr &reader, cons
     while (!writer.Early.empty() && writer.Early.begin()->first < first)
     {
         const auto early = writer.Early.begin();
-        if (early->second != nullptr)
-        {
-            --lost;
-            HandOver(reader, from, writer, early->second);
-        }
+        --lost;
+        HandOver(reader, from, writer, early->second);
         writer.Early.erase(early);
     }
     writer.Expected = first;
     me->Log->SamplesLost(lost);
 }
 
-void NetworkCore::HandOverInOrder(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
-                                  WriterProxy &writer)
+void NetworkCore::HandOverInOrder(const ReaderPtr &reader, const EndpointId &from, WriterProxy &writer)
 {
     while (!writer.Early.empty() && writer.Early.begin()->first == writer.Expected)
     {
         const auto next = writer.Early.begin();
-        if (next->second != nullptr)
-        {
-            HandOver(reader, from, writer, next->second);
-        }
-        else
-        {
-            me->Log->SamplesLost(1);
-        }
+        HandOver(reader, from, writer, next->second);
         writer.Early.erase(next);
         ++writer.Expected;
     }

@@ -189,12 +189,6 @@ void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Dat
                 HearAcknowledgement(*at, *writer->second, datagram);
             }
             return;
-        case Datagram::Kind::Gap:
-            if (reader != at->Readers.end())
-            {
-                HearGap(at, reader->second, datagram);
-            }
-            return;
     }
 }
 

@@ -112,11 +112,9 @@ private:
     void HearAcknowledgement(const ParticipantState &me, WriterState &writer, const Datagram &datagram);
     void HearSample(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
     void HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
-    void HearGap(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
     void SkipTo(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
                 WriterProxy &writer, std::uint64_t first);
-    void HandOverInOrder(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
-                         WriterProxy &writer);
+    void HandOverInOrder(const ReaderPtr &reader, const EndpointId &from, WriterProxy &writer);
     void HandOver(const ReaderPtr &reader, const EndpointId &from, const WriterProxy &writer,
                   const SamplePtr &sample);
 

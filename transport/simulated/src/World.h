@@ -65,14 +65,13 @@ struct Datagram
 {
     enum class Kind
     {
-        Announce,         // I am here
-        Bye,              // I go
-        Endpoints,        // my endpoints, version First
-        EndpointsAck,     // I know your endpoints of version First
-        Data,             // Content; nothing below First will come any more
-        Heartbeat,        // I have First to Last for you
-        Acknowledgement,  // I have all below First, but miss Sequences
-        Gap               // Sequences will not come any more
+        Announce,        // I am here
+        Bye,             // I go
+        Endpoints,       // my endpoints, version First
+        EndpointsAck,    // I know your endpoints of version First
+        Data,            // Content; nothing below First will come any more
+        Heartbeat,       // I have First to Last for you
+        Acknowledgement  // I have all below First, but miss Sequences
     };
     Kind What = Kind::Announce;
     EndpointId Writer;
@@ -110,7 +109,7 @@ struct WriterProxy
     bool Reliable = false;
     bool Started = false;                      // Expected is known
     std::uint64_t Expected = 0;                // the next to hand over
-    std::map<std::uint64_t, SamplePtr> Early;  // came before Expected did; nullptr: will not come
+    std::map<std::uint64_t, SamplePtr> Early;  // came before Expected did
 };
 
 struct ReaderState
