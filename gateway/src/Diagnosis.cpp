@@ -9,12 +9,6 @@ namespace Rabit::Diagnosis
 namespace
 {
 
-bool Covers(const SubscribeRule &rule, const std::string &node)
-{
-    return std::any_of(rule.From.begin(), rule.From.end(),
-                       [&node](const std::string &pattern) { return MatchesPattern(pattern, node); });
-}
-
 // "`A`, `B`" of the first few names.
 template <typename Items, typename Name>
 std::string Listed(const Items &items, Name name)
@@ -108,7 +102,7 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTab
     bool anyNode = false;
     for (const PeerTable::Peer *peer : peers.Heard())
     {
-        if (!Covers(*wanted.Rule, peer->Node))
+        if (!MatchesAny(wanted.Rule->From, peer->Node))
         {
             continue;
         }

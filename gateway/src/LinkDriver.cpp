@@ -302,10 +302,9 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
         const std::lock_guard lock(_mutex);
         ConfigureOnce(node, queue);
         enqueued = _links->Enqueue(node, queue, type.Name(), payload, Now());
-        const auto refusals = _refusals.find({node, queue});
-        if (refusals != _refusals.end() && enqueued.Accepted())
+        if (enqueued.Accepted())
         {
-            refusals->second.Reason.clear();
+            _refusals.Forgive({node, queue});
         }
     }
     if (enqueued.Accepted())
@@ -337,14 +336,7 @@ void LinkDriver::Refuse(const std::string &node, const std::string &queue, Remot
     bool isNew = false;
     {
         const std::lock_guard lock(_mutex);
-        if (_refusals.size() >= MaximumRefusals && _refusals.count({node, queue}) == 0)
-        {
-            _refusals.erase(_refusals.begin());
-        }
-        Refusals &refusals = _refusals[{node, queue}];
-        ++(verdict == RemoteQueues::Verdict::WrongType ? refusals.Type : refusals.Unknown);
-        isNew = refusals.Reason != reason;
-        refusals.Reason = reason;
+        isNew = _refusals.Add({node, queue}, verdict, reason);
     }
     if (isNew)
     {
@@ -357,7 +349,7 @@ void LinkDriver::Refuse(const std::string &node, const std::string &queue, Remot
 std::vector<Gateway::LinkStatus> LinkDriver::OutboundStatus() const
 {
     const std::lock_guard lock(_mutex);
-    std::map<LinkName, Gateway::LinkStatus> rows;
+    std::map<LinkRefusals::LinkName, Gateway::LinkStatus> rows;
     _links->VisitSenders(
         [&rows](std::string_view node, std::string_view queue, const LinkSenderCounters &counters)
         {
@@ -372,11 +364,7 @@ std::vector<Gateway::LinkStatus> LinkDriver::OutboundStatus() const
                 counters.RefusedFullByCount + counters.RefusedFullByBytes + counters.RefusedTooLarge;
             row.resent = counters.MessagesResent;
         });
-    for (const auto &[name, refusals] : _refusals)
-    {
-        rows[name].refused_unknown = refusals.Unknown;
-        rows[name].refused_type = refusals.Type;
-    }
+    _refusals.Report(rows);
     std::vector<Gateway::LinkStatus> status;
     for (auto &[name, row] : rows)
     {
@@ -409,37 +397,26 @@ std::vector<Gateway::InboundStatus> LinkDriver::InboundStatus() const
 
 std::vector<Gateway::Problem> LinkDriver::Problems() const
 {
-    std::vector<Gateway::Problem> problems;
-    const auto add =
-        [&problems](const std::string &subject, const std::string &node, const std::string &reason)
-    {
-        Gateway::Problem problem;
-        problem.subject = subject;
-        problem.node = node;
-        problem.reason = reason;
-        problems.push_back(std::move(problem));
-    };
     const std::lock_guard lock(_mutex);
+    std::vector<Gateway::Problem> problems = _refusals.Problems();
     for (const auto &[name, queue] : _accepted)
     {
         if (!queue.Problem().empty())
         {
-            add("accept " + name, "", queue.Problem());
-        }
-    }
-    for (const auto &[name, refusals] : _refusals)
-    {
-        if (!refusals.Reason.empty())
-        {
-            add("send " + name.first + "/" + name.second, name.first == "*" ? "" : name.first,
-                refusals.Reason);
+            Gateway::Problem problem;
+            problem.subject = "accept " + name;
+            problem.reason = queue.Problem();
+            problems.push_back(problem);
         }
     }
     if (_links->NameInUseElsewhere())
     {
-        add("node " + _config.Node, "",
-            "the incarnation of this node had to be raised again and again: another live "
-            "node must have this name");
+        Gateway::Problem problem;
+        problem.subject = "node " + _config.Node;
+        problem.reason =
+            "the incarnation of this node had to be raised again and again: another live node must have this "
+            "name";
+        problems.push_back(problem);
     }
     return problems;
 }

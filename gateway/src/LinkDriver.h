@@ -14,11 +14,11 @@
 #include <mutex>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "AcceptedQueue.h"
 #include "LinkDatagrams.h"
+#include "LinkRefusals.h"
 #include "RemoteQueues.h"
 #include "gateway.idl.h"
 
@@ -61,15 +61,6 @@ public:
     std::uint64_t Malformed() const;
 
 private:
-    // What was refused at the call, before it reached a link.
-    struct Refusals
-    {
-        std::uint64_t Unknown = 0;
-        std::uint64_t Type = 0;
-        std::string Reason;  // of the last one; empty once a message was accepted
-    };
-    using LinkName = std::pair<std::string, std::string>;
-
     // LocalQueues; called by LinkNode with the mutex held.
     LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
                              std::span<const std::uint8_t> payload, bool redelivered) override;
@@ -104,8 +95,8 @@ private:
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;
     std::set<AcceptedQueue *> _delivered;  // queues whose handlers are to be told
     LinkDatagrams _outbox;
-    std::map<LinkName, Refusals> _refusals;
-    std::set<LinkName> _configured;
+    LinkRefusals _refusals;
+    std::set<LinkRefusals::LinkName> _configured;
     std::unique_ptr<LinkNode> _links;
 
     std::atomic<std::uint64_t> _malformed{0};

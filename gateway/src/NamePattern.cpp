@@ -49,6 +49,12 @@ bool MatchesPattern(std::string_view pattern, std::string_view name)
                        [](char c) { return c == '*'; });
 }
 
+bool MatchesAny(const std::vector<std::string> &patterns, std::string_view name)
+{
+    return std::any_of(patterns.begin(), patterns.end(),
+                       [name](const std::string &pattern) { return MatchesPattern(pattern, name); });
+}
+
 bool IsNodeName(std::string_view text)
 {
     return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), IsNodeCharacter);

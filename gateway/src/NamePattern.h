@@ -1,6 +1,8 @@
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace Rabit
 {
@@ -8,6 +10,7 @@ namespace Rabit
 // Whether a name fits a pattern in which `*` stands for any characters and `?` for one, as DDS partitions
 // match (OMG DDS 1.4, 2.2.3.13).
 bool MatchesPattern(std::string_view pattern, std::string_view name);
+bool MatchesAny(const std::vector<std::string> &patterns, std::string_view name);
 
 // Whether the text is a node name: 1 to 64 of A-Z a-z 0-9 _ . -
 bool IsNodeName(std::string_view text);

@@ -12,17 +12,6 @@
 
 namespace Rabit
 {
-namespace
-{
-
-bool Covers(const SubscribeRule &rule, const std::string &node)
-{
-    return std::any_of(rule.From.begin(), rule.From.end(),
-                       [&node](const std::string &pattern) { return MatchesPattern(pattern, node); });
-}
-
-}  // namespace
-
 Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
                              RabitWorkspace &workspace)
     : _rules(rules), _origins(origins), _workspace(workspace)
@@ -69,7 +58,7 @@ void Subscriptions::OnOffers(const PeerTable &peers)
     {
         for (const PeerTable::Peer *peer : peers.Heard())
         {
-            if (rule.Qos || !peer->Offers || !Covers(rule, peer->Node))
+            if (rule.Qos || !peer->Offers || !MatchesAny(rule.From, peer->Node))
             {
                 continue;
             }
