@@ -34,7 +34,7 @@ public:
         // Name of this node: answers are to come to <node>/Commands.
         std::string Node = "ground";
         // Between two commands to one aircraft.
-        std::chrono::milliseconds Period{5000};
+        std::chrono::milliseconds Period{15000};
         // From the first pose of an aircraft to the first command (but at most an eighth of the duration): so
         // long it is seen flying by itself.
         std::chrono::milliseconds FirstAfter{2000};

@@ -8,7 +8,7 @@ namespace Ground
 {
 namespace
 {
-constexpr double DistanceM = 80;
+constexpr double DistanceM = 50;
 constexpr float SpeedMps = 10;
 constexpr double MetresPerDegree = 111195;  // of latitude
 constexpr double GoldenAngleRad =

@@ -37,7 +37,7 @@ struct Options
     int Domain = -1;
     std::string Transport;
     int Seconds = 0;
-    double CommandPeriodS = 5;
+    double CommandPeriodS = 15;
     std::vector<std::string> Expected;
     bool Check = false;
 };

@@ -31,42 +31,76 @@ Motion Circling(const Pattern &circle, double startBearingRad, double seconds)
 }
 }  // namespace
 
+Motion Flight::Way::At(double seconds) const
+{
+    const Offset way = Between(From, To);
+    Motion motion;
+    motion.Position = Interpolate(From, To, (seconds - StartS) / DurationS);
+    motion.NorthMps = way.NorthM / DurationS;
+    motion.EastMps = way.EastM / DurationS;
+    motion.DownMps = -way.UpM / DurationS;
+    motion.YawRad = std::atan2(way.EastM, way.NorthM);
+    return motion;
+}
+
+Motion Flight::Holding(double seconds) const
+{
+    return Circling(_leg->Hold, _leg->HoldBearingRad, seconds - _leg->There.StartS - _leg->There.DurationS);
+}
+
+// The track moves on meanwhile: aims at where it will be on arrival, found by trying the last duration again.
+Flight::Way Flight::WayBackToTrack(double startS) const
+{
+    constexpr int rounds = 8;
+    Way back;
+    back.From = Holding(startS).Position;
+    back.StartS = startS;
+    for (int round = 0; round < rounds; ++round)
+    {
+        back.To = _track->At(startS + back.DurationS).Position;
+        back.DurationS = Between(back.From, back.To).LengthM() / _leg->Hold.SpeedMps;
+    }
+    back.To = _track->At(startS + back.DurationS).Position;
+    return back;
+}
+
 Motion Flight::At(double seconds)
 {
+    if (_leg && _track && !_leg->Back && _leg->There.IsOver(seconds - BackToTrackAfterS))
+        _leg->Back = WayBackToTrack(_leg->There.StartS + _leg->There.DurationS + BackToTrackAfterS);
+    if (_leg && _leg->Back && _leg->Back->IsOver(seconds))
+        _leg.reset();
     if (!_leg)
     {
         _phase = _track ? FlightPhase::Track : FlightPhase::Pattern;
         return _track ? _track->At(seconds) : Circling(_pattern, 0, seconds);
     }
-    const double flown = seconds - _leg->StartS;
-    if (flown >= _leg->DurationS)
+    if (_leg->Back)
+    {
+        _phase = FlightPhase::Track;
+        return _leg->Back->At(seconds);
+    }
+    if (_leg->There.IsOver(seconds))
     {
         _phase = FlightPhase::Hold;
-        return Circling(_leg->Hold, _leg->HoldBearingRad, flown - _leg->DurationS);
+        return Holding(seconds);
     }
     _phase = FlightPhase::Goto;
-    Motion motion;
-    motion.Position = Interpolate(_leg->From, _leg->To, flown / _leg->DurationS);
-    motion.NorthMps = _leg->Way.NorthM / _leg->DurationS;
-    motion.EastMps = _leg->Way.EastM / _leg->DurationS;
-    motion.DownMps = -_leg->Way.UpM / _leg->DurationS;
-    motion.YawRad = std::atan2(_leg->Way.EastM, _leg->Way.NorthM);
-    return motion;
+    return _leg->There.At(seconds);
 }
 
 void Flight::FlyTo(const GeoPoint &point, double speedMps, double seconds)
 {
     Leg leg;
-    leg.From = At(seconds).Position;
+    leg.There.From = At(seconds).Position;
     leg.Hold = {point, HoldRadiusM, std::min(speedMps, MaxHoldSpeedMps)};
-    const Offset fromPoint = Between(point, leg.From);
+    const Offset fromPoint = Between(point, leg.There.From);
     leg.HoldBearingRad = std::atan2(fromPoint.EastM, fromPoint.NorthM);
-    leg.To = OnCircle(leg.Hold, leg.HoldBearingRad);
-    leg.Way = Between(leg.From, leg.To);
-    leg.StartS = seconds;
-    leg.DurationS = leg.Way.LengthM() / speedMps;
+    leg.There.To = OnCircle(leg.Hold, leg.HoldBearingRad);
+    leg.There.StartS = seconds;
+    leg.There.DurationS = Between(leg.There.From, leg.There.To).LengthM() / speedMps;
+    _phase = leg.There.DurationS > 0 ? FlightPhase::Goto : FlightPhase::Hold;
     _leg = leg;
-    _phase = leg.DurationS > 0 ? FlightPhase::Goto : FlightPhase::Hold;
 }
 
 }  // namespace Swarm

@@ -27,7 +27,8 @@ struct Pattern
 };
 
 // The flight of one simulated aircraft: a track or a pattern until it is told to go to a point, which it
-// flies to in a straight line and then circles at 20 m until it is told otherwise. Positions never jump.
+// flies to in a straight line and then circles at 20 m until it is told otherwise. An aircraft with a track
+// goes back to it after a while, to where the track is by then. Positions never jump.
 //
 // The time is an argument everywhere, in seconds since the start of the flight, and must not go back.
 // Not thread-safe.
@@ -36,6 +37,7 @@ class Flight
 public:
     static constexpr double HoldRadiusM = 20;
     static constexpr double MaxHoldSpeedMps = 10;
+    static constexpr double BackToTrackAfterS = 5;
 
     explicit Flight(Swarm::Track track) : _track(std::move(track)) {}
     explicit Flight(const Swarm::Pattern &pattern) : _pattern(pattern) {}
@@ -48,17 +50,29 @@ public:
     FlightPhase Phase() const { return _phase; }
 
 private:
-    // The way to a commanded point: straight to the nearest point of the circle around it.
-    struct Leg
+    // A straight way from one point to another.
+    struct Way
     {
         GeoPoint From;
         GeoPoint To;
-        Offset Way;
         double StartS = 0;
         double DurationS = 0;
-        Swarm::Pattern Hold;
-        double HoldBearingRad = 0;  // from the middle of the circle to where the leg meets it
+
+        bool IsOver(double seconds) const { return seconds >= StartS + DurationS; }
+        Motion At(double seconds) const;
     };
+    // What a command makes of the flight: the way to the nearest point of the circle around the commanded
+    // point, the circle, and with a track the way back to it.
+    struct Leg
+    {
+        Way There;
+        Swarm::Pattern Hold;
+        double HoldBearingRad = 0;  // from the middle of the circle to where the way meets it
+        std::optional<Way> Back;
+    };
+
+    Motion Holding(double seconds) const;
+    Way WayBackToTrack(double startS) const;
 
     std::optional<Swarm::Track> _track;
     Swarm::Pattern _pattern;

@@ -98,7 +98,7 @@ TEST(Flight, HoldsOnACircleAroundThePointAndAtItsHeight)
     Flight flight(StandingTrack());
     const GeoPoint point = Moved(Home, {60, 80, 30});
     flight.FlyTo(point, 10, 0);
-    for (double t = 20; t < 60; t += 0.7)
+    for (double t = 8.6; t < 13; t += 0.3)
     {
         const Motion motion = flight.At(t);
         EXPECT_NEAR(DistanceM(point, motion.Position), Flight::HoldRadiusM, 0.01);
@@ -110,8 +110,43 @@ TEST(Flight, HoldsNoFasterThanTheHoldSpeed)
 {
     Flight flight(StandingTrack());
     flight.FlyTo(Moved(Home, {100, 0, 0}), 40, 0);
-    const Motion motion = flight.At(60);
+    const Motion motion = flight.At(4);
     EXPECT_NEAR(std::hypot(motion.NorthMps, motion.EastMps), Flight::MaxHoldSpeedMps, 1e-9);
+}
+
+TEST(Flight, OfATrackGoesBackToItAfterACommand)
+{
+    Flight flight(StandingTrack());
+    flight.FlyTo(Moved(Home, {120, 0, 0}), 10,
+                 0);  // there at 10 s, held until 15 s, 120 m or so back at 10 m/s
+    flight.At(14.9);
+    EXPECT_EQ(flight.Phase(), FlightPhase::Hold);
+    flight.At(15.1);
+    EXPECT_EQ(flight.Phase(), FlightPhase::Track);
+    EXPECT_GT(DistanceM(Home, flight.At(16).Position), 50);
+    EXPECT_NEAR(DistanceM(Home, flight.At(30).Position), 0, 0.01);
+}
+
+TEST(Flight, OfATrackNeverJumpsOnTheWayThereAndBack)
+{
+    Flight flight(StandingTrack());
+    Motion last = flight.At(0);
+    for (int i = 1; i < 600; ++i)
+    {
+        if (i == 20)
+            flight.FlyTo(Moved(Home, {90, -40, 12}), 9, i * 0.1);
+        const Motion now = flight.At(i * 0.1);
+        EXPECT_LT(DistanceM(last.Position, now.Position), 1.0) << "at " << i * 0.1;
+        last = now;
+    }
+}
+
+TEST(Flight, OfAPatternHoldsUntilItIsToldOtherwise)
+{
+    Flight flight(Pattern{Home, 60, 8});
+    flight.FlyTo(Moved(Home, {100, 0, 0}), 10, 0);
+    flight.At(3600);
+    EXPECT_EQ(flight.Phase(), FlightPhase::Hold);
 }
 
 TEST(Flight, NeverJumps)

@@ -18,14 +18,14 @@ Uav::Pose At(double latitude, double longitude, double altitude)
     return pose;
 }
 
-TEST(PlanGoto, SendsTheAircraft80MetresAway)
+TEST(PlanGoto, SendsTheAircraft50MetresAway)
 {
     for (std::uint32_t id = 1; id < 20; ++id)
     {
         const Uav::Goto command = PlanGoto(At(49, -123, 50), id);
         const double north = (command.latitude_deg - 49) * 111195;
         const double east = (command.longitude_deg + 123) * 111195 * std::cos(49 * std::numbers::pi / 180);
-        EXPECT_NEAR(std::hypot(north, east), 80, 0.1);
+        EXPECT_NEAR(std::hypot(north, east), 50, 0.1);
         EXPECT_EQ(command.id, id);
     }
 }
