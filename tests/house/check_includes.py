@@ -48,7 +48,7 @@ ALLOWED = {
     "transport/simulated": {"transport", "simulated backend"},
     "gateway": {"core", "idl", "transport", "gateway", "links", "gateway messages", "yaml-cpp"},
     "gateway/links": {"links"},
-    "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11"},
+    "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11", "network"},
 }
 
 
