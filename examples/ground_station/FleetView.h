@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <ostream>
@@ -60,6 +61,14 @@ public:
     const std::vector<Seen> &Result() const { return _seen; }
 
 private:
+    // Names in the order that people expect: uav2 before uav10.
+    struct NaturalOrder
+    {
+        bool operator()(const std::string &a, const std::string &b) const
+        {
+            return strverscmp(a.c_str(), b.c_str()) < 0;
+        }
+    };
     struct Aircraft
     {
         std::unique_ptr<AircraftMonitor> Monitor;
@@ -73,7 +82,7 @@ private:
 
     const Output _output;
     std::chrono::nanoseconds _start{0};
-    std::map<std::string, Aircraft> _aircraft;
+    std::map<std::string, Aircraft, NaturalOrder> _aircraft;
     std::vector<Seen> _seen;
     TerminalScreen _screen;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();

@@ -109,6 +109,16 @@ TEST_F(FleetView, TrustsNoFleetThatHasStoppedComing)
     EXPECT_EQ(State(), RowState::Stale);
 }
 
+TEST_F(FleetView, PutsNamesInTheOrderOfTheirNumbers)
+{
+    Start({"uav10", "uav2", "uav1"});
+    Printed();
+    std::vector<std::string> names;
+    for (const auto &seen : _view->Result())
+        names.push_back(seen.Row.Node);
+    EXPECT_THAT(names, testing::ElementsAre("uav1", "uav2", "uav10"));
+}
+
 TEST_F(FleetView, ShowsWhatTheCommanderHasSent)
 {
     Start({"uav1"});
