@@ -1,0 +1,172 @@
+"""A network of namespaces on one bridge, with faults, for whole-system tests. Needs root, iproute2 and nftables.
+
+Every name carries the process id of its maker. All is removed when the `with` block is left, also through SIGINT and
+SIGTERM; what a SIGKILL of the maker leaves (empty namespaces, for the nodes die with their maker) is removed by the
+next Field."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+
+import harness
+
+PREFIX = "rbtfield"
+NAME = re.compile(PREFIX + r"-(\d+)-")
+
+
+class Unsupported(Exception):
+    """This machine does not allow what is needed."""
+
+
+def _run(*argv, text=None):
+    return subprocess.run(argv, input=text, text=True, check=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT).stdout
+
+
+def _dead(name):
+    match = NAME.match(name)
+    return match and not os.path.exists(f"/proc/{match.group(1)}")
+
+
+def namespaces():
+    """All namespaces that any Field made."""
+    listed = _run("ip", "netns", "list")
+    return [line.split()[0] for line in listed.splitlines() if NAME.match(line)]
+
+
+def folders():
+    """All folders that any Field made."""
+    root = tempfile.gettempdir()
+    return [os.path.join(root, name) for name in os.listdir(root) if NAME.match(name)]
+
+
+def sweep():
+    """Removes what makers that are dead left behind."""
+    for name in namespaces():
+        if _dead(name):
+            subprocess.run(["ip", "netns", "del", name], check=False)
+    for path in folders():
+        if _dead(os.path.basename(path)):
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _stop(number, _frame):
+    raise SystemExit(128 + number)
+
+
+class Field:
+    """with Field(["ground", "uav1"]) as field: field.start("uav1", [program, argument, ...])"""
+
+    def __init__(self, nodes):
+        self.nodes = list(nodes)
+        self.folder = None
+        self.processes = {}
+        self._drops = {}  # (from, to) -> percent
+        self._prefix = f"{PREFIX}-{os.getpid()}-"
+        self._made = []
+
+    def __enter__(self):
+        if os.geteuid() != 0 or not all(map(shutil.which, ("ip", "nft"))):
+            raise Unsupported("needs root, iproute2 and nftables")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, _stop)
+        sweep()
+        try:
+            self._build()
+        except BaseException:
+            self._remove()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        self._remove()
+
+    def address(self, node):
+        return f"10.77.0.{self.nodes.index(node) + 1}"
+
+    def start(self, node, argv):
+        """Starts a program as that node. It dies with this process."""
+        process = harness.Process(["ip", "netns", "exec", self._space(node), *argv])
+        self.processes[node] = process
+        return process
+
+    def kill(self, node):
+        """kill -9, and waits for the end."""
+        self.processes[node].kill()
+
+    def signal(self, node, number):
+        """For instance SIGSTOP and SIGCONT, which freeze a node."""
+        os.kill(self.processes[node].pid, number)
+
+    def lose(self, percent, origins=None, destinations=None):
+        """Drops that share of all packets, at random, between the nodes named (default: all); 100 is a cut."""
+        for origin in origins or self.nodes:
+            for destination in destinations or self.nodes:
+                if origin != destination:
+                    self._drops[origin, destination] = percent
+        for node in self.nodes:
+            self._write_rules(node)
+
+    def traffic(self, node):
+        """Bytes that the node has sent and received so far."""
+        counts = [_run("ip", "netns", "exec", self._space(node), "cat", f"/sys/class/net/eth0/statistics/{name}")
+                  for name in ("tx_bytes", "rx_bytes")]
+        return tuple(map(int, counts))
+
+    def _space(self, name):
+        return self._prefix + name
+
+    def _make_space(self, name):
+        # Entered before it is made, so that it is removed also if a signal comes in between.
+        self._made.append(self._space(name))
+        try:
+            _run("ip", "netns", "add", self._space(name))
+        except subprocess.CalledProcessError as error:
+            raise Unsupported(f"no network namespaces here: {error.stdout}") from error
+
+    def _build(self):
+        self.folder = tempfile.mkdtemp(prefix=self._prefix)
+        self._make_space("switch")
+        switch = ["ip", "-n", self._space("switch"), "link"]
+        _run(*switch, "add", "br0", "type", "bridge", "mcast_snooping", "0")
+        _run(*switch, "set", "br0", "up")
+        for number, node in enumerate(self.nodes):
+            self._make_space(node)
+            inside = ["ip", "-n", self._space(node)]
+            _run(*switch, "add", f"p{number}", "type", "veth", "peer", "name", "eth0", "netns", self._space(node))
+            _run(*switch, "set", f"p{number}", "master", "br0", "up")
+            _run(*inside, "address", "add", self.address(node) + "/24", "dev", "eth0")
+            _run(*inside, "link", "set", "lo", "up")
+            _run(*inside, "link", "set", "eth0", "up")
+            _run(*inside, "route", "add", "224.0.0.0/4", "dev", "eth0")
+        try:
+            self._write_rules(self.nodes[0])
+        except subprocess.CalledProcessError as error:
+            raise Unsupported(f"nftables does not work here: {error.stdout}") from error
+
+    # Dropped where it arrives: a drop on the way out would be told to the sender's socket.
+    def _write_rules(self, node):
+        rules = []
+        for (origin, destination), percent in self._drops.items():
+            if destination == node and percent > 0:
+                share = "" if percent >= 100 else f"numgen random mod 100 < {percent} "
+                rules.append(f"ip saddr {self.address(origin)} {share}drop")
+        text = ("add table ip field\ndelete table ip field\ntable ip field {\n chain arriving {\n"
+                "  type filter hook input priority 0;\n  " + "\n  ".join(rules) + "\n }\n}\n")
+        _run("ip", "netns", "exec", self._space(node), "nft", "-f", "-", text=text)
+
+    def _remove(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
+        for process in self.processes.values():
+            if process.running():
+                process.kill()
+        for name in self._made:
+            subprocess.run(["ip", "netns", "del", name], check=False, stderr=subprocess.DEVNULL)
+        if self.folder:
+            shutil.rmtree(self.folder, ignore_errors=True)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_DFL)

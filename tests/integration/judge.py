@@ -1,0 +1,182 @@
+"""Compares the ledgers of all lives of all nodes (README.md lists the lines) and says what is wrong with them.
+
+A life whose ledger has no `end` line was killed. Sound in spite of kills, because a sender writes `intent` before the
+call and `accepted` or `refused` after it: of the last intent of a killed life nothing is demanded, save that it comes
+once and in order. DELIVERED means put into the receiver's queue, so a kill of the receiver may lose what that queue
+held and what was on its way: one unbroken row straight after the last note that the killed life took. A kill of the
+sender may lose the end of its row. Whatever else is missing is a loss, or has expired and must be counted as such."""
+
+import collections
+import re
+
+# Between the queue that a note was put into and the line in the ledger lies the receiver's thread.
+PICK_UP_S = 1.0
+
+PAIR = re.compile(r'(\w+)=("[^"]*"|\S*)')
+
+
+class Event:
+    def __init__(self, time_ns, kind, values):
+        self.time = time_ns
+        self.kind = kind
+        self.values = values
+
+    def __getitem__(self, key):
+        return self.values[key]
+
+    def number(self, key):
+        return int(self.values[key])
+
+
+class Life:
+    """One life of a node: the lines from its `start` on."""
+
+    def __init__(self, start):
+        self.node = start["node"]
+        self.life = start.number("life")
+        self.room = start.number("room")
+        self.events = []
+
+    @property
+    def killed(self):
+        return not self.events or self.events[-1].kind != "end"
+
+    def of(self, kind):
+        return [event for event in self.events if event.kind == kind]
+
+    def counters(self, to):
+        """The last counters of the link to that node, or None."""
+        lines = [event for event in self.of("link") if event["to"] == to]
+        return {key: int(value) for key, value in lines[-1].values.items() if key != "to"} if lines else None
+
+
+def read_ledger(text):
+    """The lives in the text of one node's ledger. A last line that a kill cut short is left out, and so is one in
+    the middle that the next life was appended to."""
+    lives = []
+    for line in text.splitlines(keepends=True):
+        stamp, _, rest = line.partition(" ")
+        if not line.endswith("\n") or not stamp.isdigit():
+            continue
+        kind, _, pairs = rest.strip().partition(" ")
+        event = Event(int(stamp), kind, {k: v.strip('"') for k, v in PAIR.findall(pairs)})
+        if kind == "start":
+            lives.append(Life(event))
+        elif lives:
+            lives[-1].events.append(event)
+    return lives
+
+
+def judge(ledgers):
+    """`ledgers`: one text for each node. Returns the list of what is wrong, in words; empty if nothing is."""
+    lives = [life for text in ledgers for life in read_ledger(text)]
+    by_node = collections.defaultdict(list)
+    for life in lives:
+        by_node[life.node].append(life)
+    wrong = [f"{life.node}: a note arrived garbled" for life in lives if life.of("garbled")]
+    senders = {(life.node, life.life): life for life in lives}
+    for node, receiver in by_node.items():
+        wrong += _phantoms(node, receiver, senders)
+        wrong += _order(node, receiver)
+    for sender in lives:
+        for to in sorted({event["to"] for event in sender.of("intent")}):
+            wrong += _judge_row(sender, to, by_node.get(to, []))
+    return wrong
+
+
+def _delivered(lives):
+    return [event for life in lives for event in life.of("delivered")]
+
+
+def _phantoms(node, receiver, senders):
+    intents = {key: {event.number("id") for event in life.of("intent") if event["to"] == node}
+               for key, life in senders.items()}
+    return [f"{node}: phantom, {e['from']} never sent note {e['id']} of life {e['life']}" for e in _delivered(receiver)
+            if e.number("id") not in intents.get((e["from"], e.number("life")), ())]
+
+
+def _order(node, receiver):
+    wrong = []
+    last = {}
+    seen = set()
+    for event in _delivered(receiver):
+        flagged = event.values.get("redelivered") == "1"
+        place = (event.number("life"), event.number("id"))
+        name = f"{node}: note {event['id']} of {event['from']}"
+        if (event["from"], place) in seen:
+            if not flagged:
+                wrong.append(f"{name} delivered twice (duplicate)")
+        elif place < last.get(event["from"], (0, 0)):
+            wrong.append(f"{name} delivered out of order")
+        seen.add((event["from"], place))
+        last[event["from"]] = max(place, last.get(event["from"], (0, 0)))
+    return wrong
+
+
+def _judge_row(sender, to, receiver):
+    """What one life of a sender sent to one node."""
+    name = f"{sender.node} to {to}"
+    mine = [(life, event) for life in receiver for event in life.of("delivered")
+            if event["from"] == sender.node and event.number("life") == sender.life]
+    arrived = {event.number("id"): event for _, event in mine}
+    intents = {event.number("id"): event for event in sender.of("intent") if event["to"] == to}
+    accepted = [event.number("id") for event in sender.of("accepted") if event["to"] == to]
+    wrong = [f"{name}: note {event['id']} was refused and yet delivered"
+             for event in sender.of("refused") if event["to"] == to and event.number("id") in arrived]
+    for number, event in arrived.items():
+        if number not in intents:
+            continue  # a phantom, told elsewhere
+        expire_s = float(intents[number]["expire_s"])
+        age_s = (event.time - intents[number].time) * 1e-9
+        if 0 < expire_s < age_s - PICK_UP_S:
+            wrong.append(f"{name}: note {number} came late, {age_s:.1f} s after it was sent, expiry {expire_s} s")
+
+    killed = [life for life in receiver if life.killed]
+    may_expire = any(float(event["expire_s"]) > 0 for event in intents.values())
+    runs = _missing_runs(accepted, arrived)
+    missing = sum(len(run) for _, run in runs)
+    counters = sender.counters(to)
+    if not may_expire:
+        after_kill = {None if not taken else taken[-1] for taken in
+                      ([e.number("id") for l, e in mine if l is life] for life in killed)}
+        room = max((life.room for life in receiver), default=0) * max(1, len(killed))
+        for before, run in runs:
+            if sender.killed and run[-1] == accepted[-1]:
+                continue
+            if killed and before in after_kill and len(run) <= room:
+                continue
+            wrong.append(f"{name}: {len(run)} accepted notes lost, from {run[0]} to {run[-1]}")
+    if sender.killed:
+        return wrong  # its last counters may be older than its last note
+    if counters is None:
+        return wrong + ([f"{name}: no outcomes told"] if accepted else [])
+    if counters["accepted"] != len(accepted):
+        wrong.append(f"{name}: {len(accepted)} notes accepted, the gateway counted {counters['accepted']}")
+    told = counters["delivered"] + counters["expired"] + counters["in_doubt"] + counters["undeliverable"]
+    if told != len(accepted):
+        wrong.append(f"{name}: {len(accepted)} notes accepted, outcomes of {told} told")
+    if not killed:
+        if counters["delivered"] != len(arrived):
+            wrong.append(f"{name}: {len(arrived)} notes arrived, {counters['delivered']} said to be delivered")
+        if counters["expired"] != missing:
+            wrong.append(f"{name}: {missing} accepted notes lost, {counters['expired']} said to be expired")
+        if counters["in_doubt"]:
+            wrong.append(f"{name}: {counters['in_doubt']} notes in doubt, though the receiver was never killed")
+    if not may_expire and counters["expired"]:
+        wrong.append(f"{name}: {counters['expired']} notes said to be expired that cannot expire")
+    return wrong
+
+
+def _missing_runs(accepted, arrived):
+    """Rows of accepted notes that did not arrive, each with the last note before it that did (or None)."""
+    runs = []
+    before = None
+    run = []
+    for number in accepted:
+        if number in arrived:
+            if run:
+                runs.append((before, run))
+            before, run = number, []
+        else:
+            run.append(number)
+    return runs + ([(before, run)] if run else [])

@@ -1,0 +1,344 @@
+// A node that writes down everything that it does and sees, one line per event, for judge.py. README.md lists
+// the lines. Each line is one write(2), so a kill loses at most the line being written.
+#include "ledger.idl.h"
+
+#include "gateway.idl.h"
+
+#include <rabit/RabitManager.h>
+#include <rabit/RabitReactor.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <CLI/CLI.hpp>
+
+#include <fcntl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace
+{
+constexpr const char *NotesQueue = "Notes";
+constexpr int WorkPeriodMSec = 10;
+constexpr std::int64_t TickPeriodNs = 100'000'000;
+constexpr std::int64_t CountersPeriodNs = 200'000'000;
+
+struct Options
+{
+    Rabit::GatewayConfig Gateway;
+    std::string LedgerFile;
+    std::vector<std::string> To;
+    std::uint64_t Count = 0;
+    double Rate = 100;
+    std::size_t Payload = 100;
+    std::size_t Capacity = 1000;
+    std::size_t Window = 128;
+    int QueueRoom = 100;
+    double ExpireS = 0;
+    double IdleS = 0;
+    bool Ticks = false;
+};
+
+// CLOCK_MONOTONIC, which all network namespaces of one machine share.
+std::int64_t Now()
+{
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+// Appends to the ledger file. One thread.
+class LedgerFile
+{
+public:
+    explicit LedgerFile(const std::string &path)
+        : _file(open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644))
+    {
+        if (_file < 0)
+            throw std::system_error(errno, std::generic_category(), path);
+        Append("\n");  // ends a line that the kill of an earlier life may have cut short
+    }
+    ~LedgerFile() { close(_file); }
+    LedgerFile(const LedgerFile &) = delete;
+    LedgerFile &operator=(const LedgerFile &) = delete;
+
+    void Line(const std::string &text) { Append(std::to_string(Now()) + ' ' + text + '\n'); }
+
+private:
+    void Append(const std::string &line)
+    {
+        const ssize_t written = write(_file, line.data(), line.size());
+        if (written != static_cast<ssize_t>(line.size()))
+            throw std::system_error(errno, std::generic_category(), "writing the ledger");
+    }
+
+    int _file;
+};
+
+// Sends notes, takes notes, and follows the ticks and the fleet.
+class Clerk : public Rabit::RabitManager
+{
+public:
+    explicit Clerk(const Options &options)
+        : RabitManager("Clerk"),
+          _options(options),
+          _ledger(options.LedgerFile),
+          _life(Now()),
+          _notes(std::make_shared<RabitQueue>(options.QueueRoom, NotesQueue))
+    {
+        AddManagerMessageQueue(NotesQueue, _notes);
+        WakeUpManagerOnEnqueue(_notes);
+        AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
+        if (options.Ticks)
+            AddPublishSubscribeMessage("Tick", _tick);
+        SetWakeupTimeDelayMSec(WorkPeriodMSec);
+    }
+
+    void Startup() override
+    {
+        std::ostringstream line;
+        line << "start node=" << _options.Gateway.Node << " life=" << _life
+             << " room=" << _options.QueueRoom + static_cast<int>(_options.Window);
+        _ledger.Line(line.str());
+    }
+
+    void ExecuteUnitOfWork() override
+    {
+        if (_fleet->FetchMessage())
+            FollowFleet();
+        Send();
+        Take();
+        PostTick();
+        FollowTicks();
+    }
+
+    void Shutdown() override
+    {
+        Take();
+        _fleet->FetchMessage();
+        WriteCounters();
+        _ledger.Line("end");
+    }
+
+private:
+    struct Row
+    {
+        std::int64_t Start = 0;
+        std::uint64_t Sent = 0;  // accepted
+        std::uint64_t LastId = 0;
+    };
+
+    void Send()
+    {
+        for (const std::string &to : _options.To)
+        {
+            if (!_ready.count(to))
+                continue;
+            Row &row = _rows[to];
+            if (row.Start == 0)
+                row.Start = Now();
+            const double due = static_cast<double>(Now() - row.Start) * 1e-9 * _options.Rate;
+            while (row.Sent < _options.Count && static_cast<double>(row.Sent) < due)
+                if (!SendOne(to, row))
+                    break;
+        }
+    }
+
+    // The intent is written first: whatever arrives has one, and a life that was killed between the two lines
+    // leaves one message of which nothing can be said.
+    bool SendOne(const std::string &to, Row &row);
+
+    void Take()
+    {
+        if (Now() < _life + static_cast<std::int64_t>(_options.IdleS * 1e9))
+            return;
+        std::shared_ptr<Rabit::RabitMessage> message;
+        while (_notes->GetMessage(message))
+        {
+            std::ostringstream line;
+            const auto *note = dynamic_cast<const Ledger::Note *>(message.get());
+            if (note == nullptr || note->padding.size() != _options.Payload)
+                line << "garbled";
+            else
+                line << "delivered from=" << note->from << " life=" << note->life << " id=" << note->id;
+            _ledger.Line(line.str());
+        }
+    }
+
+    void PostTick()
+    {
+        if (!_options.Ticks || Now() < _nextTick)
+            return;
+        _nextTick = Now() + TickPeriodNs;
+        ++_tick->number;
+        _tick->PostMessage();
+    }
+
+    void FollowTicks()
+    {
+        for (auto &[node, tick] : _ticks)
+        {
+            if (!tick->FetchMessage())
+                continue;
+            std::ostringstream line;
+            line << "tick from=" << node << " number=" << tick->number << " age_s=" << tick->GetAgeSeconds();
+            _ledger.Line(line.str());
+        }
+    }
+
+    void FollowFleet()
+    {
+        for (const auto &status : _fleet->nodes)
+        {
+            const auto known = _states.find(status.node);
+            if (known != _states.end() && known->second == status.state)
+                continue;
+            _states[status.node] = status.state;
+            const char *name = status.state == Rabit::Gateway::NodeState::UP      ? "UP"
+                               : status.state == Rabit::Gateway::NodeState::STALE ? "STALE"
+                                                                                  : "LOST";
+            _ledger.Line("peer node=" + status.node + " state=" + name);
+            // A first message before the other node is known is refused, which is right but no use here.
+            if (status.state == Rabit::Gateway::NodeState::UP)
+                _ready.insert(status.node);
+            if (_options.Ticks && !_ticks.count(status.node))
+            {
+                _ticks[status.node] = std::make_shared<Ledger::Tick>();
+                AddPublishSubscribeMessage(status.node + "/Tick", _ticks[status.node]);
+            }
+        }
+        for (const auto &problem : _fleet->problems)
+            if (_problems.insert(problem.subject + problem.node + problem.reason).second)
+                _ledger.Line("problem node=" + problem.node + " subject=\"" + problem.subject +
+                             "\" reason=\"" + problem.reason + '"');
+        if (Now() >= _nextCounters)
+            WriteCounters();
+    }
+
+    void WriteCounters()
+    {
+        _nextCounters = Now() + CountersPeriodNs;
+        for (const auto &link : _fleet->links)
+        {
+            std::ostringstream line;
+            line << "link to=" << link.node << " accepted=" << link.accepted
+                 << " delivered=" << link.delivered << " expired=" << link.expired
+                 << " in_doubt=" << link.in_doubt << " undeliverable=" << link.undeliverable
+                 << " outbox=" << link.outbox << " resent=" << link.resent;
+            if (_written[link.node] != line.str())
+                _ledger.Line(_written[link.node] = line.str());
+        }
+    }
+
+    const Options &_options;
+    LedgerFile _ledger;
+    std::int64_t _life;
+    std::shared_ptr<RabitQueue> _notes;
+    std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
+    std::shared_ptr<Ledger::Tick> _tick = std::make_shared<Ledger::Tick>();
+    std::map<std::string, std::shared_ptr<Ledger::Tick>> _ticks;
+    std::map<std::string, Rabit::Gateway::NodeState> _states;
+    std::map<std::string, std::string> _written;
+    std::set<std::string> _ready;
+    std::set<std::string> _problems;
+    std::map<std::string, Row> _rows;
+    std::int64_t _nextTick = 0;
+    std::int64_t _nextCounters = 0;
+};
+
+bool Clerk::SendOne(const std::string &to, Row &row)
+{
+    auto note = std::make_shared<Ledger::Note>();
+    note->from = _options.Gateway.Node;
+    note->life = static_cast<std::uint64_t>(_life);
+    note->id = ++row.LastId;
+    note->padding.assign(_options.Payload, 0x5a);
+    std::ostringstream rest;
+    rest << " to=" << to << " id=" << note->id;
+    std::ostringstream expire;
+    expire << " expire_s=" << _options.ExpireS;
+    _ledger.Line("intent" + rest.str() + expire.str());
+    const bool accepted =
+        AddMessageToQueue(to + '/' + NotesQueue, std::shared_ptr<Rabit::RabitMessage>(note));
+    _ledger.Line((accepted ? "accepted" : "refused") + rest.str());
+    row.Sent += accepted ? 1 : 0;
+    return accepted;
+}
+
+void Describe(CLI::App &app, Options &o)
+{
+    app.add_option("--node", o.Gateway.Node)->required();
+    app.add_option("--ledger", o.LedgerFile, "File to which the lines are appended")->required();
+    app.add_option("--transport", o.Gateway.Transport);
+    app.add_option("--domain", o.Gateway.Domain);
+    app.add_option("--interface", o.Gateway.Interfaces);
+    app.add_option("--peer", o.Gateway.Peers, "Address of another node, for unicast discovery");
+    app.add_flag("!--no-multicast", o.Gateway.Multicast);
+    app.add_option("--state-dir", o.Gateway.StateDir);
+    app.add_option("--to", o.To, "Node to send notes to");
+    app.add_option("--count", o.Count, "Notes to have accepted by each of these nodes' links");
+    app.add_option("--rate", o.Rate, "Notes a second to each");
+    app.add_option("--payload", o.Payload, "Octets of padding in each note, the same on all nodes");
+    app.add_option("--capacity", o.Capacity, "Notes that may wait in one outbox");
+    app.add_option("--expire", o.ExpireS, "Seconds after which a note is too old; 0: never");
+    app.add_option("--queue-room", o.QueueRoom, "Notes that fit into the local queue");
+    app.add_option("--idle", o.IdleS, "Seconds after the start during which no note is taken");
+    app.add_flag("--ticks", o.Ticks, "Publish a tick ten times a second and follow those of the others");
+}
+
+void Run(Options &options)
+{
+    Rabit::GatewayConfig &config = options.Gateway;
+    config.Accept.push_back({NotesQueue, {"Ledger::Note"}});
+    if (options.Ticks)
+    {
+        config.Publish.push_back({"Tick", "Ledger::Tick", Rabit::QosProfile::Telemetry});
+        config.Subscribe.push_back({"Tick", "Ledger::Tick"});
+    }
+    Rabit::SendRule rule;
+    rule.Capacity = options.Capacity;
+    rule.Window = options.Window;
+    rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(options.ExpireS * 1000));
+    config.Send.push_back(rule);
+    Rabit::RabitReactor reactor;
+    reactor.AddManager(std::make_unique<Clerk>(options));
+    reactor.AddManager(
+        std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
+    reactor.Run();  // until SIGINT or SIGTERM
+}
+}  // namespace
+
+int main(int argc, char **argv)
+{
+    CLI::App app("A node that keeps a ledger of what it sends and receives.");
+    Options options;
+    Describe(app, options);
+    try
+    {
+        app.parse(argc, argv);
+        Run(options);
+        return 0;
+    }
+    catch (const CLI::ParseError &error)
+    {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    catch (const std::exception &error)
+    {
+        std::cerr << "ledger_node: " << error.what() << '\n';
+        return 1;
+    }
+}
