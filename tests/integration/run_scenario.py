@@ -151,6 +151,19 @@ def expectations(wanted, ledgers):
             if total[key] < least]
 
 
+def states_seen(wanted, ledgers):
+    """`states` of a scenario: {node: {other: [state, ...]}} as the node's last life saw the other from its first UP on."""
+    wrong = []
+    for node, others in wanted.items():
+        lives = judge.read_ledger(ledgers[node])
+        for other, states in others.items():
+            seen = [e["state"] for life in lives[-1:] for e in life.of("peer") if e["node"] == other]
+            seen = seen[seen.index("UP"):] if "UP" in seen else []
+            if seen != states:
+                wrong.append(f"{node} saw {other} as {seen}, not {states}")
+    return wrong
+
+
 def run(options):
     scenario = json.loads(pathlib.Path(options.scenario, "scenario.json").read_text())
     with field.Field(scenario["nodes"]) as ground:
@@ -162,6 +175,8 @@ def run(options):
         wrong = fleet.wait_until_settled(scenario["limit_s"])
         seconds = time.monotonic() - began
         bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
+        # Before the stop, which the others see as LOST.
+        wrong += states_seen(scenario.get("states", {}), fleet.ledgers())
         wrong += fleet.stop()
         ledgers = fleet.ledgers()
         if options.keep:
