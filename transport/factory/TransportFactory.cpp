@@ -1,5 +1,8 @@
 #include <rabit/transport/TransportFactory.h>
 
+#ifdef RABIT_WITH_CYCLONEDDS
+#include <rabit/cyclonedds/CycloneDdsTransport.h>
+#endif
 #ifdef RABIT_WITH_FASTDDS
 #include <rabit/fastdds/FastDdsTransport.h>
 #endif
@@ -17,6 +20,9 @@ using Maker = std::unique_ptr<Transport> (*)();
 const std::map<std::string, Maker> &Makers()
 {
     static const std::map<std::string, Maker> makers = {
+#ifdef RABIT_WITH_CYCLONEDDS
+        {"cyclonedds", [] { return std::unique_ptr<Transport>(std::make_unique<CycloneDdsTransport>()); }},
+#endif
 #ifdef RABIT_WITH_FASTDDS
         {"fastdds", [] { return std::unique_ptr<Transport>(std::make_unique<FastDdsTransport>()); }},
 #endif

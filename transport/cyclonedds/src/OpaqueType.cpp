@@ -1,0 +1,266 @@
+#include "OpaqueType.h"
+
+#include <dds/ddsi/q_protocol.h>
+#include <dds/ddsi/q_radmin.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace Rabit::Cyclone
+{
+
+namespace
+{
+
+constexpr std::size_t MaxSample = std::size_t{64} << 20;
+
+struct OpaqueType
+{
+    ddsi_sertype Header;
+    std::function<bool(SampleBytes, KeyHash &)> KeyOf;
+};
+
+OpaqueSample *Of(const ddsi_serdata *sample)
+{
+    return reinterpret_cast<OpaqueSample *>(const_cast<ddsi_serdata *>(sample));
+}
+
+const OpaqueType *Of(const ddsi_sertype *type)
+{
+    return reinterpret_cast<const OpaqueType *>(type);
+}
+
+void SetKey(OpaqueSample &sample, const KeyHash &key)
+{
+    sample.Key = key;
+    sample.HasKey = true;
+    std::uint32_t parts[4];
+    std::memcpy(parts, key.data(), sizeof parts);
+    sample.Header.hash ^= parts[0] ^ parts[1] * 31u ^ parts[2] * 131u ^ parts[3] * 1031u;
+}
+
+// Computes the key of what arrived; nullptr (and freed) if there is none.
+ddsi_serdata *WithKey(OpaqueSample *sample, const ddsi_keyhash_t *sent)
+{
+    const auto *type = Of(sample->Header.type);
+    KeyHash key{};
+    if (type->KeyOf)
+    {
+        if (sent != nullptr)
+        {
+            std::copy_n(sent->value, key.size(), key.begin());
+        }
+        else if (sample->Size < 4 || !type->KeyOf({sample->Data(), sample->Size}, key))
+        {
+            ddsi_serdata_unref(&sample->Header);
+            return nullptr;
+        }
+    }
+    SetKey(*sample, key);
+    return &sample->Header;
+}
+
+bool EqualKey(const ddsi_serdata *a, const ddsi_serdata *b)
+{
+    return Of(a)->Key == Of(b)->Key;
+}
+
+std::uint32_t GetSize(const ddsi_serdata *sample)
+{
+    return static_cast<std::uint32_t>(Of(sample)->Size);
+}
+
+ddsi_serdata *FromNetwork(const ddsi_sertype *type, ddsi_serdata_kind kind, const nn_rdata *chain,
+                          std::size_t size)
+{
+    if (size > MaxSample || size < 4)
+    {
+        return nullptr;
+    }
+    OpaqueSample *sample = NewSample(type, kind, size);
+    const auto *submessage = reinterpret_cast<const Data_DataFrag_common_t *>(
+        NN_RMSG_PAYLOADOFF(chain->rmsg, NN_RDATA_SUBMSG_OFF(chain)));
+    sample->Sequence =
+        (static_cast<std::uint64_t>(submessage->writerSN.high) << 32) + submessage->writerSN.low;
+    const ddsi_keyhash_t *key = ddsi_serdata_keyhash_from_fragchain(chain);
+    std::size_t filled = 0;
+    for (; chain != nullptr; chain = chain->nextfrag)
+    {
+        // Fragments may overlap, and may claim more than the sample has.
+        const std::size_t end = std::min<std::size_t>(chain->maxp1, size);
+        if (end > filled && chain->min <= filled)
+        {
+            const unsigned char *payload = NN_RMSG_PAYLOADOFF(chain->rmsg, NN_RDATA_PAYLOAD_OFF(chain));
+            std::memcpy(sample->Data() + filled, payload + (filled - chain->min), end - filled);
+            filled = end;
+        }
+    }
+    if (filled != size)
+    {
+        ddsi_serdata_unref(&sample->Header);
+        return nullptr;
+    }
+    return WithKey(sample, key);
+}
+
+ddsi_serdata *FromPieces(const ddsi_sertype *type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
+                         const ddsrt_iovec_t *pieces, std::size_t size)
+{
+    OpaqueSample *sample = NewSample(type, kind, size);
+    std::size_t filled = 0;
+    for (ddsrt_msg_iovlen_t i = 0; i < count && filled < size; ++i)
+    {
+        const std::size_t more = std::min<std::size_t>(pieces[i].iov_len, size - filled);
+        std::memcpy(sample->Data() + filled, pieces[i].iov_base, more);
+        filled += more;
+    }
+    return WithKey(sample, nullptr);
+}
+
+ddsi_serdata *FromKeyHash(const ddsi_sertype *type, const ddsi_keyhash *hash)
+{
+    OpaqueSample *sample = NewSample(type, SDK_KEY, 0);
+    return WithKey(sample, hash);
+}
+
+ddsi_serdata *FromValue(const ddsi_sertype *, ddsi_serdata_kind, const void *)
+{
+    return nullptr;  // values never come in: only bytes are written
+}
+
+void ToBytes(const ddsi_serdata *sample, std::size_t offset, std::size_t size, void *buffer)
+{
+    std::memcpy(buffer, Of(sample)->Data() + offset, size);
+}
+
+ddsi_serdata *ToBytesRef(const ddsi_serdata *sample, std::size_t offset, std::size_t size, ddsrt_iovec_t *ref)
+{
+    ref->iov_base = Of(sample)->Data() + offset;
+    ref->iov_len = size;
+    return ddsi_serdata_ref(sample);
+}
+
+void ToBytesUnref(ddsi_serdata *sample, const ddsrt_iovec_t *)
+{
+    ddsi_serdata_unref(sample);
+}
+
+bool ToValue(const ddsi_serdata *, void *, void **, void *)
+{
+    return false;
+}
+
+ddsi_serdata *ToUntyped(const ddsi_serdata *sample)
+{
+    OpaqueSample *key = NewSample(sample->type, SDK_KEY, 0);
+    SetKey(*key, Of(sample)->Key);
+    key->Header.type = nullptr;  // it may outlive its type
+    return &key->Header;
+}
+
+bool UntypedToValue(const ddsi_sertype *, const ddsi_serdata *, void *, void **, void *)
+{
+    return false;
+}
+
+void FreeSample(ddsi_serdata *sample)
+{
+    delete Of(sample);
+}
+
+std::size_t Print(const ddsi_sertype *, const ddsi_serdata *, char *buffer, std::size_t size)
+{
+    if (size > 0)
+    {
+        buffer[0] = '\0';
+    }
+    return 0;
+}
+
+void GetKeyHash(const ddsi_serdata *sample, ddsi_keyhash *hash, bool)
+{
+    std::copy_n(Of(sample)->Key.begin(), Of(sample)->Key.size(), hash->value);
+}
+
+void FreeType(ddsi_sertype *type)
+{
+    ddsi_sertype_fini(type);
+    delete reinterpret_cast<OpaqueType *>(type);
+}
+
+void ZeroValues(const ddsi_sertype *, void *, std::size_t) {}
+void ReallocValues(void **, const ddsi_sertype *, void *, std::size_t, std::size_t) {}
+void FreeValues(const ddsi_sertype *, void **, std::size_t, dds_free_op_t) {}
+bool EqualTypes(const ddsi_sertype *, const ddsi_sertype *)
+{
+    return true;  // names and kinds are compared by the vendor
+}
+std::uint32_t HashType(const ddsi_sertype *)
+{
+    return 0;
+}
+
+const ddsi_serdata_ops &SampleOps()
+{
+    static const ddsi_serdata_ops ops = []
+    {
+        ddsi_serdata_ops o{};
+        o.eqkey = EqualKey;
+        o.get_size = GetSize;
+        o.from_ser = FromNetwork;
+        o.from_ser_iov = FromPieces;
+        o.from_keyhash = FromKeyHash;
+        o.from_sample = FromValue;
+        o.to_ser = ToBytes;
+        o.to_ser_ref = ToBytesRef;
+        o.to_ser_unref = ToBytesUnref;
+        o.to_sample = ToValue;
+        o.to_untyped = ToUntyped;
+        o.untyped_to_sample = UntypedToValue;
+        o.free = FreeSample;
+        o.print = Print;
+        o.get_keyhash = GetKeyHash;
+        return o;
+    }();
+    return ops;
+}
+
+const ddsi_sertype_ops &TypeOps()
+{
+    static const ddsi_sertype_ops ops = []
+    {
+        ddsi_sertype_ops o{};
+        o.version = ddsi_sertype_v0;
+        o.free = FreeType;
+        o.zero_samples = ZeroValues;
+        o.realloc_samples = ReallocValues;
+        o.free_samples = FreeValues;
+        o.equal = EqualTypes;
+        o.hash = HashType;
+        return o;
+    }();
+    return ops;
+}
+
+}  // namespace
+
+OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::size_t size)
+{
+    auto *sample = new OpaqueSample;
+    ddsi_serdata_init(&sample->Header, type, kind);
+    // The vendor reads up to the next multiple of 4 bytes.
+    sample->Storage = std::make_unique<std::uint64_t[]>(size / 8 + 1);
+    sample->Size = size;
+    return sample;
+}
+
+ddsi_sertype *NewType(const TopicDescription &topic)
+{
+    auto *type = new OpaqueType{};
+    type->KeyOf = topic.KeyOf;
+    ddsi_sertype_init(&type->Header, topic.TypeName.c_str(), &TypeOps(), &SampleOps(), !topic.KeyOf);
+    type->Header.allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
+    return &type->Header;
+}
+
+}  // namespace Rabit::Cyclone

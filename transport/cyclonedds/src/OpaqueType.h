@@ -1,0 +1,35 @@
+// Samples and topic types as Cyclone DDS sees them: encoded bytes, a key hash, and nothing else.
+#pragma once
+
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/ddsi_sertype.h>
+#include <rabit/transport/Transport.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace Rabit::Cyclone
+{
+
+// A sample, shared by reference count with the vendor; Header is its first member, as the vendor demands.
+struct OpaqueSample
+{
+    ddsi_serdata Header;
+    std::unique_ptr<std::uint64_t[]> Storage;  // aligned to 8
+    std::size_t Size = 0;
+    KeyHash Key{};
+    std::uint64_t Sequence = 0;
+    bool HasKey = false;
+
+    std::uint8_t *Data() const { return reinterpret_cast<std::uint8_t *>(Storage.get()); }
+};
+
+// Nothing of the bytes is set yet. Owned by one reference.
+OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::size_t size);
+
+// The caller owns one reference, which dds_create_topic_sertype takes.
+ddsi_sertype *NewType(const TopicDescription &topic);
+
+}  // namespace Rabit::Cyclone
