@@ -228,6 +228,16 @@ void RabitManager::RenewMessageWakeups()
 }
 
 // A queue that is gone may leave its address to another one.
+void RabitManager::WakeUpManagerOnOutcome(const std::shared_ptr<RabitQueueReceipt> &receipt)
+{
+    if (!receipt)
+    {
+        throw std::invalid_argument("WakeUpManagerOnOutcome needs a receipt");
+    }
+    AddQueueWakeup(receipt.get(), QueueEvent::Settled,
+                   [&](RabitHandler handler) { return receipt->ConnectOutcomeKnown(std::move(handler)); });
+}
+
 void RabitManager::ForgetEndedQueueWakeups()
 {
     _queueWakeups.erase(

@@ -33,6 +33,7 @@ void RabitMessage::Clear()
     _seenSource = 0;
     _seenSequence = 0;
     _postedAt = NeverPosted;
+    _redelivered = false;
 }
 
 std::string RabitMessage::ToString() const

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 namespace Rabit
 {
@@ -102,9 +103,21 @@ void RabitWorkspace::SetQueueForwarder(std::shared_ptr<QueueForwarder> forwarder
     _registry->SetForwarder(std::move(forwarder));
 }
 
-bool RabitWorkspace::ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message)
+bool RabitWorkspace::ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message,
+                                    const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
-    return _registry->Forward(name, message);
+    const std::optional<bool> forwarded = _registry->Forward(name, message, receipt);
+    return forwarded ? *forwarded : TellReceipt(receipt, false);
+}
+
+bool RabitWorkspace::TellReceipt(const std::shared_ptr<RabitQueueReceipt> &receipt, bool delivered)
+{
+    if (receipt)
+    {
+        receipt->Begin();
+        receipt->Settle(delivered ? QueueOutcome::Delivered : QueueOutcome::Refused);
+    }
+    return delivered;
 }
 
 bool RabitWorkspace::AddPublishSubscribeMessage(std::string name, std::shared_ptr<RabitMessage> msg)

@@ -240,7 +240,9 @@ void WorkspaceRegistry::SetForwarder(std::shared_ptr<QueueForwarder> forwarder)
     }
 }
 
-bool WorkspaceRegistry::Forward(const std::string &name, const std::shared_ptr<RabitMessage> &message)
+std::optional<bool> WorkspaceRegistry::Forward(const std::string &name,
+                                               const std::shared_ptr<RabitMessage> &message,
+                                               const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     // Counts a call of the forwarder for as long as it lasts.
     struct Call
@@ -273,10 +275,14 @@ bool WorkspaceRegistry::Forward(const std::string &name, const std::shared_ptr<R
 
     if (!message)
     {
-        return false;
+        return std::nullopt;
     }
     const Call call(*this);
-    return call.Slot && call.Slot->Forwarder->Handles(name) && call.Slot->Forwarder->Forward(name, message);
+    if (!call.Slot || !call.Slot->Forwarder->Handles(name))
+    {
+        return std::nullopt;
+    }
+    return call.Slot->Forwarder->Forward(name, message, receipt);
 }
 
 }  // namespace Rabit

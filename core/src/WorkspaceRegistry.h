@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -54,7 +55,9 @@ public:
     void ForgetAllNames();
 
     void SetForwarder(std::shared_ptr<QueueForwarder> forwarder);
-    bool Forward(const std::string &name, const std::shared_ptr<RabitMessage> &message);
+    // Nothing: there is no forwarder for this name.
+    std::optional<bool> Forward(const std::string &name, const std::shared_ptr<RabitMessage> &message,
+                                const std::shared_ptr<RabitQueueReceipt> &receipt);
 
 private:
     using Owners = std::unordered_set<std::uint64_t>;

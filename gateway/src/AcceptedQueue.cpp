@@ -72,7 +72,8 @@ bool AcceptedQueue::Add(const std::shared_ptr<RabitMessage> &message)
     return true;
 }
 
-LocalQueueResult AcceptedQueue::Deliver(std::string_view typeName, std::span<const std::uint8_t> payload)
+LocalQueueResult AcceptedQueue::Deliver(std::string_view typeName, std::span<const std::uint8_t> payload,
+                                        bool redelivered)
 {
     const auto type = _types.find(typeName);
     if (type == _types.end())
@@ -92,6 +93,7 @@ LocalQueueResult AcceptedQueue::Deliver(std::string_view typeName, std::span<con
     {
         return LocalQueueResult::Undecodable;
     }
+    message->SetRedelivered(redelivered);
     return Add(message) ? LocalQueueResult::Ok : LocalQueueResult::Full;
 }
 

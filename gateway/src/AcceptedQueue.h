@@ -37,7 +37,7 @@ public:
     std::string Problem() const;
 
     // Decodes and adds a message without telling the queue's handlers: call Notify once no lock is held.
-    LocalQueueResult Deliver(std::string_view type, std::span<const std::uint8_t> payload);
+    LocalQueueResult Deliver(std::string_view type, std::span<const std::uint8_t> payload, bool redelivered);
     void Notify();
     std::size_t Room() const;
     // Whether room came since Deliver found the queue full.

@@ -10,6 +10,7 @@
 
 #include "FleetReport.h"
 #include "GatewayTopics.h"
+#include "GpsTime.h"
 #include "LinkDriver.h"
 #include "OriginTable.h"
 #include "Presence.h"
@@ -26,6 +27,7 @@ namespace
 
 using Duration = std::chrono::nanoseconds;
 
+constexpr std::int64_t NanosecondsInSecond = 1000000000;
 constexpr Duration FleetPeriod = std::chrono::seconds(1);
 // Less than this is not worth a sleep of its own.
 constexpr Duration ShortestSleep = std::chrono::microseconds(200);
@@ -97,7 +99,11 @@ public:
           _manager(manager),
           _workspace(manager.GetWorkspace()),
           _transport(std::move(transport)),
-          _incarnations(config.StateDir, config.Node),
+          _incarnations(config.StateDir, config.Node,
+                        [this] {
+                            return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()) /
+                                   NanosecondsInSecond;
+                        }),
           _links(std::make_shared<LinkDriver>(_config, _workspace, _remote, _incarnations,
                                               manager.WakeUpHandler())),
           _incarnation(_links->Incarnation()),
@@ -120,27 +126,9 @@ public:
 
     ~Parts() { Close(); }
 
-    // Joins the network, unless it has been joined already.
-    void Open()
-    {
-        if (_session)
-        {
-            return;
-        }
-        try
-        {
-            OpenSession();
-        }
-        catch (const TransportError &error)
-        {
-            Close();
-            const auto line = _config.Lines.find("interfaces");
-            throw ConfigError(_config.File, line == _config.Lines.end() ? 0 : line->second, error.what());
-        }
-    }
+    bool IsOpen() const { return _session != nullptr; }
 
-    // Leaves the network. Whatever waits in an outbox has no outcome; the next life of this node knows
-    // nothing of it.
+    // Leaves the network, for good.
     void Close()
     {
         if (!_session)
@@ -185,11 +173,29 @@ public:
     Duration Now() const { return _workspace.GetClock().Monotonic(); }
 
 private:
+    void Open()
+    {
+        try
+        {
+            OpenSession();
+        }
+        catch (const TransportError &error)
+        {
+            Close();
+            const auto line = _config.Lines.find("interfaces");
+            throw ConfigError(_config.File, line == _config.Lines.end() ? 0 : line->second, error.what());
+        }
+    }
+
     void OpenSession()
     {
         _session = _transport->Open(SettingsOf(_config, _incarnation),
                                     [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
+        if (!_incarnations.Error().empty())
+        {
+            RabitLog::Write(RabitLogLevel::Warning, "gateway: " + _incarnations.Error());
+        }
         _links->Open(*_session);
         _subscriptions.Open(*_session);
         for (const PublishRule &rule : _config.Publish)
@@ -256,6 +262,13 @@ private:
                 fleet.problems.push_back(problem);
             }
         }
+        if (!_incarnations.Error().empty())
+        {
+            Gateway::Problem problem;
+            problem.subject = "state_dir " + _config.StateDir;
+            problem.reason = _incarnations.Error();
+            fleet.problems.push_back(problem);
+        }
         for (const auto &problems :
              {_subscriptions.Problems(_presence.Peers(), now - _openedAt, now), _links->Problems()})
         {
@@ -288,7 +301,10 @@ GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Tran
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
                                RabitWorkspace &workspace)
-    : RabitManager("Gateway", workspace), _parts(std::make_unique<Parts>(config, std::move(transport), *this))
+    : RabitManager("Gateway", workspace),
+      _config(config),
+      _transport(std::move(transport)),
+      _parts(std::make_unique<Parts>(_config, _transport, *this))
 {
 }
 
@@ -296,7 +312,11 @@ GatewayManager::~GatewayManager() = default;
 
 void GatewayManager::Startup()
 {
-    _parts->Open();
+    if (!_parts || !_parts->IsOpen())
+    {
+        _parts.reset();
+        _parts = std::make_unique<Parts>(_config, _transport, *this);
+    }
 }
 
 void GatewayManager::ExecuteUnitOfWork()
@@ -308,7 +328,10 @@ void GatewayManager::ExecuteUnitOfWork()
 
 void GatewayManager::Shutdown()
 {
-    _parts->Close();
+    if (_parts)
+    {
+        _parts->Close();
+    }
 }
 
 }  // namespace Rabit

@@ -56,6 +56,30 @@ LinkOptions OptionsOf(const SendRule &rule)
     return options;
 }
 
+QueueOutcome OutcomeOf(LinkOutcome outcome)
+{
+    switch (outcome)
+    {
+        case LinkOutcome::Delivered:
+            return QueueOutcome::Delivered;
+        case LinkOutcome::Expired:
+            return QueueOutcome::Expired;
+        case LinkOutcome::RefusedThere:
+            return QueueOutcome::Refused;
+        case LinkOutcome::InDoubt:
+            break;
+    }
+    return QueueOutcome::InDoubt;
+}
+
+void Begin(const std::shared_ptr<RabitQueueReceipt> &receipt, std::size_t messages)
+{
+    if (receipt)
+    {
+        receipt->Begin(static_cast<std::uint32_t>(messages));
+    }
+}
+
 }  // namespace
 
 LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
@@ -105,6 +129,11 @@ void LinkDriver::Close()
 {
     _readers.clear();
     _writers.reset();
+    {
+        const std::lock_guard lock(_mutex);
+        _links->Close();
+    }
+    SettleReceipts();
 }
 
 template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
@@ -127,6 +156,7 @@ void LinkDriver::OnDatagram(SampleBytes bytes)
         work = !_outbox.IsEmpty() || _links->NextDue() <= now;
     }
     NotifyDelivered();
+    SettleReceipts();
     if (work)
     {
         _wake();
@@ -144,6 +174,28 @@ void LinkDriver::NotifyDelivered()
     {
         queue->Notify();
     }
+}
+
+void LinkDriver::SettleReceipts()
+{
+    std::vector<std::pair<Receipt, QueueOutcome>> settled;
+    {
+        const std::lock_guard lock(_mutex);
+        settled.swap(_settled);
+    }
+    for (const auto &[receipt, outcome] : settled)
+    {
+        Settle(receipt, outcome);
+    }
+}
+
+bool LinkDriver::Settle(const Receipt &receipt, QueueOutcome outcome)
+{
+    if (receipt)
+    {
+        receipt->Settle(outcome);
+    }
+    return outcome == QueueOutcome::Delivered;
 }
 
 void LinkDriver::FindLocalQueues()
@@ -168,6 +220,7 @@ LinkDriver::Duration LinkDriver::Service()
         _sending.Swap(_outbox);
         next = _links->NextDue();
     }
+    SettleReceipts();
     const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
@@ -182,14 +235,14 @@ LinkDriver::Duration LinkDriver::Service()
 
 LocalQueueResult LinkDriver::Deliver(std::string_view /*source*/, std::string_view queue,
                                      std::string_view type, std::span<const std::uint8_t> payload,
-                                     bool /*redelivered*/)
+                                     bool redelivered)
 {
     const auto found = _accepted.find(queue);
     if (found == _accepted.end())
     {
         return LocalQueueResult::Unknown;
     }
-    const LocalQueueResult result = found->second.Deliver(type, payload);
+    const LocalQueueResult result = found->second.Deliver(type, payload, redelivered);
     if (result == LocalQueueResult::Ok)
     {
         _delivered.insert(&found->second);
@@ -225,10 +278,16 @@ void LinkDriver::Send(const LinkHello &hello)
                 sample);
 }
 
-void LinkDriver::OnOutcome(std::uint64_t /*id*/, std::string_view /*destination*/, std::string_view /*queue*/,
-                           LinkOutcome /*outcome*/)
+void LinkDriver::OnOutcome(std::uint64_t id, std::string_view /*destination*/, std::string_view /*queue*/,
+                           LinkOutcome outcome)
 {
-    // LinkNode counts them by link, and Gateway/Fleet shows the counts.
+    // LinkNode counts them by link; here it is only about those that somebody wants to know of.
+    const auto found = _receipts.find(id);
+    if (found != _receipts.end())
+    {
+        _settled.emplace_back(std::move(found->second), OutcomeOf(outcome));
+        _receipts.erase(found);
+    }
 }
 
 bool LinkDriver::Handles(const std::string &queueName) const
@@ -243,59 +302,69 @@ LinkPayload LinkDriver::Encode(const MessageType &type, const RabitMessage &mess
     return encoded ? payload : nullptr;
 }
 
-bool LinkDriver::Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message)
+bool LinkDriver::Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
+                         const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     const std::size_t slash = queueName.find('/');
     const std::string node = queueName.substr(0, slash);
     const std::string queue = queueName.substr(slash + 1);
     if (node == _config.Node)
     {
-        return _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
+        const bool added = _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
+        Begin(receipt, 1);
+        return Settle(receipt, added ? QueueOutcome::Delivered : QueueOutcome::Refused);
     }
     const MessageType *type = MessageTypeRegistry::Of(*message);
     if (type == nullptr)
     {
-        Refuse(node, queue, RemoteQueues::Verdict::WrongType,
-               "the message is of a type that was not made from IDL");
-        return false;
+        Begin(receipt, 1);
+        return Refuse(node, queue, RemoteQueues::Verdict::WrongType,
+                      "the message is of a type that was not made from IDL", receipt);
     }
     const LinkPayload payload = Encode(*type, *message);
     if (!payload)
     {
-        Refuse(node, queue, RemoteQueues::Verdict::WrongType,
-               "the message does not fit its IDL type `" + type->Name() +
-                   "`: a bounded string or sequence is too long");
-        return false;
+        Begin(receipt, 1);
+        return Refuse(node, queue, RemoteQueues::Verdict::WrongType,
+                      "the message does not fit its IDL type `" + type->Name() +
+                          "`: a bounded string or sequence is too long",
+                      receipt);
     }
-    return node == "*" ? ForwardToAll(queue, *type, payload) : ForwardTo(node, queue, *type, payload);
+    if (node == "*")
+    {
+        return ForwardToAll(queue, *type, payload, receipt);
+    }
+    Begin(receipt, 1);
+    return ForwardTo(node, queue, *type, payload, receipt);
 }
 
-bool LinkDriver::ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload)
+bool LinkDriver::ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
+                              const Receipt &receipt)
 {
     const std::vector<std::string> nodes =
         _remote.LiveNodesAccepting(queue, type.Name(), DefinitionHash(type));
     if (nodes.empty())
     {
-        Refuse("*", queue, RemoteQueues::Verdict::UnknownNode,
-               "no live node accepts `" + type.Name() + "` for `" + queue + "`");
-        return false;
+        Begin(receipt, 1);
+        return Refuse("*", queue, RemoteQueues::Verdict::UnknownNode,
+                      "no live node accepts `" + type.Name() + "` for `" + queue + "`", receipt);
     }
+    Begin(receipt, nodes.size());
     bool all = true;
     for (const std::string &node : nodes)
     {
-        all = ForwardTo(node, queue, type, payload) && all;
+        all = ForwardTo(node, queue, type, payload, receipt) && all;
     }
     return all;
 }
 
 bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
-                           const LinkPayload &payload)
+                           const LinkPayload &payload, const Receipt &receipt)
 {
     const RemoteQueues::Answer answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
     if (answer.What != RemoteQueues::Verdict::Accepted)
     {
-        Refuse(node, queue, answer.What, answer.Reason);
-        return false;
+        return Refuse(node, queue, answer.What, answer.Reason, receipt);
     }
     LinkEnqueued enqueued;
     {
@@ -305,13 +374,19 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
         if (enqueued.Accepted())
         {
             _refusals.Forgive({node, queue});
+            if (receipt)
+            {
+                _receipts.emplace(enqueued.Id, receipt);
+            }
         }
     }
-    if (enqueued.Accepted())
+    SettleReceipts();  // to accept one may mean to find that others have expired
+    if (!enqueued.Accepted())
     {
-        _wake();
+        return Settle(receipt, QueueOutcome::Refused);
     }
-    return enqueued.Accepted();
+    _wake();
+    return true;
 }
 
 void LinkDriver::ConfigureOnce(const std::string &node, const std::string &queue)
@@ -330,8 +405,8 @@ void LinkDriver::ConfigureOnce(const std::string &node, const std::string &queue
     }
 }
 
-void LinkDriver::Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
-                        const std::string &reason)
+bool LinkDriver::Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
+                        const std::string &reason, const Receipt &receipt)
 {
     bool isNew = false;
     {
@@ -344,6 +419,7 @@ void LinkDriver::Refuse(const std::string &node, const std::string &queue, Remot
                         "gateway: refused a message for `" + node + "/" + queue + "`: " + reason);
         _wake();
     }
+    return Settle(receipt, QueueOutcome::Refused);
 }
 
 std::vector<Gateway::LinkStatus> LinkDriver::OutboundStatus() const

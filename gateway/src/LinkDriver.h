@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/QueueForwarder.h>
+#include <rabit/RabitQueueReceipt.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/gateway/links/LinkNode.h>
@@ -14,6 +15,8 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "AcceptedQueue.h"
@@ -46,14 +49,15 @@ public:
     std::uint64_t Incarnation() const;
     // Starts to receive, and keeps the session for writing until Close. Throws TransportError.
     void Open(TransportSession &session);
-    // Sends nothing more and receives nothing more.
+    // Sends nothing more and receives nothing more. What has no outcome yet gets one. For good.
     void Close();
 
     // Does what is due and writes it. Returns when to call again at the latest. Gateway's thread only.
     Duration Service();
 
     bool Handles(const std::string &queueName) const override;
-    bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message) override;
+    bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
+                 const std::shared_ptr<RabitQueueReceipt> &receipt) override;
 
     std::vector<Gateway::LinkStatus> OutboundStatus() const;
     std::vector<Gateway::InboundStatus> InboundStatus() const;
@@ -72,11 +76,18 @@ private:
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
 
+    using Receipt = std::shared_ptr<RabitQueueReceipt>;
+
+    // The receipt has had its Begin for this message.
     bool ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
-                   const LinkPayload &payload);
-    bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload);
-    void Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
-                const std::string &reason);
+                   const LinkPayload &payload, const Receipt &receipt);
+    bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
+                      const Receipt &receipt);
+    // These return false.
+    bool Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
+                const std::string &reason, const Receipt &receipt);
+    static bool Settle(const Receipt &receipt, QueueOutcome outcome);
+    void SettleReceipts();
     void ConfigureOnce(const std::string &node, const std::string &queue);
     LinkPayload Encode(const MessageType &type, const RabitMessage &message) const;
 
@@ -93,7 +104,9 @@ private:
 
     mutable std::mutex _mutex;
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;
-    std::set<AcceptedQueue *> _delivered;  // queues whose handlers are to be told
+    std::set<AcceptedQueue *> _delivered;                    // queues whose handlers are to be told
+    std::unordered_map<std::uint64_t, Receipt> _receipts;    // of messages without an outcome, by their ids
+    std::vector<std::pair<Receipt, QueueOutcome>> _settled;  // receipts that are to be told
     LinkDatagrams _outbox;
     LinkRefusals _refusals;
     std::set<LinkRefusals::LinkName> _configured;

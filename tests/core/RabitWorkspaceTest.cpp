@@ -286,7 +286,8 @@ class FarForwarder : public QueueForwarder
 {
 public:
     bool Handles(const std::string &queueName) const override { return queueName.rfind("far/", 0) == 0; }
-    bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message) override
+    bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
+                 const std::shared_ptr<RabitQueueReceipt> &) override
     {
         Names.push_back(queueName);
         Messages.push_back(message);
@@ -334,7 +335,8 @@ TEST(QueueForwarder, IsOutOfUseWhenItWasCleared)
     {
     public:
         bool Handles(const std::string &) const override { return true; }
-        bool Forward(const std::string &, const std::shared_ptr<RabitMessage> &) override
+        bool Forward(const std::string &, const std::shared_ptr<RabitMessage> &,
+                     const std::shared_ptr<RabitQueueReceipt> &) override
         {
             std::unique_lock<std::mutex> lock(Mutex);
             Entered = true;

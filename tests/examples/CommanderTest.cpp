@@ -25,7 +25,8 @@ public:
     std::vector<std::pair<std::string, Uav::Goto>> Sent;
 
     bool Handles(const std::string &) const override { return true; }
-    bool Forward(const std::string &queue, const std::shared_ptr<Rabit::RabitMessage> &message) override
+    bool Forward(const std::string &queue, const std::shared_ptr<Rabit::RabitMessage> &message,
+                 const std::shared_ptr<Rabit::RabitQueueReceipt> &) override
     {
         if (Accepts)
             Sent.emplace_back(queue, dynamic_cast<const Uav::Goto &>(*message));

@@ -39,7 +39,8 @@ public:
     int Refused = 0;
 
     bool Handles(const std::string &) const override { return true; }
-    bool Forward(const std::string &queue, const std::shared_ptr<Rabit::RabitMessage> &message) override
+    bool Forward(const std::string &queue, const std::shared_ptr<Rabit::RabitMessage> &message,
+                 const std::shared_ptr<Rabit::RabitQueueReceipt> &) override
     {
         if (!Accepts)
         {

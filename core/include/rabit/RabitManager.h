@@ -140,12 +140,15 @@ public:
                        [&](RabitHandler handler)
                        { return queue->ConnectSomethingDequeued(std::move(handler)); });
     }
-    // See RabitWorkspace. False: no such queue, or it is full.
+    // See RabitWorkspace. False: no such queue, or it is full. With a receipt, what becomes of the message
+    // can be asked later (RabitQueueReceipt).
     template <typename T>
-    bool AddMessageToQueue(std::string name, T msg)
+    bool AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt = nullptr)
     {
-        return _workspace.AddMessageToQueue(std::move(name), std::move(msg));
+        return _workspace.AddMessageToQueue(std::move(name), std::move(msg), std::move(receipt));
     }
+    // Has this manager woken when all messages added with the receipt have come to an outcome.
+    void WakeUpManagerOnOutcome(const std::shared_ptr<RabitQueueReceipt> &receipt);
 
     // Starts the thread and returns. Throws std::logic_error if it was started and not joined.
     void Run();
@@ -175,7 +178,8 @@ private:
     enum class QueueEvent
     {
         Enqueued,
-        Dequeued
+        Dequeued,
+        Settled
     };
     struct MessageWakeup
     {

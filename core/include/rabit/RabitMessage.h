@@ -81,6 +81,11 @@ public:
     // Time stamp, and the moment of the post by the monotonic clock (zero if there was none).
     PostTime GetPostTime() const;
 
+    // Of a message taken from a queue: whether an earlier life of this process may have got it already. Only
+    // for queues elsewhere whose sender asked for messages in doubt to be sent again; false otherwise.
+    bool IsRedelivered() const { return _redelivered; }
+    void SetRedelivered(bool redelivered) { _redelivered = redelivered; }
+
     // These four work on the global copy and throw GlobalPublishSubscribeException if there is none.
     //
     // Has the handler called after each post of this name: on the posting thread, with no lock held, for as
@@ -124,6 +129,7 @@ private:
     std::uint64_t _seenSequence = 0;
     double _seenTimeStamp = 0.0;
     std::chrono::nanoseconds _postedAt = NeverPosted;
+    bool _redelivered = false;
 };
 
 }  // namespace Rabit

@@ -9,6 +9,7 @@
 #include <rabit/RabitMessageQueue.h>
 #include <rabit/RabitNonBlockingSPSCQueue.h>
 #include <rabit/RabitQueueHandle.h>
+#include <rabit/RabitQueueReceipt.h>
 
 #include <boost/function.hpp>
 
@@ -118,8 +119,11 @@ public:
     // std::string for a queue of those. If there is no such queue, a message that converts to a shared
     // pointer to RabitMessage is offered to the forwarder. False if the name is unknown, the queue full, or
     // the forwarder refuses. Throws QueueTypeException if the queue holds something else.
+    //
+    // The receipt, if there is one, tells what became of the message, see RabitQueueReceipt; it learns of a
+    // refusal as well. If this throws it learns nothing.
     template <typename T>
-    bool AddMessageToQueue(std::string name, T msg);
+    bool AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt = nullptr);
 
     // Adds a message knowing only the name of the queue. Does not ask the forwarder. For adapters that get
     // messages from elsewhere and must tell what went wrong.
@@ -184,7 +188,9 @@ private:
     // Owner is the number of the manager that registers, 0 if it is nobody in particular.
     void AddQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner);
     std::shared_ptr<RabitQueueHandle> FindQueueOrThrow(const std::string &name) const;
-    bool ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message);
+    bool ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message,
+                        const std::shared_ptr<RabitQueueReceipt> &receipt);
+    static bool TellReceipt(const std::shared_ptr<RabitQueueReceipt> &receipt, bool delivered);
 
     template <typename QueueT>
     static std::shared_ptr<RabitQueueHandle> MakeQueueHandle(std::shared_ptr<QueueT> queue)
@@ -230,7 +236,7 @@ QueueAddResult RabitWorkspace::AddToHandle(RabitQueueHandle &handle, T &msg)
 }
 
 template <typename T>
-bool RabitWorkspace::AddMessageToQueue(std::string name, T msg)
+bool RabitWorkspace::AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt)
 {
     const std::shared_ptr<RabitQueueHandle> handle = FindQueue(name);
     if (handle)
@@ -240,13 +246,13 @@ bool RabitWorkspace::AddMessageToQueue(std::string name, T msg)
         {
             throw QueueTypeException(name, handle->ElementType(), typeid(T));
         }
-        return result == QueueAddResult::Ok;
+        return TellReceipt(receipt, result == QueueAddResult::Ok);
     }
     if constexpr (std::is_convertible_v<T, std::shared_ptr<RabitMessage>>)
     {
-        return ForwardMessage(name, std::shared_ptr<RabitMessage>(std::move(msg)));
+        return ForwardMessage(name, std::shared_ptr<RabitMessage>(std::move(msg)), receipt);
     }
-    return false;
+    return TellReceipt(receipt, false);
 }
 
 }  // namespace Rabit

@@ -22,7 +22,8 @@ inline constexpr const char *FleetMessageName = "Gateway/Fleet";
 // - AddMessageToQueue("<node>/<queue>", message) sends a message to a queue of another node, "*/<queue>" to
 // that
 //   queue of every live node that accepts it. False means refused; Gateway/Fleet counts why. Every accepted
-//   message comes to exactly one outcome (rabit/gateway/links).
+//   message comes to exactly one outcome; give AddMessageToQueue a RabitQueueReceipt to learn which. At the
+//   gateway's end what waits has Expired, and what was sent and not acknowledged is InDoubt.
 // - `accept` queues receive messages of other nodes in order; a full queue holds the sender back, without
 // loss.
 // - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come.
@@ -45,14 +46,18 @@ public:
                    RabitWorkspace &workspace);
     ~GatewayManager() override;
 
+    // A gateway that ran before joins again, in a new life.
     void Startup() final;
     void ExecuteUnitOfWork() final;
-    // Says goodbye to the other nodes and closes the transport.
+    // Says goodbye to the other nodes and leaves the network.
     void Shutdown() final;
 
 private:
     class Parts;
-    std::unique_ptr<Parts> _parts;
+
+    const GatewayConfig _config;
+    const std::shared_ptr<Transport> _transport;
+    std::unique_ptr<Parts> _parts;  // null if joining again failed
 };
 
 }  // namespace Rabit

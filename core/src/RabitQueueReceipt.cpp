@@ -1,0 +1,107 @@
+#include <rabit/RabitQueueReceipt.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace Rabit
+{
+namespace
+{
+
+std::uint32_t &CountOf(RabitQueueReceipt::Counts &counts, QueueOutcome outcome)
+{
+    switch (outcome)
+    {
+        case QueueOutcome::Delivered:
+            return counts.Delivered;
+        case QueueOutcome::Expired:
+            return counts.Expired;
+        case QueueOutcome::InDoubt:
+            return counts.InDoubt;
+        case QueueOutcome::Refused:
+            return counts.Refused;
+        case QueueOutcome::Pending:
+            break;
+    }
+    throw std::invalid_argument("pending is not an outcome that a receipt can be settled with");
+}
+
+}  // namespace
+
+QueueOutcome RabitQueueReceipt::Outcome() const
+{
+    const Counts counts = GetCounts();
+    if (counts.Pending > 0)
+    {
+        return QueueOutcome::Pending;
+    }
+    if (counts.InDoubt > 0)
+    {
+        return QueueOutcome::InDoubt;
+    }
+    if (counts.Expired > 0)
+    {
+        return QueueOutcome::Expired;
+    }
+    if (counts.Refused > 0)
+    {
+        return QueueOutcome::Refused;
+    }
+    return counts.Delivered > 0 ? QueueOutcome::Delivered : QueueOutcome::Pending;
+}
+
+RabitQueueReceipt::Counts RabitQueueReceipt::GetCounts() const
+{
+    const std::lock_guard<std::mutex> lock(*_mutex);
+    return _counts;
+}
+
+RabitConnection RabitQueueReceipt::ConnectOutcomeKnown(RabitHandler handler)
+{
+    return _known.Connect(std::move(handler));
+}
+
+void RabitQueueReceipt::Begin(std::uint32_t messages)
+{
+    const std::lock_guard<std::mutex> lock(*_mutex);
+    _counts.Pending += messages;
+}
+
+void RabitQueueReceipt::Settle(QueueOutcome outcome)
+{
+    RabitEvent::Handlers handlers;
+    {
+        const std::lock_guard<std::mutex> lock(*_mutex);
+        std::uint32_t &count = CountOf(_counts, outcome);
+        if (_counts.Pending == 0)
+        {
+            throw std::logic_error("a receipt was settled more often than messages were begun");
+        }
+        ++count;
+        if (--_counts.Pending == 0)
+        {
+            handlers = _known.Snapshot();
+        }
+    }
+    handlers.Call();
+}
+
+const char *ToString(QueueOutcome outcome)
+{
+    switch (outcome)
+    {
+        case QueueOutcome::Pending:
+            return "pending";
+        case QueueOutcome::Delivered:
+            return "delivered";
+        case QueueOutcome::Expired:
+            return "expired";
+        case QueueOutcome::InDoubt:
+            return "in doubt";
+        case QueueOutcome::Refused:
+            return "refused";
+    }
+    return "unknown";
+}
+
+}  // namespace Rabit

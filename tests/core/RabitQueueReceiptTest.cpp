@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+#include <rabit/RabitManager.h>
+#include <rabit/RabitQueueReceipt.h>
+#include <rabit/RabitWorkspace.h>
+
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "SteppedFixture.h"
+#include "TestMessages.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using RabitTest::NumberMessage;
+
+std::shared_ptr<RabitQueueReceipt> NewReceipt()
+{
+    return std::make_shared<RabitQueueReceipt>();
+}
+
+TEST(RabitQueueReceipt, IsPendingUntilSomethingIsKnown)
+{
+    RabitQueueReceipt receipt;
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Pending);
+    receipt.Begin();
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Pending);
+    receipt.Settle(QueueOutcome::Delivered);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Delivered);
+}
+
+TEST(RabitQueueReceipt, OfSeveralMessagesIsPendingWhileOneIs)
+{
+    RabitQueueReceipt receipt;
+    receipt.Begin(2);
+    receipt.Settle(QueueOutcome::Delivered);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Pending);
+    EXPECT_EQ(receipt.GetCounts().Pending, 1u);
+    EXPECT_EQ(receipt.GetCounts().Delivered, 1u);
+}
+
+TEST(RabitQueueReceipt, OfSeveralMessagesTellsWhatWentWrongWithAny)
+{
+    RabitQueueReceipt receipt;
+    receipt.Begin(3);
+    receipt.Settle(QueueOutcome::Delivered);
+    receipt.Settle(QueueOutcome::Refused);
+    receipt.Settle(QueueOutcome::Delivered);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Refused);
+    receipt.Begin();
+    receipt.Settle(QueueOutcome::Expired);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Expired);
+    receipt.Begin();
+    receipt.Settle(QueueOutcome::InDoubt);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::InDoubt);
+}
+
+TEST(RabitQueueReceipt, CallsHandlersOnceWhenTheLastMessageIsSettled)
+{
+    RabitQueueReceipt receipt;
+    int calls = 0;
+    receipt.ConnectOutcomeKnown([&] { ++calls; });
+    receipt.Begin(2);
+    receipt.Settle(QueueOutcome::Delivered);
+    EXPECT_EQ(calls, 0);
+    receipt.Settle(QueueOutcome::Expired);
+    EXPECT_EQ(calls, 1);
+}
+
+TEST(RabitQueueReceipt, ItsHandlersMayAskItAndAddToIt)
+{
+    RabitQueueReceipt receipt;
+    QueueOutcome seen = QueueOutcome::Pending;
+    receipt.ConnectOutcomeKnown(
+        [&]
+        {
+            seen = receipt.Outcome();
+            receipt.Begin();
+        });
+    receipt.Begin();
+    receipt.Settle(QueueOutcome::Delivered);
+    EXPECT_EQ(seen, QueueOutcome::Delivered);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Pending);
+}
+
+TEST(RabitQueueReceipt, CannotBeSettledMoreOftenThanBegunOrAsPending)
+{
+    RabitQueueReceipt receipt;
+    EXPECT_THROW(receipt.Settle(QueueOutcome::Delivered), std::logic_error);
+    receipt.Begin();
+    EXPECT_THROW(receipt.Settle(QueueOutcome::Pending), std::invalid_argument);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Pending);
+}
+
+TEST(RabitQueueReceipt, SettledFromManyThreadsCountsAll)
+{
+    RabitQueueReceipt receipt;
+    int calls = 0;  // only the last one settled calls
+    receipt.ConnectOutcomeKnown([&] { ++calls; });
+    receipt.Begin(4000);
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i)
+    {
+        threads.emplace_back(
+            [&receipt]
+            {
+                for (int n = 0; n < 1000; ++n)
+                {
+                    receipt.Settle(QueueOutcome::Delivered);
+                }
+            });
+    }
+    for (std::thread &thread : threads)
+    {
+        thread.join();
+    }
+    EXPECT_EQ(receipt.GetCounts().Delivered, 4000u);
+    EXPECT_EQ(calls, 1);
+}
+
+class LocalReceiptTest : public ::testing::Test
+{
+protected:
+    using Queue = RabitMessageQueue<int>;
+    LocalReceiptTest() { workspace.AddManagerMessageQueue("numbers", std::make_shared<Queue>(1, "numbers")); }
+    RabitWorkspace workspace;
+};
+
+TEST_F(LocalReceiptTest, AMessageInALocalQueueIsDeliveredAtOnce)
+{
+    const auto receipt = NewReceipt();
+    EXPECT_TRUE(workspace.AddMessageToQueue("numbers", 1, receipt));
+    EXPECT_EQ(receipt->Outcome(), QueueOutcome::Delivered);
+}
+
+TEST_F(LocalReceiptTest, AFullLocalQueueIsARefusal)
+{
+    workspace.AddMessageToQueue("numbers", 1);
+    const auto receipt = NewReceipt();
+    EXPECT_FALSE(workspace.AddMessageToQueue("numbers", 2, receipt));
+    EXPECT_EQ(receipt->Outcome(), QueueOutcome::Refused);
+}
+
+TEST_F(LocalReceiptTest, AnUnknownQueueIsARefusal)
+{
+    const auto numbers = NewReceipt();
+    EXPECT_FALSE(workspace.AddMessageToQueue("nothing", 2, numbers));
+    EXPECT_EQ(numbers->Outcome(), QueueOutcome::Refused);
+    const auto messages = NewReceipt();
+    EXPECT_FALSE(workspace.AddMessageToQueue("nothing", std::make_shared<NumberMessage>(), messages));
+    EXPECT_EQ(messages->Outcome(), QueueOutcome::Refused);
+}
+
+TEST_F(LocalReceiptTest, AWrongTypeThrowsAndTellsNothing)
+{
+    const auto receipt = NewReceipt();
+    EXPECT_THROW(workspace.AddMessageToQueue("numbers", std::string("x"), receipt), QueueTypeException);
+    EXPECT_EQ(receipt->GetCounts().Refused, 0u);
+}
+
+TEST(RabitQueueReceiptWakeup, WakesTheManagerOnceAllIsKnown)
+{
+    RabitTest::SteppedFixture fixture;
+    RabitTest::ScriptedManager &manager = fixture.Add("Manager");
+    manager.SetWakeupTimeDelaySec(3600);
+    const auto receipt = NewReceipt();
+    manager.WakeUpManagerOnOutcome(receipt);
+    fixture.Reactor.Start();
+    fixture.RunFor(1s);
+    const int before = manager.Passes.load();
+    receipt->Begin(2);
+    receipt->Settle(QueueOutcome::Delivered);
+    fixture.RunFor(1s);
+    EXPECT_EQ(manager.Passes.load(), before);
+    receipt->Settle(QueueOutcome::Delivered);
+    fixture.RunFor(1s);
+    EXPECT_EQ(manager.Passes.load(), before + 1);
+}
+
+TEST(RabitQueueReceiptWakeup, OutlivesItsManager)
+{
+    RabitWorkspace workspace;
+    const auto receipt = NewReceipt();
+    {
+        RabitTest::ScriptedManager manager("Manager", workspace);
+        manager.WakeUpManagerOnOutcome(receipt);
+    }
+    receipt->Begin();
+    receipt->Settle(QueueOutcome::Expired);
+    EXPECT_EQ(receipt->Outcome(), QueueOutcome::Expired);
+}
+
+TEST(RabitQueueReceiptWakeup, NeedsAReceipt)
+{
+    RabitWorkspace workspace;
+    RabitTest::ScriptedManager manager("Manager", workspace);
+    EXPECT_THROW(manager.WakeUpManagerOnOutcome(nullptr), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace Rabit
