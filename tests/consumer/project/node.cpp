@@ -1,5 +1,6 @@
-// node NAME OTHER TRANSPORT DOMAIN: sends readings to the other node, and says when it has all of the other's and
-// knows that its own arrived. Ends on SIGTERM, because the other node may still wait for acknowledgements.
+// node NAME OTHER TRANSPORT DOMAIN: sends readings to the other node, and says when it has all of the other's
+// and knows that its own arrived. Ends on SIGTERM, because the other node may still wait for
+// acknowledgements.
 #include <rabit/RabitManager.h>
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
