@@ -55,6 +55,22 @@ TEST(PublishSubscribe, ASecondFetchOfOnePostIsFalse)
     EXPECT_FALSE(pair.Reader->FetchMessage());
 }
 
+TEST(PublishSubscribe, OfTwoPostersOfOneNameTheLastCountsAndTheOtherFetchesIt)
+{
+    Pair<NumberMessage> pair;
+    const auto third = std::make_shared<NumberMessage>();
+    pair.Workspace.AddPublishSubscribeMessage("Name", third);
+    pair.Poster->Number = 1;
+    pair.Poster->PostMessage();
+    third->Number = 2;
+    third->PostMessage();
+    EXPECT_TRUE(pair.Poster->FetchMessage());
+    EXPECT_EQ(pair.Poster->Number, 2);
+    EXPECT_FALSE(third->FetchMessage());
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+    EXPECT_EQ(pair.Reader->Number, 2);
+}
+
 TEST(PublishSubscribe, ThePostersOwnFetchIsFalse)
 {
     Pair<NumberMessage> pair;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -52,6 +54,65 @@ TEST(SteppedReactor, RunsInAFixedOrderAtTheRightTimes)
 TEST(SteppedReactor, RepeatsItself)
 {
     EXPECT_EQ(HistoryOfOneRun(), HistoryOfOneRun());
+}
+
+// A week in which one manager posts once a second and every tenth time sends to another, which wakes on that.
+struct Week
+{
+    std::uint64_t Passes = 0;
+    std::uint64_t Digest = 0;  // of who ran when and saw what, in this order
+
+    Week()
+    {
+        SteppedFixture fixture;
+        const auto note = [&](int who, int seen)
+        {
+            ++Passes;
+            for (const std::int64_t value :
+                 {fixture.Clock->Monotonic() / 1ns, std::int64_t{who * 1000003 + seen}})
+            {
+                Digest = Digest * 6364136223846793005U + static_cast<std::uint64_t>(value);
+            }
+        };
+        ScriptedManager &sensor = fixture.Add("Sensor");
+        ScriptedManager &logger = fixture.Add("Logger");
+        const auto sent = std::make_shared<NumberMessage>();
+        const auto received = std::make_shared<NumberMessage>();
+        sensor.AddPublishSubscribeMessage("Number", sent);
+        logger.AddPublishSubscribeMessage("Number", received);
+        logger.SetWakeupTimeDelaySec(3600);
+        sensor.OnWork = [&]
+        {
+            ++sent->Number;
+            sent->PostMessage();
+            if (sent->Number % 10 == 0)
+            {
+                sensor.AddMessageToQueue("Logger", std::shared_ptr<RabitMessage>(sent->Clone()));
+            }
+            note(1, sent->Number);
+        };
+        logger.OnWork = [&]
+        {
+            std::shared_ptr<RabitMessage> message;
+            while (logger.GetManagerMessageQueue()->GetMessage(message))
+            {
+            }
+            received->FetchMessage();
+            note(2, received->Number);
+        };
+        fixture.Reactor.Start();
+        fixture.RunFor(7 * 24h);
+    }
+};
+
+TEST(SteppedReactor, RunsAWeekTwiceWithTheSameResult)
+{
+    const Week first;
+    const Week second;
+    EXPECT_EQ(first.Digest, second.Digest);
+    // One pass of the sensor for each second and one at the start, a tenth of that of the logger and its
+    // first.
+    EXPECT_EQ(first.Passes, 604801u + 60480u + 1u);
 }
 
 TEST(SteppedReactor, SaysWhenTheNextPassIsDue)

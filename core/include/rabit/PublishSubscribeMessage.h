@@ -22,7 +22,8 @@ class RabitMessage;
 //
 // What is new is decided by a sequence number that rises with each post, not by time stamps, so that no post
 // is missed even if two fall into one tick of the clock. A time stamp that was changed by hand also counts as
-// new.
+// new. Any number of managers may post one name: the posts happen one after the other, each fetch gets the
+// last, and a poster fetches what others posted after it.
 //
 // Threads: all methods may be called from any thread. The messages that are passed in belong to the caller
 // and must not be used by another thread during the call. The message's CopyMessage and Clone run under this
