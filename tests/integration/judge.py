@@ -146,6 +146,7 @@ def _judge_row(sender, to, receiver):
             if killed and before in after_kill and len(run) <= room:
                 continue
             wrong.append(f"{name}: {len(run)} accepted notes lost, from {run[0]} to {run[-1]}")
+    wrong += _judge_outcomes(sender, to, name, set(accepted), arrived, killed)
     if sender.killed:
         return wrong  # its last counters may be older than its last note
     if counters is None:
@@ -164,6 +165,32 @@ def _judge_row(sender, to, receiver):
             wrong.append(f"{name}: {counters['in_doubt']} notes in doubt, though the receiver was never killed")
     if not may_expire and counters["expired"]:
         wrong.append(f"{name}: {counters['expired']} notes said to be expired that cannot expire")
+    return wrong
+
+
+def _judge_outcomes(sender, to, name, accepted, arrived, killed):
+    """What the sender was told of each single note. A kill of the receiver may take along what was delivered."""
+    wrong = []
+    told = {}
+    for event in sender.of("outcome"):
+        if event["to"] != to:
+            continue
+        number = event.number("id")
+        if number not in accepted:
+            wrong.append(f"{name}: an outcome of note {number}, which was not accepted")
+        if number in told:
+            wrong.append(f"{name}: note {number} has two outcomes")
+        told[number] = event["is"]
+    for number, outcome in told.items():
+        if outcome == "delivered" and number not in arrived and not killed:
+            wrong.append(f"{name}: note {number} was told to be delivered and never arrived")
+        if outcome in ("expired", "refused") and number in arrived:
+            wrong.append(f"{name}: note {number} was told to be {outcome} and arrived")
+        if outcome == "in doubt" and not killed and not sender.killed:
+            wrong.append(f"{name}: note {number} was told to be in doubt, though nobody was killed")
+    silent = sorted(accepted - told.keys())
+    if silent and not sender.killed:
+        wrong.append(f"{name}: nothing was told of {len(silent)} accepted notes, the first of them {silent[0]}")
     return wrong
 
 

@@ -22,6 +22,10 @@ def counters(accepted, delivered, expired=0, in_doubt=0):
             "undeliverable=0 outbox=0 resent=0"]
 
 
+def told(*outcomes):
+    return [f"{97 * S} outcome to=b id={number} is=\"{outcome}\"" for number, outcome in enumerate(outcomes, 1)]
+
+
 def got(number, at=2, life=10, extra=""):
     return f"{at * S} delivered from=a life={life} id={number}{extra}"
 
@@ -31,6 +35,7 @@ def receiver(lines, end=True, life=11):
 
 
 THREE = sent(1) + sent(2) + sent(3)
+ALL_DELIVERED = told("delivered", "delivered", "delivered")
 
 
 class JudgeTest(unittest.TestCase):
@@ -42,7 +47,7 @@ class JudgeTest(unittest.TestCase):
         self.assertTrue(any(word in text for text in found), f"{word!r} not in {found}")
 
     def test_accepts_complete_ledgers(self):
-        self.right(sender(THREE + counters(3, 3)), receiver([got(1), got(2), got(3)]))
+        self.right(sender(THREE + ALL_DELIVERED + counters(3, 3)), receiver([got(1), got(2), got(3)]))
 
     def test_finds_a_loss_in_the_middle(self):
         self.wrong("lost, from 2 to 2", sender(THREE + counters(3, 3)), receiver([got(1), got(3)]))
@@ -61,7 +66,7 @@ class JudgeTest(unittest.TestCase):
                    receiver([got(1), got(2)], end=False) + receiver([got(2), got(3)], life=12))
 
     def test_accepts_a_flagged_duplicate(self):
-        self.right(sender(THREE + counters(3, 3)),
+        self.right(sender(THREE + ALL_DELIVERED + counters(3, 3)),
                    receiver([got(1), got(2), got(2, extra=" redelivered=1"), got(3)]))
 
     def test_finds_a_wrong_order(self):
@@ -83,7 +88,8 @@ class JudgeTest(unittest.TestCase):
         self.wrong("came late", sender(sent(1, expire=5) + counters(1, 1)), receiver([got(1, at=8)]))
 
     def test_accepts_an_expired_note_that_is_said_to_be(self):
-        self.right(sender(sent(1, expire=5) + sent(2, expire=5) + counters(2, 1, expired=1)), receiver([got(2)]))
+        self.right(sender(sent(1, expire=5) + sent(2, expire=5) + told("expired", "delivered") +
+                          counters(2, 1, expired=1)), receiver([got(2)]))
 
     def test_finds_a_note_said_to_be_expired_that_arrived(self):
         self.wrong("said to be expired", sender(sent(1, expire=5) + counters(1, 0, expired=1)), receiver([got(1)]))
@@ -107,12 +113,44 @@ class JudgeTest(unittest.TestCase):
     def test_finds_accepted_notes_that_the_gateway_did_not_count(self):
         self.wrong("the gateway counted 2", sender(THREE + counters(2, 2)), receiver([got(1), got(2), got(3)]))
 
+    def test_finds_a_note_told_to_be_delivered_that_never_arrived(self):
+        self.wrong("note 3 was told to be delivered and never", sender(THREE + ALL_DELIVERED + counters(3, 3)),
+                   receiver([got(1), got(2)]))
+
+    def test_finds_a_note_told_to_be_expired_that_arrived(self):
+        self.wrong("note 2 was told to be expired and arrived",
+                   sender(THREE + told("delivered", "expired", "delivered") + counters(3, 3)),
+                   receiver([got(1), got(2), got(3)]))
+
+    def test_finds_a_note_told_to_be_refused_that_arrived(self):
+        self.wrong("note 1 was told to be refused and arrived",
+                   sender(THREE + told("refused", "delivered", "delivered") + counters(3, 3)),
+                   receiver([got(1), got(2), got(3)]))
+
+    def test_finds_a_note_told_to_be_in_doubt_without_a_kill(self):
+        self.wrong("note 2 was told to be in doubt", sender(THREE + told("delivered", "in doubt", "delivered")),
+                   receiver([got(1), got(2), got(3)]))
+
+    def test_finds_a_note_of_which_nothing_was_told(self):
+        self.wrong("nothing was told of 1 accepted notes, the first of them 3",
+                   sender(THREE + told("delivered", "delivered") + counters(3, 3)),
+                   receiver([got(1), got(2), got(3)]))
+
+    def test_finds_two_outcomes_of_one_note(self):
+        self.wrong("note 1 has two outcomes", sender(THREE + ALL_DELIVERED + told("delivered")),
+                   receiver([got(1), got(2), got(3)]))
+
+    def test_finds_an_outcome_of_a_note_that_was_not_accepted(self):
+        self.wrong("outcome of note 2, which was not accepted",
+                   sender(sent(1) + sent(2, kind="refused") + told("delivered", "delivered") + counters(1, 1)),
+                   receiver([got(1)]))
+
     def test_finds_a_garbled_note(self):
         self.wrong("garbled", sender(THREE + counters(3, 3)),
                    receiver([got(1), got(2), got(3), f"{3 * S} garbled"]))
 
     def test_accepts_what_a_kill_of_the_receiver_takes_along(self):
-        self.right(sender(THREE + counters(3, 2, in_doubt=1)),
+        self.right(sender(THREE + told("delivered", "in doubt", "delivered") + counters(3, 2, in_doubt=1)),
                    receiver([got(1)], end=False) + receiver([got(3)], life=12))
 
     def test_finds_a_loss_that_no_kill_explains(self):

@@ -18,6 +18,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <iostream>
 #include <map>
@@ -120,6 +121,7 @@ public:
         if (_fleet->FetchMessage())
             FollowFleet();
         Send();
+        FollowReceipts();
         Take();
         PostTick();
         FollowTicks();
@@ -128,6 +130,7 @@ public:
     void Shutdown() override
     {
         Take();
+        FollowReceipts();
         _fleet->FetchMessage();
         WriteCounters();
         _ledger.Line("end");
@@ -139,6 +142,8 @@ private:
         std::int64_t Start = 0;
         std::uint64_t Sent = 0;  // accepted
         std::uint64_t LastId = 0;
+        // Of accepted notes whose outcome is not in the ledger yet, with their ids.
+        std::deque<std::pair<std::uint64_t, std::shared_ptr<Rabit::RabitQueueReceipt>>> Receipts;
     };
 
     void Send()
@@ -161,6 +166,27 @@ private:
     // leaves one message of which nothing can be said.
     bool SendOne(const std::string &to, Row &row);
 
+    // A link settles its messages from the front, so that only the first ones need be asked.
+    void FollowReceipts()
+    {
+        for (auto &[to, row] : _rows)
+        {
+            while (!row.Receipts.empty())
+            {
+                const auto &[id, receipt] = row.Receipts.front();
+                const Rabit::QueueOutcome outcome = receipt->Outcome();
+                if (outcome == Rabit::QueueOutcome::Pending)
+                {
+                    break;
+                }
+                std::ostringstream line;
+                line << "outcome to=" << to << " id=" << id << " is=\"" << Rabit::ToString(outcome) << '"';
+                _ledger.Line(line.str());
+                row.Receipts.pop_front();
+            }
+        }
+    }
+
     void Take()
     {
         if (Now() < _life + static_cast<std::int64_t>(_options.IdleS * 1e9))
@@ -173,7 +199,8 @@ private:
             if (note == nullptr || note->padding.size() != _options.Payload)
                 line << "garbled";
             else
-                line << "delivered from=" << note->from << " life=" << note->life << " id=" << note->id;
+                line << "delivered from=" << note->from << " life=" << note->life << " id=" << note->id
+                     << (note->IsRedelivered() ? " redelivered=1" : "");
             _ledger.Line(line.str());
         }
     }
@@ -271,10 +298,14 @@ bool Clerk::SendOne(const std::string &to, Row &row)
     std::ostringstream expire;
     expire << " expire_s=" << _options.ExpireS;
     _ledger.Line("intent" + rest.str() + expire.str());
-    const bool accepted =
-        AddMessageToQueue(to + '/' + NotesQueue, std::shared_ptr<Rabit::RabitMessage>(note));
+    const auto receipt = std::make_shared<Rabit::RabitQueueReceipt>();
+    const bool accepted = AddMessageToQueue(to + '/' + NotesQueue, note, receipt);
     _ledger.Line((accepted ? "accepted" : "refused") + rest.str());
-    row.Sent += accepted ? 1 : 0;
+    if (accepted)
+    {
+        ++row.Sent;
+        row.Receipts.emplace_back(note->id, receipt);
+    }
     return accepted;
 }
 
