@@ -192,10 +192,6 @@ private:
         _session = _transport->Open(SettingsOf(_config, _incarnation),
                                     [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
-        if (!_incarnations.Error().empty())
-        {
-            RabitLog::Write(RabitLogLevel::Warning, "gateway: " + _incarnations.Error());
-        }
         _links->Open(*_session);
         _subscriptions.Open(*_session);
         for (const PublishRule &rule : _config.Publish)
@@ -262,13 +258,6 @@ private:
                 fleet.problems.push_back(problem);
             }
         }
-        if (!_incarnations.Error().empty())
-        {
-            Gateway::Problem problem;
-            problem.subject = "state_dir " + _config.StateDir;
-            problem.reason = _incarnations.Error();
-            fleet.problems.push_back(problem);
-        }
         for (const auto &problems :
              {_subscriptions.Problems(_presence.Peers(), now - _openedAt, now), _links->Problems()})
         {
@@ -276,7 +265,7 @@ private:
         }
     }
 
-    const GatewayConfig _config;
+    const GatewayConfig &_config;  // the manager's
     GatewayManager &_manager;
     RabitWorkspace &_workspace;
     const std::shared_ptr<Transport> _transport;

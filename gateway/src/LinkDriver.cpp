@@ -83,8 +83,12 @@ void Begin(const std::shared_ptr<RabitQueueReceipt> &receipt, std::size_t messag
 }  // namespace
 
 LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
-                       IncarnationSource &incarnations, std::function<void()> wake)
-    : _config(config), _workspace(workspace), _remote(remote), _wake(std::move(wake))
+                       IncarnationStore &incarnations, std::function<void()> wake)
+    : _config(config),
+      _workspace(workspace),
+      _remote(remote),
+      _incarnations(incarnations),
+      _wake(std::move(wake))
 {
     for (const AcceptRule &rule : config.Accept)
     {
@@ -92,6 +96,10 @@ LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, c
     }
     _links = std::make_unique<LinkNode>(SettingsOf(config), static_cast<LinkOutput &>(*this),
                                         static_cast<LocalQueues &>(*this), incarnations);
+    if (!_incarnations.Error().empty())
+    {
+        RabitLog::Write(RabitLogLevel::Warning, "gateway: " + _incarnations.Error());
+    }
 }
 
 LinkDriver::~LinkDriver()
@@ -129,11 +137,13 @@ void LinkDriver::Close()
 {
     _readers.clear();
     _writers.reset();
+    News news;
     {
         const std::lock_guard lock(_mutex);
         _links->Close();
+        news = TakeNews();
     }
-    SettleReceipts();
+    Tell(news);
 }
 
 template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
@@ -149,41 +159,28 @@ void LinkDriver::OnDatagram(SampleBytes bytes)
     }
     LinkWire::FromSample(sample, view);
     bool work = false;
+    News news;
     {
         const std::lock_guard lock(_mutex);
         const LinkTime now = Now();
         (_links.get()->*Input)(view, now);
         work = !_outbox.IsEmpty() || _links->NextDue() <= now;
+        news = TakeNews();
     }
-    NotifyDelivered();
-    SettleReceipts();
+    Tell(news);
     if (work)
     {
         _wake();
     }
 }
 
-void LinkDriver::NotifyDelivered()
+void LinkDriver::Tell(const News &news)
 {
-    std::set<AcceptedQueue *> delivered;
-    {
-        const std::lock_guard lock(_mutex);
-        delivered.swap(_delivered);
-    }
-    for (AcceptedQueue *queue : delivered)
+    for (AcceptedQueue *queue : news.Delivered)
     {
         queue->Notify();
     }
-}
-
-void LinkDriver::SettleReceipts()
-{
-    std::vector<std::pair<Receipt, QueueOutcome>> settled;
-    {
-        const std::lock_guard lock(_mutex);
-        settled.swap(_settled);
-    }
-    for (const auto &[receipt, outcome] : settled)
+    for (const auto &[receipt, outcome] : news.Settled)
     {
         Settle(receipt, outcome);
     }
@@ -213,14 +210,16 @@ void LinkDriver::FindLocalQueues()
 LinkDriver::Duration LinkDriver::Service()
 {
     LinkTime next = LinkNever;
+    News news;
     {
         const std::lock_guard lock(_mutex);
         FindLocalQueues();
         _links->Run(Now());
         _sending.Swap(_outbox);
         next = _links->NextDue();
+        news = TakeNews();
     }
-    SettleReceipts();
+    Tell(news);
     const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
@@ -243,9 +242,10 @@ LocalQueueResult LinkDriver::Deliver(std::string_view /*source*/, std::string_vi
         return LocalQueueResult::Unknown;
     }
     const LocalQueueResult result = found->second.Deliver(type, payload, redelivered);
-    if (result == LocalQueueResult::Ok)
+    if (result == LocalQueueResult::Ok &&
+        std::find(_news.Delivered.begin(), _news.Delivered.end(), &found->second) == _news.Delivered.end())
     {
-        _delivered.insert(&found->second);
+        _news.Delivered.push_back(&found->second);
     }
     return result;
 }
@@ -285,7 +285,7 @@ void LinkDriver::OnOutcome(std::uint64_t id, std::string_view /*destination*/, s
     const auto found = _receipts.find(id);
     if (found != _receipts.end())
     {
-        _settled.emplace_back(std::move(found->second), OutcomeOf(outcome));
+        _news.Settled.emplace_back(std::move(found->second), OutcomeOf(outcome));
         _receipts.erase(found);
     }
 }
@@ -367,6 +367,7 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
         return Refuse(node, queue, answer.What, answer.Reason, receipt);
     }
     LinkEnqueued enqueued;
+    News news;
     {
         const std::lock_guard lock(_mutex);
         ConfigureOnce(node, queue);
@@ -379,8 +380,9 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
                 _receipts.emplace(enqueued.Id, receipt);
             }
         }
+        news = TakeNews();
     }
-    SettleReceipts();  // to accept one may mean to find that others have expired
+    Tell(news);  // to accept one may mean to find that others have expired
     if (!enqueued.Accepted())
     {
         return Settle(receipt, QueueOutcome::Refused);
@@ -420,87 +422,6 @@ bool LinkDriver::Refuse(const std::string &node, const std::string &queue, Remot
         _wake();
     }
     return Settle(receipt, QueueOutcome::Refused);
-}
-
-std::vector<Gateway::LinkStatus> LinkDriver::OutboundStatus() const
-{
-    const std::lock_guard lock(_mutex);
-    std::map<LinkRefusals::LinkName, Gateway::LinkStatus> rows;
-    _links->VisitSenders(
-        [&rows](std::string_view node, std::string_view queue, const LinkSenderCounters &counters)
-        {
-            Gateway::LinkStatus &row = rows[{std::string(node), std::string(queue)}];
-            row.outbox = static_cast<std::uint32_t>(counters.Pending);
-            row.accepted = counters.Accepted;
-            row.delivered = counters.Delivered;
-            row.expired = counters.Expired;
-            row.in_doubt = counters.InDoubt;
-            row.undeliverable = counters.RefusedThere;
-            row.refused_full =
-                counters.RefusedFullByCount + counters.RefusedFullByBytes + counters.RefusedTooLarge;
-            row.resent = counters.MessagesResent;
-        });
-    _refusals.Report(rows);
-    std::vector<Gateway::LinkStatus> status;
-    for (auto &[name, row] : rows)
-    {
-        row.node = name.first;
-        row.queue = name.second;
-        status.push_back(row);
-    }
-    return status;
-}
-
-std::vector<Gateway::InboundStatus> LinkDriver::InboundStatus() const
-{
-    const std::lock_guard lock(_mutex);
-    std::vector<Gateway::InboundStatus> status;
-    _links->VisitReceivers(
-        [this, &status](std::string_view node, std::string_view queue, const LinkReceiverCounters &counters)
-        {
-            Gateway::InboundStatus row;
-            row.node = node;
-            row.queue = queue;
-            row.delivered = counters.Delivered;
-            row.expired = counters.Skipped;
-            row.undeliverable =
-                counters.RefusedUnknown + counters.RefusedWrongType + counters.RefusedUndecodable;
-            row.held_back = Room(queue) == 0;
-            status.push_back(row);
-        });
-    return status;
-}
-
-std::vector<Gateway::Problem> LinkDriver::Problems() const
-{
-    const std::lock_guard lock(_mutex);
-    std::vector<Gateway::Problem> problems = _refusals.Problems();
-    for (const auto &[name, queue] : _accepted)
-    {
-        if (!queue.Problem().empty())
-        {
-            Gateway::Problem problem;
-            problem.subject = "accept " + name;
-            problem.reason = queue.Problem();
-            problems.push_back(problem);
-        }
-    }
-    if (_links->NameInUseElsewhere())
-    {
-        Gateway::Problem problem;
-        problem.subject = "node " + _config.Node;
-        problem.reason =
-            "the incarnation of this node had to be raised again and again: another live node must have this "
-            "name";
-        problems.push_back(problem);
-    }
-    return problems;
-}
-
-std::uint64_t LinkDriver::Malformed() const
-{
-    const std::lock_guard lock(_mutex);
-    return _malformed + _links->Counters().Malformed + _links->Counters().NotForUs;
 }
 
 }  // namespace Rabit

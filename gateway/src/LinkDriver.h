@@ -4,6 +4,7 @@
 #include <rabit/RabitQueueReceipt.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/links/IncarnationStore.h>
 #include <rabit/gateway/links/LinkNode.h>
 #include <rabit/transport/Transport.h>
 
@@ -39,10 +40,10 @@ class LinkDriver final : public QueueForwarder, private LocalQueues, private Lin
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // All references must outlive the object. `wake` makes the gateway's thread call Service soon; called on
-    // any thread.
+    // All references must outlive the object, and nobody else may use the incarnations. `wake` makes the
+    // gateway's thread call Service soon; called on any thread.
     LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
-               IncarnationSource &incarnations, std::function<void()> wake);
+               IncarnationStore &incarnations, std::function<void()> wake);
     ~LinkDriver() override;
 
     // The present life of this node.
@@ -78,6 +79,13 @@ private:
 
     using Receipt = std::shared_ptr<RabitQueueReceipt>;
 
+    // What somebody outside is to be told once the mutex is free.
+    struct News
+    {
+        std::vector<AcceptedQueue *> Delivered;                 // queues with new messages
+        std::vector<std::pair<Receipt, QueueOutcome>> Settled;  // receipts with an outcome
+    };
+
     // The receipt has had its Begin for this message.
     bool ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
                    const LinkPayload &payload, const Receipt &receipt);
@@ -87,26 +95,28 @@ private:
     bool Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
                 const std::string &reason, const Receipt &receipt);
     static bool Settle(const Receipt &receipt, QueueOutcome outcome);
-    void SettleReceipts();
+    // With the mutex held.
+    News TakeNews() { return std::exchange(_news, {}); }
+    // Without it.
+    static void Tell(const News &news);
     void ConfigureOnce(const std::string &node, const std::string &queue);
     LinkPayload Encode(const MessageType &type, const RabitMessage &message) const;
 
     template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
     void OnDatagram(SampleBytes bytes);
-    void NotifyDelivered();
     void FindLocalQueues();
     LinkTime Now() const { return _workspace.GetClock().Monotonic(); }
 
     const GatewayConfig &_config;
     RabitWorkspace &_workspace;
     const RemoteQueues &_remote;
+    IncarnationStore &_incarnations;  // guarded by the mutex
     const std::function<void()> _wake;
 
     mutable std::mutex _mutex;
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;
-    std::set<AcceptedQueue *> _delivered;                    // queues whose handlers are to be told
-    std::unordered_map<std::uint64_t, Receipt> _receipts;    // of messages without an outcome, by their ids
-    std::vector<std::pair<Receipt, QueueOutcome>> _settled;  // receipts that are to be told
+    std::unordered_map<std::uint64_t, Receipt> _receipts;  // of messages without an outcome, by their ids
+    News _news;
     LinkDatagrams _outbox;
     LinkRefusals _refusals;
     std::set<LinkRefusals::LinkName> _configured;

@@ -38,8 +38,7 @@ public:
         {
             ++_count->Value;
             _count->PostMessage();
-            AddMessageToQueue("Reader", std::static_pointer_cast<Rabit::RabitMessage>(
-                                            std::shared_ptr<Rabit::RabitMessage>(_count->Clone())));
+            AddMessageToQueue("Reader", std::shared_ptr<Rabit::RabitMessage>(_count->Clone()));
         }
     }
 

@@ -15,17 +15,16 @@ inline constexpr const char *FleetMessageName = "Gateway/Fleet";
 // Joins this process to the other nodes of its domain.
 //
 // - Every `publish` message posted locally is written to the DDS topic of its name.
-// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, with the time stamp of
-// its
-//   origin and an age that counts from its post over there, whatever the clocks say. Nothing of a node is
-//   posted before that node has been heard as live, so an old value never looks new.
-// - AddMessageToQueue("<node>/<queue>", message) sends a message to a queue of another node, "*/<queue>" to
-// that
-//   queue of every live node that accepts it. False means refused; Gateway/Fleet counts why. Every accepted
-//   message comes to exactly one outcome; give AddMessageToQueue a RabitQueueReceipt to learn which. At the
-//   gateway's end what waits has Expired, and what was sent and not acknowledged is InDoubt.
+// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, with the time stamp
+//   of its origin and an age that counts from its post over there, whatever the clocks say. Nothing of a
+//   node is posted before that node has been heard as live, so an old value never looks new.
+// - AddMessageToQueue("<node>/<queue>", message) sends a message to a queue of another node,
+//   "*/<queue>" to that queue of every live node that accepts it. False means refused; Gateway/Fleet counts
+//   why. Every accepted message comes to exactly one outcome; give AddMessageToQueue a RabitQueueReceipt to
+//   learn which. At the gateway's end what waits has Expired, and what was sent and not acknowledged is
+//   InDoubt.
 // - `accept` queues receive messages of other nodes in order; a full queue holds the sender back, without
-// loss.
+//   loss.
 // - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come.
 //
 // Threads: Startup, ExecuteUnitOfWork and Shutdown run as for every manager. Mirrored messages are posted on

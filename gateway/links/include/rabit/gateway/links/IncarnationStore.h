@@ -28,9 +28,8 @@ public:
     using WallClock = std::function<std::int64_t()>;
 
     // Keeps the counter in `<stateDirectory>/<node>.incarnation`; characters of the name other than letters,
-    // digits,
-    // `.`, `-` and `_` are written as `%` and two hexadecimal digits. The directory is made if it does not
-    // exist. An empty directory means: no file.
+    // digits, `.`, `-` and `_` are written as `%` and two hexadecimal digits. The directory is made if it
+    // does not exist. An empty directory means: no file.
     IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node);
     IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node,
                      WallClock wallClock);
