@@ -94,17 +94,20 @@ const GatewayConfig &Validated(const GatewayConfig &config)
 class GatewayManager::Parts
 {
 public:
-    Parts(const GatewayConfig &config, std::shared_ptr<Transport> transport, GatewayManager &manager)
+    Parts(const GatewayConfig &config, std::shared_ptr<Transport> transport, GatewayManager &manager,
+          const RandomSource &random)
         : _config(Validated(config)),
           _manager(manager),
           _workspace(manager.GetWorkspace()),
           _transport(std::move(transport)),
-          _incarnations(config.StateDir, config.Node,
-                        [this] {
-                            return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()) /
-                                   NanosecondsInSecond;
-                        }),
-          _links(std::make_shared<LinkDriver>(_config, _workspace, _remote, _incarnations,
+          _incarnations(
+              config.StateDir, config.Node,
+              [this] {
+                  return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()) /
+                         NanosecondsInSecond;
+              },
+              random),
+          _links(std::make_shared<LinkDriver>(_config, _workspace, _remote, _incarnations, random(),
                                               manager.WakeUpHandler())),
           _incarnation(_links->Incarnation()),
           _presence(config.Node, _incarnation, _workspace.GetClock(), _origins, _remote,
@@ -289,11 +292,12 @@ GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Tran
 }
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
-                               RabitWorkspace &workspace)
+                               RabitWorkspace &workspace, RandomSource random)
     : RabitManager("Gateway", workspace),
       _config(config),
       _transport(std::move(transport)),
-      _parts(std::make_unique<Parts>(_config, _transport, *this))
+      _random(std::move(random)),
+      _parts(std::make_unique<Parts>(_config, _transport, *this, _random))
 {
 }
 
@@ -304,7 +308,7 @@ void GatewayManager::Startup()
     if (!_parts || !_parts->IsOpen())
     {
         _parts.reset();
-        _parts = std::make_unique<Parts>(_config, _transport, *this);
+        _parts = std::make_unique<Parts>(_config, _transport, *this, _random);
     }
 }
 

@@ -4,7 +4,6 @@
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
-#include <random>
 #include <stdexcept>
 
 #include "GatewayTopics.h"
@@ -24,22 +23,11 @@ constexpr std::size_t MaximumRefusals = 1000;
 // What the encapsulation and RTPS headers take of a datagram.
 constexpr std::size_t DatagramOverhead = 100;
 
-std::uint64_t RandomClockName()
-{
-    std::random_device device;
-    std::uint64_t name = 0;
-    while (name == 0)
-    {
-        name = (std::uint64_t{device()} << 32) | device();
-    }
-    return name;
-}
-
-LinkSettings SettingsOf(const GatewayConfig &config)
+LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
 {
     LinkSettings settings;
     settings.Node = config.Node;
-    settings.Clock = RandomClockName();
+    settings.Clock = std::max<std::uint64_t>(clockName, 1);  // 0 is no name
     settings.MaxDatagram =
         config.MaxDatagram > 2 * DatagramOverhead ? config.MaxDatagram - DatagramOverhead : DatagramOverhead;
     return settings;
@@ -83,7 +71,7 @@ void Begin(const std::shared_ptr<RabitQueueReceipt> &receipt, std::size_t messag
 }  // namespace
 
 LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
-                       IncarnationStore &incarnations, std::function<void()> wake)
+                       IncarnationStore &incarnations, std::uint64_t clockName, std::function<void()> wake)
     : _config(config),
       _workspace(workspace),
       _remote(remote),
@@ -94,7 +82,7 @@ LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, c
     {
         _accepted.try_emplace(rule.Queue, rule, workspace, _wake);
     }
-    _links = std::make_unique<LinkNode>(SettingsOf(config), static_cast<LinkOutput &>(*this),
+    _links = std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
                                         static_cast<LocalQueues &>(*this), incarnations);
     if (!_incarnations.Error().empty())
     {

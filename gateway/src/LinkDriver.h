@@ -40,10 +40,11 @@ class LinkDriver final : public QueueForwarder, private LocalQueues, private Lin
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // All references must outlive the object, and nobody else may use the incarnations. `wake` makes the
-    // gateway's thread call Service soon; called on any thread.
+    // All references must outlive the object, and nobody else may use the incarnations. `clockName` tells
+    // this node's monotonic clock from those of its other lives. `wake` makes the gateway's thread call
+    // Service soon; called on any thread.
     LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
-               IncarnationStore &incarnations, std::function<void()> wake);
+               IncarnationStore &incarnations, std::uint64_t clockName, std::function<void()> wake);
     ~LinkDriver() override;
 
     // The present life of this node.

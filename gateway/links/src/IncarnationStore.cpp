@@ -9,7 +9,6 @@
 #include <chrono>
 #include <fstream>
 #include <limits>
-#include <random>
 #include <system_error>
 #include <utility>
 
@@ -26,19 +25,6 @@ std::int64_t SecondsOfWallClock()
 {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     return std::chrono::duration_cast<std::chrono::seconds>(now).count();
-}
-
-std::uint32_t RandomBits()
-{
-    try
-    {
-        return static_cast<std::uint32_t>(std::random_device()());
-    }
-    catch (const std::exception &)
-    {
-        // No source of randomness: the low bits of a fast clock differ from life to life as well.
-        return static_cast<std::uint32_t>(std::chrono::steady_clock::now().time_since_epoch().count());
-    }
 }
 
 std::string FileName(const std::string &node)
@@ -106,9 +92,10 @@ IncarnationStore::IncarnationStore(const std::filesystem::path &stateDirectory, 
 }
 
 IncarnationStore::IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node,
-                                   WallClock wallClock)
+                                   WallClock wallClock, RandomSource random)
     : _file(stateDirectory.empty() ? std::filesystem::path() : stateDirectory / FileName(node)),
-      _wallClock(std::move(wallClock))
+      _wallClock(std::move(wallClock)),
+      _random(std::move(random))
 {
 }
 
@@ -122,7 +109,7 @@ std::uint64_t IncarnationStore::Above(std::uint64_t floor)
     const std::uint32_t counter = std::max(next, static_cast<std::uint32_t>(seconds));
     WriteCounter(counter);
     _last = counter;
-    return (static_cast<std::uint64_t>(counter) << 32) | RandomBits();
+    return (static_cast<std::uint64_t>(counter) << 32) | (_random() >> 32);
 }
 
 // 0 if there is no file, or nothing usable in it.

@@ -2,6 +2,7 @@
 
 #include <rabit/RabitManager.h>
 #include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/links/RandomSource.h>
 #include <rabit/transport/Transport.h>
 
 #include <memory>
@@ -39,10 +40,11 @@ class GatewayManager : public RabitManager
 public:
     // Opens the transport at once. The transport is kept until the gateway is gone; null is a programming
     // error (std::invalid_argument). The workspace must outlive the gateway; without one it is the default
-    // workspace.
+    // workspace. Time comes from the workspace's clock and chance from `random`: under a stepped reactor and
+    // a simulated transport nothing else decides what happens.
     GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport);
     GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
-                   RabitWorkspace &workspace);
+                   RabitWorkspace &workspace, RandomSource random = SystemRandom);
     ~GatewayManager() override;
 
     // A gateway that ran before joins again, in a new life.
@@ -56,6 +58,7 @@ private:
 
     const GatewayConfig _config;
     const std::shared_ptr<Transport> _transport;
+    const RandomSource _random;
     std::unique_ptr<Parts> _parts;  // null if joining again failed
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/gateway/links/LinkHost.h>
+#include <rabit/gateway/links/RandomSource.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -32,7 +33,7 @@ public:
     // does not exist. An empty directory means: no file.
     IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node);
     IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node,
-                     WallClock wallClock);
+                     WallClock wallClock, RandomSource random = SystemRandom);
 
     // An incarnation above the stored one and above `floor`, stored before this returns if there is a file.
     std::uint64_t Above(std::uint64_t floor) override;
@@ -49,6 +50,7 @@ private:
 
     std::filesystem::path _file;
     WallClock _wallClock;
+    RandomSource _random;
     std::uint32_t _last = 0;  // the counter of this process's latest incarnation
     std::string _error;
 };
