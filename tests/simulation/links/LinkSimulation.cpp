@@ -477,25 +477,4 @@ SimResult RunSeed(std::uint64_t seed, std::ostream *trace)
     return Simulation(seed, trace).Run();
 }
 
-void SimStatistics::Add(const SimStatistics &other)
-{
-    Events += other.Events;
-    Accepted += other.Accepted;
-    Refused += other.Refused;
-    Delivered += other.Delivered;
-    Expired += other.Expired;
-    InDoubt += other.InDoubt;
-    RefusedThere += other.RefusedThere;
-    DeliveredAgain += other.DeliveredAgain;
-    Datagrams += other.Datagrams;
-    Lost += other.Lost;
-    Duplicated += other.Duplicated;
-    Straggling += other.Straggling;
-    Malformed += other.Malformed;
-    Crashes += other.Crashes;
-    StoragesLost += other.StoragesLost;
-    Raises += other.Raises;
-    LongestDrain = std::max(LongestDrain, other.LongestDrain);
-}
-
 }  // namespace Rabit::Sim

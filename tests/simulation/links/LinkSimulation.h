@@ -9,7 +9,7 @@
 namespace Rabit::Sim
 {
 
-// What happened in a run, or in many: to see that the simulation tries what it is meant to try.
+// What happened in a run: to see that the simulation tries what it is meant to try.
 struct SimStatistics
 {
     std::uint64_t Events = 0;
@@ -29,8 +29,6 @@ struct SimStatistics
     std::uint64_t StoragesLost = 0;
     std::uint64_t Raises = 0;  // incarnations taken because a peer knew a higher one
     LinkTime LongestDrain{0};
-
-    void Add(const SimStatistics &other);
 };
 
 struct SimResult

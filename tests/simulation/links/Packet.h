@@ -1,6 +1,6 @@
 #pragma once
 
-#include "SimRandom.h"
+#include <SimRandom.h>
 #include "StoredMessages.h"
 
 #include <cstddef>

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "SimRandom.h"
-
+#include <SimRandom.h>
 #include <rabit/gateway/links/LinkOptions.h>
 
 #include <cstddef>

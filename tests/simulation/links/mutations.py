@@ -28,12 +28,13 @@ class Build:
         self.links = source / "gateway/links/src"
         tests = source / "tests/gateway/links"
         simulation = source / "tests/simulation/links"
-        self.includes = [f"-I{path}" for path in (source / "gateway/links/include", self.links, tests)]
+        common = source / "tests/simulation/common"
+        self.includes = [f"-I{path}" for path in (source / "gateway/links/include", self.links, tests, common)]
         self.defines = [f'-DRABIT_SOURCE_DIR="{source}"']
         self.compiler = os.environ.get("CXX", "c++")
         sources = {
             "links": sorted(self.links.glob("*.cpp")),
-            "simulation": sorted(simulation.glob("*.cpp")),
+            "simulation": sorted([*simulation.glob("*.cpp"), *common.glob("*.cpp")]),
             "direct": sorted(tests.glob("Link*Test.cpp")),
         }
         work.mkdir(parents=True, exist_ok=True)
