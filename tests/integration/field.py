@@ -26,7 +26,7 @@ def _run(*argv, text=None):
                           stderr=subprocess.STDOUT).stdout
 
 
-def _dead(name):
+def dead(name):
     match = NAME.match(name)
     return match and not os.path.exists(f"/proc/{match.group(1)}")
 
@@ -46,14 +46,14 @@ def folders():
 def sweep():
     """Removes what makers that are dead left behind."""
     for name in namespaces():
-        if _dead(name):
+        if dead(name):
             subprocess.run(["ip", "netns", "del", name], check=False)
     for path in folders():
-        if _dead(os.path.basename(path)):
+        if dead(os.path.basename(path)):
             shutil.rmtree(path, ignore_errors=True)
 
 
-def _stop(number, _frame):
+def stop(number, _frame):
     raise SystemExit(128 + number)
 
 
@@ -72,7 +72,7 @@ class Field:
         if os.geteuid() != 0 or not all(map(shutil.which, ("ip", "nft"))):
             raise Unsupported("needs root, iproute2 and nftables")
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, _stop)
+            signal.signal(number, stop)
         sweep()
         try:
             self._build()
@@ -109,6 +109,11 @@ class Field:
                     self._drops[origin, destination] = percent
         for node in self.nodes:
             self._write_rules(node)
+
+    def cut(self, node):
+        """Both ways."""
+        self.lose(100, [node])
+        self.lose(100, None, [node])
 
     def traffic(self, node):
         """Bytes that the node has sent and received so far."""

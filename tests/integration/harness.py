@@ -35,7 +35,7 @@ def domain():
     return 0 if os.environ.get(IN_NAMESPACE) == "yes" else 100 + os.getpid() % 100
 
 
-def _die_with_parent():
+def die_with_parent():
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
 
@@ -49,7 +49,7 @@ class Process:
         self._changed = threading.Condition()
         self._popen = subprocess.Popen(self.argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                        stderr=subprocess.STDOUT, text=True, bufsize=1, errors="replace",
-                                       env={**os.environ, **(env or {})}, preexec_fn=_die_with_parent)
+                                       env={**os.environ, **(env or {})}, preexec_fn=die_with_parent)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 

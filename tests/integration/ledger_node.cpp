@@ -6,6 +6,7 @@
 
 #include <rabit/RabitManager.h>
 #include <rabit/RabitReactor.h>
+#include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
 
@@ -344,6 +345,7 @@ void Run(Options &options)
     rule.Window = options.Window;
     rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(options.ExpireS * 1000));
     config.Send.push_back(rule);
+    Rabit::ValidateTransportName(config, Rabit::AvailableTransports());
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::make_unique<Clerk>(options));
     reactor.AddManager(
@@ -366,6 +368,11 @@ int main(int argc, char **argv)
     catch (const CLI::ParseError &error)
     {
         return app.exit(error) == 0 ? 0 : 2;
+    }
+    catch (const Rabit::ConfigError &error)
+    {
+        std::cerr << error.what() << '\n';
+        return 2;
     }
     catch (const std::exception &error)
     {

@@ -35,6 +35,7 @@ class Fleet:
     def start(self, node):
         state = pathlib.Path(self.field.folder, node + ".state")
         state.mkdir(exist_ok=True)
+        state.chmod(0o777)  # in a container the node runs as another user
         self.field.start(node, [self._program, "--node", node, "--ledger", self._path(node), "--transport",
                                 self._transport, "--state-dir", state, *self._nodes[node]])
 
@@ -109,9 +110,7 @@ class Faults:
         self._field.lose(percent, origins, destinations)
 
     def cut(self, node):
-        """Both ways."""
-        self._field.lose(100, [node])
-        self._field.lose(100, None, [node])
+        self._field.cut(node)
 
     def heal(self):
         self._field.lose(0)
@@ -167,20 +166,25 @@ def states_seen(wanted, ledgers):
 def run(options):
     scenario = json.loads(pathlib.Path(options.scenario, "scenario.json").read_text())
     with field.Field(scenario["nodes"]) as ground:
-        fleet = Fleet(ground, options.ledger_node, options.transport, scenario["nodes"])
-        began = time.monotonic()
-        for node in scenario["nodes"]:
-            fleet.start(node)
-        Faults(fleet).run(scenario["faults"])
-        wrong = fleet.wait_until_settled(scenario["limit_s"])
-        seconds = time.monotonic() - began
-        bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
-        # Before the stop, which the others see as LOST.
-        wrong += states_seen(scenario.get("states", {}), fleet.ledgers())
-        wrong += fleet.stop()
-        ledgers = fleet.ledgers()
-        if options.keep:
-            shutil.copytree(ground.folder, options.keep, dirs_exist_ok=True)
+        return run_in(ground, scenario, options)
+
+
+def run_in(ground, scenario, options):
+    """Runs it in a field that is there: namespaces or containers."""
+    fleet = Fleet(ground, options.ledger_node, options.transport, scenario["nodes"])
+    began = time.monotonic()
+    for node in scenario["nodes"]:
+        fleet.start(node)
+    Faults(fleet).run(scenario["faults"])
+    wrong = fleet.wait_until_settled(scenario["limit_s"])
+    seconds = time.monotonic() - began
+    bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
+    # Before the stop, which the others see as LOST.
+    wrong += states_seen(scenario.get("states", {}), fleet.ledgers())
+    wrong += fleet.stop()
+    ledgers = fleet.ledgers()
+    if options.keep:
+        shutil.copytree(ground.folder, options.keep, dirs_exist_ok=True)
     for line in figures(ledgers):
         print(line)
     print(f"{seconds:.0f} s; bytes sent: " + ", ".join(f"{node} {count}" for node, count in bytes_sent.items()))

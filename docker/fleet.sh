@@ -1,0 +1,216 @@
+#!/usr/bin/env bash
+# Runs a fleet in containers, and does to its network what the field does. usage() below and README.md say how.
+set -euo pipefail
+
+usage() {
+    cat <<'USAGE'
+Usage: fleet.sh COMMAND
+  up [UAVS]                   a ground station and UAVS aircraft (default 3), each a container on one network
+  run NODE PROGRAM [ARG...]   one more node, running any program of the image
+  down                        removes all containers of the fleet, and its network
+  status                      one line for each node: state, address, faults
+  logs NODE [OPTION...]       what the node has written; the options are those of `docker logs`
+  cut NODE [in|out]           the node's network is cut: both ways, or only what comes in, or only what goes out
+  loss NODE PERCENT [in|out]  that share of the node's packets is lost, at random
+  heal NODE                   ends all faults of the node's network
+  kill NODE                   kill -9
+  start NODE                  starts it again, in the same container, with whatever address is free then
+  remove NODE                 removes the container; `run` may use the name again
+  stop NODE                   SIGTERM, and waits for the end; prints the exit code
+
+Environment:
+  FLEET        name of the fleet (default rabit); fleets of different names run beside each other
+  IMAGE        image of all nodes (default rabit-fleet); `up` builds it if it is not there
+  DOMAIN       DDS domain of `up` (default 7)
+  TRANSPORTS   backends of the nodes of `up` in turn, for instance "fastdds cyclonedds"
+  CONFIG       folder with a NODE.yaml for each node that is to have its own configuration
+  RUN_OPTIONS  more options for `docker run`, for instance "--cpus 0.5 --volume /data:/data"
+USAGE
+}
+
+fail() {
+    echo "fleet.sh: $1" >&2
+    exit "${2:-1}"
+}
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+fleet=${FLEET:-rabit}
+image=${IMAGE:-rabit-fleet}
+label=rabit.fleet=$fleet
+
+# containers: a line "ID NODE" for each container of the fleet, started here or by compose.
+containers() {
+    docker ps --all --filter "label=$label" --format \
+        '{{.ID}} {{.Label "rabit.node"}}/{{.Label "com.docker.compose.service"}}/{{.Label "com.docker.compose.container-number"}}' |
+        sed -e 's|^\([^ ]* [^/][^/]*\)/.*|\1|' -e 's| /ground/1$| ground|' -e 's| /\(.*\)/\(.*\)$| \1\2|' | awk 'NF == 2' | sort -k 2V
+}
+
+# find_container NODE
+find_container() {
+    local id node
+    while read -r id node; do
+        if [ "$node" = "$1" ]; then
+            echo "$id"
+            return
+        fi
+    done < <(containers)
+    fail "no node '$1' in the fleet '$fleet'; there are: $(containers | awk '{printf "%s ", $2}')" 2
+}
+
+make_network() {
+    [ -n "$(docker network ls --quiet --filter "label=$label")" ] ||
+        docker network create --label "$label" "$fleet" >/dev/null
+}
+
+# run_node NODE PROGRAM [ARG...]
+run_node() {
+    local node=$1 options=()
+    shift
+    [ -z "${CONFIG:-}" ] || options+=(--volume "$(cd "$CONFIG" && pwd):/etc/rabit/nodes:ro")
+    # shellcheck disable=SC2206 # options are words
+    options+=(${RUN_OPTIONS:-})
+    docker run --detach --name "$fleet-$node" --hostname "$node" --network "$fleet" --label "$label" \
+        --label "rabit.node=$node" --cap-drop ALL --security-opt no-new-privileges \
+        --env NODE="$node" --env DOMAIN="${DOMAIN:-7}" --env TRANSPORTS="${TRANSPORTS:-}" \
+        "${options[@]}" "$image" "$@" >/dev/null
+}
+
+up() {
+    local uavs=${1:-${UAVS:-3}} k
+    [[ $uavs =~ ^[1-9][0-9]{0,2}$ ]] || fail "up takes a number of aircraft from 1 to 999, not '$uavs'" 2
+    docker image inspect "$image" >/dev/null 2>&1 ||
+        docker build --tag "$image" --file "$here/Dockerfile" "$here/.."
+    make_network
+    run_node ground ground
+    for ((k = 1; k <= uavs; k++)); do
+        run_node "uav$k" uav
+    done
+}
+
+# filter CONTAINER [NFT OPTION...]: nft in the container's network. The nodes have no right to do that themselves, so a
+# container that has does it and goes.
+filter() {
+    local id=$1
+    shift
+    docker run --rm --interactive --network "container:$id" --label "$label" --user 0 \
+        --cap-drop ALL --cap-add NET_ADMIN --entrypoint nft "$image" "$@"
+}
+
+# set_loss NODE PERCENT in|out|both. Lost on the way in and on the way out of the interface, where a sender's socket
+# is not told.
+set_loss() {
+    local id percent=$2 direction=$3 chain hook rule
+    id=$(find_container "$1")
+    [[ $percent =~ ^[0-9]{1,3}$ ]] && [ "$percent" -le 100 ] || fail "PERCENT is a number from 0 to 100" 2
+    case $direction in
+    in) set -- ingress ;;
+    out) set -- egress ;;
+    both) set -- ingress egress ;;
+    *) fail "a direction is 'in' or 'out', not '$direction'" 2 ;;
+    esac
+    rule=drop
+    [ "$percent" -eq 100 ] || rule="numgen random mod 100 < $percent drop"
+    {
+        echo "add table netdev rabit"
+        for hook in "$@"; do
+            chain="add chain netdev rabit $hook"
+            echo "$chain { type filter hook $hook device \"eth0\" priority 0; }"
+            echo "flush chain netdev rabit $hook"
+            echo "add rule netdev rabit $hook $rule"
+        done
+    } | filter "$id" -f -
+}
+
+heal() {
+    local id
+    id=$(find_container "$1")
+    printf 'add table netdev rabit\ndelete table netdev rabit\n' | filter "$id" -f -
+}
+
+# faults CONTAINER: what set_loss has set, in words
+faults() {
+    filter "$1" list ruleset </dev/null | awk '
+        $1 == "chain" { way = $2 == "ingress" ? "in" : "out" }
+        $1 == "drop" { printf "%s cut ", way }
+        $1 == "numgen" { printf "%s %s %% lost ", way, $6 }'
+}
+
+# status_of CONTAINER NODE
+status_of() {
+    local state address set=
+    state=$(docker inspect --format '{{.State.Status}}' "$1")
+    address=$(docker inspect --format '{{range .NetworkSettings.Networks}}{{.IPAddress}}{{end}}' "$1")
+    [ "$state" != running ] || set=$(faults "$1")
+    printf '%-12s %-12s %-16s %s\n' "$2" "$state" "$address" "$set"
+}
+
+status() {
+    local id node
+    printf '%-12s %-12s %-16s %s\n' NODE STATE ADDRESS FAULTS
+    while read -r id node; do
+        status_of "$id" "$node" </dev/null &
+    done < <(containers) | sort -V # which waits for them all
+}
+
+down() {
+    local ids
+    ids=$(docker ps --all --quiet --filter "label=$label")
+    # shellcheck disable=SC2086 # one word for each
+    [ -z "$ids" ] || docker rm --force --volumes $ids >/dev/null
+    ids=$(docker network ls --quiet --filter "label=$label")
+    # shellcheck disable=SC2086
+    [ -z "$ids" ] || docker network rm $ids >/dev/null
+}
+
+# need COUNT "$@": so many arguments after the command
+need() {
+    [ $(($# - 2)) -ge "$1" ] || fail "$2 needs more arguments (fleet.sh --help)" 2
+}
+
+command=${1:---help}
+case $command in
+-h | --help) usage ;;
+up) up "${@:2}" ;;
+down) down ;;
+status) status ;;
+run)
+    need 2 "$@"
+    make_network
+    run_node "${@:2}"
+    ;;
+logs)
+    need 1 "$@"
+    docker logs "${@:3}" "$(find_container "$2")"
+    ;;
+cut)
+    need 1 "$@"
+    set_loss "$2" 100 "${3:-both}"
+    ;;
+loss)
+    need 2 "$@"
+    set_loss "$2" "$3" "${4:-both}"
+    ;;
+heal)
+    need 1 "$@"
+    heal "$2"
+    ;;
+kill)
+    need 1 "$@"
+    docker kill "$(find_container "$2")" >/dev/null
+    ;;
+start)
+    need 1 "$@"
+    docker start "$(find_container "$2")" >/dev/null
+    ;;
+remove)
+    need 1 "$@"
+    docker rm --force --volumes "$(find_container "$2")" >/dev/null
+    ;;
+stop)
+    need 1 "$@"
+    id=$(find_container "$2")
+    docker stop --time 20 "$id" >/dev/null
+    docker inspect --format '{{.State.ExitCode}}' "$id"
+    ;;
+*) fail "unknown command '$command' (fleet.sh --help)" 2 ;;
+esac

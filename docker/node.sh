@@ -1,0 +1,40 @@
+#!/bin/sh
+# The entry point of the image. Usage: rabit-node uav|ground [OPTION...], or rabit-node PROGRAM [ARGUMENT...].
+# An aircraft or ground station finds its name, its configuration and its backend by the variables in README.md.
+set -eu
+
+# A replica of a compose service is told its number by nobody but the network's name server: PROJECT-SERVICE-NUMBER.
+name_on_network() {
+    getent hosts "$(hostname -i | cut -d ' ' -f 1)" | awk '{print $2}' | sed -n "s/^[^.]*$1[-_]\([0-9]*\)\..*/\1/p"
+}
+
+case ${1:-} in
+uav | ground) ;;
+*) exec "$@" ;;
+esac
+role=$1
+shift
+if [ -z "${NODE:-}" ]; then
+    NODE=ground
+    if [ "$role" = uav ]; then
+        number=$(name_on_network "$role")
+        if [ -z "$number" ]; then
+            echo "rabit-node: no name: set NODE, for instance to uav1" >&2
+            exit 2
+        fi
+        NODE=uav$number
+    fi
+fi
+
+config=/etc/rabit/nodes/$NODE.yaml
+[ -f "$config" ] || config=/etc/rabit/$role.yaml
+
+# The backends in turn: the ground station and uav1 have the first, uav2 the second, and from the start again.
+if [ -n "${TRANSPORTS:-}" ]; then
+    number=$(expr "$NODE" : '.*[^0-9]0*\([0-9][0-9]*\)$' || echo 1)
+    count=$(echo "$TRANSPORTS" | wc -w)
+    wanted=$(((${number:-1} - 1) % count + 1))
+    set -- --transport "$(echo "$TRANSPORTS" | awk -v n="$wanted" '{print $n}')" "$@"
+fi
+[ -z "${DOMAIN:-}" ] || set -- --domain "$DOMAIN" "$@"
+exec "$role" --config "$config" --node "$NODE" "$@"
