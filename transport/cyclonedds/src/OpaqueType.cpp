@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "EndpointSettings.h"
 
 namespace Rabit::Cyclone
 {
@@ -12,12 +17,14 @@ namespace Rabit::Cyclone
 namespace
 {
 
-constexpr std::size_t MaxSample = std::size_t{64} << 20;
+constexpr std::size_t HeaderSize = 4;
 
 struct OpaqueType
 {
     ddsi_sertype Header;
+    std::string Topic;
     std::function<bool(SampleBytes, KeyHash &)> KeyOf;
+    std::shared_ptr<SessionLog> Log;
 };
 
 OpaqueSample *Of(const ddsi_serdata *sample)
@@ -30,13 +37,14 @@ const OpaqueType *Of(const ddsi_sertype *type)
     return reinterpret_cast<const OpaqueType *>(type);
 }
 
-void SetKey(OpaqueSample &sample, const KeyHash &key)
+ddsi_serdata *Refuse(const ddsi_sertype *type, const char *why, OpaqueSample *sample = nullptr)
 {
-    sample.Key = key;
-    sample.HasKey = true;
-    std::uint32_t parts[4];
-    std::memcpy(parts, key.data(), sizeof parts);
-    sample.Header.hash ^= parts[0] ^ parts[1] * 31u ^ parts[2] * 131u ^ parts[3] * 1031u;
+    Of(type)->Log->MalformedSample(Of(type)->Topic, why);
+    if (sample != nullptr)
+    {
+        ddsi_serdata_unref(&sample->Header);
+    }
+    return nullptr;
 }
 
 // Computes the key of what arrived; nullptr (and freed) if there is none.
@@ -50,13 +58,12 @@ ddsi_serdata *WithKey(OpaqueSample *sample, const ddsi_keyhash_t *sent)
         {
             std::copy_n(sent->value, key.size(), key.begin());
         }
-        else if (sample->Size < 4 || !type->KeyOf({sample->Data(), sample->Size}, key))
+        else if (sample->Size < HeaderSize || !type->KeyOf({sample->Data(), sample->Size}, key))
         {
-            ddsi_serdata_unref(&sample->Header);
-            return nullptr;
+            return Refuse(sample->Header.type, "it has no readable key", sample);
         }
     }
-    SetKey(*sample, key);
+    sample->SetKey(key);
     return &sample->Header;
 }
 
@@ -73,9 +80,13 @@ std::uint32_t GetSize(const ddsi_serdata *sample)
 ddsi_serdata *FromNetwork(const ddsi_sertype *type, ddsi_serdata_kind kind, const nn_rdata *chain,
                           std::size_t size)
 {
-    if (size > MaxSample || size < 4)
+    if (size < HeaderSize)
     {
-        return nullptr;
+        return Refuse(type, "it is shorter than its header");
+    }
+    if (size > MaxSample)
+    {
+        return Refuse(type, "it is larger than 64 MiB");
     }
     OpaqueSample *sample = NewSample(type, kind, size);
     const auto *submessage = reinterpret_cast<const Data_DataFrag_common_t *>(
@@ -97,8 +108,7 @@ ddsi_serdata *FromNetwork(const ddsi_sertype *type, ddsi_serdata_kind kind, cons
     }
     if (filled != size)
     {
-        ddsi_serdata_unref(&sample->Header);
-        return nullptr;
+        return Refuse(type, "a part of it is missing", sample);
     }
     return WithKey(sample, key);
 }
@@ -153,7 +163,7 @@ bool ToValue(const ddsi_serdata *, void *, void **, void *)
 ddsi_serdata *ToUntyped(const ddsi_serdata *sample)
 {
     OpaqueSample *key = NewSample(sample->type, SDK_KEY, 0);
-    SetKey(*key, Of(sample)->Key);
+    key->SetKey(Of(sample)->Key);
     key->Header.type = nullptr;  // it may outlive its type
     return &key->Header;
 }
@@ -191,13 +201,13 @@ void FreeType(ddsi_sertype *type)
 void ZeroValues(const ddsi_sertype *, void *, std::size_t) {}
 void ReallocValues(void **, const ddsi_sertype *, void *, std::size_t, std::size_t) {}
 void FreeValues(const ddsi_sertype *, void **, std::size_t, dds_free_op_t) {}
-bool EqualTypes(const ddsi_sertype *, const ddsi_sertype *)
+bool EqualTypes(const ddsi_sertype *a, const ddsi_sertype *b)
 {
-    return true;  // names and kinds are compared by the vendor
+    return Of(a)->Topic == Of(b)->Topic;  // names and kinds are compared by the vendor
 }
-std::uint32_t HashType(const ddsi_sertype *)
+std::uint32_t HashType(const ddsi_sertype *type)
 {
-    return 0;
+    return static_cast<std::uint32_t>(std::hash<std::string>()(Of(type)->Topic));
 }
 
 const ddsi_serdata_ops &SampleOps()
@@ -254,10 +264,20 @@ OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::s
     return sample;
 }
 
-ddsi_sertype *NewType(const TopicDescription &topic)
+void OpaqueSample::SetKey(const KeyHash &key)
+{
+    Key = key;
+    std::uint32_t parts[4];
+    std::memcpy(parts, key.data(), sizeof parts);
+    Header.hash ^= parts[0] ^ parts[1] * 31u ^ parts[2] * 131u ^ parts[3] * 1031u;
+}
+
+ddsi_sertype *NewType(const TopicDescription &topic, std::shared_ptr<SessionLog> log)
 {
     auto *type = new OpaqueType{};
+    type->Topic = topic.Name;
     type->KeyOf = topic.KeyOf;
+    type->Log = std::move(log);
     ddsi_sertype_init(&type->Header, topic.TypeName.c_str(), &TypeOps(), &SampleOps(), !topic.KeyOf);
     type->Header.allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
     return &type->Header;

@@ -8,10 +8,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
+
+#include "common/SessionLog.h"
 
 namespace Rabit::Cyclone
 {
+
+// Of ddsi_serdata::statusinfo, as in the OMG DDSI-RTPS specification 2.3, 9.6.3.9.
+constexpr std::uint32_t StatusDisposed = 1;
+constexpr std::uint32_t StatusUnregistered = 2;
 
 // A sample, shared by reference count with the vendor; Header is its first member, as the vendor demands.
 struct OpaqueSample
@@ -20,16 +25,18 @@ struct OpaqueSample
     std::unique_ptr<std::uint64_t[]> Storage;  // aligned to 8
     std::size_t Size = 0;
     KeyHash Key{};
-    std::uint64_t Sequence = 0;
-    bool HasKey = false;
+    std::uint64_t Sequence = 0;  // of one that arrived
 
     std::uint8_t *Data() const { return reinterpret_cast<std::uint8_t *>(Storage.get()); }
+    // Once for each sample.
+    void SetKey(const KeyHash &key);
 };
 
 // Nothing of the bytes is set yet. Owned by one reference.
 OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::size_t size);
 
-// The caller owns one reference, which dds_create_topic_sertype takes.
-ddsi_sertype *NewType(const TopicDescription &topic);
+// The type of one topic; what arrives and is no sample of it is counted in the log. The caller owns one
+// reference, which dds_create_topic_sertype takes.
+ddsi_sertype *NewType(const TopicDescription &topic, std::shared_ptr<SessionLog> log);
 
 }  // namespace Rabit::Cyclone

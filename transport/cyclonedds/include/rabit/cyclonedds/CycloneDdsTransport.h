@@ -8,12 +8,11 @@
 namespace Rabit
 {
 
-// The backend on Eclipse Cyclone DDS 0.10 (RTPS over UDPv4). Samples are limited to 64 MiB. Handlers run on a
-// thread of the session.
+// The backend on Eclipse Cyclone DDS 0.10 (RTPS over UDPv4). Samples are limited to 64 MiB. Handlers of
+// readers run on the vendor's receiving threads, peer handlers on a thread of the session.
 //
-// Cyclone DDS has one configuration per process and domain: sessions of one process in one domain must agree
-// on their network settings, else Open throws. TransportSettings::BackendConfig is a Cyclone DDS XML file; it
-// is laid over the other settings.
+// TransportSettings::BackendConfig is a Cyclone DDS XML file; it is laid over the other settings. The
+// vendor's log sink (dds_set_log_sink), one for the process, is taken when the first session opens.
 class CycloneDdsTransport final : public Transport
 {
 public:

@@ -1,0 +1,138 @@
+#include "CycloneWriter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "EndpointSettings.h"
+#include "OpaqueType.h"
+
+namespace Rabit::Cyclone
+{
+
+namespace
+{
+
+constexpr std::size_t HeaderSize = 4;
+
+// Tells readers how many bytes RTPS will add at the end (OMG DDS-XTypes 1.3, 7.6.3.1.2).
+void MarkPadding(OpaqueSample &sample)
+{
+    const std::size_t padding = (4 - sample.Size % 4) % 4;
+    sample.Data()[3] = static_cast<std::uint8_t>((sample.Data()[3] & ~3u) | padding);
+}
+
+struct Unref
+{
+    void operator()(OpaqueSample *sample) const { ddsi_serdata_unref(&sample->Header); }
+};
+
+// The key in place of a sample. The vendor writes the key hash beside it only if there is such a payload. It
+// is the serialized key in big-endian CDR if that has up to 16 bytes, as the hash then is; for larger keys,
+// readers of this make that do not look at the key hash beside it do not learn of the disposal.
+OpaqueSample *MakeKey(const ddsi_sertype *type, const KeyHash &key)
+{
+    OpaqueSample *sample = NewSample(type, SDK_KEY, HeaderSize + key.size());
+    std::fill_n(sample->Data(), HeaderSize, std::uint8_t{0});
+    std::copy(key.begin(), key.end(), sample->Data() + HeaderSize);
+    return sample;
+}
+
+}  // namespace
+
+CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
+                             const TopicQos &qos, const std::vector<std::string> &partitions)
+    : _core(std::move(core)),
+      _topic(topic),
+      _use(_core->Topics(), topic),
+      _entityTopic(MakeTopic(*_core, topic, _type))
+{
+    const Listener listener = MakeListener(this);
+    dds_lset_offered_incompatible_qos(
+        listener.get(),
+        [](dds_entity_t, const dds_offered_incompatible_qos_status_t status, void *self)
+        {
+            // Partitions that differ are not incompatible (OMG DDS 1.4, 2.2.3.13); the vendor tells of both.
+            if (status.last_policy_id != DDS_PARTITION_QOS_POLICY_ID)
+            {
+                const auto *writer = static_cast<CycloneWriter *>(self);
+                writer->_core->Log()->IncompatibleQos(writer->_topic.Name);
+            }
+        });
+    _writer = Entity(dds_create_writer(_core->Participant(), _entityTopic.Get(),
+                                       MakeWriterQos(qos, partitions).get(), listener.get()),
+                     "make a writer of topic " + topic.Name);
+}
+
+WriteResult CycloneWriter::Write(const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    return Send(sample, sourceTime, false);
+}
+
+WriteResult CycloneWriter::Dispose(const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    if (!_topic.KeyOf)
+    {
+        return Fail("it has no key, so nothing of it can be disposed");
+    }
+    return Send(sample, sourceTime, true);
+}
+
+int CycloneWriter::MatchedReaders() const
+{
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(_writer.Get(), &status);
+    return static_cast<int>(status.current_count);
+}
+
+WriteResult CycloneWriter::Fail(const char *why, WriteResult result)
+{
+    _core->Log()->WriteFailed(_topic.Name, why);
+    return result;
+}
+
+WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool dispose)
+{
+    if (_core->IsClosed())
+    {
+        return Fail("the session is closed");
+    }
+    const std::size_t size = encoder.EncodedSize();
+    if (size > MaxSample)
+    {
+        return Fail("the sample is larger than 64 MiB", WriteResult::TooLarge);
+    }
+    if (size < HeaderSize)
+    {
+        return Fail("the encoded sample is shorter than its header");
+    }
+    std::unique_ptr<OpaqueSample, Unref> sample(NewSample(_type, SDK_DATA, size));
+    if (!encoder.Encode({sample->Data(), size}))
+    {
+        return Fail("the sample cannot be encoded");
+    }
+    KeyHash key{};
+    if (_topic.KeyOf && !_topic.KeyOf({sample->Data(), size}, key))
+    {
+        return Fail("the encoded sample has no readable key");
+    }
+    if (dispose)
+    {
+        sample.reset(MakeKey(_type, key));
+    }
+    else
+    {
+        MarkPadding(*sample);
+    }
+    sample->SetKey(key);
+    sample->Header.timestamp.v = sourceTime;
+    sample->Header.statusinfo = dispose ? StatusDisposed : 0u;
+    const dds_return_t result = dds_forwardcdr(_writer.Get(), &sample.release()->Header);
+    if (result == DDS_RETCODE_TIMEOUT)
+    {
+        _core->Log()->WriteTimedOut(_topic.Name);
+        return WriteResult::TimedOut;
+    }
+    return result == DDS_RETCODE_OK ? WriteResult::Ok : Fail(dds_strretcode(result));
+}
+
+}  // namespace Rabit::Cyclone

@@ -1,0 +1,107 @@
+#include "DomainConfig.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "common/SettingsCheck.h"
+
+namespace Rabit::Cyclone
+{
+
+namespace
+{
+
+// Sessions on one host and domain; each has its own ports.
+constexpr int MostParticipants = 100;
+// A peer without a port is looked for at the ports of this many participants of its host, as with Fast DDS.
+// Left to the vendor it would be MostParticipants, each with every announcement.
+constexpr int ParticipantsPerPeer = 16;
+// What the vendor's headers may take of a datagram beside a fragment of a sample.
+constexpr std::size_t HeaderRoom = 100;
+
+// OMG DDSI-RTPS 2.3, 9.6.1.1
+int DiscoveryPort(int domain, int participant)
+{
+    constexpr int Base = 7400;
+    constexpr int PerDomain = 250;
+    constexpr int Unicast = 10;
+    return Base + PerDomain * domain + Unicast + 2 * participant;
+}
+
+void AddInterfaces(const TransportSettings &settings, std::ostream &xml)
+{
+    xml << "<Interfaces>";
+    for (const auto &address : ResolveInterfaces(settings.Interfaces))
+    {
+        xml << "<NetworkInterface address=\"" << address << "\" multicast=\""
+            << (settings.Multicast ? "true" : "false") << "\"/>";
+    }
+    if (settings.Interfaces.empty())
+    {
+        xml << "<NetworkInterface autodetermine=\"true\"/>";
+    }
+    xml << "</Interfaces>";
+}
+
+void AddPeers(const TransportSettings &settings, std::ostream &xml)
+{
+    xml << "<Peers>";
+    for (const auto &peer : settings.Peers)
+    {
+        const PeerAddress address = ResolvePeer(peer);
+        const int count = address.Port != 0 ? 1 : ParticipantsPerPeer;
+        for (int i = 0; i < count; ++i)
+        {
+            const int port = address.Port != 0 ? address.Port : DiscoveryPort(settings.Domain, i);
+            xml << "<Peer address=\"" << address.Address << ":" << port << "\"/>";
+        }
+    }
+    xml << "</Peers>";
+}
+
+std::string Read(const std::string &path)
+{
+    std::ifstream file(path);
+    std::ostringstream content;
+    if (!file || !(content << file.rdbuf()))
+    {
+        throw TransportError("the Cyclone DDS configuration " + path + " cannot be read");
+    }
+    return content.str();
+}
+
+}  // namespace
+
+std::string MakeDomainConfig(const TransportSettings &settings)
+{
+    std::ostringstream xml;
+    xml << "<Domain><General>";
+    AddInterfaces(settings, xml);
+    // Multicast finds peers; samples go to each reader, because radios send multicast slowly and without
+    // repair.
+    xml << "<AllowMulticast>" << (settings.Multicast ? "spdp" : "false") << "</AllowMulticast>"
+        << "<MaxMessageSize>" << settings.MaxDatagram << "B</MaxMessageSize>"
+        << "<FragmentSize>" << settings.MaxDatagram - HeaderRoom
+        << "B</FragmentSize></General>"
+        // The vendor hands samples over inside Write between sessions that share its domain. Each session has
+        // one of its own, which is called as the user says on the network alone.
+        << "<Discovery><ExternalDomainId>" << settings.Domain << "</ExternalDomainId>"
+        << "<ParticipantIndex>auto</ParticipantIndex>"
+        << "<MaxAutoParticipantIndex>" << MostParticipants << "</MaxAutoParticipantIndex>"
+        << "<LeaseDuration>" << settings.Lease.count() << "ms</LeaseDuration>"
+        << "<SPDPInterval>" << settings.AnnouncementPeriod.count() << "ms</SPDPInterval>";
+    AddPeers(settings, xml);
+    // The defaults would make repair, and the end of a replay, as late as 100 ms and more.
+    xml << "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash>"
+        << "<HeartbeatInterval max=\"200ms\">20ms</HeartbeatInterval><NackDelay>1ms</NackDelay>"
+        << "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
+        << "<Watermarks><WhcHigh>128MB</WhcHigh></Watermarks></Internal></Domain>";
+    if (!settings.BackendConfig.empty())
+    {
+        xml << "," << Read(settings.BackendConfig);
+    }
+    return xml.str();
+}
+
+}  // namespace Rabit::Cyclone

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <string>
+#include <vector>
+
+#include "Entity.h"
+#include "SessionCore.h"
+
+namespace Rabit::Cyclone
+{
+
+// Larger samples are neither sent nor accepted.
+constexpr std::size_t MaxSample = std::size_t{64} << 20;
+
+Qos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions);
+Qos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions);
+
+// A topic of opaque samples, for one writer or reader. `type` becomes the vendor's type, which lives as long.
+// Throws TransportError.
+Entity MakeTopic(const SessionCore &core, const TopicDescription &topic, const ddsi_sertype *&type);
+
+}  // namespace Rabit::Cyclone

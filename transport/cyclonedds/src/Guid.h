@@ -1,0 +1,23 @@
+// The identities of participants, writers and readers in the three forms that the vendor and we use.
+#pragma once
+
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_guid.h>
+#include <rabit/transport/Transport.h>
+
+#include <array>
+#include <cstdint>
+
+namespace Rabit::Cyclone
+{
+
+// What the GUIDs of one participant and all its endpoints have in common.
+using Prefix = std::array<std::uint8_t, 12>;
+
+WriterId ToWriterId(const ddsi_guid_t &guid);
+WriterId ToWriterId(const dds_guid_t &guid);
+Prefix PrefixOf(const WriterId &id);
+// The participant's own GUID.
+ddsi_guid_t ParticipantOf(const Prefix &prefix);
+
+}  // namespace Rabit::Cyclone

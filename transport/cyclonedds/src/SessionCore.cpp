@@ -1,0 +1,216 @@
+#include "SessionCore.h"
+
+#include <string>
+#include <utility>
+
+#include "ParticipantLease.h"
+#include "common/SettingsCheck.h"
+
+namespace Rabit::Cyclone
+{
+
+namespace
+{
+
+// Of those that went so many are remembered. The instances of their writers end after they are gone, and an
+// announcement may be overtaken by the goodbye that was sent after it.
+constexpr std::size_t MostGone = 64;
+
+// The settings, if they are possible ones.
+const TransportSettings &Checked(const TransportSettings &settings)
+{
+    CheckSettings(settings);
+    return settings;
+}
+
+Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain)
+{
+    const Qos qos = MakeQos();
+    dds_qset_entity_name(qos.get(), settings.Node.c_str());
+    const std::string data = MakeUserData(settings.Incarnation);
+    dds_qset_userdata(qos.get(), data.data(), data.size());
+    return {dds_create_participant(domain, qos.get(), nullptr),
+            "join domain " + std::to_string(settings.Domain)};
+}
+
+// Calls work(sample, info) with each sample of a built-in topic.
+template <typename Sample, typename Work>
+void TakeAll(dds_entity_t reader, const Work &work)
+{
+    void *values[1] = {nullptr};
+    dds_sample_info_t info;
+    while (dds_take(reader, values, &info, 1, 1) == 1)
+    {
+        work(*static_cast<const Sample *>(values[0]), info);
+        dds_return_loan(reader, values, 1);
+        values[0] = nullptr;
+    }
+}
+
+}  // namespace
+
+SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
+    : _log(std::make_shared<SessionLog>(Checked(settings))),
+      _topics(_log),
+      _peerGate(_log, "peer events"),
+      _onPeer(std::move(onPeer)),
+      _domain(settings, _log),
+      _participant(MakeParticipant(settings, _domain.Id()))
+{
+    if (settings.SharedMemory)
+    {
+        _log->Line("Cyclone DDS shares memory only through a daemon of its own: UDP is used");
+    }
+    dds_guid_t guid;
+    dds_get_guid(_participant.Get(), &guid);
+    _own = PrefixOf(ToWriterId(guid));
+    const auto watch = [this](dds_entity_t topic, dds_on_data_available_fn onData)
+    {
+        const Listener listener = MakeListener(this);
+        dds_lset_data_available(listener.get(), onData);
+        // The participant owns it.
+        const dds_entity_t reader = dds_create_reader(Participant(), topic, nullptr, listener.get());
+        if (reader < 0)
+        {
+            throw TransportError(std::string("Cyclone DDS cannot watch its discovery: ") +
+                                 dds_strretcode(reader));
+        }
+    };
+    watch(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, &OnParticipants);
+    watch(DDS_BUILTIN_TOPIC_DCPSPUBLICATION, &OnEndpoints);
+    watch(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, &OnEndpoints);
+}
+
+SessionCore::~SessionCore()
+{
+    Close();
+}
+
+void SessionCore::Close()
+{
+    _closed = true;
+    _peerGate.Close();
+}
+
+std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const WriterId &writer) const
+{
+    const Prefix prefix = PrefixOf(writer);
+    const std::lock_guard lock(_mutex);
+    if (const auto found = _peers.find(prefix); found != _peers.end())
+    {
+        return found->second;
+    }
+    const auto gone = _gone.find(prefix);
+    return gone == _gone.end() ? nullptr : gone->second.Who;
+}
+
+void SessionCore::OnParticipants(dds_entity_t reader, void *self)
+{
+    auto &core = *static_cast<SessionCore *>(self);
+    TakeAll<dds_builtintopic_participant_t>(reader,
+                                            [&](const auto &peer, const dds_sample_info_t &info)
+                                            {
+                                                const Prefix prefix = PrefixOf(ToWriterId(peer.key));
+                                                if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+                                                {
+                                                    core.PeerGone(prefix);
+                                                }
+                                                else if (info.valid_data)
+                                                {
+                                                    core.PeerAppeared(prefix, peer.qos);
+                                                }
+                                            });
+}
+
+void SessionCore::OnEndpoints(dds_entity_t reader, void *self)
+{
+    auto &core = *static_cast<SessionCore *>(self);
+    TakeAll<dds_builtintopic_endpoint_t>(reader,
+                                         [&](const auto &endpoint, const dds_sample_info_t &info)
+                                         {
+                                             const WriterId id = ToWriterId(endpoint.key);
+                                             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+                                             {
+                                                 core._topics.RemoteGone(id);
+                                             }
+                                             else if (info.valid_data && PrefixOf(id) != core._own)
+                                             {
+                                                 core._topics.RemoteAppeared(id, endpoint.topic_name,
+                                                                             endpoint.type_name);
+                                             }
+                                         });
+}
+
+void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
+{
+    void *data = nullptr;
+    std::size_t size = 0;
+    if (prefix == _own || !dds_qget_userdata(qos, &data, &size))
+    {
+        return;
+    }
+    const auto incarnation = ParseUserData({static_cast<const std::uint8_t *>(data), size});
+    dds_free(data);
+    if (!incarnation)
+    {
+        return;
+    }
+    char *name = nullptr;
+    dds_qget_entity_name(qos, &name);
+    const auto identity = std::make_shared<const ParticipantIdentity>(
+        ParticipantIdentity{name != nullptr ? name : "", *incarnation});
+    dds_free(name);
+    {
+        // A prefix belongs to one life of one participant: the one who has left does not come back.
+        const std::lock_guard lock(_mutex);
+        const auto gone = _gone.find(prefix);
+        if ((gone != _gone.end() && gone->second.How == PeerEvent::Kind::Left) ||
+            !_peers.emplace(prefix, identity).second)
+        {
+            return;
+        }
+    }
+    Tell(PeerEvent::Kind::Appeared, identity);
+}
+
+void SessionCore::PeerGone(const Prefix &prefix)
+{
+    const ddsi_guid_t participant = ParticipantOf(prefix);
+    const auto how =
+        RabitCycloneLeaseHasExpired(&participant) ? PeerEvent::Kind::Lost : PeerEvent::Kind::Left;
+    Identity identity;
+    {
+        const std::lock_guard lock(_mutex);
+        const auto found = _peers.find(prefix);
+        if (found == _peers.end())
+        {
+            return;
+        }
+        identity = found->second;
+        _peers.erase(found);
+        if (_gone.insert_or_assign(prefix, Gone{identity, how}).second)
+        {
+            _goneOrder.push_back(prefix);
+        }
+        if (_goneOrder.size() > MostGone)
+        {
+            _gone.erase(_goneOrder.front());
+            _goneOrder.pop_front();
+        }
+    }
+    Tell(how, identity);
+}
+
+void SessionCore::Tell(PeerEvent::Kind kind, const Identity &identity)
+{
+    if (!_onPeer)
+    {
+        return;
+    }
+    _worker.Post(
+        [this, kind, identity] {
+            _peerGate.Run([&] { _onPeer({kind, identity->Node, identity->Incarnation}); });
+        });
+}
+
+}  // namespace Rabit::Cyclone

@@ -1,0 +1,81 @@
+#include "VendorDomain.h"
+
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "DomainConfig.h"
+#include "VendorLog.h"
+
+namespace Rabit::Cyclone
+{
+
+namespace
+{
+
+// The numbers of this process's domains.
+class Numbers
+{
+public:
+    // `wanted` if no session has it, so that a vendor's file that names the domain applies; else one that no
+    // domain of the network has.
+    static dds_domainid_t Take(dds_domainid_t wanted)
+    {
+        constexpr dds_domainid_t FirstOther = 1000;
+        const std::lock_guard lock(Mutex());
+        dds_domainid_t number = wanted;
+        for (dds_domainid_t other = FirstOther; !Taken().insert(number).second; ++other)
+        {
+            number = other;
+        }
+        return number;
+    }
+    static void Give(dds_domainid_t number)
+    {
+        const std::lock_guard lock(Mutex());
+        Taken().erase(number);
+    }
+
+private:
+    static std::mutex &Mutex()
+    {
+        static std::mutex mutex;
+        return mutex;
+    }
+    static std::set<dds_domainid_t> &Taken()
+    {
+        static std::set<dds_domainid_t> taken;
+        return taken;
+    }
+};
+
+}  // namespace
+
+VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log)
+{
+    const std::string config = MakeDomainConfig(settings);
+    _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
+    VendorLog::Follow(_id, log);
+    const dds_entity_t entity = dds_create_domain(_id, config.c_str());
+    if (entity < 0)
+    {
+        std::string why = VendorLog::Leave(_id);
+        Numbers::Give(_id);
+        if (why.empty())
+        {
+            why = dds_strretcode(entity);
+        }
+        throw TransportError("Cyclone DDS cannot join domain " + std::to_string(settings.Domain) + ": " +
+                             why);
+    }
+    _entity = Entity(entity, "");
+}
+
+VendorDomain::~VendorDomain()
+{
+    _entity.Reset();
+    VendorLog::Leave(_id);
+    Numbers::Give(_id);
+}
+
+}  // namespace Rabit::Cyclone
