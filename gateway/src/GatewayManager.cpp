@@ -15,6 +15,7 @@
 #include "OriginTable.h"
 #include "Presence.h"
 #include "RemoteQueues.h"
+#include "SourceClock.h"
 #include "Subscriptions.h"
 #include "TopicPublisher.h"
 #include "TypeDefinition.h"
@@ -110,7 +111,8 @@ public:
           _links(std::make_shared<LinkDriver>(_config, _workspace, _remote, _incarnations, random(),
                                               manager.WakeUpHandler())),
           _incarnation(_links->Incarnation()),
-          _presence(config.Node, _incarnation, _workspace.GetClock(), _origins, _remote,
+          _source(_workspace.GetClock()),
+          _presence(config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote,
                     manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace),
           _fleet(std::make_shared<Gateway::Fleet>())
@@ -199,7 +201,8 @@ private:
         _subscriptions.Open(*_session);
         for (const PublishRule &rule : _config.Publish)
         {
-            _publishers.emplace_back(rule, *MessageTypeRegistry::Find(rule.Type), _config.Node, *_session);
+            _publishers.emplace_back(rule, *MessageTypeRegistry::Find(rule.Type), _config.Node, _source,
+                                     *_session);
             Attach(_publishers.back());
         }
         _presence.Open(*_session, AnnouncementOf(_config, _incarnation));
@@ -277,6 +280,7 @@ private:
     RemoteQueues _remote;
     const std::shared_ptr<LinkDriver> _links;
     const std::uint64_t _incarnation;
+    const SourceClock _source;
     Presence _presence;
     Subscriptions _subscriptions;
     std::shared_ptr<Gateway::Fleet> _fleet;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -13,15 +14,29 @@ namespace Rabit
 {
 
 // What the transport's threads need to know of a node whose sample arrives: which life of it is the present
-// one, and how its wall clock relates to our monotonic clock. Written by the gateway's thread. Thread-safe.
+// one, and how its clocks relate to ours. Written by the gateway's thread. Thread-safe.
 class OriginTable
 {
 public:
     struct Origin
     {
+        // What delays of the network may make the estimate wrong by.
+        static constexpr std::chrono::nanoseconds Slack = std::chrono::seconds(1);
+
         std::uint64_t Incarnation = 0;
-        // Add this to the node's wall clock (since 1970) to get this node's monotonic clock.
-        std::chrono::nanoseconds WallToLocal{0};
+        // Add these to the node's source times to get this node's monotonic clock, and the node's wall clock.
+        std::chrono::nanoseconds SourceToLocal{0};
+        std::chrono::nanoseconds SourceToWall{0};
+
+        // When, by this node's monotonic clock, something was posted that arrived now. Empty if that is in
+        // the future by more than the slack: then the estimate rests on a beat that was held up on its way,
+        // and nobody can say how old the sample is.
+        std::optional<std::chrono::nanoseconds> PostedAt(std::int64_t sourceTime,
+                                                         std::chrono::nanoseconds arrival) const
+        {
+            const std::chrono::nanoseconds posted = std::chrono::nanoseconds(sourceTime) + SourceToLocal;
+            return posted > arrival + Slack ? std::nullopt : std::optional(std::min(posted, arrival));
+        }
     };
 
     void Set(const std::string &node, const Origin &origin)

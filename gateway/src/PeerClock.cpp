@@ -35,10 +35,11 @@ std::optional<PeerClock::Duration> PeerClock::MinimumFilter::Value() const
     return _current;
 }
 
-void PeerClock::OnBeat(Duration peerMonotonic, Duration peerWall, Duration arrival)
+void PeerClock::OnBeat(const Reading &peer, Duration arrival)
 {
-    _difference.Add(arrival - peerMonotonic, arrival);
-    _wallMinusMonotonic = peerWall - peerMonotonic;
+    _difference.Add(arrival - peer.Monotonic, arrival);
+    _monotonicToSource = peer.Source - peer.Monotonic;
+    _sourceToWall = peer.Wall - peer.Source;
 }
 
 void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
@@ -60,10 +61,10 @@ std::optional<PeerClock::Duration> PeerClock::MonotonicToLocal() const
     return *difference - _roundTrip.Value().value_or(Duration(0)) / 2;
 }
 
-std::optional<PeerClock::Duration> PeerClock::WallToLocal() const
+std::optional<PeerClock::Duration> PeerClock::SourceToLocal() const
 {
     const std::optional<Duration> offset = MonotonicToLocal();
-    return offset ? std::optional<Duration>(*offset - _wallMinusMonotonic) : std::nullopt;
+    return offset ? std::optional<Duration>(*offset - _monotonicToSource) : std::nullopt;
 }
 
 std::optional<PeerClock::Duration> PeerClock::SentAt(Duration peerMonotonic) const

@@ -146,7 +146,9 @@ PeerTable::Change PeerTable::OnBeat(const Gateway::Beat &beat, Duration now)
     {
         return change;  // a duplicate, or overtaken
     }
-    peer->Clock.OnBeat(monotonic, Nanoseconds(beat.utc_ns), now);
+    peer->Clock.OnBeat(
+        {.Monotonic = monotonic, .Source = Nanoseconds(beat.source_ns), .Wall = Nanoseconds(beat.utc_ns)},
+        now);
     MeasureRoundTrip(*peer, beat, now);
     peer->LastBeatMonotonic = monotonic;
     peer->LastBeatArrival = now;

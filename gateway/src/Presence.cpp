@@ -31,8 +31,8 @@ bool IsPlausible(std::int64_t nanoseconds)
 
 bool IsPlausible(const Gateway::Beat &beat)
 {
-    return IsNodeName(beat.node) && IsPlausible(beat.monotonic_ns) && IsPlausible(beat.utc_ns) &&
-           beat.echoes.size() <= 64 &&
+    return IsNodeName(beat.node) && IsPlausible(beat.monotonic_ns) && IsPlausible(beat.source_ns) &&
+           IsPlausible(beat.utc_ns) && beat.echoes.size() <= 64 &&
            std::all_of(beat.echoes.begin(), beat.echoes.end(),
                        [](const Gateway::BeatEcho &echo)
                        { return IsPlausible(echo.monotonic_ns) && IsPlausible(echo.held_ns); });
@@ -53,10 +53,12 @@ bool IsPlausible(const Gateway::Announcement &announcement)
 }  // namespace
 
 Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-                   OriginTable &origins, RemoteQueues &remote, std::function<void()> wake)
+                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote,
+                   std::function<void()> wake)
     : _node(node),
       _incarnation(incarnation),
       _clock(clock),
+      _source(source),
       _origins(origins),
       _remote(remote),
       _wake(std::move(wake)),
@@ -205,10 +207,10 @@ void Presence::Publish(const std::string &node)
         return;
     }
     _remote.Update(*peer);
-    const std::optional<Duration> offset = peer->Clock.WallToLocal();
+    const std::optional<Duration> offset = peer->Clock.SourceToLocal();
     if (peer->Heard && offset)
     {
-        _origins.Set(node, OriginTable::Origin{peer->Incarnation, *offset});
+        _origins.Set(node, OriginTable::Origin{peer->Incarnation, *offset, peer->Clock.SourceToWall()});
     }
 }
 
@@ -252,13 +254,14 @@ void Presence::SendBeat(Duration now)
     {
         return;
     }
-    // Both clocks read at one moment: the others compute one from the other.
+    // All clocks read at one moment: the others compute one from the other.
     const PostTime time = _clock.Now();
     const std::int64_t utc = GpsTime::ToUtcNanoseconds(time.GpsTimeSeconds);
     Gateway::Beat beat;
     beat.node = _node;
     beat.incarnation = _incarnation;
     beat.monotonic_ns = time.Monotonic.count();
+    beat.source_ns = _source.At(time.Monotonic);
     beat.utc_ns = utc;
     beat.echoes = _peers.NextEchoes(time.Monotonic, EchoesInABeat);
     static_cast<void>(_beatWriter->Write(MessageEncoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat), utc));

@@ -15,6 +15,7 @@
 #include "OriginTable.h"
 #include "PeerTable.h"
 #include "RemoteQueues.h"
+#include "SourceClock.h"
 #include "gateway.idl.h"
 
 namespace Rabit
@@ -34,7 +35,8 @@ public:
     // `wake` makes the gateway's thread call Service soon; called on any thread. References must outlive the
     // object.
     Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-             OriginTable &origins, RemoteQueues &remote, std::function<void()> wake);
+             const SourceClock &source, OriginTable &origins, RemoteQueues &remote,
+             std::function<void()> wake);
     ~Presence();
 
     // Starts to send and to receive. Throws TransportError.
@@ -76,6 +78,7 @@ private:
     const std::string _node;
     const std::uint64_t _incarnation;
     const RabitClock &_clock;
+    const SourceClock _source;
     OriginTable &_origins;
     RemoteQueues &_remote;
     const std::function<void()> _wake;

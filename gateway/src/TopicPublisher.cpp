@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "GatewayTopics.h"
-#include "GpsTime.h"
 #include "MessageEncoder.h"
 
 namespace Rabit
@@ -11,9 +10,10 @@ namespace Rabit
 
 // Both partitions: plain DDS programs read the default one, nodes read those of the nodes they want.
 TopicPublisher::TopicPublisher(const PublishRule &rule, const MessageType &type, const std::string &node,
-                               TransportSession &session)
+                               const SourceClock &source, TransportSession &session)
     : _rule(rule),
       _type(type),
+      _source(source),
       _local(type.Create()),
       _writer(session.CreateWriter(GatewayTopics::Describe(rule.Message, type),
                                    GatewayTopics::QosOf(rule.Qos), {"", node}))
@@ -56,7 +56,7 @@ TopicPublisher::Duration TopicPublisher::Service(Duration now)
 void TopicPublisher::Write(Duration now)
 {
     const WriteResult result =
-        _writer->Write(MessageEncoder(_type, *_local), GpsTime::ToUtcNanoseconds(_local->GetTimeStamp()));
+        _writer->Write(MessageEncoder(_type, *_local), _source.At(_local->GetPostTime().Monotonic));
     _written += result == WriteResult::Ok ? 1 : 0;
     _failures += result == WriteResult::Ok ? 0 : 1;
     // A value that the network did not take in time is tried again after the usual gap; one that can never be

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "SourceClock.h"
 #include "gateway.idl.h"
 
 namespace Rabit
@@ -25,7 +26,7 @@ public:
     static constexpr Duration StateRepeatPeriod = std::chrono::seconds(1);
 
     TopicPublisher(const PublishRule &rule, const MessageType &type, const std::string &node,
-                   TransportSession &session);
+                   const SourceClock &source, TransportSession &session);
 
     const PublishRule &Rule() const { return _rule; }
     const MessageType &Type() const { return _type; }
@@ -48,6 +49,7 @@ private:
 
     PublishRule _rule;
     const MessageType &_type;
+    const SourceClock _source;
     std::shared_ptr<RabitMessage> _local;
     std::unique_ptr<TransportWriter> _writer;
     bool _attached = false;

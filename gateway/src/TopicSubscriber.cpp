@@ -15,6 +15,9 @@ namespace Rabit
 namespace
 {
 
+// Backends may round a time to a microsecond; two posts as close as that differ in content or do not matter.
+constexpr std::int64_t Rounding = 2000;
+
 std::uint64_t HashOf(SampleBytes bytes)
 {
     return std::hash<std::string_view>{}(
@@ -85,10 +88,16 @@ void TopicSubscriber::Register(Source &source)
 
 bool TopicSubscriber::IsRepetition(const Source &source, const SampleInfo &info, std::uint64_t hash) const
 {
-    // Backends may round the time to a microsecond; two posts as close as that differ in content or do not
-    // matter.
     return _profile == QosProfile::State && source.AnyPosted && source.Incarnation == info.Incarnation &&
-           source.LastHash == hash && std::llabs(source.LastTime - info.SourceTime) <= 2000;
+           source.LastHash == hash && std::llabs(source.LastTime - info.SourceTime) <= Rounding;
+}
+
+// What the network held up while the two nodes lost each other comes after what followed it: DDS keeps the
+// order only as long as a match lasts.
+bool TopicSubscriber::IsOvertaken(const Source &source, const SampleInfo &info)
+{
+    return source.AnyPosted && source.Incarnation == info.Incarnation &&
+           info.SourceTime < source.LastTime - Rounding;
 }
 
 void TopicSubscriber::CountUndecodable(Source &source, std::size_t size)
@@ -118,7 +127,10 @@ void TopicSubscriber::OnSample(SampleBytes bytes, const SampleInfo &info)
         return;
     }
     const auto origin = _origins.Find(info.Node);
-    if (info.Node.empty() || !origin || origin->Incarnation != info.Incarnation)
+    const bool known = !info.Node.empty() && origin && origin->Incarnation == info.Incarnation;
+    const auto posted =
+        known ? origin->PostedAt(info.SourceTime, _workspace.GetClock().Monotonic()) : std::nullopt;
+    if (!posted || IsOvertaken(*source, info))
     {
         const std::lock_guard lock(_mutex);
         ++source->Counters.refused;
@@ -146,11 +158,8 @@ void TopicSubscriber::OnSample(SampleBytes bytes, const SampleInfo &info)
         ++source->Counters.refused;
         return;
     }
-    // An estimate may say that it was posted a little after it arrived.
-    const std::chrono::nanoseconds arrival = _workspace.GetClock().Monotonic();
-    const std::chrono::nanoseconds posted = std::chrono::nanoseconds(info.SourceTime) + origin->WallToLocal;
-    source->Global->PostMessage(_scratch.get(),
-                                PostTime{GpsTime::ToGps(info.SourceTime), std::min(posted, arrival)});
+    const double stamp = GpsTime::ToGps(info.SourceTime + origin->SourceToWall.count());
+    source->Global->PostMessage(_scratch.get(), PostTime{stamp, *posted});
     source->AnyPosted = true;
     source->Incarnation = info.Incarnation;
     source->LastTime = info.SourceTime;

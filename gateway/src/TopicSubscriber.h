@@ -66,6 +66,7 @@ private:
     void OnSample(SampleBytes bytes, const SampleInfo &info);
     Source *SourceOf(std::string_view node);
     void Register(Source &source);
+    static bool IsOvertaken(const Source &source, const SampleInfo &info);
     bool IsRepetition(const Source &source, const SampleInfo &info, std::uint64_t hash) const;
     void CountUndecodable(Source &source, std::size_t size);
 

@@ -94,6 +94,81 @@ TEST_F(MirrorTest, TheAgeStaysRightWhenTheOriginsClockIsSet)
     EXPECT_LT(mirrored->GetAgeSeconds(), 0.01);
 }
 
+TEST_F(MirrorTest, AnOldStateDoesNotLookNewWhenTheOriginsClockIsSetBack)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    auto state = uav.Register<Uav::MissionState>("MissionState");
+    state->PostMessage();
+    fleet.RunFor(60s);
+    uav.Clock->SetGpsTimeSeconds(1.4e9 - 3600.0);
+    fleet.RunFor(2s);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto mirrored = ground.Register<Uav::MissionState>("uav1/MissionState");
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 5s));
+    EXPECT_GT(mirrored->GetAgeSeconds(), 61.9);
+}
+
+TEST_F(MirrorTest, AValueOnItsWayDoesNotLookNewWhenTheOriginsClockIsSetBack)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    SimulatedFaults slow;
+    slow.Delay = 20s;
+    fleet.Network.SetFaults("uav1", "ground", slow);
+    pose->PostMessage();
+    fleet.RunFor(1ms);
+    fleet.Network.ClearFaults();
+    uav.Clock->SetGpsTimeSeconds(uav.Clock->GpsTimeSeconds() - 15.0);
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 30s));
+    EXPECT_NEAR(mirrored->GetAgeSeconds(), 20.0, 0.01);
+}
+
+TEST_F(MirrorTest, AValueFromBeforeAPartitionDoesNotReplaceANewerOne)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    SimulatedFaults slow;
+    slow.Delay = 30s;
+    fleet.Network.SetFaults("uav1", "ground", slow);
+    pose->number = 1;
+    pose->PostMessage();
+    fleet.RunFor(1ms);
+    fleet.Network.ClearFaults();
+    pose->number = 2;
+    pose->PostMessage();
+    fleet.RunFor(1s);
+    mirrored->FetchMessage();
+    ASSERT_EQ(mirrored->number, 2u);
+    SimulatedFaults cut;
+    cut.Cut = true;
+    fleet.Network.SetFaults("uav1", "ground", cut);
+    fleet.RunFor(10s);
+    fleet.Network.ClearFaults();
+    fleet.RunFor(30s);
+    mirrored->FetchMessage();
+    EXPECT_EQ(mirrored->number, 2u);
+}
+
+TEST_F(MirrorTest, AfterItsClockWasSetTheTimeStampOfAnOriginFollows)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    uav.Clock->SetGpsTimeSeconds(1.3e9);
+    fleet.RunFor(1s);
+    pose->PostMessage();
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
+    EXPECT_NEAR(mirrored->GetTimeStamp(), pose->GetTimeStamp(), 1e-6);
+}
+
 TEST_F(MirrorTest, AStateReachesALateJoinerWithItsTrueAge)
 {
     SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
@@ -326,6 +401,7 @@ public:
         beat.node = _node;
         beat.incarnation = 42;
         beat.monotonic_ns = now.count();
+        beat.source_ns = now.count();
         beat.utc_ns = now.count();
         Send(*_beats, Encoded(beat));
     }

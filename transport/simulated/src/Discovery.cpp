@@ -31,11 +31,13 @@ Datagram MakeEndpointsAck(std::uint64_t version)
     return ack;
 }
 
-Datagram MakeAnnouncement(const ParticipantPtr &participant)
+Datagram MakeAnnouncement(const ParticipantPtr &participant, ParticipantId to)
 {
+    const auto peer = participant->Peers.find(to);
     Datagram announcement;
     announcement.What = Datagram::Kind::Announce;
     announcement.Sender = participant;
+    announcement.First = peer == participant->Peers.end() ? 0 : peer->second.TheirVersion;
     return announcement;
 }
 
@@ -48,7 +50,7 @@ void NetworkCore::Announce(const ParticipantPtr &participant)
     {
         if (other != participant && other->Settings.Domain == participant->Settings.Domain)
         {
-            Send(*participant, id, MakeAnnouncement(participant), _timings.DiscoveryDelay);
+            Send(*participant, id, MakeAnnouncement(participant, id), _timings.DiscoveryDelay);
         }
     }
     Time next = participant->Settings.AnnouncementPeriod;
@@ -67,20 +69,20 @@ void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from,
         return;  // sent before the goodbye, and overtaken by it
     }
     const auto [entry, isNew] = me->Peers.try_emplace(from);
+    Peer &peer = entry->second;
     if (!isNew)
     {
+        // One side may have lost the other, and with it what it was told, while the other noticed nothing.
+        HearEndpointsAck(*me, from, peer, datagram.First);
         return;
     }
-    Peer &peer = entry->second;
     peer.Birth = ++_lastBirth;
     peer.Who = datagram.Sender->Who;
     peer.Lease = datagram.Sender->Settings.Lease;
     peer.LastHeard = _now;
     Later(peer.Lease, {Event::Kind::LeaseTimer, me->Id, from, peer.Birth, {}});
     TellPeerEvent(me, peer, PeerEvent::Kind::Appeared);
-    Send(*me, from, MakeAnnouncement(me), _timings.DiscoveryDelay);
-    // It may believe that this participant knows its endpoints: from before a cut, for instance.
-    Send(*me, from, MakeEndpointsAck(0));
+    Send(*me, from, MakeAnnouncement(me, from), _timings.DiscoveryDelay);
     SendEndpoints(*me, from, peer);
 }
 
@@ -180,10 +182,7 @@ void NetworkCore::HearEndpointsAck(const ParticipantState &me, ParticipantId fro
                                    std::uint64_t version)
 {
     peer.ConfirmedVersion = version;
-    if (version == 0)
-    {
-        SendEndpoints(me, from, peer);
-    }
+    SendEndpoints(me, from, peer);
 }
 
 void NetworkCore::HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)

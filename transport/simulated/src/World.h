@@ -65,7 +65,7 @@ struct Datagram
 {
     enum class Kind
     {
-        Announce,        // I am here
+        Announce,        // I am here, and know your endpoints of version First
         Bye,             // I go
         Endpoints,       // my endpoints, version First
         EndpointsAck,    // I know your endpoints of version First

@@ -16,9 +16,10 @@ inline constexpr const char *FleetMessageName = "Gateway/Fleet";
 // Joins this process to the other nodes of its domain.
 //
 // - Every `publish` message posted locally is written to the DDS topic of its name.
-// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, with the time stamp
-//   of its origin and an age that counts from its post over there, whatever the clocks say. Nothing of a
-//   node is posted before that node has been heard as live, so an old value never looks new.
+// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, stamped with the
+//   time of its post by the wall clock of its origin, and with an age that counts from its post over there,
+//   whatever the clocks say and however they are set. Nothing of a node is posted before that node has been
+//   heard as live, so an old value never looks new.
 // - AddMessageToQueue("<node>/<queue>", message) sends a message to a queue of another node,
 //   "*/<queue>" to that queue of every live node that accepts it. False means refused; Gateway/Fleet counts
 //   why. Every accepted message comes to exactly one outcome; give AddMessageToQueue a RabitQueueReceipt to

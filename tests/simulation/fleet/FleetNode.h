@@ -1,0 +1,85 @@
+#pragma once
+
+#include "Crew.h"
+#include "FleetWorld.h"
+
+#include <rabit/ManualClock.h>
+#include <rabit/RabitSteppedReactor.h>
+#include <rabit/RabitWorkspace.h>
+#include <rabit/simulated/SimulatedNetwork.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace Rabit::Sim
+{
+
+// The monotonic clock of one process: starts at its own reading and runs at its own rate.
+struct ProcessClock
+{
+    Time StartedAt{0};  // true time
+    Time Offset{0};
+    std::int64_t DriftPpm = 0;
+
+    Time At(Time trueTime) const;
+    // The first true time at which it shows `reading` or more.
+    Time TrueTimeOf(Time reading) const;
+};
+
+// A machine with a wall clock and perhaps a counter file, on which a process with a gateway and a crew starts
+// and ends.
+class FleetNode
+{
+public:
+    // `stateDirectory` is its own; it need not exist.
+    FleetNode(FleetWorld &world, const Oracles &oracles, SimulatedNetwork &network, SimRandom &random,
+              std::size_t index, std::filesystem::path stateDirectory);
+    ~FleetNode();
+
+    bool IsAlive() const { return _process != nullptr; }
+    std::size_t CurrentLife() const { return _life; }
+    Sim::Crew &Crew() { return *_process->Crew; }
+    const ProcessClock &Clock() const { return _clock; }
+
+    void Start(bool loseStorage);
+    // As by SIGKILL.
+    void Crash();
+    void Leave();
+    void StepWallClock(std::int64_t seconds);
+
+    // When, in true time, its process wants to run next.
+    std::optional<Time> NextDue() const;
+    // Lets the clocks of the process show the present.
+    void FollowTime();
+    void RunDue();
+
+private:
+    struct Process
+    {
+        Process(double gps, Time monotonic)
+            : Clock(std::make_shared<ManualClock>(gps, monotonic)), Workspace(Clock), Reactor(Workspace)
+        {
+        }
+        std::shared_ptr<ManualClock> Clock;
+        RabitWorkspace Workspace;
+        RabitSteppedReactor Reactor;
+        Sim::Crew *Crew = nullptr;  // the reactor's
+    };
+
+    GatewayConfig MakeConfig() const;
+    void End();
+
+    FleetWorld &_world;
+    const Oracles &_oracles;
+    SimulatedNetwork &_network;
+    SimRandom &_random;
+    const std::size_t _index;
+    const std::filesystem::path _stateDirectory;
+    double _wallSteps = 0;  // seconds
+    std::size_t _life = 0;
+    ProcessClock _clock;
+    std::unique_ptr<Process> _process;
+};
+
+}  // namespace Rabit::Sim

@@ -1,0 +1,448 @@
+#include "FleetSimulation.h"
+
+#include "FleetNode.h"
+#include "FleetPlan.h"
+#include "FleetWorld.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace Rabit::Sim
+{
+
+namespace
+{
+
+using namespace std::chrono_literals;
+
+// Everybody must know everybody, have the latest of everybody, and all that was accepted must have its
+// outcome this long after the faults have stopped.
+constexpr Time DrainTime = 60s;
+constexpr std::uint64_t MostSteps = 5'000'000;
+
+// Removed with all that is in it.
+class ScratchDirectory
+{
+public:
+    explicit ScratchDirectory(std::uint64_t seed)
+        : _path(std::filesystem::temp_directory_path() /
+                ("rabit_fleet_simulation." + std::to_string(::getpid()) + "." + std::to_string(seed)))
+    {
+    }
+    ~ScratchDirectory()
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(_path, ignored);
+    }
+    ScratchDirectory(const ScratchDirectory &) = delete;
+    ScratchDirectory &operator=(const ScratchDirectory &) = delete;
+    const std::filesystem::path &Path() const { return _path; }
+
+private:
+    std::filesystem::path _path;
+};
+
+// Something of the plan that happens at a moment.
+struct PlannedEvent
+{
+    enum class Kind
+    {
+        Fault,
+        Burst,
+        Mode,
+        Calm
+    };
+    Time At{0};
+    Kind What = Kind::Calm;
+    std::size_t Index = 0;
+};
+
+class FleetSimulation
+{
+public:
+    FleetSimulation(std::uint64_t seed, std::ostream *trace);
+    SeedResult Run();
+
+private:
+    struct Path
+    {
+        SimulatedFaults Weather;
+        int Cuts = 0;
+    };
+    struct FaultCounts
+    {
+        std::uint64_t Crashes = 0;
+        std::uint64_t Leaves = 0;
+        std::uint64_t StoragesLost = 0;
+        std::uint64_t ClockSteps = 0;
+        std::uint64_t Cuts = 0;
+    };
+
+    void MakeAgenda();
+    Time NextStep() const;
+    void StepTo(Time time);
+    void RunPlanned(const PlannedEvent &event);
+    void OnFault(const FaultEvent &fault);
+    void OnBurst(const Burst &burst);
+    void OnCalm();
+    void ApplyPath(std::size_t from, std::size_t to);
+    // Empty if all is as it should be when the faults are over, else what is not.
+    std::string WhatIsMissing();
+    std::string MissingBetween(std::size_t observer, std::size_t node);
+    std::vector<Figure> Figures() const;
+
+    const FleetPlan _plan;
+    SimRandom _random;
+    FleetWorld _world;
+    NoteOracle _notes;
+    MirrorOracle _mirrors;
+    PresenceOracle _presence;
+    SimulatedNetwork _network;
+    ScratchDirectory _scratch;
+    Oracles _oracles;
+    std::vector<std::unique_ptr<FleetNode>> _nodes;
+    std::vector<ProcessClock> _clocks;  // by life
+    std::vector<Path> _paths;
+    std::vector<PlannedEvent> _agenda;  // by time
+    std::size_t _nextPlanned = 0;
+    std::uint64_t _steps = 0;
+    FaultCounts _faults;
+    Time _settledAt{0};
+};
+
+FleetSimulation::FleetSimulation(std::uint64_t seed, std::ostream *trace)
+    : _plan(seed),
+      _random(seed ^ 0x5851f42d4c957f2dULL),
+      _world{.Plan = _plan, .Trace = trace, .Lives = {}, .Failure = {}},
+      _notes(_world),
+      _mirrors(_world),
+      _presence(_world),
+      _network(seed),
+      _scratch(seed),
+      _oracles{
+          .Notes = _notes, .Mirrors = _mirrors, .Presence = _presence, .ClockOf = [this](std::size_t life) {
+              return _clocks[life].At(_world.Now);
+          }}
+{
+    for (std::size_t i = 0; i < _plan.Machines.size(); ++i)
+    {
+        _nodes.push_back(std::make_unique<FleetNode>(_world, _oracles, _network, _random, i,
+                                                     _scratch.Path() / _plan.Machines[i].Name));
+    }
+    for (std::size_t from = 0; from < _nodes.size(); ++from)
+    {
+        for (std::size_t to = 0; to < _nodes.size(); ++to)
+        {
+            _paths.push_back({_plan.Start[from * _nodes.size() + to], 0});
+            ApplyPath(from, to);
+        }
+    }
+    MakeAgenda();
+}
+
+void FleetSimulation::MakeAgenda()
+{
+    const auto add = [this](const auto &list, PlannedEvent::Kind kind)
+    {
+        for (std::size_t i = 0; i < list.size(); ++i)
+        {
+            _agenda.push_back({list[i].At, kind, i});
+        }
+    };
+    add(_plan.Faults, PlannedEvent::Kind::Fault);
+    add(_plan.Bursts, PlannedEvent::Kind::Burst);
+    add(_plan.Modes, PlannedEvent::Kind::Mode);
+    _agenda.push_back({_plan.CalmAt, PlannedEvent::Kind::Calm, 0});
+    std::stable_sort(_agenda.begin(), _agenda.end(),
+                     [](const PlannedEvent &a, const PlannedEvent &b) { return a.At < b.At; });
+}
+
+void FleetSimulation::ApplyPath(std::size_t from, std::size_t to)
+{
+    const Path &path = _paths[from * _nodes.size() + to];
+    SimulatedFaults faults = path.Weather;
+    faults.Cut = path.Cuts > 0;
+    _network.SetFaults(_world.NameOf(from), _world.NameOf(to), faults);
+}
+
+Time FleetSimulation::NextStep() const
+{
+    Time next = _network.NextEvent().value_or(Time::max());
+    if (_nextPlanned < _agenda.size())
+    {
+        next = std::min(next, _agenda[_nextPlanned].At);
+    }
+    for (const auto &node : _nodes)
+    {
+        next = std::min(next, node->NextDue().value_or(Time::max()));
+    }
+    return next;
+}
+
+void FleetSimulation::StepTo(Time time)
+{
+    ++_steps;
+    _world.Now = std::max(_world.Now, time);
+    // The nodes' clocks first: handlers that the network calls read them.
+    for (const auto &node : _nodes)
+    {
+        node->FollowTime();
+    }
+    _network.AdvanceTo(_world.Now);
+    while (_nextPlanned < _agenda.size() && _agenda[_nextPlanned].At <= _world.Now)
+    {
+        RunPlanned(_agenda[_nextPlanned++]);
+    }
+    for (const auto &node : _nodes)
+    {
+        node->RunDue();
+    }
+}
+
+void FleetSimulation::RunPlanned(const PlannedEvent &event)
+{
+    switch (event.What)
+    {
+        case PlannedEvent::Kind::Fault:
+            OnFault(_plan.Faults[event.Index]);
+            break;
+        case PlannedEvent::Kind::Burst:
+            OnBurst(_plan.Bursts[event.Index]);
+            break;
+        case PlannedEvent::Kind::Mode:
+            if (FleetNode &node = *_nodes[_plan.Modes[event.Index].Node]; node.IsAlive())
+            {
+                node.Crew().PostMode();
+            }
+            break;
+        case PlannedEvent::Kind::Calm:
+            OnCalm();
+            break;
+    }
+}
+
+void FleetSimulation::OnBurst(const Burst &burst)
+{
+    FleetNode &source = *_nodes[burst.Source];
+    if (source.IsAlive())
+    {
+        _world.Say(_world.NameOf(burst.Source) + " sends " + std::to_string(burst.Count) + " notes to " +
+                   (burst.Destination == Burst::ToAll ? "all" : _world.NameOf(burst.Destination)) +
+                   " from note " + std::to_string(_notes.Notes()));
+        source.Crew().Send(burst.Destination, burst.Count);
+    }
+}
+
+void FleetSimulation::OnFault(const FaultEvent &fault)
+{
+    FleetNode &node = *_nodes[fault.A];
+    Path &path = _paths[fault.A * _nodes.size() + fault.B];
+    static constexpr const char *Names[] = {"weather", "cut",   "cut ends",   "crash",
+                                            "leave",   "start", "clock step", "stall"};
+    _world.Say(std::string(Names[static_cast<int>(fault.Kind)]) + " " + _world.NameOf(fault.A) + " " +
+               _world.NameOf(fault.B) + " " + std::to_string(fault.Amount) +
+               (fault.LoseStorage ? " storage lost" : ""));
+    switch (fault.Kind)
+    {
+        case FaultKind::Weather:
+            path.Weather = fault.Weather;
+            ApplyPath(fault.A, fault.B);
+            break;
+        case FaultKind::CutStart:
+            ++_faults.Cuts;
+            ++path.Cuts;
+            _presence.OnCut(fault.A, fault.B);
+            ApplyPath(fault.A, fault.B);
+            break;
+        case FaultKind::CutEnd:
+            --path.Cuts;
+            _presence.OnCutEnd(fault.A, fault.B);
+            ApplyPath(fault.A, fault.B);
+            break;
+        case FaultKind::Crash:
+        case FaultKind::Leave:
+            if (node.IsAlive())
+            {
+                ++(fault.Kind == FaultKind::Crash ? _faults.Crashes : _faults.Leaves);
+                fault.Kind == FaultKind::Crash ? node.Crash() : node.Leave();
+            }
+            break;
+        case FaultKind::Start:
+            if (!node.IsAlive())
+            {
+                _faults.StoragesLost += fault.LoseStorage ? 1 : 0;
+                node.Start(fault.LoseStorage);
+                _clocks.push_back(node.Clock());
+            }
+            break;
+        case FaultKind::ClockStep:
+            ++_faults.ClockSteps;
+            node.StepWallClock(fault.Amount);
+            break;
+        case FaultKind::Stall:
+            if (node.IsAlive())
+            {
+                node.Crew().StallUntil(_world.Now + Time(fault.Amount));
+            }
+            break;
+    }
+}
+
+void FleetSimulation::OnCalm()
+{
+    _world.Say("calm");
+    for (std::size_t i = 0; i < _nodes.size(); ++i)
+    {
+        for (std::size_t j = 0; j < _nodes.size(); ++j)
+        {
+            _paths[i * _nodes.size() + j].Weather = SimulatedFaults();
+            ApplyPath(i, j);
+        }
+        if (_nodes[i]->IsAlive())
+        {
+            _nodes[i]->Crew().Hurry();
+        }
+        else if (!_plan.Machines[i].NeverThere)
+        {
+            _nodes[i]->Start(false);
+            _clocks.push_back(_nodes[i]->Clock());
+            _nodes[i]->Crew().Hurry();
+        }
+    }
+}
+
+std::string FleetSimulation::MissingBetween(std::size_t observer, std::size_t node)
+{
+    const std::size_t life = _nodes[node]->CurrentLife();
+    const std::size_t seenBy = _nodes[observer]->CurrentLife();
+    const std::string who = _world.NameOf(observer) + " of " + _world.NameOf(node);
+    if (!PresenceOracle::IsUp(_nodes[observer]->Crew().Fleet(), _world.NameOf(node)))
+    {
+        return who + ": is not shown as UP";
+    }
+    if (!_mirrors.IsUpToDate(MirrorOracle::Topic::Mode, seenBy, life))
+    {
+        return who + ": has not the latest mode";
+    }
+    if (_mirrors.AgeOf(MirrorOracle::Topic::Track, seenBy, life) > _plan.Machines[node].TrackPeriod + 100ms)
+    {
+        return who + ": has no recent track";
+    }
+    return "";
+}
+
+std::string FleetSimulation::WhatIsMissing()
+{
+    std::vector<bool> alive;
+    for (const auto &node : _nodes)
+    {
+        alive.push_back(node->IsAlive());
+    }
+    for (std::size_t i = 0; i < _nodes.size(); ++i)
+    {
+        for (std::size_t j = 0; j < _nodes.size(); ++j)
+        {
+            if (i == j || !alive[i] || !alive[j])
+            {
+                continue;
+            }
+            const std::string missing = MissingBetween(i, j);
+            if (!missing.empty())
+            {
+                return missing;
+            }
+        }
+    }
+    const std::size_t undrained = _notes.Undrained(alive);
+    return undrained == 0 ? "" : std::to_string(undrained) + " notes have no outcome";
+}
+
+SeedResult FleetSimulation::Run()
+{
+    for (std::size_t i = 0; i < _nodes.size(); ++i)
+    {
+        if (!_plan.Machines[i].NeverThere)
+        {
+            _nodes[i]->Start(false);
+            _clocks.push_back(_nodes[i]->Clock());
+        }
+    }
+    Time nextLook = _plan.CalmAt + 1s;
+    while (_world.Failure.empty())
+    {
+        StepTo(NextStep());
+        if (_steps > MostSteps)
+        {
+            _world.Fail(10, "a node asks to be run without end");
+        }
+        if (_world.Now < nextLook || _nextPlanned < _agenda.size())
+        {
+            continue;
+        }
+        const std::string missing = WhatIsMissing();
+        if (missing.empty())
+        {
+            break;
+        }
+        if (_world.Now > _plan.CalmAt + DrainTime)
+        {
+            _world.Fail(11, "60 s after the faults stopped: " + missing);
+        }
+        nextLook = _world.Now + 100ms;
+    }
+    _settledAt = _world.Now;
+    for (const auto &node : _nodes)
+    {
+        if (node->IsAlive())
+        {
+            node->Crew().EmptyQueue();
+        }
+    }
+    _notes.CheckDelivered();
+    return {_world.Failure, Figures()};
+}
+
+std::vector<Figure> FleetSimulation::Figures() const
+{
+    const NoteOracle::Counts &notes = _notes.Total();
+    const SimulatedTraffic traffic = _network.Traffic();
+    return {{"steps", _steps},
+            {"notes accepted", notes.Accepted},
+            {"refused (full)", notes.RefusedFull},
+            {"refused (node not known)", notes.RefusedUnknown},
+            {"sent to all", notes.SentToAll},
+            {"delivered", notes.Delivered},
+            {"expired", notes.Expired},
+            {"in doubt", notes.InDoubt},
+            {"delivered again (opted in)", notes.DeliveredAgain},
+            {"tracks seen", _mirrors.Fetched(MirrorOracle::Topic::Track)},
+            {"modes seen", _mirrors.Fetched(MirrorOracle::Topic::Mode)},
+            {"nodes shown as STALE", _presence.Stale()},
+            {"nodes shown as LOST", _presence.Lost()},
+            {"datagrams", traffic.Sent},
+            {"datagrams lost", traffic.Lost},
+            {"datagrams duplicated", traffic.Duplicated},
+            {"cuts", _faults.Cuts},
+            {"crashes", _faults.Crashes},
+            {"orderly ends", _faults.Leaves},
+            {"storages lost", _faults.StoragesLost},
+            {"clock steps", _faults.ClockSteps},
+            {"longest until all is well",
+             static_cast<std::uint64_t>(std::max(_settledAt - _plan.CalmAt, Time(0)).count()),
+             Figure::Kind::Largest}};
+}
+
+}  // namespace
+
+SeedResult RunFleetSeed(std::uint64_t seed, std::ostream *trace)
+{
+    return FleetSimulation(seed, trace).Run();
+}
+
+}  // namespace Rabit::Sim

@@ -1,0 +1,122 @@
+#pragma once
+
+#include "FleetWorld.h"
+
+#include <rabit/RabitQueueReceipt.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "simulation.idl.h"
+
+namespace Rabit::Sim
+{
+
+// Knows what was promised of queue messages, hears what managers see of them, and says what broke the
+// promise.
+class NoteOracle
+{
+public:
+    static constexpr std::size_t MostNodes = 6;
+
+    struct Counts
+    {
+        std::uint64_t Accepted = 0;
+        std::uint64_t RefusedFull = 0;
+        std::uint64_t RefusedUnknown = 0;
+        std::uint64_t Delivered = 0;
+        std::uint64_t Expired = 0;
+        std::uint64_t InDoubt = 0;
+        std::uint64_t DeliveredAgain = 0;
+        std::uint64_t SentToAll = 0;
+    };
+
+    explicit NoteOracle(FleetWorld &world);
+
+    // A life begins or ends: what is on its way to or from the node may be in doubt.
+    void OnEpoch(std::size_t node) { ++_epochs[node]; }
+
+    // Fills in the next note of a life, and its receipt.
+    Note Make(std::size_t life, std::size_t destination, SimRandom &random);
+    std::shared_ptr<RabitQueueReceipt> MakeReceipt(std::uint64_t note);
+    // What AddMessageToQueue said. `localNow`: the sender's monotonic clock.
+    void OnSent(std::uint64_t note, bool accepted, Time localNow);
+    // A note was put into the queue of a life; `arrivedAt` is true time and `sourceNow` the reading that the
+    // sender's monotonic clock had then.
+    void OnArrived(std::size_t life, const Note &note, bool redelivered, Time sourceNow);
+    // The life ended in an orderly way: all that it sent has an outcome.
+    void OnLeft(std::size_t life);
+
+    // The sender's life and node of a note.
+    std::size_t SourceLife(std::uint64_t note) const { return _records[note].Life; }
+    std::size_t Notes() const { return _records.size(); }
+    // Accepted notes of lives that go on, to nodes of which `alive` is true, without an outcome.
+    std::size_t Undrained(const std::vector<bool> &alive) const;
+    Time LastOutcomeAt() const { return _lastOutcomeAt; }
+    // What nobody can hear any more was said to be delivered: call at the end of the run.
+    void CheckDelivered();
+
+    const Counts &Total() const { return _counts; }
+
+private:
+    struct Record
+    {
+        std::size_t Life = 0;
+        std::size_t Destination = 0;  // or Burst::ToAll
+        Time SentAt{0};               // by the sender's monotonic clock
+        bool Accepted = false;
+        bool Known = false;  // its receipt has an outcome
+        QueueOutcome Outcome = QueueOutcome::Pending;
+        std::uint32_t Bytes = 0;
+        std::array<std::uint8_t, MostNodes> Arrivals{};     // by node
+        std::array<std::uint32_t, MostNodes> EpochsThen{};  // when it was sent
+        std::array<std::uint32_t, MostNodes> KnownThen{};   // the same, as far as its sender must have known
+        std::shared_ptr<RabitQueueReceipt> Receipt;
+    };
+    struct LinkState
+    {
+        std::size_t Life = static_cast<std::size_t>(-1);
+        std::size_t Pending = 0;
+        bool WasKnown = false;  // to this life
+        bool ExactlyKnown = true;
+        // The sender has had an answer from the destination in this epoch of it.
+        std::uint32_t KnownEpoch = 0;
+    };
+    struct Stream
+    {
+        std::uint64_t Next = 0;         // notes below it must not come any more, unless they are flagged
+        std::uint64_t NextFlagged = 0;  // the same for flagged ones, within one epoch
+        std::uint32_t FlaggedEpoch = 0;
+    };
+
+    void OnOutcome(std::uint64_t note);
+    void CheckOutcome(const Record &record, std::uint64_t note);
+    const SendRule &RuleOf(std::size_t source, std::size_t destination) const
+    {
+        return _world.Plan.Machines[source].Send[destination];
+    }
+    std::uint32_t EpochOf(std::size_t a, std::size_t b) const { return _epochs[a] + _epochs[b]; }
+    // Whether an end restarted after the sender knew of the other end's life and sent the note. A note that
+    // was sent to a life of which the sender had not heard yet may be in doubt as well.
+    bool MayBeInDoubt(const Record &record, std::size_t destination) const
+    {
+        const std::size_t source = _world.Lives[record.Life].Node;
+        return record.EpochsThen[source] + record.KnownThen[destination] != EpochOf(source, destination);
+    }
+
+    FleetWorld &_world;
+    std::array<std::uint32_t, MostNodes> _epochs{};
+    std::deque<Record> _records;                                      // stays in place
+    std::map<std::pair<std::size_t, std::size_t>, LinkState> _links;  // by source and destination
+    std::map<std::pair<std::size_t, std::size_t>, Stream> _streams;   // the same
+    Counts _counts;
+    Time _lastOutcomeAt{0};
+};
+
+}  // namespace Rabit::Sim

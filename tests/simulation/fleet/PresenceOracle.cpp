@@ -1,0 +1,91 @@
+#include "PresenceOracle.h"
+
+#include <string>
+
+namespace Rabit::Sim
+{
+
+namespace
+{
+
+using namespace std::chrono_literals;
+
+// What a gateway promises: after so much silence a node is no longer UP, and after so much it is LOST.
+constexpr Time StaleAfter = 1500ms;
+constexpr Time LostAfter = 3500ms;
+
+}  // namespace
+
+PresenceOracle::PresenceOracle(FleetWorld &world)
+    : _world(world),
+      _paths(world.Plan.Machines.size() * world.Plan.Machines.size()),
+      _machines(world.Plan.Machines.size())
+{
+}
+
+void PresenceOracle::OnCut(std::size_t from, std::size_t to)
+{
+    Path &path = _paths[from * _machines.size() + to];
+    if (path.Cuts++ == 0)
+    {
+        path.CutAt = _world.Now;
+    }
+}
+
+void PresenceOracle::OnCutEnd(std::size_t from, std::size_t to)
+{
+    --_paths[from * _machines.size() + to].Cuts;
+}
+
+void PresenceOracle::OnStarted(std::size_t node)
+{
+    _machines[node].Alive = true;
+}
+
+void PresenceOracle::OnEnded(std::size_t node)
+{
+    _machines[node] = {.Alive = false, .EndedAt = _world.Now};
+}
+
+void PresenceOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
+{
+    const std::size_t observer = _world.Lives[observerLife].Node;
+    for (const Gateway::NodeStatus &status : fleet.nodes)
+    {
+        _stale += status.state == Gateway::NodeState::STALE ? 1 : 0;
+        _lost += status.state == Gateway::NodeState::LOST ? 1 : 0;
+        for (std::size_t node = 0; node < _machines.size(); ++node)
+        {
+            if (status.node != _world.NameOf(node))
+            {
+                continue;
+            }
+            const Path &path = _paths[node * _machines.size() + observer];
+            Time silence = _machines[node].Alive ? Time(0) : _world.Now - _machines[node].EndedAt;
+            silence = path.Cuts > 0 ? std::max(silence, _world.Now - path.CutAt) : silence;
+            const bool wrong = (status.state == Gateway::NodeState::UP && silence > StaleAfter + Tolerance) ||
+                               (status.state == Gateway::NodeState::STALE && silence > LostAfter + Tolerance);
+            if (wrong)
+            {
+                _world.Fail(14, _world.NameOf(observer) + " shows " + status.node + " as " +
+                                    (status.state == Gateway::NodeState::UP ? "UP" : "STALE") + " after " +
+                                    std::to_string(static_cast<double>(silence.count()) / 1e9) +
+                                    " s of silence");
+            }
+        }
+    }
+}
+
+bool PresenceOracle::IsUp(const Gateway::Fleet &fleet, const std::string &node)
+{
+    for (const Gateway::NodeStatus &status : fleet.nodes)
+    {
+        if (status.node == node)
+        {
+            return status.state == Gateway::NodeState::UP;
+        }
+    }
+    return false;
+}
+
+}  // namespace Rabit::Sim

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "FleetWorld.h"
+
+#include <cstdint>
+#include <vector>
+
+#include "gateway.idl.h"
+
+namespace Rabit::Sim
+{
+
+// Knows which node could be heard where, and says if a gateway shows one as live that has long been silent.
+class PresenceOracle
+{
+public:
+    // How much later than it should a state may change: the delays of both directions, which nobody can tell
+    // apart, and the sampling of the state.
+    static constexpr Time Tolerance = std::chrono::milliseconds(1500);
+
+    explicit PresenceOracle(FleetWorld &world);
+
+    void OnCut(std::size_t from, std::size_t to);
+    void OnCutEnd(std::size_t from, std::size_t to);
+    void OnStarted(std::size_t node);
+    void OnEnded(std::size_t node);
+
+    // What the gateway of a life shows now.
+    void OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet);
+    // Whether it shows that node as UP.
+    static bool IsUp(const Gateway::Fleet &fleet, const std::string &node);
+
+    std::uint64_t Stale() const { return _stale; }
+    std::uint64_t Lost() const { return _lost; }
+
+private:
+    struct Path
+    {
+        int Cuts = 0;
+        Time CutAt{0};
+    };
+    struct Machine
+    {
+        bool Alive = false;
+        Time EndedAt{0};
+    };
+
+    FleetWorld &_world;
+    std::vector<Path> _paths;
+    std::vector<Machine> _machines;
+    std::uint64_t _stale = 0;
+    std::uint64_t _lost = 0;
+};
+
+}  // namespace Rabit::Sim
