@@ -12,7 +12,8 @@ loopback, and shows the fleet until Ctrl-C. Installs missing Debian packages and
   --seconds N        end after N seconds, 1 to 86400 (default: run until Ctrl-C)
   --track FILE       let an aircraft fly the track in this CSV file; the first --track is for uav1, the second for
                      uav2, and so on; aircraft without one fly circles
-  --transport NAME   DDS implementation: fastdds (default)
+  --transport NAME   DDS implementation: fastdds (default), cyclonedds, or mixed: uav1, uav3, ... and the ground station
+                     on fastdds, uav2, uav4, ... on cyclonedds
   --domain N         DDS domain, 0 to 232 (default: one that nobody on this machine uses)
   --bin DIR          take the programs uav and ground from this folder; install and build nothing
   -h, --help         show this and exit
@@ -73,7 +74,8 @@ while [ $# -gt 0 ]; do
         ;;
     --track) tracks+=("$value") ;;
     --transport)
-        [ "$value" = fastdds ] || fail_usage "--transport must be fastdds, not '$value'"
+        [[ $value =~ ^(fastdds|cyclonedds|mixed)$ ]] ||
+            fail_usage "--transport must be fastdds, cyclonedds or mixed, not '$value'"
         transport=$value
         ;;
     --domain)
@@ -114,11 +116,20 @@ if [ -z "$domain" ]; then
 fi
 
 # Everything is checked before anything is started.
+transport_of() { # transport_of K: prints the transport of aircraft K; the ground station is number 1
+    case $transport-$(($1 % 2)) in
+    mixed-1) echo fastdds ;;
+    mixed-0) echo cyclonedds ;;
+    *) echo "$transport" ;;
+    esac
+}
 uav_arguments() { # uav_arguments K: sets the array `arguments`
-    arguments=(--config "$here/swarm/uav.yaml" --node "uav$1" --domain "$domain" --transport "$transport")
+    arguments=(--config "$here/swarm/uav.yaml" --node "uav$1" --domain "$domain"
+        --transport "$(transport_of "$1")")
     [ "$1" -gt ${#tracks[@]} ] || arguments+=(--track "${tracks[$1 - 1]}")
 }
-ground_arguments=(--config "$here/ground_station/ground.yaml" --domain "$domain" --transport "$transport")
+ground_arguments=(--config "$here/ground_station/ground.yaml" --domain "$domain"
+    --transport "$(transport_of 1)")
 [ -z "$seconds" ] || ground_arguments+=(--seconds "$seconds")
 for ((k = 1; k <= uavs; k++)); do
     ground_arguments+=(--expect "uav$k")

@@ -9,7 +9,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "gateway.idl.h"
@@ -123,7 +125,8 @@ private:
     double _lastPose = 0;
 };
 
-class RealNodesTest : public ::testing::TestWithParam<std::string>
+// The backends of the two nodes.
+class RealNodesTest : public ::testing::TestWithParam<std::pair<std::string, std::string>>
 {
 protected:
     struct Node
@@ -164,8 +167,8 @@ protected:
 
 TEST_P(RealNodesTest, QueuesAreCompleteAndInOrderAndTheLastPostArrivesUnderLoadBothWays)
 {
-    Node first(GetParam(), "first", "second", condition);
-    Node second(GetParam(), "second", "first", condition);
+    Node first(GetParam().first, "first", "second", condition);
+    Node second(GetParam().second, "second", "first", condition);
     EXPECT_TRUE(condition.Wait(
         [&]
         {
@@ -176,8 +179,22 @@ TEST_P(RealNodesTest, QueuesAreCompleteAndInOrderAndTheLastPostArrivesUnderLoadB
         << first.Traffic->LastPose << " and " << second.Traffic->LastPose;
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, RealNodesTest, ::testing::ValuesIn(AvailableTransports()),
-                         [](const auto &backend) { return backend.param; });
+std::vector<std::pair<std::string, std::string>> AllPairs()
+{
+    std::vector<std::pair<std::string, std::string>> pairs;
+    for (const auto &first : AvailableTransports())
+    {
+        for (const auto &second : AvailableTransports())
+        {
+            pairs.emplace_back(first, second);
+        }
+    }
+    return pairs;
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, RealNodesTest, ::testing::ValuesIn(AllPairs()),
+                         [](const auto &backends)
+                         { return backends.param.first + "_and_" + backends.param.second; });
 
 }  // namespace
 }  // namespace Rabit

@@ -1,6 +1,10 @@
 #include <gmock/gmock.h>
 #include <rabit/transport/TransportFactory.h>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
 namespace
 {
 
@@ -29,6 +33,29 @@ TEST(TransportFactory, NamesTheTransportsThatExistWhenAskedForAnother)
         {
             EXPECT_THAT(error.what(), HasSubstr(name));
         }
+    }
+}
+
+TEST(TransportFactory, SaysWhichOptionWouldHaveBuiltABackendThatWasLeftOut)
+{
+    const auto built = Rabit::AvailableTransports();
+    const std::pair<const char *, const char *> backends[] = {{"fastdds", "RABIT_WITH_FASTDDS"},
+                                                              {"cyclonedds", "RABIT_WITH_CYCLONEDDS"}};
+    for (const auto &[name, option] : backends)
+    {
+        std::string said;
+        try
+        {
+            EXPECT_EQ(Rabit::MakeTransport(name)->Name(), name);
+        }
+        catch (const Rabit::TransportError &error)
+        {
+            said = error.what();
+            EXPECT_EQ(error.Setting(), "transport");
+        }
+        const bool isBuilt = std::find(built.begin(), built.end(), name) != built.end();
+        EXPECT_EQ(said.find(option) == std::string::npos, isBuilt) << said;
+        EXPECT_EQ(said.find('\n'), std::string::npos);
     }
 }
 

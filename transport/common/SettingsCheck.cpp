@@ -34,25 +34,27 @@ void CheckSettings(const TransportSettings &settings)
 {
     if (settings.Node.empty() || settings.Node.size() > MaxNodeName)
     {
-        throw TransportError("the node name must have 1 to 200 bytes, not " +
-                             std::to_string(settings.Node.size()));
+        throw TransportError(
+            "the node name must have 1 to 200 bytes, not " + std::to_string(settings.Node.size()), "node");
     }
     if (settings.Node.find('\0') != std::string::npos)
     {
-        throw TransportError("the node name contains a zero byte");
+        throw TransportError("the node name contains a zero byte", "node");
     }
     if (settings.Domain < 0 || settings.Domain > MaxDomain)
     {
-        throw TransportError("the domain must be 0 to 232, not " + std::to_string(settings.Domain));
+        throw TransportError("the domain must be 0 to 232, not " + std::to_string(settings.Domain), "domain");
     }
     if (settings.MaxDatagram < SmallestDatagram || settings.MaxDatagram > LargestDatagram)
     {
-        throw TransportError("the largest datagram must be 1000 to 65000 bytes, not " +
-                             std::to_string(settings.MaxDatagram));
+        throw TransportError(
+            "the largest datagram must be 1000 to 65000 bytes, not " + std::to_string(settings.MaxDatagram),
+            "max_datagram");
     }
     if (settings.AnnouncementPeriod.count() <= 0 || settings.Lease <= settings.AnnouncementPeriod)
     {
-        throw TransportError("the lease must be longer than the announcement period, and both positive");
+        throw TransportError("the lease must be longer than the announcement period, and both positive",
+                             "lease");
     }
 }
 
@@ -71,7 +73,7 @@ std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &inter
     ifaddrs *head = nullptr;
     if (!interfaces.empty() && getifaddrs(&head) != 0)
     {
-        throw TransportError("the network interfaces of this host cannot be listed");
+        throw TransportError("the network interfaces of this host cannot be listed", "interfaces");
     }
     const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(head, &freeifaddrs);
     std::vector<std::string> addresses;
@@ -97,8 +99,9 @@ std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &inter
         }
         if (!found)
         {
-            throw TransportError("this host has no network interface with an IPv4 address that is called " +
-                                 wanted);
+            throw TransportError(
+                "this host has no network interface with an IPv4 address that is called " + wanted,
+                "interfaces");
         }
     }
     return addresses;
@@ -116,7 +119,7 @@ PeerAddress ResolvePeer(const std::string &peer)
         const auto [stop, error] = std::from_chars(begin, end, result.Port);
         if (error != std::errc() || stop != end || result.Port == 0)
         {
-            throw TransportError("the peer " + peer + " is not of the form host or host:port");
+            throw TransportError("the peer " + peer + " is not of the form host or host:port", "peers");
         }
     }
     addrinfo hints{};
@@ -125,7 +128,7 @@ PeerAddress ResolvePeer(const std::string &peer)
     addrinfo *head = nullptr;
     if (host.empty() || getaddrinfo(host.c_str(), nullptr, &hints, &head) != 0 || head == nullptr)
     {
-        throw TransportError("the peer " + peer + " has no IPv4 address");
+        throw TransportError("the peer " + peer + " has no IPv4 address", "peers");
     }
     const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> list(head, &freeaddrinfo);
     result.Address = ToText(head->ai_addr);

@@ -30,6 +30,10 @@ const std::map<std::string, Maker> &Makers()
     return makers;
 }
 
+// The options of the build that bring in the backends that there are.
+const std::map<std::string, std::string> OptionOf = {{"cyclonedds", "RABIT_WITH_CYCLONEDDS"},
+                                                     {"fastdds", "RABIT_WITH_FASTDDS"}};
+
 }  // namespace
 
 std::unique_ptr<Transport> MakeTransport(const std::string &name)
@@ -44,8 +48,11 @@ std::unique_ptr<Transport> MakeTransport(const std::string &name)
     {
         built += (built.empty() ? "" : ", ") + available;
     }
-    throw TransportError("there is no transport called " + name +
-                         "; this build has: " + (built.empty() ? "none" : built));
+    const auto option = OptionOf.find(name);
+    const std::string why = option != OptionOf.end() ? "this build is without the transport " + name + " (" +
+                                                           option->second + " is off)"
+                                                     : "there is no transport called " + name;
+    throw TransportError(why + "; it has: " + (built.empty() ? "none" : built), "transport");
 }
 
 std::vector<std::string> AvailableTransports()

@@ -66,7 +66,7 @@ std::string Read(const std::string &path)
     std::ostringstream content;
     if (!file || !(content << file.rdbuf()))
     {
-        throw TransportError("the Cyclone DDS configuration " + path + " cannot be read");
+        throw TransportError("the Cyclone DDS configuration " + path + " cannot be read", "backend_config");
     }
     return content.str();
 }

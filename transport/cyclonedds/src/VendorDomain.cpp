@@ -56,17 +56,30 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
     VendorLog::Follow(_id, log);
-    const dds_entity_t entity = dds_create_domain(_id, config.c_str());
+    dds_entity_t entity = 0;
+    std::string said;
+    {
+        const VendorLogCapture capture;
+        entity = dds_create_domain(_id, config.c_str());
+        said = capture.FirstLine();
+    }
     if (entity < 0)
     {
-        std::string why = VendorLog::Leave(_id);
+        VendorLog::Leave(_id);
         Numbers::Give(_id);
-        if (why.empty())
+        const std::string why = said.empty() ? dds_strretcode(entity) : said;
+        if (!settings.BackendConfig.empty())
         {
-            why = dds_strretcode(entity);
+            throw TransportError(
+                "Cyclone DDS does not accept the configuration " + settings.BackendConfig + ": " + why,
+                "backend_config");
         }
         throw TransportError("Cyclone DDS cannot join domain " + std::to_string(settings.Domain) + ": " +
                              why);
+    }
+    if (!said.empty())
+    {
+        log->Line("Cyclone DDS: " + said);
     }
     _entity = Entity(entity, "");
 }

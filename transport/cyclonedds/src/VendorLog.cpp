@@ -17,7 +17,6 @@ namespace
 struct Followed
 {
     std::shared_ptr<SessionLog> Log;
-    std::string LastError;
     std::map<std::string, unsigned> Told;  // how often each function of the vendor's has said something
 };
 
@@ -44,9 +43,16 @@ std::string_view LineOf(const dds_log_data_t &data)
     return line;
 }
 
+thread_local VendorLogCapture *TheCapture = nullptr;
+
 void Sink(void *, const dds_log_data_t *data)
 {
     const std::string line(LineOf(*data));
+    if (TheCapture != nullptr)
+    {
+        TheCapture->Add(line);
+        return;
+    }
     std::shared_ptr<SessionLog> log;
     bool tell = false;
     {
@@ -56,10 +62,6 @@ void Sink(void *, const dds_log_data_t *data)
         if (found != table.Domains.end())
         {
             log = found->second.Log;
-            if ((data->priority & (DDS_LC_ERROR | DDS_LC_FATAL)) != 0)
-            {
-                found->second.LastError = line;
-            }
             // So that a fault at full data rate does not flood the log.
             const unsigned times = ++found->second.Told[data->function != nullptr ? data->function : ""];
             tell = (times & (times - 1)) == 0;
@@ -79,29 +81,46 @@ void Sink(void *, const dds_log_data_t *data)
     }
 }
 
+void TakeSink()
+{
+    static std::once_flag once;
+    std::call_once(once, [] { dds_set_log_sink(&Sink, nullptr); });
+}
+
 }  // namespace
 
 void VendorLog::Follow(dds_domainid_t domain, std::shared_ptr<SessionLog> log)
 {
-    static std::once_flag once;
-    std::call_once(once, [] { dds_set_log_sink(&Sink, nullptr); });
+    TakeSink();
     auto &table = TheTable();
     const std::lock_guard lock(table.Mutex);
-    table.Domains[domain] = {std::move(log), "", {}};
+    table.Domains[domain] = {std::move(log), {}};
 }
 
-std::string VendorLog::Leave(dds_domainid_t domain)
+void VendorLog::Leave(dds_domainid_t domain)
 {
     auto &table = TheTable();
     const std::lock_guard lock(table.Mutex);
-    const auto found = table.Domains.find(domain);
-    if (found == table.Domains.end())
+    table.Domains.erase(domain);
+}
+
+VendorLogCapture::VendorLogCapture()
+{
+    TakeSink();
+    TheCapture = this;
+}
+
+VendorLogCapture::~VendorLogCapture()
+{
+    TheCapture = nullptr;
+}
+
+void VendorLogCapture::Add(const std::string &line)
+{
+    if (_firstLine.empty())
     {
-        return "";
+        _firstLine = line;
     }
-    std::string error = std::move(found->second.LastError);
-    table.Domains.erase(found);
-    return error;
 }
 
 }  // namespace Rabit::Cyclone

@@ -49,11 +49,11 @@ rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
     const std::lock_guard lock(mutex);
     if (!std::filesystem::is_regular_file(file))
     {
-        throw TransportError("there is no Fast DDS profiles file " + file);
+        throw TransportError("there is no Fast DDS profiles file " + file, "backend_config");
     }
     if (XMLProfileManager::loadXMLFile(file) != XMLP_ret::XML_OK)
     {
-        throw TransportError("Fast DDS does not accept the profiles file " + file);
+        throw TransportError("Fast DDS does not accept the profiles file " + file, "backend_config");
     }
     eprosima::fastrtps::ParticipantAttributes profile;
     XMLProfileManager::getDefaultParticipantAttributes(profile);

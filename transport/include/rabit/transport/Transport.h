@@ -30,6 +30,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace Rabit
@@ -40,6 +41,17 @@ class TransportError : public std::runtime_error
 {
 public:
     using std::runtime_error::runtime_error;
+    // `setting` is the setting at fault, as a configuration file calls it: `interfaces`, `peers`,
+    // `backend_config` ...
+    TransportError(const std::string &message, std::string setting)
+        : std::runtime_error(message), _setting(std::move(setting))
+    {
+    }
+    // Empty if no single setting is at fault.
+    const std::string &Setting() const { return _setting; }
+
+private:
+    std::string _setting;
 };
 
 // Settings common to all backends.

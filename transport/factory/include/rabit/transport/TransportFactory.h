@@ -12,8 +12,9 @@ namespace Rabit
 // The backends by name, for programs that take theirs from a configuration. Only main() programs link this
 // (Rabit::Transports): it pulls in every backend that was built.
 
-// The backend that a configuration calls `name`, for instance `fastdds`. Throws TransportError, naming those
-// that were built, if there is none. The simulated transport is not among them: it has no network of its own.
+// The backend that a configuration calls `name`, for instance `fastdds`. Throws TransportError if there is
+// none: it names those that were built, and the build's option if the backend was left out. The simulated
+// transport is not among them: it has no network of its own.
 std::unique_ptr<Transport> MakeTransport(const std::string &name);
 
 // The names that MakeTransport knows, in alphabetical order; depends on the options RABIT_WITH_FASTDDS and
