@@ -337,6 +337,10 @@ bool LinkDriver::ForwardToAll(const std::string &queue, const MessageType &type,
         return Refuse("*", queue, RemoteQueues::Verdict::UnknownNode,
                       "no live node accepts `" + type.Name() + "` for `" + queue + "`", receipt);
     }
+    {
+        const std::lock_guard lock(_mutex);
+        _refusals.Forgive({"*", queue});
+    }
     Begin(receipt, nodes.size());
     bool all = true;
     for (const std::string &node : nodes)

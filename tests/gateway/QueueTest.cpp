@@ -1,6 +1,7 @@
 // Queue messages between nodes: whole nodes on the simulated network. The link protocol has tests of its own.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "SimulatedFleet.h"
@@ -13,6 +14,7 @@ namespace
 using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class QueueTest : public ::testing::Test
 {
@@ -232,6 +234,91 @@ TEST_F(QueueTest, MessagesWaitForAManagerThatComesLater)
     IdleManager &manager = late.AddIdleManager("MissionControl");
     fleet.RunFor(5s);
     EXPECT_THAT(Take(manager), ElementsAre(9));
+}
+
+TEST_F(QueueTest, ASecondLiveNodeOfOneNameDoesNotHarmTheLinksOfOthers)
+{
+    SimulatedNode &other = fleet.Add(AircraftConfig("uav2"));
+    IdleManager &otherMission = other.AddIdleManager("MissionControl");
+    SimulatedNode &twin = fleet.Add(AircraftConfig("uav1"), 1.4e9, "twin of uav1");
+    twin.AddIdleManager("MissionControl");
+    fleet.RunFor(2s);
+    std::vector<int> expected;
+    for (int i = 1; i <= 200; ++i)
+    {
+        EXPECT_TRUE(SendGoto(static_cast<std::uint32_t>(i), "uav2/MissionControl"));
+        SendGoto(static_cast<std::uint32_t>(i), "uav1/MissionControl");
+        expected.push_back(i);
+        fleet.RunFor(50ms);
+    }
+    fleet.RunFor(5s);
+    EXPECT_EQ(Take(otherMission), expected);
+    EXPECT_EQ(ground.LinkTo("uav2", "MissionControl").delivered, 200u);
+}
+
+TEST_F(QueueTest, WithASecondLiveNodeOfItsNameNoneOfTheTwoGetsAMessageTwiceOrOutOfOrder)
+{
+    SimulatedNode &twin = fleet.Add(AircraftConfig("uav1"), 1.4e9, "twin of uav1");
+    IdleManager &twinMission = twin.AddIdleManager("MissionControl");
+    fleet.RunFor(2s);
+    for (int i = 1; i <= 200; ++i)
+    {
+        SendGoto(static_cast<std::uint32_t>(i));
+        fleet.RunFor(50ms);
+    }
+    fleet.RunFor(5s);
+    std::vector<int> all = Take(mission);
+    const std::vector<int> twins = Take(twinMission);
+    EXPECT_FALSE(all.empty() && twins.empty());
+    EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+    EXPECT_TRUE(std::is_sorted(twins.begin(), twins.end()));
+    all.insert(all.end(), twins.begin(), twins.end());
+    std::sort(all.begin(), all.end());
+    EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
+    // What it says of the outcomes is true as well.
+    EXPECT_LE(ground.LinkTo("uav1", "MissionControl").delivered, all.size());
+}
+
+TEST_F(QueueTest, TwoLiveNodesOfOneNameThatSendToOneQueueAreBothDelivered)
+{
+    SimulatedNode &twin = fleet.Add(GroundConfig(), 1.4e9, "twin of ground");
+    fleet.RunFor(2s);
+    std::size_t accepted = 0;
+    for (int i = 1; i <= 100; ++i)
+    {
+        accepted += SendGoto(static_cast<std::uint32_t>(i)) ? 1 : 0;
+        auto message = std::make_shared<Uav::Goto>();
+        message->id = static_cast<std::uint32_t>(1000 + i);
+        accepted += twin.Workspace.AddMessageToQueue("uav1/MissionControl", message) ? 1 : 0;
+        fleet.RunFor(50ms);
+    }
+    fleet.RunFor(10s);
+    std::vector<int> taken = Take(mission);
+    const Gateway::LinkStatus first = ground.LinkTo("uav1", "MissionControl");
+    const Gateway::LinkStatus second = twin.LinkTo("uav1", "MissionControl");
+    EXPECT_EQ(
+        first.delivered + first.in_doubt + second.delivered + second.in_doubt + first.outbox + second.outbox,
+        accepted);
+    EXPECT_GE(taken.size(), first.delivered + second.delivered);
+    std::sort(taken.begin(), taken.end());
+    EXPECT_EQ(std::adjacent_find(taken.begin(), taken.end()), taken.end());
+    EXPECT_THAT(ground.Problems() + twin.Problems(), HasSubstr("ground"));
+}
+
+TEST_F(QueueTest, AStarThatFindsAReceiverAgainIsNoProblemAnyMore)
+{
+    auto message = std::make_shared<Uav::TargetReport>();
+    fleet.Kill("uav1");
+    fleet.RunFor(10s);
+    EXPECT_FALSE(ground.Workspace.AddMessageToQueue("*/MissionControl", message));
+    fleet.RunFor(1s);
+    EXPECT_THAT(ground.Problems(), HasSubstr("send */MissionControl"));
+    SimulatedNode &again = fleet.Add(AircraftConfig("uav1"), 1.5e9);
+    again.AddIdleManager("MissionControl");
+    fleet.RunFor(3s);
+    EXPECT_TRUE(ground.Workspace.AddMessageToQueue("*/MissionControl", message));
+    fleet.RunFor(2s);
+    EXPECT_THAT(ground.Problems(), Not(HasSubstr("send */MissionControl")));
 }
 
 TEST_F(QueueTest, AMessageOlderThanItsExpiryIsNeverDelivered)

@@ -123,13 +123,13 @@ class SimulatedFleet
 public:
     explicit SimulatedFleet(std::uint64_t seed = 1) : Network(seed) {}
 
-    // Adds and starts a node. No two nodes' clocks agree.
-    SimulatedNode &Add(const GatewayConfig &config, double gps = 1.4e9)
+    // Adds and starts a node. No two nodes' clocks agree. A second node of one name needs a key of its own.
+    SimulatedNode &Add(const GatewayConfig &config, double gps = 1.4e9, const std::string &key = "")
     {
         _ahead += std::chrono::seconds(1000);
         auto node = std::make_unique<SimulatedNode>(config, Network, _ahead, gps);
         SimulatedNode &added = *node;
-        _nodes[config.Node] = std::move(node);
+        _nodes[key.empty() ? config.Node : key] = std::move(node);
         added.Reactor.Start();
         return added;
     }

@@ -154,6 +154,7 @@ void Crew::ExecuteUnitOfWork()
     if (_fleet->FetchMessage())
     {
         _oracles.Presence.OnFleet(_life, *_fleet);
+        _oracles.Notes.OnFleet(_life, *_fleet);
     }
     SendNotes();
     if (now >= _nextTrack)

@@ -37,7 +37,7 @@ void MirrorOracle::OnFetched(Topic topic, std::size_t observerLife, std::size_t 
 
     const Time age = _world.Now - posts->second[number - 1];
     const auto shown = static_cast<std::int64_t>(ageSeconds * 1e9);
-    if (shown < (age - AgeTolerance).count())
+    if (shown < (age - AgeTolerance).count() || shown > (age + AgeTolerance).count())
     {
         _world.Fail(13, name + ": is " + std::to_string(static_cast<double>(age.count()) / 1e9) +
                             " s old and shown as " + std::to_string(ageSeconds) + " s old");

@@ -243,6 +243,26 @@ void NoteOracle::OnArrived(std::size_t life, const Note &note, bool redelivered,
     stream.Next = std::max(stream.Next, note.number + 1);
 }
 
+void NoteOracle::OnFleet(std::size_t life, const Gateway::Fleet &fleet)
+{
+    for (const Gateway::LinkStatus &link : fleet.links)
+    {
+        const std::uint64_t ended = link.delivered + link.expired + link.in_doubt + link.undeliverable;
+        if (link.accepted != ended + link.outbox || link.undeliverable > 0)
+        {
+            _world.Fail(3, "the counters of " + _world.NameOf(_world.Lives[life].Node) + " for " + link.node +
+                               " do not balance, or count what cannot be");
+        }
+    }
+    for (const Gateway::InboundStatus &link : fleet.inbound)
+    {
+        if (link.undeliverable > 0)
+        {
+            _world.Fail(4, "notes of " + link.node + " were undeliverable");
+        }
+    }
+}
+
 void NoteOracle::OnLeft(std::size_t life)
 {
     for (std::size_t i = 0; i < _records.size(); ++i)

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "gateway.idl.h"
 #include "simulation.idl.h"
 
 namespace Rabit::Sim
@@ -50,6 +51,8 @@ public:
     // A note was put into the queue of a life; `arrivedAt` is true time and `sourceNow` the reading that the
     // sender's monotonic clock had then.
     void OnArrived(std::size_t life, const Note &note, bool redelivered, Time sourceNow);
+    // What the gateway of a life counts.
+    void OnFleet(std::size_t life, const Gateway::Fleet &fleet);
     // The life ended in an orderly way: all that it sent has an outcome.
     void OnLeft(std::size_t life);
 
