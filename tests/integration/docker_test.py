@@ -94,7 +94,7 @@ def main():
             print("ok: the example fleet")
             for name in scenarios:
                 scenario = json.loads((HERE / "scenarios" / name / "scenario.json").read_text())
-                options = argparse.Namespace(ledger_node="ledger_node", transport="fastdds", keep=None)
+                options = argparse.Namespace(ledger_node="ledger_node", transports="fastdds", keep=None)
                 print(f"scenario {name}")
                 with docker_field.DockerField(engine, scenario["nodes"]) as ground:
                     wrong = run_scenario.run_in(ground, scenario, options)

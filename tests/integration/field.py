@@ -60,8 +60,10 @@ def stop(number, _frame):
 class Field:
     """with Field(["ground", "uav1"]) as field: field.start("uav1", [program, argument, ...])"""
 
-    def __init__(self, nodes):
+    def __init__(self, nodes, multicast=True):
         self.nodes = list(nodes)
+        self._multicast = multicast
+        self._moves = {}  # node -> how often it was given a new address
         self.folder = None
         self.processes = {}
         self._drops = {}  # (from, to) -> percent
@@ -85,11 +87,20 @@ class Field:
         self._remove()
 
     def address(self, node):
-        return f"10.77.0.{self.nodes.index(node) + 1}"
+        return f"10.77.{self._moves.get(node, 0)}.{self.nodes.index(node) + 1}"
 
-    def start(self, node, argv):
-        """Starts a program as that node. It dies with this process."""
-        process = harness.Process(["ip", "netns", "exec", self._space(node), *argv])
+    def move(self, node):
+        """Another address, in place of the one that it had."""
+        inside = ["ip", "-n", self._space(node), "address"]
+        _run(*inside, "del", self.address(node) + "/16", "dev", "eth0")
+        self._moves[node] = self._moves.get(node, 0) + 1
+        _run(*inside, "add", self.address(node) + "/16", "dev", "eth0")
+        for other in self.nodes:
+            self._write_rules(other)
+
+    def start(self, node, argv, space=None):
+        """Starts a program as that node, or inside another one's namespace. It dies with this process."""
+        process = harness.Process(["ip", "netns", "exec", self._space(space or node), *argv])
         self.processes[node] = process
         return process
 
@@ -143,18 +154,20 @@ class Field:
             inside = ["ip", "-n", self._space(node)]
             _run(*switch, "add", f"p{number}", "type", "veth", "peer", "name", "eth0", "netns", self._space(node))
             _run(*switch, "set", f"p{number}", "master", "br0", "up")
-            _run(*inside, "address", "add", self.address(node) + "/24", "dev", "eth0")
+            _run(*inside, "address", "add", self.address(node) + "/16", "dev", "eth0")
             _run(*inside, "link", "set", "lo", "up")
             _run(*inside, "link", "set", "eth0", "up")
-            _run(*inside, "route", "add", "224.0.0.0/4", "dev", "eth0")
+            if self._multicast:
+                _run(*inside, "route", "add", "224.0.0.0/4", "dev", "eth0")
         try:
-            self._write_rules(self.nodes[0])
+            for node in self.nodes:
+                self._write_rules(node)
         except subprocess.CalledProcessError as error:
             raise Unsupported(f"nftables does not work here: {error.stdout}") from error
 
     # Dropped where it arrives: a drop on the way out would be told to the sender's socket.
     def _write_rules(self, node):
-        rules = []
+        rules = [] if self._multicast else ["ip daddr 224.0.0.0/4 drop"]
         for (origin, destination), percent in self._drops.items():
             if destination == node and percent > 0:
                 share = "" if percent >= 100 else f"numgen random mod 100 < {percent} "

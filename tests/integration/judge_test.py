@@ -107,8 +107,16 @@ class JudgeTest(unittest.TestCase):
         self.wrong("no outcomes told", sender(THREE), receiver([got(1), got(2), got(3)]))
 
     def test_finds_doubt_without_a_kill(self):
-        self.wrong("though the receiver was never killed", sender(THREE + counters(3, 2, in_doubt=1)),
+        self.wrong("though the receiver never ended", sender(THREE + counters(3, 2, in_doubt=1)),
                    receiver([got(1), got(2), got(3)]))
+
+    def test_accepts_doubt_where_the_receiver_was_stopped_and_started_again(self):
+        self.right(sender(THREE + told("delivered", "in doubt", "delivered") + counters(3, 2, in_doubt=1)),
+                   receiver([got(1)]) + receiver([got(3)], life=12))
+
+    def test_finds_a_loss_after_the_last_stop_of_the_receiver(self):
+        self.wrong("lost, from 3 to 3", sender(THREE + counters(3, 3)),
+                   receiver([got(1)]) + receiver([got(2)], life=12))
 
     def test_finds_accepted_notes_that_the_gateway_did_not_count(self):
         self.wrong("the gateway counted 2", sender(THREE + counters(2, 2)), receiver([got(1), got(2), got(3)]))

@@ -252,8 +252,18 @@ private:
             if (_problems.insert(problem.subject + problem.node + problem.reason).second)
                 _ledger.Line("problem node=" + problem.node + " subject=\"" + problem.subject +
                              "\" reason=\"" + problem.reason + '"');
+        for (const auto &topic : _fleet->topics)
+            WriteOnChange("topic message=" + topic.message + " from=" + topic.node,
+                          " undecodable=" + std::to_string(topic.undecodable));
+        WriteOnChange("malformed", " count=" + std::to_string(_fleet->malformed));
         if (Now() >= _nextCounters)
             WriteCounters();
+    }
+
+    void WriteOnChange(const std::string &subject, const std::string &values)
+    {
+        if (_written[subject] != values)
+            _ledger.Line(subject + (_written[subject] = values));
     }
 
     void WriteCounters()
@@ -262,12 +272,11 @@ private:
         for (const auto &link : _fleet->links)
         {
             std::ostringstream line;
-            line << "link to=" << link.node << " accepted=" << link.accepted
-                 << " delivered=" << link.delivered << " expired=" << link.expired
-                 << " in_doubt=" << link.in_doubt << " undeliverable=" << link.undeliverable
-                 << " outbox=" << link.outbox << " resent=" << link.resent;
-            if (_written[link.node] != line.str())
-                _ledger.Line(_written[link.node] = line.str());
+            line << " accepted=" << link.accepted << " delivered=" << link.delivered
+                 << " expired=" << link.expired << " in_doubt=" << link.in_doubt
+                 << " undeliverable=" << link.undeliverable << " outbox=" << link.outbox
+                 << " resent=" << link.resent;
+            WriteOnChange("link to=" + link.node, line.str());
         }
     }
 

@@ -1,12 +1,9 @@
 #!/usr/bin/env python3
 """Runs one scenario: a fleet of ledger nodes in network namespaces, faults, and the judge's verdict.
 
-Usage: run_scenario.py --ledger-node PROGRAM [--transport NAME] [--keep FOLDER] SCENARIO_FOLDER
-The folder's scenario.json holds (README.md says more):
-  nodes    {name: [argument of ledger_node, ...]}
-  faults   [[what, argument, ...], ...], done in this order; see the class Faults
-  limit_s  generous: how long after the last fault all notes may take
-Exit code 0: as it has to be; 1: something is wrong; 77: this machine has no namespaces."""
+Usage: run_scenario.py --ledger-node PROGRAM [--transports NAME,...] [--keep FOLDER] SCENARIO_FOLDER
+The folder's scenario.json holds what README.md lists.
+Exit code 0: as it has to be; 1: something is wrong; 77: this machine or this build does not allow it."""
 
 import argparse
 import collections
@@ -17,27 +14,57 @@ import signal
 import sys
 import time
 
+import expectations
 import field
 import judge
 
+HERE = pathlib.Path(__file__).resolve().parent
 SKIPPED = 77
 
 
 class Fleet:
-    """The nodes of a scenario and their ledgers."""
+    """The nodes of a scenario and their ledgers. Its programs other than ledger nodes are started and stopped alike."""
 
-    def __init__(self, ground, program, transport, nodes):
+    def __init__(self, ground, program, transport, scenario):
         self.field = ground
         self._program = program
         self._transport = transport
-        self._nodes = nodes
+        self._scenario = scenario
+        self._nodes = scenario["nodes"]
+        self._disks = collections.Counter()  # node -> how often it was given an empty state folder
+        self.ended = set()  # by themselves or by the scenario, and well
 
     def start(self, node):
-        state = pathlib.Path(self.field.folder, node + ".state")
+        self.ended.discard(node)
+        programs = self._scenario.get("programs", {})
+        inside = {"space": self._scenario["inside"][node]} if node in self._scenario.get("inside", {}) else {}
+        if node in programs:
+            self.field.start(node, [self._filled(word) for word in programs[node]], **inside)
+            return
+        state = pathlib.Path(self.field.folder, f"{node}.state{self._disks[node]}")
         state.mkdir(exist_ok=True)
         state.chmod(0o777)  # in a container the node runs as another user
-        self.field.start(node, [self._program, "--node", node, "--ledger", self._path(node), "--transport",
-                                self._transport, "--state-dir", state, *self._nodes[node]])
+        name = self._scenario.get("names", {}).get(node, node)
+        transport = self._scenario.get("transports", {}).get(node, self._transport)
+        self.field.start(node, [self._program, "--node", name, "--ledger", self._path(node), "--transport", transport,
+                                "--state-dir", state, *map(self._filled, self._nodes[node])])
+
+    def new_disk(self, node):
+        self._disks[node] += 1
+
+    def stop_one(self, node):
+        """SIGTERM; it must end well."""
+        process = self.field.processes[node]
+        code = process.terminate()
+        if code != 0:
+            raise AssertionError(f"{node} ended with {code}: {[text for _, text in process.lines[-5:]]}")
+        self.ended.add(node)
+
+    def _filled(self, word):
+        """@node is that node's address, {here} this folder, {bin} that of the built programs."""
+        if word.startswith("@"):
+            return self.field.address(word[1:])
+        return word.format(here=HERE, bin=pathlib.Path(self._program).parent) if "{" in word else word
 
     def ledgers(self):
         return {node: self._path(node).read_text() if self._path(node).exists() else "" for node in self._nodes}
@@ -46,6 +73,8 @@ class Fleet:
         """SIGTERM to all that run; all must end well."""
         wrong = []
         for node, process in self.field.processes.items():
+            if node in self.ended:
+                continue
             if process.running():
                 code = process.terminate()
                 if code != 0:
@@ -86,9 +115,11 @@ class Faults:
     def __init__(self, fleet):
         self._fleet = fleet
         self._field = fleet.field
+        self.done = []  # (time in s on the ledgers' clock, what, arguments)
 
     def run(self, steps):
         for what, *arguments in steps:
+            self.done.append((time.monotonic(), what, arguments))
             getattr(self, what)(*arguments)
 
     def wait(self, seconds):
@@ -99,6 +130,14 @@ class Faults:
 
     def kill(self, node):
         self._field.kill(node)
+
+    def stop(self, node):
+        self._fleet.stop_one(node)
+
+    def move(self, node):
+        """As if on another computer: another address, and no memory of earlier lives."""
+        self._field.move(node)
+        self._fleet.new_disk(node)
 
     def freeze(self, node):
         self._field.signal(node, signal.SIGSTOP)
@@ -139,48 +178,32 @@ def figures(ledgers):
                       if delays else ""))
 
 
-def expectations(wanted, ledgers):
-    """`expect` of a scenario: {"expired": N} and {"delivered": N} are the least that must be counted in all."""
-    total = collections.Counter()
-    for text in ledgers.values():
-        for life in judge.read_ledger(text):
-            for to in {event["to"] for event in life.of("link")}:
-                total.update(life.counters(to))
-    return [f"{key}: at least {least} wanted, {total[key]} counted" for key, least in wanted.items()
-            if total[key] < least]
-
-
-def states_seen(wanted, ledgers):
-    """`states` of a scenario: {node: {other: [state, ...]}} as the node's last life saw the other from its first UP on."""
-    wrong = []
-    for node, others in wanted.items():
-        lives = judge.read_ledger(ledgers[node])
-        for other, states in others.items():
-            seen = [e["state"] for life in lives[-1:] for e in life.of("peer") if e["node"] == other]
-            seen = seen[seen.index("UP"):] if "UP" in seen else []
-            if seen != states:
-                wrong.append(f"{node} saw {other} as {seen}, not {states}")
-    return wrong
-
-
 def run(options):
     scenario = json.loads(pathlib.Path(options.scenario, "scenario.json").read_text())
-    with field.Field(scenario["nodes"]) as ground:
+    missing = set(scenario.get("transports", {}).values()) - set(options.transports.split(","))
+    if missing:
+        raise field.Unsupported(f"not built: {', '.join(sorted(missing))}")
+    hosts = [node for node in [*scenario["nodes"], *scenario.get("programs", {})]
+             if node not in scenario.get("inside", {})]
+    with field.Field(hosts, scenario.get("multicast", True)) as ground:
         return run_in(ground, scenario, options)
 
 
 def run_in(ground, scenario, options):
     """Runs it in a field that is there: namespaces or containers."""
-    fleet = Fleet(ground, options.ledger_node, options.transport, scenario["nodes"])
+    fleet = Fleet(ground, options.ledger_node, options.transports.split(",")[0], scenario)
+    faults = Faults(fleet)
     began = time.monotonic()
-    for node in scenario["nodes"]:
-        fleet.start(node)
-    Faults(fleet).run(scenario["faults"])
+    for node in [*scenario["nodes"], *scenario.get("programs", {})]:
+        if node not in scenario.get("late", []):
+            fleet.start(node)
+    faults.run(scenario["faults"])
     wrong = fleet.wait_until_settled(scenario["limit_s"])
     seconds = time.monotonic() - began
     bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
     # Before the stop, which the others see as LOST.
-    wrong += states_seen(scenario.get("states", {}), fleet.ledgers())
+    seen = expectations.Run(fleet.ledgers(), faults.done)
+    wrong += expectations.states(seen, scenario.get("states", {}))
     wrong += fleet.stop()
     ledgers = fleet.ledgers()
     if options.keep:
@@ -188,13 +211,14 @@ def run_in(ground, scenario, options):
     for line in figures(ledgers):
         print(line)
     print(f"{seconds:.0f} s; bytes sent: " + ", ".join(f"{node} {count}" for node, count in bytes_sent.items()))
-    return wrong + judge.judge(ledgers.values()) + expectations(scenario.get("expect", {}), ledgers)
+    wrong += expectations.check(expectations.Run(ledgers, faults.done), scenario.get("expect", {}))
+    return wrong + judge.judge(ledgers[node] for node in scenario.get("judged", ledgers))
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--ledger-node", required=True)
-    parser.add_argument("--transport", default="fastdds")
+    parser.add_argument("--transports", default="fastdds", help="those that are built, the default one first")
     parser.add_argument("--keep", help="copy the ledgers into this folder")
     parser.add_argument("scenario")
     try:

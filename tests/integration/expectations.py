@@ -1,0 +1,205 @@
+"""What a scenario expects beyond what judge.py demands of every run. Each function here that a scenario names under
+`expect` gets the value given there and returns what is wrong, in words. README.md lists them."""
+
+import collections
+
+import judge
+
+# What passes between a cut and the last beat before it, and between an event and its line in the ledger, on a machine
+# that does other things as well.
+SLACK_S = 1.5
+STALE_S = 1.5
+LOST_S = 3.5
+LEASE_S = 3.0
+RECOVERY_S = 5.0
+RECOVERY_AFTER_LEASE_S = 15.0
+
+
+class Run:
+    """A run to be judged: the ledgers, and the faults with the times at which they were done, in s."""
+
+    def __init__(self, ledgers, faults):
+        self.lives = {node: judge.read_ledger(text) for node, text in ledgers.items()}
+        self.faults = faults
+
+    def losing_since(self):
+        """When packets began to be lost, in s: what was before says nothing about the loss. 0 where none are lost."""
+        return next((time for time, what, arguments in self.faults if what == "lose" and arguments[0] < 100), 0.0)
+
+    def all_lives(self):
+        return [life for lives in self.lives.values() for life in lives]
+
+    def links(self):
+        """(sender, receiver) -> delays in s of what was delivered, with the times of delivery"""
+        intents = {(life.node, life.life, e["to"], e.number("id")): e.time
+                   for life in self.all_lives() for e in life.of("intent")}
+        delays = collections.defaultdict(list)
+        for life in self.all_lives():
+            for e in life.of("delivered"):
+                sent = intents.get((e["from"], e.number("life"), life.node, e.number("id")))
+                if sent is not None:
+                    delays[e["from"], life.node].append((e.time * 1e-9, (e.time - sent) * 1e-9))
+        return delays
+
+    def events(self, node, kind):
+        return [event for life in self.lives[node] for event in life.of(kind)]
+
+    def share_of_ticks(self, node, origin):
+        """Of the ticks from the first to the last that the node saw, those that it saw; and how many there were."""
+        seen = {event.number("number") for event in self.events(node, "tick")
+                if event["from"] == origin and event.time * 1e-9 > self.losing_since()}
+        span = max(seen) - min(seen) + 1 if seen else 0
+        return (len(seen) / span if span else 0.0), span
+
+
+def least(run, wanted):
+    """{"delivered": N, "expired": N, ...}: the least that the links' counters must come to in all."""
+    total = collections.Counter()
+    for life in run.all_lives():
+        for to in {event["to"] for event in life.of("link")}:
+            total.update(life.counters(to))
+    return [f"{key}: at least {count} wanted, {total[key]} counted" for key, count in wanted.items()
+            if total[key] < count]
+
+
+def states(run, wanted):
+    """{node: {other: [state, ...]}}: how the node's last life saw the other, from its first UP on; [] is never."""
+    wrong = []
+    for node, others in wanted.items():
+        for other, expected in others.items():
+            seen = [e["state"] for life in run.lives[node][-1:] for e in life.of("peer") if e["node"] == other]
+            seen = seen[seen.index("UP"):] if "UP" in seen else []
+            if seen != expected:
+                wrong.append(f"{node} saw {other} as {seen}, not {expected}")
+    return wrong
+
+
+def delay_p99_ms(run, wanted):
+    """{node: ms}: of all links to and from that node."""
+    wrong = []
+    for (origin, node), rows in sorted(run.links().items()):
+        limit = min((wanted[end] for end in (origin, node) if end in wanted), default=None)
+        delays = sorted(delay for time, delay in rows if time - delay > run.losing_since())
+        p99 = 1000 * delays[len(delays) * 99 // 100] if delays else 0.0
+        if limit is not None and p99 > limit:
+            wrong.append(f"{origin} to {node}: delay p99 {p99:.0f} ms, at most {limit} ms wanted")
+    return wrong
+
+
+def resent_at_most(run, wanted):
+    """How many times the fresh messages of a link may have been sent again."""
+    wrong = []
+    for life in run.all_lives():
+        for to in sorted({event["to"] for event in life.of("link")}):
+            counters = life.counters(to)
+            if counters["resent"] > wanted * counters["accepted"]:
+                wrong.append(f"{life.node} to {to}: {counters['resent']} resent, {counters['accepted']} accepted")
+    return wrong
+
+
+def ticks(run, wanted):
+    """{node: percent lost}: the share of its ticks that others saw, and of theirs that it saw, fits that loss: within
+    four standard deviations of the binomial distribution, and 2 % of all for ticks that the machine merged."""
+    wrong = []
+    for node, percent in wanted.items():
+        arrives = 1 - percent / 100
+        # Between two of them the later fault of the two holds.
+        others = [other for other in run.lives if other not in wanted and run.events(other, "tick")]
+        for reader, origin in [(other, node) for other in others] + [(node, other) for other in others]:
+            share, span = run.share_of_ticks(reader, origin)
+            if span < 50:
+                wrong.append(f"{reader} saw too few ticks of {origin} to judge: {share * span:.0f}")
+                continue
+            margin = 4 * (arrives * (1 - arrives) / span) ** 0.5 + 0.02
+            if abs(share - arrives) > margin:
+                wrong.append(f"{reader} saw {100 * share:.0f} % of {span} ticks of {origin}; {percent} % are lost")
+    return wrong
+
+
+def _outages(run):
+    """(node, whether it hears nothing, whether it is not heard, begin, end), from the faults; both in s."""
+    began = {}
+    for time, what, arguments in run.faults:
+        if what == "cut":
+            began[arguments[0]] = (True, True, time)
+        elif what == "lose" and arguments[0] == 100:
+            for node in (arguments[1] if len(arguments) > 1 and arguments[1] else []):
+                began[node] = (False, True, time)
+            for node in (arguments[2] if len(arguments) > 2 and arguments[2] else []):
+                began[node] = (True, False, time)
+        elif what == "heal":
+            for node, (deaf, mute, begin) in began.items():
+                yield node, deaf, mute, begin, time
+            began = {}
+
+
+def timely(run, observer):
+    """The observer sees each node that is not heard STALE and LOST in time, and UP in time after the healing; and
+    within that time the links between the two deliver again."""
+    wrong = []
+    links = run.links()
+    for node, deaf, mute, begin, end in _outages(run):
+        name = f"{node} cut for {end - begin:.0f} s"
+        seen = [(e.time * 1e-9, e["state"]) for e in run.events(observer, "peer") if e["node"] == node]
+        recovery = (RECOVERY_S if end - begin < LEASE_S else RECOVERY_AFTER_LEASE_S)
+        wanted = [("STALE", begin, STALE_S), ("LOST", begin, LOST_S)] if mute else []
+        wanted = [row for row in wanted if row[1] + row[2] + SLACK_S < end]
+        if wanted:
+            wanted.append(("UP", end, recovery))
+        for state, since, within in wanted:
+            first = next((time for time, now in seen if now == state and time > since), None)
+            if first is None or first - since > within + (0 if state == "UP" else SLACK_S):
+                wrong.append(f"{name}: {observer} saw it {state} "
+                             + (f"{first - since:.1f} s after" if first else "never") + f", at most {within} s wanted")
+        for pair in ((observer, node), (node, observer)):
+            first = next((time for time, _ in links[pair] if time > end), None)
+            if links[pair] and (first is None or first - end > recovery):
+                wrong.append(f"{name}: first note from {pair[0]} to {pair[1]} "
+                             + (f"{first - end:.1f} s after" if first else "never") + f", at most {recovery} s wanted")
+    return wrong
+
+
+def refusals_from(run, wanted):
+    """{"sender to receiver": N}: the first note refused was the one after N accepted."""
+    wrong = []
+    for name, limit in wanted.items():
+        sender, to = name.split(" to ")
+        accepted = 0
+        refused = False
+        for event in (e for life in run.lives[sender] for e in life.events if e.values.get("to") == to):
+            if event.kind == "refused":
+                refused = True
+                break
+            accepted += event.kind == "accepted"
+        if not refused or accepted != limit:
+            wrong.append(f"{name}: " + (f"refused after {accepted} accepted" if refused else "nothing refused")
+                         + f", {limit} wanted")
+    return wrong
+
+
+def problems(run, wanted):
+    """{node: text}: the node has reported a problem with these words."""
+    return [f"{node} did not report '{text}', but {[e.values for e in run.events(node, 'problem')]}"
+            for node, text in wanted.items()
+            if not any(text in event["reason"] for event in run.events(node, "problem"))]
+
+
+def undecodable(run, wanted):
+    """[node, ...]: these have counted samples that do not decode."""
+    return [f"{node} counted no undecodable sample" for node in wanted
+            if not any(e.values.get("undecodable", "0") != "0" for e in run.events(node, "topic"))]
+
+
+def lives(run, wanted):
+    """{node: N}: so many lives."""
+    return [f"{node}: {len(run.lives[node])} lives, {count} wanted" for node, count in wanted.items()
+            if len(run.lives[node]) != count]
+
+
+ALL = (least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, undecodable, lives)
+
+
+def check(run, wanted):
+    """Everything that a scenario's `expect` names."""
+    known = {function.__name__: function for function in ALL}
+    return [text for name, value in wanted.items() for text in known[name](run, value)]

@@ -1,0 +1,56 @@
+/* A plain Cyclone DDS program that publishes on the topic Tick, which the ledger nodes read: in one domain
+ * participant under their type's name with another content, in a second one under a type name of its own.
+ * Usage: foreign_publisher DOMAIN, until SIGTERM */
+#include <dds/dds.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "foreign.h"
+
+static volatile sig_atomic_t ended = 0;
+
+static void End(int number)
+{
+    (void)number;
+    ended = 1;
+}
+
+static dds_entity_t Check(dds_entity_t result, const char *what)
+{
+    if (result < 0)
+    {
+        fprintf(stderr, "foreign_publisher: %s: %s\n", what, dds_strretcode(-result));
+        exit(1);
+    }
+    return result;
+}
+
+static dds_entity_t MakeWriter(dds_domainid_t domain, const dds_topic_descriptor_t *type)
+{
+    const dds_entity_t participant = Check(dds_create_participant(domain, NULL, NULL), "participant");
+    const dds_entity_t topic = Check(dds_create_topic(participant, type, "Tick", NULL, NULL), "topic");
+    return Check(dds_create_writer(participant, topic, NULL, NULL), "writer");
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2)
+    {
+        fprintf(stderr, "usage: foreign_publisher DOMAIN\n");
+        return 2;
+    }
+    signal(SIGTERM, End);
+    const dds_domainid_t domain = (dds_domainid_t)atoi(argv[1]);
+    const dds_entity_t same = MakeWriter(domain, &Ledger_Tick_desc);
+    const dds_entity_t other = MakeWriter(domain, &Foreign_Tick_desc);
+    const Ledger_Tick tick = {1};
+    const Foreign_Tick words = {"not a number"};
+    while (!ended)
+    {
+        Check(dds_write(same, &tick), "write");
+        Check(dds_write(other, &words), "write");
+        dds_sleepfor(DDS_MSECS(100));
+    }
+    return 0;
+}
