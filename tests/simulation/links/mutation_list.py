@@ -5,9 +5,7 @@ says who must notice: 'simulation' (an invariant fails within the seeds tried) o
 other rules make up for it or no random run gets there, so a test of its own in tests/gateway/links must fail).
 """
 
-from collections import namedtuple
-
-Mutation = namedtuple("Mutation", "name file find replace noticed_by")
+from mutation import Mutation
 
 MUTATIONS = [
     # Sender

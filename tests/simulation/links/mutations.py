@@ -17,7 +17,9 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from mutation_list import MUTATIONS
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+import mutation  # noqa: E402
+from mutation_list import MUTATIONS  # noqa: E402
 
 FLAGS = ["-std=c++20", "-O2", "-pthread"]
 
@@ -56,18 +58,12 @@ class Build:
         subprocess.run([self.compiler, *FLAGS, *map(str, self.objects[group]), *map(str, links), *libraries, "-o",
                         str(target)], check=True)
 
-    def mutate(self, mutation, target):
+    def mutate(self, change, target):
         """Compiles the changed file and returns the objects of the broken links."""
-        text = (self.links / mutation.file).read_text()
-        # Where lines are broken does not count.
-        words = [re.escape(word) for word in re.findall(r"\w+|[^\w\s]", mutation.find)]
-        found = list(re.finditer(r"\s*".join(words), text))
-        if len(found) != 1:
-            raise RuntimeError(f"its text is in {mutation.file} {len(found)} times, not once")
-        changed = self.work / f"mutant_{mutation.file}"
-        changed.write_text(text[:found[0].start()] + mutation.replace + text[found[0].end():])
+        changed = self.work / f"mutant_{change.file}"
+        changed.write_text(mutation.apply((self.links / change.file).read_text(), change))
         self.compile(changed, target)
-        original = self.work / f"links_{Path(mutation.file).stem}.o"
+        original = self.work / f"links_{Path(change.file).stem}.o"
         return [target if name == original else name for name in self.objects["links"]]
 
 
@@ -75,18 +71,7 @@ def simulate(build, links, seeds, jobs):
     """Returns the violated invariant, or None."""
     program = build.work / "mutant_simulation"
     build.link("simulation", links, program)
-    try:
-        run = subprocess.run([str(program), "--seeds", str(seeds), "--jobs", str(jobs)], capture_output=True,
-                             text=True, timeout=600)
-    except subprocess.TimeoutExpired:
-        return "the simulation does not end"
-    if run.returncode == 0:
-        return None
-    lines = run.stdout.splitlines()
-    failed = [number for number, line in enumerate(lines) if line.startswith("FAILED")]
-    if not failed:
-        return f"ended with status {run.returncode}"
-    return f"seed {lines[failed[0]].split()[2].rstrip(',')}, {lines[failed[0] + 1]}"
+    return mutation.simulate(program, seeds, jobs)
 
 
 def test(build, links):
@@ -121,30 +106,30 @@ def main():
         if notice:
             print(f"FAILED the sources as they are: {notice}")
             return 1
-    for mutation in MUTATIONS:
-        if arguments.only and arguments.only not in mutation.name:
+    for change in MUTATIONS:
+        if arguments.only and arguments.only not in change.name:
             continue
         try:
-            links = build.mutate(mutation, build.work / "mutant.o")
-            seeds = arguments.seeds if mutation.noticed_by == "simulation" else arguments.seeds // 20
+            links = build.mutate(change, build.work / "mutant.o")
+            seeds = arguments.seeds if change.noticed_by == "simulation" else arguments.seeds // 20
             notice = simulate(build, links, seeds, arguments.jobs)
             by = "simulation"
             if notice is None:
                 notice, by = test(build, links), "direct"
         except RuntimeError as error:
             notice, by = None, "nobody"
-            print(f"FAILED {mutation.name}: {error}")
+            print(f"FAILED {change.name}: {error}")
             problems += 1
             continue
         if notice is None:
-            print(f"FAILED {mutation.name}: not noticed")
+            print(f"FAILED {change.name}: not noticed")
             problems += 1
-        elif by == "direct" and mutation.noticed_by == "simulation":
-            print(f"FAILED {mutation.name}: the simulation does not notice, only {notice}")
+        elif by == "direct" and change.noticed_by == "simulation":
+            print(f"FAILED {change.name}: the simulation does not notice, only {notice}")
             problems += 1
         else:
             counts[by] += 1
-            print(f"noticed {mutation.name}: {notice}", flush=True)
+            print(f"noticed {change.name}: {notice}", flush=True)
     print(f"{sum(counts.values())} noticed ({counts['simulation']} by the simulation, {counts['direct']} by a direct "
           f"test alone), {problems} problems, {time.monotonic() - start:.0f} s")
     return 1 if problems else 0

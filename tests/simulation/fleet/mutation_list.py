@@ -1,0 +1,52 @@
+"""What a whole node does, broken on purpose.
+
+Each mutation says which program must notice: the simulation of the fleet, within the seeds tried, or a test program
+where random runs get there too seldom or the links make up for it.
+"""
+
+from mutation import Mutation
+
+FLEET = "fleet_simulation"
+NODES = "gateway_nodes_test"
+PARTS = "gateway_parts_test"
+
+MUTATIONS = [
+    # Mirrors
+    Mutation("a repeated state is stamped anew", "TopicPublisher.cpp", "_source.At(_local->GetPostTime().Monotonic)",
+             "_source.At(now)", FLEET),
+    Mutation("a held-up value replaces a newer one", "TopicSubscriber.cpp", "!posted || IsOvertaken(*source, info)",
+             "!posted", NODES),
+    Mutation("values are posted as of their arrival", "TopicSubscriber.cpp", "PostTime{stamp, *posted}",
+             "PostTime{stamp, _workspace.GetClock().Monotonic()}", FLEET),
+    Mutation("any life of an origin will do", "TopicSubscriber.cpp",
+             "origin && origin->Incarnation == info.Incarnation;", "origin.has_value();", FLEET),
+    Mutation("a value posted while the last is written is forgotten", "TopicPublisher.cpp",
+             "(_local->FetchMessage() && _local->WasPosted()) || _pending", "false && _local->FetchMessage()", FLEET),
+    Mutation("nobody is subscribed to", "GatewayManager.cpp", "_subscriptions.OnOffers(_presence.Peers());", "", FLEET),
+    # Presence
+    Mutation("a silent node stays UP", "PeerTable.cpp", "silence > StaleAfter && peer.State == NodeState::UP", "false",
+             FLEET),
+    Mutation("a silent node is never LOST", "PeerTable.cpp", "silence > LostAfter && peer.State != NodeState::LOST",
+             "false", FLEET),
+    Mutation("a beat that was held up counts as of now", "PeerTable.cpp",
+             "std::min(now, peer->Clock.SentAt(monotonic).value_or(now))", "now", PARTS),
+    Mutation("the clock of an earlier life is kept", "PeerTable.cpp", "peer.Clock = PeerClock();", "", FLEET),
+    Mutation("a node that comes back with a lower number is never heard", "PeerTable.cpp",
+             "(incarnation < peer.Incarnation && now - peer.LastHeard > StaleAfter)", "false", FLEET),
+    Mutation("no beats are sent", "Presence.cpp", "if (now >= _nextBeat)", "if (false)", FLEET),
+    # Queue messages
+    Mutation("expired is called delivered", "LinkDriver.cpp", "return QueueOutcome::Expired;",
+             "return QueueOutcome::Delivered;", FLEET),
+    Mutation("in doubt is called expired", "LinkDriver.cpp", "return QueueOutcome::InDoubt;",
+             "return QueueOutcome::Expired;", FLEET),
+    Mutation("receipts of a gateway that ends are not settled", "LinkDriver.cpp", "_links->Close();", "", FLEET),
+    Mutation("the receiver's manager is not told", "LinkDriver.cpp", "queue->Notify();", "static_cast<void>(queue);",
+             FLEET),
+    Mutation("send entries are not heeded", "LinkDriver.cpp", "_links->Configure(node, queue, OptionsOf(*rule), Now());",
+             "", FLEET),
+    Mutation("what came again is not marked", "AcceptedQueue.cpp", "message->SetRedelivered(redelivered);", "", FLEET),
+    Mutation("in doubt is not counted", "LinkDriverStatus.cpp", "row.in_doubt = counters.InDoubt;", "", FLEET),
+    Mutation("a node that is not live is unknown", "RemoteQueues.cpp", "_peers[peer.Node] = peer;",
+             "if (peer.State == Gateway::NodeState::LOST) _peers.erase(peer.Node); else _peers[peer.Node] = peer;",
+             FLEET),
+]
