@@ -184,10 +184,10 @@ def problems(run, wanted):
             if not any(text in event["reason"] for event in run.events(node, "problem"))]
 
 
-def undecodable(run, wanted):
-    """[node, ...]: these have counted samples that do not decode."""
-    return [f"{node} counted no undecodable sample" for node in wanted
-            if not any(e.values.get("undecodable", "0") != "0" for e in run.events(node, "topic"))]
+def foreign_refused(run, wanted):
+    """[node, ...]: these have counted samples of a program that is no node."""
+    return [f"{node} counted no sample of a program that is no node" for node in wanted
+            if not any(e["from"] == "" and e["refused"] != "0" for e in run.events(node, "topic"))]
 
 
 def lives(run, wanted):
@@ -196,7 +196,7 @@ def lives(run, wanted):
             if len(run.lives[node]) != count]
 
 
-ALL = (least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, undecodable, lives)
+ALL = (least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, foreign_refused, lives)
 
 
 def check(run, wanted):

@@ -30,7 +30,13 @@ static dds_entity_t MakeWriter(dds_domainid_t domain, const dds_topic_descriptor
 {
     const dds_entity_t participant = Check(dds_create_participant(domain, NULL, NULL), "participant");
     const dds_entity_t topic = Check(dds_create_topic(participant, type, "Tick", NULL, NULL), "topic");
-    return Check(dds_create_writer(participant, topic, NULL, NULL), "writer");
+    /* The partition of a node of its own; without one Fast DDS's readers of all nodes do not match. */
+    const char *partitions[] = {"", "foreigner"};
+    dds_qos_t *qos = dds_create_qos();
+    dds_qset_partition(qos, 2, partitions);
+    const dds_entity_t publisher = Check(dds_create_publisher(participant, qos, NULL), "publisher");
+    dds_delete_qos(qos);
+    return Check(dds_create_writer(publisher, topic, NULL, NULL), "writer");
 }
 
 int main(int argc, char **argv)

@@ -254,7 +254,8 @@ private:
                              "\" reason=\"" + problem.reason + '"');
         for (const auto &topic : _fleet->topics)
             WriteOnChange("topic message=" + topic.message + " from=" + topic.node,
-                          " undecodable=" + std::to_string(topic.undecodable));
+                          " undecodable=" + std::to_string(topic.undecodable) +
+                              " refused=" + std::to_string(topic.refused));
         WriteOnChange("malformed", " count=" + std::to_string(_fleet->malformed));
         if (Now() >= _nextCounters)
             WriteCounters();
