@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
 
@@ -104,6 +105,37 @@ std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &inter
                 "interfaces");
         }
     }
+    return addresses;
+}
+
+std::vector<std::string> FindAddresses(const std::vector<std::string> &interfaces)
+{
+    ifaddrs *head = nullptr;
+    if (getifaddrs(&head) != 0)
+    {
+        return {};
+    }
+    const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(head, &freeifaddrs);
+    std::vector<std::string> addresses;
+    for (const ifaddrs *entry = head; entry != nullptr; entry = entry->ifa_next)
+    {
+        if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET)
+        {
+            continue;
+        }
+        const std::string address = ToText(entry->ifa_addr);
+        const bool wanted = interfaces.empty()
+                                ? (entry->ifa_flags & IFF_LOOPBACK) == 0
+                                : std::find_if(interfaces.begin(), interfaces.end(),
+                                               [&](const std::string &name) {
+                                                   return name == entry->ifa_name || name == address;
+                                               }) != interfaces.end();
+        if (wanted)
+        {
+            addresses.push_back(address);
+        }
+    }
+    std::sort(addresses.begin(), addresses.end());
     return addresses;
 }
 

@@ -20,6 +20,10 @@ void CheckQos(const TopicDescription &topic, const TopicQos &qos);
 // this host. Throws TransportError for one that does not exist here or has no IPv4 address.
 std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &interfaces);
 
+// The IPv4 addresses, sorted, that the named interfaces have now; of all interfaces but loopback if none is
+// named. Empty if they cannot be listed.
+std::vector<std::string> FindAddresses(const std::vector<std::string> &interfaces);
+
 struct PeerAddress
 {
     std::string Address;     // IPv4, dotted

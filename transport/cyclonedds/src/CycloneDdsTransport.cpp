@@ -5,6 +5,7 @@
 #include "CycloneReader.h"
 #include "CycloneWriter.h"
 #include "SessionCore.h"
+#include "common/RejoiningSession.h"
 #include "common/SettingsCheck.h"
 
 namespace Rabit
@@ -53,7 +54,9 @@ std::string CycloneDdsTransport::Name() const
 std::unique_ptr<TransportSession> CycloneDdsTransport::Open(const TransportSettings &settings,
                                                             PeerHandler onPeer)
 {
-    return std::make_unique<CycloneSession>(settings, std::move(onPeer));
+    return OpenRejoining(settings, std::move(onPeer),
+                         [](const TransportSettings &current, PeerHandler handler)
+                         { return std::make_unique<CycloneSession>(current, std::move(handler)); });
 }
 
 }  // namespace Rabit

@@ -95,6 +95,9 @@ std::string MakeDomainConfig(const TransportSettings &settings)
     // The defaults would make repair, and the end of a replay, as late as 100 ms and more.
     xml << "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash>"
         << "<HeartbeatInterval max=\"200ms\">20ms</HeartbeatInterval><NackDelay>1ms</NackDelay>"
+        // The vendor ends further threads by a message to its own address, and waits for ever if that is
+        // gone.
+        << "<MultipleReceiveThreads>false</MultipleReceiveThreads>"
         << "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
         << "<Watermarks><WhcHigh>128MB</WhcHigh></Watermarks></Internal></Domain>";
     if (!settings.BackendConfig.empty())

@@ -58,7 +58,12 @@ void Sink(void *, const dds_log_data_t *data)
     {
         auto &table = TheTable();
         const std::lock_guard lock(table.Mutex);
-        const auto found = table.Domains.find(data->domid);
+        auto found = table.Domains.find(data->domid);
+        if (found == table.Domains.end())
+        {
+            // Some lines, of sockets for instance, name no domain.
+            found = table.Domains.begin();
+        }
         if (found != table.Domains.end())
         {
             log = found->second.Log;

@@ -6,6 +6,7 @@
 #include "FastDdsReader.h"
 #include "FastDdsWriter.h"
 #include "SessionCore.h"
+#include "common/RejoiningSession.h"
 #include "common/SettingsCheck.h"
 
 namespace Rabit
@@ -54,7 +55,9 @@ std::string FastDdsTransport::Name() const
 std::unique_ptr<TransportSession> FastDdsTransport::Open(const TransportSettings &settings,
                                                          PeerHandler onPeer)
 {
-    return std::make_unique<FastDdsSession>(settings, std::move(onPeer));
+    return OpenRejoining(settings, std::move(onPeer),
+                         [](const TransportSettings &current, PeerHandler handler)
+                         { return std::make_unique<FastDdsSession>(current, std::move(handler)); });
 }
 
 }  // namespace Rabit

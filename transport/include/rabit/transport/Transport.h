@@ -15,6 +15,13 @@
 //   destroyed before it. Destroying a reader (or closing the session) returns only when no handler of it runs
 //   any more; none starts afterwards.
 //
+// Changes of the network
+//   A network that vanishes and returns needs nothing: peers are Lost and appear again. When an address that
+//   the session was opened with is gone, and there is another or the same again, a real backend joins the
+//   network anew by itself, and logs it: all peers are Lost and appear again, readers get transient-local
+//   history once more, writers start with an empty history, a new WriterId and new numbers. Meanwhile writes
+//   end TimedOut.
+//
 // Errors
 //   Opening something with impossible settings throws TransportError with one clear line. What can fail in
 //   normal operation is a return value. Nothing that arrives from the network throws or ends the process.

@@ -1,0 +1,104 @@
+#include "common/AddressWatch.h"
+
+#include <linux/netlink.h>
+#include <linux/rtnetlink.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace Rabit
+{
+
+namespace
+{
+
+// An interface that comes up tells several things, each within milliseconds of the one before.
+constexpr int BurstMSec = 200;
+constexpr int Forever = -1;
+
+}  // namespace
+
+AddressWatch::Descriptor::Descriptor(int value, const char *what) : _value(value)
+{
+    if (value < 0)
+    {
+        throw std::system_error(errno, std::generic_category(), what);
+    }
+}
+
+AddressWatch::Descriptor::~Descriptor()
+{
+    close(_value);
+}
+
+AddressWatch::AddressWatch(std::function<std::chrono::milliseconds()> changed)
+    : _changed(std::move(changed)),
+      _netlink(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE), "netlink socket"),
+      _stop(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK), "eventfd")
+{
+    sockaddr_nl address{};
+    address.nl_family = AF_NETLINK;
+    address.nl_groups = RTMGRP_LINK | RTMGRP_IPV4_IFADDR;
+    if (bind(_netlink.Get(), reinterpret_cast<const sockaddr *>(&address), sizeof address) != 0)
+    {
+        throw std::system_error(errno, std::generic_category(), "binding a netlink socket");
+    }
+    _thread = std::thread([this] { Run(); });
+}
+
+AddressWatch::~AddressWatch()
+{
+    const std::uint64_t one = 1;
+    // An eventfd takes its first 2^64 - 2 counts without fail.
+    [[maybe_unused]] const auto written = write(_stop.Get(), &one, sizeof one);
+    _thread.join();
+}
+
+void AddressWatch::Run()
+{
+    int again = Forever;
+    while (true)
+    {
+        bool news = false;
+        if (!Wait(again, news))
+        {
+            return;
+        }
+        for (bool more = news; more;)
+        {
+            more = false;
+            if (!Wait(BurstMSec, more))
+            {
+                return;
+            }
+        }
+        const auto next = _changed();
+        again = next.count() > 0 ? static_cast<int>(next.count()) : Forever;
+    }
+}
+
+bool AddressWatch::Wait(int milliseconds, bool &news)
+{
+    std::array<pollfd, 2> descriptors{{{_netlink.Get(), POLLIN, 0}, {_stop.Get(), POLLIN, 0}}};
+    poll(descriptors.data(), descriptors.size(), milliseconds);
+    if (descriptors[1].revents != 0)
+    {
+        return false;
+    }
+    // What exactly changed does not matter: the addresses are listed afresh.
+    std::array<char, 8192> ignored;
+    while (recv(_netlink.Get(), ignored.data(), ignored.size(), 0) > 0)
+    {
+        news = true;
+    }
+    news = news || descriptors[0].revents != 0;
+    return true;
+}
+
+}  // namespace Rabit
