@@ -35,6 +35,7 @@ class Life:
         self.node = start["node"]
         self.life = start.number("life")
         self.room = start.number("room")
+        self.begin = start.time
         self.events = []
 
     @property

@@ -159,23 +159,19 @@ class Faults:
             self.run(steps)
 
 
-def figures(ledgers):
-    """One line for each link: what became of the notes, and how long they took."""
-    lives = [life for text in ledgers.values() for life in judge.read_ledger(text)]
-    for node in ledgers:
-        mine = [life for life in lives if life.node == node]
-        for to in sorted({event["to"] for life in mine for event in life.of("intent")}):
-            starts = {(life.life, e.number("id")): e.time for life in mine for e in life.of("intent") if e["to"] == to}
-            delays = sorted((e.time - starts[e.number("life"), e.number("id")]) * 1e-6
-                            for life in lives if life.node == to for e in life.of("delivered")
-                            if e["from"] == node and (e.number("life"), e.number("id")) in starts)
+def figures(seen):
+    """One line for each link: what became of the notes, and how long they took, of those sent under loss if any."""
+    delays = seen.links()
+    for node, lives in seen.lives.items():
+        for to in sorted({event["to"] for life in lives for event in life.of("intent")}):
+            took = sorted(1000 * delay for time, delay in delays[node, to] if time - delay > seen.losing_since())
             total = collections.Counter()
-            for life in mine:
+            for life in lives:
                 total.update(life.counters(to) or {})
-            yield (f"{node} to {to}: lives {len(mine)}, accepted {total['accepted']}, delivered {total['delivered']}, "
+            yield (f"{node} to {to}: lives {len(lives)}, accepted {total['accepted']}, delivered {total['delivered']}, "
                    f"expired {total['expired']}, in doubt {total['in_doubt']}, resent {total['resent']}"
-                   + (f", delay p50 {delays[len(delays) // 2]:.1f} ms, p99 {delays[len(delays) * 99 // 100]:.1f} ms"
-                      if delays else ""))
+                   + (f", delay p50 {took[len(took) // 2]:.1f} ms, p99 {took[len(took) * 99 // 100]:.1f} ms"
+                      if took else ""))
 
 
 def run(options):
@@ -202,16 +198,16 @@ def run_in(ground, scenario, options):
     seconds = time.monotonic() - began
     bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
     # Before the stop, which the others see as LOST.
-    seen = expectations.Run(fleet.ledgers(), faults.done)
-    wrong += expectations.states(seen, scenario.get("states", {}))
+    wrong += expectations.states(expectations.Run(fleet.ledgers(), faults.done), scenario.get("states", {}))
     wrong += fleet.stop()
     ledgers = fleet.ledgers()
     if options.keep:
         shutil.copytree(ground.folder, options.keep, dirs_exist_ok=True)
-    for line in figures(ledgers):
+    seen = expectations.Run(ledgers, faults.done)
+    for line in figures(seen):
         print(line)
     print(f"{seconds:.0f} s; bytes sent: " + ", ".join(f"{node} {count}" for node, count in bytes_sent.items()))
-    wrong += expectations.check(expectations.Run(ledgers, faults.done), scenario.get("expect", {}))
+    wrong += expectations.check(seen, scenario.get("expect", {}))
     return wrong + judge.judge(ledgers[node] for node in scenario.get("judged", ledgers))
 
 
