@@ -180,12 +180,12 @@ TEST(TopicRegistry, CountsATypeThatDiffersElsewhereWhicheverCameFirst)
     std::vector<std::string> lines;
     const auto log = std::make_shared<SessionLog>(SettingsThatLogTo(lines));
     TopicRegistry topics(log);
-    topics.RemoteAppeared({1}, "Pose", "Uav::Goto");
+    topics.RemoteAppeared({1}, "Pose", "Uav::Goto", "uav1");
     EXPECT_EQ(log->Read().InconsistentTypes, 0u);
     const TopicRegistry::Use use(topics, {"Pose", "Uav::Pose", {}});
     EXPECT_EQ(log->Read().InconsistentTypes, 1u);
-    topics.RemoteAppeared({2}, "Pose", "Uav::Pose");
-    topics.RemoteAppeared({3}, "Pose", "Uav::State");
+    topics.RemoteAppeared({2}, "Pose", "Uav::Pose", "");
+    topics.RemoteAppeared({3}, "Pose", "Uav::State", "");
     EXPECT_EQ(log->Read().InconsistentTypes, 2u);
     EXPECT_THAT(lines.back(), HasSubstr("topic Pose has type Uav::Pose here, but Uav::State elsewhere"));
 }

@@ -73,10 +73,14 @@ void SessionLog::IncompatibleQos(const std::string &topic) noexcept
 }
 
 void SessionLog::InconsistentType(const std::string &topic, const std::string &ours,
-                                  const std::string &theirs) noexcept
+                                  const std::string &theirs, const std::string &node) noexcept
 {
     Count(_inconsistentTypes,
-          [&] { return "topic " + topic + " has type " + ours + " here, but " + theirs + " elsewhere"; });
+          [&]
+          {
+              return "topic " + topic + " has type " + ours + " here, but " + theirs +
+                     (node.empty() ? " elsewhere" : " at " + node);
+          });
 }
 
 void SessionLog::MalformedSample(const std::string &topic, const char *why) noexcept

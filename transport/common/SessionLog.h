@@ -21,8 +21,9 @@ public:
     void WriteTimedOut(const std::string &topic) noexcept;
     void WriteFailed(const std::string &topic, const char *why) noexcept;
     void IncompatibleQos(const std::string &topic) noexcept;
-    void InconsistentType(const std::string &topic, const std::string &ours,
-                          const std::string &theirs) noexcept;
+    // `node` is the other side's; empty if it is unknown or no Rabit node.
+    void InconsistentType(const std::string &topic, const std::string &ours, const std::string &theirs,
+                          const std::string &node) noexcept;
     void MalformedSample(const std::string &topic, const char *why) noexcept;
     void MalformedDatagram() noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }

@@ -31,7 +31,7 @@ void TopicRegistry::Open(const TopicDescription &topic)
 {
     CheckName("topic", topic.Name);
     CheckName("type", topic.TypeName);
-    std::vector<std::string> others;
+    std::vector<RemoteEndpoint> others;
     {
         const std::lock_guard lock(_mutex);
         auto &open = _open.try_emplace(topic.Name, OpenTopic{topic.TypeName}).first->second;
@@ -46,14 +46,14 @@ void TopicRegistry::Open(const TopicDescription &topic)
             {
                 if (remote.Topic == topic.Name && remote.Type != topic.TypeName)
                 {
-                    others.push_back(remote.Type);
+                    others.push_back(remote);
                 }
             }
         }
     }
     for (const auto &other : others)
     {
-        _log->InconsistentType(topic.Name, topic.TypeName, other);
+        _log->InconsistentType(topic.Name, topic.TypeName, other.Type, other.Node);
     }
 }
 
@@ -67,12 +67,13 @@ void TopicRegistry::Close(const std::string &topic)
     }
 }
 
-void TopicRegistry::RemoteAppeared(const WriterId &endpoint, std::string topic, std::string type)
+void TopicRegistry::RemoteAppeared(const WriterId &endpoint, std::string topic, std::string type,
+                                   std::string node)
 {
     std::string ours;
     {
         const std::lock_guard lock(_mutex);
-        const bool isNew = _remote.insert_or_assign(endpoint, RemoteEndpoint{topic, type}).second;
+        const bool isNew = _remote.insert_or_assign(endpoint, RemoteEndpoint{topic, type, node}).second;
         const auto open = _open.find(topic);
         if (isNew && open != _open.end() && open->second.Type != type)
         {
@@ -81,7 +82,7 @@ void TopicRegistry::RemoteAppeared(const WriterId &endpoint, std::string topic, 
     }
     if (!ours.empty())
     {
-        _log->InconsistentType(topic, ours, type);
+        _log->InconsistentType(topic, ours, type, node);
     }
 }
 

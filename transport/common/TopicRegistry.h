@@ -36,7 +36,8 @@ public:
 
     // An endpoint of another session came (or told its topic anew) or went. Types that differ from ours are
     // counted and logged, whichever of the two was there first.
-    void RemoteAppeared(const WriterId &endpoint, std::string topic, std::string type);
+    // `node` is whose it is; empty if that is unknown or no Rabit node.
+    void RemoteAppeared(const WriterId &endpoint, std::string topic, std::string type, std::string node);
     void RemoteGone(const WriterId &endpoint);
 
 private:
@@ -52,6 +53,7 @@ private:
     {
         std::string Topic;
         std::string Type;
+        std::string Node;
     };
 
     const std::shared_ptr<SessionLog> _log;

@@ -24,9 +24,12 @@ protected:
     using WriterPtr = std::unique_ptr<TransportWriter>;
     using ReaderPtr = std::unique_ptr<TransportReader>;
 
-    SessionPtr Open(const std::string &node, std::uint64_t incarnation = 1, PeerHandler onPeer = {})
+    SessionPtr Open(const std::string &node, std::uint64_t incarnation = 1, PeerHandler onPeer = {},
+                    std::function<void(const std::string &)> log = {})
     {
-        return Net().Backend().Open(Net().SettingsFor(node, incarnation), std::move(onPeer));
+        TransportSettings settings = Net().SettingsFor(node, incarnation);
+        settings.Log = std::move(log);
+        return Net().Backend().Open(settings, std::move(onPeer));
     }
     TransportHarness &Net() { return *_harness; }
     bool Until(const std::function<bool()> &condition) { return Net().Until(condition); }

@@ -1,5 +1,8 @@
 // What arrives, in which order, and with what information.
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 #include "ConformanceTest.h"
 
@@ -163,6 +166,36 @@ TEST_P(Conformance, BytesArriveAsTheyWereEncodedWhateverTheirNumber)
         EXPECT_EQ(bytes[3] & ~3, 0);  // the number of padding bytes may be noted here
         ASSERT_TRUE(std::equal(bytes.begin() + 4, bytes.end(), bodyOf(sizes[i]).begin())) << sizes[i];
     }
+}
+
+TEST_P(Conformance, BorrowedBytesStayAsTheyAreWhileTheHandlerRuns)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    std::atomic<int> count{0};
+    std::atomic<int> changed{0};
+    const auto reader = reading->CreateReader(
+        TextTopic(), Stream(200), {},
+        [&](SampleBytes bytes, const SampleInfo &)
+        {
+            const std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
+            // The next samples arrive meanwhile.
+            for (int i = 0; i < 20; ++i)
+            {
+                std::this_thread::yield();
+            }
+            changed += std::equal(bytes.begin(), bytes.end(), copy.begin(), copy.end()) ? 0 : 1;
+            ++count;
+        });
+    const auto writer = writing->CreateWriter(TextTopic(), Stream(200), {});
+    ASSERT_TRUE(Matched(writer, reader));
+    for (int i = 0; i < 100; ++i)
+    {
+        ASSERT_EQ(writer->Write(MakeSample(0, std::string(500, static_cast<char>('a' + i % 26))), 1),
+                  WriteResult::Ok);
+    }
+    ASSERT_TRUE(Until([&] { return count == 100; }));
+    EXPECT_EQ(changed, 0);
 }
 
 TEST_P(Conformance, TheSourceTimeArrives)

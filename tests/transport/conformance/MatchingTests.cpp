@@ -78,6 +78,9 @@ TEST_P(Conformance, AWriterInOnePartitionIsNotHeardInTheDefaultOne)
     const auto writer = writing->CreateWriter(TextTopic(), State(), {"ground"});
     ASSERT_TRUE(Matched(writer, inside));
     EXPECT_EQ(outside->MatchedWriters(), 0);
+    // Partitions that differ are no fault (OMG DDS 1.4, 2.2.3.13).
+    EXPECT_EQ(writing->Counters().IncompatibleQos, 0u);
+    EXPECT_EQ(reading->Counters().IncompatibleQos, 0u);
 }
 
 TEST_P(Conformance, OtherTopicsAreNotHeard)
@@ -108,6 +111,27 @@ TEST_P(Conformance, AnotherTypeOnTheTopicIsNotMatchedAndIsCountedOnBothSides)
     EXPECT_TRUE(Until([&] { return reading->Counters().InconsistentTypes >= 1; }));
     EXPECT_EQ(writer->MatchedReaders(), 0);
     EXPECT_EQ(reader->MatchedWriters(), 0);
+}
+
+TEST_P(Conformance, TheReportOfAnotherTypeNamesBothSides)
+{
+    LineRecorder atUav;
+    LineRecorder atGround;
+    const auto writing = Open("uav1", 1, {}, atUav.Sink());
+    const auto reading = Open("ground", 1, {}, atGround.Sink());
+    SampleRecorder recorder;
+    TopicDescription other = TextTopic();
+    other.TypeName = "Test::OtherText";
+    const auto reader = reading->CreateReader(other, State(), {}, recorder.Handler());
+    const auto writer = writing->CreateWriter(TextTopic(), State(), {});
+    EXPECT_TRUE(Until(
+        [&] {
+            return atUav.Has({"uav1", "ground", "Text", "Test::Text", "Test::OtherText"});
+        }));
+    EXPECT_TRUE(Until(
+        [&] {
+            return atGround.Has({"uav1", "ground", "Text", "Test::Text", "Test::OtherText"});
+        }));
 }
 
 TEST_P(Conformance, OneSessionCannotOpenATopicWithTwoTypes)

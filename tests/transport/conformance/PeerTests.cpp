@@ -1,4 +1,10 @@
 // Sessions that come and go.
+#include <malloc.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
 #include "ConformanceTest.h"
 
 namespace Rabit::Conformance
@@ -73,6 +79,30 @@ TEST_P(Conformance, AKilledNodeIsLostAndItsInstancesEnd)
     EXPECT_TRUE(Until([&] { return reader->MatchedWriters() == 0; }));
 }
 
+TEST_P(Conformance, AKilledNodeThatReturnsIsHeardAgain)
+{
+    PeerRecorder atGround;
+    SampleRecorder recorder;
+    const auto ground = Open("ground", 1, atGround.Handler());
+    const auto reader = ground->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
+    const auto first = Net().StartRemote("uav9", 98);
+    ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
+    first->Kill();
+    // It may be back before its first life is missed.
+    const auto second = Net().StartRemote("uav9", 99);
+    ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Appeared, "uav9", 99) == 1; }));
+    ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Lost, "uav9", 98) == 1; }));
+    ASSERT_TRUE(Until(
+        [&]
+        {
+            const auto all = recorder.All();
+            return std::any_of(all.begin(), all.end(),
+                               [](const Received &one)
+                               { return one.Alive && one.Incarnation == 99 && one.Text == "remote"; });
+        }));
+    EXPECT_EQ(atGround.Count(Kind::Lost, "uav9", 99), 0);
+}
+
 TEST_P(Conformance, APeerHandlerThatThrowsIsCountedAndCalledAgain)
 {
     PeerRecorder atGround;
@@ -103,6 +133,56 @@ TEST_P(Conformance, OpeningAndClosingAgainAndAgainLeavesNothingBehind)
         EXPECT_EQ(recorder.All()[0].Incarnation, life);
         EXPECT_EQ(recorder.All()[0].Text, std::to_string(life));
     }
+}
+
+namespace
+{
+
+std::ptrdiff_t EntriesOf(const char *folder)
+{
+    return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
+}
+
+std::size_t HeapInUse()
+{
+    const auto info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+}  // namespace
+
+// Files and threads are counted; that no memory is left is what the address sanitizer's build finds out, here
+// only that it does not pile up.
+TEST_P(Conformance, AHundredOpenAndCloseCyclesLeakNothing)
+{
+    const auto ground = Open("ground");
+    const auto cycle = [&](std::uint64_t life)
+    {
+        const auto uav = Open("uav1", life);
+        const auto writer = uav->CreateWriter(TextTopic(), State(), {});
+        const auto reader =
+            uav->CreateReader(KeyedTopic(), State(), {}, [](SampleBytes, const SampleInfo &) {});
+        EXPECT_EQ(writer->Write(MakeSample(0, "x"), 1), WriteResult::Ok);
+    };
+    // What is made once and kept.
+    for (std::uint64_t life = 1; life <= 5; ++life)
+    {
+        cycle(life);
+    }
+    const auto files = EntriesOf("/proc/self/fd");
+    const auto threads = EntriesOf("/proc/self/task");
+    const std::size_t heap = HeapInUse();
+    for (std::uint64_t life = 6; life <= 105; ++life)
+    {
+        cycle(life);
+    }
+    EXPECT_TRUE(Until([&] { return EntriesOf("/proc/self/fd") <= files; }));
+    EXPECT_TRUE(Until([&] { return EntriesOf("/proc/self/task") <= threads; }));
+    constexpr std::size_t PerCycle = 20 * 1024;
+    const std::size_t now = HeapInUse();
+    EXPECT_LT(now, heap + 100 * PerCycle) << "grew by " << now - heap;
+    ::testing::Test::RecordProperty("heap_growth",
+                                    std::to_string(static_cast<long>(now) - static_cast<long>(heap)));
 }
 
 }  // namespace Rabit::Conformance

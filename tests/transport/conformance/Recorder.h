@@ -4,6 +4,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <algorithm>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -70,6 +71,36 @@ public:
 private:
     mutable std::mutex _mutex;
     std::vector<Received> _received;
+};
+
+// The log of a session. Thread-safe. Must outlive it.
+class LineRecorder
+{
+public:
+    std::function<void(const std::string &)> Sink()
+    {
+        return [this](const std::string &line)
+        {
+            const std::lock_guard lock(_mutex);
+            _lines.push_back(line);
+        };
+    }
+    // Whether there is a line with all those words.
+    bool Has(const std::vector<std::string> &words) const
+    {
+        const std::lock_guard lock(_mutex);
+        return std::any_of(_lines.begin(), _lines.end(),
+                           [&](const std::string &line)
+                           {
+                               return std::all_of(words.begin(), words.end(),
+                                                  [&](const std::string &word)
+                                                  { return line.find(word) != std::string::npos; });
+                           });
+    }
+
+private:
+    mutable std::mutex _mutex;
+    std::vector<std::string> _lines;
 };
 
 // Thread-safe. Must outlive the session that calls it.

@@ -16,6 +16,7 @@ std::unique_ptr<TransportHarness> MakeCycloneDdsHarness()
 
 }  // namespace
 
-INSTANTIATE_TEST_SUITE_P(CycloneDds, Conformance, testing::Values(HarnessMaker{"cyclonedds", &MakeCycloneDdsHarness}));
+INSTANTIATE_TEST_SUITE_P(CycloneDds, Conformance,
+                         testing::Values(HarnessMaker{"cyclonedds", &MakeCycloneDdsHarness}));
 
 }  // namespace Rabit::Conformance

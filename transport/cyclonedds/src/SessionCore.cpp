@@ -135,8 +135,10 @@ void SessionCore::OnEndpoints(dds_entity_t reader, void *self)
                                              }
                                              else if (info.valid_data && PrefixOf(id) != core._own)
                                              {
-                                                 core._topics.RemoteAppeared(id, endpoint.topic_name,
-                                                                             endpoint.type_name);
+                                                 const auto identity = core.IdentityOf(id);
+                                                 core._topics.RemoteAppeared(
+                                                     id, endpoint.topic_name, endpoint.type_name,
+                                                     identity != nullptr ? identity->Node : "");
                                              }
                                          });
 }

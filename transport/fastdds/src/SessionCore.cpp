@@ -68,6 +68,12 @@ std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const GuidPre
     return found == _peers.end() ? nullptr : found->second;
 }
 
+std::string SessionCore::NodeOf(const GuidPrefix &prefix) const
+{
+    const auto identity = IdentityOf(prefix);
+    return identity != nullptr ? identity->Node : "";
+}
+
 void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/,
                                          rtps::ParticipantDiscoveryInfo &&info)
 {
@@ -154,7 +160,8 @@ void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtp
         _topics.RemoteGone(endpoint);
         return;
     }
-    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string());
+    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string(),
+                           NodeOf(info.info.guid().guidPrefix));
 }
 
 void SessionCore::onWriterDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::WriterDiscoveryInfo &&info)
@@ -165,7 +172,8 @@ void SessionCore::onWriterDiscovery(rtps::RTPSParticipant * /*participant*/, rtp
         _topics.RemoteGone(endpoint);
         return;
     }
-    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string());
+    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string(),
+                           NodeOf(info.info.guid().guidPrefix));
 }
 
 }  // namespace Rabit::FastDds

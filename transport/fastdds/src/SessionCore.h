@@ -51,6 +51,8 @@ private:
                            eprosima::fastrtps::rtps::ReaderDiscoveryInfo &&info) override;
     void onWriterDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
                            eprosima::fastrtps::rtps::WriterDiscoveryInfo &&info) override;
+    // The name, or "" where IdentityOf gives nullptr.
+    std::string NodeOf(const GuidPrefix &prefix) const;
     void PeerAppeared(const eprosima::fastrtps::rtps::ParticipantProxyData &peer);
     void PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how);
 

@@ -218,8 +218,8 @@ void NetworkCore::HearEndpoints(const ParticipantPtr &me, ParticipantId from, co
 
 void NetworkCore::EndpointAppeared(const ParticipantPtr &me, const Peer &peer, const EndpointInfo &remote)
 {
-    _calls.push_back([me, id = ToWriterId(remote.Id), topic = remote.Topic, type = remote.Type]
-                     { me->Topics.RemoteAppeared(id, topic, type); });
+    _calls.push_back([me, id = ToWriterId(remote.Id), topic = remote.Topic, type = remote.Type,
+                      node = peer.Who->Node] { me->Topics.RemoteAppeared(id, topic, type, node); });
     if (remote.IsWriter)
     {
         for (const auto &[id, reader] : me->Readers)
