@@ -6,8 +6,11 @@
 //   resumed life=L after_s=S              counters come again, after more than a second without
 //   frame life=L                          the 4 MB frame of that life is whole; `frame life=L garbled` if not
 //   orders life=L round=R count=N skipped=S    the last order of a round came; so many came, so many did not
+//   hundred orders round=R                came since the last such line
+//   order skipped round=R ...             in a round that began while the receiver's life was not known yet
 //   order not in order ...                never
 //   settled round=R delivered=D in_doubt=I     all orders of a round have their outcome
+//   in doubt round=R                      the first of a round
 //   lost round=R outcome=...              never: another outcome
 // Ends on SIGTERM with exit code 0.
 #include <rabit/RabitManager.h>
@@ -174,8 +177,18 @@ private:
                 line << "order not in order: " << order->number << " after " << _last;
                 Say(line.str());
             }
+            else if (order->number != _last + 1)
+            {
+                line << "order skipped round=" << order->round << ": " << order->number << " after " << _last;
+                Say(line.str());
+            }
             _last = order->number;
             ++_received;
+            if (_received % 100 == 0)
+            {
+                Say("hundred orders round=" + std::to_string(order->round));
+            }
+            line.str("");
             if (_last == _options.Count)
             {
                 line << "orders life=" << _orderLife << " round=" << _orderRound << " count=" << _received
@@ -241,7 +254,10 @@ private:
                     ++_delivered;
                     break;
                 case Rabit::QueueOutcome::InDoubt:
-                    ++_inDoubt;
+                    if (++_inDoubt == 1)
+                    {
+                        Say("in doubt round=" + std::to_string(round));
+                    }
                     break;
                 default:
                     line << "lost round=" << round << " outcome=" << Rabit::ToString(receipt->Outcome());
