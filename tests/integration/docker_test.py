@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Real containers: the example fleet under the fault console, then scenarios with ledgers and the judge.
 
-Usage: docker_test.py CMAKE BUILD_FOLDER SCENARIO..."""
+Usage: docker_test.py CMAKE BUILD_FOLDER TRANSPORT,... SCENARIO..."""
 
 import argparse
 import json
@@ -25,9 +25,10 @@ LIMIT_S = 60  # only keeps a broken test from hanging
 class Console:
     """fleet.sh for one fleet, and what its ground station has shown."""
 
-    def __init__(self, engine):
+    def __init__(self, engine, transports):
         self._engine = engine
-        engine.environment.update(FLEET=engine.mark, IMAGE=engine.image, RUN_OPTIONS="")
+        engine.environment.update(FLEET=engine.mark, IMAGE=engine.image, RUN_OPTIONS="",
+                                  TRANSPORTS=" ".join(transports))
 
     def __call__(self, *arguments):
         return self._engine.run(docker_field.CONSOLE, *arguments)
@@ -46,9 +47,10 @@ class Console:
         raise AssertionError(f"no row of {node} with '{pattern}' within {LIMIT_S} s; the last one: {rows[-1:]}")
 
 
-def fly_example(engine):
-    """The example's aircraft come up, one is cut off and healed, one is killed and started again; all are removed."""
-    fleet = Console(engine)
+def fly_example(engine, transports):
+    """The example's aircraft come up, on these backends in turn, one is cut off and healed, one is killed and started
+    again; all are removed."""
+    fleet = Console(engine, transports)
     try:
         fleet("up", UAVS)
         for k in range(1, UAVS + 1):
@@ -85,16 +87,16 @@ def build_image(engine, cmake, build):
 
 
 def main():
-    cmake, build, *scenarios = sys.argv[1:]
+    cmake, build, transports, *scenarios = sys.argv[1:]
     failed = []
     try:
         with docker_engine.Engine() as engine:
             build_image(engine, cmake, build)
-            fly_example(engine)
+            fly_example(engine, transports.split(","))
             print("ok: the example fleet")
             for name in scenarios:
                 scenario = json.loads((HERE / "scenarios" / name / "scenario.json").read_text())
-                options = argparse.Namespace(ledger_node="ledger_node", transports="fastdds", keep=None)
+                options = argparse.Namespace(ledger_node="ledger_node", transports=transports, keep=None)
                 print(f"scenario {name}")
                 with docker_field.DockerField(engine, scenario["nodes"]) as ground:
                     wrong = run_scenario.run_in(ground, scenario, options)

@@ -160,14 +160,15 @@ def timely(run, observer):
 
 
 def refusals_from(run, wanted):
-    """{"sender to receiver": N}: the first note refused was the one after N accepted."""
+    """{"sender to receiver": N}: the first note refused was the one after N accepted. What is refused before any is
+    accepted is for a queue that has not been announced yet."""
     wrong = []
     for name, limit in wanted.items():
         sender, to = name.split(" to ")
         accepted = 0
         refused = False
         for event in (e for life in run.lives[sender] for e in life.events if e.values.get("to") == to):
-            if event.kind == "refused":
+            if event.kind == "refused" and accepted > 0:
                 refused = True
                 break
             accepted += event.kind == "accepted"
