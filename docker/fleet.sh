@@ -129,7 +129,7 @@ heal() {
 
 # faults CONTAINER: what set_loss has set, in words
 faults() {
-    filter "$1" list ruleset </dev/null | awk '
+    { filter "$1" list table netdev rabit </dev/null 2>/dev/null || true; } | awk '
         $1 == "chain" { way = $2 == "ingress" ? "in" : "out" }
         $1 == "drop" { printf "%s cut ", way }
         $1 == "numgen" { printf "%s %s %% lost ", way, $6 }'

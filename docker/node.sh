@@ -5,7 +5,7 @@ set -eu
 
 # A replica of a compose service is told its number by nobody but the network's name server: PROJECT-SERVICE-NUMBER.
 name_on_network() {
-    getent hosts "$(hostname -i | cut -d ' ' -f 1)" | awk '{print $2}' | sed -n "s/^[^.]*$1[-_]\([0-9]*\)\..*/\1/p"
+    getent -s dns hosts "$(hostname -i | cut -d ' ' -f 1)" | awk '{print $2}' | sed -n "s/^[^.]*$1[-_]\([0-9]*\)\..*/\1/p"
 }
 
 case ${1:-} in

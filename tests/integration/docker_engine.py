@@ -74,7 +74,7 @@ class Engine:
             shutil.copytree(programs, pathlib.Path(context, "programs"))
             pathlib.Path(context).chmod(0o755)
             self._images.append(self.image)
-            self.run("docker", "build", "--tag", self.image, "--label", f"rabit.test={self.mark}",
+            self.run("docker", "build", "--force-rm", "--tag", self.image, "--build-arg", f"MARK={self.mark}",
                      "--build-arg", f"BASE={base}", "--build-arg", "PREFIX=programs",
                      "--file", f"{context}/docker/Dockerfile", context)
 
@@ -122,7 +122,7 @@ class Engine:
         with subprocess.Popen(make, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               env={**os.environ, "TMPDIR": str(self._folder)},
                               preexec_fn=harness.die_with_parent) as maker:
-            subprocess.run(["docker", "import", "--change", f"LABEL rabit.test={self.mark}", "-", name],
+            subprocess.run(["docker", "import", "--change", f"LABEL rabit.build={self.mark}", "-", name],
                            env=self.environment, stdin=maker.stdout, check=True, stdout=subprocess.DEVNULL)
             maker.stdout.close()
             said = maker.stderr.read().decode(errors="replace")
@@ -139,8 +139,7 @@ class Engine:
             self._process.wait()
             _remove_control_groups(self.mark)
         elif self._images:
-            subprocess.run(["docker", "image", "rm", "--force", *self._images], env=self.environment, check=False,
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            _remove_images(self.mark, self._images)
         if self._folder:
             shutil.rmtree(self._folder, ignore_errors=True)
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -178,15 +177,28 @@ def sweep():
         mark = os.path.basename(path)
         if not os.path.exists(f"/proc/{re.search(r'[0-9]+', mark).group()}"):
             _remove_control_groups(mark)
-    if not shutil.which("docker"):
-        return
-    for what, remove in (("ps --all", "rm --force"), ("network ls", "network rm"), ("image ls", "image rm --force")):
-        label = "rabit.test" if what == "image ls" else "rabit.fleet"
-        listed = subprocess.run(["docker", *what.split(), "--filter", f"label={label}", "--format",
-                                 "{{.ID}} {{.Label \"%s\"}}" % label if what != "image ls" else "{{.ID}} {{.Tag}}"],
-                                text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
-        for line in listed.splitlines():
-            ident, _, mark = line.partition(" ")
-            if field.dead(mark.strip() + "-"):
-                subprocess.run(["docker", *remove.split(), ident], check=False, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL)
+    if shutil.which("docker"):
+        for what, remove, label in (("ps --all", "rm --force", "rabit.fleet"),
+                                    ("network ls", "network rm", "rabit.fleet")):
+            for ident, mark in _listed(what, label, '{{.ID}} {{.Label "rabit.fleet"}}'):
+                if field.dead(mark + "-"):
+                    _quietly("docker", *remove.split(), ident)
+        for tag, mark in _listed("image ls", "rabit.build", "{{.Repository}}:{{.Tag}} {{.Tag}}"):
+            if field.dead(mark + "-"):
+                _remove_images(mark, [tag])
+
+
+def _listed(what, label, form):
+    text = subprocess.run(["docker", *what.split(), "--filter", f"label={label}", "--format", form], text=True,
+                          check=False, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
+    return [line.split(" ", 1) for line in text.splitlines() if " " in line]
+
+
+def _quietly(*argv):
+    subprocess.run(argv, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def _remove_images(mark, tags):
+    """The tagged ones, and those that building them has left."""
+    _quietly("docker", "image", "rm", "--force", *tags)
+    _quietly("docker", "image", "prune", "--force", "--filter", f"label=rabit.build={mark}")
