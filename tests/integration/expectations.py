@@ -99,7 +99,8 @@ def resent_at_most(run, wanted):
 
 def ticks(run, wanted):
     """{node: percent lost}: the share of its ticks that others saw, and of theirs that it saw, fits that loss: within
-    four standard deviations of the binomial distribution, and 2 % of all for ticks that the machine merged."""
+    four standard deviations of the binomial distribution, and two ticks and 2 % of all for those that the machine was
+    late with."""
     wrong = []
     for node, percent in wanted.items():
         arrives = 1 - percent / 100
@@ -110,7 +111,7 @@ def ticks(run, wanted):
             if span < 50:
                 wrong.append(f"{reader} saw too few ticks of {origin} to judge: {share * span:.0f}")
                 continue
-            margin = 4 * (arrives * (1 - arrives) / span) ** 0.5 + 0.02
+            margin = 4 * (arrives * (1 - arrives) / span) ** 0.5 + 0.02 + 2 / span
             if abs(share - arrives) > margin:
                 wrong.append(f"{reader} saw {100 * share:.0f} % of {span} ticks of {origin}; {percent} % are lost")
     return wrong

@@ -3,8 +3,9 @@
 A life whose ledger has no `end` line was killed. Sound in spite of kills, because a sender writes `intent` before the
 call and `accepted` or `refused` after it: of the last intent of a killed life nothing is demanded, save that it comes
 once and in order. DELIVERED means put into the receiver's queue, so a kill of the receiver may lose what that queue
-held and what was on its way: one unbroken row straight after the last note that the killed life took. A kill of the
-sender may lose the end of its row. Whatever else is missing is a loss, or has expired and must be counted as such."""
+held and what was on its way: one unbroken row straight after the last note that the killed life took. The end of
+a sender in the middle of its work may lose the end of its row. Whatever else is missing is a loss, or has expired and
+must be counted as such."""
 
 import collections
 import re
@@ -81,7 +82,7 @@ def judge(ledgers):
         wrong += _order(node, receiver)
     for sender in lives:
         for to in sorted({event["to"] for event in sender.of("intent")}):
-            wrong += _judge_row(sender, to, by_node.get(to, []))
+            wrong += _judge_row(sender, to, by_node.get(to, []), sender is not by_node[sender.node][-1])
     return wrong
 
 
@@ -114,8 +115,10 @@ def _order(node, receiver):
     return wrong
 
 
-def _judge_row(sender, to, receiver):
-    """What one life of a sender sent to one node."""
+def _judge_row(sender, to, receiver, followed):
+    """What one life of a sender sent to one node. `followed`: it ended, well or not, in the middle of its work, so that
+    its last notes may be open and its last counters older than they."""
+    open_end = sender.killed or followed
     name = f"{sender.node} to {to}"
     mine = [(life, event) for life in receiver for event in life.of("delivered")
             if event["from"] == sender.node and event.number("life") == sender.life]
@@ -143,14 +146,14 @@ def _judge_row(sender, to, receiver):
                       ([e.number("id") for l, e in mine if l is life] for life in killed)}
         room = max((life.room for life in receiver), default=0) * max(1, len(killed))
         for before, run in runs:
-            if sender.killed and run[-1] == accepted[-1]:
+            if open_end and run[-1] == accepted[-1]:
                 continue
             if killed and before in after_kill and len(run) <= room:
                 continue
             wrong.append(f"{name}: {len(run)} accepted notes lost, from {run[0]} to {run[-1]}")
-    wrong += _judge_outcomes(sender, to, name, set(accepted), arrived, killed)
-    if sender.killed:
-        return wrong  # its last counters may be older than its last note
+    wrong += _judge_outcomes(sender, to, name, set(accepted), arrived, killed, open_end)
+    if open_end:
+        return wrong
     if counters is None:
         return wrong + ([f"{name}: no outcomes told"] if accepted else [])
     if counters["accepted"] != len(accepted):
@@ -170,7 +173,7 @@ def _judge_row(sender, to, receiver):
     return wrong
 
 
-def _judge_outcomes(sender, to, name, accepted, arrived, killed):
+def _judge_outcomes(sender, to, name, accepted, arrived, killed, open_end):
     """What the sender was told of each single note. A kill of the receiver may take along what was delivered."""
     wrong = []
     told = {}
@@ -188,10 +191,10 @@ def _judge_outcomes(sender, to, name, accepted, arrived, killed):
             wrong.append(f"{name}: note {number} was told to be delivered and never arrived")
         if outcome in ("expired", "refused") and number in arrived:
             wrong.append(f"{name}: note {number} was told to be {outcome} and arrived")
-        if outcome == "in doubt" and not killed and not sender.killed:
+        if outcome == "in doubt" and not killed and not open_end:
             wrong.append(f"{name}: note {number} was told to be in doubt, though nobody ended")
     silent = sorted(accepted - told.keys())
-    if silent and not sender.killed:
+    if silent and not open_end:
         wrong.append(f"{name}: nothing was told of {len(silent)} accepted notes, the first of them {silent[0]}")
     return wrong
 

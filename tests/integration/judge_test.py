@@ -114,6 +114,13 @@ class JudgeTest(unittest.TestCase):
         self.right(sender(THREE + told("delivered", "in doubt", "delivered") + counters(3, 2, in_doubt=1)),
                    receiver([got(1)]) + receiver([got(3)], life=12))
 
+    def test_asks_nothing_about_the_last_note_of_a_sender_that_was_stopped_at_work_and_came_back(self):
+        self.right(sender(THREE + told("delivered", "delivered") + counters(2, 2)) + sender([], life=20),
+                   receiver([got(1), got(2)]))
+
+    def test_finds_a_loss_in_the_row_of_a_sender_that_was_stopped_at_work_and_came_back(self):
+        self.wrong("lost, from 2 to 2", sender(THREE) + sender([], life=20), receiver([got(1), got(3)]))
+
     def test_finds_a_loss_after_the_last_stop_of_the_receiver(self):
         self.wrong("lost, from 3 to 3", sender(THREE + counters(3, 3)),
                    receiver([got(1)]) + receiver([got(2)], life=12))
