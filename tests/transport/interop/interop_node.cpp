@@ -7,10 +7,10 @@
 //   frame life=L                          the 4 MB frame of that life is whole; `frame life=L garbled` if not
 //   orders life=L round=R count=N skipped=S    the last order of a round came; so many came, so many did not
 //   hundred orders round=R                came since the last such line
-//   order skipped round=R ...             in a round that began while the receiver's life was not known yet
+//   order skipped round=R ...             never
 //   order not in order ...                never
 //   settled round=R delivered=D in_doubt=I     all orders of a round have their outcome
-//   in doubt round=R                      the first of a round
+//   in doubt round=R                      never; the first of a round
 //   lost round=R outcome=...              never: another outcome
 // Ends on SIGTERM with exit code 0.
 #include <rabit/RabitManager.h>
@@ -115,15 +115,18 @@ private:
                 _state = state;
                 Say(std::string("peer ") + state);
             }
-            if (node.node == _options.Other && node.state == Rabit::Gateway::NodeState::UP &&
-                node.incarnation != _otherIncarnation)
+            if (node.node == _options.Other && node.state == Rabit::Gateway::NodeState::UP && _round == 0)
             {
-                _otherIncarnation = node.incarnation;
-                ++_round;
-                _sent = 0;
-                _roundStart = Clock::now();
+                BeginRound();
             }
         }
+    }
+
+    void BeginRound()
+    {
+        ++_round;
+        _sent = 0;
+        _roundStart = Clock::now();
     }
 
     void FollowMirrors()
@@ -163,6 +166,12 @@ private:
             {
                 Say("order not in order: another type");
                 continue;
+            }
+            if (order->life != _orderLife && _orderLife != 0)
+            {
+                // The other node is back. What is sent before its links are heard of again may be in doubt,
+                // so this is the moment from which everything must arrive.
+                BeginRound();
             }
             if (order->life != _orderLife || order->round != _orderRound)
             {
@@ -281,7 +290,6 @@ private:
     std::shared_ptr<Interop::Frame> _frame = std::make_shared<Interop::Frame>();
     std::shared_ptr<Interop::Frame> _otherFrame = std::make_shared<Interop::Frame>();
     std::string _state;
-    std::uint64_t _otherIncarnation = 0;
     std::uint64_t _counterLife = 0;
     std::uint64_t _frameLife = 0;
     Clock::time_point _lastCounter{};

@@ -88,7 +88,7 @@ class Case:
             node.wait_for(re.compile("hundred orders round=1").fullmatch, LIMIT_S, back + self.recovered)
         for node in nodes:
             wrong = [text for _, text in node.lines
-                     if re.search("not in order|skipped|in doubt|garbled|^lost", text)]
+                     if re.search("not in order|skipped round|in doubt|garbled|^lost", text)]
             if wrong:
                 raise AssertionError(f"{node.argv} said: {wrong[0]}")
             if not node.running():
