@@ -152,7 +152,7 @@ void LinkDriver::OnDatagram(SampleBytes bytes)
         const std::lock_guard lock(_mutex);
         const LinkTime now = Now();
         (_links.get()->*Input)(view, now);
-        work = !_outbox.IsEmpty() || _links->NextDue() <= now;
+        work = !_outbox.IsEmpty() || _links->NextDue() < _nextService;
         news = TakeNews();
     }
     Tell(news);
@@ -204,7 +204,7 @@ LinkDriver::Duration LinkDriver::Service()
         FindLocalQueues();
         _links->Run(Now());
         _sending.Swap(_outbox);
-        next = _links->NextDue();
+        next = _nextService = _links->NextDue();
         news = TakeNews();
     }
     Tell(news);

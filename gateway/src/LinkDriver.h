@@ -122,6 +122,7 @@ private:
     LinkRefusals _refusals;
     std::set<LinkRefusals::LinkName> _configured;
     std::unique_ptr<LinkNode> _links;
+    LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
 
     std::atomic<std::uint64_t> _malformed{0};
 

@@ -18,6 +18,7 @@ void ToSample(const LinkData &data, Gateway::LinkDataSample &sample)
     sample.echo_clock = data.Echo.Clock;
     sample.echo_time = data.Echo.Time;
     sample.echo_held_for = data.Echo.HeldFor;
+    sample.sent_at = data.SentAt;
     sample.items.resize(data.Items.size());
     for (std::size_t i = 0; i < data.Items.size(); ++i)
     {
@@ -45,6 +46,8 @@ void ToSample(const LinkAck &ack, Gateway::LinkAckSample &sample)
     sample.clock = ack.Clock;
     sample.time = ack.Time;
     sample.your_incarnation = ack.YourIncarnation;
+    sample.echo_sent_at = ack.EchoSentAt;
+    sample.echo_held_for = ack.EchoHeldFor;
 }
 
 void ToSample(const LinkHello &hello, Gateway::LinkHelloSample &sample)
@@ -71,6 +74,7 @@ void FromSample(const Gateway::LinkDataSample &sample, LinkData &data)
     data.Echo.Clock = sample.echo_clock;
     data.Echo.Time = sample.echo_time;
     data.Echo.HeldFor = sample.echo_held_for;
+    data.SentAt = sample.sent_at;
     data.Items.clear();
     for (const Gateway::LinkItemSample &wire : sample.items)
     {
@@ -98,6 +102,8 @@ void FromSample(const Gateway::LinkAckSample &sample, LinkAck &ack)
     ack.Clock = sample.clock;
     ack.Time = sample.time;
     ack.YourIncarnation = sample.your_incarnation;
+    ack.EchoSentAt = sample.echo_sent_at;
+    ack.EchoHeldFor = sample.echo_held_for;
 }
 
 void FromSample(const Gateway::LinkHelloSample &sample, LinkHello &hello)

@@ -84,6 +84,20 @@ TEST_F(QueueTest, MessagesOfAllTypesArriveInOrder)
     EXPECT_THAT(Take(mission), ElementsAre(1, -1, 2, -2, 3, -3, 4, -4));
 }
 
+TEST_F(QueueTest, OnAPathThatLosesNothingNothingIsSentTwice)
+{
+    // One way only, so that nothing else makes the receiving gateway run when an acknowledgement is due.
+    for (std::uint32_t i = 1; i <= 2000; ++i)
+    {
+        EXPECT_TRUE(SendGoto(i));
+        fleet.RunFor(1ms);
+        Take(mission);
+    }
+    fleet.RunFor(2s);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").delivered, 2000u);
+    EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").resent, 0u);
+}
+
 TEST_F(QueueTest, LossDoesNotLoseMessages)
 {
     SimulatedFaults lossy;

@@ -22,6 +22,7 @@ struct OutboxMessage
     LinkPayload Payload;                // given up when the message has expired
     std::size_t Bytes = 0;              // of the payload; counted until the outcome is known
     bool Redelivered = false;           // was sent to an earlier life of the receiver
+    LinkTime SentAt{0};                 // for the last time, as LinkData::SentAt says
 };
 
 // The messages of one link that wait for their outcome, oldest first: those that were sent and have sequence

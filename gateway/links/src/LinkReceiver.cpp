@@ -49,6 +49,11 @@ void LinkReceiver::OnData(const LinkData &data, LinkTime now)
         }
         Open(data, now);
     }
+    if (data.SentAt > _latestSentAt)
+    {
+        _latestSentAt = data.SentAt;
+        _latestCameAt = now;
+    }
     std::uint64_t sequence = data.First;
     for (const LinkItem &item : data.Items)
     {
@@ -78,6 +83,7 @@ void LinkReceiver::Open(const LinkData &data, LinkTime now)
     _cumulative = data.Base - 1;
     _history.Clear();
     _openedAt = now;
+    _latestSentAt = 0;
     _unacknowledged = 0;
     _heldBack = false;
     ++_counters.SessionsOpened;
@@ -177,6 +183,7 @@ void LinkReceiver::DropSession()
     _cumulative = 0;
     _history.Clear();
     _openedAt = LinkTime(0);
+    _latestSentAt = 0;
     _unacknowledged = 0;
     _heldBack = false;
 }
@@ -205,6 +212,8 @@ void LinkReceiver::Run(std::uint64_t peerIncarnation, LinkTime now)
     ack.Clock = _context.Settings.Clock;
     ack.Time = now.count();
     ack.YourIncarnation = peerIncarnation;
+    ack.EchoSentAt = _latestSentAt;
+    ack.EchoHeldFor = _latestSentAt == 0 ? 0 : (now - _latestCameAt).count();
     _heldBack = ack.Credit == 0;
     _ackAt = LinkNever;
     _unacknowledged = 0;

@@ -52,6 +52,8 @@ private:
     std::uint64_t _cumulative = 0;         // cum: highest number consumed
     OutcomeHistory _history;
     LinkTime _openedAt{0};
+    std::int64_t _latestSentAt = 0;  // by the sender's clock; 0: no datagram of this session yet
+    LinkTime _latestCameAt{0};
 
     LinkTime _ackAt = LinkNever;
     std::size_t _unacknowledged = 0;  // consumed since the last acknowledgement

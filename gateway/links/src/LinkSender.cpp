@@ -105,7 +105,7 @@ void LinkSender::ExpireWaiting(LinkTime now)
     }
 }
 
-// Nothing was acknowledged for a round trip and more. Start again at the front with one message, and let the
+// Nothing was acknowledged for a round trip and more. Start again at the front with one datagram, and let the
 // acknowledgements open the window again; wait longer each time.
 void LinkSender::OnResendTimer(LinkTime now)
 {
@@ -115,16 +115,29 @@ void LinkSender::OnResendTimer(LinkTime now)
     {
         return;
     }
-    _cursor = _outbox.FirstSequence();
-    _bytesInFlight = 0;
-    _timedSequence = 0;
+    GoBackToFront();
     if (_creditLimit >= _cursor)
     {
         // With no credit it is the receiver that is slow, not the path that loses.
-        _allowed = 1;
+        _allowed = FrontDatagram();
         ++_counters.Timeouts;
     }
     _timer.BackOff();
+}
+
+void LinkSender::GoBackToFront()
+{
+    _cursor = _outbox.FirstSequence();
+    _bytesInFlight = 0;
+}
+
+// How many messages like the first one fit into one datagram: what goes out after the resend timer, old or
+// new.
+std::size_t LinkSender::FrontDatagram() const
+{
+    const OutboxMessage &front = _outbox.Sent(_outbox.FirstSequence());
+    const std::size_t size = MessageOverhead + front.Bytes + front.Type->size();
+    return std::clamp<std::size_t>(_context.Settings.MaxDatagram / size, 1, LinkMaxItems);
 }
 
 bool LinkSender::MaySendNext() const
@@ -169,6 +182,7 @@ void LinkSender::SendDatagram(const PeerView &peer, LinkTime now)
     data.First = _cursor;
     data.Echo = {
         .Clock = peer.Token.Clock, .Time = peer.Token.Time, .HeldFor = (now - peer.Token.CameAt).count()};
+    data.SentAt = now.count();
     data.Items.clear();
 
     const bool fromTheFront = _cursor == _outbox.FirstSequence();
@@ -218,11 +232,6 @@ bool LinkSender::Append(LinkData &data, std::size_t &bytes, LinkTime now)
         item.Payload = message.Payload ? std::span<const std::uint8_t>(*message.Payload)
                                        : std::span<const std::uint8_t>();
     }
-    if (first && _timedSequence == 0)
-    {
-        _timedSequence = _cursor;
-        _timedAt = now;
-    }
     ++_counters.MessagesSent;
     _counters.MessagesResent += first ? 0 : 1;
     bytes += size;
@@ -244,6 +253,11 @@ void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
     if (ack.SenderIncarnation != _context.Incarnation || !IsPossible(ack))
     {
         return;
+    }
+    if (ack.EchoSentAt > _echoedSentAt && ack.EchoSentAt + ack.EchoHeldFor <= now.count())
+    {
+        _echoedSentAt = ack.EchoSentAt;
+        _timer.Measured(now - LinkTime(ack.EchoSentAt + ack.EchoHeldFor));
     }
     const std::uint64_t first = _outbox.FirstSequence();
     if (ack.Cumulative >= first)
@@ -270,11 +284,6 @@ void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
                 Report(message, refused ? LinkOutcome::RefusedThere : LinkOutcome::Expired);
             }
         }
-        if (_timedSequence != 0 && _timedSequence <= ack.Cumulative)
-        {
-            _timer.Measured(now - _timedAt);
-            _timedSequence = 0;
-        }
         _cursor = std::max(_cursor, ack.Cumulative + 1);
         _allowed = std::min(_options.Window, _allowed + static_cast<std::size_t>(ack.Cumulative + 1 - first));
         _resendAt = ResendTime(now, _timer.Timeout());
@@ -288,9 +297,7 @@ void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
     if (_creditLimit < _outbox.FirstSequence())
     {
         // The receiver has turned away what is on its way: it is sent again when there is credit.
-        _cursor = _outbox.FirstSequence();
-        _bytesInFlight = 0;
-        _timedSequence = 0;
+        GoBackToFront();
     }
 }
 
@@ -325,7 +332,6 @@ void LinkSender::Restart()
     _creditLimit = 0;
     _creditTime = 0;
     _probe = true;
-    _timedSequence = 0;
     _timer.Restore();
     ++_counters.Restarts;
 }
@@ -382,7 +388,7 @@ std::string LinkSender::Describe() const
         << " pending " << _outbox.Count() << " bytes " << _outbox.Bytes() << " in flight " << _bytesInFlight
         << " allowed " << _allowed << " credit to " << _creditLimit << " of " << _creditTime
         << (_probe ? " probe" : "") << " resend at " << _resendAt.count() << " timeout "
-        << _timer.Timeout().count() << " timed " << _timedSequence;
+        << _timer.Timeout().count() << " echoed " << _echoedSentAt;
     return out.str();
 }
 

@@ -61,6 +61,8 @@ private:
     void OnResendTimer(LinkTime now);
     bool MaySendNext() const;
     const OutboxMessage &AtCursor() const;
+    std::size_t FrontDatagram() const;
+    void GoBackToFront();
     LinkTime ResendTime(LinkTime now, LinkTime timeout) const;
     void SendDatagram(const PeerView &peer, LinkTime now);
     bool Append(LinkData &data, std::size_t &bytes, LinkTime now);
@@ -89,9 +91,7 @@ private:
     ResendTimer _timer;
     LinkTime _resendAt{0};
     LinkTime _lastSentAt{0};
-    // The message whose round trip is being measured; 0: none.
-    std::uint64_t _timedSequence = 0;
-    LinkTime _timedAt{0};
+    std::int64_t _echoedSentAt = 0;  // of the latest datagram whose round trip was measured
 
     LinkSenderCounters _counters;
 };

@@ -44,6 +44,12 @@ void Require(bool condition, const char *what)
     }
 }
 
+// Such that the sum of two does not overflow.
+bool IsPossibleTime(std::int64_t nanoseconds)
+{
+    return nanoseconds >= 0 && nanoseconds < (std::int64_t{1} << 62);
+}
+
 }  // namespace
 
 bool IsPossibleName(std::string_view name)
@@ -62,7 +68,7 @@ bool IsWellFormed(const LinkData &data)
            IsPossibleName(data.Queue) && IsPossibleIncarnation(data.SenderIncarnation) &&
            IsPossibleIncarnation(data.ReceiverIncarnation) && data.Base >= 1 && data.First >= data.Base &&
            data.First <= std::numeric_limits<std::uint64_t>::max() - LinkMaxItems && data.Echo.Clock != 0 &&
-           data.Echo.Time >= 0 && data.Echo.HeldFor >= 0 && !data.Items.empty() &&
+           data.Echo.Time >= 0 && data.Echo.HeldFor >= 0 && data.SentAt >= 0 && !data.Items.empty() &&
            data.Items.size() <= LinkMaxItems &&
            std::all_of(data.Items.begin(), data.Items.end(),
                        [](const LinkItem &item) { return IsWellFormed(item); });
@@ -73,7 +79,8 @@ bool IsWellFormed(const LinkAck &ack)
     return ack.Version == LinkVersion && AreNames(ack.Source, ack.Destination) && IsPossibleName(ack.Queue) &&
            IsPossibleIncarnation(ack.ReceiverIncarnation) && IsNoneOrPossible(ack.SenderIncarnation) &&
            (ack.SenderIncarnation != 0 || ack.Cumulative == 0) && ack.Clock != 0 && ack.Time >= 0 &&
-           IsNoneOrPossible(ack.YourIncarnation);
+           IsNoneOrPossible(ack.YourIncarnation) && IsPossibleTime(ack.EchoSentAt) &&
+           IsPossibleTime(ack.EchoHeldFor);
 }
 
 bool IsWellFormed(const LinkHello &hello)

@@ -5,6 +5,15 @@
 namespace Rabit
 {
 
+namespace
+{
+
+// More is for networks that others share. A link sends a datagram each time and falls silent once its peer
+// has not been heard for some seconds; and where much is lost, waiting longer does not help.
+constexpr int MostDoublings = 3;
+
+}  // namespace
+
 ResendTimer::ResendTimer(const LinkSettings &settings)
     : _first(settings.FirstResend), _min(settings.MinResend), _max(settings.MaxResend)
 {
@@ -27,7 +36,7 @@ void ResendTimer::Measured(LinkTime roundTrip)
 
 void ResendTimer::BackOff()
 {
-    if (Timeout() < _max)
+    if (_backOff < MostDoublings && Timeout() < _max)
     {
         ++_backOff;
     }

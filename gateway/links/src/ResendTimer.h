@@ -7,14 +7,15 @@ namespace Rabit
 {
 
 // How long to wait for an acknowledgement before sending again: the retransmission timeout of RFC 6298, with
-// the bounds of LinkSettings in place of the RFC's one second to one minute.
+// the bounds of LinkSettings in place of the RFC's one second to one minute. Acknowledgements carry the time
+// at which what they acknowledge was sent (RFC 7323), so that each gives a measurement, also of what was sent
+// twice: on a path that loses much the timer does not stay backed off.
 class ResendTimer
 {
 public:
     explicit ResendTimer(const LinkSettings &settings);
 
-    // A round trip was measured on a message that was sent once only (Karn's algorithm: section 3 of the
-    // RFC).
+    // A round trip was measured: the path carries, so the back-off ends.
     void Measured(LinkTime roundTrip);
     // The timer ran out: wait twice as long next time (5.5), but not for ever longer.
     void BackOff();

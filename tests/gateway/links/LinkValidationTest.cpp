@@ -50,7 +50,7 @@ TEST_F(MalformedInput, data_is_dropped)
 {
     using Spoil = std::pair<const char *, std::function<void(StoredData &)>>;
     const std::vector<Spoil> spoils = {
-        {"version", [](StoredData &d) { d.Fields.Version = 2; }},
+        {"version", [](StoredData &d) { d.Fields.Version = LinkVersion + 1; }},
         {"no source", [](StoredData &d) { d.Source.clear(); }},
         {"source too long", [](StoredData &d) { d.Source.assign(256, 'x'); }},
         {"source is the destination", [](StoredData &d) { d.Source = d.Destination; }},
@@ -65,6 +65,7 @@ TEST_F(MalformedInput, data_is_dropped)
         {"no clock", [](StoredData &d) { d.Fields.Echo.Clock = 0; }},
         {"negative echo time", [](StoredData &d) { d.Fields.Echo.Time = -1; }},
         {"negative held time", [](StoredData &d) { d.Fields.Echo.HeldFor = -1; }},
+        {"negative sending time", [](StoredData &d) { d.Fields.SentAt = -1; }},
         {"no items", [](StoredData &d) { d.Items.clear(); }},
         {"too many items", [](StoredData &d) { d.Items.resize(LinkMaxItems + 1, d.Items[0]); }},
         {"unknown flag", [](StoredData &d) { d.Items[0].Flags = 4; }},
@@ -100,6 +101,10 @@ TEST_F(MalformedInput, acknowledgements_are_dropped)
         {"a number never sent", [](StoredAck &k) { k.Fields.Cumulative = 2; }},
         {"no clock", [](StoredAck &k) { k.Fields.Clock = 0; }},
         {"negative time", [](StoredAck &k) { k.Fields.Time = -1; }},
+        {"negative echo", [](StoredAck &k) { k.Fields.EchoSentAt = -1; }},
+        {"negative held time", [](StoredAck &k) { k.Fields.EchoHeldFor = -1; }},
+        {"an echo that overflows",
+         [](StoredAck &k) { k.Fields.EchoHeldFor = std::numeric_limits<std::int64_t>::max(); }},
     };
     for (const auto &[what, spoil] : spoils)
     {

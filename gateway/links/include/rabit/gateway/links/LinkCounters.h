@@ -23,8 +23,8 @@ struct LinkSenderCounters
     std::uint64_t MessagesSent = 0;  // in datagrams, resent ones included
     std::uint64_t MessagesResent = 0;
     std::uint64_t DatagramsSent = 0;
-    std::uint64_t Timeouts = 0;  // times the resend timer ran out with something unacknowledged
-    std::uint64_t Restarts = 0;  // times the stream was started anew (receiver's or own new incarnation)
+    std::uint64_t Timeouts = 0;     // times the resend timer ran out with something unacknowledged
+    std::uint64_t Restarts = 0;     // times the stream was started anew (receiver's or own new incarnation)
     // Present state.
     std::size_t Pending = 0;         // messages without an outcome
     std::size_t PendingBytes = 0;    // bytes of their payloads

@@ -16,7 +16,7 @@ namespace Rabit
 {
 
 // First field of each message; others are dropped. Raised when the meaning of a field changes.
-inline constexpr std::uint8_t LinkVersion = 1;
+inline constexpr std::uint8_t LinkVersion = 2;
 
 // Flags of one message in a LinkData.
 inline constexpr std::uint8_t LinkFlagSkip = 1;  // expired at the sender: consume, do not deliver; no payload
@@ -67,6 +67,7 @@ struct LinkData
     std::uint64_t Base = 0;                 // first sequence number of this stream; at least 1
     std::uint64_t First = 0;                // sequence number of Items[0]; the others follow one by one
     LinkEcho Echo;
+    std::int64_t SentAt = 0;      // the sender's clock; comes back in the acknowledgement
     std::vector<LinkItem> Items;  // 1 to LinkMaxItems
 };
 
@@ -86,6 +87,10 @@ struct LinkAck
     std::uint64_t Clock = 0;   // the token: the receiver's clock ...
     std::int64_t Time = 0;     // ... and its reading when this was sent
     std::uint64_t YourIncarnation = 0;  // highest life of the source node heard of
+    // SentAt of the latest datagram of the session, and how long before this it came: so that the sender can
+    // measure the round trip also of what it sent more than once (the timestamps of RFC 7323). 0: none came.
+    std::int64_t EchoSentAt = 0;
+    std::int64_t EchoHeldFor = 0;
 };
 
 // Says that a node is there and which life it is in; twice a second to each peer that answers.
