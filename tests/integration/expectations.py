@@ -99,8 +99,8 @@ def resent_at_most(run, wanted):
 
 def ticks(run, wanted):
     """{node: percent lost}: the share of its ticks that others saw, and of theirs that it saw, fits that loss: within
-    four standard deviations of the binomial distribution, and two ticks and 2 % of all for those that the machine was
-    late with."""
+    four standard deviations of the binomial distribution. Fewer by two ticks and a tenth may be seen, for on a busy machine
+    the newest tick replaces one that was not fetched in time; more may not."""
     wrong = []
     for node, percent in wanted.items():
         arrives = 1 - percent / 100
@@ -111,8 +111,8 @@ def ticks(run, wanted):
             if span < 50:
                 wrong.append(f"{reader} saw too few ticks of {origin} to judge: {share * span:.0f}")
                 continue
-            margin = 4 * (arrives * (1 - arrives) / span) ** 0.5 + 0.02 + 2 / span
-            if abs(share - arrives) > margin:
+            spread = 4 * (arrives * (1 - arrives) / span) ** 0.5
+            if not arrives - spread - 0.1 - 2 / span <= share <= arrives + spread + 0.02:
                 wrong.append(f"{reader} saw {100 * share:.0f} % of {span} ticks of {origin}; {percent} % are lost")
     return wrong
 
