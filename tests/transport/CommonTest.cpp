@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -12,6 +13,7 @@
 #include "common/ParticipantIdentity.h"
 #include "common/SettingsCheck.h"
 #include "common/TopicRegistry.h"
+#include "common/UseGate.h"
 
 namespace
 {
@@ -242,6 +244,52 @@ TEST(Settings, PeersAreParsed)
     {
         EXPECT_THROW(ResolvePeer(bad), TransportError) << bad;
     }
+}
+
+TEST(Settings, AddressesAreThoseOfTheNamedInterfaces)
+{
+    EXPECT_THAT(FindAddresses({"lo"}), ElementsAre("127.0.0.1"));
+    EXPECT_THAT(FindAddresses({"127.0.0.1"}), ElementsAre("127.0.0.1"));
+    EXPECT_THAT(FindAddresses({"radio99"}), IsEmpty());
+    EXPECT_THAT(FindAddresses({}), testing::Not(testing::Contains("127.0.0.1")));
+}
+
+TEST(UseGate, AUserWaitsForAChangeOnlyAsLongAsItSays)
+{
+    UseGate gate;
+    const UseGate::Change change(gate);
+    EXPECT_FALSE(UseGate::Use(gate, std::chrono::milliseconds(1)).Allowed());
+}
+
+TEST(UseGate, AChangeWaitsForItsUsersAndTheNextOnesForIt)
+{
+    UseGate gate;
+    std::atomic<int> users{0};
+    std::atomic<int> overlaps{0};
+    {
+        std::vector<std::jthread> threads;
+        for (int thread = 0; thread < 3; ++thread)
+        {
+            threads.emplace_back(
+                [&]
+                {
+                    for (int i = 0; i < 500; ++i)
+                    {
+                        const UseGate::Use use(gate, std::chrono::minutes(1));
+                        EXPECT_TRUE(use.Allowed());
+                        ++users;
+                        std::this_thread::yield();
+                        --users;
+                    }
+                });
+        }
+        for (int i = 0; i < 100; ++i)
+        {
+            const UseGate::Change change(gate);
+            overlaps += users == 0 ? 0 : 1;
+        }
+    }
+    EXPECT_EQ(overlaps, 0);
 }
 
 }  // namespace
