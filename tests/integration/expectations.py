@@ -13,6 +13,7 @@ LOST_S = 3.5
 LEASE_S = 3.0
 RECOVERY_S = 5.0
 RECOVERY_AFTER_LEASE_S = 15.0
+FIRST_CONTACT_S = 2.0
 
 
 class Run:
@@ -75,11 +76,13 @@ def states(run, wanted):
 
 
 def delay_p99_ms(run, wanted):
-    """{node: ms}: of all links to and from that node."""
+    """{node: ms}: of all links to and from that node, from FIRST_CONTACT_S after their first note on: what comes before
+    waits until the two ends have found each other."""
     wrong = []
     for (origin, node), rows in sorted(run.links().items()):
         limit = min((wanted[end] for end in (origin, node) if end in wanted), default=None)
-        delays = sorted(delay for time, delay in rows if time - delay > run.losing_since())
+        since = max(run.losing_since(), min(time - delay for time, delay in rows) + FIRST_CONTACT_S)
+        delays = sorted(delay for time, delay in rows if time - delay > since)
         p99 = 1000 * delays[len(delays) * 99 // 100] if delays else 0.0
         if limit is not None and p99 > limit:
             wrong.append(f"{origin} to {node}: delay p99 {p99:.0f} ms, at most {limit} ms wanted")
@@ -99,8 +102,8 @@ def resent_at_most(run, wanted):
 
 def ticks(run, wanted):
     """{node: percent lost}: the share of its ticks that others saw, and of theirs that it saw, fits that loss: within
-    four standard deviations of the binomial distribution. Fewer by two ticks and a tenth may be seen, for on a busy machine
-    the newest tick replaces one that was not fetched in time; more may not."""
+    four standard deviations of the binomial distribution. Fewer by two ticks and a tenth may be seen, for on a busy
+    machine the newest tick replaces one that was not fetched in time; more may not."""
     wrong = []
     for node, percent in wanted.items():
         arrives = 1 - percent / 100
