@@ -64,7 +64,7 @@ Rabit::GatewayConfig LoadConfig(const Options &options)
         config.Domain = options.Domain;
     if (!options.Transport.empty())
         config.Transport = options.Transport;
-    Rabit::ValidateTransportName(config, Rabit::AvailableTransports());
+    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
     return config;
 }
 

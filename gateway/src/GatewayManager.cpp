@@ -158,6 +158,13 @@ public:
         {
             _subscriptions.OnOffers(_presence.Peers());
         }
+        if (change.NewLife)
+        {
+            for (const PeerTable::Peer *peer : _presence.Peers().Heard())
+            {
+                _links->HeardOf(peer->Node, peer->Incarnation);
+            }
+        }
         Duration next = std::min(_presence.NextDue(), _links->Service());
         for (TopicPublisher &publisher : _publishers)
         {
@@ -187,7 +194,8 @@ private:
         catch (const TransportError &error)
         {
             Close();
-            const auto line = _config.Lines.find("interfaces");
+            const std::string setting = error.Setting().empty() ? "interfaces" : error.Setting();
+            const auto line = _config.Lines.find(setting);
             throw ConfigError(_config.File, line == _config.Lines.end() ? 0 : line->second, error.what());
         }
     }

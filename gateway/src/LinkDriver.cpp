@@ -220,6 +220,17 @@ LinkDriver::Duration LinkDriver::Service()
     return next;
 }
 
+void LinkDriver::HeardOf(const std::string &node, std::uint64_t incarnation)
+{
+    News news;
+    {
+        const std::lock_guard lock(_mutex);
+        _links->HeardOf(node, incarnation, Now());
+        news = TakeNews();
+    }
+    Tell(news);
+}
+
 LocalQueueResult LinkDriver::Deliver(std::string_view /*source*/, std::string_view queue,
                                      std::string_view type, std::span<const std::uint8_t> payload,
                                      bool redelivered)

@@ -57,6 +57,10 @@ public:
     // Does what is due and writes it. Returns when to call again at the latest. Gateway's thread only.
     Duration Service();
 
+    // A node is in that life. The links may learn it later, and send what is accepted meanwhile to the life
+    // before, which puts it in doubt.
+    void HeardOf(const std::string &node, std::uint64_t incarnation);
+
     bool Handles(const std::string &queueName) const override;
     bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
                  const std::shared_ptr<RabitQueueReceipt> &receipt) override;

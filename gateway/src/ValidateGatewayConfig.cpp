@@ -207,15 +207,20 @@ void ValidateGatewayConfig(const GatewayConfig &config)
     Validator(config).Run();
 }
 
-void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available)
+void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available,
+                           const std::vector<std::string> &known)
 {
-    if (std::find(available.begin(), available.end(), config.Transport) == available.end())
+    const auto isIn = [&config](const std::vector<std::string> &names)
+    { return std::find(names.begin(), names.end(), config.Transport) != names.end(); };
+    if (isIn(available))
     {
-        const auto line = config.Lines.find("transport");
-        throw ConfigError(
-            config.File, line == config.Lines.end() ? 0 : line->second,
-            "unknown transport `" + config.Transport + "`" + NearestWordHint(config.Transport, available));
+        return;
     }
+    const auto line = config.Lines.find("transport");
+    const std::string hint = NearestWordHint(config.Transport, available);
+    throw ConfigError(config.File, line == config.Lines.end() ? 0 : line->second,
+                      isIn(known) ? "this build is without the transport `" + config.Transport + "`" + hint
+                                  : "unknown transport `" + config.Transport + "`" + hint);
 }
 
 }  // namespace Rabit

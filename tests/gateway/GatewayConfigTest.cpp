@@ -219,6 +219,22 @@ TEST_F(GatewayConfigTest, AnUnknownTransportIsNamedWithItsLine)
     }
 }
 
+TEST_F(GatewayConfigTest, ATransportThatWasLeftOutOfTheBuildIsSaidToBe)
+{
+    const GatewayConfig config = Load("node: a\ntransport: cyclonedds\n");
+    try
+    {
+        ValidateTransportName(config, {"fastdds"}, {"fastdds", "cyclonedds"});
+        FAIL() << "no error";
+    }
+    catch (const ConfigError &error)
+    {
+        EXPECT_EQ(std::string(error.what()),
+                  (_folder / "node.yaml").string() +
+                      ":2: this build is without the transport `cyclonedds`; expected `fastdds`");
+    }
+}
+
 TEST_F(GatewayConfigTest, AConfigurationMadeInCodeIsCheckedAlike)
 {
     GatewayConfig config;

@@ -355,7 +355,7 @@ void Run(Options &options)
     rule.Window = options.Window;
     rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(options.ExpireS * 1000));
     config.Send.push_back(rule);
-    Rabit::ValidateTransportName(config, Rabit::AvailableTransports());
+    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::make_unique<Clerk>(options));
     reactor.AddManager(

@@ -55,6 +55,16 @@ std::unique_ptr<Transport> MakeTransport(const std::string &name)
     throw TransportError(why + "; it has: " + (built.empty() ? "none" : built), "transport");
 }
 
+std::vector<std::string> KnownTransports()
+{
+    std::vector<std::string> names;
+    for (const auto &[name, option] : OptionOf)
+    {
+        names.push_back(name);
+    }
+    return names;
+}
+
 std::vector<std::string> AvailableTransports()
 {
     std::vector<std::string> names;

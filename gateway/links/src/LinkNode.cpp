@@ -261,6 +261,16 @@ void LinkNode::OnHello(const LinkHello &hello, LinkTime now)
     peer->OnHello(hello, now);
 }
 
+void LinkNode::HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now)
+{
+    LinkPeer *peer = FindPeer(node);
+    if (peer != nullptr && peer->Incarnation() != 0 && incarnation > peer->Incarnation() &&
+        IsPossibleIncarnation(incarnation))
+    {
+        peer->HeardOf(incarnation, now);
+    }
+}
+
 void LinkNode::OnRoom(std::string_view queue, LinkTime now)
 {
     for (const auto &[name, peer] : _peers)

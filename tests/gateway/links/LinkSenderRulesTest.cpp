@@ -534,6 +534,29 @@ TEST_F(LinkSenderRules, S5_a_hello_tells_of_the_new_life_as_well)
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(2, LinkOutcome::InDoubt)));
 }
 
+TEST_F(LinkSenderRules, S5_a_new_life_that_something_else_heard_of_gets_nothing_before_the_links_know_it)
+{
+    Contact();
+    a.Enqueue("2");
+    a.Pass(0ms);
+    a.TakeDatas();
+    a.Node->HeardOf("b", b.Life + 1, a.Now);
+    a.Enqueue("3");
+    a.Pass(0ms);
+    EXPECT_THAT(a.TakeDatas(), IsEmpty());
+    EXPECT_EQ(a.SenderCounters().InDoubt, 1U) << "what was sent to the life before";
+    EXPECT_EQ(a.SenderCounters().Pending, 1U) << "what was not";
+}
+
+TEST_F(LinkSenderRules, S5_what_something_else_heard_of_an_older_life_changes_nothing)
+{
+    Contact();
+    a.Enqueue("2");
+    a.Pass(0ms);
+    a.Node->HeardOf("b", b.Life - 1, a.Now);
+    EXPECT_EQ(a.SenderCounters().InDoubt, 0U);
+}
+
 TEST_F(LinkSenderRules, S5_the_token_of_the_old_life_is_forgotten)
 {
     Contact();

@@ -331,7 +331,7 @@ void Run(Options &options)
     config.Publish.push_back({.Message = "Frame", .Type = "Interop::Frame"});
     config.Subscribe.push_back({.Message = "Frame", .Type = "Interop::Frame"});
     config.Accept.push_back({.Queue = Queue, .Types = {"Interop::Order"}});
-    Rabit::ValidateTransportName(config, Rabit::AvailableTransports());
+    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::make_unique<Exchange>(options));
     reactor.AddManager(

@@ -97,8 +97,9 @@ struct GatewayConfig
 // constructor of GatewayManager calls it; call it earlier to fail earlier.
 void ValidateGatewayConfig(const GatewayConfig &config);
 
-// Checks that config.Transport is among the backends that this process has. Throws ConfigError that names the
-// nearest.
-void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available);
+// Checks that config.Transport is among the backends that this process has. Throws ConfigError: one that is
+// only in `known` was left out of the build, for another one it names the nearest.
+void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available,
+                           const std::vector<std::string> &known = {});
 
 }  // namespace Rabit

@@ -21,4 +21,7 @@ std::unique_ptr<Transport> MakeTransport(const std::string &name);
 // RABIT_WITH_CYCLONEDDS of the build.
 std::vector<std::string> AvailableTransports();
 
+// The same, and those that other builds may have.
+std::vector<std::string> KnownTransports();
+
 }  // namespace Rabit

@@ -64,6 +64,9 @@ public:
     void OnData(const LinkData &data, LinkTime now);
     void OnAck(const LinkAck &ack, LinkTime now);
     void OnHello(const LinkHello &hello, LinkTime now);
+    // Something else than the links has heard that a node is in that life: as a HELLO that says it. Does
+    // nothing if the links know of it, or do not know the node.
+    void HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now);
 
     // A message was taken out of this local queue, or the queue has come into being.
     void OnRoom(std::string_view queue, LinkTime now);
