@@ -21,6 +21,7 @@ constexpr std::uint8_t Heartbeat = 0x07;
 constexpr std::uint8_t AckNack = 0x06;
 constexpr std::uint8_t Gap = 0x08;
 constexpr std::uint8_t NackFrag = 0x12;
+constexpr std::uint8_t Statistics = 0x80;
 
 void Append(Bytes &to, const Bytes &bytes)
 {
@@ -87,7 +88,7 @@ TEST(RtpsCheck, SoundMessagesPass)
     EXPECT_TRUE(IsSoundRtps(Message(AckNack, Concatenate({Ids, Sequence(1), Set(256), U32(1)}))));
     EXPECT_TRUE(IsSoundRtps(Message(Gap, Concatenate({Ids, Sequence(3), Sequence(5), Set(0)}))));
     EXPECT_TRUE(IsSoundRtps(Message(NackFrag, Concatenate({Ids, Sequence(1), U32(1), Set(40), U32(1)}))));
-    EXPECT_TRUE(IsSoundRtps(Message(0x80, {1, 2, 3, 4})));  // a vendor's own
+    EXPECT_TRUE(IsSoundRtps(Message(0x81, {1, 2, 3, 4})));  // a vendor's own
 }
 
 TEST(RtpsCheck, AMessageOfItsHeaderAlonePasses)
@@ -164,6 +165,18 @@ TEST(RtpsCheck, AnInlineQosThatDoesNotEndIsDropped)
 }
 
 // With AddressSanitizer this tells whether anything outside of the datagram is read.
+// The vendor ends the process if it finds one of another size, or in another place.
+TEST(RtpsCheck, TheVendorsStatisticsPassOnlyWholeAndAtTheEnd)
+{
+    EXPECT_TRUE(IsSoundRtps(Message(Statistics, Bytes(56, 0))));
+    EXPECT_FALSE(IsSoundRtps(Message(Statistics, Bytes(52, 0))));
+    EXPECT_FALSE(IsSoundRtps(Message(Statistics, Bytes(60, 0))));
+    Bytes followed = Message(Statistics, Bytes(56, 0));
+    Append(followed, {Statistics, 1, 56, 0});
+    Append(followed, Bytes(56, 0));
+    EXPECT_FALSE(IsSoundRtps(followed));
+}
+
 TEST(RtpsCheck, AnyBytesAreSafeToCheck)
 {
     std::mt19937 random(1);

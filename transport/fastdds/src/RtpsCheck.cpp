@@ -26,8 +26,12 @@ enum class Kind : std::uint8_t
     NackFrag = 0x12,
     HeartbeatFrag = 0x13,
     Data = 0x15,
-    DataFrag = 0x16
+    DataFrag = 0x16,
+    Statistics = 0x80  // Fast DDS's own, at the end of each of its messages
 };
+
+// The vendor asserts both this size and that the submessage is the last one.
+constexpr std::size_t StatisticsSize = 56;
 
 // Reads the body of one submessage; everything fails once something did.
 class Body
@@ -223,6 +227,7 @@ bool IsSoundSubmessage(Kind kind, std::uint8_t flags, Body body)
         case Kind::InfoDestination:
             return HasSize(body, 12);
         case Kind::Pad:
+        case Kind::Statistics:
             return true;
     }
     return true;
@@ -252,6 +257,10 @@ bool IsSoundRtps(std::span<const std::uint8_t> datagram)
         if (length == 0 && kind != Kind::Pad && kind != Kind::InfoTimestamp)
         {
             length = rest.size();  // 9.4.5.1.3: it extends to the end of the message
+        }
+        if (kind == Kind::Statistics && (length != StatisticsSize || rest.size() != length))
+        {
+            return false;
         }
         if (length > rest.size() || !IsSoundSubmessage(kind, flags, Body(rest.first(length), littleEndian)))
         {
