@@ -1,5 +1,7 @@
 #include "Autopilot.h"
 
+#include <rabit/RabitLog.h>
+
 #include <utility>
 
 namespace Swarm
@@ -10,6 +12,8 @@ Uav::MissionMode ModeOf(FlightPhase phase)
 {
     switch (phase)
     {
+        case FlightPhase::Idle:
+            return Uav::MissionMode::MISSION_IDLE;
         case FlightPhase::Track:
             return Uav::MissionMode::MISSION_TRACK;
         case FlightPhase::Pattern:
@@ -23,8 +27,8 @@ Uav::MissionMode ModeOf(FlightPhase phase)
 }
 }  // namespace
 
-Autopilot::Autopilot(Flight flight, Rabit::RabitWorkspace &workspace)
-    : RabitManager("Autopilot", workspace), _flight(std::move(flight))
+Autopilot::Autopilot(std::unique_ptr<Vehicle> vehicle, Rabit::RabitWorkspace &workspace)
+    : RabitManager("Autopilot", workspace), _vehicle(std::move(vehicle))
 {
     AddPublishSubscribeMessage("Pose", _pose);
     AddPublishSubscribeMessage("FlightMode", _mode);
@@ -32,30 +36,37 @@ Autopilot::Autopilot(Flight flight, Rabit::RabitWorkspace &workspace)
 
 void Autopilot::Startup()
 {
-    _start = GetWorkspace().GetClock().Monotonic();
+    _vehicle->Start(GetWorkspace().GetClock().Monotonic());
 }
 
 void Autopilot::ExecuteUnitOfWork()
 {
     const std::chrono::nanoseconds now = GetWorkspace().GetClock().Monotonic();
-    const double seconds = std::chrono::duration<double>(now - _start).count();
-    TakeCommands(seconds);
-    const Motion motion = _flight.At(seconds);
-    PostModeIfChanged();
-    if (_poseTimes.Due(now))
-        PostPose(motion);
-    SetWakeupTimeDelayMSec(_poseTimes.DelayMSec(GetWorkspace().GetClock().Monotonic()));
+    TakeCommands(now);
+    const std::optional<Motion> motion = _vehicle->Update(now);
+    PostModeIfChanged(now);
+    if (motion)
+        PostPose(*motion);
+    SetWakeupTimeDelayMSec(_vehicle->DelayMSec(GetWorkspace().GetClock().Monotonic()));
 }
 
-void Autopilot::TakeCommands(double seconds)
+void Autopilot::TakeCommands(std::chrono::nanoseconds now)
 {
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
     {
         if (const auto *command = dynamic_cast<const Uav::Goto *>(message.get()))
         {
-            _flight.FlyTo({command->latitude_deg, command->longitude_deg, command->altitude_m},
-                          command->speed_mps, seconds);
+            const std::string problem = _vehicle->NotReady(now);
+            if (!problem.empty())
+            {
+                Rabit::RabitLog::Write(
+                    Rabit::RabitLogLevel::Warning,
+                    "autopilot: command " + std::to_string(command->id) + " is not flown: " + problem);
+                continue;
+            }
+            _vehicle->FlyTo({command->latitude_deg, command->longitude_deg, command->altitude_m},
+                            command->speed_mps, now);
             _command = command->id;
         }
     }
@@ -77,13 +88,16 @@ void Autopilot::PostPose(const Motion &motion)
     _pose->PostMessage();
 }
 
-void Autopilot::PostModeIfChanged()
+void Autopilot::PostModeIfChanged(std::chrono::nanoseconds now)
 {
-    const Uav::MissionMode mode = ModeOf(_flight.Phase());
-    if (_mode->WasPosted() && _mode->mode == mode && _mode->command == _command)
+    const Uav::MissionMode mode = ModeOf(_vehicle->Phase());
+    const std::string notReady = _vehicle->NotReady(now);
+    if (_mode->WasPosted() && _mode->mode == mode && _mode->command == _command &&
+        _mode->not_ready == notReady)
         return;
     _mode->mode = mode;
     _mode->command = _command;
+    _mode->not_ready = notReady;
     _mode->PostMessage();
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "Flight.h"
-#include "Schedule.h"
+#include "Vehicle.h"
 #include "uav.idl.h"
 
 #include <rabit/RabitManager.h>
@@ -13,28 +12,27 @@
 namespace Swarm
 {
 
-// Flies the simulated aircraft: the manager `Autopilot`.
+// The interface to what flies: the manager `Autopilot`.
 //
-// Posts:  Pose (Uav::Pose), ten times a second; FlightMode (Uav::FlightMode), at the start and when it
-// changes. Queue:  Autopilot takes Uav::Goto, checked before; it flies there at once.
+// Posts:  Pose (Uav::Pose), whenever the vehicle tells where it is, a simulated one ten times a second, and
+// nothing while it does not; FlightMode (Uav::FlightMode), at the start and when it changes: also whether
+// commands are flown now.
+// Queue:  Autopilot takes Uav::Goto, checked before; it flies there at once.
 class Autopilot : public Rabit::RabitManager
 {
 public:
-    static constexpr std::chrono::milliseconds PosePeriod{100};
-
-    Autopilot(Flight flight, Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
+    explicit Autopilot(std::unique_ptr<Vehicle> vehicle,
+                       Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 
     void Startup() final;
     void ExecuteUnitOfWork() final;
 
 private:
-    void TakeCommands(double seconds);
+    void TakeCommands(std::chrono::nanoseconds now);
     void PostPose(const Motion &motion);
-    void PostModeIfChanged();
+    void PostModeIfChanged(std::chrono::nanoseconds now);
 
-    Flight _flight;
-    Schedule _poseTimes{PosePeriod};
-    std::chrono::nanoseconds _start{0};
+    const std::unique_ptr<Vehicle> _vehicle;
     std::uint32_t _command = 0;
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::FlightMode> _mode = std::make_shared<Uav::FlightMode>();

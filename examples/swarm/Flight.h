@@ -12,6 +12,7 @@ namespace Swarm
 // What a simulated aircraft is flying.
 enum class FlightPhase
 {
+    Idle,     // nothing of its own: somebody else flies it
     Track,    // a recorded track
     Pattern,  // circles of its own, for want of a track
     Goto,     // on the way to a commanded point

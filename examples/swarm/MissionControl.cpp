@@ -57,6 +57,9 @@ void MissionControl::TakeCommands(std::chrono::nanoseconds now)
 void MissionControl::Obey(const std::shared_ptr<Uav::Goto> &command, std::chrono::nanoseconds now)
 {
     std::string reason = WhyNot(*command);
+    _mode->FetchMessage();
+    if (reason.empty())
+        reason = _mode->not_ready;
     if (reason.empty() && !AddMessageToQueue("Autopilot", command))
         reason = "the autopilot takes no commands now";
     if (reason.empty())

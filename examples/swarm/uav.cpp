@@ -3,7 +3,10 @@
 #include "Autopilot.h"
 #include "Flight.h"
 #include "MissionControl.h"
+#include "SimulatedVehicle.h"
 #include "Track.h"
+#include "mavlink/ByteChannel.h"
+#include "mavlink/MavlinkVehicle.h"
 
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
@@ -33,6 +36,7 @@ struct Options
     int Domain = -1;
     std::string Transport;
     std::string TrackFile;
+    std::string Mavlink;
     bool Check = false;
 };
 
@@ -44,6 +48,9 @@ void Describe(CLI::App &app, Options &options)
         ->check(CLI::Range(0, 232));
     app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
     app.add_option("--track", options.TrackFile, "CSV file of the track to fly (default: circles)");
+    app.add_option("--mavlink", options.Mavlink,
+                   "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
+                   "`serial:DEVICE:BAUD`");
     app.add_flag("--check", options.Check, "Check the options and files, start nothing");
 }
 
@@ -68,21 +75,23 @@ Swarm::Pattern PatternFor(const std::string &node)
     return {Swarm::Moved(field, {0, number * 150.0, number * 5.0})};
 }
 
-Swarm::Flight MakeFlight(const Options &options, const std::string &node)
+std::unique_ptr<Swarm::Vehicle> MakeVehicle(const Options &options, const std::string &node)
 {
-    if (options.TrackFile.empty())
-        return Swarm::Flight(PatternFor(node));
-    return Swarm::Flight(Swarm::Track::Load(options.TrackFile));
+    if (!options.Mavlink.empty())
+        return std::make_unique<Swarm::MavlinkVehicle>(Swarm::OpenByteChannel(options.Mavlink));
+    return std::make_unique<Swarm::SimulatedVehicle>(
+        options.TrackFile.empty() ? Swarm::Flight(PatternFor(node))
+                                  : Swarm::Flight(Swarm::Track::Load(options.TrackFile)));
 }
 
 void Fly(const Options &options)
 {
     const Rabit::GatewayConfig config = LoadConfig(options);
-    Swarm::Flight flight = MakeFlight(options, config.Node);
+    std::unique_ptr<Swarm::Vehicle> vehicle = MakeVehicle(options, config.Node);
     if (options.Check)
         return;
     Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<Swarm::Autopilot>(std::move(flight)));
+    reactor.AddManager(std::make_unique<Swarm::Autopilot>(std::move(vehicle)));
     reactor.AddManager(std::make_unique<Swarm::MissionControl>(config.Node));
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
@@ -106,6 +115,11 @@ int main(int argc, char **argv)
         return app.exit(error) == 0 ? 0 : ExitBadInput;
     }
     catch (const Rabit::ConfigError &error)
+    {
+        std::cerr << error.what() << '\n';
+        return ExitBadInput;
+    }
+    catch (const Swarm::ChannelError &error)
     {
         std::cerr << error.what() << '\n';
         return ExitBadInput;

@@ -1,4 +1,5 @@
 #include "Autopilot.h"
+#include "SimulatedVehicle.h"
 
 #include <rabit/ManualClock.h>
 #include <rabit/RabitSteppedReactor.h>
@@ -24,7 +25,8 @@ protected:
     void SetUp() override
     {
         const Swarm::Pattern pattern{{49.2574, -123.2432, 50}};
-        _reactor.AddManager(std::make_unique<Swarm::Autopilot>(Swarm::Flight(pattern), _workspace));
+        _reactor.AddManager(std::make_unique<Swarm::Autopilot>(
+            std::make_unique<Swarm::SimulatedVehicle>(Swarm::Flight(pattern)), _workspace));
         _reactor.Start();
     }
     void Run(std::chrono::milliseconds duration)

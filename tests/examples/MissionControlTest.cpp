@@ -117,6 +117,18 @@ TEST_F(MissionControl, DeclinesACommandThatTheAutopilotDoesNotTake)
     EXPECT_FALSE(_gateway->Accepted[2].second.obeyed);
 }
 
+TEST_F(MissionControl, DeclinesACommandThatTheAutopilotWouldNotFlyAndSaysWhy)
+{
+    auto mode = std::make_shared<Uav::FlightMode>();
+    _workspace.AddPublishSubscribeMessage("FlightMode", mode);
+    mode->not_ready = "no autopilot is heard";
+    mode->PostMessage();
+    Receive(Command(7));
+    ASSERT_EQ(_gateway->Accepted.size(), 1u);
+    EXPECT_FALSE(_gateway->Accepted[0].second.obeyed);
+    EXPECT_EQ(_gateway->Accepted[0].second.reason, "no autopilot is heard");
+}
+
 TEST_F(MissionControl, SendsNoAnswerThatNobodyWants)
 {
     Uav::Goto command = Command(5);

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "Schedule.h"
+#include "Vehicle.h"
+
+namespace Swarm
+{
+
+// An aircraft that exists in the computer alone: flies a Flight, and tells of it ten times a second.
+class SimulatedVehicle final : public Vehicle
+{
+public:
+    static constexpr std::chrono::milliseconds Period{100};
+
+    explicit SimulatedVehicle(Flight flight) : _flight(std::move(flight)) {}
+
+    void Start(Time now) override { _start = now; }
+    std::optional<Motion> Update(Time now) override
+    {
+        const Motion motion = _flight.At(SecondsAt(now));
+        return _times.Due(now) ? std::optional<Motion>(motion) : std::nullopt;
+    }
+    std::string NotReady(Time /*now*/) const override { return ""; }
+    void FlyTo(const GeoPoint &point, double speedMps, Time now) override
+    {
+        _flight.FlyTo(point, speedMps, SecondsAt(now));
+    }
+    FlightPhase Phase() const override { return _flight.Phase(); }
+    int DelayMSec(Time now) const override { return _times.DelayMSec(now); }
+
+private:
+    double SecondsAt(Time now) const { return std::chrono::duration<double>(now - _start).count(); }
+
+    Flight _flight;
+    Schedule _times{Period};
+    Time _start{0};
+};
+
+}  // namespace Swarm
