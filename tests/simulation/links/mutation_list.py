@@ -53,7 +53,7 @@ MUTATIONS = [
              "sequence <= ack.Cumulative + (_outbox.SentCount() > ack.Cumulative + 1 - sequence); ++sequence",
              "simulation"),
     Mutation("S4 expiry of a redelivered message is not in doubt", "LinkSender.cpp",
-             "else if (message.Redelivered)", "else if (false)", "simulation"),
+             "else if (message.Redelivered)", "else if (false)", "direct"),
     Mutation("S4 expiry of an unsent redelivered message is not in doubt", "LinkSender.cpp",
              "const OutboxMessage message = _outbox.TakeWaiting(); "
              "Report(message, message.Redelivered ? LinkOutcome::InDoubt : LinkOutcome::Expired); } } // Nothing",
