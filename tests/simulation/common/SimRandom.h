@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace Rabit::Sim
@@ -33,6 +35,20 @@ public:
     {
         const double ratio = static_cast<double>(high) / static_cast<double>(low);
         return static_cast<std::int64_t>(static_cast<double>(low) * std::pow(ratio, Unit()));
+    }
+    // The same for times, in nanoseconds.
+    std::chrono::nanoseconds Between(std::chrono::nanoseconds low, std::chrono::nanoseconds high)
+    {
+        return std::chrono::nanoseconds(Between(low.count(), high.count()));
+    }
+    std::chrono::nanoseconds LogBetween(std::chrono::nanoseconds low, std::chrono::nanoseconds high)
+    {
+        return std::chrono::nanoseconds(LogBetween(low.count(), high.count()));
+    }
+    // One of `count` positions.
+    std::size_t Index(std::size_t count)
+    {
+        return static_cast<std::size_t>(Between(0, static_cast<std::int64_t>(count) - 1));
     }
 
 private:

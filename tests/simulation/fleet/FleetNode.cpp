@@ -13,27 +13,8 @@ namespace
 {
 
 constexpr double GpsAtStart = 1.4e9;
-constexpr std::int64_t Million = 1'000'000;
 
 }  // namespace
-
-Time ProcessClock::At(Time trueTime) const
-{
-    const std::int64_t passed = (trueTime - StartedAt).count();
-    return Offset + Time(passed + passed / Million * DriftPpm + passed % Million * DriftPpm / Million);
-}
-
-Time ProcessClock::TrueTimeOf(Time reading) const
-{
-    const double passed = static_cast<double>((reading - Offset).count()) /
-                          (1.0 + static_cast<double>(DriftPpm) / static_cast<double>(Million));
-    Time trueTime = StartedAt + Time(static_cast<std::int64_t>(passed) - 2);
-    while (At(trueTime) < reading)
-    {
-        ++trueTime;
-    }
-    return trueTime;
-}
 
 FleetNode::FleetNode(FleetWorld &world, const Oracles &oracles, SimulatedNetwork &network, SimRandom &random,
                      std::size_t index, std::filesystem::path stateDirectory)

@@ -3,6 +3,7 @@
 #include "Crew.h"
 #include "FleetWorld.h"
 
+#include <DriftingClock.h>
 #include <rabit/ManualClock.h>
 #include <rabit/RabitSteppedReactor.h>
 #include <rabit/RabitWorkspace.h>
@@ -14,18 +15,6 @@
 
 namespace Rabit::Sim
 {
-
-// The monotonic clock of one process: starts at its own reading and runs at its own rate.
-struct ProcessClock
-{
-    Time StartedAt{0};  // true time
-    Time Offset{0};
-    std::int64_t DriftPpm = 0;
-
-    Time At(Time trueTime) const;
-    // The first true time at which it shows `reading` or more.
-    Time TrueTimeOf(Time reading) const;
-};
 
 // A machine with a wall clock and perhaps a counter file, on which a process with a gateway and a crew starts
 // and ends.
@@ -40,7 +29,7 @@ public:
     bool IsAlive() const { return _process != nullptr; }
     std::size_t CurrentLife() const { return _life; }
     Sim::Crew &Crew() { return *_process->Crew; }
-    const ProcessClock &Clock() const { return _clock; }
+    const DriftingClock &Clock() const { return _clock; }
 
     void Start(bool loseStorage);
     // As by SIGKILL.
@@ -78,7 +67,7 @@ private:
     const std::filesystem::path _stateDirectory;
     double _wallSteps = 0;  // seconds
     std::size_t _life = 0;
-    ProcessClock _clock;
+    DriftingClock _clock;
     std::unique_ptr<Process> _process;
 };
 

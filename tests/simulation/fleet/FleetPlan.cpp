@@ -10,22 +10,12 @@ namespace
 
 using namespace std::chrono_literals;
 
-Time Between(SimRandom &random, Time low, Time high)
-{
-    return Time(random.Between(low.count(), high.count()));
-}
-
-Time LogBetween(SimRandom &random, Time low, Time high)
-{
-    return Time(random.LogBetween(low.count(), high.count()));
-}
-
 SimulatedFaults DrawWeather(SimRandom &random)
 {
     SimulatedFaults weather;
     weather.Loss = random.Chance(0.4) ? 0 : random.Chance(0.7) ? random.Unit() * 0.2 : random.Unit() * 0.6;
     weather.Duplicate = random.Chance(0.5) ? 0 : random.Unit() * 0.2;
-    weather.Delay = LogBetween(random, 100us, 400ms);
+    weather.Delay = random.LogBetween(100us, 400ms);
     weather.Jitter = random.Chance(0.3) ? 0ms : Time(random.Between(0, 2 * weather.Delay.count()));
     weather.Straggle = random.Chance(0.6) ? 0 : random.Unit() * 0.03;
     weather.StraggleDelay = 90s;
@@ -41,8 +31,8 @@ MachinePlan DrawMachine(SimRandom &random, std::size_t index, bool mayBeAbsent)
     machine.KeepsCounter = random.Chance(0.5);
     machine.DriftPpm = random.Chance(0.5) ? 0 : random.Between(-500, 500);
     machine.QueueCapacity = static_cast<int>(random.LogBetween(1, 300));
-    machine.ConsumePeriod = random.Chance(0.7) ? LogBetween(random, 1ms, 20ms) : LogBetween(random, 20ms, 2s);
-    machine.TrackPeriod = LogBetween(random, 50ms, 2s);
+    machine.ConsumePeriod = random.Chance(0.7) ? random.LogBetween(1ms, 20ms) : random.LogBetween(20ms, 2s);
+    machine.TrackPeriod = random.LogBetween(50ms, 2s);
     return machine;
 }
 
@@ -54,7 +44,7 @@ SendRule DrawRule(SimRandom &random, const std::string &destination)
     rule.Capacity = static_cast<std::size_t>(random.LogBetween(1, 300));
     rule.Expire = random.Chance(0.5)
                       ? 0ms
-                      : std::chrono::duration_cast<std::chrono::milliseconds>(LogBetween(random, 50ms, 60s));
+                      : std::chrono::duration_cast<std::chrono::milliseconds>(random.LogBetween(50ms, 60s));
     rule.Window = static_cast<std::size_t>(random.LogBetween(1, 256));
     rule.RedeliverInDoubt = random.Chance(0.3);
     return rule;
@@ -66,17 +56,12 @@ void AddCut(FleetPlan &plan, std::size_t a, std::size_t b, Time from, Time to)
     plan.Faults.push_back({.At = to, .Kind = FaultKind::CutEnd, .A = a, .B = b});
 }
 
-std::size_t DrawIndex(SimRandom &random, std::size_t count)
-{
-    return static_cast<std::size_t>(random.Between(0, static_cast<std::int64_t>(count) - 1));
-}
-
 void AddFault(FleetPlan &plan, SimRandom &random)
 {
     const std::size_t count = plan.Machines.size();
-    const std::size_t a = DrawIndex(random, count);
-    const std::size_t b = (a + 1 + DrawIndex(random, count - 1)) % count;
-    const Time at = Between(random, 0ms, plan.CalmAt);
+    const std::size_t a = random.Index(count);
+    const std::size_t b = (a + 1 + random.Index(count - 1)) % count;
+    const Time at = random.Between(0ms, plan.CalmAt);
     const double kind = random.Unit();
     if (kind < 0.25)
     {
@@ -85,7 +70,7 @@ void AddFault(FleetPlan &plan, SimRandom &random)
     }
     else if (kind < 0.5)
     {
-        const Time end = std::min(at + LogBetween(random, 1s, 120s), plan.CalmAt);
+        const Time end = std::min(at + random.LogBetween(1s, 120s), plan.CalmAt);
         AddCut(plan, a, b, at, end);
         if (random.Chance(0.6))
         {
@@ -100,7 +85,7 @@ void AddFault(FleetPlan &plan, SimRandom &random)
     {
         plan.Faults.push_back(
             {.At = at, .Kind = random.Chance(0.7) ? FaultKind::Crash : FaultKind::Leave, .A = a});
-        plan.Faults.push_back({.At = std::min(at + LogBetween(random, 1ms, 40s), plan.CalmAt),
+        plan.Faults.push_back({.At = std::min(at + random.LogBetween(1ms, 40s), plan.CalmAt),
                                .Kind = FaultKind::Start,
                                .A = a,
                                .LoseStorage = plan.IncarnationsMayFall && random.Chance(0.5)});
@@ -114,7 +99,7 @@ void AddFault(FleetPlan &plan, SimRandom &random)
     else
     {
         plan.Faults.push_back(
-            {.At = at, .Kind = FaultKind::Stall, .A = a, .Amount = LogBetween(random, 100ms, 60s).count()});
+            {.At = at, .Kind = FaultKind::Stall, .A = a, .Amount = random.LogBetween(100ms, 60s).count()});
     }
 }
 
@@ -142,7 +127,7 @@ FleetPlan::FleetPlan(std::uint64_t seed)
             Machines[i].Send.push_back(DrawRule(random, Machines[j].Name));
         }
     }
-    CalmAt = LogBetween(random, 5s, count > 3 ? 40s : 120s);
+    CalmAt = random.LogBetween(5s, count > 3 ? 40s : 120s);
     const std::int64_t faults = random.Between(0, 4 + static_cast<std::int64_t>(CalmAt / 10s));
     for (std::int64_t i = 0; i < faults; ++i)
     {
@@ -151,16 +136,16 @@ FleetPlan::FleetPlan(std::uint64_t seed)
     const std::int64_t bursts = random.LogBetween(5, 150);
     for (std::int64_t i = 0; i < bursts; ++i)
     {
-        const std::size_t source = DrawIndex(random, count);
+        const std::size_t source = random.Index(count);
         const std::size_t destination =
-            random.Chance(0.1) ? Burst::ToAll : (source + 1 + DrawIndex(random, count - 1)) % count;
+            random.Chance(0.1) ? Burst::ToAll : (source + 1 + random.Index(count - 1)) % count;
         const int burst = random.Chance(0.8) ? 1 : static_cast<int>(random.LogBetween(2, 100));
-        Bursts.push_back({Between(random, 0ms, CalmAt + 1s), source, destination, burst});
+        Bursts.push_back({random.Between(0ms, CalmAt + 1s), source, destination, burst});
     }
     const std::int64_t modes = random.Between(0, 20);
     for (std::int64_t i = 0; i < modes; ++i)
     {
-        Modes.push_back({Between(random, 0ms, CalmAt), DrawIndex(random, count)});
+        Modes.push_back({random.Between(0ms, CalmAt), random.Index(count)});
     }
 }
 

@@ -107,7 +107,7 @@ private:
     ScratchDirectory _scratch;
     Oracles _oracles;
     std::vector<std::unique_ptr<FleetNode>> _nodes;
-    std::vector<ProcessClock> _clocks;  // by life
+    std::vector<DriftingClock> _clocks;  // by life
     std::vector<Path> _paths;
     std::vector<PlannedEvent> _agenda;  // by time
     std::size_t _nextPlanned = 0;

@@ -77,7 +77,7 @@ private:
     const Scenario _plan;
     SimRandom _random;
     Oracle _oracle;
-    std::vector<SimClock> _lifeClocks;
+    std::vector<DriftingClock> _lifeClocks;
     SimWorld _world;
     std::vector<std::unique_ptr<SimNode>> _nodes;
     std::vector<LinkTime> _wakeAt;  // true time of the node's next wake-up; LinkNever: none

@@ -11,23 +11,13 @@ namespace
 
 using namespace std::chrono_literals;
 
-LinkTime Time(SimRandom &random, LinkTime low, LinkTime high)
-{
-    return LinkTime(random.Between(low.count(), high.count()));
-}
-
-LinkTime LogTime(SimRandom &random, LinkTime low, LinkTime high)
-{
-    return LinkTime(random.LogBetween(low.count(), high.count()));
-}
-
 Weather DrawWeather(SimRandom &random)
 {
     Weather weather;
     weather.Loss = random.Chance(0.4) ? 0 : random.Chance(0.7) ? random.Unit() * 0.2 : random.Unit() * 0.6;
     weather.Duplicate = random.Chance(0.5) ? 0 : random.Unit() * 0.2;
     weather.Straggle = random.Chance(0.6) ? 0 : random.Unit() * 0.03;
-    weather.Delay = LogTime(random, 100us, 400ms);
+    weather.Delay = random.LogBetween(100us, 400ms);
     weather.Jitter = random.Chance(0.3) ? 0ms : LinkTime(random.Between(0, 2 * weather.Delay.count()));
     return weather;
 }
@@ -42,7 +32,7 @@ ScenarioNode DrawNode(SimRandom &random, std::size_t index, bool mayBeAbsent, bo
                                                          : IncarnationMode::CounterAndClock;
     node.NeverThere = mayBeAbsent && random.Chance(0.15);
     node.DriftPpm = random.Chance(0.5) ? 0 : random.Between(-500, 500);
-    node.DriverDelay = random.Chance(0.6) ? 0ms : LogTime(random, 10us, 20ms);
+    node.DriverDelay = random.Chance(0.6) ? 0ms : random.LogBetween(10us, 20ms);
     node.RoomIsWrong = random.Chance(0.05);
     return node;
 }
@@ -53,7 +43,7 @@ ScenarioQueue DrawQueue(SimRandom &random, std::size_t index)
     queue.Name.assign(1, 'q');
     queue.Name += std::to_string(index);
     queue.Capacity = static_cast<std::size_t>(random.LogBetween(1, 300));
-    queue.ConsumePeriod = random.Chance(0.6) ? LogTime(random, 100us, 20ms) : LogTime(random, 20ms, 2s);
+    queue.ConsumePeriod = random.Chance(0.6) ? random.LogBetween(100us, 20ms) : random.LogBetween(20ms, 2s);
     queue.PopEventLoss = random.Chance(0.8) ? 0 : random.Unit() * 0.5;
     queue.LocalFill = random.Chance(0.8) ? 0 : random.Unit() * 0.7;
     return queue;
@@ -65,7 +55,7 @@ LinkOptions DrawOptions(SimRandom &random)
     options.Capacity = static_cast<std::size_t>(random.LogBetween(1, 300));
     options.CapacityBytes =
         random.Chance(0.7) ? 1000000 : static_cast<std::size_t>(random.Between(100, 5000));
-    options.Expire = random.Chance(0.5) ? 0ms : LogTime(random, 20ms, 60s);
+    options.Expire = random.Chance(0.5) ? 0ms : random.LogBetween(20ms, 60s);
     options.Window = static_cast<std::size_t>(random.LogBetween(1, 256));
     options.WindowBytes = static_cast<std::size_t>(random.LogBetween(100, 100000));
     options.RedeliverInDoubt = random.Chance(0.3);
@@ -81,10 +71,10 @@ void AddCut(Scenario &scenario, std::size_t a, std::size_t b, LinkTime from, Lin
 void AddFault(Scenario &scenario, SimRandom &random)
 {
     const std::size_t count = scenario.Nodes.size();
-    const std::size_t a = static_cast<std::size_t>(random.Between(0, static_cast<std::int64_t>(count) - 1));
+    const std::size_t a = random.Index(count);
     const std::size_t b =
         (a + static_cast<std::size_t>(random.Between(1, static_cast<std::int64_t>(count) - 1))) % count;
-    const LinkTime at = Time(random, 0ms, scenario.CalmAt);
+    const LinkTime at = random.Between(0ms, scenario.CalmAt);
     const double kind = random.Unit();
     if (kind < 0.25)
     {
@@ -93,7 +83,7 @@ void AddFault(Scenario &scenario, SimRandom &random)
     }
     else if (kind < 0.5)
     {
-        const LinkTime end = std::min(at + LogTime(random, 1s, 120s), scenario.CalmAt);
+        const LinkTime end = std::min(at + random.LogBetween(1s, 120s), scenario.CalmAt);
         AddCut(scenario, a, b, at, end);
         if (random.Chance(0.6))
         {
@@ -106,7 +96,7 @@ void AddFault(Scenario &scenario, SimRandom &random)
         {
             return;
         }
-        const LinkTime start = std::min(at + LogTime(random, 1ms, 40s), scenario.CalmAt);
+        const LinkTime start = std::min(at + random.LogBetween(1ms, 40s), scenario.CalmAt);
         scenario.Faults.push_back({.At = at, .Kind = FaultKind::Crash, .A = a});
         scenario.Faults.push_back({.At = start,
                                    .Kind = FaultKind::Start,
@@ -121,7 +111,7 @@ void AddFault(Scenario &scenario, SimRandom &random)
     else
     {
         scenario.Faults.push_back(
-            {.At = at, .Kind = FaultKind::Stall, .A = a, .Amount = LogTime(random, 100ms, 60s).count()});
+            {.At = at, .Kind = FaultKind::Stall, .A = a, .Amount = random.LogBetween(100ms, 60s).count()});
     }
 }
 
@@ -158,7 +148,7 @@ Scenario::Scenario(std::uint64_t seed)
             }
         }
     }
-    CalmAt = nodeCount > 3 ? LogTime(random, 5s, 60s) : LogTime(random, 5s, 200s);
+    CalmAt = nodeCount > 3 ? random.LogBetween(5s, 60s) : random.LogBetween(5s, 200s);
     WaitForStragglers = random.Chance(0.3);
     MalformedPart = random.Chance(0.8) ? 0 : 0.01;
 
@@ -170,14 +160,13 @@ Scenario::Scenario(std::uint64_t seed)
     const std::int64_t bursts = random.LogBetween(5, 150);
     for (std::int64_t i = 0; i < bursts; ++i)
     {
-        const auto link =
-            static_cast<std::size_t>(random.Between(0, static_cast<std::int64_t>(Links.size()) - 1));
+        const auto link = random.Index(Links.size());
         const int count = random.Chance(0.8) ? 1 : static_cast<int>(random.LogBetween(2, 100));
-        Bursts.push_back({Time(random, 0ms, CalmAt + 1s), link, count});
+        Bursts.push_back({random.Between(0ms, CalmAt + 1s), link, count});
     }
 
     Settings.MaxDatagram = static_cast<std::size_t>(random.LogBetween(200, 5000));
-    Settings.AckDelay = random.Chance(0.7) ? LinkTime(2ms) : LogTime(random, 1us, 20ms);
+    Settings.AckDelay = random.Chance(0.7) ? LinkTime(2ms) : random.LogBetween(1us, 20ms);
     Settings.AckEvery = static_cast<std::size_t>(random.LogBetween(1, 64));
 }
 

@@ -4,6 +4,7 @@
 #include "Packet.h"
 #include "Scenario.h"
 
+#include <DriftingClock.h>
 #include <rabit/gateway/links/LinkNode.h>
 
 #include <cstdint>
@@ -16,29 +17,14 @@
 namespace Rabit::Sim
 {
 
-// The clock of one process: starts at its own reading and runs at its own rate.
-struct SimClock
-{
-    LinkTime StartedAt{0};  // true time
-    LinkTime Offset{0};
-    std::int64_t DriftPpm = 0;
-
-    LinkTime At(LinkTime trueTime) const
-    {
-        const std::int64_t passed = (trueTime - StartedAt).count();
-        return Offset +
-               LinkTime(passed + passed / 1'000'000 * DriftPpm + passed % 1'000'000 * DriftPpm / 1'000'000);
-    }
-};
-
 // What a node needs of the world around it.
 struct SimWorld
 {
     const Scenario &Plan;
     Sim::Oracle &Oracle;
     SimRandom &Random;
-    std::vector<SimClock> &LifeClocks;  // by life
-    LinkTime Now{0};                    // true time
+    std::vector<DriftingClock> &LifeClocks;  // by life
+    LinkTime Now{0};                         // true time
     std::function<void(Packet)> Transmit;
     // A queue of a node is no longer empty.
     std::function<void(std::size_t node, std::size_t queue)> QueueFilled;
@@ -85,7 +71,7 @@ private:
 
     SimWorld &_world;
     const std::size_t _index;
-    SimClock _clock;
+    DriftingClock _clock;
     std::unique_ptr<LinkNode> _links;
     std::vector<std::size_t> _queueLengths;
     std::uint64_t _storedCounter = 0;
