@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, builds the release preset and runs all tests.
 # Arguments are handed to ctest, for instance: tests/run.sh -L core. Without any, all tests are run but those with the
-# label mutation, which take ten minutes and test the tests, and those with the label field_long, which take five.
+# label mutation, which test the tests, and those with the label field_long: each set takes five minutes or more.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$root/docker/install-packages.sh"

@@ -4,7 +4,6 @@
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "GatewayTopics.h"
 #include "GpsTime.h"
@@ -17,9 +16,6 @@ namespace Rabit
 namespace
 {
 
-// Links by name that were refused before they existed; names come from this process, but a loop may make them
-// up.
-constexpr std::size_t MaximumRefusals = 1000;
 // What the encapsulation and RTPS headers take of a datagram.
 constexpr std::size_t DatagramOverhead = 100;
 

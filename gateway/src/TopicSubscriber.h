@@ -26,9 +26,9 @@ namespace Rabit
 // profile. Decodes each sample once, on the transport's thread, and posts it there, without a lock held.
 //
 // What is not posted: samples of a node that has not been heard as live or is in another life by now (a late
-// joiner may be handed the past; a State is repeated soon after), repetitions of a State that is posted
-// already, what does not decode, and samples of programs that are not nodes. All but the repetitions are
-// counted as dropped.
+// joiner may be handed the past; a State is repeated soon after), what is older than what was posted of that
+// life, or of a time in the future, repetitions of a State that is posted already, what does not decode, and
+// samples of programs that are not nodes. All but the repetitions are counted as dropped.
 class TopicSubscriber
 {
 public:
