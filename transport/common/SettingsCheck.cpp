@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <optional>
 
 namespace Rabit
 {
@@ -27,6 +28,37 @@ std::string ToText(const sockaddr *address)
     char text[INET_ADDRSTRLEN] = "";
     inet_ntop(AF_INET, &ipv4->sin_addr, text, sizeof text);
     return text;
+}
+
+// An IPv4 address of this host.
+struct HostAddress
+{
+    std::string Interface;
+    std::string Text;
+    bool IsLoopback = false;
+
+    bool IsCalled(const std::string &name) const { return name == Interface || name == Text; }
+};
+
+// Empty if they cannot be listed.
+std::optional<std::vector<HostAddress>> AddressesOfThisHost()
+{
+    ifaddrs *head = nullptr;
+    if (getifaddrs(&head) != 0)
+    {
+        return std::nullopt;
+    }
+    const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(head, &freeifaddrs);
+    std::vector<HostAddress> addresses;
+    for (const ifaddrs *entry = head; entry != nullptr; entry = entry->ifa_next)
+    {
+        if (entry->ifa_addr != nullptr && entry->ifa_addr->sa_family == AF_INET)
+        {
+            addresses.push_back(
+                {entry->ifa_name, ToText(entry->ifa_addr), (entry->ifa_flags & IFF_LOOPBACK) != 0});
+        }
+    }
+    return addresses;
 }
 
 }  // namespace
@@ -71,31 +103,29 @@ void CheckQos(const TopicDescription &topic, const TopicQos &qos)
 
 std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &interfaces)
 {
-    ifaddrs *head = nullptr;
-    if (!interfaces.empty() && getifaddrs(&head) != 0)
+    if (interfaces.empty())
+    {
+        return {};
+    }
+    const auto host = AddressesOfThisHost();
+    if (!host)
     {
         throw TransportError("the network interfaces of this host cannot be listed", "interfaces");
     }
-    const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(head, &freeifaddrs);
     std::vector<std::string> addresses;
     for (const auto &wanted : interfaces)
     {
         bool found = false;
-        for (const ifaddrs *entry = head; entry != nullptr; entry = entry->ifa_next)
+        for (const HostAddress &address : *host)
         {
-            if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET)
-            {
-                continue;
-            }
-            const std::string address = ToText(entry->ifa_addr);
-            if (wanted != entry->ifa_name && wanted != address)
+            if (!address.IsCalled(wanted))
             {
                 continue;
             }
             found = true;
-            if (std::find(addresses.begin(), addresses.end(), address) == addresses.end())
+            if (std::find(addresses.begin(), addresses.end(), address.Text) == addresses.end())
             {
-                addresses.push_back(address);
+                addresses.push_back(address.Text);
             }
         }
         if (!found)
@@ -110,29 +140,16 @@ std::vector<std::string> ResolveInterfaces(const std::vector<std::string> &inter
 
 std::vector<std::string> FindAddresses(const std::vector<std::string> &interfaces)
 {
-    ifaddrs *head = nullptr;
-    if (getifaddrs(&head) != 0)
-    {
-        return {};
-    }
-    const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(head, &freeifaddrs);
     std::vector<std::string> addresses;
-    for (const ifaddrs *entry = head; entry != nullptr; entry = entry->ifa_next)
+    for (const HostAddress &address : AddressesOfThisHost().value_or(std::vector<HostAddress>()))
     {
-        if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET)
-        {
-            continue;
-        }
-        const std::string address = ToText(entry->ifa_addr);
-        const bool wanted = interfaces.empty()
-                                ? (entry->ifa_flags & IFF_LOOPBACK) == 0
-                                : std::find_if(interfaces.begin(), interfaces.end(),
-                                               [&](const std::string &name) {
-                                                   return name == entry->ifa_name || name == address;
-                                               }) != interfaces.end();
+        const bool wanted =
+            interfaces.empty() ? !address.IsLoopback
+                               : std::any_of(interfaces.begin(), interfaces.end(),
+                                             [&](const std::string &name) { return address.IsCalled(name); });
         if (wanted)
         {
-            addresses.push_back(address);
+            addresses.push_back(address.Text);
         }
     }
     std::sort(addresses.begin(), addresses.end());
