@@ -1,6 +1,7 @@
 #include "MavlinkMessages.h"
 
 #include <bit>
+#include <tuple>
 #include <type_traits>
 
 namespace Swarm
@@ -8,7 +9,7 @@ namespace Swarm
 namespace
 {
 
-// Fields go by size, the largest first, least byte first; the visitors below name them in that order.
+// Fields go by size, the largest first, least byte first; FieldsOf names them in that order.
 class Writer
 {
 public:
@@ -72,84 +73,56 @@ private:
     std::size_t _at = 0;
 };
 
-template <typename Message, typename Visitor>
-void VisitHeartbeat(Message &m, Visitor &&visit)
+auto FieldsOf(const MavlinkHeartbeat &)
 {
-    visit(m.CustomMode);
-    visit(m.Type);
-    visit(m.Autopilot);
-    visit(m.BaseMode);
-    visit(m.SystemStatus);
-    visit(m.ProtocolVersion);
+    using M = MavlinkHeartbeat;
+    return std::tuple(&M::CustomMode, &M::Type, &M::Autopilot, &M::BaseMode, &M::SystemStatus,
+                      &M::ProtocolVersion);
 }
 
-template <typename Message, typename Visitor>
-void VisitAttitude(Message &m, Visitor &&visit)
+auto FieldsOf(const MavlinkAttitude &)
 {
-    visit(m.TimeSinceBootMs);
-    visit(m.Roll);
-    visit(m.Pitch);
-    visit(m.Yaw);
-    visit(m.RollSpeed);
-    visit(m.PitchSpeed);
-    visit(m.YawSpeed);
+    using M = MavlinkAttitude;
+    return std::tuple(&M::TimeSinceBootMs, &M::Roll, &M::Pitch, &M::Yaw, &M::RollSpeed, &M::PitchSpeed,
+                      &M::YawSpeed);
 }
 
-template <typename Message, typename Visitor>
-void VisitGlobalPosition(Message &m, Visitor &&visit)
+auto FieldsOf(const MavlinkGlobalPosition &)
 {
-    visit(m.TimeSinceBootMs);
-    visit(m.LatitudeE7);
-    visit(m.LongitudeE7);
-    visit(m.AltitudeMm);
-    visit(m.RelativeAltitudeMm);
-    visit(m.NorthCmps);
-    visit(m.EastCmps);
-    visit(m.DownCmps);
-    visit(m.HeadingCdeg);
+    using M = MavlinkGlobalPosition;
+    return std::tuple(&M::TimeSinceBootMs, &M::LatitudeE7, &M::LongitudeE7, &M::AltitudeMm,
+                      &M::RelativeAltitudeMm, &M::NorthCmps, &M::EastCmps, &M::DownCmps, &M::HeadingCdeg);
 }
 
-template <typename Message, typename Visitor>
-void VisitPositionTarget(Message &m, Visitor &&visit)
+auto FieldsOf(const MavlinkPositionTarget &)
 {
-    visit(m.TimeSinceBootMs);
-    visit(m.LatitudeE7);
-    visit(m.LongitudeE7);
-    visit(m.AltitudeM);
-    visit(m.VelocityNorth);
-    visit(m.VelocityEast);
-    visit(m.VelocityDown);
-    visit(m.AccelerationNorth);
-    visit(m.AccelerationEast);
-    visit(m.AccelerationDown);
-    visit(m.Yaw);
-    visit(m.YawRate);
-    visit(m.TypeMask);
-    visit(m.TargetSystem);
-    visit(m.TargetComponent);
-    visit(m.CoordinateFrame);
+    using M = MavlinkPositionTarget;
+    return std::tuple(&M::TimeSinceBootMs, &M::LatitudeE7, &M::LongitudeE7, &M::AltitudeM, &M::VelocityNorth,
+                      &M::VelocityEast, &M::VelocityDown, &M::AccelerationNorth, &M::AccelerationEast,
+                      &M::AccelerationDown, &M::Yaw, &M::YawRate, &M::TypeMask, &M::TargetSystem,
+                      &M::TargetComponent, &M::CoordinateFrame);
 }
 
-template <typename Message, typename Visit>
-MavlinkFrame EncodeWith(const Message &message, Visit visitFields)
+template <typename Message>
+MavlinkFrame EncodeFields(const Message &message)
 {
     MavlinkFrame frame;
     frame.Message = Message::Number;
-    Writer writer(frame.Payload);
-    visitFields(message, writer);
+    Writer write(frame.Payload);
+    std::apply([&](auto... field) { (write(message.*field), ...); }, FieldsOf(message));
     return frame;
 }
 
-template <typename Message, typename Visit>
-std::optional<Message> DecodeWith(const MavlinkFrame &frame, Visit visitFields)
+template <typename Message>
+std::optional<Message> DecodeFields(const MavlinkFrame &frame)
 {
     if (frame.Message != Message::Number)
     {
         return std::nullopt;
     }
     Message message;
-    Reader reader(frame.Payload);
-    visitFields(message, reader);
+    Reader read(frame.Payload);
+    std::apply([&](auto... field) { (read(message.*field), ...); }, FieldsOf(message));
     return message;
 }
 
@@ -157,44 +130,42 @@ std::optional<Message> DecodeWith(const MavlinkFrame &frame, Visit visitFields)
 
 MavlinkFrame MavlinkHeartbeat::Encode() const
 {
-    return EncodeWith(*this, [](auto &m, auto &visit) { VisitHeartbeat(m, visit); });
+    return EncodeFields(*this);
 }
 
 std::optional<MavlinkHeartbeat> MavlinkHeartbeat::Decode(const MavlinkFrame &frame)
 {
-    return DecodeWith<MavlinkHeartbeat>(frame, [](auto &m, auto &visit) { VisitHeartbeat(m, visit); });
+    return DecodeFields<MavlinkHeartbeat>(frame);
 }
 
 MavlinkFrame MavlinkAttitude::Encode() const
 {
-    return EncodeWith(*this, [](auto &m, auto &visit) { VisitAttitude(m, visit); });
+    return EncodeFields(*this);
 }
 
 std::optional<MavlinkAttitude> MavlinkAttitude::Decode(const MavlinkFrame &frame)
 {
-    return DecodeWith<MavlinkAttitude>(frame, [](auto &m, auto &visit) { VisitAttitude(m, visit); });
+    return DecodeFields<MavlinkAttitude>(frame);
 }
 
 MavlinkFrame MavlinkGlobalPosition::Encode() const
 {
-    return EncodeWith(*this, [](auto &m, auto &visit) { VisitGlobalPosition(m, visit); });
+    return EncodeFields(*this);
 }
 
 std::optional<MavlinkGlobalPosition> MavlinkGlobalPosition::Decode(const MavlinkFrame &frame)
 {
-    return DecodeWith<MavlinkGlobalPosition>(frame,
-                                             [](auto &m, auto &visit) { VisitGlobalPosition(m, visit); });
+    return DecodeFields<MavlinkGlobalPosition>(frame);
 }
 
 MavlinkFrame MavlinkPositionTarget::Encode() const
 {
-    return EncodeWith(*this, [](auto &m, auto &visit) { VisitPositionTarget(m, visit); });
+    return EncodeFields(*this);
 }
 
 std::optional<MavlinkPositionTarget> MavlinkPositionTarget::Decode(const MavlinkFrame &frame)
 {
-    return DecodeWith<MavlinkPositionTarget>(frame,
-                                             [](auto &m, auto &visit) { VisitPositionTarget(m, visit); });
+    return DecodeFields<MavlinkPositionTarget>(frame);
 }
 
 }  // namespace Swarm
