@@ -16,10 +16,18 @@ std::string MissionText(const Uav::MissionState &mission)
     {
         case Uav::MissionMode::MISSION_IDLE:
             return "IDLE";
+        case Uav::MissionMode::MISSION_TRANSIT:
+            return "TRANSIT";
+        case Uav::MissionMode::MISSION_SEARCH:
+            return "SEARCH";
+        case Uav::MissionMode::MISSION_CONFIRM:
+            return "CONFIRM";
+        case Uav::MissionMode::MISSION_VALIDATE:
+            return "VALIDATE";
         case Uav::MissionMode::MISSION_TRACK:
             return "TRACK";
-        case Uav::MissionMode::MISSION_PATTERN:
-            return "PATTERN";
+        case Uav::MissionMode::MISSION_HOME:
+            return "HOME";
         case Uav::MissionMode::MISSION_GOTO:
             return std::string("GOTO ").append(command);
         case Uav::MissionMode::MISSION_HOLD:

@@ -45,7 +45,7 @@ void Commander::TakeAnswers()
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
         if (const auto *answer = dynamic_cast<const Uav::CommandAck *>(message.get()))
-            _log.Acknowledged(answer->id, answer->node, answer->obeyed);
+            _log.Acknowledged(answer->id, answer->node, answer->stage != Uav::CommandStage::COMMAND_DECLINED);
 }
 
 void Commander::SendCommands(std::chrono::nanoseconds elapsed)

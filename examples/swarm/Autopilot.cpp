@@ -8,22 +8,22 @@ namespace Swarm
 {
 namespace
 {
-Uav::MissionMode ModeOf(FlightPhase phase)
+Uav::FlightPhase PhaseOf(FlightPhase phase)
 {
     switch (phase)
     {
         case FlightPhase::Idle:
-            return Uav::MissionMode::MISSION_IDLE;
+            return Uav::FlightPhase::FLIGHT_IDLE;
         case FlightPhase::Track:
-            return Uav::MissionMode::MISSION_TRACK;
+            return Uav::FlightPhase::FLIGHT_RECORDING;
         case FlightPhase::Pattern:
-            return Uav::MissionMode::MISSION_PATTERN;
+            return Uav::FlightPhase::FLIGHT_PATTERN;
         case FlightPhase::Goto:
-            return Uav::MissionMode::MISSION_GOTO;
+            return Uav::FlightPhase::FLIGHT_COURSE;
         case FlightPhase::Hold:
-            return Uav::MissionMode::MISSION_HOLD;
+            return Uav::FlightPhase::FLIGHT_HOLD;
     }
-    return Uav::MissionMode::MISSION_IDLE;
+    return Uav::FlightPhase::FLIGHT_IDLE;
 }
 }  // namespace
 
@@ -42,7 +42,7 @@ void Autopilot::Startup()
 void Autopilot::ExecuteUnitOfWork()
 {
     const std::chrono::nanoseconds now = GetWorkspace().GetClock().Monotonic();
-    TakeCommands(now);
+    TakeCourses(now);
     const std::optional<Motion> motion = _vehicle->Update(now);
     PostModeIfChanged(now);
     if (motion)
@@ -50,24 +50,24 @@ void Autopilot::ExecuteUnitOfWork()
     SetWakeupTimeDelayMSec(_vehicle->DelayMSec(GetWorkspace().GetClock().Monotonic()));
 }
 
-void Autopilot::TakeCommands(std::chrono::nanoseconds now)
+void Autopilot::TakeCourses(std::chrono::nanoseconds now)
 {
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
     {
-        if (const auto *command = dynamic_cast<const Uav::Goto *>(message.get()))
+        if (const auto *course = dynamic_cast<const Uav::Course *>(message.get()))
         {
             const std::string problem = _vehicle->NotReady(now);
             if (!problem.empty())
             {
                 Rabit::RabitLog::Write(
                     Rabit::RabitLogLevel::Warning,
-                    "autopilot: command " + std::to_string(command->id) + " is not flown: " + problem);
+                    "autopilot: course " + std::to_string(course->number) + " is not flown: " + problem);
                 continue;
             }
-            _vehicle->FlyTo({command->latitude_deg, command->longitude_deg, command->altitude_m},
-                            command->speed_mps, now);
-            _command = command->id;
+            _vehicle->FlyTo({course->latitude_deg, course->longitude_deg, course->altitude_m},
+                            course->speed_mps, now);
+            _course = course->number;
         }
     }
 }
@@ -90,13 +90,13 @@ void Autopilot::PostPose(const Motion &motion)
 
 void Autopilot::PostModeIfChanged(std::chrono::nanoseconds now)
 {
-    const Uav::MissionMode mode = ModeOf(_vehicle->Phase());
+    const Uav::FlightPhase phase = PhaseOf(_vehicle->Phase());
     const std::string notReady = _vehicle->NotReady(now);
-    if (_mode->WasPosted() && _mode->mode == mode && _mode->command == _command &&
+    if (_mode->WasPosted() && _mode->phase == phase && _mode->course == _course &&
         _mode->not_ready == notReady)
         return;
-    _mode->mode = mode;
-    _mode->command = _command;
+    _mode->phase = phase;
+    _mode->course = _course;
     _mode->not_ready = notReady;
     _mode->PostMessage();
 }

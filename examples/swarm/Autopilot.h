@@ -16,8 +16,8 @@ namespace Swarm
 //
 // Posts:  Pose (Uav::Pose), whenever the vehicle tells where it is, a simulated one ten times a second, and
 // nothing while it does not; FlightMode (Uav::FlightMode), at the start and when it changes: also whether
-// commands are flown now.
-// Queue:  Autopilot takes Uav::Goto, checked before; it flies there at once.
+// courses are flown now.
+// Queue:  Autopilot takes Uav::Course, checked before; it flies there at once.
 class Autopilot : public Rabit::RabitManager
 {
 public:
@@ -28,12 +28,12 @@ public:
     void ExecuteUnitOfWork() final;
 
 private:
-    void TakeCommands(std::chrono::nanoseconds now);
+    void TakeCourses(std::chrono::nanoseconds now);
     void PostPose(const Motion &motion);
     void PostModeIfChanged(std::chrono::nanoseconds now);
 
     const std::unique_ptr<Vehicle> _vehicle;
-    std::uint32_t _command = 0;
+    std::uint32_t _course = 0;
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::FlightMode> _mode = std::make_shared<Uav::FlightMode>();
 };

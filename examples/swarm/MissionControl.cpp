@@ -11,6 +11,34 @@ namespace
 constexpr double MinAltitudeM = -500;
 constexpr double MaxAltitudeM = 10000;
 constexpr double MaxSpeedMps = 50;
+
+Uav::MissionMode ModeOf(Uav::FlightPhase phase)
+{
+    switch (phase)
+    {
+        case Uav::FlightPhase::FLIGHT_COURSE:
+            return Uav::MissionMode::MISSION_GOTO;
+        case Uav::FlightPhase::FLIGHT_HOLD:
+            return Uav::MissionMode::MISSION_HOLD;
+        case Uav::FlightPhase::FLIGHT_IDLE:
+        case Uav::FlightPhase::FLIGHT_RECORDING:
+        case Uav::FlightPhase::FLIGHT_PATTERN:
+            break;
+    }
+    return Uav::MissionMode::MISSION_IDLE;
+}
+
+// The number of the course is that of the command.
+std::shared_ptr<Uav::Course> CourseOf(const Uav::Goto &command)
+{
+    auto course = std::make_shared<Uav::Course>();
+    course->number = command.id;
+    course->latitude_deg = command.latitude_deg;
+    course->longitude_deg = command.longitude_deg;
+    course->altitude_m = command.altitude_m;
+    course->speed_mps = command.speed_mps;
+    return course;
+}
 }  // namespace
 
 std::string WhyNot(const Uav::Goto &command)
@@ -60,7 +88,7 @@ void MissionControl::Obey(const std::shared_ptr<Uav::Goto> &command, std::chrono
     _mode->FetchMessage();
     if (reason.empty())
         reason = _mode->not_ready;
-    if (reason.empty() && !AddMessageToQueue("Autopilot", command))
+    if (reason.empty() && !AddMessageToQueue("Autopilot", CourseOf(*command)))
         reason = "the autopilot takes no commands now";
     if (reason.empty())
     {
@@ -77,7 +105,7 @@ void MissionControl::Obey(const std::shared_ptr<Uav::Goto> &command, std::chrono
     auto ack = std::make_shared<Uav::CommandAck>();
     ack->id = command->id;
     ack->node = _node;
-    ack->obeyed = reason.empty();
+    ack->stage = reason.empty() ? Uav::CommandStage::COMMAND_ACCEPTED : Uav::CommandStage::COMMAND_DECLINED;
     ack->reason = reason;
     _answers.push_back({command->reply_to, std::move(ack), now});
 }
@@ -102,10 +130,10 @@ void MissionControl::PostState(std::chrono::nanoseconds now)
     _mode->FetchMessage();
     _pose->FetchMessage();
     const std::string text = StateText();
-    const bool changed = _state->mode != _mode->mode || _state->text != text;
+    const bool changed = _state->mode != ModeOf(_mode->phase) || _state->text != text;
     if (!_stateTimes.Due(now) && !changed)
         return;
-    _state->mode = _mode->mode;
+    _state->mode = ModeOf(_mode->phase);
     _state->text = text;
     _state->poses = _pose->number;
     _state->PostMessage();
@@ -114,8 +142,8 @@ void MissionControl::PostState(std::chrono::nanoseconds now)
 std::string MissionControl::StateText() const
 {
     std::string text;
-    if (_mode->command != 0)
-        text = "command " + std::to_string(_mode->command);
+    if (_mode->course != 0)
+        text = "command " + std::to_string(_mode->course);
     if (!_answers.empty())
         text += (text.empty() ? "" : ", ") + std::to_string(_answers.size()) + " answers wait";
     if (_answersGivenUp > 0)

@@ -37,8 +37,8 @@ protected:
     }
     bool Command(std::uint32_t id)
     {
-        auto command = std::make_shared<Uav::Goto>();
-        command->id = id;
+        auto command = std::make_shared<Uav::Course>();
+        command->number = id;
         command->latitude_deg = 49.2584;  // some 50 m beyond the pattern
         command->longitude_deg = -123.2432;
         command->altitude_m = 60;
@@ -74,8 +74,8 @@ TEST_F(Autopilot, SaysWhenThePoseWasTrue)
 TEST_F(Autopilot, FliesItsPatternUntilItIsCommanded)
 {
     Run(1s);
-    EXPECT_EQ(_mode.mode, Uav::MissionMode::MISSION_PATTERN);
-    EXPECT_EQ(_mode.command, 0u);
+    EXPECT_EQ(_mode.phase, Uav::FlightPhase::FLIGHT_PATTERN);
+    EXPECT_EQ(_mode.course, 0u);
 }
 
 TEST_F(Autopilot, FliesToTheCommandedPointAndHolds)
@@ -83,10 +83,10 @@ TEST_F(Autopilot, FliesToTheCommandedPointAndHolds)
     Run(1s);
     Command(7);
     Run(100ms);
-    EXPECT_EQ(_mode.mode, Uav::MissionMode::MISSION_GOTO);
-    EXPECT_EQ(_mode.command, 7u);
+    EXPECT_EQ(_mode.phase, Uav::FlightPhase::FLIGHT_COURSE);
+    EXPECT_EQ(_mode.course, 7u);
     Run(30s);
-    EXPECT_EQ(_mode.mode, Uav::MissionMode::MISSION_HOLD);
+    EXPECT_EQ(_mode.phase, Uav::FlightPhase::FLIGHT_HOLD);
     EXPECT_DOUBLE_EQ(_pose.altitude_m, 60);
 }
 
@@ -94,7 +94,7 @@ TEST_F(Autopilot, IgnoresMessagesThatAreNoCommands)
 {
     _workspace.AddMessageToQueue("Autopilot", std::make_shared<Uav::TargetReport>());
     Run(1s);
-    EXPECT_EQ(_mode.mode, Uav::MissionMode::MISSION_PATTERN);
+    EXPECT_EQ(_mode.phase, Uav::FlightPhase::FLIGHT_PATTERN);
     EXPECT_EQ(_pose.number, 11u);
 }
 

@@ -84,7 +84,7 @@ protected:
         auto ack = std::make_shared<Uav::CommandAck>();
         ack->id = id;
         ack->node = node;
-        ack->obeyed = true;
+        ack->stage = Uav::CommandStage::COMMAND_ACCEPTED;
         ASSERT_TRUE(_workspace.AddMessageToQueue("Commands", ack));
     }
 };

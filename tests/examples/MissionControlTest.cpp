@@ -87,13 +87,13 @@ TEST_F(MissionControl, PassesACommandOnAndAnswersWhoAskedForIt)
     Receive(Command(5));
     std::shared_ptr<Rabit::RabitMessage> passed;
     ASSERT_TRUE(_autopilot->GetMessage(passed));
-    EXPECT_EQ(dynamic_cast<Uav::Goto &>(*passed).id, 5u);
+    EXPECT_EQ(dynamic_cast<Uav::Course &>(*passed).number, 5u);
     ASSERT_EQ(_gateway->Accepted.size(), 1u);
     const auto &[queue, ack] = _gateway->Accepted[0];
     EXPECT_EQ(queue, "ground/Commands");
     EXPECT_EQ(ack.id, 5u);
     EXPECT_EQ(ack.node, "uav1");
-    EXPECT_TRUE(ack.obeyed);
+    EXPECT_EQ(ack.stage, Uav::CommandStage::COMMAND_ACCEPTED);
     EXPECT_EQ(ack.reason, "");
 }
 
@@ -104,7 +104,7 @@ TEST_F(MissionControl, DeclinesACommandThatCannotBeFlownAndSaysWhy)
     Receive(command);
     EXPECT_TRUE(_autopilot->IsEmpty());
     ASSERT_EQ(_gateway->Accepted.size(), 1u);
-    EXPECT_FALSE(_gateway->Accepted[0].second.obeyed);
+    EXPECT_EQ(_gateway->Accepted[0].second.stage, Uav::CommandStage::COMMAND_DECLINED);
     EXPECT_EQ(_gateway->Accepted[0].second.reason, "speed_mps is not above 0 and up to 50");
 }
 
@@ -113,8 +113,8 @@ TEST_F(MissionControl, DeclinesACommandThatTheAutopilotDoesNotTake)
     for (std::uint32_t id = 1; id <= 3; ++id)
         Receive(Command(id));
     ASSERT_EQ(_gateway->Accepted.size(), 3u);
-    EXPECT_TRUE(_gateway->Accepted[1].second.obeyed);
-    EXPECT_FALSE(_gateway->Accepted[2].second.obeyed);
+    EXPECT_EQ(_gateway->Accepted[1].second.stage, Uav::CommandStage::COMMAND_ACCEPTED);
+    EXPECT_EQ(_gateway->Accepted[2].second.stage, Uav::CommandStage::COMMAND_DECLINED);
 }
 
 TEST_F(MissionControl, DeclinesACommandThatTheAutopilotWouldNotFlyAndSaysWhy)
@@ -125,7 +125,7 @@ TEST_F(MissionControl, DeclinesACommandThatTheAutopilotWouldNotFlyAndSaysWhy)
     mode->PostMessage();
     Receive(Command(7));
     ASSERT_EQ(_gateway->Accepted.size(), 1u);
-    EXPECT_FALSE(_gateway->Accepted[0].second.obeyed);
+    EXPECT_EQ(_gateway->Accepted[0].second.stage, Uav::CommandStage::COMMAND_DECLINED);
     EXPECT_EQ(_gateway->Accepted[0].second.reason, "no autopilot is heard");
 }
 
@@ -185,12 +185,11 @@ TEST_F(MissionControl, PostsItsStateEverySecond)
 TEST_F(MissionControl, PostsItsStateAtOnceWhenTheModeChanges)
 {
     Run(500ms);
-    Uav::FlightMode mode;
-    ASSERT_TRUE(mode.mode != Uav::MissionMode::MISSION_GOTO);
+    ASSERT_NE(_state.mode, Uav::MissionMode::MISSION_GOTO);
     auto posted = std::make_shared<Uav::FlightMode>();
     _workspace.AddPublishSubscribeMessage("FlightMode", posted);
-    posted->mode = Uav::MissionMode::MISSION_GOTO;
-    posted->command = 5;
+    posted->phase = Uav::FlightPhase::FLIGHT_COURSE;
+    posted->course = 5;
     posted->PostMessage();
     Run(0ms);
     EXPECT_EQ(_state.mode, Uav::MissionMode::MISSION_GOTO);
