@@ -20,12 +20,12 @@ TEST_P(Conformance, ALateReaderGetsTheLastState)
     const auto writer = writing->CreateWriter(TextTopic(), State(), {});
     for (const char *text : {"idle", "armed", "flying"})
     {
-        ASSERT_EQ(writer->Write(MakeSample(0, text), 1'700'000'000'000'000'000), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, text), 1'700'000'000'000'000'000), WriteResult::Ok);
     }
     SampleRecorder recorder;
     const auto reader = reading->CreateReader(TextTopic(), State(), {}, recorder.Handler());
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 1; }));
-    ASSERT_EQ(writer->Write(MakeSample(0, "landed"), 2000), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "landed"), 2000), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 2; }));
     EXPECT_THAT(recorder.Texts(), ElementsAre("flying", "landed"));
     EXPECT_LT(std::abs(recorder.All()[0].SourceTime - 1'700'000'000'000'000'000), 1000);
@@ -39,7 +39,7 @@ TEST_P(Conformance, ALateReaderGetsTheHistoryInOrder)
     const auto writer = writing->CreateWriter(TextTopic(), State(3), {});
     for (const char *text : {"1", "2", "3", "4", "5"})
     {
-        ASSERT_EQ(writer->Write(MakeSample(0, text), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, text), 1), WriteResult::Ok);
     }
     SampleRecorder recorder;
     const auto reader = reading->CreateReader(TextTopic(), State(3), {}, recorder.Handler());
@@ -52,11 +52,11 @@ TEST_P(Conformance, ALateVolatileReaderGetsOnlyWhatIsNew)
     const auto writing = Open("uav1");
     const auto reading = Open("ground");
     const auto writer = writing->CreateWriter(TextTopic(), State(10), {});
-    ASSERT_EQ(writer->Write(MakeSample(0, "old"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "old"), 1), WriteResult::Ok);
     SampleRecorder recorder;
     const auto reader = reading->CreateReader(TextTopic(), Stream(10), {}, recorder.Handler());
     ASSERT_TRUE(Matched(writer, reader));
-    ASSERT_EQ(writer->Write(MakeSample(0, "new"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "new"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 1; }));
     EXPECT_THAT(recorder.Texts(), ElementsAre("new"));
 }
@@ -68,11 +68,11 @@ TEST_P(Conformance, ALateReaderGetsTheLastOfEachKey)
     const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
     for (const std::uint32_t key : {1u, 2u, 3u})
     {
-        ASSERT_EQ(writer->Write(MakeSample(key, "old"), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(key, "old"), 1), WriteResult::Ok);
     }
     for (const std::uint32_t key : {3u, 1u})
     {
-        ASSERT_EQ(writer->Write(MakeSample(key, "new"), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(key, "new"), 1), WriteResult::Ok);
     }
     SampleRecorder recorder;
     const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
@@ -95,7 +95,7 @@ TEST_P(Conformance, ReliableSamplesArriveAllInOrderWithTheirNumbers)
     for (int i = 0; i < 500; ++i)
     {
         texts.push_back(std::to_string(i));
-        ASSERT_EQ(writer->Write(MakeSample(0, texts.back()), i), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, texts.back()), i), WriteResult::Ok);
     }
     ASSERT_TRUE(Until([&] { return recorder.Count() >= texts.size(); }));
     EXPECT_THAT(recorder.Texts(), ElementsAreArray(texts));
@@ -118,7 +118,7 @@ TEST_P(Conformance, TelemetryArrivesWithRisingNumbers)
     ASSERT_TRUE(Until(
         [&]
         {
-            EXPECT_EQ(writer->Write(MakeSample(0, "fix"), 1), WriteResult::Ok);
+            EXPECT_EQ(WriteOnceTaken(*writer, MakeSample(0, "fix"), 1), WriteResult::Ok);
             return recorder.Count() >= 20;
         }));
     const auto all = recorder.All();
@@ -152,7 +152,7 @@ TEST_P(Conformance, BytesArriveAsTheyWereEncodedWhateverTheirNumber)
     };
     for (const std::size_t size : sizes)
     {
-        ASSERT_EQ(writer->Write(RawSample(bodyOf(size)), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, RawSample(bodyOf(size)), 1), WriteResult::Ok);
     }
     ASSERT_TRUE(Until([&] { return recorder.Count() >= sizes.size(); }));
     const auto all = recorder.All();
@@ -191,8 +191,9 @@ TEST_P(Conformance, BorrowedBytesStayAsTheyAreWhileTheHandlerRuns)
     ASSERT_TRUE(Matched(writer, reader));
     for (int i = 0; i < 100; ++i)
     {
-        ASSERT_EQ(writer->Write(MakeSample(0, std::string(500, static_cast<char>('a' + i % 26))), 1),
-                  WriteResult::Ok);
+        ASSERT_EQ(
+            WriteOnceTaken(*writer, MakeSample(0, std::string(500, static_cast<char>('a' + i % 26))), 1),
+            WriteResult::Ok);
     }
     ASSERT_TRUE(Until([&] { return count == 100; }));
     EXPECT_EQ(changed, 0);
@@ -210,7 +211,7 @@ TEST_P(Conformance, TheSourceTimeArrives)
                                              1'893'456'000'999'999'999};
     for (const std::int64_t time : times)
     {
-        ASSERT_EQ(writer->Write(MakeSample(0, "x"), time), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "x"), time), WriteResult::Ok);
     }
     ASSERT_TRUE(Until([&] { return recorder.Count() >= times.size(); }));
     const auto all = recorder.All();
@@ -230,11 +231,11 @@ TEST_P(Conformance, ASampleTellsItsNodeItsIncarnationAndItsWriter)
     const auto firstWriter = first->CreateWriter(TextTopic(), State(), {});
     const auto secondWriter = second->CreateWriter(TextTopic(), State(), {});
     ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 2; }));
-    ASSERT_EQ(firstWriter->Write(MakeSample(0, "1"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*firstWriter, MakeSample(0, "1"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
-    ASSERT_EQ(firstWriter->Write(MakeSample(0, "1"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*firstWriter, MakeSample(0, "1"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
-    ASSERT_EQ(secondWriter->Write(MakeSample(0, "2"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*secondWriter, MakeSample(0, "2"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 3; }));
     const auto all = recorder.All();
     EXPECT_EQ(all[0].Node, "uav1");
@@ -258,8 +259,8 @@ TEST_P(Conformance, WritersOfOneTopicDoNotPushOutEachOthersSamples)
     ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 2; }));
     for (int i = 0; i < 100; ++i)
     {
-        ASSERT_EQ(firstWriter->Write(MakeSample(1, std::to_string(i)), 1), WriteResult::Ok);
-        ASSERT_EQ(secondWriter->Write(MakeSample(2, std::to_string(i)), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*firstWriter, MakeSample(1, std::to_string(i)), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*secondWriter, MakeSample(2, std::to_string(i)), 1), WriteResult::Ok);
     }
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 200; }));
     std::vector<std::string> a;
@@ -285,9 +286,9 @@ TEST_P(Conformance, ADisposedInstanceIsTold)
     const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
     const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
     ASSERT_TRUE(Matched(writer, reader));
-    ASSERT_EQ(writer->Write(MakeSample(7, "target"), 1000), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "target"), 1000), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
-    ASSERT_EQ(writer->Dispose(MakeSample(7, "whatever"), 2000), WriteResult::Ok);
+    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, "whatever"), 2000), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
     const auto disposed = recorder.All()[1];
     EXPECT_FALSE(disposed.Alive);
@@ -305,9 +306,9 @@ TEST_P(Conformance, ALateReaderDoesNotGetADisposedInstanceAlive)
     const auto writing = Open("uav1");
     const auto reading = Open("ground");
     const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
-    ASSERT_EQ(writer->Write(MakeSample(7, "gone"), 1), WriteResult::Ok);
-    ASSERT_EQ(writer->Dispose(MakeSample(7, ""), 1), WriteResult::Ok);
-    ASSERT_EQ(writer->Write(MakeSample(8, "here"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "gone"), 1), WriteResult::Ok);
+    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, ""), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(8, "here"), 1), WriteResult::Ok);
     SampleRecorder recorder;
     const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 1 && recorder.All().back().Key == HashOf(8); }));
@@ -327,8 +328,8 @@ TEST_P(Conformance, InstancesEndWithTheirLastWriter)
     auto firstWriter = first->CreateWriter(KeyedTopic(), State(), {});
     auto secondWriter = second->CreateWriter(KeyedTopic(), State(), {});
     ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 2; }));
-    ASSERT_EQ(firstWriter->Write(MakeSample(7, "from uav1"), 1), WriteResult::Ok);
-    ASSERT_EQ(secondWriter->Write(MakeSample(7, "from uav2"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*firstWriter, MakeSample(7, "from uav1"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*secondWriter, MakeSample(7, "from uav2"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
     firstWriter.reset();
     ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 1; }));
@@ -357,8 +358,8 @@ void Conformance::ExpectArrivalOf(std::size_t size)
     {
         body[i] = static_cast<std::uint8_t>((i * 2654435761u) >> 13);
     }
-    ASSERT_EQ(writer->Write(RawSample(body), 1), WriteResult::Ok);
-    ASSERT_EQ(writer->Write(MakeSample(0, "small"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, RawSample(body), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "small"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 2; }));
     const auto all = recorder.All();
     ASSERT_EQ(all[0].Bytes.size(), size + 4);

@@ -34,7 +34,7 @@ TEST_P(Conformance, PartitionsDecideWhichReadersGetASample)
     const auto writer = writing->CreateWriter(TextTopic(), State(), {"", "uav1"});
     ASSERT_TRUE(
         Until([&] { return writer->MatchedReaders() == matching && readers.back()->MatchedWriters() == 1; }));
-    ASSERT_EQ(writer->Write(MakeSample(0, "here"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "here"), 1), WriteResult::Ok);
     for (std::size_t i = 0; i < cases.size(); ++i)
     {
         if (cases[i].Matches)
@@ -62,7 +62,7 @@ TEST_P(Conformance, ABestEffortReaderGetsNothingFromAnotherPartition)
     EXPECT_TRUE(Until(
         [&]
         {
-            EXPECT_EQ(writer->Write(MakeSample(0, "fix"), 1), WriteResult::Ok);
+            EXPECT_EQ(WriteOnceTaken(*writer, MakeSample(0, "fix"), 1), WriteResult::Ok);
             return here.Count() >= 3;
         }));
     EXPECT_EQ(elsewhere.Count(), 0u);
@@ -93,7 +93,7 @@ TEST_P(Conformance, OtherTopicsAreNotHeard)
     const auto reader = reading->CreateReader(TextTopic(), State(), {}, recorder.Handler());
     const auto writer = writing->CreateWriter(TextTopic(), State(), {});
     ASSERT_TRUE(Matched(writer, reader));
-    ASSERT_EQ(writer->Write(MakeSample(0, "here"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "here"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
     EXPECT_EQ(others.Count(), 0u);
 }
@@ -185,7 +185,7 @@ TEST_P(Conformance, ALesserReaderMatchesAStateWriter)
     EXPECT_TRUE(Until(
         [&]
         {
-            EXPECT_EQ(writer->Write(MakeSample(0, "mode"), 1), WriteResult::Ok);
+            EXPECT_EQ(WriteOnceTaken(*writer, MakeSample(0, "mode"), 1), WriteResult::Ok);
             return recorder.Count() >= 1;
         }));
 }
@@ -217,7 +217,7 @@ TEST_P(Conformance, TheOwnSessionIsNeitherMatchedNorHeard)
     const auto ownAfter = both->CreateReader(TextTopic(), State(), {}, own.Handler());
     const auto reader = reading->CreateReader(TextTopic(), State(), {}, others.Handler());
     ASSERT_TRUE(Matched(writer, reader));
-    ASSERT_EQ(writer->Write(MakeSample(0, "hello"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "hello"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return others.Count() == 1; }));
     Net().Settle();
     EXPECT_THAT(own.Texts(), IsEmpty());

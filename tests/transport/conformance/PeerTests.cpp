@@ -128,7 +128,7 @@ TEST_P(Conformance, OpeningAndClosingAgainAndAgainLeavesNothingBehind)
         const auto uav = Open("uav1", life);
         const auto writer = uav->CreateWriter(TextTopic(), State(), {});
         const auto reader = ground->CreateReader(TextTopic(), State(), {}, recorder.Handler());
-        ASSERT_EQ(writer->Write(MakeSample(0, std::to_string(life)), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, std::to_string(life)), 1), WriteResult::Ok);
         ASSERT_TRUE(Until([&] { return recorder.Count() >= 1; })) << "life " << life;
         EXPECT_EQ(recorder.All()[0].Incarnation, life);
         EXPECT_EQ(recorder.All()[0].Text, std::to_string(life));
@@ -162,7 +162,7 @@ TEST_P(Conformance, AHundredOpenAndCloseCyclesLeakNothing)
         const auto writer = uav->CreateWriter(TextTopic(), State(), {});
         const auto reader =
             uav->CreateReader(KeyedTopic(), State(), {}, [](SampleBytes, const SampleInfo &) {});
-        EXPECT_EQ(writer->Write(MakeSample(0, "x"), 1), WriteResult::Ok);
+        EXPECT_EQ(WriteOnceTaken(*writer, MakeSample(0, "x"), 1), WriteResult::Ok);
     };
     // What is made once and kept.
     for (std::uint64_t life = 1; life <= 5; ++life)

@@ -33,8 +33,8 @@ TEST_P(Conformance, AWriteWithoutReadersSucceeds)
     const auto telemetry = session->CreateWriter(TextTopic("Fix"), Telemetry(), {});
     for (int i = 0; i < 1000; ++i)
     {
-        ASSERT_EQ(state->Write(MakeSample(0, "x"), 1), WriteResult::Ok);
-        ASSERT_EQ(telemetry->Write(MakeSample(0, "x"), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*state, MakeSample(0, "x"), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*telemetry, MakeSample(0, "x"), 1), WriteResult::Ok);
     }
     EXPECT_EQ(session->Counters().WriteFailures, 0u);
 }
@@ -58,7 +58,7 @@ TEST_P(Conformance, ASampleThatCannotBeSentIsRefusedAndCounted)
     EXPECT_EQ(writer->Write(FakeSample(std::size_t{1} << 30, neverAsked), 1), WriteResult::TooLarge);
     EXPECT_EQ(writer->Dispose(MakeSample(0, "no key"), 1), WriteResult::Failed);
     EXPECT_EQ(writing->Counters().WriteFailures, 4u);
-    ASSERT_EQ(writer->Write(MakeSample(0, "good"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "good"), 1), WriteResult::Ok);
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 1; }));
     EXPECT_THAT(recorder.Texts(), testing::ElementsAre("good"));
 }
@@ -91,7 +91,7 @@ TEST_P(Conformance, AHandlerThatThrowsIsCountedAndCalledAgain)
     ASSERT_TRUE(Matched(writer, reader));
     for (const char *text : {"int", "exception", "exception"})
     {
-        ASSERT_EQ(writer->Write(MakeSample(0, text), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, text), 1), WriteResult::Ok);
     }
     ASSERT_TRUE(Until([&] { return recorder.Count() >= 3; }));
     EXPECT_TRUE(Until([&] { return reading->Counters().HandlerExceptions == 3; }));
@@ -116,7 +116,7 @@ TEST_P(Conformance, AHandlerNeverRunsInsideWrite)
     for (int i = 0; i < 200; ++i)
     {
         isWriting = true;
-        ASSERT_EQ(writer->Write(MakeSample(0, "x"), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "x"), 1), WriteResult::Ok);
         isWriting = false;
     }
     ASSERT_TRUE(Until([&] { return count == 200; }));
@@ -151,7 +151,7 @@ TEST_P(Conformance, HandlersOfOneReaderNeverRunAtOnce)
     {
         for (int i = 0; i < 500; ++i)
         {
-            EXPECT_EQ(writer.Write(MakeSample(0, "x"), 1), WriteResult::Ok);
+            EXPECT_EQ(WriteOnceTaken(writer, MakeSample(0, "x"), 1), WriteResult::Ok);
         }
     };
     std::jthread one(blast, std::ref(*firstWriter));
@@ -179,7 +179,8 @@ TEST_P(Conformance, ThreadsThatShareAWriterLoseNothingAndKeepTheirOrder)
                 {
                     for (std::uint32_t i = 0; i < Each; ++i)
                     {
-                        EXPECT_EQ(writer->Write(MakeSample(thread, std::to_string(i)), 1), WriteResult::Ok);
+                        EXPECT_EQ(WriteOnceTaken(*writer, MakeSample(thread, std::to_string(i)), 1),
+                                  WriteResult::Ok);
                     }
                 });
         }
@@ -210,7 +211,7 @@ TEST_P(Conformance, NoHandlerRunsOnceItsReaderIsGone)
         {
             while (!stop.stop_requested())
             {
-                EXPECT_EQ(writer->Write(MakeSample(0, "x"), 1), WriteResult::Ok);
+                EXPECT_EQ(WriteOnceTaken(*writer, MakeSample(0, "x"), 1), WriteResult::Ok);
                 std::this_thread::yield();
             }
         });
@@ -253,7 +254,7 @@ TEST_P(Conformance, ClosingAReaderWaitsForItsHandler)
                                             left = true;
                                         });
     ASSERT_TRUE(Matched(writer, reader));
-    ASSERT_EQ(writer->Write(MakeSample(0, "x"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "x"), 1), WriteResult::Ok);
     std::jthread closer(
         [&]
         {

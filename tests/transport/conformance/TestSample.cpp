@@ -4,6 +4,17 @@
 
 namespace Rabit::Conformance
 {
+namespace
+{
+template <typename Action>
+WriteResult OnceTaken(Action action)
+{
+    WriteResult result = action();
+    while (result == WriteResult::TimedOut)
+        result = action();
+    return result;
+}
+}  // namespace
 
 bool RawSample::Encode(std::span<std::uint8_t> buffer) const
 {
@@ -56,6 +67,16 @@ TopicDescription KeyedTopic(const std::string &name)
                 hash = KeyHash{bytes[7], bytes[6], bytes[5], bytes[4]};
                 return true;
             }};
+}
+
+WriteResult WriteOnceTaken(TransportWriter &writer, const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    return OnceTaken([&] { return writer.Write(sample, sourceTime); });
+}
+
+WriteResult DisposeOnceTaken(TransportWriter &writer, const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    return OnceTaken([&] { return writer.Dispose(sample, sourceTime); });
 }
 
 }  // namespace Rabit::Conformance

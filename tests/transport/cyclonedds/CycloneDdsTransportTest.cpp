@@ -38,7 +38,7 @@ protected:
         const auto reading = Backend.Open(other, {});
         const auto writer = writing->CreateWriter(TextTopic(), State(), {});
         const auto reader = reading->CreateReader(TextTopic(), State(), {}, recorder.Handler());
-        ASSERT_EQ(writer->Write(MakeSample(0, std::string(5000, 'x')), 1), WriteResult::Ok);
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, std::string(5000, 'x')), 1), WriteResult::Ok);
         ASSERT_TRUE(Net.Until([&] { return recorder.Count() == 1; }));
         EXPECT_EQ(recorder.Texts()[0], std::string(5000, 'x'));
     }
@@ -249,7 +249,7 @@ TEST_F(CycloneDdsTransportTest, ASampleWithoutAReadableKeyIsCountedWhereItArrive
     SampleRecorder recorder;
     const auto writer = writing->CreateWriter(liar, State(), {});
     const auto reader = reading->CreateReader(keyed, State(), {}, recorder.Handler());
-    ASSERT_EQ(writer->Write(RawSample({1, 2, 3}), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, RawSample({1, 2, 3}), 1), WriteResult::Ok);
     EXPECT_TRUE(Net.Until([&] { return reading->Counters().MalformedSamples > 0; }));
     EXPECT_EQ(recorder.Count(), 0u);
 }
@@ -285,7 +285,7 @@ TEST_F(CycloneDdsTransportTest, NoiseOnItsPortsDoesNotDisturbASession)
         sendto(noise, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr *>(&to), sizeof to);
     }
     close(noise);
-    ASSERT_EQ(writer->Write(MakeSample(0, "still here"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "still here"), 1), WriteResult::Ok);
     EXPECT_TRUE(Net.Until([&] { return recorder.Count() == 1; }));
     EXPECT_TRUE(Net.Until([&] { return writing->Counters().MalformedDatagrams > 0; }));
 }
