@@ -27,11 +27,11 @@ Uav::FlightPhase PhaseOf(FlightPhase phase)
 }
 }  // namespace
 
-Autopilot::Autopilot(std::unique_ptr<Vehicle> vehicle, Rabit::RabitWorkspace &workspace)
-    : RabitManager("Autopilot", workspace), _vehicle(std::move(vehicle))
+Autopilot::Autopilot(const Names &names, std::unique_ptr<Vehicle> vehicle, Rabit::RabitWorkspace &workspace)
+    : RabitManager(names.Own("Autopilot"), workspace), _vehicle(std::move(vehicle))
 {
-    AddPublishSubscribeMessage("Pose", _pose);
-    AddPublishSubscribeMessage("FlightMode", _mode);
+    AddPublishSubscribeMessage(names.Own("Pose"), _pose);
+    AddPublishSubscribeMessage(names.Own("FlightMode"), _mode);
 }
 
 void Autopilot::Startup()
@@ -54,22 +54,26 @@ void Autopilot::TakeCourses(std::chrono::nanoseconds now)
 {
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
-    {
         if (const auto *course = dynamic_cast<const Uav::Course *>(message.get()))
-        {
-            const std::string problem = _vehicle->NotReady(now);
-            if (!problem.empty())
-            {
-                Rabit::RabitLog::Write(
-                    Rabit::RabitLogLevel::Warning,
-                    "autopilot: course " + std::to_string(course->number) + " is not flown: " + problem);
-                continue;
-            }
-            _vehicle->FlyTo({course->latitude_deg, course->longitude_deg, course->altitude_m},
-                            course->speed_mps, now);
-            _course = course->number;
-        }
+            Obey(*course, now);
+}
+
+void Autopilot::Obey(const Uav::Course &course, std::chrono::nanoseconds now)
+{
+    const std::string problem = _vehicle->NotReady(now);
+    if (!problem.empty())
+    {
+        Rabit::RabitLog::Write(
+            Rabit::RabitLogLevel::Warning,
+            "autopilot: course " + std::to_string(course.number) + " is not flown: " + problem);
+        return;
     }
+    if (course.speed_mps > 0)
+        _vehicle->FlyTo({course.latitude_deg, course.longitude_deg, course.altitude_m}, course.speed_mps,
+                        now);
+    else
+        _vehicle->Release(now);
+    _course = course.number;
 }
 
 void Autopilot::PostPose(const Motion &motion)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Names.h"
 #include "Vehicle.h"
 #include "uav.idl.h"
 
@@ -17,18 +18,20 @@ namespace Swarm
 // Posts:  Pose (Uav::Pose), whenever the vehicle tells where it is, a simulated one ten times a second, and
 // nothing while it does not; FlightMode (Uav::FlightMode), at the start and when it changes: also whether
 // courses are flown now.
-// Queue:  Autopilot takes Uav::Course, checked before; it flies there at once.
+// Queue:  Autopilot takes Uav::Course, checked before; it flies there at once. A Course at speed 0 takes the
+// last one back.
 class Autopilot : public Rabit::RabitManager
 {
 public:
-    explicit Autopilot(std::unique_ptr<Vehicle> vehicle,
-                       Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
+    Autopilot(const Names &names, std::unique_ptr<Vehicle> vehicle,
+              Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 
     void Startup() final;
     void ExecuteUnitOfWork() final;
 
 private:
     void TakeCourses(std::chrono::nanoseconds now);
+    void Obey(const Uav::Course &course, std::chrono::nanoseconds now);
     void PostPose(const Motion &motion);
     void PostModeIfChanged(std::chrono::nanoseconds now);
 

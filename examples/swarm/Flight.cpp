@@ -8,99 +8,101 @@ namespace Swarm
 {
 namespace
 {
-constexpr double GravityMps2 = 9.80665;
-
-GeoPoint OnCircle(const Pattern &circle, double bearingRad)
+// At the northernmost point of the circle.
+Motion StartOf(const Circle &circle)
 {
-    return Moved(circle.Centre,
-                 {circle.RadiusM * std::cos(bearingRad), circle.RadiusM * std::sin(bearingRad), 0});
-}
-
-// The motion on a circle that long after passing its northernmost point, or after the given bearing.
-Motion Circling(const Pattern &circle, double startBearingRad, double seconds)
-{
-    const double bearing = startBearingRad + seconds * circle.SpeedMps / circle.RadiusM;
-    const double course = bearing + std::numbers::pi / 2;  // clockwise
+    constexpr double gravityMps2 = 9.80665;
     Motion motion;
-    motion.Position = OnCircle(circle, bearing);
-    motion.NorthMps = circle.SpeedMps * std::cos(course);
-    motion.EastMps = circle.SpeedMps * std::sin(course);
-    motion.RollRad = std::atan(circle.SpeedMps * circle.SpeedMps / (circle.RadiusM * GravityMps2));
-    motion.YawRad = WrapRad(course);
+    motion.Position = Moved(circle.Centre, {circle.RadiusM, 0, 0});
+    motion.EastMps = circle.SpeedMps;
+    motion.YawRad = std::numbers::pi / 2;
+    motion.RollRad = std::atan(circle.SpeedMps * circle.SpeedMps / (circle.RadiusM * gravityMps2));
     return motion;
 }
 }  // namespace
 
-Motion Flight::Way::At(double seconds) const
+Flight::Flight(const Circle &pattern)
+    : _pattern(pattern), _airframe(Airframe(StartOf(pattern), pattern)), _phase(FlightPhase::Pattern)
 {
-    const Offset way = Between(From, To);
+}
+
+Motion Flight::CatchUp::At(double seconds) const
+{
+    const double u = (seconds - StartS) / DurationS;
+    const Offset way = Between(From.Position, To.Position);
+    // Along each axis: the way to go, and the velocities at both ends.
+    const auto place = [&](double distance, double v0, double v1) {
+        return distance * u * u * (3 - 2 * u) +
+               DurationS * (v0 * u * (1 - u) * (1 - u) - v1 * u * u * (1 - u));
+    };
+    const auto velocity = [&](double distance, double v0, double v1)
+    { return distance / DurationS * 6 * u * (1 - u) + v0 * (1 - u) * (1 - 3 * u) - v1 * u * (2 - 3 * u); };
     Motion motion;
-    motion.Position = Interpolate(From, To, (seconds - StartS) / DurationS);
-    motion.NorthMps = way.NorthM / DurationS;
-    motion.EastMps = way.EastM / DurationS;
-    motion.DownMps = -way.UpM / DurationS;
-    motion.YawRad = std::atan2(way.EastM, way.NorthM);
+    motion.Position = Moved(From.Position, {place(way.NorthM, From.NorthMps, To.NorthMps),
+                                            place(way.EastM, From.EastMps, To.EastMps),
+                                            place(way.UpM, -From.DownMps, -To.DownMps)});
+    motion.NorthMps = velocity(way.NorthM, From.NorthMps, To.NorthMps);
+    motion.EastMps = velocity(way.EastM, From.EastMps, To.EastMps);
+    motion.DownMps = -velocity(way.UpM, -From.DownMps, -To.DownMps);
+    motion.YawRad = std::atan2(motion.EastMps, motion.NorthMps);
     return motion;
 }
 
-Motion Flight::Holding(double seconds) const
-{
-    return Circling(_leg->Hold, _leg->HoldBearingRad, seconds - _leg->There.StartS - _leg->There.DurationS);
-}
-
-// The track moves on meanwhile: aims at where it will be on arrival, found by trying the last duration again.
-Flight::Way Flight::WayBackToTrack(double startS) const
+// The track moves on meanwhile: where it will be on arrival is found by trying the last duration again.
+Flight::CatchUp Flight::WayToTrack(const Motion &from, double startS) const
 {
     constexpr int rounds = 8;
-    Way back;
-    back.From = Holding(startS).Position;
-    back.StartS = startS;
+    constexpr double leastS = 1;
+    CatchUp way{from, _track->At(startS), startS, leastS};
     for (int round = 0; round < rounds; ++round)
     {
-        back.To = _track->At(startS + back.DurationS).Position;
-        back.DurationS = Between(back.From, back.To).LengthM() / _leg->Hold.SpeedMps;
+        way.DurationS = std::max(leastS, Between(from.Position, way.To.Position).LengthM() / CatchUpSpeedMps);
+        way.To = _track->At(startS + way.DurationS);
     }
-    back.To = _track->At(startS + back.DurationS).Position;
-    return back;
+    return way;
 }
 
 Motion Flight::At(double seconds)
 {
-    if (_leg && _track && !_leg->Back && _leg->There.IsOver(seconds - BackToTrackAfterS))
-        _leg->Back = WayBackToTrack(_leg->There.StartS + _leg->There.DurationS + BackToTrackAfterS);
-    if (_leg && _leg->Back && _leg->Back->IsOver(seconds))
-        _leg.reset();
-    if (!_leg)
+    if (_airframe)
     {
-        _phase = _track ? FlightPhase::Track : FlightPhase::Pattern;
-        return _track ? _track->At(seconds) : Circling(_pattern, 0, seconds);
+        _airframe->Advance(seconds - _nowS);
+        _nowS = seconds;
+        if (_phase == FlightPhase::Goto && _airframe->IsOnCircle())
+            _phase = FlightPhase::Hold;
+        return _airframe->Now();
     }
-    if (_leg->Back)
-    {
-        _phase = FlightPhase::Track;
-        return _leg->Back->At(seconds);
-    }
-    if (_leg->There.IsOver(seconds))
-    {
-        _phase = FlightPhase::Hold;
-        return Holding(seconds);
-    }
-    _phase = FlightPhase::Goto;
-    return _leg->There.At(seconds);
+    _nowS = seconds;
+    if (_catchUp && _catchUp->IsOver(seconds))
+        _catchUp.reset();
+    return _catchUp ? _catchUp->At(seconds) : _track->At(seconds);
 }
 
 void Flight::FlyTo(const GeoPoint &point, double speedMps, double seconds)
 {
-    Leg leg;
-    leg.There.From = At(seconds).Position;
-    leg.Hold = {point, HoldRadiusM, std::min(speedMps, MaxHoldSpeedMps)};
-    const Offset fromPoint = Between(point, leg.There.From);
-    leg.HoldBearingRad = std::atan2(fromPoint.EastM, fromPoint.NorthM);
-    leg.There.To = OnCircle(leg.Hold, leg.HoldBearingRad);
-    leg.There.StartS = seconds;
-    leg.There.DurationS = Between(leg.There.From, leg.There.To).LengthM() / speedMps;
-    _phase = leg.There.DurationS > 0 ? FlightPhase::Goto : FlightPhase::Hold;
-    _leg = leg;
+    const Motion now = At(seconds);
+    const Circle hold{point, HoldRadiusM, std::min(speedMps, MaxHoldSpeedMps)};
+    if (!_airframe)
+        _airframe.emplace(now, hold);
+    _airframe->FlyTo(hold, speedMps);
+    _catchUp.reset();
+    _phase = _airframe->IsOnCircle() ? FlightPhase::Hold : FlightPhase::Goto;
+}
+
+void Flight::Release(double seconds)
+{
+    const Motion now = At(seconds);
+    if (!_track)
+    {
+        _airframe->FlyTo(_pattern, MaxHoldSpeedMps);
+        _phase = FlightPhase::Pattern;
+        return;
+    }
+    if (!_airframe)
+        return;  // flies the track, or catches it up
+    _catchUp = WayToTrack(now, seconds);
+    _airframe.reset();
+    _phase = FlightPhase::Track;
 }
 
 }  // namespace Swarm

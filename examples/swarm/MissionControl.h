@@ -20,7 +20,8 @@ std::string WhyNot(const Uav::Goto &command);
 // Takes commands from outside and answers each of them: the manager `MissionControl`.
 //
 // Queue:   MissionControl takes Uav::Goto. What can be flown goes on as a Uav::Course to the queue Autopilot,
-//          and the answer, a Uav::CommandAck, to the queue that the command names in reply_to, on whatever node that is.
+//          and the answer, a Uav::CommandAck, to the queue that the command names in reply_to, on whatever
+//          node that is.
 // Posts:   MissionState (Uav::MissionState), when it changes and every second.
 // Fetches: Pose and FlightMode of the Autopilot.
 //

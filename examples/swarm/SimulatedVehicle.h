@@ -25,6 +25,7 @@ public:
     {
         _flight.FlyTo(point, speedMps, SecondsAt(now));
     }
+    void Release(Time now) override { _flight.Release(SecondsAt(now)); }
     FlightPhase Phase() const override { return _flight.Phase(); }
     int DelayMSec(Time now) const override { return _times.DelayMSec(now); }
 

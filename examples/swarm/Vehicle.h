@@ -28,7 +28,9 @@ public:
     // Flies to the point, at that speed (m/s, above 0) if it can choose its speed, and stays there. Does
     // nothing if it is not ready.
     virtual void FlyTo(const GeoPoint &point, double speedMps, Time now) = 0;
-    // What it is doing, as of the last call of Update or FlyTo.
+    // No point any more: back to what it flies of its own accord, if there is anything.
+    virtual void Release(Time now) = 0;
+    // What it is doing, as of the last call of Update, FlyTo or Release.
     virtual FlightPhase Phase() const = 0;
     // How long to wait before the next Update, in milliseconds.
     virtual int DelayMSec(Time now) const = 0;

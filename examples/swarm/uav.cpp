@@ -65,14 +65,19 @@ Rabit::GatewayConfig LoadConfig(const Options &options)
     return config;
 }
 
-// Circles beside those of the other aircraft: the number at the end of the name says where.
-Swarm::Pattern PatternFor(const std::string &node)
+// Circles south of the field, beside those of the other aircraft: the number at the end of the name says
+// where.
+Swarm::Circle PatternFor(const std::string &node)
 {
+    constexpr int perRow = 5;
+    constexpr double apartM = 130;
     const auto digits =
         std::find_if(node.rbegin(), node.rend(), [](unsigned char c) { return !std::isdigit(c); });
     const int number = std::atoi(std::string(digits.base(), node.end()).c_str()) % 1000;
     const Swarm::GeoPoint field{47.3977, 8.5456, 500};
-    return {Swarm::Moved(field, {0, number * 150.0, number * 5.0})};
+    return {Swarm::Moved(field, {-280 - number / perRow * apartM, (number % perRow - 2) * apartM,
+                                 number % perRow * 5.0}),
+            60, 12};
 }
 
 std::unique_ptr<Swarm::Vehicle> MakeVehicle(const Options &options, const std::string &node)
@@ -90,8 +95,9 @@ void Fly(const Options &options)
     std::unique_ptr<Swarm::Vehicle> vehicle = MakeVehicle(options, config.Node);
     if (options.Check)
         return;
+    const Swarm::Names names(config.Node, config.Node);
     Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<Swarm::Autopilot>(std::move(vehicle)));
+    reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, std::move(vehicle)));
     reactor.AddManager(std::make_unique<Swarm::MissionControl>(config.Node));
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));

@@ -24,9 +24,10 @@ protected:
 
     void SetUp() override
     {
-        const Swarm::Pattern pattern{{49.2574, -123.2432, 50}};
+        const Swarm::Circle pattern{{49.2574, -123.2432, 50}};
         _reactor.AddManager(std::make_unique<Swarm::Autopilot>(
-            std::make_unique<Swarm::SimulatedVehicle>(Swarm::Flight(pattern)), _workspace));
+            Swarm::Names("uav1", "uav1"), std::make_unique<Swarm::SimulatedVehicle>(Swarm::Flight(pattern)),
+            _workspace));
         _reactor.Start();
     }
     void Run(std::chrono::milliseconds duration)
@@ -87,7 +88,19 @@ TEST_F(Autopilot, FliesToTheCommandedPointAndHolds)
     EXPECT_EQ(_mode.course, 7u);
     Run(30s);
     EXPECT_EQ(_mode.phase, Uav::FlightPhase::FLIGHT_HOLD);
-    EXPECT_DOUBLE_EQ(_pose.altitude_m, 60);
+    EXPECT_NEAR(_pose.altitude_m, 60, 0.1);
+}
+
+TEST_F(Autopilot, GoesBackToItsPatternWhenTheCourseIsTakenBack)
+{
+    Command(7);
+    Run(30s);
+    auto none = std::make_shared<Uav::Course>();
+    none->number = 8;
+    ASSERT_TRUE(_workspace.AddMessageToQueue("Autopilot", none));
+    Run(100ms);
+    EXPECT_EQ(_mode.phase, Uav::FlightPhase::FLIGHT_PATTERN);
+    EXPECT_EQ(_mode.course, 8u);
 }
 
 TEST_F(Autopilot, IgnoresMessagesThatAreNoCommands)

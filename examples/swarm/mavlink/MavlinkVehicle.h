@@ -35,6 +35,8 @@ public:
     // Not while no autopilot is heard.
     std::string NotReady(Time now) const override;
     void FlyTo(const GeoPoint &point, double speedMps, Time now) override;
+    // Sends no point any more; what the autopilot does then is its own affair.
+    void Release(Time /*now*/) override { _target.reset(); }
     FlightPhase Phase() const override;
     int DelayMSec(Time now) const override;
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+namespace Swarm
+{
+
+// What the messages, queues and managers of an aircraft are called in this process.
+//
+// An aircraft is two nodes: `uav1` flies, `uav1.vision` looks. The names of a node that is local are plain
+// here (`Pose`); those of every other node are full (`uav1/Pose`), and the gateway makes them work. If no
+// node is local all names are full: then any number of whole aircraft live in one workspace, and need no
+// gateway.
+//
+// Immutable; may be used from any thread.
+class Names
+{
+public:
+    // `localNode` is the node whose names are plain here; empty for none.
+    Names(std::string aircraft, std::string localNode)
+        : _aircraft(std::move(aircraft)), _localNode(std::move(localNode))
+    {
+    }
+
+    const std::string &Aircraft() const { return _aircraft; }
+    static std::string VisionOf(const std::string &aircraft) { return aircraft + ".vision"; }
+
+    // The name here of a message, queue or manager of any node.
+    std::string Of(const std::string &node, const std::string &name) const
+    {
+        return node == _localNode ? name : node + "/" + name;
+    }
+    // Of this aircraft's own two nodes.
+    std::string Own(const std::string &name) const { return Of(_aircraft, name); }
+    std::string OwnVision(const std::string &name) const { return Of(VisionOf(_aircraft), name); }
+
+private:
+    std::string _aircraft;
+    std::string _localNode;
+};
+
+}  // namespace Swarm
