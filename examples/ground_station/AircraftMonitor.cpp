@@ -41,6 +41,7 @@ AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &worksp
 {
     workspace.AddPublishSubscribeMessage(node + "/Pose", _pose);
     workspace.AddPublishSubscribeMessage(node + "/MissionState", _mission);
+    workspace.AddPublishSubscribeMessage(node + "/Findings", _findings);
     workspace.AddPublishSubscribeMessage(node + "/Pose", _arrivals->Pose);
     workspace.AddPublishSubscribeMessage(node + "/MissionState", _arrivals->Mission);
 
@@ -82,6 +83,13 @@ void AircraftMonitor::Show(FleetRow &row)
     }
     if (_mission->WasPosted())
         row.Mission = MissionText(*_mission);
+}
+
+std::vector<Uav::Finding> AircraftMonitor::Findings()
+{
+    if (_findings->GetGlobalPublishSubscribeMessageRef())
+        _findings->FetchMessage();
+    return _findings->items;
 }
 
 PoseCount AircraftMonitor::Count() const

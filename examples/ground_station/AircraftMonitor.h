@@ -9,22 +9,25 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace Ground
 {
 
-// Follows the mirrored messages <node>/Pose and <node>/MissionState of one aircraft.
+// Follows the mirrored messages <node>/Pose, <node>/MissionState and <node>/Findings of one aircraft.
 //
 // Fetch gives a manager the latest of each. A manager that sleeps between fetches cannot count messages,
 // though, so each arrival is counted by a handler on the thread that posts it, which is the transport's.
 class AircraftMonitor
 {
 public:
-    // Registers the two names in the workspace, which must outlive this object.
+    // Registers the three names in the workspace, which must outlive this object.
     AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace);
 
     // Fills in the row's pose, its age, and the mission. For one thread: the manager's.
     void Show(FleetRow &row);
+    // The targets that it has found, as it said last. For the same thread.
+    std::vector<Uav::Finding> Findings();
     // Any thread.
     PoseCount Count() const;
 
@@ -43,6 +46,7 @@ private:
     Rabit::RabitScopedConnection _onMission;
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::MissionState> _mission = std::make_shared<Uav::MissionState>();
+    std::shared_ptr<Uav::Findings> _findings = std::make_shared<Uav::Findings>();
 };
 
 }  // namespace Ground

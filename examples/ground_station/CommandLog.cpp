@@ -1,38 +1,140 @@
 #include "CommandLog.h"
 
+#include <utility>
+
 namespace Ground
 {
-
-std::uint32_t CommandLog::Sent(const std::string &node, double nowS)
+namespace
 {
-    ++_tallies[node].Sent;
-    _commands.push_back({node, nowS});
-    return ++_lastId;
+// How far a command is: what comes later has the higher number, and the last word has the highest.
+int Rank(CommandProgress progress)
+{
+    switch (progress)
+    {
+        case CommandProgress::PROGRESS_SENT:
+            return 0;
+        case CommandProgress::PROGRESS_DELIVERED:
+        case CommandProgress::PROGRESS_IN_DOUBT:
+            return 1;
+        case CommandProgress::PROGRESS_ACCEPTED:
+            return 2;
+        case CommandProgress::PROGRESS_DONE:
+        case CommandProgress::PROGRESS_DECLINED:
+        case CommandProgress::PROGRESS_REPLACED:
+        case CommandProgress::PROGRESS_EXPIRED:
+        case CommandProgress::PROGRESS_REFUSED:
+            return 3;
+    }
+    return 3;
 }
 
-CommandLog::Answer CommandLog::Acknowledged(std::uint32_t id, const std::string &node, bool obeyed)
+CommandProgress ProgressOf(Uav::CommandStage stage)
 {
-    if (id == 0 || id > _lastId)
+    switch (stage)
+    {
+        case Uav::CommandStage::COMMAND_ACCEPTED:
+            return CommandProgress::PROGRESS_ACCEPTED;
+        case Uav::CommandStage::COMMAND_DECLINED:
+            return CommandProgress::PROGRESS_DECLINED;
+        case Uav::CommandStage::COMMAND_DONE:
+            return CommandProgress::PROGRESS_DONE;
+        case Uav::CommandStage::COMMAND_REPLACED:
+            return CommandProgress::PROGRESS_REPLACED;
+    }
+    return CommandProgress::PROGRESS_DECLINED;
+}
+
+CommandProgress ProgressOf(Rabit::QueueOutcome outcome)
+{
+    switch (outcome)
+    {
+        case Rabit::QueueOutcome::Pending:
+            return CommandProgress::PROGRESS_SENT;
+        case Rabit::QueueOutcome::Delivered:
+            return CommandProgress::PROGRESS_DELIVERED;
+        case Rabit::QueueOutcome::Expired:
+            return CommandProgress::PROGRESS_EXPIRED;
+        case Rabit::QueueOutcome::InDoubt:
+            return CommandProgress::PROGRESS_IN_DOUBT;
+        case Rabit::QueueOutcome::Refused:
+            return CommandProgress::PROGRESS_REFUSED;
+    }
+    return CommandProgress::PROGRESS_REFUSED;
+}
+
+// Goes on to that progress, unless the command is there or beyond.
+bool Advance(CommandStatus &command, CommandProgress progress, const std::string &reason, double nowS)
+{
+    if (Rank(progress) <= Rank(command.progress))
+        return false;
+    command.progress = progress;
+    command.reason = reason;
+    command.changed_s = nowS;
+    return true;
+}
+}  // namespace
+
+std::uint32_t CommandLog::Sent(CommandStatus command, double nowS)
+{
+    ++_tallies[command.node].Sent;
+    return Append(std::move(command), CommandProgress::PROGRESS_SENT, nowS).id;
+}
+
+void CommandLog::RefusedForGood(CommandStatus command, const std::string &reason, double nowS)
+{
+    ++_tallies[command.node].Refused;
+    Append(std::move(command), CommandProgress::PROGRESS_REFUSED, nowS).reason = reason;
+}
+
+CommandStatus &CommandLog::Append(CommandStatus command, CommandProgress progress, double nowS)
+{
+    command.id = NextId();
+    command.number = static_cast<std::uint32_t>(_commands.size() + 1);
+    command.progress = progress;
+    command.sent_s = command.changed_s = nowS;
+    _commands.push_back(std::move(command));
+    return _commands.back();
+}
+
+CommandStatus *CommandLog::Find(std::uint32_t id)
+{
+    const std::uint32_t index = id - _firstId;  // wraps around as the ids do
+    return index < _commands.size() ? &_commands[index] : nullptr;
+}
+
+void CommandLog::OnWay(std::uint32_t id, Rabit::QueueOutcome outcome, double nowS)
+{
+    const char *reason = outcome == Rabit::QueueOutcome::Refused ? "the aircraft does not take it" : "";
+    if (CommandStatus *command = Find(id))
+        Advance(*command, ProgressOf(outcome), reason, nowS);
+}
+
+CommandLog::Answer CommandLog::Answered(const Uav::CommandAck &answer, double nowS)
+{
+    CommandStatus *command = Find(answer.id);
+    if (command == nullptr || command->progress == CommandProgress::PROGRESS_REFUSED)
     {
         ++_unknown;
         return Answer::Unknown;
     }
-    Entry &command = _commands[id - 1];
-    if (command.Node != node)
+    if (command->node != answer.node)
     {
         ++_wrongNode;
         return Answer::WrongNode;
     }
-    if (command.Answered)
+    const bool first = Rank(command->progress) < Rank(CommandProgress::PROGRESS_ACCEPTED);
+    if (!Advance(*command, ProgressOf(answer.stage), answer.reason, nowS))
     {
         ++_repeated;
         return Answer::Repeated;
     }
-    command.Answered = true;
-    Tally &tally = _tallies[node];
-    ++tally.Acknowledged;
-    if (!obeyed)
-        ++tally.Declined;
+    if (first)
+    {
+        Tally &tally = _tallies[answer.node];
+        ++tally.Acknowledged;
+        if (answer.stage == Uav::CommandStage::COMMAND_DECLINED)
+            ++tally.Declined;
+    }
     return Answer::Counted;
 }
 
@@ -42,13 +144,12 @@ CommandLog::Tally CommandLog::Of(const std::string &node) const
     return found == _tallies.end() ? Tally{} : found->second;
 }
 
-std::vector<CommandLog::Command> CommandLog::Outstanding() const
+std::vector<CommandStatus> CommandLog::Outstanding() const
 {
-    std::vector<Command> outstanding;
-    for (std::size_t i = 0; i < _commands.size(); ++i)
-        if (!_commands[i].Answered)
-            outstanding.push_back(
-                {static_cast<std::uint32_t>(i + 1), _commands[i].Node, _commands[i].SentAtS});
+    std::vector<CommandStatus> outstanding;
+    for (const CommandStatus &command : _commands)
+        if (Rank(command.progress) < Rank(CommandProgress::PROGRESS_ACCEPTED))
+            outstanding.push_back(command);
     return outstanding;
 }
 

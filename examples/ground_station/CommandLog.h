@@ -1,5 +1,10 @@
 #pragma once
 
+#include "ground.idl.h"
+#include "uav.idl.h"
+
+#include <rabit/RabitQueueReceipt.h>
+
 #include <cstdint>
 #include <map>
 #include <string>
@@ -8,7 +13,8 @@
 namespace Ground
 {
 
-// Who was sent which command, and who has answered. Not thread-safe.
+// Who was sent which command, and what has become of it. Times are in seconds since the ground station's
+// start. Not thread-safe.
 class CommandLog
 {
 public:
@@ -19,48 +25,49 @@ public:
         std::uint64_t Declined = 0;      // those of the acknowledged that the aircraft would not obey
         std::uint64_t Refused = 0;       // attempts that were not accepted: nothing was sent
     };
-    struct Command
-    {
-        std::uint32_t Id = 0;
-        std::string Node;
-        double SentAtS = 0;
-    };
     enum class Answer
     {
         Counted,
-        Repeated,   // that command had its answer already
+        Repeated,   // that command had this answer already, or its last one
         WrongNode,  // another aircraft than the one it was meant for
-        Unknown     // no command of that number was sent
+        Unknown     // no command of that id was sent
     };
 
-    // The number for the next command, from 1. The same one until Sent is called.
-    std::uint32_t NextId() const { return _lastId + 1; }
-    // The command of NextId() was accepted for sending. Returns its number.
-    std::uint32_t Sent(const std::string &node, double nowS);
-    // A command for that node was refused.
+    // Commands get the ids from `firstId` on. Choose another one in each run: then a late answer to a command
+    // of an earlier run is not taken for one to a command of this run.
+    explicit CommandLog(std::uint32_t firstId = 1) : _firstId(firstId) {}
+
+    // The id for the next command. The same one until Sent or RefusedForGood is called.
+    std::uint32_t NextId() const { return _firstId + static_cast<std::uint32_t>(_commands.size()); }
+    // The command of NextId() was accepted for sending. Its id, number, progress and times are set here.
+    std::uint32_t Sent(CommandStatus command, double nowS);
+    // A command for that node was refused, and will be tried again.
     void Refused(const std::string &node) { ++_tallies[node].Refused; }
+    // The command of NextId() was refused, and will not be tried again.
+    void RefusedForGood(CommandStatus command, const std::string &reason, double nowS);
+    // What became of the command on the way to the aircraft. Pending changes nothing.
+    void OnWay(std::uint32_t id, Rabit::QueueOutcome outcome, double nowS);
     // An answer has come.
-    Answer Acknowledged(std::uint32_t id, const std::string &node, bool obeyed);
+    Answer Answered(const Uav::CommandAck &answer, double nowS);
 
     // Zero for a node that was never sent anything.
     Tally Of(const std::string &node) const;
-    // Commands that wait for their answer, oldest first.
-    std::vector<Command> Outstanding() const;
+    // All of them, oldest first.
+    const std::vector<CommandStatus> &Commands() const { return _commands; }
+    // Commands of which nobody knows what became: neither answered by the aircraft nor certain to have never
+    // arrived. Oldest first.
+    std::vector<CommandStatus> Outstanding() const;
     // Answers that were not Counted.
     std::uint64_t Repeated() const { return _repeated; }
     std::uint64_t WrongNode() const { return _wrongNode; }
     std::uint64_t Unknown() const { return _unknown; }
 
 private:
-    struct Entry
-    {
-        std::string Node;
-        double SentAtS = 0;
-        bool Answered = false;
-    };
+    CommandStatus &Append(CommandStatus command, CommandProgress progress, double nowS);
+    CommandStatus *Find(std::uint32_t id);
 
-    std::uint32_t _lastId = 0;
-    std::vector<Entry> _commands;  // command number i + 1 is element i
+    std::uint32_t _firstId;
+    std::vector<CommandStatus> _commands;
     std::map<std::string, Tally> _tallies;
     std::uint64_t _repeated = 0;
     std::uint64_t _wrongNode = 0;

@@ -11,26 +11,30 @@ namespace Ground
 {
 
 Commander::Commander(Settings settings, Rabit::RabitWorkspace &workspace)
-    : RabitManager("Commands", workspace), _settings(std::move(settings))
+    : RabitManager("Commands", workspace), _settings(std::move(settings)), _log(_settings.FirstId)
 {
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
+    AddPublishSubscribeMessage("SearchArea", _area);
     AddPublishSubscribeMessage("CommandTally", _tally);
+    AddPublishSubscribeMessage("CommandList", _list);
     SetWakeupTimeDelayMSec(static_cast<int>(WorkPeriod.count()));
 }
 
 void Commander::Startup()
 {
     _start = GetWorkspace().GetClock().Monotonic();
+    Take(_settings.Area);
 }
 
 void Commander::ExecuteUnitOfWork()
 {
     const std::chrono::nanoseconds elapsed = GetWorkspace().GetClock().Monotonic() - _start;
     _elapsedS = std::chrono::duration<double>(elapsed).count();
-    TakeAnswers();
+    FollowReceipts();
+    TakeMessages();
     if (!IsQuiet(elapsed))
-        SendCommands(elapsed);
-    PostTally();
+        CommandBySettings(elapsed);
+    PostIfChanged();
     EndIfDone(elapsed);
 }
 
@@ -40,64 +44,157 @@ void Commander::RequestEnd()
     WakeUpManagerEH();
 }
 
-void Commander::TakeAnswers()
+void Commander::TakeMessages()
 {
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
+    {
         if (const auto *answer = dynamic_cast<const Uav::CommandAck *>(message.get()))
-            _log.Acknowledged(answer->id, answer->node, answer->stage != Uav::CommandStage::COMMAND_DECLINED);
+            _log.Answered(*answer, _elapsedS);
+        else if (const auto *order = dynamic_cast<const Order *>(message.get()))
+            Obey(*order);
+        else if (const auto *area = dynamic_cast<const Uav::SearchArea *>(message.get()))
+            Take(*area);
+    }
 }
 
-void Commander::SendCommands(std::chrono::nanoseconds elapsed)
+void Commander::Obey(const Order &order)
+{
+    CommandStatus command;
+    command.node = order.node;
+    command.kind = order.kind;
+    command.latitude_deg = order.latitude_deg;
+    command.longitude_deg = order.longitude_deg;
+    if (!Send(command, order.altitude_m, order.speed_mps))
+        _log.RefusedForGood(command, "it is not known, or too much waits for it already", _elapsedS);
+}
+
+void Commander::Take(Uav::SearchArea area)
+{
+    area.number = _area->number + 1;
+    _area->CopyMessage(&area);
+    _area->PostMessage();
+}
+
+void Commander::CommandBySettings(std::chrono::nanoseconds elapsed)
 {
     _fleet->FetchMessage();
-    for (const auto &status : _fleet->nodes)
-    {
-        if (status.state != Rabit::Gateway::NodeState::UP)
-            continue;
-        Target &target = TargetOf(status.node);
-        if (!target.Pose->GetGlobalPublishSubscribeMessageRef())
-            continue;  // the name belongs to a message of another type, which the workspace has logged
-        target.Pose->FetchMessage();
-        if (!(target.Pose->GetAgeSeconds() <= PoseFreshS))
-            continue;  // no aircraft, or one that is not heard well
-        if (!target.Next)
-            target.Next = elapsed + FirstAfter();
-        if (elapsed >= *target.Next && Send(status.node, *target.Pose))
-            target.Next = elapsed + _settings.Period;
-    }
+    for (const Rabit::Gateway::NodeStatus &status : _fleet->nodes)
+        if (status.state == Rabit::Gateway::NodeState::UP)
+            CommandBySettings(status, elapsed);
 }
 
-Commander::Target &Commander::TargetOf(const std::string &node)
+void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std::chrono::nanoseconds elapsed)
 {
-    Target &target = _targets[node];
-    if (!target.Pose)
+    Aircraft &aircraft = AircraftOf(status.node);
+    if (!aircraft.Pose->GetGlobalPublishSubscribeMessageRef())
+        return;  // the name belongs to a message of another type, which the workspace has logged
+    aircraft.Pose->FetchMessage();
+    if (!(aircraft.Pose->GetAgeSeconds() <= PoseFreshS))
+        return;  // no aircraft, or one that is not heard well
+    if (!aircraft.First)
+        aircraft.First = aircraft.NextGoto = elapsed + FirstAfter();
+    if (elapsed < *aircraft.First)
+        return;
+
+    if (_settings.Searchers.contains(status.node) && aircraft.ToldToSearch != status.incarnation)
     {
-        target.Pose = std::make_shared<Uav::Pose>();
-        AddPublishSubscribeMessage(node + "/Pose", target.Pose);
+        CommandStatus command;
+        command.node = status.node;
+        command.kind = OrderKind::ORDER_SEARCH;
+        if (Send(command, 0, 0))
+            aircraft.ToldToSearch = status.incarnation;
+        else
+            _log.Refused(status.node);  // the gateway does not know that queue yet: try again soon
     }
-    return target;
+    if (_settings.Period && elapsed >= *aircraft.NextGoto && SendGoto(status.node, *aircraft.Pose))
+        aircraft.NextGoto = elapsed + *_settings.Period;
 }
 
-// Returns false if nothing was sent.
-bool Commander::Send(const std::string &node, const Uav::Pose &pose)
+bool Commander::SendGoto(const std::string &node, const Uav::Pose &pose)
 {
-    auto command = std::make_shared<Uav::Goto>(PlanGoto(pose, _log.NextId()));
-    command->reply_to = _settings.Node + "/Commands";
-    if (!AddMessageToQueue(node + "/MissionControl", command))
+    const Uav::Goto plan = PlanGoto(pose, _log.NextId());
+    CommandStatus command;
+    command.node = node;
+    command.kind = OrderKind::ORDER_GOTO;
+    command.latitude_deg = plan.latitude_deg;
+    command.longitude_deg = plan.longitude_deg;
+    if (Send(command, plan.altitude_m, plan.speed_mps))
+        return true;
+    _log.Refused(node);
+    return false;
+}
+
+Commander::Aircraft &Commander::AircraftOf(const std::string &node)
+{
+    Aircraft &aircraft = _aircraft[node];
+    if (!aircraft.Pose)
     {
-        _log.Refused(
-            node);  // the gateway does not know that queue yet, or too much waits for it: try again soon
+        aircraft.Pose = std::make_shared<Uav::Pose>();
+        AddPublishSubscribeMessage(node + "/Pose", aircraft.Pose);
+    }
+    return aircraft;
+}
+
+bool Commander::Send(const CommandStatus &command, double altitudeM, float speedMps)
+{
+    const std::uint32_t id = _log.NextId();
+    const std::string to = command.node + "/MissionControl";
+    const std::string replyTo = _settings.Node + "/Commands";
+    auto receipt = std::make_shared<Rabit::RabitQueueReceipt>();
+    WakeUpManagerOnOutcome(receipt);
+
+    const auto send = [&](auto message)
+    {
+        message->id = id;
+        message->reply_to = replyTo;
+        return AddMessageToQueue(to, message, receipt);
+    };
+    bool sent = false;
+    switch (command.kind)
+    {
+        case OrderKind::ORDER_GOTO:
+        {
+            auto message = std::make_shared<Uav::Goto>();
+            message->latitude_deg = command.latitude_deg;
+            message->longitude_deg = command.longitude_deg;
+            message->altitude_m = altitudeM;
+            message->speed_mps = speedMps;
+            sent = send(message);
+            break;
+        }
+        case OrderKind::ORDER_HOME:
+        {
+            auto message = std::make_shared<Uav::GoHome>();
+            message->reason = "called by " + _settings.Node;
+            sent = send(message);
+            break;
+        }
+        case OrderKind::ORDER_SEARCH:
+            sent = send(std::make_shared<Uav::Search>());
+            break;
+    }
+    if (!sent)
         return false;
-    }
-    _log.Sent(node, _elapsedS);
+    _log.Sent(command, _elapsedS);
+    _onWay[id] = std::move(receipt);
     return true;
 }
 
-void Commander::PostTally()
+void Commander::FollowReceipts()
+{
+    for (auto entry = _onWay.begin(); entry != _onWay.end();)
+    {
+        const Rabit::QueueOutcome outcome = entry->second->Outcome();
+        _log.OnWay(entry->first, outcome, _elapsedS);
+        entry = outcome == Rabit::QueueOutcome::Pending ? std::next(entry) : _onWay.erase(entry);
+    }
+}
+
+void Commander::PostIfChanged()
 {
     std::vector<NodeCommands> nodes;
-    for (const auto &[node, target] : _targets)
+    for (const auto &[node, aircraft] : _aircraft)
     {
         const CommandLog::Tally tally = _log.Of(node);
         NodeCommands commands;
@@ -106,10 +203,20 @@ void Commander::PostTally()
         commands.acknowledged = tally.Acknowledged;
         nodes.push_back(commands);
     }
-    if (nodes == _tally->nodes)
-        return;
-    _tally->nodes = std::move(nodes);
-    _tally->PostMessage();
+    if (nodes != _tally->nodes)
+    {
+        _tally->nodes = std::move(nodes);
+        _tally->PostMessage();
+    }
+
+    const std::vector<CommandStatus> &all = _log.Commands();
+    const std::size_t listed = std::min(all.size(), MaxListed);
+    std::vector<CommandStatus> newest(all.end() - static_cast<std::ptrdiff_t>(listed), all.end());
+    if (newest != _list->items)
+    {
+        _list->items = std::move(newest);
+        _list->PostMessage();
+    }
 }
 
 bool Commander::IsQuiet(std::chrono::nanoseconds elapsed) const

@@ -9,19 +9,26 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace Ground
 {
 
-// Sends every live aircraft a Goto again and again, and books the answers: the manager `Commands`.
+// Commands the aircraft, and follows each command to its end: the manager `Commands`.
 //
-// Queue:   Commands takes Uav::CommandAck, from whichever aircraft has one.
-// Sends:   Uav::Goto to the queue MissionControl of each aircraft that is UP and whose pose is known.
-// Posts:   CommandTally (Ground::CommandTally), when it changes.
+// Queue:   Commands takes Ground::Order, what a person wants of one aircraft; Uav::SearchArea, where a person
+//          wants the fleet to search; and Uav::CommandAck, from whichever aircraft has one.
+// Sends:   Uav::Goto, Uav::GoHome and Uav::Search to the queue MissionControl of an aircraft: those ordered,
+//          and by itself what its settings say.
+// Posts:   SearchArea (Uav::SearchArea), at the start and when it changes; CommandList (Ground::CommandList)
+// and
+//          CommandTally (Ground::CommandTally), when they change.
 // Fetches: Gateway/Fleet, and <node>/Pose of each node.
 //
 // It also ends the run, when its time is over or when it is asked to: it sends nothing more, waits for the
@@ -33,8 +40,14 @@ public:
     {
         // Name of this node: answers are to come to <node>/Commands.
         std::string Node = "ground";
-        // Between two commands to one aircraft.
-        std::chrono::milliseconds Period{15000};
+        // The id of the first command, see CommandLog.
+        std::uint32_t FirstId = 1;
+        // Where the fleet is to search, until somebody says otherwise. Its number is set here.
+        Uav::SearchArea Area{};
+        // Aircraft that are told to search, once in each of their lives, as soon as they are heard well.
+        std::set<std::string> Searchers{};
+        // Every aircraft gets a Goto this often; none: never.
+        std::optional<std::chrono::milliseconds> Period{};
         // From the first pose of an aircraft to the first command (but at most an eighth of the duration): so
         // long it is seen flying by itself.
         std::chrono::milliseconds FirstAfter{2000};
@@ -44,6 +57,8 @@ public:
         // answers come in time. Those that have not are waited for as long again.
         std::chrono::milliseconds Quiet{3000};
     };
+    // CommandList holds so many at most, the newest.
+    static constexpr std::size_t MaxListed = 200;
 
     explicit Commander(Settings settings,
                        Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
@@ -60,21 +75,30 @@ public:
 
 private:
     static constexpr std::chrono::milliseconds WorkPeriod{100};
-    // An aircraft is commanded only while its pose is known this well.
+    // An aircraft is commanded by itself only while its pose is known this well.
     static constexpr double PoseFreshS = 1.0;
 
-    // A node that may be commanded.
-    struct Target
+    // An aircraft that may be commanded.
+    struct Aircraft
     {
         std::shared_ptr<Uav::Pose> Pose;
-        std::optional<std::chrono::nanoseconds> Next;  // when the next command is due; none: no pose has come
+        std::optional<std::chrono::nanoseconds>
+            First;  // when the first command is due; none: no pose has come
+        std::optional<std::chrono::nanoseconds> NextGoto;  // when the next Goto of the period is due
+        std::uint64_t ToldToSearch = 0;                    // the life of it that was told
     };
 
-    void TakeAnswers();
-    void SendCommands(std::chrono::nanoseconds elapsed);
-    Target &TargetOf(const std::string &node);
-    bool Send(const std::string &node, const Uav::Pose &pose);
-    void PostTally();
+    void TakeMessages();
+    void Obey(const Order &order);
+    void Take(Uav::SearchArea area);
+    void CommandBySettings(std::chrono::nanoseconds elapsed);
+    void CommandBySettings(const Rabit::Gateway::NodeStatus &status, std::chrono::nanoseconds elapsed);
+    void FollowReceipts();
+    Aircraft &AircraftOf(const std::string &node);
+    // Hands the command of that number to the gateway. False: it was refused, and nothing was sent.
+    bool Send(const CommandStatus &command, double altitudeM, float speedMps);
+    bool SendGoto(const std::string &node, const Uav::Pose &pose);
+    void PostIfChanged();
     void EndIfDone(std::chrono::nanoseconds elapsed);
     bool IsQuiet(std::chrono::nanoseconds elapsed) const;
     std::chrono::nanoseconds FirstAfter() const;
@@ -85,9 +109,12 @@ private:
     std::atomic<bool> _endRequested{false};
     std::optional<std::chrono::nanoseconds> _waitingSince;  // for the last answers
     CommandLog _log;
-    std::map<std::string, Target> _targets;
+    std::map<std::uint32_t, std::shared_ptr<Rabit::RabitQueueReceipt>> _onWay;  // by the command's number
+    std::map<std::string, Aircraft> _aircraft;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
+    std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
+    std::shared_ptr<CommandList> _list = std::make_shared<CommandList>();
 };
 
 }  // namespace Ground

@@ -85,6 +85,8 @@ void FleetView::Look()
         const PoseCount count = aircraft.Monitor->Count();
         seen.Published = count.Published();
         seen.Heard = count.Heard();
+        for (const Uav::Finding &finding : aircraft.Monitor->Findings())
+            seen.Targets.push_back({node, finding});
         _seen.push_back(std::move(seen));
     }
 }
@@ -118,14 +120,37 @@ void FleetView::Print()
         std::chrono::duration<double>(GetWorkspace().GetClock().Monotonic() - _start).count();
     if (_output.IsTerminal)
     {
-        _output.Stream << _screen.Redraw(FleetTableLines(rows, elapsedS), TerminalSize());
+        std::vector<TableLine> lines = FleetTableLines(rows, elapsedS);
+        for (const Seen &seen : _seen)
+            for (const FoundTarget &target : seen.Targets)
+                lines.push_back({TargetLine(target)});
+        _output.Stream << _screen.Redraw(lines, TerminalSize());
     }
     else
     {
         for (const std::string &line : FleetLogLines(rows, elapsedS))
             _output.Stream << line << '\n';
+        for (const std::string &line : TargetLinesThatChanged())
+            _output.Stream << line << '\n';
     }
     _output.Stream.flush();
+}
+
+std::vector<std::string> FleetView::TargetLinesThatChanged()
+{
+    std::vector<std::string> lines;
+    for (const Seen &seen : _seen)
+    {
+        for (const FoundTarget &target : seen.Targets)
+        {
+            const auto [shown, isNew] = _shownStages.try_emplace(NameOf(target), target.Finding.stage);
+            if (!isNew && shown->second == target.Finding.stage)
+                continue;
+            shown->second = target.Finding.stage;
+            lines.push_back("         " + TargetLine(target));
+        }
+    }
+    return lines;
 }
 
 }  // namespace Ground

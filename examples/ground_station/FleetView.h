@@ -2,6 +2,7 @@
 
 #include "AircraftMonitor.h"
 #include "FleetTable.h"
+#include "TargetLines.h"
 #include "TerminalScreen.h"
 #include "gateway.idl.h"
 #include "ground.idl.h"
@@ -23,8 +24,8 @@ namespace Ground
 // Shows the fleet on the standard output: the manager `FleetView`. On a terminal it redraws a table in place,
 // else it writes a line a second for each aircraft.
 //
-// Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose and <node>/MissionState of each of
-// them; and CommandTally of the Commander.
+// Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose, <node>/MissionState and
+// <node>/Findings of each of them; and CommandTally of the Commander.
 //
 // A node counts as an aircraft once a pose or mission state of it has come, or if it is expected.
 class FleetView : public Rabit::RabitManager
@@ -49,6 +50,7 @@ public:
         FleetRow Row;
         std::uint64_t Published = 0;
         std::uint64_t Heard = 0;
+        std::vector<FoundTarget> Targets;
     };
 
     FleetView(const std::vector<std::string> &expected, Output output,
@@ -79,11 +81,13 @@ private:
     void FollowNewNodes();
     RowState StateOf(const std::string &node) const;
     void Print();
+    std::vector<std::string> TargetLinesThatChanged();
 
     const Output _output;
     std::chrono::nanoseconds _start{0};
     std::map<std::string, Aircraft, NaturalOrder> _aircraft;
     std::vector<Seen> _seen;
+    std::map<std::string, Uav::TargetStage> _shownStages;  // by the name of the target
     TerminalScreen _screen;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();

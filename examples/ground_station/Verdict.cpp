@@ -1,5 +1,6 @@
 #include "Verdict.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -41,7 +42,7 @@ std::string SummaryLine(const AircraftResult &result)
     return line;
 }
 
-void JudgeAircraft(const AircraftResult &result, std::vector<std::string> &failures)
+void JudgeAircraft(const AircraftResult &result, const Demands &demands, std::vector<std::string> &failures)
 {
     if (result.State != RowState::Up)
         failures.push_back(result.Node + " was " + ToText(result.State) + " at the end");
@@ -50,31 +51,45 @@ void JudgeAircraft(const AircraftResult &result, std::vector<std::string> &failu
     else if (!HeardEnough(result))
         failures.push_back(result.Node + ": only " + Percent(result) + " of its poses were heard, not " +
                            OneDecimal(100 * RequiredShare) + " %");
-    if (result.Commands.Sent == 0)
+    if (result.Commands.Sent == 0 && demands.Commanded.contains(result.Node))
         failures.push_back(result.Node + ": no command was sent to it");
+}
+
+bool AnyTracked(const std::vector<AircraftResult> &aircraft)
+{
+    return std::any_of(aircraft.begin(), aircraft.end(),
+                       [](const AircraftResult &result)
+                       { return std::any_of(result.Targets.begin(), result.Targets.end(), IsTracked); });
 }
 }  // namespace
 
-Verdict Judge(const std::vector<AircraftResult> &aircraft, const CommandLog &commands, double elapsedS)
+Verdict Judge(const std::vector<AircraftResult> &aircraft, const CommandLog &commands, const Demands &demands,
+              double elapsedS)
 {
     Verdict verdict;
     std::vector<std::string> &failures = verdict.Failures;
     if (aircraft.empty())
         failures.push_back("no aircraft was heard");
     for (const AircraftResult &result : aircraft)
-        JudgeAircraft(result, failures);
-    for (const CommandLog::Command &command : commands.Outstanding())
-        failures.push_back("command " + std::to_string(command.Id) + " to " + command.Node + ", sent at " +
-                           OneDecimal(command.SentAtS) + " s, was not acknowledged");
+        JudgeAircraft(result, demands, failures);
+    for (const CommandStatus &command : commands.Outstanding())
+        failures.push_back("command " + std::to_string(command.number) + " to " + command.node +
+                           ", sent at " + OneDecimal(command.sent_s) + " s, was not acknowledged");
     if (commands.WrongNode() > 0)
         failures.push_back(std::to_string(commands.WrongNode()) +
                            " acknowledgements came from the wrong aircraft");
     if (commands.Repeated() > 0)
         failures.push_back(std::to_string(commands.Repeated()) + " acknowledgements came more than once");
 
+    if (demands.TrackedTarget && !AnyTracked(aircraft))
+        failures.push_back("no target was found by one aircraft, validated by another, and followed");
+
     verdict.Summary.push_back("Summary after " + OneDecimal(elapsedS) + " s");
     for (const AircraftResult &result : aircraft)
         verdict.Summary.push_back(SummaryLine(result));
+    for (const AircraftResult &result : aircraft)
+        for (const FoundTarget &target : result.Targets)
+            verdict.Summary.push_back("  " + TargetLine(target));
     if (commands.Unknown() > 0)
         verdict.Summary.push_back("  " + std::to_string(commands.Unknown()) +
                                   " acknowledgements of commands that this ground station did not send");

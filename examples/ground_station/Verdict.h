@@ -2,8 +2,10 @@
 
 #include "CommandLog.h"
 #include "FleetTable.h"
+#include "TargetLines.h"
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,10 +20,19 @@ struct AircraftResult
     std::uint64_t Published = 0;         // poses, as PoseCount says
     std::uint64_t Heard = 0;
     CommandLog::Tally Commands;
+    std::vector<FoundTarget> Targets;
+};
+
+// What a run must have shown beside what every run must.
+struct Demands
+{
+    std::set<std::string> Commanded{};  // these aircraft must have been sent a command
+    bool TrackedTarget = false;         // a target found by one aircraft, validated by another, and followed
 };
 
 // A run passes if every aircraft is UP at its end, at least 90 % of the poses that each published were heard,
-// and every command was acknowledged once by the aircraft it was meant for.
+// every command was acknowledged once by the aircraft it was meant for or certainly never arrived, and the
+// demands are met.
 struct Verdict
 {
     std::vector<std::string> Failures;  // one line for each thing that is wrong
@@ -32,6 +43,7 @@ struct Verdict
 
 inline constexpr double RequiredShare = 0.9;
 
-Verdict Judge(const std::vector<AircraftResult> &aircraft, const CommandLog &commands, double elapsedS);
+Verdict Judge(const std::vector<AircraftResult> &aircraft, const CommandLog &commands, const Demands &demands,
+              double elapsedS);
 
 }  // namespace Ground

@@ -17,6 +17,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -37,7 +38,10 @@ struct Options
     int Domain = -1;
     std::string Transport;
     int Seconds = 0;
-    double CommandPeriodS = 15;
+    double CommandPeriodS = 0;
+    std::vector<double> SearchArea{47.3977, 8.5456, 400, 600, 510};
+    std::vector<std::string> Searchers;
+    bool ExpectTarget = false;
     std::vector<std::string> Expected;
     bool Check = false;
 };
@@ -51,8 +55,19 @@ void Describe(CLI::App &app, Options &options)
     app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
     app.add_option("--seconds", options.Seconds, "End after so many seconds (default: run until Ctrl-C)")
         ->check(CLI::Range(1, 86400));
-    app.add_option("--command-period", options.CommandPeriodS, "Seconds between two commands to one aircraft")
+    app.add_option(
+           "--command-period", options.CommandPeriodS,
+           "Send every aircraft a command to fly somewhere near, this often in seconds (default: never)")
         ->check(CLI::Range(0.1, 86400.0));
+    app.add_option("--search", options.Searchers,
+                   "Name of an aircraft that is told to search as soon as it is heard; may be repeated");
+    app.add_option(
+           "--search-area", options.SearchArea,
+           "Where to search at first: latitude and longitude of the middle, lengths in metres to the north "
+           "and to the east, altitude in metres above mean sea level")
+        ->expected(5);
+    app.add_flag("--expect-target", options.ExpectTarget,
+                 "Fail unless a target was found by one aircraft, validated by another, and followed");
     app.add_option("--expect", options.Expected, "Name of an aircraft that must be there; may be repeated");
     app.add_flag("--check", options.Check, "Check the options and files, start nothing");
 }
@@ -68,11 +83,36 @@ Rabit::GatewayConfig LoadConfig(const Options &options)
     return config;
 }
 
+Uav::SearchArea AreaOf(const Options &options)
+{
+    Uav::SearchArea area;
+    area.latitude_deg = options.SearchArea[0];
+    area.longitude_deg = options.SearchArea[1];
+    area.north_m = static_cast<float>(options.SearchArea[2]);
+    area.east_m = static_cast<float>(options.SearchArea[3]);
+    area.altitude_m = static_cast<float>(options.SearchArea[4]);
+    area.speed_mps = 16;
+    area.lane_m = 60;
+    return area;
+}
+
+// Another one in each second of four days, so that the answers to an earlier run are told apart.
+std::uint32_t FirstCommandId()
+{
+    const auto seconds =
+        std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
+    return 1 + static_cast<std::uint32_t>(seconds.count() % 400'000) * 10'000;
+}
+
 Ground::Commander::Settings CommanderSettings(const Options &options, const std::string &node)
 {
     Ground::Commander::Settings settings;
     settings.Node = node;
-    settings.Period = std::chrono::milliseconds(static_cast<int>(options.CommandPeriodS * 1000));
+    settings.FirstId = FirstCommandId();
+    settings.Area = AreaOf(options);
+    settings.Searchers.insert(options.Searchers.begin(), options.Searchers.end());
+    if (options.CommandPeriodS > 0)
+        settings.Period = std::chrono::milliseconds(static_cast<int>(options.CommandPeriodS * 1000));
     if (options.Seconds > 0)
         settings.Duration = std::chrono::seconds(options.Seconds);
     return settings;
@@ -110,13 +150,14 @@ private:
     std::thread _thread;
 };
 
-int Summarize(const Ground::FleetView &view, const Ground::Commander &commander)
+int Summarize(const Ground::FleetView &view, const Ground::Commander &commander,
+              const Ground::Demands &demands)
 {
     std::vector<Ground::AircraftResult> results;
     for (const Ground::FleetView::Seen &seen : view.Result())
-        results.push_back(
-            {seen.Row.Node, seen.Row.State, seen.Published, seen.Heard, commander.Log().Of(seen.Row.Node)});
-    const Ground::Verdict verdict = Ground::Judge(results, commander.Log(), commander.ElapsedS());
+        results.push_back({seen.Row.Node, seen.Row.State, seen.Published, seen.Heard,
+                           commander.Log().Of(seen.Row.Node), seen.Targets});
+    const Ground::Verdict verdict = Ground::Judge(results, commander.Log(), demands, commander.ElapsedS());
     for (const std::string &line : verdict.Summary)
         std::cout << line << '\n';
     std::cout.flush();
@@ -143,7 +184,10 @@ int Watch(const Options &options)
         const EndOnSignal endOnSignal(theCommander);
         reactor.Run();
     }
-    return Summarize(theView, theCommander);
+    Ground::Demands demands;
+    demands.Commanded.insert(options.Searchers.begin(), options.Searchers.end());
+    demands.TrackedTarget = options.ExpectTarget;
+    return Summarize(theView, theCommander, demands);
 }
 }  // namespace
 

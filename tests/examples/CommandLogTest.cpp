@@ -6,13 +6,34 @@ namespace
 {
 using Answer = Ground::CommandLog::Answer;
 using Ground::CommandLog;
+using Ground::CommandProgress;
+using Rabit::QueueOutcome;
+using Uav::CommandStage;
+
+Ground::CommandStatus To(const std::string &node)
+{
+    Ground::CommandStatus command;
+    command.node = node;
+    return command;
+}
+
+Uav::CommandAck Ack(std::uint32_t id, const std::string &node,
+                    CommandStage stage = CommandStage::COMMAND_ACCEPTED, const std::string &reason = "")
+{
+    Uav::CommandAck ack;
+    ack.id = id;
+    ack.node = node;
+    ack.stage = stage;
+    ack.reason = reason;
+    return ack;
+}
 
 TEST(CommandLog, NumbersCommandsFromOne)
 {
     CommandLog log;
     EXPECT_EQ(log.NextId(), 1u);
-    EXPECT_EQ(log.Sent("uav1", 0), 1u);
-    EXPECT_EQ(log.Sent("uav2", 0), 2u);
+    EXPECT_EQ(log.Sent(To("uav1"), 0), 1u);
+    EXPECT_EQ(log.Sent(To("uav2"), 0), 2u);
     EXPECT_EQ(log.NextId(), 3u);
 }
 
@@ -29,25 +50,25 @@ TEST(CommandLog, DoesNotUseUpANumberForARefusedCommand)
 TEST(CommandLog, ListsWhatWaitsForItsAnswer)
 {
     CommandLog log;
-    log.Sent("uav1", 1.5);
-    log.Sent("uav2", 2.5);
-    log.Sent("uav1", 3.5);
-    log.Acknowledged(2, "uav2", true);
+    log.Sent(To("uav1"), 1.5);
+    log.Sent(To("uav2"), 2.5);
+    log.Sent(To("uav1"), 3.5);
+    log.Answered(Ack(2, "uav2"), 5);
     const auto outstanding = log.Outstanding();
     ASSERT_EQ(outstanding.size(), 2u);
-    EXPECT_EQ(outstanding[0].Id, 1u);
-    EXPECT_EQ(outstanding[0].Node, "uav1");
-    EXPECT_EQ(outstanding[0].SentAtS, 1.5);
-    EXPECT_EQ(outstanding[1].Id, 3u);
+    EXPECT_EQ(outstanding[0].id, 1u);
+    EXPECT_EQ(outstanding[0].node, "uav1");
+    EXPECT_EQ(outstanding[0].sent_s, 1.5);
+    EXPECT_EQ(outstanding[1].id, 3u);
 }
 
 TEST(CommandLog, CountsAnAnswerForItsAircraft)
 {
     CommandLog log;
-    log.Sent("uav1", 0);
-    log.Sent("uav1", 0);
-    EXPECT_EQ(log.Acknowledged(1, "uav1", true), Answer::Counted);
-    EXPECT_EQ(log.Acknowledged(2, "uav1", false), Answer::Counted);
+    log.Sent(To("uav1"), 0);
+    log.Sent(To("uav1"), 0);
+    EXPECT_EQ(log.Answered(Ack(1, "uav1"), 5), Answer::Counted);
+    EXPECT_EQ(log.Answered(Ack(2, "uav1", CommandStage::COMMAND_DECLINED), 5), Answer::Counted);
     EXPECT_EQ(log.Of("uav1").Sent, 2u);
     EXPECT_EQ(log.Of("uav1").Acknowledged, 2u);
     EXPECT_EQ(log.Of("uav1").Declined, 1u);
@@ -56,8 +77,8 @@ TEST(CommandLog, CountsAnAnswerForItsAircraft)
 TEST(CommandLog, DoesNotTakeTheAnswerOfAnotherAircraft)
 {
     CommandLog log;
-    log.Sent("uav1", 0);
-    EXPECT_EQ(log.Acknowledged(1, "uav2", true), Answer::WrongNode);
+    log.Sent(To("uav1"), 0);
+    EXPECT_EQ(log.Answered(Ack(1, "uav2"), 5), Answer::WrongNode);
     EXPECT_EQ(log.WrongNode(), 1u);
     EXPECT_EQ(log.Of("uav1").Acknowledged, 0u);
     EXPECT_EQ(log.Of("uav2").Acknowledged, 0u);
@@ -67,9 +88,9 @@ TEST(CommandLog, DoesNotTakeTheAnswerOfAnotherAircraft)
 TEST(CommandLog, CountsARepeatedAnswerOnce)
 {
     CommandLog log;
-    log.Sent("uav1", 0);
-    log.Acknowledged(1, "uav1", true);
-    EXPECT_EQ(log.Acknowledged(1, "uav1", true), Answer::Repeated);
+    log.Sent(To("uav1"), 0);
+    log.Answered(Ack(1, "uav1"), 5);
+    EXPECT_EQ(log.Answered(Ack(1, "uav1"), 5), Answer::Repeated);
     EXPECT_EQ(log.Repeated(), 1u);
     EXPECT_EQ(log.Of("uav1").Acknowledged, 1u);
 }
@@ -77,10 +98,93 @@ TEST(CommandLog, CountsARepeatedAnswerOnce)
 TEST(CommandLog, KnowsAnswersToCommandsThatItNeverSent)
 {
     CommandLog log;
-    log.Sent("uav1", 0);
-    EXPECT_EQ(log.Acknowledged(0, "uav1", true), Answer::Unknown);
-    EXPECT_EQ(log.Acknowledged(2, "uav1", true), Answer::Unknown);
+    log.Sent(To("uav1"), 0);
+    EXPECT_EQ(log.Answered(Ack(0, "uav1"), 5), Answer::Unknown);
+    EXPECT_EQ(log.Answered(Ack(2, "uav1"), 5), Answer::Unknown);
     EXPECT_EQ(log.Unknown(), 2u);
+}
+
+TEST(CommandLog, NumbersCommandsFromTheFirstIdThatItWasGiven)
+{
+    CommandLog log(4'000'000'001);
+    EXPECT_EQ(log.Sent(To("uav1"), 0), 4'000'000'001u);
+    EXPECT_EQ(log.Commands()[0].number, 1u);
+    EXPECT_EQ(log.Answered(Ack(4'000'000'001, "uav1"), 1), Answer::Counted);
+}
+
+TEST(CommandLog, DoesNotTakeAnAnswerToACommandOfAnotherRun)
+{
+    CommandLog log(20001);
+    log.Sent(To("uav1"), 0);
+    EXPECT_EQ(log.Answered(Ack(10001, "uav1"), 1), Answer::Unknown);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_SENT);
+}
+
+TEST(CommandLog, FollowsACommandToItsEnd)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_SENT);
+    log.OnWay(1, QueueOutcome::Pending, 2);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_SENT);
+    log.OnWay(1, QueueOutcome::Delivered, 3);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_DELIVERED);
+    EXPECT_EQ(log.Commands()[0].changed_s, 3);
+    log.Answered(Ack(1, "uav1"), 4);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_ACCEPTED);
+    log.Answered(Ack(1, "uav1", CommandStage::COMMAND_DONE), 5);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_DONE);
+    EXPECT_EQ(log.Of("uav1").Acknowledged, 1u);
+}
+
+TEST(CommandLog, DoesNotGoBackWhenTheReceiptComesAfterTheAnswer)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.Answered(Ack(1, "uav1"), 2);
+    log.OnWay(1, QueueOutcome::Delivered, 3);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_ACCEPTED);
+}
+
+TEST(CommandLog, KeepsTheReasonOfTheLastWord)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.Answered(Ack(1, "uav1"), 2);
+    log.Answered(Ack(1, "uav1", CommandStage::COMMAND_REPLACED, "battery is low"), 3);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_REPLACED);
+    EXPECT_EQ(log.Commands()[0].reason, "battery is low");
+}
+
+TEST(CommandLog, AnExpiredCommandIsAccountedFor)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.OnWay(1, QueueOutcome::Expired, 12);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_EXPIRED);
+    EXPECT_TRUE(log.Outstanding().empty());
+}
+
+TEST(CommandLog, ACommandInDoubtIsOutstandingUntilTheAircraftAnswers)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.OnWay(1, QueueOutcome::InDoubt, 2);
+    EXPECT_EQ(log.Outstanding().size(), 1u);
+    log.Answered(Ack(1, "uav1"), 3);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_ACCEPTED);
+    EXPECT_TRUE(log.Outstanding().empty());
+}
+
+TEST(CommandLog, ShowsACommandThatWasNeverSent)
+{
+    CommandLog log;
+    log.RefusedForGood(To("uav9"), "it is not known", 2);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_REFUSED);
+    EXPECT_EQ(log.Commands()[0].reason, "it is not known");
+    EXPECT_EQ(log.NextId(), 2u);
+    EXPECT_EQ(log.Of("uav9").Sent, 0u);
+    EXPECT_TRUE(log.Outstanding().empty());
 }
 
 }  // namespace

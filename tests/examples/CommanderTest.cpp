@@ -23,14 +23,21 @@ class FakeGateway : public Rabit::QueueForwarder
 public:
     bool Accepts = true;
     std::vector<std::pair<std::string, Uav::Goto>> Sent;
+    std::vector<std::pair<std::string, std::shared_ptr<Rabit::RabitMessage>>> All;
+    std::vector<std::shared_ptr<Rabit::RabitQueueReceipt>> Receipts;
 
     bool Handles(const std::string &) const override { return true; }
     bool Forward(const std::string &queue, const std::shared_ptr<Rabit::RabitMessage> &message,
-                 const std::shared_ptr<Rabit::RabitQueueReceipt> &) override
+                 const std::shared_ptr<Rabit::RabitQueueReceipt> &receipt) override
     {
-        if (Accepts)
-            Sent.emplace_back(queue, dynamic_cast<const Uav::Goto &>(*message));
-        return Accepts;
+        if (!Accepts)
+            return false;
+        All.emplace_back(queue, message);
+        if (const auto *command = dynamic_cast<const Uav::Goto *>(message.get()))
+            Sent.emplace_back(queue, *command);
+        receipt->Begin();
+        Receipts.push_back(receipt);
+        return true;
     }
 };
 
@@ -62,11 +69,12 @@ protected:
         _reactor.AddManager(std::move(commander));
         _reactor.Start();
     }
-    void SetState(NodeState state)
+    void SetState(NodeState state, std::uint64_t incarnation = 1)
     {
         Rabit::Gateway::NodeStatus status;
         status.node = "uav1";
         status.state = state;
+        status.incarnation = incarnation;
         _fleet->nodes = {status};
         _fleet->PostMessage();
     }
@@ -105,7 +113,7 @@ TEST_F(Commander, SendsACommandEachPeriodToTheQueueOfTheAircraft)
 
 TEST_F(Commander, LetsAnAircraftFlyByItselfBeforeTheFirstCommand)
 {
-    Start({}, 2s);
+    Start({.Period = 15s}, 2s);
     Run(1900ms);
     EXPECT_TRUE(_gateway->Sent.empty());
     Run(200ms);
@@ -114,7 +122,7 @@ TEST_F(Commander, LetsAnAircraftFlyByItselfBeforeTheFirstCommand)
 
 TEST_F(Commander, WaitsLessForTheFirstCommandInAShortRun)
 {
-    Start({.Duration = 4s}, 2s);
+    Start({.Period = 15s, .Duration = 4s}, 2s);
     Run(1s);
     EXPECT_EQ(_gateway->Sent.size(), 1u);
 }
@@ -122,7 +130,7 @@ TEST_F(Commander, WaitsLessForTheFirstCommandInAShortRun)
 TEST_F(Commander, SendsNothingToAnAircraftThatIsNotUp)
 {
     SetState(NodeState::STALE);
-    Start({});
+    Start({.Period = 15s});
     Run(2s);
     SetState(NodeState::LOST);
     Run(2s);
@@ -131,7 +139,7 @@ TEST_F(Commander, SendsNothingToAnAircraftThatIsNotUp)
 
 TEST_F(Commander, SendsNothingToANodeWithoutAPose)
 {
-    Start({});
+    Start({.Period = 15s});
     _reactor.RunFor(*_clock, 5s);
     EXPECT_TRUE(_gateway->Sent.empty());
 }
@@ -140,7 +148,7 @@ TEST_F(Commander, SendsNothingOnTheStrengthOfAnOldPose)
 {
     _pose->PostMessage();
     _clock->Advance(2s);
-    Start({});
+    Start({.Period = 15s});
     _reactor.RunFor(*_clock, 5s);
     EXPECT_TRUE(_gateway->Sent.empty());
 }
@@ -148,7 +156,7 @@ TEST_F(Commander, SendsNothingOnTheStrengthOfAnOldPose)
 TEST_F(Commander, TriesARefusedCommandAgainWithTheSameNumber)
 {
     _gateway->Accepts = false;
-    Start({});
+    Start({.Period = 15s});
     Run(500ms);
     EXPECT_GT(_commander->Log().Of("uav1").Refused, 0u);
     _gateway->Accepts = true;
@@ -159,7 +167,7 @@ TEST_F(Commander, TriesARefusedCommandAgainWithTheSameNumber)
 
 TEST_F(Commander, BooksAnswersAndPublishesTheTally)
 {
-    Start({});
+    Start({.Period = 15s});
     Run(1s);
     Answer(1);
     Run(100ms);
@@ -189,7 +197,7 @@ TEST_F(Commander, StopsSendingBeforeTheEndAndEndsOnTime)
 
 TEST_F(Commander, WaitsAtTheEndForAnswersThatAreStillOut)
 {
-    Start({.Duration = 10s, .Quiet = 3s});
+    Start({.Period = 5s, .Duration = 10s, .Quiet = 3s});
     Run(11s);
     EXPECT_TRUE(_reactor.IsRunning());
     Answer(1);
@@ -200,7 +208,7 @@ TEST_F(Commander, WaitsAtTheEndForAnswersThatAreStillOut)
 
 TEST_F(Commander, DoesNotWaitForEver)
 {
-    Start({.Duration = 10s, .Quiet = 3s});
+    Start({.Period = 5s, .Duration = 10s, .Quiet = 3s});
     Run(13s + 200ms);
     EXPECT_FALSE(_reactor.IsRunning());
     EXPECT_FALSE(_commander->Log().Outstanding().empty());
@@ -224,6 +232,142 @@ TEST_F(Commander, SendsForHalfOfAShortRun)
     Start({.Period = 500ms, .Duration = 2s, .Quiet = 3s});
     Run(2s);
     EXPECT_EQ(_gateway->Sent.size(), 2u);
+}
+
+// What a person wants of an aircraft, and what comes of it.
+class OrderedCommander : public Commander
+{
+protected:
+    void SetUp() override
+    {
+        Commander::SetUp();
+        Start({.Node = "ground", .FirstId = 7001});
+        Run(100ms);
+    }
+    void Give(Ground::OrderKind kind)
+    {
+        auto order = std::make_shared<Ground::Order>();
+        order->node = "uav1";
+        order->kind = kind;
+        order->latitude_deg = 47;
+        order->longitude_deg = 8;
+        order->altitude_m = 520;
+        order->speed_mps = 12;
+        ASSERT_TRUE(_workspace.AddMessageToQueue("Commands", order));
+        Run(100ms);
+    }
+    Ground::CommandStatus Last()
+    {
+        Ground::CommandList list;
+        EXPECT_TRUE(_workspace.FetchMessage("CommandList", &list));
+        return list.items.empty() ? Ground::CommandStatus{} : list.items.back();
+    }
+    template <typename T>
+    std::shared_ptr<T> TheOneSent()
+    {
+        EXPECT_EQ(_gateway->All.size(), 1u);
+        EXPECT_EQ(_gateway->All.at(0).first, "uav1/MissionControl");
+        return std::dynamic_pointer_cast<T>(_gateway->All.at(0).second);
+    }
+};
+
+TEST_F(OrderedCommander, SendsAnAircraftToAPoint)
+{
+    Give(Ground::OrderKind::ORDER_GOTO);
+    const auto command = TheOneSent<Uav::Goto>();
+    ASSERT_TRUE(command);
+    EXPECT_EQ(command->id, 7001u);
+    EXPECT_EQ(command->reply_to, "ground/Commands");
+    EXPECT_EQ(command->latitude_deg, 47);
+    EXPECT_EQ(command->longitude_deg, 8);
+    EXPECT_EQ(command->altitude_m, 520);
+    EXPECT_EQ(command->speed_mps, 12);
+}
+
+TEST_F(OrderedCommander, CallsAnAircraftHome)
+{
+    Give(Ground::OrderKind::ORDER_HOME);
+    const auto command = TheOneSent<Uav::GoHome>();
+    ASSERT_TRUE(command);
+    EXPECT_EQ(command->id, 7001u);
+    EXPECT_EQ(command->reply_to, "ground/Commands");
+}
+
+TEST_F(OrderedCommander, HasAnAircraftSearch)
+{
+    Give(Ground::OrderKind::ORDER_SEARCH);
+    const auto command = TheOneSent<Uav::Search>();
+    ASSERT_TRUE(command);
+    EXPECT_EQ(command->id, 7001u);
+}
+
+TEST_F(OrderedCommander, ListsWhatBecomesOfTheCommand)
+{
+    Give(Ground::OrderKind::ORDER_HOME);
+    EXPECT_EQ(Last().progress, Ground::CommandProgress::PROGRESS_SENT);
+    EXPECT_EQ(Last().node, "uav1");
+    EXPECT_EQ(Last().kind, Ground::OrderKind::ORDER_HOME);
+    _gateway->Receipts.at(0)->Settle(Rabit::QueueOutcome::Delivered);
+    _reactor.RunFor(*_clock, 0ms);
+    EXPECT_EQ(Last().progress, Ground::CommandProgress::PROGRESS_DELIVERED);
+    Answer(7001);
+    _reactor.RunFor(*_clock, 0ms);
+    EXPECT_EQ(Last().progress, Ground::CommandProgress::PROGRESS_ACCEPTED);
+}
+
+TEST_F(OrderedCommander, ShowsThatACommandExpired)
+{
+    Give(Ground::OrderKind::ORDER_HOME);
+    _gateway->Receipts.at(0)->Settle(Rabit::QueueOutcome::Expired);
+    Run(100ms);
+    EXPECT_EQ(Last().progress, Ground::CommandProgress::PROGRESS_EXPIRED);
+}
+
+TEST_F(OrderedCommander, ShowsAnOrderThatTheGatewayDoesNotTake)
+{
+    _gateway->Accepts = false;
+    Give(Ground::OrderKind::ORDER_HOME);
+    EXPECT_EQ(Last().progress, Ground::CommandProgress::PROGRESS_REFUSED);
+    Run(1s);
+    EXPECT_TRUE(_gateway->All.empty());
+}
+
+TEST_F(OrderedCommander, PublishesANewSearchAreaWithANumberOfItsOwn)
+{
+    Uav::SearchArea before;
+    ASSERT_TRUE(_workspace.FetchMessage("SearchArea", &before));
+    auto area = std::make_shared<Uav::SearchArea>();
+    area->north_m = 321;
+    ASSERT_TRUE(_workspace.AddMessageToQueue("Commands", area));
+    Run(100ms);
+    Uav::SearchArea after;
+    ASSERT_TRUE(_workspace.FetchMessage("SearchArea", &after));
+    EXPECT_EQ(after.north_m, 321);
+    EXPECT_EQ(after.number, before.number + 1);
+}
+
+TEST_F(Commander, TellsASearcherToSearchOnce)
+{
+    Start({.Searchers = {"uav1"}});
+    Run(5s);
+    ASSERT_EQ(_gateway->All.size(), 1u);
+    EXPECT_TRUE(std::dynamic_pointer_cast<Uav::Search>(_gateway->All[0].second));
+}
+
+TEST_F(Commander, TellsASearcherAgainWhenItHasRestarted)
+{
+    Start({.Searchers = {"uav1"}});
+    Run(1s);
+    SetState(NodeState::UP, 2);
+    Run(1s);
+    EXPECT_EQ(_gateway->All.size(), 2u);
+}
+
+TEST_F(Commander, SendsNothingByItselfUnlessItsSettingsSaySo)
+{
+    Start({});
+    Run(30s);
+    EXPECT_TRUE(_gateway->All.empty());
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+#include "TargetLines.h"
+
+#include "FleetTable.h"
+
+#include <array>
+#include <cstdio>
+
+namespace Ground
+{
+namespace
+{
+constexpr std::size_t LongestName = 20;
+}
+
+std::string ToText(Uav::TargetStage stage)
+{
+    switch (stage)
+    {
+        case Uav::TargetStage::TARGET_FOUND:
+            return "FOUND";
+        case Uav::TargetStage::TARGET_VALIDATING:
+            return "VALIDATING";
+        case Uav::TargetStage::TARGET_VALIDATED:
+            return "VALIDATED";
+        case Uav::TargetStage::TARGET_TRACKED:
+            return "TRACKED";
+        case Uav::TargetStage::TARGET_REJECTED:
+            return "REJECTED";
+    }
+    return "?";
+}
+
+std::string NameOf(const FoundTarget &target)
+{
+    return Printable(target.Aircraft, LongestName) + "-" + std::to_string(target.Finding.target);
+}
+
+std::string TargetLine(const FoundTarget &target)
+{
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), "target %-8s %-10s %10.5f %11.5f", NameOf(target).c_str(),
+                  ToText(target.Finding.stage).c_str(), target.Finding.latitude_deg,
+                  target.Finding.longitude_deg);
+    std::string line = text.data();
+    if (!target.Finding.validated_by.empty())
+        line += "  validated by " + Printable(target.Finding.validated_by, LongestName);
+    if (target.Finding.tracked_s > 0)
+    {
+        std::snprintf(text.data(), text.size(), ", followed for %.0f s",
+                      static_cast<double>(target.Finding.tracked_s));
+        line += text.data();
+    }
+    return line;
+}
+
+bool IsTracked(const FoundTarget &target)
+{
+    const Uav::Finding &finding = target.Finding;
+    return finding.stage == Uav::TargetStage::TARGET_TRACKED && finding.tracked_s > 0 &&
+           !finding.validated_by.empty() && finding.validated_by != target.Aircraft;
+}
+
+}  // namespace Ground

@@ -1,0 +1,30 @@
+// The targets of the search as text: pure functions.
+#pragma once
+
+#include "uav.idl.h"
+
+#include <string>
+
+namespace Ground
+{
+
+// A target that an aircraft has found.
+struct FoundTarget
+{
+    std::string Aircraft;
+    Uav::Finding Finding;
+};
+
+std::string ToText(Uav::TargetStage stage);
+
+// `uav1-3`: the aircraft that found it, and the number that it gave it.
+std::string NameOf(const FoundTarget &target);
+
+// One line of ASCII, for instance `target uav1-3   TRACKED     47.39771     8.54560  validated by uav2,
+// followed for 12 s`.
+std::string TargetLine(const FoundTarget &target);
+
+// Whether the search has done all with it: found by one aircraft, validated by another, followed.
+bool IsTracked(const FoundTarget &target);
+
+}  // namespace Ground
