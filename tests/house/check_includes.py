@@ -48,6 +48,13 @@ ALLOWED = {
     "transport/simulated": {"transport", "simulated backend"},
     "gateway": {"core", "idl", "transport", "gateway", "links", "gateway messages", "yaml-cpp"},
     "gateway/links": {"links"},
+    # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
+    # show what a user gets who does without Rabit, and so include nothing of it.
+    "tests/bench": {"core", "idl", "transport", "factory", "simulated backend", "gateway", "gateway messages",
+                    "user messages", "CLI11"},
+    "tests/bench/raw": {"CLI11"},
+    "tests/bench/raw/fastdds": {"Fast DDS", "Fast-CDR"},
+    "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
     "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11", "network"},
 }
 

@@ -1,0 +1,44 @@
+#include "BenchOptions.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdlib>
+#include <map>
+
+namespace Rabit::Bench
+{
+
+std::size_t BenchOptions::Padding() const
+{
+    return Payload - SampleOverhead;
+}
+
+BenchOptions ParseOptions(int argc, char **argv, const char *description)
+{
+    CLI::App app(description);
+    BenchOptions options;
+    app.add_option("--role", options.Role, "ping, pong, source, sink, announce, join ...")->required();
+    const std::map<std::string, Carriage> names = {
+        {"state", Carriage::State}, {"telemetry", Carriage::Telemetry}, {"queue", Carriage::Queue}};
+    app.add_option("--carriage", options.How, "state, telemetry or queue")
+        ->transform(CLI::CheckedTransformer(names));
+    app.add_option("--domain", options.Domain);
+    app.add_option("--payload", options.Payload, "Bytes of a message")->check(CLI::Range(20u, 60u << 20));
+    app.add_option("--warm-up", options.WarmUp, "Messages before those that are measured");
+    app.add_option("--count", options.Count, "Messages that are measured");
+    app.add_option("--period", options.Period, "Nanoseconds between two messages; 0: as fast as it goes");
+    app.add_option("--spawned-at", options.SpawnedAt, "CLOCK_MONOTONIC at the start of the process");
+    app.add_flag("--in-listener", options.InListener, "Answer in the vendor's listener");
+    app.add_option("--transport", options.Transport);
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError &error)
+    {
+        std::exit(app.exit(error) == 0 ? 0 : 2);
+    }
+    return options;
+}
+
+}  // namespace Rabit::Bench

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace Rabit::Bench
+{
+
+// How the samples of a run are carried.
+enum class Carriage
+{
+    State,      // mirrored message: reliable, transient-local, the newest value counts
+    Telemetry,  // mirrored message: best effort, volatile
+    Queue       // each and every message
+};
+
+// What is common to the command lines of all programs that are measured, so that a driver can put one in the
+// place of another.
+struct BenchOptions
+{
+    // ping, pong: round trips. source, sink: as fast as it goes in one direction. announce, join: how long it
+    // takes to hear of each other. Programs may know more roles.
+    std::string Role;
+    Carriage How = Carriage::State;
+    int Domain = 0;
+    // Serialized bytes of a message, without the encapsulation header.
+    std::size_t Payload = 100;
+    // Messages before those that are measured, and those.
+    std::uint64_t WarmUp = 1000;
+    std::uint64_t Count = 10000;
+    // Nanoseconds between two messages of a paced source; 0: as fast as it goes.
+    std::int64_t Period = 0;
+    // CLOCK_MONOTONIC when the process was started, in nanoseconds.
+    std::int64_t SpawnedAt = 0;
+    // A plain program only: answer in the vendor's listener itself, without a thread of the application.
+    bool InListener = false;
+    // A node only: which backend.
+    std::string Transport = "fastdds";
+
+    std::uint64_t Last() const { return WarmUp + Count; }
+    std::size_t Padding() const;
+};
+
+// What a network of one machine is set to, for all contestants alike.
+inline constexpr const char *Interface = "127.0.0.1";
+inline constexpr std::size_t LargestDatagram = 65000;
+// What Bench::Sample has beside its padding.
+inline constexpr std::size_t SampleOverhead = 20;
+
+// Parses the command line; ends the process on --help and on errors.
+BenchOptions ParseOptions(int argc, char **argv, const char *description);
+
+}  // namespace Rabit::Bench

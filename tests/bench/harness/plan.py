@@ -1,0 +1,66 @@
+"""What is measured: cases, each with its contestants. A case is run again and again, its contestants in turn, so that
+what disturbs the machine disturbs all of them."""
+
+from dataclasses import dataclass, field
+
+from contestants import LOCAL, NODE, RAW_LISTENER, RAW_WORKER
+
+SIZES = {"100 B": 100, "1 kB": 1000, "64 kB": 65536, "1 MB": 1_000_000}
+ROUND_TRIPS = {"100 B": 10000, "1 kB": 5000, "64 kB": 2000, "1 MB": 300}
+IN_ONE_DIRECTION = {"100 B": 200_000, "64 kB": 3000, "1 MB": 200}
+
+
+@dataclass
+class Case:
+    measure: str  # latency, throughput, start-up, idle
+    transport: str
+    carriage: str = ""
+    size: str = ""
+    contestants: list = field(default_factory=list)
+    options: dict = field(default_factory=dict)
+
+    def key(self):
+        return " ".join(part for part in (self.measure, self.transport, self.carriage, self.size) if part)
+
+
+def options_of(carriage, size, count):
+    return {"carriage": carriage, "payload": SIZES[size], "count": count, "warm-up": max(count // 10, 20)}
+
+
+def latency(transports, scale):
+    for carriage, sizes in (("state", SIZES), ("queue", SIZES), ("telemetry", ["100 B", "1 kB"])):
+        for size in sizes:
+            options = options_of(carriage, size, max(int(ROUND_TRIPS[size] * scale), 100))
+            for transport in transports:
+                yield Case("latency", transport, carriage, size, [RAW_WORKER, NODE, RAW_LISTENER], options)
+            if carriage != "telemetry":
+                yield Case("latency", "none", carriage, size, [LOCAL], options)
+
+
+def throughput(transports, scale):
+    for size, count in IN_ONE_DIRECTION.items():
+        for transport in transports:
+            options = options_of("queue", size, max(int(count * scale), 100))
+            yield Case("throughput", transport, "queue", size, [RAW_WORKER, NODE], options)
+
+
+def all_cases(transports, scale):
+    yield from latency(transports, scale)
+    yield from throughput(transports, scale)
+    for transport in transports:
+        yield Case("start-up", transport, contestants=[RAW_WORKER, NODE])
+    for transport in transports:
+        yield Case("idle alone", transport, contestants=[RAW_WORKER, NODE])
+        yield Case("idle pair", transport, contestants=[RAW_WORKER, NODE])
+
+
+def a_few(cases):
+    """Of each measure one case for each transport and carriage, the smallest one."""
+    seen = set()
+    few = []
+    for case in cases:
+        kind = (case.measure, case.transport, case.carriage)
+        if kind not in seen:
+            seen.add(kind)
+            few.append(case)
+    return few

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Measures what the gateway costs beside DDS called by hand, in one session.
+
+Usage: run.py [--quick] [--only TEXT] [--repeat N] [--output FOLDER] PROGRAMS
+PROGRAMS is the folder of the programs (build/release/bin). Writes results.json, results.md and the table of the aims in
+README.md into FOLDER; without it, or with --only, prints the tables. --quick: a short version that shows that everything
+works, whose figures mean little."""
+
+import argparse
+import collections
+import json
+import pathlib
+import sys
+
+import contestants
+import plan
+import report
+from contestants import LOCAL
+
+IDLE_S = 20
+QUICK_IDLE_S = 2
+
+
+def run_once(programs, case, contestant, idle_s):
+    """One repetition: names and values."""
+    if case.measure == "start-up":
+        return {"first_message_s": programs.start_up(contestant, case.transport)}
+    if case.measure.startswith("idle"):
+        return programs.idle(contestant, case.transport, 1 if case.measure == "idle alone" else 2, idle_s)
+    roles = ("ping", "pong") if case.measure == "latency" else ("source", "sink")
+    if contestant == LOCAL:
+        roles = ("local-" + roles[0], None)
+    pair = programs.pair(contestant, case.transport if contestant != LOCAL else None, roles, case.options)
+    client, server = pair["client"], pair["server"]
+    # A round trip is two messages.
+    messages = 2 if case.measure == "latency" else 1
+    values = {"allocations": (client["allocations"] + server["allocations"]) / messages,
+              "cpu_us": (client["cpu_ns"] + server["cpu_ns"]) / messages / 1000,
+              "sleeps": (client["sleeps"] + server["sleeps"]) / messages}
+    if contestant == LOCAL:  # the one process was counted twice
+        values = {name: value / 2 for name, value in values.items()}
+    if case.measure == "latency":
+        for name in ("p50", "p99", "p999"):
+            values[name + "_us"] = client[name + "_ns"] / 1000
+        values["lost"] = client["lost"]
+    else:
+        values["per_s"] = case.options["count"] / server["seconds"]
+        values["MB_per_s"] = values["per_s"] * case.options["payload"] / 1e6
+        values["lost"] = server["missed"]
+    return values
+
+
+def measure(programs, cases, repetitions, idle_s):
+    """{case: {contestant: {name: [value of each repetition]}}}"""
+    results = {}
+    for case in cases:
+        rows = {contestant: collections.defaultdict(list) for contestant in case.contestants}
+        times = 1 if case.measure.startswith("idle") else repetitions
+        for _ in range(times):
+            for contestant in case.contestants:
+                for name, value in run_once(programs, case, contestant, idle_s).items():
+                    rows[contestant][name].append(value)
+        results[case.key()] = rows
+        print(case.key(), {contestant: {name: round(report.median(values), 3) for name, values in row.items()}
+                           for contestant, row in rows.items()}, flush=True)
+    return results
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", default="", help="cases whose name contains this")
+    parser.add_argument("--repeat", type=int)
+    parser.add_argument("--output", type=pathlib.Path)
+    parser.add_argument("programs", type=pathlib.Path)
+    arguments = parser.parse_args()
+    contestants.harness.enter_namespace()
+    programs = contestants.Contestants(arguments.programs, contestants.harness.domain())
+    cases = [case for case in plan.all_cases(programs.transports, 0.02 if arguments.quick else 1)
+             if arguments.only in case.key()]
+    if arguments.quick:
+        cases = plan.a_few(cases)
+    repetitions = arguments.repeat or (1 if arguments.quick else 5)
+    results = measure(programs, cases, repetitions, QUICK_IDLE_S if arguments.quick else IDLE_S)
+    machine = report.machine()
+    text = report.markdown(machine, repetitions, results, programs.transports)
+    if arguments.output is None or arguments.only:
+        print(text)
+        return 0
+    (arguments.output / "results.json").write_text(
+        json.dumps({"machine": machine, "repetitions": repetitions, "results": results}, indent=1) + "\n")
+    (arguments.output / "results.md").write_text(text)
+    readme = arguments.output / "README.md"
+    readme.write_text(report.with_aims(readme.read_text(), machine, repetitions, results, programs.transports))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
