@@ -97,7 +97,8 @@ void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std:
     if (elapsed < *aircraft.First)
         return;
 
-    if (_settings.Searchers.contains(status.node) && aircraft.ToldToSearch != status.incarnation)
+    if ((_settings.Searchers.contains(status.node) || _settings.Searchers.contains("*")) &&
+        aircraft.ToldToSearch != status.incarnation)
     {
         CommandStatus command;
         command.node = status.node;

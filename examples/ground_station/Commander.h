@@ -44,7 +44,8 @@ public:
         std::uint32_t FirstId = 1;
         // Where the fleet is to search, until somebody says otherwise. Its number is set here.
         Uav::SearchArea Area{};
-        // Aircraft that are told to search, once in each of their lives, as soon as they are heard well.
+        // Aircraft that are told to search, once in each of their lives, as soon as they are heard well; `*`
+        // is all of them.
         std::set<std::string> Searchers{};
         // Every aircraft gets a Goto this often; none: never.
         std::optional<std::chrono::milliseconds> Period{};

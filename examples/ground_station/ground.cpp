@@ -59,8 +59,9 @@ void Describe(CLI::App &app, Options &options)
            "--command-period", options.CommandPeriodS,
            "Send every aircraft a command to fly somewhere near, this often in seconds (default: never)")
         ->check(CLI::Range(0.1, 86400.0));
-    app.add_option("--search", options.Searchers,
-                   "Name of an aircraft that is told to search as soon as it is heard; may be repeated");
+    app.add_option(
+        "--search", options.Searchers,
+        "Name of an aircraft that is told to search as soon as it is heard, or `*` for all; may be repeated");
     app.add_option(
            "--search-area", options.SearchArea,
            "Where to search at first: latitude and longitude of the middle, lengths in metres to the north "

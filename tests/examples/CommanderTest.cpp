@@ -354,6 +354,13 @@ TEST_F(Commander, TellsASearcherToSearchOnce)
     EXPECT_TRUE(std::dynamic_pointer_cast<Uav::Search>(_gateway->All[0].second));
 }
 
+TEST_F(Commander, TellsAllToSearchByAnAsterisk)
+{
+    Start({.Searchers = {"*"}});
+    Run(5s);
+    EXPECT_EQ(_gateway->All.size(), 1u);
+}
+
 TEST_F(Commander, TellsASearcherAgainWhenItHasRestarted)
 {
     Start({.Searchers = {"uav1"}});
