@@ -1,8 +1,10 @@
-// One simulated aircraft: an autopilot, a mission control, and the gateway that joins them to the other
-// nodes.
+// One aircraft: an autopilot, a mission control, a health monitor, and the gateway that joins them to the
+// other nodes.
 #include "Autopilot.h"
 #include "Flight.h"
 #include "MissionControl.h"
+#include "Names.h"
+#include "NodeProgram.h"
 #include "SimulatedVehicle.h"
 #include "Track.h"
 #include "mavlink/ByteChannel.h"
@@ -10,7 +12,6 @@
 
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
-#include <rabit/gateway/LoadGatewayConfig.h>
 #include <rabit/transport/TransportFactory.h>
 
 #include <CLI/CLI.hpp>
@@ -18,52 +19,19 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
-#include <exception>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
 
 namespace
 {
-constexpr int ExitFailed = 1;
-constexpr int ExitBadInput = 2;
-
 struct Options
 {
-    std::string ConfigFile = "uav.yaml";
-    std::string Node;
-    int Domain = -1;
-    std::string Transport;
+    Swarm::NodeOptions Common{.ConfigFile = "uav.yaml"};
     std::string TrackFile;
     std::string Mavlink;
-    bool Check = false;
+    std::string Ground = "ground";
 };
-
-void Describe(CLI::App &app, Options &options)
-{
-    app.add_option("--config", options.ConfigFile, "The gateway's configuration file (default: uav.yaml)");
-    app.add_option("--node", options.Node, "Name of this aircraft, in place of the file's");
-    app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
-        ->check(CLI::Range(0, 232));
-    app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
-    app.add_option("--track", options.TrackFile, "CSV file of the track to fly (default: circles)");
-    app.add_option("--mavlink", options.Mavlink,
-                   "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
-                   "`serial:DEVICE:BAUD`");
-    app.add_flag("--check", options.Check, "Check the options and files, start nothing");
-}
-
-Rabit::GatewayConfig LoadConfig(const Options &options)
-{
-    Rabit::GatewayConfig config = Rabit::LoadGatewayConfig(options.ConfigFile, options.Node);
-    if (options.Domain >= 0)
-        config.Domain = options.Domain;
-    if (!options.Transport.empty())
-        config.Transport = options.Transport;
-    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
-    return config;
-}
 
 // Circles south of the field, beside those of the other aircraft: the number at the end of the name says
 // where.
@@ -91,11 +59,12 @@ std::unique_ptr<Swarm::Vehicle> MakeVehicle(const Options &options, const std::s
 
 void Fly(const Options &options)
 {
-    const Rabit::GatewayConfig config = LoadConfig(options);
-    std::unique_ptr<Swarm::Vehicle> vehicle = MakeVehicle(options, config.Node);
-    if (options.Check)
-        return;
+    Rabit::GatewayConfig config = Swarm::LoadConfig(options.Common);
+    Swarm::CompleteAircraftConfig(config, options.Ground);
     const Swarm::Names names(config.Node, config.Node);
+    std::unique_ptr<Swarm::Vehicle> vehicle = MakeVehicle(options, config.Node);
+    if (options.Common.Check)
+        return;
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, std::move(vehicle)));
     reactor.AddManager(std::make_unique<Swarm::MissionControl>(config.Node));
@@ -107,37 +76,13 @@ void Fly(const Options &options)
 
 int main(int argc, char **argv)
 {
-    CLI::App app("A simulated aircraft of the example fleet.");
+    CLI::App app("An aircraft of the example fleet.");
     Options options;
-    Describe(app, options);
-    try
-    {
-        app.parse(argc, argv);
-        Fly(options);
-        return 0;
-    }
-    catch (const CLI::ParseError &error)
-    {
-        return app.exit(error) == 0 ? 0 : ExitBadInput;
-    }
-    catch (const Rabit::ConfigError &error)
-    {
-        std::cerr << error.what() << '\n';
-        return ExitBadInput;
-    }
-    catch (const Swarm::ChannelError &error)
-    {
-        std::cerr << error.what() << '\n';
-        return ExitBadInput;
-    }
-    catch (const Swarm::TrackError &error)
-    {
-        std::cerr << error.what() << '\n';
-        return ExitBadInput;
-    }
-    catch (const std::exception &error)
-    {
-        std::cerr << "uav: " << error.what() << '\n';
-        return ExitFailed;
-    }
+    Swarm::Describe(app, options.Common);
+    app.add_option("--track", options.TrackFile, "CSV file of the track to fly (default: circles)");
+    app.add_option("--mavlink", options.Mavlink,
+                   "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
+                   "`serial:DEVICE:BAUD`");
+    app.add_option("--ground", options.Ground, "Name of the ground station's node (default: ground)");
+    return Swarm::RunProgram(app, argc, argv, [&] { Fly(options); });
 }

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "Names.h"
+#include "OtherAircraft.h"
+#include "Schedule.h"
+#include "uav.idl.h"
+#include "vision/Camera.h"
+#include "vision/World.h"
+
+#include <rabit/RabitManager.h>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+
+namespace Swarm
+{
+
+// The camera of an aircraft and what recognizes targets in its frames, both simulated: the manager
+// `ImageProcessing`.
+//
+// Fetches: Pose of its aircraft, at the moment of capture, and that of the others.
+// Posts:   CameraView (Uav::CameraView), with each frame, twice a second.
+// Sends:   each frame that shows anything, with that pose, as Uav::Detections to the queue SensorFusion of
+//          its own aircraft and of each other one; a small JPEG every four seconds, as Uav::Picture to the
+//          queue Pictures of every ground station.
+//
+// Without a pose that is new and fresh there is no frame.
+class ImageProcessing : public Rabit::RabitManager
+{
+public:
+    static constexpr std::chrono::milliseconds FramePeriod{500};
+    static constexpr std::chrono::seconds PicturePeriod{4};
+    static constexpr double MaxPoseAgeS = 1;
+
+    // The seed decides what the camera misses.
+    ImageProcessing(const Names &names, World world, std::uint64_t seed,
+                    Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
+
+    void ExecuteUnitOfWork() final;
+
+private:
+    void TakeFrame();
+    void PostView(const Footprint &view);
+    void SendDetections(const Footprint &view);
+    void SendPicture(const Footprint &view);
+
+    const Names _names;
+    const World _world;
+    Camera _camera;
+    OtherAircraft _others;
+    Schedule _frameTimes{FramePeriod};
+    Schedule _pictureTimes{PicturePeriod};
+    std::uint32_t _poseUsed = 0;
+    std::uint32_t _pictures = 0;
+    std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
+    std::shared_ptr<Uav::CameraView> _view = std::make_shared<Uav::CameraView>();
+};
+
+}  // namespace Swarm

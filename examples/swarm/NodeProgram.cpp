@@ -1,0 +1,106 @@
+#include "NodeProgram.h"
+
+#include "Names.h"
+#include "Track.h"
+#include "mavlink/ByteChannel.h"
+#include "vision/World.h"
+
+#include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <CLI/CLI.hpp>
+
+#include <exception>
+#include <iostream>
+
+namespace Swarm
+{
+namespace
+{
+constexpr int ExitFailed = 1;
+constexpr int ExitBadInput = 2;
+
+int Refuse(const std::exception &error)
+{
+    std::cerr << error.what() << '\n';
+    return ExitBadInput;
+}
+}  // namespace
+
+void Describe(CLI::App &app, NodeOptions &options)
+{
+    app.add_option("--config", options.ConfigFile,
+                   "The gateway's configuration file (default: " + options.ConfigFile + ")");
+    app.add_option("--node", options.Node, "Name of this node, in place of the file's");
+    app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
+        ->check(CLI::Range(0, 232));
+    app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
+    app.add_flag("--check", options.Check, "Check the options and files, start nothing");
+}
+
+Rabit::GatewayConfig LoadConfig(const NodeOptions &options)
+{
+    Rabit::GatewayConfig config = Rabit::LoadGatewayConfig(options.ConfigFile, options.Node);
+    if (options.Domain >= 0)
+        config.Domain = options.Domain;
+    if (!options.Transport.empty())
+        config.Transport = options.Transport;
+    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
+    return config;
+}
+
+std::string AircraftOf(const std::string &visionNode)
+{
+    const std::string ending = Names::VisionOf("");
+    if (!visionNode.ends_with(ending) || visionNode.size() == ending.size())
+        throw Rabit::ConfigError("the node name `" + visionNode + "` is not its aircraft's name and `" +
+                                 ending + "`");
+    return visionNode.substr(0, visionNode.size() - ending.size());
+}
+
+void CompleteAircraftConfig(Rabit::GatewayConfig &config, const std::string &ground)
+{
+    for (Rabit::SubscribeRule &rule : config.Subscribe)
+        if (rule.Message == "SearchArea")
+            rule.From = {ground};
+    config.Subscribe.push_back(
+        {.Message = "Targets", .Type = "Uav::Targets", .From = {Names::VisionOf(config.Node)}});
+    Rabit::ValidateGatewayConfig(config);
+}
+
+int RunProgram(CLI::App &app, int argc, char **argv, const std::function<void()> &body)
+{
+    try
+    {
+        app.parse(argc, argv);
+        body();
+        return 0;
+    }
+    catch (const CLI::ParseError &error)
+    {
+        return app.exit(error) == 0 ? 0 : ExitBadInput;
+    }
+    catch (const Rabit::ConfigError &error)
+    {
+        return Refuse(error);
+    }
+    catch (const ChannelError &error)
+    {
+        return Refuse(error);
+    }
+    catch (const TrackError &error)
+    {
+        return Refuse(error);
+    }
+    catch (const WorldError &error)
+    {
+        return Refuse(error);
+    }
+    catch (const std::exception &error)
+    {
+        std::cerr << argv[0] << ": " << error.what() << '\n';
+        return ExitFailed;
+    }
+}
+
+}  // namespace Swarm

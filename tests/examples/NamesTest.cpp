@@ -1,0 +1,31 @@
+#include "Names.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+using Swarm::Names;
+
+TEST(Names, OfTheLocalNodeArePlain)
+{
+    const Names names("uav1", "uav1");
+    EXPECT_EQ(names.Own("Pose"), "Pose");
+    EXPECT_EQ(names.OwnVision("Targets"), "uav1.vision/Targets");
+    EXPECT_EQ(names.Of("uav2", "MissionControl"), "uav2/MissionControl");
+}
+
+TEST(Names, OfTheVisionNodeArePlainInItsProcess)
+{
+    const Names names("uav1", "uav1.vision");
+    EXPECT_EQ(names.Own("Pose"), "uav1/Pose");
+    EXPECT_EQ(names.OwnVision("Targets"), "Targets");
+}
+
+TEST(Names, AreAllFullWithoutALocalNode)
+{
+    const Names names("uav1", "");
+    EXPECT_EQ(names.Own("Pose"), "uav1/Pose");
+    EXPECT_EQ(names.OwnVision("Targets"), "uav1.vision/Targets");
+}
+
+}  // namespace
