@@ -85,6 +85,7 @@ void LinkReceiver::Open(const LinkData &data, LinkTime now)
     _openedAt = now;
     _latestSentAt = 0;
     _unacknowledged = 0;
+    _unacknowledgedBytes = 0;
     _heldBack = false;
     ++_counters.SessionsOpened;
     // The sender knows no credit yet and waits for it.
@@ -96,6 +97,7 @@ void LinkReceiver::Open(const LinkData &data, LinkTime now)
 bool LinkReceiver::Consume(const LinkData &data, const LinkItem &item, LinkTime now)
 {
     AcknowledgeBy(now + _context.Settings.AckDelay);
+    _unacknowledgedBytes += item.Payload.size();
     if ((item.Flags & LinkFlagSkip) != 0)
     {
         ++_counters.Skipped;
@@ -137,7 +139,8 @@ bool LinkReceiver::Consume(const LinkData &data, const LinkItem &item, LinkTime 
             Advance(OutcomeHistory::Entry::Refused);
             break;
     }
-    if (_unacknowledged >= _context.Settings.AckEvery)
+    if (_unacknowledged >= _context.Settings.AckEvery ||
+        _unacknowledgedBytes >= _context.Settings.AckEveryBytes)
     {
         AcknowledgeBy(now);
     }
@@ -185,6 +188,7 @@ void LinkReceiver::DropSession()
     _openedAt = LinkTime(0);
     _latestSentAt = 0;
     _unacknowledged = 0;
+    _unacknowledgedBytes = 0;
     _heldBack = false;
 }
 
@@ -217,6 +221,7 @@ void LinkReceiver::Run(std::uint64_t peerIncarnation, LinkTime now)
     _heldBack = ack.Credit == 0;
     _ackAt = LinkNever;
     _unacknowledged = 0;
+    _unacknowledgedBytes = 0;
     ++_counters.AcksSent;
     _context.Output.Send(ack);
 }

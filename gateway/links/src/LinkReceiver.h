@@ -56,8 +56,9 @@ private:
     LinkTime _latestCameAt{0};
 
     LinkTime _ackAt = LinkNever;
-    std::size_t _unacknowledged = 0;  // consumed since the last acknowledgement
-    bool _heldBack = false;           // the sender was last told that there is no room
+    std::size_t _unacknowledged = 0;       // consumed since the last acknowledgement
+    std::size_t _unacknowledgedBytes = 0;  // of their payloads
+    bool _heldBack = false;                // the sender was last told that there is no room
 
     LinkReceiverCounters _counters;
 };

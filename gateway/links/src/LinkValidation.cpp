@@ -96,6 +96,7 @@ void RequireValid(const LinkSettings &settings)
     Require(settings.Clock != 0, "Clock must not be 0");
     Require(settings.AckDelay >= LinkTime(0), "AckDelay must not be negative");
     Require(settings.AckEvery >= 1, "AckEvery must be at least 1");
+    Require(settings.AckEveryBytes >= 1, "AckEveryBytes must be at least 1");
     Require(settings.MinResend > LinkTime(0), "MinResend must be positive");
     Require(settings.MinResend <= settings.FirstResend && settings.FirstResend <= settings.MaxResend,
             "MinResend <= FirstResend <= MaxResend must hold");

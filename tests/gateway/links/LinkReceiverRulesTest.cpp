@@ -360,6 +360,15 @@ TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_sixteen_messages)
     EXPECT_EQ(Acknowledgement().Cumulative, 17U);
 }
 
+TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_sixteen_kilobytes)
+{
+    OpenSession();
+    a.Hear(Data(2, std::vector<std::string>(3, std::string(4096, 'm'))));
+    EXPECT_THAT(a.TakeAcks(), IsEmpty());
+    a.Hear(Data(5, {std::string(4096, 'm')}));
+    EXPECT_EQ(Acknowledgement().Cumulative, 5U);
+}
+
 TEST_F(LinkReceiverRules, undeliverable_messages_are_consumed_and_the_sender_learns_of_it)
 {
     OpenSession();

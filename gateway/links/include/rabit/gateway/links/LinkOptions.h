@@ -38,9 +38,11 @@ struct LinkSettings
     // Bytes up to which messages that wait anyway share a LinkData, the names and numbers included. A message
     // that is larger by itself goes alone.
     std::size_t MaxDatagram = 1300;
-    // An acknowledgement waits this long for more to acknowledge, unless AckEvery messages were consumed.
+    // An acknowledgement waits this long for more to acknowledge, unless AckEvery messages or AckEveryBytes of
+    // payload were consumed: few large messages fill the sender's window, which then waits for it.
     LinkTime AckDelay{std::chrono::milliseconds(2)};
     std::size_t AckEvery = 16;
+    std::size_t AckEveryBytes = 16 * 1024;
     // Bounds of the resend timer, and its value before the first measurement (RFC 6298, with bounds for our
     // links).
     LinkTime MinResend{std::chrono::milliseconds(20)};
