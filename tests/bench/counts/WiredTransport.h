@@ -1,0 +1,36 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Rabit::Bench
+{
+
+// A network that costs nothing: a write hands the bytes over to the readers at once, on the writer's thread,
+// and allocates nothing once its buffers are warm. So what is counted is the gateway's own. One thread, no
+// faults; topics match by name and partition, QoS does not matter, and nothing is kept for late readers.
+class Wire
+{
+public:
+    struct Reader;
+    struct Session;
+
+    std::vector<Session *> Sessions;
+    std::vector<Reader *> Readers;
+};
+
+class WiredTransport final : public Transport
+{
+public:
+    explicit WiredTransport(Wire &wire) : _wire(wire) {}
+    std::string Name() const override { return "wired"; }
+    std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
+
+private:
+    Wire &_wire;
+};
+
+}  // namespace Rabit::Bench

@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Instructions and allocations of the gateway for one message, held against limits.json. They do not depend on how busy
+the machine is.
+
+Usage: count_test.py BENCH_COUNTS [--update]
+--update writes new limits: what is measured, and 5 % for another processor's memcpy and another build of a library."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+LIMITS = pathlib.Path(__file__).resolve().parent / "limits.json"
+MESSAGES = 3000
+SCENARIOS = ["codec", "state", "telemetry", "queue", "packed-queue"]
+INSTRUCTIONS_MARGIN = 1.05
+# Of work that comes once a second, which falls into the measured time or not.
+ALLOCATIONS_MARGIN = 0.05
+
+
+def allocations(program, scenario):
+    return json.loads(subprocess.run([program, scenario, str(MESSAGES)], check=True, text=True,
+                                     capture_output=True).stdout)["allocations"]
+
+
+def instructions(program, scenario):
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run(["valgrind", "--tool=callgrind", "--collect-atstart=no", "--toggle-collect=Measured",
+                              f"--callgrind-out-file={folder}/out", program, scenario, str(MESSAGES)],
+                             check=True, text=True, capture_output=True)
+    return int(re.search(r"Collected : (\d+)", run.stderr).group(1)) / MESSAGES
+
+
+def main():
+    program = sys.argv[1]
+    limits = json.loads(LIMITS.read_text()) if LIMITS.exists() else {}
+    good = True
+    print("| a message of 100 B | instructions | at most | allocations | at most |\n|---|---|---|---|---|")
+    for scenario in SCENARIOS:
+        measured = {"instructions": instructions(program, scenario), "allocations": allocations(program, scenario)}
+        if "--update" in sys.argv:
+            limits[scenario] = {"instructions": round(measured["instructions"] * INSTRUCTIONS_MARGIN),
+                                "allocations": round(measured["allocations"] + ALLOCATIONS_MARGIN, 2)}
+        limit = limits[scenario]
+        good = good and all(measured[name] <= limit[name] for name in measured)
+        print(f"| {scenario} | {measured['instructions']:.0f} | {limit['instructions']} | "
+              f"{measured['allocations']:.2f} | {limit['allocations']} |", flush=True)
+    if "--update" in sys.argv:
+        LIMITS.write_text(json.dumps(limits, indent=1) + "\n")
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
