@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace Ground
+{
+
+// Decides which browser pages may talk to the server: only its own. A page of another site in the same
+// browser reaches every port that the browser reaches; it must not command aircraft.
+//
+// - The Host of every request must be a name that nobody else can point here: a numerical address or
+//   `localhost`, or this machine's host name. A site that points a name of its own at this machine (DNS
+//   rebinding) shows that name. A server that is bound to the loopback interface takes loopback names only.
+// - The Origin of a WebSocket must equal the Host.
+//
+// Immutable: any thread.
+class RequestGuard
+{
+public:
+    // hostName: of this machine; may be empty.
+    RequestGuard(bool boundToLoopback, std::string hostName);
+
+    bool IsHostAllowed(std::string_view host) const;
+    // The host must have been allowed.
+    static bool IsOriginAllowed(std::string_view origin, std::string_view host);
+
+private:
+    const bool _loopback;
+    const std::string _hostName;
+};
+
+}  // namespace Ground

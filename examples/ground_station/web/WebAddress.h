@@ -1,0 +1,25 @@
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include <stdexcept>
+#include <string>
+
+namespace Ground
+{
+
+// An address that is not one, or that cannot be had. what() is one line for a person.
+class WebServerError : public std::runtime_error
+{
+public:
+    using std::runtime_error::runtime_error;
+};
+
+// `PORT`, `ADDRESS:PORT` or `[ADDRESS]:PORT`: a numerical IPv4 or IPv6 address (127.0.0.1 if there is none)
+// and a port from 0 to 65535, where 0 means any that is free. Throws WebServerError.
+boost::asio::ip::tcp::endpoint ParseWebAddress(const std::string &text);
+
+// The page at that address, for people: `http://127.0.0.1:8080/`.
+std::string WebPageUrl(const boost::asio::ip::tcp::endpoint &endpoint);
+
+}  // namespace Ground

@@ -1,0 +1,46 @@
+#include "WebAddress.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace
+{
+using testing::HasSubstr;
+
+std::string RefusalOf(const std::string &text)
+{
+    try
+    {
+        Ground::ParseWebAddress(text);
+        return "accepted";
+    }
+    catch (const Ground::WebServerError &error)
+    {
+        return error.what();
+    }
+}
+
+TEST(WebAddress, BindsToLoopbackUnlessToldOtherwise)
+{
+    EXPECT_EQ(Ground::WebPageUrl(Ground::ParseWebAddress("8080")), "http://127.0.0.1:8080/");
+}
+
+TEST(WebAddress, TakesAnAddressOfEitherFamily)
+{
+    EXPECT_EQ(Ground::WebPageUrl(Ground::ParseWebAddress("0.0.0.0:80")), "http://0.0.0.0:80/");
+    EXPECT_EQ(Ground::WebPageUrl(Ground::ParseWebAddress("[::1]:8080")), "http://[::1]:8080/");
+}
+
+TEST(WebAddress, RefusesWhatIsNoAddressInOneLine)
+{
+    for (const char *text : {"", "x", "65536", "-1", "80x", "host:80", "1.2.3:80", "::1:80", "[127.0.0.1]:80",
+                             "127.0.0.1:", ":80", "[]:80"})
+    {
+        EXPECT_THAT(RefusalOf(text), HasSubstr("expected")) << text;
+        EXPECT_THAT(RefusalOf(text), testing::Not(HasSubstr("\n"))) << text;
+    }
+}
+
+}  // namespace
