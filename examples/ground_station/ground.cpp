@@ -2,6 +2,8 @@
 #include "Commander.h"
 #include "FleetView.h"
 #include "Verdict.h"
+#include "WebPage.h"
+#include "WebServer.h"
 
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
@@ -43,6 +45,7 @@ struct Options
     std::vector<std::string> Searchers;
     bool ExpectTarget = false;
     std::vector<std::string> Expected;
+    std::string Web;
     bool Check = false;
 };
 
@@ -70,6 +73,10 @@ void Describe(CLI::App &app, Options &options)
     app.add_flag("--expect-target", options.ExpectTarget,
                  "Fail unless a target was found by one aircraft, validated by another, and followed");
     app.add_option("--expect", options.Expected, "Name of an aircraft that must be there; may be repeated");
+    app.add_option(
+        "--web", options.Web,
+        "Serve the web page at `PORT`, `ADDRESS:PORT` or `[ADDRESS]:PORT` (address: 127.0.0.1 unless "
+        "given; port 0: any that is free)");
     app.add_flag("--check", options.Check, "Check the options and files, start nothing");
 }
 
@@ -81,6 +88,8 @@ Rabit::GatewayConfig LoadConfig(const Options &options)
     if (!options.Transport.empty())
         config.Transport = options.Transport;
     Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
+    if (options.Web.empty())
+        std::erase_if(config.Accept, [](const Rabit::AcceptRule &rule) { return rule.Queue == "Pictures"; });
     return config;
 }
 
@@ -103,6 +112,24 @@ std::uint32_t FirstCommandId()
     const auto seconds =
         std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
     return 1 + static_cast<std::uint32_t>(seconds.count() % 400'000) * 10'000;
+}
+
+// Null if no page is wanted. Listens already, so that an address that cannot be had is known at once.
+std::unique_ptr<Ground::WebServer> MakeWebServer(const Options &options)
+{
+    if (options.Web.empty())
+        return nullptr;
+    Ground::WebServer::Settings settings;
+    settings.Endpoint = Ground::ParseWebAddress(options.Web);
+    return std::make_unique<Ground::WebServer>(settings);
+}
+
+std::unique_ptr<Ground::WebPage> MakeWebPage(const Options &options, const std::string &node,
+                                             std::unique_ptr<Ground::WebServer> server)
+{
+    std::cerr << "Web page: " << Ground::WebPageUrl(server->Endpoint()) << std::endl;
+    return std::make_unique<Ground::WebPage>(Ground::WebPage::Settings{node, options.Expected},
+                                             std::move(server));
 }
 
 Ground::Commander::Settings CommanderSettings(const Options &options, const std::string &node)
@@ -168,6 +195,7 @@ int Summarize(const Ground::FleetView &view, const Ground::Commander &commander,
 int Watch(const Options &options)
 {
     const Rabit::GatewayConfig config = LoadConfig(options);
+    std::unique_ptr<Ground::WebServer> server = MakeWebServer(options);
     if (options.Check)
         return 0;
     auto view = std::make_unique<Ground::FleetView>(
@@ -179,6 +207,8 @@ int Watch(const Options &options)
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::move(view));
     reactor.AddManager(std::move(commander));
+    if (server)
+        reactor.AddManager(MakeWebPage(options, config.Node, std::move(server)));
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
     {
@@ -207,6 +237,11 @@ int main(int argc, char **argv)
         return app.exit(error) == 0 ? 0 : ExitBadInput;
     }
     catch (const Rabit::ConfigError &error)
+    {
+        std::cerr << error.what() << '\n';
+        return ExitBadInput;
+    }
+    catch (const Ground::WebServerError &error)
     {
         std::cerr << error.what() << '\n';
         return ExitBadInput;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "StationData.h"
+
+#include <rabit/RabitWorkspace.h>
+
+#include <memory>
+#include <string>
+
+namespace Ground
+{
+
+// Follows what one aircraft publishes: Pose, MissionState, Findings and Health of <node>, and Targets and
+// CameraView of <node>.vision. For one thread.
+class AircraftFollower
+{
+public:
+    // Registers the names in the workspace, which must outlive this object.
+    AircraftFollower(const std::string &node, Rabit::RabitWorkspace &workspace);
+
+    // Fetches the latest of each, and fills in what has come with its age. The data points into this object.
+    void Show(AircraftData &data);
+    // How many seconds ago it was that time by the clock of the aircraft: by its last pose, which carries
+    // that clock and has an age. NaN if there is none. For Show's results to be of use, call it after Show.
+    double SecondsSince(double gpsTimeS) const;
+
+private:
+    std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
+    std::shared_ptr<Uav::MissionState> _mission = std::make_shared<Uav::MissionState>();
+    std::shared_ptr<Uav::Findings> _findings = std::make_shared<Uav::Findings>();
+    std::shared_ptr<Uav::Health> _health = std::make_shared<Uav::Health>();
+    std::shared_ptr<Uav::Targets> _targets = std::make_shared<Uav::Targets>();
+    std::shared_ptr<Uav::CameraView> _camera = std::make_shared<Uav::CameraView>();
+};
+
+}  // namespace Ground

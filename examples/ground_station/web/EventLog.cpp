@@ -1,0 +1,154 @@
+#include "EventLog.h"
+
+#include "WireNames.h"
+
+#include <boost/algorithm/string/case_conv.hpp>
+
+#include <iterator>
+
+namespace Ground
+{
+namespace
+{
+std::string WithReason(const std::string &text, const std::string &reason)
+{
+    return reason.empty() ? text : text + ": " + reason;
+}
+
+StationEvent::Weight WeightOf(RowState state)
+{
+    switch (state)
+    {
+        case RowState::Stale:
+            return StationEvent::Weight::Warning;
+        case RowState::Lost:
+            return StationEvent::Weight::Alarm;
+        case RowState::Waiting:
+        case RowState::Up:
+            break;
+    }
+    return StationEvent::Weight::Info;
+}
+
+StationEvent::Weight WeightOf(CommandProgress progress)
+{
+    switch (progress)
+    {
+        case CommandProgress::PROGRESS_DECLINED:
+        case CommandProgress::PROGRESS_EXPIRED:
+        case CommandProgress::PROGRESS_IN_DOUBT:
+        case CommandProgress::PROGRESS_REFUSED:
+            return StationEvent::Weight::Warning;
+        case CommandProgress::PROGRESS_SENT:
+        case CommandProgress::PROGRESS_DELIVERED:
+        case CommandProgress::PROGRESS_ACCEPTED:
+        case CommandProgress::PROGRESS_DONE:
+        case CommandProgress::PROGRESS_REPLACED:
+            break;
+    }
+    return StationEvent::Weight::Info;
+}
+}  // namespace
+
+void EventLog::Look(const StationData &now)
+{
+    _nowS = now.NowS;
+    for (const AircraftData &aircraft : now.Aircraft)
+    {
+        LookAtAircraft(aircraft);
+        LookAtFindings(aircraft);
+    }
+    if (now.Commands)
+        LookAtCommands(*now.Commands.Content);
+    if (now.Area && now.Area.Content->number != _area)
+    {
+        _area = now.Area.Content->number;
+        Add(Weight::Info, "", "Search area " + std::to_string(_area) + " is in force");
+    }
+    LookAtProblems(now);
+}
+
+void EventLog::LookAtAircraft(const AircraftData &aircraft)
+{
+    Known &known = _aircraft[aircraft.Node];
+    if (known.State != aircraft.State)
+    {
+        if (known.State || aircraft.State != RowState::Waiting)
+            Add(WeightOf(aircraft.State), aircraft.Node,
+                WithReason(boost::algorithm::to_upper_copy(std::string(WireName(aircraft.State))),
+                           aircraft.Reason));
+        known.State = aircraft.State;
+    }
+    if (aircraft.Mission && known.Mode != aircraft.Mission.Content->mode)
+    {
+        known.Mode = aircraft.Mission.Content->mode;
+        Add(Weight::Info, aircraft.Node, WithReason(WireName(*known.Mode), aircraft.Mission.Content->text));
+    }
+    if (aircraft.Health && known.WantsHome != aircraft.Health.Content->wants_home)
+    {
+        known.WantsHome = aircraft.Health.Content->wants_home;
+        Add(known.WantsHome ? Weight::Warning : Weight::Info, aircraft.Node,
+            WithReason(
+                known.WantsHome ? "goes home for a reason of its own" : "has no reason to go home any more",
+                known.WantsHome ? aircraft.Health.Content->reason : ""));
+    }
+}
+
+void EventLog::LookAtFindings(const AircraftData &aircraft)
+{
+    if (!aircraft.Findings)
+        return;
+    for (const Uav::Finding &finding : aircraft.Findings.Content->items)
+    {
+        const auto key = std::make_pair(aircraft.Node, finding.target);
+        const auto known = _targets.find(key);
+        if (known == _targets.end() ? _targets.size() >= MaxFollowed : known->second == finding.stage)
+            continue;
+        _targets[key] = finding.stage;
+        std::string text = "target " + std::to_string(finding.target) + " " + WireName(finding.stage);
+        if (!finding.validated_by.empty())
+            text += " (seen by " + finding.validated_by + ")";
+        Add(Weight::Info, aircraft.Node, text);
+    }
+}
+
+void EventLog::LookAtCommands(const CommandList &list)
+{
+    std::map<std::uint32_t, CommandProgress> now;
+    for (const CommandStatus &command : list.items)
+    {
+        now[command.id] = command.progress;
+        const auto known = _commands.find(command.id);
+        if (known != _commands.end() && known->second == command.progress)
+            continue;
+        Add(WeightOf(command.progress), command.node,
+            WithReason("command " + std::to_string(command.number) + " (" + WireName(command.kind) + ") " +
+                           WireName(command.progress),
+                       command.reason));
+    }
+    _commands = std::move(now);  // the list is bounded, and so is this
+}
+
+void EventLog::LookAtProblems(const StationData &now)
+{
+    std::set<std::string> problems;
+    for (const Rabit::Gateway::Problem &problem : now.Problems)
+    {
+        if (problems.size() >= MaxFollowed)
+            break;
+        const std::string text = WithReason(problem.subject, problem.reason);
+        if (problems.insert(problem.node + ' ' + text).second &&
+            !_problems.contains(problem.node + ' ' + text))
+            Add(Weight::Warning, problem.node, text);
+    }
+    _problems = std::move(problems);
+}
+
+void EventLog::Add(Weight weight, const std::string &node, const std::string &text)
+{
+    _events.push_back({++_number, _nowS, weight, node, text});
+    if (_events.size() > MaxEvents)
+        _events.pop_front();
+}
+
+}  // namespace Ground

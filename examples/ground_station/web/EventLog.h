@@ -1,0 +1,73 @@
+#pragma once
+
+#include "StationData.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace Ground
+{
+
+// One thing that happened.
+struct StationEvent
+{
+    enum class Weight
+    {
+        Info,
+        Warning,
+        Alarm
+    };
+
+    std::uint64_t Number = 0;  // counted from 1
+    double AtS = 0;            // StationData::NowS then
+    Weight How = Weight::Info;
+    std::string Node;  // the aircraft that it is about; may be empty
+    std::string Text;
+};
+
+// Finds what happened by comparing what is known now with what was known before. Bounded. Not thread-safe.
+class EventLog
+{
+public:
+    static constexpr std::size_t MaxEvents = 200;
+    // Of commands, targets and problems; what is beyond is not followed.
+    static constexpr std::size_t MaxFollowed = 2000;
+
+    void Look(const StationData &now);
+
+    // Oldest first.
+    const std::deque<StationEvent> &Events() const { return _events; }
+
+private:
+    using Weight = StationEvent::Weight;
+
+    struct Known
+    {
+        std::optional<RowState> State;
+        std::optional<Uav::MissionMode> Mode;
+        bool WantsHome = false;
+    };
+
+    void LookAtAircraft(const AircraftData &aircraft);
+    void LookAtFindings(const AircraftData &aircraft);
+    void LookAtCommands(const CommandList &list);
+    void LookAtProblems(const StationData &now);
+    void Add(Weight weight, const std::string &node, const std::string &text);
+
+    double _nowS = 0;
+    std::uint64_t _number = 0;
+    std::deque<StationEvent> _events;
+    std::map<std::string, Known> _aircraft;
+    std::map<std::pair<std::string, std::uint32_t>, Uav::TargetStage> _targets;
+    std::map<std::uint32_t, CommandProgress> _commands;
+    std::set<std::string> _problems;
+    std::uint32_t _area = 0;
+};
+
+}  // namespace Ground

@@ -1,0 +1,219 @@
+#include "Snapshot.h"
+
+#include "WireNames.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace Ground
+{
+namespace
+{
+using Json = nlohmann::json;
+
+// Short numbers make short texts. What is not finite becomes null.
+Json Rounded(double value, double steps)
+{
+    const double scaled = value * steps;
+    if (!std::isfinite(scaled))
+        return nullptr;
+    return std::round(scaled) / steps;
+}
+Json Degrees(double value)
+{
+    return Rounded(value, 1e7);
+}
+Json Short(double value)
+{
+    return Rounded(value, 1e3);
+}
+
+Json ToJson(const Uav::Pose &pose)
+{
+    return {{"latitude_deg", Degrees(pose.latitude_deg)},
+            {"longitude_deg", Degrees(pose.longitude_deg)},
+            {"altitude_m", Rounded(pose.altitude_m, 10)},
+            {"speed_mps", Rounded(std::hypot(static_cast<double>(pose.velocity_north_mps),
+                                             static_cast<double>(pose.velocity_east_mps)),
+                                  10)},
+            {"climb_mps", Rounded(-static_cast<double>(pose.velocity_down_mps), 10)},
+            {"yaw_rad", Short(static_cast<double>(pose.yaw_rad))}};
+}
+
+Json ToJson(const Uav::MissionState &mission)
+{
+    return {{"mode", WireName(mission.mode)},     {"last_command", mission.last_command},
+            {"search_area", mission.search_area}, {"target", mission.target},
+            {"partner", mission.partner},         {"text", mission.text}};
+}
+
+Json ToJson(const Uav::Health &health)
+{
+    return {{"battery_percent", Rounded(static_cast<double>(health.battery_percent), 10)},
+            {"ground_silent_s", Rounded(static_cast<double>(health.ground_silent_s), 10)},
+            {"wants_home", health.wants_home},
+            {"reason", health.reason}};
+}
+
+Json ToJson(const Uav::Findings &findings)
+{
+    Json items = Json::array();
+    for (const Uav::Finding &finding : findings.items)
+        items.push_back({{"target", finding.target},
+                         {"stage", WireName(finding.stage)},
+                         {"latitude_deg", Degrees(finding.latitude_deg)},
+                         {"longitude_deg", Degrees(finding.longitude_deg)},
+                         {"validated_by", finding.validated_by},
+                         {"tracked_s", Rounded(static_cast<double>(finding.tracked_s), 10)}});
+    return {{"items", std::move(items)}};
+}
+
+// Both times are of the clock of the aircraft, so that their difference is an age whatever that clock says.
+Json ToJson(const Uav::Targets &targets)
+{
+    Json items = Json::array();
+    for (const Uav::Target &target : targets.items)
+        items.push_back({{"number", target.number},
+                         {"found_by", target.found_by},
+                         {"latitude_deg", Degrees(target.latitude_deg)},
+                         {"longitude_deg", Degrees(target.longitude_deg)},
+                         {"velocity_north_mps", Rounded(static_cast<double>(target.velocity_north_mps), 100)},
+                         {"velocity_east_mps", Rounded(static_cast<double>(target.velocity_east_mps), 100)},
+                         {"sigma_major_m", Rounded(static_cast<double>(target.sigma_major_m), 10)},
+                         {"sigma_minor_m", Rounded(static_cast<double>(target.sigma_minor_m), 10)},
+                         {"sigma_heading_rad", Short(static_cast<double>(target.sigma_heading_rad))},
+                         {"unseen_s", Rounded(targets.gps_time_s - target.seen_gps_time_s, 10)},
+                         {"detections", target.detections},
+                         {"seen_by", target.seen_by}});
+    return {{"items", std::move(items)}};
+}
+
+Json ToJson(const Uav::CameraView &view)
+{
+    Json corners = Json::array();
+    for (const Uav::GroundPoint &corner : view.corners)
+        corners.push_back({Degrees(corner.latitude_deg), Degrees(corner.longitude_deg)});
+    return {{"frame", view.frame}, {"corners", std::move(corners)}};
+}
+
+Json ToJson(const Uav::SearchArea &area)
+{
+    return {{"number", area.number},
+            {"latitude_deg", Degrees(area.latitude_deg)},
+            {"longitude_deg", Degrees(area.longitude_deg)},
+            {"north_m", Rounded(static_cast<double>(area.north_m), 10)},
+            {"east_m", Rounded(static_cast<double>(area.east_m), 10)},
+            {"altitude_m", Rounded(static_cast<double>(area.altitude_m), 10)},
+            {"speed_mps", Rounded(static_cast<double>(area.speed_mps), 10)},
+            {"lane_m", Rounded(static_cast<double>(area.lane_m), 10)}};
+}
+
+template <typename Message>
+void Add(Json &object, const char *name, const Aged<Message> &message)
+{
+    if (!message)
+        return;
+    Json part = ToJson(*message.Content);
+    part["age_s"] = Short(message.AgeS);
+    object[name] = std::move(part);
+}
+
+Json ToJson(const AircraftData &aircraft)
+{
+    Json object = {{"node", aircraft.Node},
+                   {"state", WireName(aircraft.State)},
+                   {"reason", aircraft.Reason},
+                   {"heard_s", Short(aircraft.HeardS)},
+                   {"round_trip_s", Rounded(aircraft.RoundTripS, 1e5)}};
+    Add(object, "pose", aircraft.Pose);
+    Add(object, "mission", aircraft.Mission);
+    Add(object, "health", aircraft.Health);
+    Add(object, "findings", aircraft.Findings);
+    Add(object, "targets", aircraft.Targets);
+    Add(object, "camera", aircraft.Camera);
+    if (aircraft.Picture)
+        object["picture"] = {{"number", aircraft.Picture->Number}, {"age_s", Short(aircraft.Picture->AgeS)}};
+    return object;
+}
+
+// The list says when things happened by a clock of its own, and is posted when one of them happens: so its
+// last change was when it was posted.
+Json ToJson(const CommandList &list, double ageS)
+{
+    double nowS = 0;
+    for (const CommandStatus &command : list.items)
+        nowS = std::max(nowS, command.changed_s);
+    nowS += ageS;
+    const auto listed = std::min(list.items.size(), CommandsInSnapshot);
+    Json items = Json::array();
+    for (auto command = std::prev(list.items.end(), static_cast<std::ptrdiff_t>(listed));
+         command != list.items.end(); ++command)
+    {
+        Json item = {{"number", command->number},
+                     {"node", command->node},
+                     {"kind", WireName(command->kind)},
+                     {"progress", WireName(command->progress)},
+                     {"reason", command->reason},
+                     {"sent_age_s", Short(nowS - command->sent_s)},
+                     {"changed_age_s", Short(nowS - command->changed_s)}};
+        if (command->kind == OrderKind::ORDER_GOTO)
+        {
+            item["latitude_deg"] = Degrees(command->latitude_deg);
+            item["longitude_deg"] = Degrees(command->longitude_deg);
+        }
+        items.push_back(std::move(item));
+    }
+    return items;
+}
+
+const char *WireName(StationEvent::Weight weight)
+{
+    switch (weight)
+    {
+        case StationEvent::Weight::Info:
+            return "info";
+        case StationEvent::Weight::Warning:
+            return "warning";
+        case StationEvent::Weight::Alarm:
+            return "alarm";
+    }
+    return "info";
+}
+
+Json ToJson(const std::deque<StationEvent> &events, double nowS)
+{
+    Json items = Json::array();
+    const auto listed = std::min(events.size(), EventsInSnapshot);
+    for (auto event = std::prev(events.end(), static_cast<std::ptrdiff_t>(listed)); event != events.end();
+         ++event)
+        items.push_back({{"number", event->Number},
+                         {"age_s", Short(nowS - event->AtS)},
+                         {"weight", WireName(event->How)},
+                         {"node", event->Node},
+                         {"text", event->Text}});
+    return items;
+}
+}  // namespace
+
+std::string SnapshotText(const StationData &data, const std::deque<StationEvent> &events)
+{
+    Json aircraft = Json::array();
+    for (const AircraftData &one : data.Aircraft)
+        aircraft.push_back(ToJson(one));
+    Json snapshot = {{"type", "snapshot"},
+                     {"node", data.Node},
+                     {"life", data.Life},
+                     {"number", data.Number},
+                     {"server_s", Short(data.NowS)},
+                     {"fleet_age_s", Short(data.FleetAgeS)},
+                     {"aircraft", std::move(aircraft)},
+                     {"events", ToJson(events, data.NowS)}};
+    Add(snapshot, "area", data.Area);
+    snapshot["commands"] = data.Commands ? ToJson(*data.Commands.Content, data.Commands.AgeS) : Json::array();
+    return snapshot.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace Ground

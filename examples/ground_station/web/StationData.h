@@ -1,0 +1,80 @@
+#pragma once
+
+#include "FleetTable.h"
+#include "gateway.idl.h"
+#include "ground.idl.h"
+#include "uav.idl.h"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Ground
+{
+
+// A message as it is known now. It belongs to somebody else, and must outlive this.
+template <typename Message>
+struct Aged
+{
+    const Message *Content = nullptr;  // null: none has come
+    double AgeS = 0;                   // since it was true at its origin
+
+    explicit operator bool() const { return Content != nullptr; }
+};
+
+// Fetches the latest of a message that was registered, with its age. Nothing if none has come, or if its name
+// belongs to a message of another type, which the workspace has logged.
+template <typename Message>
+Aged<Message> Latest(Message &message)
+{
+    if (!message.GetGlobalPublishSubscribeMessageRef())
+        return {};
+    message.FetchMessage();
+    if (!message.WasPosted())
+        return {};
+    return {&message, message.GetAgeSeconds()};
+}
+
+// The latest picture of one aircraft.
+struct PictureData
+{
+    std::uint32_t Number = 0;
+    double AgeS = 0;  // since it was taken, or since it came if that is not known
+};
+
+// What is known of one aircraft now.
+struct AircraftData
+{
+    static constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
+
+    std::string Node;
+    RowState State = RowState::Waiting;
+    std::string Reason;       // why it is not UP
+    double HeardS = Unknown;  // since it was last heard
+    double RoundTripS = Unknown;
+    Aged<Uav::Pose> Pose;
+    Aged<Uav::MissionState> Mission;
+    Aged<Uav::Health> Health;
+    Aged<Uav::Findings> Findings;
+    Aged<Uav::Targets> Targets;
+    Aged<Uav::CameraView> Camera;
+    std::optional<PictureData> Picture;
+};
+
+// What the ground station knows now.
+struct StationData
+{
+    std::string Node;                                            // of the ground station
+    std::string Life;                                            // differs in each life of the program
+    std::uint64_t Number = 0;                                    // counted from 1 in each life
+    double NowS = 0;                                             // by the clock that ages are counted with
+    double FleetAgeS = std::numeric_limits<double>::infinity();  // of what the states of the aircraft rest on
+    std::vector<AircraftData> Aircraft;
+    Aged<Uav::SearchArea> Area;
+    Aged<CommandList> Commands;
+    std::vector<Rabit::Gateway::Problem> Problems;
+};
+
+}  // namespace Ground

@@ -1,0 +1,163 @@
+#include "WebPage.h"
+
+#include "Snapshot.h"
+
+#include <rabit/gateway/GatewayManager.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string_view>
+#include <utility>
+
+namespace Ground
+{
+namespace
+{
+// The part of an aircraft that sees; shown with the aircraft.
+constexpr std::string_view VisionSuffix = ".vision";
+
+bool IsVision(const std::string &node)
+{
+    return node.size() > VisionSuffix.size() &&
+           std::string_view(node).substr(node.size() - VisionSuffix.size()) == VisionSuffix;
+}
+}  // namespace
+
+WebPage::WebPage(Settings settings, std::unique_ptr<WebServer> server, Rabit::RabitWorkspace &workspace)
+    : RabitManager("WebPage", workspace),
+      _settings(std::move(settings)),
+      _pictureQueue(std::make_shared<RabitQueue>(PicturesWaiting, "Pictures")),
+      _server(std::move(server))
+{
+    AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
+    AddPublishSubscribeMessage("CommandList", _commands);
+    AddPublishSubscribeMessage("SearchArea", _area);
+    AddManagerMessageQueue("Pictures", _pictureQueue);
+    for (const std::string &node : _settings.Expected)
+        _followers[node] = std::make_unique<AircraftFollower>(node, workspace);
+    SetWakeupTimeDelayMSec(static_cast<int>(Period.count()));
+}
+
+WebPage::~WebPage() = default;
+
+void WebPage::Startup()
+{
+    std::random_device random;
+    _life = std::to_string(random()) + std::to_string(random());
+    _number = 0;
+    _events = EventLog();
+    _server->Start([this](const std::string &text) { return Answer(text); });
+}
+
+void WebPage::ExecuteUnitOfWork()
+{
+    TakePictures();
+    Look();
+    _events.Look(_data);
+    _server->Broadcast(std::make_shared<const std::string>(SnapshotText(_data, _events.Events())));
+}
+
+void WebPage::Shutdown()
+{
+    _server->Stop();
+}
+
+double WebPage::NowS() const
+{
+    return std::chrono::duration<double>(GetWorkspace().GetClock().Monotonic()).count();
+}
+
+void WebPage::TakePictures()
+{
+    std::shared_ptr<Rabit::RabitMessage> message;
+    while (_pictureQueue->GetMessage(message))
+    {
+        const auto *const picture = dynamic_cast<const Uav::Picture *>(message.get());
+        if (picture == nullptr || !IsNodeName(picture->taken_by) ||
+            !_server->Pictures().Put(picture->taken_by, picture->jpeg))
+            continue;  // the page shows that the last good one grows old
+        _pictures[picture->taken_by] = {picture->number, picture->pose.gps_time_s, NowS()};
+    }
+}
+
+void WebPage::Look()
+{
+    _fleet->FetchMessage();
+    FollowNewNodes();
+    _data.Node = _settings.Node;
+    _data.Life = _life;
+    _data.Number = ++_number;
+    _data.FleetAgeS = _fleet->GetAgeSeconds();
+    _data.Area = Latest(*_area);
+    _data.Commands = Latest(*_commands);
+    _data.Problems = _fleet->problems;
+    _data.Aircraft.clear();
+    for (const auto &[node, follower] : _followers)
+    {
+        AircraftData data;
+        data.Node = node;
+        Show(data, *follower);
+        const bool expected =
+            std::find(_settings.Expected.begin(), _settings.Expected.end(), node) != _settings.Expected.end();
+        if (expected || data.Pose || data.Mission)
+            _data.Aircraft.push_back(std::move(data));
+    }
+    _data.NowS = NowS();
+}
+
+void WebPage::FollowNewNodes()
+{
+    for (const auto &status : _fleet->nodes)
+        if (!IsVision(status.node) && !_followers.contains(status.node) && _followers.size() < MaxNodes)
+            _followers[status.node] = std::make_unique<AircraftFollower>(status.node, GetWorkspace());
+}
+
+void WebPage::Show(AircraftData &data, AircraftFollower &follower) const
+{
+    data.State = StateOf(*_fleet, _data.FleetAgeS, data.Node);
+    if (const auto *const status = StatusOf(*_fleet, data.Node))
+    {
+        data.Reason = status->reason;
+        data.HeardS = status->last_heard_s + _data.FleetAgeS;
+        data.RoundTripS = status->round_trip_s;
+    }
+    follower.Show(data);
+    const auto picture = _pictures.find(data.Node);
+    if (picture == _pictures.end())
+        return;
+    // The clock of the aircraft may have been set meanwhile: the picture is never younger than its arrival.
+    const double sinceArrivalS = NowS() - picture->second.ArrivedS;
+    const double sinceTakenS = follower.SecondsSince(picture->second.TakenGpsS);
+    data.Picture = {picture->second.Number,
+                    std::isfinite(sinceTakenS) ? std::max(sinceTakenS, sinceArrivalS) : sinceArrivalS};
+}
+
+// Runs on the server's thread.
+std::string WebPage::Answer(const std::string &text)
+{
+    const PageRequest request = ParsePageRequest(text);
+    if (const auto *const clock = std::get_if<ClockRequest>(&request.Wish))
+        return ClockReply(*clock, NowS());
+    std::string refusal = request.Refusal;
+    if (refusal.empty())
+        refusal = Obey(request);
+    return refusal.empty() && request.Ref ? AcceptedReply(*request.Ref) : RefusedReply(request.Ref, refusal);
+}
+
+// Returns why not; empty if it was handed on.
+std::string WebPage::Obey(const PageRequest &request)
+{
+    if (NowS() - _rate.SecondBeganS >= 1)
+        _rate = {NowS(), 0};
+    if (++_rate.Orders > MaxOrdersPerSecond)
+        return "too many orders within a second";
+    bool added = false;
+    if (const auto *const order = std::get_if<Order>(&request.Wish))
+        added = AddMessageToQueue("Commands", std::make_shared<Order>(*order));
+    else if (const auto *const area = std::get_if<Uav::SearchArea>(&request.Wish))
+        added = AddMessageToQueue("Commands", std::make_shared<Uav::SearchArea>(*area));
+    return added ? "" : "the ground station takes no orders now";
+}
+
+}  // namespace Ground

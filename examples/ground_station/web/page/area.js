@@ -1,0 +1,173 @@
+// The search area: a draft that is moved and resized by mouse, keys or numbers, and then sent.
+/* global L */
+import {byId, setText} from './dom.js';
+import {corners, moved, offset} from './geo.js';
+import {fixed, isNumber} from './format.js';
+import {readNumbers} from './orders.js';
+
+// Names and ranges of Uav::SearchArea.
+const FIELDS = [
+  ['latitude_deg', -90, 90, 6, 'The latitude'],
+  ['longitude_deg', -180, 180, 6, 'The longitude'],
+  ['north_m', 10, 20000, 0, 'The side to the north'],
+  ['east_m', 10, 20000, 0, 'The side to the east'],
+  ['altitude_m', -500, 10000, 0, 'The altitude'],
+  ['speed_mps', 0.1, 50, 1, 'The speed'],
+  ['lane_m', 5, 1000, 0, 'The lane'],
+];
+const DEFAULTS = {north_m: 400, east_m: 600, altitude_m: 500, speed_mps: 16, lane_m: 60};
+const STEP_M = 10;
+const ARROWS = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowRight: [0, 1], ArrowLeft: [0, -1]};
+// The corners in the order of corners(): signs of north and east.
+const SIGNS = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
+const CORNER_NAMES = ['South-west', 'North-west', 'North-east', 'South-east'];
+
+const limit = (value) => Math.min(20000, Math.max(10, value));
+
+export class SearchAreaEditor {
+  constructor(model, connection, fleetMap, say) {
+    Object.assign(this, {model, connection, fleetMap, say});
+    this.draft = null;
+    this.handles = [];
+    this.fields = FIELDS.map(([name, low, high, digits, what]) => (
+      {name, low, high, digits, what, input: byId(`area-${name}`)}));
+    for (const {input} of this.fields) input.addEventListener('input', () => this.takeFields());
+    byId('area').addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.send();
+    });
+    byId('area-discard').addEventListener('click', () => this.discard());
+    byId('area-here').addEventListener('click', () => this.placeHere());
+    fleetMap.areaToDraw = () => [this.draft, this.draft !== null];
+  }
+
+  get area() {
+    return this.draft ?? this.model.snapshot?.area ?? null;
+  }
+
+  // Once for each snapshot.
+  update() {
+    const inForce = this.model.snapshot?.area;
+    if (!this.draft && inForce && inForce.number !== this.shownNumber) {
+      this.shownNumber = inForce.number;
+      this.fillFields(inForce);
+      this.placeHandles();
+    }
+    byId('area-send').disabled = this.draft === null || this.sending === true;
+    byId('area-discard').disabled = this.draft === null;
+    if (this.draft) setText(byId('area-note'), 'Not sent yet: the fleet searches the area that is drawn with a full line.');
+    else if (inForce) setText(byId('area-note'), `Area ${inForce.number}. Drag its handles on the map, or change the numbers.`);
+    else setText(byId('area-note'), 'There is none. “Here” puts one into the middle of the map.');
+  }
+
+  change(values) {
+    const from = this.area ?? DEFAULTS;
+    const draft = {};
+    for (const {name} of this.fields) draft[name] = values[name] ?? from[name] ?? DEFAULTS[name];
+    this.draft = draft;
+    this.fillFields(draft);
+    this.redraw();
+  }
+  redraw() {
+    setText(byId('area-error'), '');
+    this.placeHandles();
+    this.fleetMap.layer.paint();
+    this.update();
+  }
+
+  discard() {
+    this.draft = null;
+    this.shownNumber = undefined;
+    for (const {input} of this.fields) input.removeAttribute('aria-invalid');
+    this.redraw();
+  }
+
+  placeHere() {
+    const {lat, lng} = this.fleetMap.map.getCenter();
+    this.change({latitude_deg: lat, longitude_deg: lng});
+  }
+
+  fillFields(area) {
+    for (const {input, name, digits} of this.fields) {
+      if (document.activeElement === input && this.draft) continue;  // somebody types there
+      input.value = isNumber(area[name]) ? String(Number(fixed(area[name], digits))) : '';
+    }
+  }
+  // What was typed becomes the draft when all of it is good; it is checked again when it is sent.
+  takeFields() {
+    const values = {};
+    for (const {input, name, low, high} of this.fields) {
+      const value = Number(input.value);
+      const good = input.value.trim() !== '' && value >= low && value <= high;
+      input.setAttribute('aria-invalid', String(!good));
+      if (!good) return;
+      values[name] = value;
+    }
+    this.draft = values;
+    this.redraw();
+  }
+
+  async send() {
+    if (!this.draft) return;
+    const values = readNumbers(this.fields, byId('area-error'));
+    if (!values) return;
+    this.sending = true;
+    this.update();
+    try {
+      await this.connection.request({type: 'area', ...values});
+      this.say('The search area was given to the ground station.');
+      this.draft = null;
+      this.redraw();
+    } catch (error) {
+      setText(byId('area-error'), error.message);
+    } finally {
+      this.sending = false;
+      this.update();
+    }
+  }
+
+  // Handles: one in the middle moves the area, one in each corner resizes it; the opposite corner stays.
+  placeHandles() {
+    const {area} = this;
+    if (!area) return;
+    if (this.handles.length === 0) {
+      this.addHandle('centre', 'Search area: arrow keys move it', (point) => this.change({latitude_deg: point.lat, longitude_deg: point.lng}));
+      SIGNS.forEach((signs, i) => this.addHandle('corner', `${CORNER_NAMES[i]} corner of the search area: arrow keys move it`,
+        (point) => this.moveCorner(i, point)));
+    }
+    const places = [{lat: area.latitude_deg, lng: area.longitude_deg}, ...corners(area)];
+    this.handles.forEach((handle, i) => {
+      handle.setLatLng(places[i]);
+      handle.getElement().classList.toggle('draft', this.draft !== null);
+    });
+  }
+
+  addHandle(kind, title, onMove) {
+    const size = kind === 'centre' ? 16 : 12;
+    const icon = L.divIcon({className: `handle ${kind}`, iconSize: [size, size]});
+    const handle = L.marker([0, 0], {icon, draggable: true, keyboard: true, title, autoPan: true, zIndexOffset: -1000}).addTo(this.fleetMap.map);
+    handle.on('drag', () => onMove(handle.getLatLng()));
+    const shape = handle.getElement();
+    shape.setAttribute('role', 'button');
+    shape.setAttribute('aria-label', title);
+    shape.addEventListener('keydown', (event) => {
+      const direction = ARROWS[event.key];
+      if (!direction) return;
+      event.preventDefault();
+      event.stopPropagation();
+      const step = event.shiftKey ? 10 * STEP_M : STEP_M;
+      onMove(moved(handle.getLatLng(), direction[0] * step, direction[1] * step));
+    });
+    this.handles.push(handle);
+  }
+
+  moveCorner(i, point) {
+    const opposite = corners(this.area)[(i + 2) % 4];
+    const {north, east} = offset(opposite, point);
+    const [signNorth, signEast] = SIGNS[i];
+    const northM = limit(north * signNorth);
+    const eastM = limit(east * signEast);
+    const middle = moved(opposite, (signNorth * northM) / 2, (signEast * eastM) / 2);
+    this.change({latitude_deg: middle.lat, longitude_deg: middle.lng, north_m: northM, east_m: eastM});
+  }
+}

@@ -1,0 +1,134 @@
+// What is drawn on the canvas of the map, from the bottom up.
+import {corners, ellipse, metresPerDegreeOfLatitude, metresPerDegreeOfLongitude} from './geo.js';
+import {isNumber, STAGES, ageWithUnit} from './format.js';
+import {project} from './canvas.js';
+
+const CELL_PX = 90;             // a cell of the grid is at least this wide
+const SHOWN_AFTER_LOSS_S = 60;  // a camera's view that is older is not drawn any more
+const SIGMAS = 2;               // of the ellipse
+
+function niceAtLeast(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= value);
+}
+
+// Squares whose sides are a round number of metres, labelled in degrees. Returns that number.
+export function drawGrid(painter) {
+  const {map, size, context, colours} = painter;
+  const middle = map.getCenter();
+  const latitude = Math.round(middle.lat);  // so that the lines stay in place while the map is moved
+  const pixelsPerDegree = Math.abs(painter.at({lat: middle.lat, lng: middle.lng + 1})[0] - painter.at(middle)[0]);
+  const metresPerPixel = metresPerDegreeOfLongitude(latitude) / pixelsPerDegree;
+  const cell = niceAtLeast(CELL_PX * metresPerPixel);
+  const bounds = map.getBounds();
+  const digits = Math.max(0, Math.min(6, Math.ceil(Math.log10(metresPerDegreeOfLatitude / cell)) + 1));
+  context.lineWidth = 1;
+  context.setLineDash([]);
+  context.strokeStyle = colours.grid;
+  context.fillStyle = colours['grid-text'];
+  const eachLine = (from, to, step, line) => {
+    if ((to - from) / step > 200) return;
+    for (let i = Math.ceil(from / step); i * step <= to; i++) line(i * step);
+  };
+  context.beginPath();
+  const labels = [];
+  eachLine(bounds.getSouth(), bounds.getNorth(), cell / metresPerDegreeOfLatitude, (lat) => {
+    const y = Math.round(painter.at({lat, lng: middle.lng})[1]) + 0.5;
+    context.moveTo(0, y);
+    context.lineTo(size.x, y);
+    labels.push([`${lat.toFixed(digits)}°`, 4, y - 3]);
+  });
+  eachLine(bounds.getWest(), bounds.getEast(), cell / metresPerDegreeOfLongitude(latitude), (lng) => {
+    const x = Math.round(painter.at({lat: middle.lat, lng})[0]) + 0.5;
+    context.moveTo(x, 0);
+    context.lineTo(x, size.y);
+    labels.push([`${lng.toFixed(digits)}°`, x + 3, 12]);
+  });
+  context.stroke();
+  context.globalAlpha = 0.9;
+  for (const [text, x, y] of labels) if (x > 60 || y > 40) context.fillText(text, x, y);
+  context.globalAlpha = 1;
+  return cell;
+}
+
+export function drawArea(painter, area, isDraft) {
+  if (!area) return;
+  const colour = isDraft ? painter.colours.draft : painter.colours.area;
+  const places = corners(area).map((corner) => painter.at(corner));
+  painter.path(places, true);
+  painter.fill(colour, isDraft ? 0.08 : 0.05);
+  painter.stroke(colour, 2, isDraft ? [6, 4] : []);
+  const [x, y] = places[1];
+  const name = isDraft ? 'New search area, not sent' : `Search area ${area.number}`;
+  painter.label(`${name}  ${Math.round(area.north_m)} × ${Math.round(area.east_m)} m`, x + 2, y - 7, colour);
+}
+
+export function drawTrails(painter, trails, model) {
+  for (const [node, trail] of trails) {
+    if (trail.length < 2) continue;
+    const aircraft = model.find(node);
+    const fresh = aircraft && model.isPoseFresh(aircraft);
+    painter.path(trail.map((point) => painter.place(point)), false);
+    painter.stroke(fresh ? painter.colours.trail : painter.colours.old, node === model.selected ? 2.5 : 1.5, fresh ? [] : [2, 4]);
+  }
+}
+
+export function drawFootprints(painter, model) {
+  for (const aircraft of model.aircraft) {
+    const age = model.age(aircraft.camera?.age_s);
+    if (!(age <= SHOWN_AFTER_LOSS_S)) continue;
+    const points = aircraft.camera.corners.map(([lat, lng]) => ({lat, lng}));
+    if (!points.every(({lat, lng}) => isNumber(lat) && isNumber(lng))) continue;
+    const fresh = model.isFresh(aircraft, 'camera');
+    const colour = fresh ? painter.colours.footprint : painter.colours.old;
+    painter.path(points.map((point) => painter.at(point)), true);
+    if (fresh) painter.fill(colour, aircraft.node === model.selected ? 0.16 : 0.07);
+    painter.stroke(colour, 1, fresh ? [] : [3, 4]);
+  }
+}
+
+export function drawTargets(painter, targets) {
+  for (const target of targets) {
+    if (!isNumber(target.latitude_deg) || !isNumber(target.longitude_deg)) continue;
+    const middle = {lat: target.latitude_deg, lng: target.longitude_deg};
+    const colour = target.fresh ? painter.colours.target : painter.colours.old;
+    if (isNumber(target.sigma_major_m) && isNumber(target.sigma_minor_m)) {
+      const outline = ellipse(middle, SIGMAS * target.sigma_major_m, SIGMAS * target.sigma_minor_m,
+        target.sigma_heading_rad ?? 0);
+      painter.path(outline.map((point) => painter.at(point)), true);
+      painter.fill(colour, 0.12);
+      painter.stroke(colour, 1.5, target.fresh ? [] : [3, 3]);
+    }
+    const [x, y] = painter.at(middle);
+    const old = target.fresh ? '' : ` ${ageWithUnit(target.age)}`;
+    painter.context.textAlign = 'center';
+    painter.label(STAGES[target.stage] ?? '?', x, y + 4, colour);
+    painter.context.textAlign = 'left';
+    painter.label(`${target.name} ${target.stage}${old}`, x + 9, y + 15, colour);
+  }
+}
+
+// Keeps where each aircraft has been.
+export class Trails {
+  static LONGEST = 600;
+  static STEP_S = 0.5;
+  trails = new Map();
+
+  add(map, aircraft, now) {
+    const {pose} = aircraft;
+    if (!pose || !isNumber(pose.latitude_deg) || !isNumber(pose.longitude_deg)) return;
+    let trail = this.trails.get(aircraft.node);
+    if (!trail) this.trails.set(aircraft.node, (trail = []));
+    const last = trail[trail.length - 1];
+    const point = project(map, {lat: pose.latitude_deg, lng: pose.longitude_deg});
+    if (last && last.x === point.x && last.y === point.y) return;
+    point.at = now;
+    // The last point moves with the aircraft until it is STEP_S away from the one before.
+    if (trail.length > 1 && now - trail[trail.length - 2].at < Trails.STEP_S) trail[trail.length - 1] = point;
+    else trail.push(point);
+    if (trail.length > Trails.LONGEST) trail.shift();
+  }
+  clear() {
+    this.trails.clear();
+  }
+}

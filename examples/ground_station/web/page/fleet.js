@@ -1,0 +1,107 @@
+// The table of the aircraft, and the line about the selected one.
+import {ageText, ageWithUnit, fixed, isNumber, STATES} from './format.js';
+import {byId, element, keepList, setAttribute, setClass, setText} from './dom.js';
+
+const COLUMNS = ['name', 'state', 'age number', 'rtt number', 'battery number', 'altitude number', 'speed number', 'mission'];
+
+export class FleetTable {
+  constructor(model, onSelect) {
+    this.model = model;
+    this.onSelect = onSelect;
+    this.body = byId('fleet').tBodies[0];
+    this.rows = new Map();
+    this.body.addEventListener('keydown', (event) => this.onKey(event));
+  }
+
+  update() {
+    const {model} = this;
+    keepList(this.body, this.rows, model.aircraft, (one) => one.node, (one) => this.make(one), (row, one) => this.fill(row, one));
+    byId('fleet-empty').hidden = model.aircraft.length > 0;
+    // Exactly one row can be reached by Tab: the selected one, else the first.
+    const reachable = this.rows.get(model.selected) ?? this.rows.get(model.aircraft[0]?.node);
+    for (const row of this.rows.values()) setAttribute(row.root, 'tabindex', row === reachable ? '0' : '-1');
+  }
+
+  make(aircraft) {
+    const root = element('tr');
+    const cells = COLUMNS.map((name) => {
+      const cell = element('td', name);
+      root.append(cell);
+      return cell;
+    });
+    setText(cells[0], aircraft.node);
+    root.addEventListener('click', () => this.onSelect(aircraft.node));
+    return {root, cells};
+  }
+
+  fill({root, cells}, aircraft) {
+    const {model} = this;
+    const state = model.state(aircraft);
+    const {pose, mission, health} = aircraft;
+    const fresh = model.isPoseFresh(aircraft);
+    const mark = (cell, name, isFresh) => setClass(cell, isFresh ? name : `${name} old`);
+    setClass(root, model.shownState(aircraft) === 'stale' && state === 'up' ? 'stale' : state);
+    setAttribute(root, 'aria-selected', String(aircraft.node === model.selected));
+    setText(cells[1], `${STATES[state].sign} ${STATES[state].word}`);
+    setText(cells[2], pose ? `${fresh ? '' : '! '}${ageText(model.age(pose.age_s))}` : '–');
+    mark(cells[2], 'age number', fresh);
+    setText(cells[3], isNumber(aircraft.round_trip_s) ? fixed(aircraft.round_trip_s * 1000, 1) : '–');
+    mark(cells[3], 'rtt number', state === 'up');
+    setText(cells[4], health ? fixed(health.battery_percent, 0) : '–');
+    mark(cells[4], 'battery number', !health || model.isFresh(aircraft, 'health'));
+    setText(cells[5], pose ? fixed(pose.altitude_m, 0) : '–');
+    mark(cells[5], 'altitude number', fresh);
+    setText(cells[6], pose ? fixed(pose.speed_mps, 1) : '–');
+    mark(cells[6], 'speed number', fresh);
+    setText(cells[7], mission ? mission.mode.toUpperCase() + (mission.target ? ` ${mission.target}` : '') : '–');
+    mark(cells[7], 'mission', !mission || model.isFresh(aircraft, 'mission'));
+    setAttribute(cells[7], 'title', mission?.text ?? '');
+  }
+
+  // Arrow keys choose an aircraft.
+  onKey(event) {
+    const step = {ArrowDown: 1, ArrowUp: -1}[event.key];
+    const names = this.model.aircraft.map((one) => one.node);
+    let next = null;
+    if (step) {
+      const at = names.indexOf(this.model.selected);
+      next = at < 0 ? names[0] : names[Math.min(names.length - 1, Math.max(0, at + step))];
+    } else if (event.key === 'Enter' || event.key === ' ') {
+      next = names.find((name) => this.rows.get(name)?.root === document.activeElement);
+    }
+    if (!next) return;
+    event.preventDefault();
+    this.onSelect(next);
+    this.focus(next);
+  }
+  focus(node) {
+    const row = this.rows.get(node ?? this.model.aircraft[0]?.node);
+    row?.root.focus();
+    row?.root.scrollIntoView({block: 'nearest'});
+  }
+}
+
+export function showSelected(model) {
+  const aircraft = model.selectedAircraft;
+  const known = aircraft !== null;
+  for (const name of ['goto', 'search', 'home', 'centre']) byId(`act-${name}`).disabled = !known;
+  if (!known) {
+    setText(byId('selected-title'), 'No aircraft selected');
+    setText(byId('selected-text'), 'Choose one in the list or on the map.');
+    return;
+  }
+  const state = model.state(aircraft);
+  setText(byId('selected-title'), `${aircraft.node} ${STATES[state].sign} ${STATES[state].word}`);
+  const said = [];
+  if (state !== 'up' && aircraft.reason) said.push(aircraft.reason);
+  if (aircraft.pose) {
+    const {latitude_deg: latitude, longitude_deg: longitude} = aircraft.pose;
+    const age = model.isPoseFresh(aircraft) ? '' : ` (${ageWithUnit(model.age(aircraft.pose.age_s))} ago)`;
+    said.push(`${fixed(latitude, 5)}, ${fixed(longitude, 5)}${age}`);
+  }
+  if (aircraft.mission?.text)
+    said.push(aircraft.mission.text + (model.isFresh(aircraft, 'mission') ? '' : ` (${ageWithUnit(model.age(aircraft.mission.age_s))} ago)`));
+  if (aircraft.mission?.partner) said.push(`with ${aircraft.mission.partner}`);
+  if (aircraft.health?.wants_home) said.push(`goes home by itself: ${aircraft.health.reason}`);
+  setText(byId('selected-text'), said.join(' · '));
+}

@@ -1,0 +1,135 @@
+// The map: aircraft as markers, everything else on a canvas. No tiles: there is no internet in the field.
+/* global L */
+import {ageWithUnit, isNumber, STATES} from './format.js';
+import {CanvasLayer} from './canvas.js';
+import {drawArea, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
+import {byId, element, setAttribute, setText} from './dom.js';
+import {corners} from './geo.js';
+import {pageNow} from './connection.js';
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+function svg(tag, attributes) {
+  const made = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+
+function makeSymbol() {
+  const root = element('div');
+  const picture = svg('svg', {viewBox: '-14 -14 28 28', 'aria-hidden': 'true'});
+  const turned = svg('g', {});
+  turned.append(svg('path', {class: 'shape', d: 'M0-11 8 10 0 5-8 10Z'}));
+  picture.append(svg('circle', {class: 'ring', r: 13}), turned, svg('path', {class: 'cross', d: 'M-7-7 7 7M7-7-7 7'}));
+  const label = element('span', 'label');
+  root.append(picture, label);
+  return {root, turned, label};
+}
+
+export class FleetMap {
+  // onClick(latlng), onSelect(node).
+  constructor(model, {onClick, onSelect}) {
+    this.model = model;
+    this.onSelect = onSelect;
+    this.markers = new Map();
+    this.trails = new Trails();
+    this.fitted = false;
+    this.map = L.map('map', {
+      zoomAnimation: false, fadeAnimation: false, markerZoomAnimation: false, inertia: false, attributionControl: false,
+      zoomSnap: 0.5, minZoom: 3, maxZoom: 22, center: [0, 0], zoom: 3, doubleClickZoom: false, keyboardPanDelta: 60,
+    });
+    L.control.scale({imperial: false, maxWidth: 160}).addTo(this.map);
+    this.areaToDraw = () => [null, false];
+    this.layer = new CanvasLayer((painter) => this.draw(painter)).addTo(this.map);
+    this.map.on('click', (event) => onClick(event.latlng));
+    new ResizeObserver(() => this.map.invalidateSize({pan: false})).observe(byId('map'));
+  }
+
+  draw(painter) {
+    const cell = drawGrid(painter);
+    const [area, isDraft] = this.areaToDraw();
+    drawArea(painter, this.model.snapshot?.area, false);
+    if (isDraft) drawArea(painter, area, true);
+    drawFootprints(painter, this.model);
+    drawTrails(painter, this.trails.trails, this.model);
+    drawTargets(painter, this.model.targets);
+    if (this.goingTo) this.drawGoingTo(painter);
+    const size = cell >= 1000 ? `${cell / 1000} km` : `${cell} m`;
+    setText(byId('legend'), `Grid ${size} · ellipses 2σ · north up`);
+  }
+
+  drawGoingTo(painter) {
+    const [x, y] = painter.at(this.goingTo);
+    const {context, colours} = painter;
+    context.beginPath();
+    context.arc(x, y, 9, 0, 2 * Math.PI);
+    context.moveTo(x - 14, y);
+    context.lineTo(x + 14, y);
+    context.moveTo(x, y - 14);
+    context.lineTo(x, y + 14);
+    painter.stroke(colours.draft, 2);
+  }
+
+  // A point that an aircraft is about to be sent to; null: none.
+  showGoingTo(point) {
+    this.goingTo = point;
+    this.layer.paint();
+  }
+
+  update(isNewSnapshot) {
+    const {model} = this;
+    if (model.newLife && isNewSnapshot) this.trails.clear();
+    const shown = model.aircraft.filter(({pose}) => pose && isNumber(pose.latitude_deg) && isNumber(pose.longitude_deg));
+    if (isNewSnapshot) for (const aircraft of shown) if (model.isPoseFresh(aircraft)) this.trails.add(this.map, aircraft, pageNow());
+    const present = new Set();
+    for (const aircraft of shown) {
+      present.add(aircraft.node);
+      this.place(aircraft);
+    }
+    for (const [node, {marker}] of this.markers) {
+      if (present.has(node)) continue;
+      marker.remove();
+      this.markers.delete(node);
+    }
+    if (!this.fitted && shown.length > 0) this.fit();
+    this.layer.paint();
+  }
+
+  place(aircraft) {
+    const {model} = this;
+    let known = this.markers.get(aircraft.node);
+    const {pose} = aircraft;
+    if (!known) {
+      const symbol = makeSymbol();
+      const icon = L.divIcon({className: 'aircraft', html: symbol.root, iconSize: [0, 0]});
+      const marker = L.marker([pose.latitude_deg, pose.longitude_deg], {icon, keyboard: false}).addTo(this.map);
+      marker.on('click', () => this.onSelect(aircraft.node));
+      this.markers.set(aircraft.node, (known = {marker, symbol}));
+    }
+    known.marker.setLatLng([pose.latitude_deg, pose.longitude_deg]);
+    const state = model.shownState(aircraft);
+    const selected = aircraft.node === model.selected;
+    const shape = known.marker.getElement();
+    for (const name of Object.keys(STATES)) shape.classList.toggle(name, name === state);
+    shape.classList.toggle('selected', selected);
+    setAttribute(known.symbol.turned, 'transform', `rotate(${(((pose.yaw_rad ?? 0) * 180) / Math.PI).toFixed(0)})`);
+    const age = model.age(pose.age_s);
+    setText(known.symbol.label,
+      state === 'up' ? aircraft.node : `${aircraft.node} ${STATES[state].word} ${ageWithUnit(age)}`);
+  }
+
+  fit() {
+    const points = this.model.aircraft
+      .filter(({pose}) => pose && isNumber(pose.latitude_deg) && isNumber(pose.longitude_deg))
+      .map(({pose}) => [pose.latitude_deg, pose.longitude_deg]);
+    const {area} = this.model.snapshot ?? {};
+    if (area) points.push(...corners(area).map(({lat, lng}) => [lat, lng]));
+    if (points.length === 0) return;
+    this.fitted = true;
+    this.map.fitBounds(points, {padding: [50, 50], maxZoom: 18, animate: false});
+  }
+
+  centre(aircraft) {
+    if (aircraft?.pose) this.map.panTo([aircraft.pose.latitude_deg, aircraft.pose.longitude_deg], {animate: false});
+  }
+}

@@ -1,0 +1,100 @@
+// What the page knows, and how old it is by now. Nothing here touches the document.
+import {pageNow} from './connection.js';
+import {isNumber} from './format.js';
+
+// The same limits as the ground station's own view has: FleetRow::FreshS, FleetFreshS, and a snapshot a second.
+const POSE_FRESH_S = 1.0;
+const FLEET_FRESH_S = 3.0;
+const LIVE_S = 1.5;
+const PART_FRESH_S = {mission: 3.5, health: 3.5, targets: 2.5, camera: 2.5, picture: 10};
+
+export class Model {
+  snapshot = null;
+  takenAt = -Infinity;
+  connected = false;
+  selected = null;
+  received = 0;
+  skipped = 0;
+
+  take(snapshot, takenAt) {
+    const last = this.snapshot;
+    this.newLife = last !== null && last.life !== snapshot.life;
+    if (last && !this.newLife) this.skipped += Math.max(0, snapshot.number - last.number - 1);
+    this.snapshot = snapshot;
+    this.takenAt = takenAt;
+    this.received += 1;
+  }
+
+  get aircraft() {
+    return this.snapshot?.aircraft ?? [];
+  }
+  find(node) {
+    return this.aircraft.find((one) => one.node === node) ?? null;
+  }
+  get selectedAircraft() {
+    return this.find(this.selected);
+  }
+
+  // Seconds since the snapshot was made.
+  get staleness() {
+    return Math.max(0, pageNow() - this.takenAt);
+  }
+  // Whether what is shown is of now.
+  get live() {
+    return this.connected && this.staleness <= LIVE_S;
+  }
+  // The age now of something that had that age in the snapshot.
+  age(ageInSnapshot) {
+    return isNumber(ageInSnapshot) ? ageInSnapshot + this.staleness : NaN;
+  }
+
+  state(aircraft) {
+    if (aircraft.state !== 'up') return aircraft.state;
+    const fleetAge = this.age(this.snapshot.fleet_age_s);
+    return this.live && fleetAge <= FLEET_FRESH_S ? 'up' : 'stale';
+  }
+  isPoseFresh(aircraft) {
+    return this.state(aircraft) === 'up' && this.age(aircraft.pose?.age_s) <= POSE_FRESH_S;
+  }
+  isFresh(aircraft, part) {
+    return this.state(aircraft) === 'up' && this.age(aircraft[part]?.age_s) <= PART_FRESH_S[part];
+  }
+  // As on the map and in its sign: an aircraft that is UP but whose pose is old is shown as STALE there.
+  shownState(aircraft) {
+    const state = this.state(aircraft);
+    return state === 'up' && aircraft.pose && !this.isPoseFresh(aircraft) ? 'stale' : state;
+  }
+
+  // The targets of all aircraft, as each of them found them: position and ellipse from its vision, stage from its
+  // mission control.
+  get targets() {
+    const found = [];
+    for (const aircraft of this.aircraft) {
+      const finds = new Map((aircraft.findings?.items ?? []).map((one) => [one.target, one]));
+      for (const target of aircraft.targets?.items ?? []) {
+        if (target.found_by !== aircraft.node && !finds.has(target.number)) continue;
+        const finding = finds.get(target.number);
+        finds.delete(target.number);
+        found.push({
+          ...target,
+          name: `${aircraft.node}-${target.number}`,
+          stage: finding?.stage ?? 'found',
+          validatedBy: finding?.validated_by ?? '',
+          age: this.age(aircraft.targets.age_s + (target.unseen_s ?? 0)),
+          fresh: this.isFresh(aircraft, 'targets'),
+        });
+      }
+      // Of these only the last position is known.
+      for (const finding of finds.values())
+        found.push({
+          ...finding,
+          name: `${aircraft.node}-${finding.target}`,
+          seen_by: [aircraft.node],
+          validatedBy: finding.validated_by,
+          age: NaN,
+          fresh: false,
+        });
+    }
+    return found;
+  }
+}

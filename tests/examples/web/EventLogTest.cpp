@@ -1,0 +1,132 @@
+#include "EventLog.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace
+{
+using Ground::RowState;
+using Weight = Ground::StationEvent::Weight;
+using testing::ElementsAre;
+
+class EventLog : public testing::Test
+{
+protected:
+    Ground::StationData _data;
+    Ground::EventLog _log;
+    Uav::MissionState _mission;
+    Uav::Health _health;
+    Uav::Findings _findings;
+    Ground::CommandList _commands;
+    Uav::SearchArea _area;
+    std::uint64_t _told = 0;
+
+    void SetUp() override { _data.Aircraft.emplace_back().Node = "uav1"; }
+    Ground::AircraftData &Aircraft() { return _data.Aircraft.front(); }
+    // The events since the last call.
+    std::vector<std::string> New()
+    {
+        _log.Look(_data);
+        std::vector<std::string> texts;
+        for (const auto &event : _log.Events())
+            if (event.Number > _told)
+                texts.push_back(event.Node + "|" + event.Text);
+        _told = _log.Events().empty() ? 0 : _log.Events().back().Number;
+        return texts;
+    }
+};
+
+TEST_F(EventLog, TellsWhenTheStateOfAnAircraftChanges)
+{
+    EXPECT_THAT(New(), ElementsAre());
+    Aircraft().State = RowState::Up;
+    EXPECT_THAT(New(), ElementsAre("uav1|UP"));
+    EXPECT_THAT(New(), ElementsAre());
+    Aircraft().State = RowState::Lost;
+    Aircraft().Reason = "not heard for 3.5 s";
+    _data.NowS = 7;
+    EXPECT_THAT(New(), ElementsAre("uav1|LOST: not heard for 3.5 s"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Alarm);
+    EXPECT_EQ(_log.Events().back().AtS, 7);
+}
+
+TEST_F(EventLog, TellsWhatTheAircraftDoAndFind)
+{
+    _mission.mode = Uav::MissionMode::MISSION_SEARCH;
+    _mission.text = "lane 2 of 7";
+    Aircraft().Mission = {&_mission, 0};
+    EXPECT_THAT(New(), ElementsAre("uav1|search: lane 2 of 7"));
+    _mission.text = "lane 3 of 7";
+    EXPECT_THAT(New(), ElementsAre());
+    Uav::Finding finding;
+    finding.target = 4;
+    _findings.items = {finding};
+    Aircraft().Findings = {&_findings, 0};
+    EXPECT_THAT(New(), ElementsAre("uav1|target 4 found"));
+    _findings.items[0].stage = Uav::TargetStage::TARGET_VALIDATED;
+    _findings.items[0].validated_by = "uav2";
+    EXPECT_THAT(New(), ElementsAre("uav1|target 4 validated (seen by uav2)"));
+    _health.wants_home = true;
+    _health.reason = "battery low";
+    Aircraft().Health = {&_health, 0};
+    EXPECT_THAT(New(), ElementsAre("uav1|goes home for a reason of its own: battery low"));
+}
+
+TEST_F(EventLog, TellsHowCommandsGoOn)
+{
+    Ground::CommandStatus command;
+    command.id = 90001;
+    command.number = 1;
+    command.node = "uav1";
+    command.kind = Ground::OrderKind::ORDER_HOME;
+    _commands.items = {command};
+    _data.Commands = {&_commands, 0};
+    EXPECT_THAT(New(), ElementsAre("uav1|command 1 (home) sent"));
+    EXPECT_THAT(New(), ElementsAre());
+    _commands.items[0].progress = Ground::CommandProgress::PROGRESS_DECLINED;
+    _commands.items[0].reason = "no home";
+    EXPECT_THAT(New(), ElementsAre("uav1|command 1 (home) declined: no home"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Warning);
+}
+
+TEST_F(EventLog, TellsOfTheSearchAreaAndOfProblemsOnce)
+{
+    _area.number = 2;
+    _data.Area = {&_area, 0};
+    Rabit::Gateway::Problem problem;
+    problem.subject = "subscribe Pose";
+    problem.node = "uav3";
+    problem.reason = "other type";
+    _data.Problems = {problem, problem};
+    EXPECT_THAT(New(), ElementsAre("|Search area 2 is in force", "uav3|subscribe Pose: other type"));
+    EXPECT_THAT(New(), ElementsAre());
+    _data.Problems.clear();
+    EXPECT_THAT(New(), ElementsAre());
+    _data.Problems = {problem};
+    EXPECT_THAT(New(), ElementsAre("uav3|subscribe Pose: other type"));
+}
+
+TEST_F(EventLog, IsBounded)
+{
+    for (int i = 0; i < 1000; ++i)
+    {
+        Aircraft().State = i % 2 == 0 ? RowState::Up : RowState::Stale;
+        _log.Look(_data);
+    }
+    EXPECT_EQ(_log.Events().size(), Ground::EventLog::MaxEvents);
+    EXPECT_EQ(_log.Events().back().Number, 1000u);
+    Aircraft().Findings = {&_findings, 0};
+    for (std::uint32_t i = 0; i < 3 * Ground::EventLog::MaxFollowed; ++i)
+    {
+        Uav::Finding finding;
+        finding.target = i;
+        _findings.items = {finding};
+        _log.Look(_data);
+    }
+    EXPECT_EQ(_log.Events().back().Number, 1000u + Ground::EventLog::MaxFollowed);
+}
+
+}  // namespace

@@ -1,0 +1,149 @@
+#include "Snapshot.h"
+
+#include <nlohmann/json.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace
+{
+using Ground::RowState;
+using Json = nlohmann::json;
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+constexpr float NaNf = std::numeric_limits<float>::quiet_NaN();
+
+class Snapshot : public testing::Test
+{
+protected:
+    Ground::StationData _data;
+    std::deque<Ground::StationEvent> _events;
+    Uav::Pose _pose;
+    Uav::Health _health;
+    Uav::MissionState _mission;
+    Ground::CommandList _commands;
+
+    Ground::AircraftData &Aircraft()
+    {
+        if (_data.Aircraft.empty())
+            _data.Aircraft.emplace_back().Node = "uav1";
+        return _data.Aircraft.front();
+    }
+    Json Shown() const { return Json::parse(Ground::SnapshotText(_data, _events)); }
+};
+
+TEST_F(Snapshot, TellsWhatIsKnownWithTheAgeOfEachPart)
+{
+    _pose.latitude_deg = 47.123456789;
+    _pose.velocity_north_mps = 3;
+    _pose.velocity_east_mps = 4;
+    Aircraft().State = RowState::Up;
+    Aircraft().Pose = {&_pose, 0.25};
+    Aircraft().Health = {&_health, 1.5};
+    Aircraft().RoundTripS = 0.0021;
+    _data.NowS = 12.5;
+    _data.FleetAgeS = 0.5;
+    const Json shown = Shown();
+    EXPECT_EQ(shown["server_s"], 12.5);
+    EXPECT_EQ(shown["fleet_age_s"], 0.5);
+    const Json &aircraft = shown["aircraft"][0];
+    EXPECT_EQ(aircraft["node"], "uav1");
+    EXPECT_EQ(aircraft["state"], "up");
+    EXPECT_EQ(aircraft["round_trip_s"], 0.0021);
+    EXPECT_EQ(aircraft["pose"]["latitude_deg"], 47.1234568);
+    EXPECT_EQ(aircraft["pose"]["speed_mps"], 5);
+    EXPECT_EQ(aircraft["pose"]["age_s"], 0.25);
+    EXPECT_EQ(aircraft["health"]["age_s"], 1.5);
+    EXPECT_FALSE(aircraft.contains("mission")) << "none has come";
+}
+
+TEST_F(Snapshot, TellsNothingOfWhatIsNotKnown)
+{
+    _health.battery_percent = NaNf;
+    _pose.latitude_deg = NaN;
+    _pose.altitude_m = std::numeric_limits<double>::infinity();
+    _pose.longitude_deg = std::numeric_limits<double>::max();
+    Aircraft().Health = {&_health, 0};
+    Aircraft().Pose = {&_pose, 0};
+    const Json shown = Shown();
+    const Json &aircraft = shown["aircraft"][0];
+    EXPECT_TRUE(aircraft["health"]["battery_percent"].is_null());
+    EXPECT_TRUE(aircraft["round_trip_s"].is_null());
+    EXPECT_TRUE(aircraft["pose"]["latitude_deg"].is_null());
+    EXPECT_TRUE(aircraft["pose"]["longitude_deg"].is_null());
+    EXPECT_TRUE(aircraft["pose"]["altitude_m"].is_null());
+    EXPECT_TRUE(shown["fleet_age_s"].is_null()) << "there is no Fleet at all";
+    EXPECT_FALSE(shown.contains("area"));
+    EXPECT_EQ(shown["commands"], Json::array());
+}
+
+TEST_F(Snapshot, PassesTextsOnAsTheyAreIfTheyAreUtf8)
+{
+    _mission.text = "</script><img src=x onerror=alert(1)>\"\n";
+    Aircraft().Mission = {&_mission, 0};
+    EXPECT_EQ(Shown()["aircraft"][0]["mission"]["text"], _mission.text);
+    _mission.text = "bad \xFF\xC0 bytes";
+    EXPECT_THAT(Shown()["aircraft"][0]["mission"]["text"].get<std::string>(),
+                testing::StartsWith("bad \xEF\xBF\xBD"));
+}
+
+TEST_F(Snapshot, GivesAgesToCommandsByTheirLastChange)
+{
+    Ground::CommandStatus early;
+    early.number = 1;
+    early.node = "uav1";
+    early.progress = Ground::CommandProgress::PROGRESS_DONE;
+    early.sent_s = 10;
+    early.changed_s = 14;
+    Ground::CommandStatus late = early;
+    late.number = 2;
+    late.progress = Ground::CommandProgress::PROGRESS_IN_DOUBT;
+    late.sent_s = late.changed_s = 20;
+    _commands.items = {early, late};
+    _data.Commands = {&_commands, 0.5};
+    const Json shown = Shown()["commands"];
+    EXPECT_EQ(shown[0]["progress"], "done");
+    EXPECT_EQ(shown[0]["sent_age_s"], 10.5);
+    EXPECT_EQ(shown[0]["changed_age_s"], 6.5);
+    EXPECT_EQ(shown[1]["progress"], "in doubt");
+    EXPECT_EQ(shown[1]["changed_age_s"], 0.5);
+}
+
+TEST_F(Snapshot, HoldsTheNewestCommandsAndEventsOnly)
+{
+    for (std::uint32_t i = 1; i <= 100; ++i)
+    {
+        Ground::CommandStatus command;
+        command.number = i;
+        _commands.items.push_back(command);
+        _events.push_back({i, 0, Ground::StationEvent::Weight::Alarm, "uav1", "text"});
+    }
+    _data.Commands = {&_commands, 0};
+    const Json shown = Shown();
+    EXPECT_EQ(shown["commands"].size(), Ground::CommandsInSnapshot);
+    EXPECT_EQ(shown["commands"].back()["number"], 100);
+    EXPECT_EQ(shown["events"].size(), Ground::EventsInSnapshot);
+    EXPECT_EQ(shown["events"].back()["number"], 100);
+    EXPECT_EQ(shown["events"].back()["weight"], "alarm");
+}
+
+TEST_F(Snapshot, TellsOfTargetsHowLongTheyWereNotSeenByTheClockOfTheAircraft)
+{
+    Uav::Targets targets;
+    targets.gps_time_s = 1000;
+    Uav::Target target;
+    target.number = 3;
+    target.seen_gps_time_s = 996;
+    target.seen_by = {"uav1", "uav2"};
+    targets.items = {target};
+    Aircraft().Targets = {&targets, 0.1};
+    const Json shown = Shown()["aircraft"][0]["targets"];
+    EXPECT_EQ(shown["items"][0]["unseen_s"], 4);
+    EXPECT_EQ(shown["items"][0]["seen_by"].size(), 2u);
+    EXPECT_EQ(shown["age_s"], 0.1);
+}
+
+}  // namespace
