@@ -5,27 +5,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace Ground
 {
 namespace
 {
-RowState ToRowState(Rabit::Gateway::NodeState state)
-{
-    switch (state)
-    {
-        case Rabit::Gateway::NodeState::UP:
-            return RowState::Up;
-        case Rabit::Gateway::NodeState::STALE:
-            return RowState::Stale;
-        case Rabit::Gateway::NodeState::LOST:
-            return RowState::Lost;
-    }
-    return RowState::Lost;
-}
-
 TerminalScreen::Size TerminalSize()
 {
     TerminalScreen::Size size;
@@ -71,7 +56,7 @@ void FleetView::Look()
     {
         Seen seen;
         seen.Row.Node = node;
-        seen.Row.State = StateOf(node);
+        seen.Row.State = StateOf(*_fleet, _fleet->GetAgeSeconds(), node);
         aircraft.Monitor->Show(seen.Row);
         if (!aircraft.Expected && !seen.Row.AgeS && seen.Row.Mission.empty())
             continue;  // not an aircraft, as far as can be told
@@ -96,19 +81,6 @@ void FleetView::FollowNewNodes()
     for (const auto &status : _fleet->nodes)
         if (!_aircraft.contains(status.node))
             _aircraft[status.node] = {std::make_unique<AircraftMonitor>(status.node, GetWorkspace()), false};
-}
-
-RowState FleetView::StateOf(const std::string &node) const
-{
-    const auto status = std::find_if(_fleet->nodes.begin(), _fleet->nodes.end(),
-                                     [&node](const auto &candidate) { return candidate.node == node; });
-    if (status == _fleet->nodes.end())
-        return RowState::Waiting;
-    const RowState state = ToRowState(status->state);
-    // The gateway posts Fleet every second. If it has stopped, nobody knows whether the node is there.
-    if (state == RowState::Up && _fleet->GetAgeSeconds() > FleetFreshS)
-        return RowState::Stale;
-    return state;
 }
 
 void FleetView::Print()

@@ -2,6 +2,7 @@
 
 #include "AircraftMonitor.h"
 #include "FleetTable.h"
+#include "NodeState.h"
 #include "TargetLines.h"
 #include "TerminalScreen.h"
 #include "gateway.idl.h"
@@ -11,7 +12,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <ostream>
@@ -33,8 +33,6 @@ class FleetView : public Rabit::RabitManager
 public:
     static constexpr std::chrono::milliseconds ScreenPeriod{200};
     static constexpr std::chrono::milliseconds LogPeriod{1000};
-    // A Fleet older than this tells nothing of the present any more.
-    static constexpr double FleetFreshS = 3.0;
 
     // Where to show it. The stream must outlive the manager; nobody else may write to it while the manager
     // runs.
@@ -63,14 +61,6 @@ public:
     const std::vector<Seen> &Result() const { return _seen; }
 
 private:
-    // Names in the order that people expect: uav2 before uav10.
-    struct NaturalOrder
-    {
-        bool operator()(const std::string &a, const std::string &b) const
-        {
-            return strverscmp(a.c_str(), b.c_str()) < 0;
-        }
-    };
     struct Aircraft
     {
         std::unique_ptr<AircraftMonitor> Monitor;
@@ -79,7 +69,6 @@ private:
 
     void Look();
     void FollowNewNodes();
-    RowState StateOf(const std::string &node) const;
     void Print();
     std::vector<std::string> TargetLinesThatChanged();
 
