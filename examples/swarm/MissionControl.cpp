@@ -1,154 +1,144 @@
 #include "MissionControl.h"
 
+#include <rabit/RabitLog.h>
+
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace Swarm
 {
-namespace
-{
-constexpr double MinAltitudeM = -500;
-constexpr double MaxAltitudeM = 10000;
-constexpr double MaxSpeedMps = 50;
 
-Uav::MissionMode ModeOf(Uav::FlightPhase phase)
+MissionControl::MissionControl(const Names &names, const std::string &ground,
+                               Rabit::RabitWorkspace &workspace)
+    : RabitManager(names.Own("MissionControl"), workspace),
+      _names(names),
+      _mission(names.Aircraft(), *this),
+      _others(names, workspace)
 {
-    switch (phase)
-    {
-        case Uav::FlightPhase::FLIGHT_COURSE:
-            return Uav::MissionMode::MISSION_GOTO;
-        case Uav::FlightPhase::FLIGHT_HOLD:
-            return Uav::MissionMode::MISSION_HOLD;
-        case Uav::FlightPhase::FLIGHT_IDLE:
-        case Uav::FlightPhase::FLIGHT_RECORDING:
-        case Uav::FlightPhase::FLIGHT_PATTERN:
-            break;
-    }
-    return Uav::MissionMode::MISSION_IDLE;
-}
-
-// The number of the course is that of the command.
-std::shared_ptr<Uav::Course> CourseOf(const Uav::Goto &command)
-{
-    auto course = std::make_shared<Uav::Course>();
-    course->number = command.id;
-    course->latitude_deg = command.latitude_deg;
-    course->longitude_deg = command.longitude_deg;
-    course->altitude_m = command.altitude_m;
-    course->speed_mps = command.speed_mps;
-    return course;
-}
-}  // namespace
-
-std::string WhyNot(const Uav::Goto &command)
-{
-    // Written so that a NaN is refused as well.
-    if (!(std::abs(command.latitude_deg) <= 90))
-        return "latitude_deg is not between -90 and 90";
-    if (!(std::abs(command.longitude_deg) <= 180))
-        return "longitude_deg is not between -180 and 180";
-    if (!(command.altitude_m >= MinAltitudeM && command.altitude_m <= MaxAltitudeM))
-        return "altitude_m is not between -500 and 10000";
-    if (!(command.speed_mps > 0 && command.speed_mps <= MaxSpeedMps))
-        return "speed_mps is not above 0 and up to 50";
-    return "";
-}
-
-MissionControl::MissionControl(std::string node, Rabit::RabitWorkspace &workspace)
-    : RabitManager("MissionControl", workspace), _node(std::move(node))
-{
-    AddPublishSubscribeMessage("Pose", _pose);
-    AddPublishSubscribeMessage("FlightMode", _mode);
-    AddPublishSubscribeMessage("MissionState", _state);
+    AddPublishSubscribeMessage(names.Of(ground, "SearchArea"), _area);
+    AddPublishSubscribeMessage(names.Own("Pose"), _pose);
+    AddPublishSubscribeMessage(names.Own("FlightMode"), _mode);
+    AddPublishSubscribeMessage(names.Own("Health"), _health);
+    AddPublishSubscribeMessage(names.OwnVision("Targets"), _targets);
+    AddPublishSubscribeMessage(names.Own("MissionState"), _state);
+    AddPublishSubscribeMessage(names.Own("Findings"), _findings);
+    WakeUpManagerOnMessagePost(_area);
     WakeUpManagerOnMessagePost(_mode);
+    WakeUpManagerOnMessagePost(_targets);
 }
 
 void MissionControl::ExecuteUnitOfWork()
 {
-    const std::chrono::nanoseconds now = GetWorkspace().GetClock().Monotonic();
-    TakeCommands(now);
-    SendAnswers(now);
-    PostState(now);
+    _mission.Update(LookAround());
+    TakeArea();
+    TakeMessages();
+    _mission.Act();
+    _answers.Send(GetWorkspace().GetClock().Monotonic(),
+                  [&](const std::string &to, const std::shared_ptr<Uav::CommandAck> &ack)
+                  { return AddMessageToQueue(to, ack); });
+    PostState();
     const int delay = _stateTimes.DelayMSec(GetWorkspace().GetClock().Monotonic());
-    SetWakeupTimeDelayMSec(_answers.empty() ? delay : std::min(delay, static_cast<int>(RetryPeriod.count())));
+    SetWakeupTimeDelayMSec(std::min(delay, static_cast<int>(ActPeriod.count())));
 }
 
-void MissionControl::TakeCommands(std::chrono::nanoseconds now)
+Situation MissionControl::LookAround()
+{
+    _pose->FetchMessage();
+    _mode->FetchMessage();
+    _health->FetchMessage();
+    _targets->FetchMessage();
+    Situation now;
+    now.NowS = std::chrono::duration<double>(GetWorkspace().GetClock().Monotonic()).count();
+    now.GpsTimeS = GetWorkspace().GetClock().GpsTimeSeconds();
+    if (_pose->WasPosted())
+        now.Position = GeoPoint{_pose->latitude_deg, _pose->longitude_deg, _pose->altitude_m};
+    now.BatteryPercent =
+        _health->WasPosted() ? _health->battery_percent : std::numeric_limits<float>::quiet_NaN();
+    now.Flight = *_mode;
+    now.Targets = *_targets;
+    now.Others = _others.Poses();
+    now.OthersFindings = _others.Findings();
+    return now;
+}
+
+void MissionControl::TakeArea()
+{
+    if (!_area->FetchMessage() || !_area->WasPosted())
+        return;
+    const std::string problem = _mission.Take(*_area);
+    if (!problem.empty())
+        Rabit::RabitLog::Write(
+            Rabit::RabitLogLevel::Warning,
+            "mission control: search area " + std::to_string(_area->number) + " is refused: " + problem);
+}
+
+void MissionControl::TakeMessages()
 {
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
-        if (const auto command = std::dynamic_pointer_cast<Uav::Goto>(message))
-            Obey(command, now);
-}
-
-void MissionControl::Obey(const std::shared_ptr<Uav::Goto> &command, std::chrono::nanoseconds now)
-{
-    std::string reason = WhyNot(*command);
-    _mode->FetchMessage();
-    if (reason.empty())
-        reason = _mode->not_ready;
-    if (reason.empty() && !AddMessageToQueue("Autopilot", CourseOf(*command)))
-        reason = "the autopilot takes no commands now";
-    if (reason.empty())
     {
-        _state->last_command = command->id;
-        ++_state->commands;
+        if (const auto *toPoint = dynamic_cast<const Uav::Goto *>(message.get()))
+            _mission.Take(*toPoint);
+        else if (const auto *search = dynamic_cast<const Uav::Search *>(message.get()))
+            _mission.Take(*search);
+        else if (const auto *home = dynamic_cast<const Uav::GoHome *>(message.get()))
+            _mission.Take(*home);
+        else if (const auto *report = dynamic_cast<const Uav::TargetReport *>(message.get()))
+            _mission.Take(*report);
+        else if (const auto *validation = dynamic_cast<const Uav::Validation *>(message.get()))
+            _mission.Take(*validation);
     }
-    if (command->reply_to.empty())
-        return;  // nobody wants an answer
-    if (_answers.size() == MaxKeptAnswers)
+}
+
+std::uint32_t MissionControl::Fly(const GeoPoint &point, float speedMps)
+{
+    auto course = std::make_shared<Uav::Course>();
+    course->number = _courses + 1;
+    course->latitude_deg = point.LatitudeDeg;
+    course->longitude_deg = point.LongitudeDeg;
+    course->altitude_m = point.AltitudeM;
+    course->speed_mps = speedMps;
+    return AddMessageToQueue(_names.Own("Autopilot"), course) ? ++_courses : 0;
+}
+
+void MissionControl::Answer(const std::string &replyTo, const Uav::CommandAck &ack)
+{
+    _answers.Add(replyTo, ack, GetWorkspace().GetClock().Monotonic());
+}
+
+bool MissionControl::Send(const std::string &aircraft, const Uav::TargetReport &report)
+{
+    return AddMessageToQueue(_names.Of(aircraft, "MissionControl"),
+                             std::make_shared<Uav::TargetReport>(report));
+}
+
+bool MissionControl::Send(const std::string &aircraft, const Uav::Validation &validation)
+{
+    return AddMessageToQueue(_names.Of(aircraft, "MissionControl"),
+                             std::make_shared<Uav::Validation>(validation));
+}
+
+void MissionControl::PostState()
+{
+    Uav::MissionState state = *_state;
+    _mission.Describe(state);
+    const std::string answers = _answers.Text();
+    if (!answers.empty())
+        state.text += (state.text.empty() ? "" : "; ") + answers;
+    std::vector<Uav::Finding> findings = _mission.Findings();
+    const bool due = _stateTimes.Due(GetWorkspace().GetClock().Monotonic());
+    if (due || state != *_state)
     {
-        _answers.pop_front();
-        ++_answersGivenUp;
+        *_state = state;
+        _state->poses = _pose->number;
+        _state->PostMessage();
     }
-    auto ack = std::make_shared<Uav::CommandAck>();
-    ack->id = command->id;
-    ack->node = _node;
-    ack->stage = reason.empty() ? Uav::CommandStage::COMMAND_ACCEPTED : Uav::CommandStage::COMMAND_DECLINED;
-    ack->reason = reason;
-    _answers.push_back({command->reply_to, std::move(ack), now});
-}
-
-void MissionControl::SendAnswers(std::chrono::nanoseconds now)
-{
-    std::deque<Answer> kept;
-    for (Answer &answer : _answers)
+    if (due || findings != _findings->items)
     {
-        if (AddMessageToQueue(answer.To, answer.Ack))
-            continue;
-        if (now - answer.Since < KeepAnswers)
-            kept.push_back(std::move(answer));
-        else
-            ++_answersGivenUp;
+        _findings->items = std::move(findings);
+        _findings->PostMessage();
     }
-    _answers = std::move(kept);
-}
-
-void MissionControl::PostState(std::chrono::nanoseconds now)
-{
-    _mode->FetchMessage();
-    _pose->FetchMessage();
-    const std::string text = StateText();
-    const bool changed = _state->mode != ModeOf(_mode->phase) || _state->text != text;
-    if (!_stateTimes.Due(now) && !changed)
-        return;
-    _state->mode = ModeOf(_mode->phase);
-    _state->text = text;
-    _state->poses = _pose->number;
-    _state->PostMessage();
-}
-
-std::string MissionControl::StateText() const
-{
-    std::string text;
-    if (_mode->course != 0)
-        text = "command " + std::to_string(_mode->course);
-    if (!_answers.empty())
-        text += (text.empty() ? "" : ", ") + std::to_string(_answers.size()) + " answers wait";
-    if (_answersGivenUp > 0)
-        text += (text.empty() ? "" : ", ") + std::to_string(_answersGivenUp) + " answers given up";
-    return text;
 }
 
 }  // namespace Swarm

@@ -1,68 +1,69 @@
 #pragma once
 
+#include "Names.h"
+#include "OtherAircraft.h"
 #include "Schedule.h"
+#include "mission/Answers.h"
+#include "mission/Mission.h"
 #include "uav.idl.h"
 
 #include <rabit/RabitManager.h>
 
 #include <chrono>
-#include <cstddef>
-#include <deque>
+#include <cstdint>
 #include <memory>
 #include <string>
 
 namespace Swarm
 {
 
-// Why the aircraft will not obey this command; empty if it will.
-std::string WhyNot(const Uav::Goto &command);
-
-// Takes commands from outside and answers each of them: the manager `MissionControl`.
+// Decides what the aircraft does: the manager `MissionControl`. What decides is class Mission; this one
+// brings it what it needs to know and carries out what it decides.
 //
-// Queue:   MissionControl takes Uav::Goto. What can be flown goes on as a Uav::Course to the queue Autopilot,
-//          and the answer, a Uav::CommandAck, to the queue that the command names in reply_to, on whatever
-//          node that is.
-// Posts:   MissionState (Uav::MissionState), when it changes and every second.
-// Fetches: Pose and FlightMode of the Autopilot.
-//
-// The gateway does the rest of the way: an answer that it has accepted arrives. One that it refuses (because
-// it has not yet heard of the other node, or too much waits for it already) is kept here and tried again, for
-// 30 seconds.
-class MissionControl : public Rabit::RabitManager
+// Queue:   MissionControl takes Uav::Goto, Uav::GoHome and Uav::Search, and answers with Uav::CommandAck to
+//          the queue that the command names in reply_to; and from the other aircraft Uav::TargetReport and
+//          Uav::Validation.
+// Fetches: SearchArea of the ground station, Pose, FlightMode, Health and Targets of this aircraft, Pose and
+//          Findings of the others.
+// Posts:   MissionState (Uav::MissionState) and Findings (Uav::Findings), when they change and every second.
+// Sends:   Uav::Course to the queue Autopilot; TargetReport and Validation to the queue MissionControl of
+//          other aircraft.
+class MissionControl : public Rabit::RabitManager, private MissionOutput
 {
 public:
     static constexpr std::chrono::seconds StatePeriod{1};
-    static constexpr std::chrono::milliseconds RetryPeriod{200};
-    static constexpr std::chrono::seconds KeepAnswers{30};
-    static constexpr std::size_t MaxKeptAnswers = 1000;
+    static constexpr std::chrono::milliseconds ActPeriod{200};
 
-    // `node` is the name of this aircraft, which goes into its answers.
-    MissionControl(std::string node,
+    // `ground` is the node of the ground station, whose SearchArea holds.
+    MissionControl(const Names &names, const std::string &ground = "ground",
                    Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 
     void ExecuteUnitOfWork() final;
 
 private:
-    struct Answer
-    {
-        std::string To;
-        std::shared_ptr<Uav::CommandAck> Ack;
-        std::chrono::nanoseconds Since;
-    };
+    std::uint32_t Fly(const GeoPoint &point, float speedMps) override;
+    void Answer(const std::string &replyTo, const Uav::CommandAck &ack) override;
+    bool Send(const std::string &aircraft, const Uav::TargetReport &report) override;
+    bool Send(const std::string &aircraft, const Uav::Validation &validation) override;
 
-    void TakeCommands(std::chrono::nanoseconds now);
-    void Obey(const std::shared_ptr<Uav::Goto> &command, std::chrono::nanoseconds now);
-    void SendAnswers(std::chrono::nanoseconds now);
-    void PostState(std::chrono::nanoseconds now);
-    std::string StateText() const;
+    Situation LookAround();
+    void TakeArea();
+    void TakeMessages();
+    void PostState();
 
-    const std::string _node;
+    const Names _names;
+    Mission _mission;
+    Answers _answers;
+    OtherAircraft _others;
     Schedule _stateTimes{StatePeriod};
-    std::deque<Answer> _answers;  // not yet accepted for sending
-    std::size_t _answersGivenUp = 0;
+    std::uint32_t _courses = 0;
+    std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::FlightMode> _mode = std::make_shared<Uav::FlightMode>();
+    std::shared_ptr<Uav::Health> _health = std::make_shared<Uav::Health>();
+    std::shared_ptr<Uav::Targets> _targets = std::make_shared<Uav::Targets>();
     std::shared_ptr<Uav::MissionState> _state = std::make_shared<Uav::MissionState>();
+    std::shared_ptr<Uav::Findings> _findings = std::make_shared<Uav::Findings>();
 };
 
 }  // namespace Swarm

@@ -26,6 +26,24 @@ std::map<std::string, Uav::Pose> OtherAircraft::Poses()
     return fresh;
 }
 
+std::map<std::string, Uav::Findings> OtherAircraft::Findings()
+{
+    std::map<std::string, Uav::Findings> known;
+    for (const auto &[name, pose] : _poses)
+    {
+        std::shared_ptr<Uav::Findings> &findings = _findings[name];
+        if (!findings)
+        {
+            findings = std::make_shared<Uav::Findings>();
+            _workspace.AddPublishSubscribeMessage(_names.Of(name, "Findings"), findings);
+        }
+        if (findings->GetGlobalPublishSubscribeMessageRef())
+            findings->FetchMessage();
+        known.emplace(name, *findings);
+    }
+    return known;
+}
+
 void OtherAircraft::Look()
 {
     constexpr std::string_view ending = "/Pose";

@@ -30,6 +30,8 @@ public:
 
     // Where those are that are there now, by name.
     std::map<std::string, Uav::Pose> Poses();
+    // What they have found, of all that were ever there.
+    std::map<std::string, Uav::Findings> Findings();
 
 private:
     void Look();
@@ -38,6 +40,7 @@ private:
     Rabit::RabitWorkspace &_workspace;
     Schedule _looks{LookPeriod};
     std::map<std::string, std::shared_ptr<Uav::Pose>> _poses;
+    std::map<std::string, std::shared_ptr<Uav::Findings>> _findings;
 };
 
 }  // namespace Swarm

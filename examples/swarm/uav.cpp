@@ -2,6 +2,7 @@
 // other nodes.
 #include "Autopilot.h"
 #include "Flight.h"
+#include "HealthMonitor.h"
 #include "MissionControl.h"
 #include "Names.h"
 #include "NodeProgram.h"
@@ -31,6 +32,7 @@ struct Options
     std::string TrackFile;
     std::string Mavlink;
     std::string Ground = "ground";
+    double EnduranceMinutes = 40;
 };
 
 // Circles south of the field, beside those of the other aircraft: the number at the end of the name says
@@ -57,6 +59,15 @@ std::unique_ptr<Swarm::Vehicle> MakeVehicle(const Options &options, const std::s
                                   : Swarm::Flight(Swarm::Track::Load(options.TrackFile)));
 }
 
+Swarm::HealthMonitor::Options HealthOptions(const Options &options)
+{
+    Swarm::HealthMonitor::Options health;
+    health.Ground = options.Ground;
+    if (options.Mavlink.empty())
+        health.EnduranceS = options.EnduranceMinutes * 60;
+    return health;
+}
+
 void Fly(const Options &options)
 {
     Rabit::GatewayConfig config = Swarm::LoadConfig(options.Common);
@@ -67,7 +78,8 @@ void Fly(const Options &options)
         return;
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, std::move(vehicle)));
-    reactor.AddManager(std::make_unique<Swarm::MissionControl>(config.Node));
+    reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, options.Ground));
+    reactor.AddManager(std::make_unique<Swarm::HealthMonitor>(names, HealthOptions(options)));
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
     reactor.Run();  // until SIGINT or SIGTERM
@@ -84,5 +96,8 @@ int main(int argc, char **argv)
                    "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
                    "`serial:DEVICE:BAUD`");
     app.add_option("--ground", options.Ground, "Name of the ground station's node (default: ground)");
+    app.add_option("--endurance", options.EnduranceMinutes,
+                   "Minutes that the simulated battery lasts (default: 40)")
+        ->check(CLI::Range(0.1, 10000.0));
     return Swarm::RunProgram(app, argc, argv, [&] { Fly(options); });
 }

@@ -1,4 +1,5 @@
 #include "MissionControl.h"
+#include "mission/WhyNot.h"
 
 #include <rabit/ManualClock.h>
 #include <rabit/QueueForwarder.h>
@@ -67,7 +68,8 @@ protected:
     {
         _workspace.AddManagerMessageQueue("Autopilot", _autopilot);
         _workspace.SetQueueForwarder(_gateway);
-        _reactor.AddManager(std::make_unique<Swarm::MissionControl>("uav1", _workspace));
+        _reactor.AddManager(
+            std::make_unique<Swarm::MissionControl>(Swarm::Names("uav1", "uav1"), "ground", _workspace));
         _reactor.Start();
     }
     void Receive(const Uav::Goto &command)
@@ -87,7 +89,8 @@ TEST_F(MissionControl, PassesACommandOnAndAnswersWhoAskedForIt)
     Receive(Command(5));
     std::shared_ptr<Rabit::RabitMessage> passed;
     ASSERT_TRUE(_autopilot->GetMessage(passed));
-    EXPECT_EQ(dynamic_cast<Uav::Course &>(*passed).number, 5u);
+    EXPECT_EQ(dynamic_cast<Uav::Course &>(*passed).number, 1u);
+    EXPECT_EQ(dynamic_cast<Uav::Course &>(*passed).altitude_m, 60);
     ASSERT_EQ(_gateway->Accepted.size(), 1u);
     const auto &[queue, ack] = _gateway->Accepted[0];
     EXPECT_EQ(queue, "ground/Commands");
@@ -112,9 +115,9 @@ TEST_F(MissionControl, DeclinesACommandThatTheAutopilotDoesNotTake)
 {
     for (std::uint32_t id = 1; id <= 3; ++id)
         Receive(Command(id));
-    ASSERT_EQ(_gateway->Accepted.size(), 3u);
-    EXPECT_EQ(_gateway->Accepted[1].second.stage, Uav::CommandStage::COMMAND_ACCEPTED);
-    EXPECT_EQ(_gateway->Accepted[2].second.stage, Uav::CommandStage::COMMAND_DECLINED);
+    EXPECT_EQ(_gateway->Accepted.back().second.id, 3u);
+    EXPECT_EQ(_gateway->Accepted.back().second.stage, Uav::CommandStage::COMMAND_DECLINED);
+    EXPECT_EQ(_gateway->Accepted.back().second.reason, "the autopilot takes no commands now");
 }
 
 TEST_F(MissionControl, DeclinesACommandThatTheAutopilotWouldNotFlyAndSaysWhy)
@@ -158,9 +161,11 @@ TEST_F(MissionControl, KeepsTheOrderOfRefusedAnswers)
     Receive(Command(6));
     _gateway->Accepts = true;
     Run(1s);
-    ASSERT_EQ(_gateway->Accepted.size(), 2u);
+    ASSERT_EQ(_gateway->Accepted.size(), 3u);
     EXPECT_EQ(_gateway->Accepted[0].second.id, 5u);
-    EXPECT_EQ(_gateway->Accepted[1].second.id, 6u);
+    EXPECT_EQ(_gateway->Accepted[1].second.id, 5u);
+    EXPECT_EQ(_gateway->Accepted[1].second.stage, Uav::CommandStage::COMMAND_REPLACED);
+    EXPECT_EQ(_gateway->Accepted[2].second.id, 6u);
 }
 
 TEST_F(MissionControl, GivesAnAnswerUpAfterHalfAMinuteAndSaysSo)
@@ -184,16 +189,34 @@ TEST_F(MissionControl, PostsItsStateEverySecond)
 
 TEST_F(MissionControl, PostsItsStateAtOnceWhenTheModeChanges)
 {
+    Receive(Command(5));
     Run(500ms);
-    ASSERT_NE(_state.mode, Uav::MissionMode::MISSION_GOTO);
+    ASSERT_EQ(_state.mode, Uav::MissionMode::MISSION_GOTO);
     auto posted = std::make_shared<Uav::FlightMode>();
     _workspace.AddPublishSubscribeMessage("FlightMode", posted);
-    posted->phase = Uav::FlightPhase::FLIGHT_COURSE;
-    posted->course = 5;
+    posted->phase = Uav::FlightPhase::FLIGHT_HOLD;
+    posted->course = 1;
     posted->PostMessage();
     Run(0ms);
-    EXPECT_EQ(_state.mode, Uav::MissionMode::MISSION_GOTO);
-    EXPECT_EQ(_state.text, "command 5");
+    EXPECT_EQ(_state.mode, Uav::MissionMode::MISSION_HOLD);
+}
+
+TEST_F(MissionControl, SaysWhichSearchAreaHoldsAndRefusesOneThatMakesNoSense)
+{
+    auto area = std::make_shared<Uav::SearchArea>();
+    _workspace.AddPublishSubscribeMessage("ground/SearchArea", area);
+    area->number = 4;
+    area->north_m = area->east_m = 300;
+    area->speed_mps = 15;
+    area->lane_m = 50;
+    area->PostMessage();
+    Run(0ms);
+    EXPECT_EQ(_state.search_area, 4u);
+    area->number = 5;
+    area->lane_m = 0;
+    area->PostMessage();
+    Run(1s);
+    EXPECT_EQ(_state.search_area, 4u);
 }
 
 TEST_F(MissionControl, CountsCommandsAndPoses)
@@ -242,6 +265,27 @@ TEST(WhyNot, RefusesWhatIsOutOfRangeOrNoNumber)
     command = Command(1);
     command.speed_mps = 50.5f;
     EXPECT_THAT(Swarm::WhyNot(command), HasSubstr("speed_mps"));
+}
+
+TEST(WhyNot, RefusesASearchAreaThatCannotBeSearched)
+{
+    Uav::SearchArea area;
+    area.north_m = 10;
+    area.east_m = 20000;
+    area.speed_mps = 50;
+    area.lane_m = 5;
+    EXPECT_EQ(Swarm::WhyNot(area), "");
+    for (const auto &[member, name] :
+         {std::pair(&Uav::SearchArea::north_m, "north_m"), std::pair(&Uav::SearchArea::east_m, "east_m"),
+          std::pair(&Uav::SearchArea::lane_m, "lane_m"), std::pair(&Uav::SearchArea::speed_mps, "speed_mps"),
+          std::pair(&Uav::SearchArea::altitude_m, "altitude_m")})
+    {
+        Uav::SearchArea wrong = area;
+        wrong.*member = std::numeric_limits<float>::quiet_NaN();
+        EXPECT_THAT(Swarm::WhyNot(wrong), HasSubstr(name));
+        wrong.*member = 1e6f;
+        EXPECT_THAT(Swarm::WhyNot(wrong), HasSubstr(name));
+    }
 }
 
 }  // namespace

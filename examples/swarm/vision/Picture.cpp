@@ -60,30 +60,58 @@ Colour GroundAt(double northM, double eastM)
         part *= grain;
     return colour;
 }
+
+// The image on the ground in metres from a corner of the degree net, which all views of one neighbourhood
+// share. The earth is flat here, so that the steps from pixel to pixel are always the same.
+struct Grid
+{
+    explicit Grid(const Footprint &view)
+        : Origin{std::floor(view.Centre.LatitudeDeg), std::floor(view.Centre.LongitudeDeg),
+                 view.Centre.AltitudeM},
+          First(Between(Origin, view.At({-1 + 1.0 / Width, 1 - 1.0 / Height})))
+    {
+        const Offset right = Between(Origin, view.At({1 - 1.0 / Width, 1 - 1.0 / Height}));
+        const Offset below = Between(Origin, view.At({-1 + 1.0 / Width, -1 + 1.0 / Height}));
+        Column = {(right.NorthM - First.NorthM) / (Width - 1), (right.EastM - First.EastM) / (Width - 1), 0};
+        Row = {(below.NorthM - First.NorthM) / (Height - 1), (below.EastM - First.EastM) / (Height - 1), 0};
+    }
+    Offset At(std::size_t column, std::size_t row) const
+    {
+        const auto x = static_cast<double>(column);
+        const auto y = static_cast<double>(row);
+        return {First.NorthM + x * Column.NorthM + y * Row.NorthM,
+                First.EastM + x * Column.EastM + y * Row.EastM, 0};
+    }
+
+    GeoPoint Origin;
+    Offset First;   // the upper left pixel
+    Offset Column;  // from one to the next
+    Offset Row;
+};
 }  // namespace
 
 Image Photograph(const Footprint &view, const World &world, double gpsTimeS)
 {
-    std::vector<GeoPoint> targets;
+    const Grid grid(view);
+    std::vector<Offset> targets;
     for (const WorldTarget &target : world.Targets)
-        targets.push_back(target.At(gpsTimeS));
-    // Metres from a corner of the degree net, which all views of one neighbourhood share.
-    const GeoPoint origin{std::floor(view.Centre.LatitudeDeg), std::floor(view.Centre.LongitudeDeg),
-                          view.Centre.AltitudeM};
-
+    {
+        const GeoPoint point = target.At(gpsTimeS);
+        const Footprint::Place place = view.Find(point);
+        if (std::abs(place.Right) < 1.5 && std::abs(place.Forward) < 1.5)
+            targets.push_back(Between(grid.Origin, point));
+    }
     Image image{Width, Height, {}};
     image.Rgb.reserve(Width * Height * 3);
     for (std::size_t row = 0; row < Height; ++row)
     {
         for (std::size_t column = 0; column < Width; ++column)
         {
-            const GeoPoint point = view.At({2 * (static_cast<double>(column) + 0.5) / Width - 1,
-                                            1 - 2 * (static_cast<double>(row) + 0.5) / Height});
-            const Offset place = Between(origin, point);
+            const Offset place = grid.At(column, row);
             Colour colour = GroundAt(place.NorthM, place.EastM);
-            for (const GeoPoint &target : targets)
+            for (const Offset &target : targets)
             {
-                const double distance = Between(target, point).LengthM();
+                const double distance = std::hypot(target.NorthM - place.NorthM, target.EastM - place.EastM);
                 if (distance < TargetRadiusM)
                     colour = {255, 110, 0};
                 else if (distance < TargetRadiusM + RimM)

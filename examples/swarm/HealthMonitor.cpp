@@ -1,0 +1,71 @@
+#include "HealthMonitor.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace Swarm
+{
+namespace
+{
+// The gateway posts each second; older than this it has stopped.
+constexpr double FleetIsOldS = 3;
+}  // namespace
+
+HealthMonitor::HealthMonitor(const Names &names, const Options &options, Rabit::RabitWorkspace &workspace)
+    : RabitManager(names.Own("HealthMonitor"), workspace),
+      _names(names),
+      _options(options),
+      _rule(options.SilenceLimitS)
+{
+    AddPublishSubscribeMessage("Gateway/Fleet", _fleet);
+    AddPublishSubscribeMessage(names.Own("Health"), _health);
+    SetWakeupTimeDelayMSec(static_cast<int>(std::chrono::milliseconds(Period).count()));
+}
+
+void HealthMonitor::Startup()
+{
+    _start = GetWorkspace().GetClock().Monotonic();
+}
+
+void HealthMonitor::ExecuteUnitOfWork()
+{
+    _health->battery_percent = BatteryPercent();
+    const double silentS = GroundSilentS();
+    _health->ground_silent_s = static_cast<float>(silentS);
+    const std::string news = _rule.Judge(_health->battery_percent, silentS);
+    if (!news.empty())
+        _toSend = news;
+    _health->reason = _rule.Reason();
+    _health->wants_home = !_health->reason.empty();
+    _health->PostMessage();
+    if (_toSend.empty())
+        return;
+    auto home = std::make_shared<Uav::GoHome>();
+    home->reason = _toSend;
+    if (AddMessageToQueue(_names.Own("MissionControl"), home))
+        _toSend.clear();
+}
+
+float HealthMonitor::BatteryPercent() const
+{
+    if (!_options.EnduranceS)
+        return std::numeric_limits<float>::quiet_NaN();
+    const std::chrono::duration<double> flown = GetWorkspace().GetClock().Monotonic() - _start;
+    return static_cast<float>(std::max(0.0, 100 * (1 - flown.count() / *_options.EnduranceS)));
+}
+
+// NaN if the ground station was never heard. A gateway that tells nothing any more hears nothing either.
+double HealthMonitor::GroundSilentS()
+{
+    _fleet->FetchMessage();
+    for (const Rabit::Gateway::NodeStatus &node : _fleet->nodes)
+        if (node.node == _options.Ground)
+        {
+            const double age = _fleet->GetAgeSeconds();
+            const bool heard = node.state == Rabit::Gateway::NodeState::UP && age < FleetIsOldS;
+            return heard ? 0 : node.last_heard_s + age;
+        }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace Swarm

@@ -1,0 +1,24 @@
+#include "HomeRule.h"
+
+namespace Swarm
+{
+
+// Written so that a NaN is no cause.
+std::string HomeRule::Judge(float batteryPercent, double groundSilentS)
+{
+    const bool low = batteryPercent < LowBatteryPercent;
+    const bool silent = groundSilentS > _silenceLimitS;
+    const bool news = (low && !_low) || (silent && !_silent);
+    _low = low;
+    _silent = silent;
+    return news ? Reason() : "";
+}
+
+std::string HomeRule::Reason() const
+{
+    if (_low)
+        return "the battery is low";
+    return _silent ? "the ground station is silent" : "";
+}
+
+}  // namespace Swarm

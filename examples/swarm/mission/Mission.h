@@ -1,0 +1,156 @@
+#pragma once
+
+#include "../Geo.h"
+#include "LawnMower.h"
+#include "TargetBook.h"
+#include "uav.idl.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace Swarm
+{
+
+// What a mission does to the world around it.
+class MissionOutput
+{
+public:
+    virtual ~MissionOutput() = default;
+    // Has the autopilot fly there and circle; at speed 0 it flies what it has of its own. Returns the number
+    // of the course, 0 if the autopilot does not take it.
+    virtual std::uint32_t Fly(const GeoPoint &point, float speedMps) = 0;
+    // Tells whoever gave a command, at that queue address, what becomes of it.
+    virtual void Answer(const std::string &replyTo, const Uav::CommandAck &ack) = 0;
+    // To the mission control of another aircraft. False if it cannot be sent.
+    virtual bool Send(const std::string &aircraft, const Uav::TargetReport &report) = 0;
+    virtual bool Send(const std::string &aircraft, const Uav::Validation &validation) = 0;
+};
+
+// What a mission knows when it decides.
+struct Situation
+{
+    double NowS = 0;      // by a clock that does not go back
+    double GpsTimeS = 0;  // by the clock that stamps poses
+    std::optional<GeoPoint> Position;
+    float BatteryPercent = 0;  // NaN if it is not known
+    Uav::FlightMode Flight;
+    Uav::Targets Targets;                                 // of this aircraft's sensor fusion
+    std::map<std::string, Uav::Pose> Others;              // the aircraft that are there now
+    std::map<std::string, Uav::Findings> OthersFindings;  // also of some that are not there any more
+};
+
+// What one aircraft does, and why: decides, and has no threads, clocks or names of queues.
+//
+// It does nothing of its own before it is told to. Told to search it flies to the search area and searches it
+// in lanes. When it is the first to see a target it circles it (CONFIRM) and asks the other aircraft, the
+// nearest first, one at a time, to come and look. When one has seen it, it follows it for a while (TRACK) and
+// searches on; when nobody can, the target is rejected. Asked itself while it searches it flies there and
+// looks (VALIDATE). Of two aircraft that pursue one target the one whose name comes later leaves it.
+//
+// A Goto or GoHome ends all that. An aircraft that holds the point of a Goto and has a recorded track goes
+// back to the track after a while.
+//
+// The owner calls Update first, then what came in, then Act, each time anything may have changed and a few
+// times a second. Not thread-safe.
+class Mission
+{
+public:
+    static constexpr double LowBatteryPercent = 25;
+    static constexpr double TrackS = 60;       // follows a target
+    static constexpr double ValidateS = 45;    // looks for a target of another aircraft
+    static constexpr double AnswerS = 55;      // waits for another aircraft's validation
+    static constexpr double BackToTrackS = 5;  // holds the point of a Goto if it has a recorded track
+    static constexpr double StepM = 15;        // a point to fly to is worth a new course if it moved so far
+    static constexpr double RepeatS = 2;       // a course that the autopilot does not fly is sent again
+    static constexpr float HomeSpeedMps = 16;
+
+    Mission(std::string aircraft, MissionOutput &output);
+
+    void Update(Situation situation);
+    // A new area takes effect at once. One that makes no sense is refused and changes nothing; returns why.
+    std::string Take(const Uav::SearchArea &area);
+    void Take(const Uav::Goto &command);
+    void Take(const Uav::Search &command);
+    void Take(const Uav::GoHome &command);
+    void Take(const Uav::TargetReport &report);
+    void Take(const Uav::Validation &validation);
+    void Act();
+
+    // Everything but poses. The text is why it does what it does, if there is more to say.
+    void Describe(Uav::MissionState &state) const;
+    std::vector<Uav::Finding> Findings() const { return _book.Report(); }
+
+private:
+    struct Command
+    {
+        std::uint32_t Id = 0;
+        std::string ReplyTo;
+    };
+    struct Course
+    {
+        GeoPoint Point;
+        float SpeedMps = 0;
+        std::uint32_t Number = 0;
+        double SentS = 0;
+    };
+
+    // MissionCommands.cpp
+    template <typename Message>
+    void Decline(const Message &command, const std::string &reason);
+    template <typename Message>
+    void Accept(const Message &command, Uav::MissionMode mode);
+    void Finish(Uav::CommandStage stage, const std::string &reason);
+    std::string WhyNotNow(bool mayBeTired) const;
+    void ActOnCommand();
+    bool HasArrived() const;
+    bool Fly(const GeoPoint &point, float speedMps);
+    void FlyIfMoved(const GeoPoint &point, float speedMps);
+
+    // MissionTargets.cpp
+    bool IsSearching() const;
+    void BeginSearch();
+    void SearchOn();
+    void ActOnSearch();
+    void LeaveTarget(const std::string &reason);
+    void BeginConfirm(std::uint32_t number);
+    void AskNext();
+    void ActOnConfirm();
+    void ActOnTrack();
+    void ActOnValidate();
+    void AnswerReport(bool accepted, const std::string &reason, const Uav::Target *seen = nullptr);
+    std::set<std::string> NamesOfOthers() const;
+    GeoPoint AtSearchHeight(const GeoPoint &place) const;
+
+    const std::string _aircraft;
+    MissionOutput &_output;
+    Situation _now;
+    TargetBook _book;
+    std::optional<GeoPoint> _home;
+    std::optional<Uav::SearchArea> _area;
+    std::optional<LawnMower> _mower;
+
+    Uav::MissionMode _mode = Uav::MissionMode::MISSION_IDLE;
+    double _modeSinceS = 0;
+    std::string _why;
+    bool _hasTrack = false;
+    Course _course;
+
+    std::optional<Command> _open;  // the last command, if its last word has not been said
+    std::uint32_t _lastCommand = 0;
+    std::uint32_t _commands = 0;
+    GeoPoint _gotoPoint;
+    float _gotoSpeedMps = 0;
+
+    std::uint32_t _target = 0;  // of CONFIRM and TRACK
+    std::string _partner;
+    std::set<std::string> _asked;
+    double _askedS = 0;
+    double _trackedBeforeS = 0;
+    Uav::TargetReport _report;   // of VALIDATE
+    double _reportGpsTimeS = 0;  // when it came
+};
+
+}  // namespace Swarm

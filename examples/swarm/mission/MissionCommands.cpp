@@ -1,0 +1,220 @@
+// What comes from the ground station and the health monitor.
+#include "Mission.h"
+#include "WhyNot.h"
+
+#include <utility>
+
+namespace Swarm
+{
+
+Mission::Mission(std::string aircraft, MissionOutput &output)
+    : _aircraft(aircraft), _output(output), _book(std::move(aircraft))
+{
+}
+
+void Mission::Update(Situation situation)
+{
+    _now = std::move(situation);
+    if (!_home && _now.Position)
+        _home = _now.Position;
+    if (_now.Flight.phase == Uav::FlightPhase::FLIGHT_RECORDING)
+        _hasTrack = true;
+    _book.Follow(_now.Targets);
+}
+
+std::string Mission::Take(const Uav::SearchArea &area)
+{
+    const std::string problem = WhyNot(area);
+    if (!problem.empty())
+        return problem;
+    _area = area;
+    _mower.reset();
+    if (_mode == Uav::MissionMode::MISSION_SEARCH)
+        _mode = Uav::MissionMode::MISSION_TRANSIT;
+    return "";
+}
+
+std::string Mission::WhyNotNow(bool mayBeTired) const
+{
+    if (!_now.Flight.not_ready.empty())
+        return _now.Flight.not_ready;
+    if (!mayBeTired && _now.BatteryPercent < LowBatteryPercent)
+        return "the battery is low";
+    return "";
+}
+
+template <typename Message>
+void Mission::Decline(const Message &command, const std::string &reason)
+{
+    Uav::CommandAck ack;
+    ack.id = command.id;
+    ack.node = _aircraft;
+    ack.stage = Uav::CommandStage::COMMAND_DECLINED;
+    ack.reason = reason;
+    _output.Answer(command.reply_to, ack);
+}
+
+// What it did before ends, for this.
+template <typename Message>
+void Mission::Accept(const Message &command, Uav::MissionMode mode)
+{
+    const std::string why = command.id == 0 ? "it goes home" : "command " + std::to_string(command.id);
+    Finish(Uav::CommandStage::COMMAND_REPLACED, why);
+    LeaveTarget(why);
+    _open = Command{command.id, command.reply_to};
+    Uav::CommandAck ack;
+    ack.id = command.id;
+    ack.node = _aircraft;
+    ack.stage = Uav::CommandStage::COMMAND_ACCEPTED;
+    _output.Answer(command.reply_to, ack);
+    if (command.id != 0)
+    {
+        _lastCommand = command.id;
+        ++_commands;
+    }
+    _why.clear();
+    _mode = mode;
+    _modeSinceS = _now.NowS;
+}
+
+// The last word about the open command.
+void Mission::Finish(Uav::CommandStage stage, const std::string &reason)
+{
+    if (!_open)
+        return;
+    Uav::CommandAck ack;
+    ack.id = _open->Id;
+    ack.node = _aircraft;
+    ack.stage = stage;
+    ack.reason = reason;
+    _output.Answer(_open->ReplyTo, ack);
+    _open.reset();
+}
+
+void Mission::Take(const Uav::Goto &command)
+{
+    std::string reason = WhyNot(command);
+    if (reason.empty())
+        reason = WhyNotNow(false);
+    const GeoPoint point{command.latitude_deg, command.longitude_deg, command.altitude_m};
+    if (reason.empty() && !Fly(point, command.speed_mps))
+        reason = "the autopilot takes no commands now";
+    if (!reason.empty())
+        return Decline(command, reason);
+    Accept(command, Uav::MissionMode::MISSION_GOTO);
+    _gotoPoint = point;
+    _gotoSpeedMps = command.speed_mps;
+}
+
+void Mission::Take(const Uav::Search &command)
+{
+    std::string reason = WhyNotNow(false);
+    if (reason.empty() && !_now.Position)
+        reason = "it does not know yet where it is";
+    if (reason.empty() && !_area)
+        reason = "no search area is known";
+    if (!reason.empty())
+        return Decline(command, reason);
+    Accept(command, Uav::MissionMode::MISSION_TRANSIT);
+    _mower.reset();
+}
+
+void Mission::Take(const Uav::GoHome &command)
+{
+    std::string reason = WhyNotNow(true);
+    if (reason.empty() && !_home)
+        reason = "it does not know yet where home is";
+    if (reason.empty() && !Fly(*_home, HomeSpeedMps))
+        reason = "the autopilot takes no commands now";
+    if (!reason.empty())
+        return Decline(command, reason);
+    Accept(command, Uav::MissionMode::MISSION_HOME);
+    _why = command.reason;
+    _gotoPoint = *_home;
+    _gotoSpeedMps = HomeSpeedMps;
+}
+
+bool Mission::HasArrived() const
+{
+    return _now.Flight.phase == Uav::FlightPhase::FLIGHT_HOLD && _now.Flight.course == _course.Number &&
+           _course.Number != 0;
+}
+
+bool Mission::Fly(const GeoPoint &point, float speedMps)
+{
+    const std::uint32_t number = _output.Fly(point, speedMps);
+    if (number != 0)
+        _course = {point, speedMps, number, _now.NowS};
+    return number != 0;
+}
+
+// Also if the autopilot flies another course than it was sent, which one that was silent for a while does.
+void Mission::FlyIfMoved(const GeoPoint &point, float speedMps)
+{
+    const bool moved = _course.Number == 0 || _course.SpeedMps != speedMps ||
+                       Between(_course.Point, point).LengthM() > StepM;
+    const bool lost = _now.Flight.course != _course.Number && _now.NowS - _course.SentS > RepeatS;
+    if (moved || lost)
+        Fly(point, speedMps);
+}
+
+void Mission::Act()
+{
+    switch (_mode)
+    {
+        case Uav::MissionMode::MISSION_IDLE:
+            return;
+        case Uav::MissionMode::MISSION_GOTO:
+        case Uav::MissionMode::MISSION_HOLD:
+        case Uav::MissionMode::MISSION_HOME:
+            return ActOnCommand();
+        case Uav::MissionMode::MISSION_TRANSIT:
+        case Uav::MissionMode::MISSION_SEARCH:
+            return ActOnSearch();
+        case Uav::MissionMode::MISSION_CONFIRM:
+            return ActOnConfirm();
+        case Uav::MissionMode::MISSION_VALIDATE:
+            return ActOnValidate();
+        case Uav::MissionMode::MISSION_TRACK:
+            return ActOnTrack();
+    }
+}
+
+void Mission::ActOnCommand()
+{
+    FlyIfMoved(_gotoPoint, _gotoSpeedMps);
+    if (!HasArrived())
+        return;
+    Finish(Uav::CommandStage::COMMAND_DONE, "");
+    if (_mode == Uav::MissionMode::MISSION_GOTO)
+    {
+        _mode = Uav::MissionMode::MISSION_HOLD;
+        _modeSinceS = _now.NowS;
+    }
+    else if (_mode == Uav::MissionMode::MISSION_HOLD && _hasTrack &&
+             _now.NowS - _modeSinceS >= BackToTrackS && Fly(_gotoPoint, 0))
+        _mode = Uav::MissionMode::MISSION_IDLE;
+}
+
+void Mission::Describe(Uav::MissionState &state) const
+{
+    state.mode = _mode;
+    state.last_command = _lastCommand;
+    state.commands = _commands;
+    state.search_area = _area ? _area->number : 0;
+    state.target.clear();
+    state.partner.clear();
+    if (_mode == Uav::MissionMode::MISSION_VALIDATE)
+    {
+        state.target = _report.seen_by + "/" + std::to_string(_report.target);
+        state.partner = _report.seen_by;
+    }
+    else if (_target != 0)
+    {
+        state.target = _aircraft + "/" + std::to_string(_target);
+        state.partner = _partner;
+    }
+    state.text = _why;
+}
+
+}  // namespace Swarm

@@ -1,0 +1,245 @@
+// The search, and what the aircraft do about a target together.
+#include "Mission.h"
+#include "WhyNot.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace Swarm
+{
+
+bool Mission::IsSearching() const
+{
+    return _mode == Uav::MissionMode::MISSION_TRANSIT || _mode == Uav::MissionMode::MISSION_SEARCH;
+}
+
+std::set<std::string> Mission::NamesOfOthers() const
+{
+    std::set<std::string> names;
+    for (const auto &[name, pose] : _now.Others)
+        names.insert(name);
+    return names;
+}
+
+GeoPoint Mission::AtSearchHeight(const GeoPoint &place) const
+{
+    return {place.LatitudeDeg, place.LongitudeDeg, _area->altitude_m};
+}
+
+// Which lane to begin at follows from the names of the aircraft that are there, so that they need not agree.
+void Mission::BeginSearch()
+{
+    std::set<std::string> all = NamesOfOthers();
+    all.insert(_aircraft);
+    const auto rank = static_cast<std::size_t>(std::distance(all.begin(), all.find(_aircraft)));
+    _mower.emplace(*_area, rank, all.size());
+}
+
+void Mission::ActOnSearch()
+{
+    if (!_now.Position)
+        return;
+    const std::set<std::string> others = NamesOfOthers();
+    if (const std::uint32_t number = _book.TakeUp({_now.GpsTimeS, _now.Targets, _now.OthersFindings, others}))
+        return BeginConfirm(number);
+    if (!_mower)
+        BeginSearch();
+    FlyIfMoved(_mower->Next(*_now.Position), _area->speed_mps);
+    if (!_mower->HasBegun())
+        return;
+    _mode = Uav::MissionMode::MISSION_SEARCH;
+    Finish(Uav::CommandStage::COMMAND_DONE, "");
+}
+
+// After anything that interrupted the search.
+void Mission::SearchOn()
+{
+    _target = 0;
+    _partner.clear();
+    if (_mower)
+        _mower->Interrupt();
+    _mode = Uav::MissionMode::MISSION_TRANSIT;
+    _modeSinceS = _now.NowS;
+}
+
+// A target that was not come to the end of may be taken up again when it is seen again.
+void Mission::LeaveTarget(const std::string &reason)
+{
+    if (_mode == Uav::MissionMode::MISSION_VALIDATE)
+        AnswerReport(false, reason);
+    Uav::Finding *finding = _book.Find(_target);
+    if (finding && finding->stage == Uav::TargetStage::TARGET_VALIDATING)
+        finding->stage = Uav::TargetStage::TARGET_FOUND;
+    _target = 0;
+    _partner.clear();
+}
+
+void Mission::BeginConfirm(std::uint32_t number)
+{
+    _mode = Uav::MissionMode::MISSION_CONFIRM;
+    _modeSinceS = _now.NowS;
+    _target = number;
+    _asked.clear();
+    _book.Find(number)->stage = Uav::TargetStage::TARGET_FOUND;
+    AskNext();
+}
+
+// The nearest that was not asked yet.
+void Mission::AskNext()
+{
+    const Uav::Finding &finding = *_book.Find(_target);
+    while (true)
+    {
+        const std::string *nearest = nullptr;
+        double nearestM = std::numeric_limits<double>::infinity();
+        for (const auto &[name, pose] : _now.Others)
+        {
+            const double distance =
+                LevelDistanceM(PlaceOf(finding), {pose.latitude_deg, pose.longitude_deg, 0});
+            if (!_asked.contains(name) && distance < nearestM)
+            {
+                nearest = &name;
+                nearestM = distance;
+            }
+        }
+        if (!nearest)
+        {
+            _book.Reject(_target, _now.GpsTimeS);
+            return SearchOn();
+        }
+        _asked.insert(*nearest);
+        Uav::TargetReport report;
+        report.target = finding.target;
+        report.seen_by = _aircraft;
+        report.latitude_deg = finding.latitude_deg;
+        report.longitude_deg = finding.longitude_deg;
+        for (const Uav::Target &target : _now.Targets.items)
+            if (target.number == finding.target)
+                report.sigma_m = target.sigma_major_m;
+        report.gps_time_s = _now.GpsTimeS;
+        if (!_output.Send(*nearest, report))
+            continue;
+        _partner = *nearest;
+        _askedS = _now.NowS;
+        _book.Find(_target)->stage = Uav::TargetStage::TARGET_VALIDATING;
+        return;
+    }
+}
+
+void Mission::ActOnConfirm()
+{
+    const GeoPoint place = PlaceOf(*_book.Find(_target));
+    for (const auto &[name, findings] : _now.OthersFindings)
+        for (const Uav::Finding &other : findings.items)
+            if (name < _aircraft && _now.Others.contains(name) &&
+                LevelDistanceM(place, PlaceOf(other)) < TargetBook::NearM)
+            {
+                _book.Drop(_target);
+                return SearchOn();
+            }
+    FlyIfMoved(AtSearchHeight(place), _area->speed_mps);
+    if (_now.NowS - _askedS > AnswerS || !_now.Others.contains(_partner))
+        AskNext();
+}
+
+void Mission::Take(const Uav::Validation &validation)
+{
+    if (_mode != Uav::MissionMode::MISSION_CONFIRM || validation.target != _target ||
+        validation.node != _partner)
+        return;
+    if (!validation.accepted)
+        return AskNext();
+    Uav::Finding &finding = *_book.Find(_target);
+    finding.stage = Uav::TargetStage::TARGET_VALIDATED;
+    finding.validated_by = validation.node;
+    _mode = Uav::MissionMode::MISSION_TRACK;
+    _modeSinceS = _now.NowS;
+    _trackedBeforeS = finding.tracked_s;
+}
+
+void Mission::ActOnTrack()
+{
+    Uav::Finding &finding = *_book.Find(_target);
+    finding.stage = Uav::TargetStage::TARGET_TRACKED;
+    finding.tracked_s = static_cast<float>(_trackedBeforeS + _now.NowS - _modeSinceS);
+    FlyIfMoved(AtSearchHeight(PlaceOf(finding)), _area->speed_mps);
+    if (_now.NowS - _modeSinceS >= TrackS)
+        SearchOn();
+}
+
+void Mission::Take(const Uav::TargetReport &report)
+{
+    if (!WhyNot(report).empty() || report.seen_by == _aircraft)
+        return;  // nobody to answer, or nothing to answer about
+    std::string reason;
+    const Uav::Finding *own = _book.Find(_target);
+    if (_mode == Uav::MissionMode::MISSION_CONFIRM && own &&
+        LevelDistanceM(PlaceOf(*own), PlaceOf(report)) < TargetBook::NearM)
+    {
+        if (report.seen_by < _aircraft)
+        {
+            _book.Drop(_target);
+            SearchOn();
+        }
+        else
+            reason = "it pursues that target itself";
+    }
+    if (reason.empty() && !IsSearching())
+        reason = "it does something else";
+    if (reason.empty())
+        reason = WhyNotNow(false);
+    const Uav::TargetReport former = _report;
+    _report = report;
+    if (!reason.empty())
+    {
+        AnswerReport(false, reason);
+        _report = former;
+        return;
+    }
+    _mode = Uav::MissionMode::MISSION_VALIDATE;
+    _modeSinceS = _now.NowS;
+    _reportGpsTimeS = _now.GpsTimeS;
+}
+
+// The nearest target to the place in the report leads it there.
+void Mission::ActOnValidate()
+{
+    const GeoPoint place = PlaceOf(_report);
+    const Uav::Target *nearest = nullptr;
+    double nearestM = TargetBook::NearM + 3 * _report.sigma_m;
+    for (const Uav::Target &target : _now.Targets.items)
+        if (const double distance = LevelDistanceM(place, PlaceOf(target)); distance < nearestM)
+        {
+            nearest = &target;
+            nearestM = distance;
+        }
+    if (nearest && nearest->own_gps_time_s > _reportGpsTimeS)
+    {
+        AnswerReport(true, "", nearest);
+        return SearchOn();
+    }
+    if (_now.NowS - _modeSinceS > ValidateS)
+    {
+        AnswerReport(false, "it was not to be seen");
+        return SearchOn();
+    }
+    FlyIfMoved(AtSearchHeight(nearest ? PlaceOf(*nearest) : place), _area->speed_mps);
+}
+
+void Mission::AnswerReport(bool accepted, const std::string &reason, const Uav::Target *seen)
+{
+    Uav::Validation answer;
+    answer.target = _report.target;
+    answer.node = _aircraft;
+    answer.accepted = accepted;
+    answer.reason = reason;
+    if (seen)
+    {
+        answer.latitude_deg = seen->latitude_deg;
+        answer.longitude_deg = seen->longitude_deg;
+        answer.sigma_m = seen->sigma_major_m;
+    }
+    _output.Send(_report.seen_by, answer);  // if it gets lost the other asks somebody else after a while
+}
+
+}  // namespace Swarm
