@@ -126,7 +126,9 @@ export class Pictures {
       const name = element('span', '', one.node);
       const age = element('span', 'state');
       caption.append(name, age);
-      root.append(image, caption);
+      const frame = element('div', 'frame');
+      frame.append(image);
+      root.append(frame, caption);
       root.addEventListener('click', () => this.onSelect(one.node));
       return {root, image, age};
     }, (item, one) => {

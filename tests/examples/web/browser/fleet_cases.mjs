@@ -1,0 +1,80 @@
+// Cases over the real programs: a ground station and aircraft, joined by DDS over loopback.
+import assert from 'node:assert/strict';
+import {FleetPage, openBrowser} from './page.mjs';
+import {becomes, freeDomain, Program} from './processes.mjs';
+
+export async function startFleet({bin, root}, count) {
+  const domain = String(freeDomain());
+  const uavs = [];
+  for (let i = 1; i <= count; i++)
+    uavs.push(new Program(`${bin}/uav`, ['--config', `${root}/examples/swarm/uav.yaml`, '--node', `uav${i}`, '--domain', domain]));
+  const ground = new Program(`${bin}/ground`, ['--config', `${root}/examples/ground_station/ground.yaml`, '--domain', domain, '--web', '0']);
+  const [url] = await ground.says(/http:\S+/);
+  return {uavs, ground, url, domain};
+}
+
+async function showsAKilledAircraftAsOld(programs) {
+  const {uavs, url} = await startFleet(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  for (const node of ['uav1', 'uav2'])
+    await fleet.rowBecomes(node, (row) => /UP/.test(row.state) && !row.old && !row.marked, 'is UP and fresh');
+  await uavs[1].end();
+  const stale = await fleet.rowBecomes('uav2', (row) => /STALE/.test(row.state), 'becomes STALE');
+  assert.ok(stale.old && stale.marked, 'what is shown of it is marked as old');
+  const lost = await fleet.rowBecomes('uav2', (row) => /LOST/.test(row.state), 'becomes LOST');
+  assert.ok(lost.age > stale.age, 'its age grows');
+  await fleet.rowBecomes('uav2', (row) => row.age > lost.age + 1, 'goes on growing old');
+  const marker = await fleet.marker('uav2');
+  assert.match(marker.classes, /lost/);
+  assert.match(marker.label, /LOST \d/);
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is not touched by that');
+  await becomes(async () => /uav2.*LOST/.test(await fleet.text('#events')), 'the log of events tells of it');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function commandsAnAircraft(programs) {
+  const {url} = await startFleet(programs, 1);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is UP');
+  await fleet.select('uav1');
+  // All that is shown of the first command, in order.
+  await page.evaluate(() => {
+    window.progress = [];
+    new MutationObserver(() => {
+      const item = document.querySelector('#commands li:last-child');
+      const now = item?.dataset.progress;
+      if (now && window.progress[window.progress.length - 1] !== now) window.progress.push(now);
+    }).observe(document.getElementById('commands'), {subtree: true, childList: true, attributes: true});
+  });
+  const marker = await fleet.marker('uav1');
+  await page.mouse.click(marker.x + 40, marker.y - 30);
+  assert.equal(await page.isVisible('#order'), true);
+  const point = [Number(await page.inputValue('#order-latitude')), Number(await page.inputValue('#order-longitude'))];
+  assert.equal(await page.locator('#commands li').count(), 0, 'nothing is sent before it is confirmed');
+  await page.fill('#order-speed', '20');
+  await page.click('#order-send');
+  await becomes(async () => (await page.locator('#commands li[data-progress="done"]').count()) === 1,
+    async () => `the command is done; ${await fleet.text('#commands')}; ${await fleet.text('#order-error')}`);
+  const progress = await page.evaluate(() => window.progress);
+  const order = ['sent', 'delivered', 'accepted', 'done'];
+  assert.deepEqual(progress, order.filter((one) => progress.includes(one)), 'in this order');
+  assert.equal(progress[progress.length - 1], 'done');
+  const [latitude, longitude] = (await fleet.text('#selected-text')).match(/-?\d+\.\d+/g).map(Number);
+  const away = Math.hypot((latitude - point[0]) * 111195, (longitude - point[1]) * 75270);
+  assert.ok(away < 150, `the aircraft is ${away} m from where it was sent`);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('h');
+  await page.keyboard.press('Enter');
+  await becomes(async () => (await page.locator('#commands li').count()) === 2, 'there is a second command');
+  await becomes(async () => /(accepted|done)/.test(await page.locator('#commands li').first().getAttribute('data-progress')),
+    async () => `it is called home; ${await fleet.text('#commands')}`);
+  assert.deepEqual(fleet.errors, []);
+}
+
+export const cases = {
+  shows_a_killed_aircraft_as_old: showsAKilledAircraftAsOld,
+  commands_an_aircraft: commandsAnAircraft,
+};
