@@ -3,28 +3,41 @@ import assert from 'node:assert/strict';
 import {FleetPage, openBrowser} from './page.mjs';
 import {becomes, freeDomain, Program} from './processes.mjs';
 
-export async function startFleet({bin, root}, count) {
+// Each aircraft is two processes, as it is in the air; here the second one only if it is wanted.
+export async function startFleet({bin, root}, count, {vision = false, groundArguments = []} = {}) {
   const domain = String(freeDomain());
+  const swarm = `${root}/examples/swarm`;
+  const common = (name, node) => ['--config', `${swarm}/${name}.yaml`, '--node', node, '--domain', domain];
   const uavs = [];
-  for (let i = 1; i <= count; i++)
-    uavs.push(new Program(`${bin}/uav`, ['--config', `${root}/examples/swarm/uav.yaml`, '--node', `uav${i}`, '--domain', domain]));
-  const ground = new Program(`${bin}/ground`, ['--config', `${root}/examples/ground_station/ground.yaml`, '--domain', domain, '--web', '0']);
+  const visions = [];
+  for (let i = 1; i <= count; i++) {
+    uavs.push(new Program(`${bin}/uav`, common('uav', `uav${i}`)));
+    if (vision)
+      visions.push(new Program(`${bin}/vision`, [...common('vision', `uav${i}.vision`), '--world', `${swarm}/world.yaml`]));
+  }
+  const ground = new Program(`${bin}/ground`, ['--config', `${root}/examples/ground_station/ground.yaml`, '--domain', domain,
+    '--web', '0', ...groundArguments]);
   const [url] = await ground.says(/http:\S+/);
-  return {uavs, ground, url, domain};
+  return {uavs, visions, ground, url};
 }
 
 async function showsAKilledAircraftAsOld(programs) {
-  const {uavs, url} = await startFleet(programs, 2);
+  const {uavs, visions, url} = await startFleet(programs, 2, {vision: true});
   await openBrowser();
   const fleet = await FleetPage.open(url);
   for (const node of ['uav1', 'uav2'])
     await fleet.rowBecomes(node, (row) => /UP/.test(row.state) && !row.old && !row.marked, 'is UP and fresh');
-  await uavs[1].end();
+  const picture = fleet.page.locator('.pictures figure', {hasText: 'uav2'});
+  await becomes(async () => (await picture.count()) === 1 && (await picture.locator('img').evaluate((image) => image.naturalWidth)) > 0,
+    'a picture of uav2 is shown');
+  await becomes(async () => !/OLD/.test(await picture.textContent()), 'it is fresh');
+  await Promise.all([uavs[1].end(), visions[1].end()]);
   const stale = await fleet.rowBecomes('uav2', (row) => /STALE/.test(row.state), 'becomes STALE');
   assert.ok(stale.old && stale.marked, 'what is shown of it is marked as old');
   const lost = await fleet.rowBecomes('uav2', (row) => /LOST/.test(row.state), 'becomes LOST');
   assert.ok(lost.age > stale.age, 'its age grows');
   await fleet.rowBecomes('uav2', (row) => row.age > lost.age + 1, 'goes on growing old');
+  assert.match(await picture.textContent(), /OLD/);
   const marker = await fleet.marker('uav2');
   assert.match(marker.classes, /lost/);
   assert.match(marker.label, /LOST \d/);
