@@ -5,21 +5,25 @@ set +m -uo pipefail # no job control: processes started with & keep the process 
 usage() {
     cat <<'USAGE'
 Usage: demo.sh [OPTION]...
-Starts simulated aircraft and a ground station as processes of their own on this machine, joined by DDS over
-loopback, and shows the fleet until Ctrl-C. Installs missing Debian packages and builds what is missing first.
+Starts simulated aircraft that search an area for targets, and a ground station, joined by DDS over loopback, and shows
+the fleet until Ctrl-C, here and on a web page. An aircraft is two processes, uav1 and uav1.vision, and so on. Installs
+missing Debian packages and builds what is missing first.
 
   --uavs N           number of aircraft, 1 to 20 (default 3); they are called uav1, uav2, ...
   --seconds N        end after N seconds, 1 to 86400 (default: run until Ctrl-C)
   --track FILE       let an aircraft fly the track in this CSV file; the first --track is for uav1, the second for
-                     uav2, and so on; aircraft without one fly circles
+                     uav2, and so on; they follow it and do not search
+  --web PORT         port of the web page on this machine, 1 to 65535 (default: the first free one from 8080 on), or `off`
   --transport NAME   DDS implementation: fastdds (default), cyclonedds, or mixed: uav1, uav3, ... and the ground station
                      on fastdds, uav2, uav4, ... on cyclonedds
   --domain N         DDS domain, 0 to 232 (default: one that nobody on this machine uses)
-  --bin DIR          take the programs uav and ground from this folder; install and build nothing
+  --bin DIR          take the programs uav, vision and ground from this folder; install and build nothing
   -h, --help         show this and exit
 
-Exit code: 0 if every aircraft was up at the end, at least 90 % of the poses that it published were heard, and every
-command was acknowledged by the aircraft it was meant for; 1 if not; 2 if an option or a track file is wrong.
+Exit code: 0 if every aircraft was up at the end, at least 90 % of the poses that it published were heard, every command
+was acknowledged by the aircraft it was meant for or certainly never reached it, and, if two aircraft or more search, a
+target was found by one of them, validated by another and followed, which takes them about a minute; 1 if not; 2 if an
+option or a track file is wrong.
 USAGE
 }
 
@@ -45,6 +49,7 @@ tracks=()
 transport=fastdds
 domain=
 bin=
+web=
 while [ $# -gt 0 ]; do
     option=$1
     case $option in
@@ -56,7 +61,7 @@ while [ $# -gt 0 ]; do
         set -- "${option%%=*}" "${option#*=}" "${@:2}"
         continue
         ;;
-    --uavs | --seconds | --track | --transport | --domain | --bin)
+    --uavs | --seconds | --track | --transport | --domain | --web | --bin)
         [ $# -ge 2 ] || fail_usage "$option needs a value"
         value=$2
         shift 2
@@ -82,6 +87,11 @@ while [ $# -gt 0 ]; do
         is_number "$value" 0 232 || fail_usage "--domain must be a number from 0 to 232, not '$value'"
         domain=$((10#$value))
         ;;
+    --web)
+        [ "$value" = off ] || is_number "$value" 1 65535 ||
+            fail_usage "--web must be a port from 1 to 65535, or off, not '$value'"
+        web=$value
+        ;;
     --bin) bin=$value ;;
     esac
 done
@@ -92,10 +102,10 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(dirname "$here")
 if [ -z "$bin" ]; then
     "$root/docker/install-packages.sh" || exit 1
-    "$root/docker/build-preset.sh" release uav ground || exit 1
+    "$root/docker/build-preset.sh" release uav vision ground || exit 1
     bin=$root/build/release/bin
 fi
-for program in uav ground; do
+for program in uav vision ground; do
     [ -x "$bin/$program" ] || fail_usage "there is no program $bin/$program"
 done
 
@@ -105,6 +115,17 @@ domain_in_use() {
     port=$(printf '%04X' $((7400 + 250 * $1)))
     grep -q "^ *[0-9]*: [0-9A-F]*:$port " /proc/net/udp /proc/net/udp6 2>/dev/null
 }
+
+# tcp_port_in_use PORT: whether somebody listens on it.
+tcp_port_in_use() {
+    local port
+    port=$(printf '%04X' "$1")
+    grep -q "^ *[0-9]*: [0-9A-F]*:$port [0-9A-F]*:0000 0A " /proc/net/tcp /proc/net/tcp6 2>/dev/null
+}
+if [ -z "$web" ]; then
+    web=8080
+    while tcp_port_in_use "$web" && [ "$web" -lt 8180 ]; do web=$((web + 1)); done
+fi
 
 # Domains from 20 to 99: their ports stay below those that the kernel gives to any program.
 if [ -z "$domain" ]; then
@@ -128,18 +149,28 @@ uav_arguments() { # uav_arguments K: sets the array `arguments`
         --transport "$(transport_of "$1")")
     [ "$1" -gt ${#tracks[@]} ] || arguments+=(--track "${tracks[$1 - 1]}")
 }
+vision_arguments() { # vision_arguments K: sets the array `arguments`
+    arguments=(--config "$here/swarm/vision.yaml" --node "uav$1.vision" --domain "$domain"
+        --transport "$(transport_of "$1")" --world "$here/swarm/world.yaml")
+}
 ground_arguments=(--config "$here/ground_station/ground.yaml" --domain "$domain"
     --transport "$(transport_of 1)")
 [ -z "$seconds" ] || ground_arguments+=(--seconds "$seconds")
+[ "$web" = off ] || ground_arguments+=(--web "$web")
+[ $((uavs - ${#tracks[@]})) -lt 2 ] || ground_arguments+=(--expect-target)
 for ((k = 1; k <= uavs; k++)); do
     ground_arguments+=(--expect "uav$k")
+    [ "$k" -le ${#tracks[@]} ] || ground_arguments+=(--search "uav$k")
     uav_arguments "$k"
     "$bin/uav" "${arguments[@]}" --check || exit $?
+    vision_arguments "$k"
+    "$bin/vision" "${arguments[@]}" --check || exit $?
 done
 "$bin/ground" "${ground_arguments[@]}" --check || exit $?
 
 logs=$(mktemp -d)
-uav_pids=()
+names=()  # of the processes of the aircraft, and their ids, in the same order
+pids=()
 ground_pid=
 interrupts=0
 
@@ -160,7 +191,7 @@ end_processes() {
 on_exit() {
     trap - EXIT
     trap '' INT TERM HUP
-    end_processes ${ground_pid:+"$ground_pid"} "${uav_pids[@]}"
+    end_processes ${ground_pid:+"$ground_pid"} "${pids[@]}"
     rm -rf "$logs"
 }
 
@@ -180,11 +211,17 @@ trap on_interrupt INT TERM HUP
 # A session of its own for each process keeps the terminal's Ctrl-C from all but this script, which ends them in the
 # right order. The parent-death signal ends them even if this script is killed.
 started=
+start() { # start NAME PROGRAM: with the array `arguments`
+    setsid setpriv --pdeathsig TERM "$bin/$2" "${arguments[@]}" </dev/null >"$logs/$1" 2>&1 &
+    names+=("$1")
+    pids+=($!)
+    started+="${started:+, }$1 ($!)"
+}
 for ((k = 1; k <= uavs; k++)); do
     uav_arguments "$k"
-    setsid setpriv --pdeathsig TERM "$bin/uav" "${arguments[@]}" </dev/null >"$logs/uav$k" 2>&1 &
-    uav_pids+=($!)
-    started+="${started:+, }uav$k ($!)"
+    start "uav$k" uav
+    vision_arguments "$k"
+    start "uav$k.vision" vision
 done
 setsid setpriv --pdeathsig TERM "$bin/ground" "${ground_arguments[@]}" </dev/null &
 ground_pid=$!
@@ -205,11 +242,11 @@ if [ "$status" -ne 0 ]; then
     [ "$status" -eq 1 ] || echo "demo.sh: ground ended with exit code $status" >&3
     result=1
 fi
-for ((k = 1; k <= uavs; k++)); do
-    if ! kill -0 "${uav_pids[k - 1]}"; then
-        wait "${uav_pids[k - 1]}"
-        echo "demo.sh: uav$k ended before its time with exit code $?" >&3
-        tail -n 5 "$logs/uav$k" | sed "s/^/    uav$k: /" >&3
+for k in "${!pids[@]}"; do
+    if ! kill -0 "${pids[k]}"; then
+        wait "${pids[k]}"
+        echo "demo.sh: ${names[k]} ended before its time with exit code $?" >&3
+        tail -n 5 "$logs/${names[k]}" | sed "s/^/    ${names[k]}: /" >&3
         result=1
     fi
 done
