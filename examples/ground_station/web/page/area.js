@@ -55,6 +55,11 @@ export class SearchAreaEditor {
     }
     byId('area-send').disabled = this.draft === null || this.sending === true;
     byId('area-discard').disabled = this.draft === null;
+    const panel = byId('area-panel');
+    panel.classList.toggle('draft', this.draft !== null);
+    const {area} = this;
+    const size = area ? `${Math.round(area.north_m)} × ${Math.round(area.east_m)} m at ${Math.round(area.altitude_m)} m` : 'none';
+    setText(byId('area-summary'), this.draft ? `▲ new, not sent: ${size}` : area ? `${area.number}: ${size}` : size);
     if (this.draft) setText(byId('area-note'), 'Not sent yet: the fleet searches the area that is drawn with a full line.');
     else if (inForce) setText(byId('area-note'), `Area ${inForce.number}. Drag its handles on the map, or change the numbers.`);
     else setText(byId('area-note'), 'There is none. “Here” puts one into the middle of the map.');
@@ -65,6 +70,7 @@ export class SearchAreaEditor {
     const draft = {};
     for (const {name} of this.fields) draft[name] = values[name] ?? from[name] ?? DEFAULTS[name];
     this.draft = draft;
+    byId('area-panel').open = true;
     this.fillFields(draft);
     this.redraw();
   }
@@ -73,6 +79,12 @@ export class SearchAreaEditor {
     this.placeHandles();
     this.fleetMap.layer.paint();
     this.update();
+  }
+
+  // Where its numbers are typed.
+  focus() {
+    byId('area-panel').open = true;
+    byId('area-latitude_deg').focus();
   }
 
   discard() {

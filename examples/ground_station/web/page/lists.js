@@ -32,11 +32,11 @@ export class CommandList {
     const at = STEPS.indexOf(command.progress);
     if (at >= 0) {
       // The way that it has come, and the way that it has to go.
-      item.what.replaceChildren(...STEPS.map((step, i) => {
-        const className = i === at ? 'step reached now' : i < at ? 'step reached' : 'step';
-        const made = element('span', className, (i > 0 ? ' → ' : '') + step);
+      item.what.replaceChildren(...STEPS.flatMap((step, i) => {
+        const way = i === at ? 'step reached now' : i < at ? 'step reached' : 'step';
+        const made = element('span', way, step);
         if (i === at) made.setAttribute('aria-current', 'step');
-        return made;
+        return i > 0 ? [element('span', i <= at ? 'step reached' : 'step', ' → '), made] : [made];
       }));
       if (command.progress === 'done') item.what.append(' ✓');
     } else {

@@ -136,7 +136,7 @@ listenForKeys([
   {key: 'c', what: 'Centre the map on it', run: centre},
   {key: 'f', what: 'Fit the map to the fleet and the search area', run: () => map.fit()},
   {key: 'm', what: 'Go to the map, which the arrow keys move', run: () => byId('map').focus()},
-  {key: 'a', what: 'Go to the numbers of the search area', run: () => byId('area-latitude_deg').focus()},
+  {key: 'a', what: 'Go to the numbers of the search area', run: () => area.focus()},
   {key: 'n', what: 'Put the search area into the middle of the map', run: () => area.placeHere()},
   {key: 't', what: 'Next theme: auto, light, dark, contrast (sunlight), night (red)', run: nextTheme},
   {key: '?', what: 'Show the keys', run: help},

@@ -77,7 +77,7 @@ export class Model {
         finds.delete(target.number);
         found.push({
           ...target,
-          name: `${aircraft.node}-${target.number}`,
+          name: `${aircraft.node}/${target.number}`,
           stage: finding?.stage ?? 'found',
           validatedBy: finding?.validated_by ?? '',
           age: this.age(aircraft.targets.age_s + (target.unseen_s ?? 0)),
@@ -88,7 +88,7 @@ export class Model {
       for (const finding of finds.values())
         found.push({
           ...finding,
-          name: `${aircraft.node}-${finding.target}`,
+          name: `${aircraft.node}/${finding.target}`,
           seen_by: [aircraft.node],
           validatedBy: finding.validated_by,
           age: NaN,
