@@ -46,9 +46,10 @@ struct Situation
 //
 // It does nothing of its own before it is told to. Told to search it flies to the search area and searches it
 // in lanes. When it is the first to see a target it circles it (CONFIRM) and asks the other aircraft, the
-// nearest first, one at a time, to come and look. When one has seen it, it follows it for a while (TRACK) and
-// searches on; when nobody can, the target is rejected. Asked itself while it searches it flies there and
-// looks (VALIDATE). Of two aircraft that pursue one target the one whose name comes later leaves it.
+// nearest first, one at a time, to come and look; those that are busy once more after a while. When one has
+// seen it, it follows it for a while (TRACK) and searches on; when nobody can, the target is rejected. Asked
+// itself while it searches it flies there and looks (VALIDATE). Of two aircraft that pursue one target, or
+// that wait for each other, the one whose name comes later gives way.
 //
 // A Goto or GoHome ends all that. An aircraft that holds the point of a Goto and has a recorded track goes
 // back to the track after a while.
@@ -62,6 +63,8 @@ public:
     static constexpr double TrackS = 60;       // follows a target
     static constexpr double ValidateS = 45;    // looks for a target of another aircraft
     static constexpr double AnswerS = 55;      // waits for another aircraft's validation
+    static constexpr double AskAgainS = 10;    // those that were busy
+    static constexpr double PatienceS = 60;    // with those that are busy
     static constexpr double BackToTrackS = 5;  // holds the point of a Goto if it has a recorded track
     static constexpr double StepM = 15;        // a point to fly to is worth a new course if it moved so far
     static constexpr double RepeatS = 2;       // a course that the autopilot does not fly is sent again
@@ -117,10 +120,14 @@ private:
     void LeaveTarget(const std::string &reason);
     void BeginConfirm(std::uint32_t number);
     void AskNext();
+    std::string NearestToAsk(const GeoPoint &place) const;
+    Uav::TargetReport ReportOf(const Uav::Finding &finding) const;
     void ActOnConfirm();
     void ActOnTrack();
     void ActOnValidate();
-    void AnswerReport(bool accepted, const std::string &reason, const Uav::Target *seen = nullptr);
+    std::string WhyNotLook(const Uav::TargetReport &report);
+    void Answer(const Uav::TargetReport &report, Uav::Validation answer);
+    void Refuse(const Uav::TargetReport &report, const std::string &reason, bool busy);
     std::set<std::string> NamesOfOthers() const;
     GeoPoint AtSearchHeight(const GeoPoint &place) const;
 
@@ -146,8 +153,9 @@ private:
 
     std::uint32_t _target = 0;  // of CONFIRM and TRACK
     std::string _partner;
-    std::set<std::string> _asked;
-    double _askedS = 0;
+    std::set<std::string> _asked;  // in this round
+    bool _anyBusy = false;         // in this round
+    double _askedS = 0;            // when the partner was asked; without one, when the round ended
     double _trackedBeforeS = 0;
     Uav::TargetReport _report;   // of VALIDATE
     double _reportGpsTimeS = 0;  // when it came

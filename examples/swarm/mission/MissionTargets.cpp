@@ -66,7 +66,7 @@ void Mission::SearchOn()
 void Mission::LeaveTarget(const std::string &reason)
 {
     if (_mode == Uav::MissionMode::MISSION_VALIDATE)
-        AnswerReport(false, reason);
+        Refuse(_report, reason, true);
     Uav::Finding *finding = _book.Find(_target);
     if (finding && finding->stage == Uav::TargetStage::TARGET_VALIDATING)
         finding->stage = Uav::TargetStage::TARGET_FOUND;
@@ -80,50 +80,63 @@ void Mission::BeginConfirm(std::uint32_t number)
     _modeSinceS = _now.NowS;
     _target = number;
     _asked.clear();
+    _anyBusy = false;
     _book.Find(number)->stage = Uav::TargetStage::TARGET_FOUND;
     AskNext();
 }
 
-// The nearest that was not asked yet.
+std::string Mission::NearestToAsk(const GeoPoint &place) const
+{
+    std::string nearest;
+    double nearestM = std::numeric_limits<double>::infinity();
+    for (const auto &[name, pose] : _now.Others)
+    {
+        const double distance = LevelDistanceM(place, {pose.latitude_deg, pose.longitude_deg, 0});
+        if (!_asked.contains(name) && distance < nearestM)
+        {
+            nearest = name;
+            nearestM = distance;
+        }
+    }
+    return nearest;
+}
+
+Uav::TargetReport Mission::ReportOf(const Uav::Finding &finding) const
+{
+    Uav::TargetReport report;
+    report.target = finding.target;
+    report.seen_by = _aircraft;
+    report.latitude_deg = finding.latitude_deg;
+    report.longitude_deg = finding.longitude_deg;
+    for (const Uav::Target &target : _now.Targets.items)
+        if (target.number == finding.target)
+            report.sigma_m = target.sigma_major_m;
+    report.gps_time_s = _now.GpsTimeS;
+    return report;
+}
+
+// The nearest that was not asked in this round.
 void Mission::AskNext()
 {
-    const Uav::Finding &finding = *_book.Find(_target);
+    Uav::Finding &finding = *_book.Find(_target);
+    _askedS = _now.NowS;
     while (true)
     {
-        const std::string *nearest = nullptr;
-        double nearestM = std::numeric_limits<double>::infinity();
-        for (const auto &[name, pose] : _now.Others)
+        _partner = NearestToAsk(PlaceOf(finding));
+        if (_partner.empty())
+            break;
+        _asked.insert(_partner);
+        if (_output.Send(_partner, ReportOf(finding)))
         {
-            const double distance =
-                LevelDistanceM(PlaceOf(finding), {pose.latitude_deg, pose.longitude_deg, 0});
-            if (!_asked.contains(name) && distance < nearestM)
-            {
-                nearest = &name;
-                nearestM = distance;
-            }
+            finding.stage = Uav::TargetStage::TARGET_VALIDATING;
+            return;
         }
-        if (!nearest)
-        {
-            _book.Reject(_target, _now.GpsTimeS);
-            return SearchOn();
-        }
-        _asked.insert(*nearest);
-        Uav::TargetReport report;
-        report.target = finding.target;
-        report.seen_by = _aircraft;
-        report.latitude_deg = finding.latitude_deg;
-        report.longitude_deg = finding.longitude_deg;
-        for (const Uav::Target &target : _now.Targets.items)
-            if (target.number == finding.target)
-                report.sigma_m = target.sigma_major_m;
-        report.gps_time_s = _now.GpsTimeS;
-        if (!_output.Send(*nearest, report))
-            continue;
-        _partner = *nearest;
-        _askedS = _now.NowS;
-        _book.Find(_target)->stage = Uav::TargetStage::TARGET_VALIDATING;
-        return;
     }
+    finding.stage = Uav::TargetStage::TARGET_FOUND;
+    if (_anyBusy && _now.NowS - _modeSinceS < PatienceS)
+        return;  // ActOnConfirm begins another round
+    _book.Reject(_target, _now.GpsTimeS);
+    SearchOn();
 }
 
 void Mission::ActOnConfirm()
@@ -138,8 +151,17 @@ void Mission::ActOnConfirm()
                 return SearchOn();
             }
     FlyIfMoved(AtSearchHeight(place), _area->speed_mps);
-    if (_now.NowS - _askedS > AnswerS || !_now.Others.contains(_partner))
+    if (!_partner.empty())
+    {
+        if (_now.NowS - _askedS > AnswerS || !_now.Others.contains(_partner))
+            AskNext();
+    }
+    else if (_now.NowS - _askedS > AskAgainS)
+    {
+        _asked.clear();
+        _anyBusy = false;
         AskNext();
+    }
 }
 
 void Mission::Take(const Uav::Validation &validation)
@@ -148,7 +170,10 @@ void Mission::Take(const Uav::Validation &validation)
         validation.node != _partner)
         return;
     if (!validation.accepted)
+    {
+        _anyBusy = _anyBusy || validation.busy;
         return AskNext();
+    }
     Uav::Finding &finding = *_book.Find(_target);
     finding.stage = Uav::TargetStage::TARGET_VALIDATED;
     finding.validated_by = validation.node;
@@ -171,34 +196,34 @@ void Mission::Take(const Uav::TargetReport &report)
 {
     if (!WhyNot(report).empty() || report.seen_by == _aircraft)
         return;  // nobody to answer, or nothing to answer about
-    std::string reason;
-    const Uav::Finding *own = _book.Find(_target);
-    if (_mode == Uav::MissionMode::MISSION_CONFIRM && own &&
-        LevelDistanceM(PlaceOf(*own), PlaceOf(report)) < TargetBook::NearM)
-    {
-        if (report.seen_by < _aircraft)
-        {
-            _book.Drop(_target);
-            SearchOn();
-        }
-        else
-            reason = "it pursues that target itself";
-    }
-    if (reason.empty() && !IsSearching())
-        reason = "it does something else";
-    if (reason.empty())
-        reason = WhyNotNow(false);
-    const Uav::TargetReport former = _report;
-    _report = report;
+    const std::string reason = WhyNotLook(report);
     if (!reason.empty())
-    {
-        AnswerReport(false, reason);
-        _report = former;
-        return;
-    }
+        return Refuse(report, reason, true);
+    _report = report;
     _mode = Uav::MissionMode::MISSION_VALIDATE;
     _modeSinceS = _now.NowS;
     _reportGpsTimeS = _now.GpsTimeS;
+}
+
+// An aircraft that circles a target of its own gives way to one whose name comes earlier, if both mean the
+// same target, or if it waits for somebody who has time.
+std::string Mission::WhyNotLook(const Uav::TargetReport &report)
+{
+    const Uav::Finding *own = _book.Find(_target);
+    if (_mode == Uav::MissionMode::MISSION_CONFIRM && own)
+    {
+        const bool same = LevelDistanceM(PlaceOf(*own), PlaceOf(report)) < TargetBook::NearM;
+        if (!same && !_partner.empty())
+            return "it has found another target";
+        if (report.seen_by > _aircraft)
+            return same ? "it pursues that target itself" : "it waits for validation itself";
+        if (same)
+            _book.Drop(_target);
+        SearchOn();
+    }
+    if (!IsSearching())
+        return "it does something else";
+    return WhyNotNow(false);
 }
 
 // The nearest target to the place in the report leads it there.
@@ -215,31 +240,35 @@ void Mission::ActOnValidate()
         }
     if (nearest && nearest->own_gps_time_s > _reportGpsTimeS)
     {
-        AnswerReport(true, "", nearest);
+        Uav::Validation answer;
+        answer.accepted = true;
+        answer.latitude_deg = nearest->latitude_deg;
+        answer.longitude_deg = nearest->longitude_deg;
+        answer.sigma_m = nearest->sigma_major_m;
+        Answer(_report, answer);
         return SearchOn();
     }
     if (_now.NowS - _modeSinceS > ValidateS)
     {
-        AnswerReport(false, "it was not to be seen");
+        Refuse(_report, "it was not to be seen", false);
         return SearchOn();
     }
     FlyIfMoved(AtSearchHeight(nearest ? PlaceOf(*nearest) : place), _area->speed_mps);
 }
 
-void Mission::AnswerReport(bool accepted, const std::string &reason, const Uav::Target *seen)
+void Mission::Refuse(const Uav::TargetReport &report, const std::string &reason, bool busy)
 {
     Uav::Validation answer;
-    answer.target = _report.target;
-    answer.node = _aircraft;
-    answer.accepted = accepted;
     answer.reason = reason;
-    if (seen)
-    {
-        answer.latitude_deg = seen->latitude_deg;
-        answer.longitude_deg = seen->longitude_deg;
-        answer.sigma_m = seen->sigma_major_m;
-    }
-    _output.Send(_report.seen_by, answer);  // if it gets lost the other asks somebody else after a while
+    answer.busy = busy;
+    Answer(report, answer);
+}
+
+void Mission::Answer(const Uav::TargetReport &report, Uav::Validation answer)
+{
+    answer.target = report.target;
+    answer.node = _aircraft;
+    _output.Send(report.seen_by, answer);  // if it gets lost the other asks somebody else after a while
 }
 
 }  // namespace Swarm
