@@ -5,7 +5,8 @@ set -euo pipefail
 usage() {
     cat <<'USAGE'
 Usage: fleet.sh COMMAND
-  up [UAVS]                   a ground station and UAVS aircraft (default 3), each a container on one network
+  up [UAVS]                   a ground station and UAVS aircraft (default 3) on one network; an aircraft is two
+                              containers, uav1 and uav1.vision, and so on
   run NODE PROGRAM [ARG...]   one more node, running any program of the image
   down                        removes all containers of the fleet, and its network
   status                      one line for each node: state, address, faults
@@ -42,7 +43,7 @@ label=rabit.fleet=$fleet
 containers() {
     docker ps --all --filter "label=$label" --format \
         '{{.ID}} {{.Label "rabit.node"}}/{{.Label "com.docker.compose.service"}}/{{.Label "com.docker.compose.container-number"}}' |
-        sed -e 's|^\([^ ]* [^/][^/]*\)/.*|\1|' -e 's| /ground/1$| ground|' -e 's| /\(.*\)/\(.*\)$| \1\2|' | awk 'NF == 2' | sort -k 2V
+        sed -e 's|^\([^ ]* [^/][^/]*\)/.*|\1|' -e 's| /ground/1$| ground|' -e 's| /vision/\(.*\)$| uav\1.vision|' -e 's| /\(.*\)/\(.*\)$| \1\2|' | awk 'NF == 2' | sort -k 2V
 }
 
 # find_container NODE
@@ -81,9 +82,10 @@ up() {
     docker image inspect "$image" >/dev/null 2>&1 ||
         docker build --tag "$image" --file "$here/Dockerfile" "$here/.."
     make_network
-    run_node ground ground
+    run_node ground ground --web 0.0.0.0:8080 --search '*'
     for ((k = 1; k <= uavs; k++)); do
         run_node "uav$k" uav
+        run_node "uav$k.vision" vision
     done
 }
 

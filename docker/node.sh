@@ -1,6 +1,6 @@
 #!/bin/sh
-# The entry point of the image. Usage: rabit-node uav|ground [OPTION...], or rabit-node PROGRAM [ARGUMENT...].
-# An aircraft or ground station finds its name, its configuration and its backend by the variables in README.md.
+# The entry point of the image. Usage: rabit-node uav|vision|ground [OPTION...], or rabit-node PROGRAM [ARGUMENT...].
+# The three find their name, their configuration and their backend by the variables in README.md.
 set -eu
 
 # A replica of a compose service is told its number by nobody but the network's name server: PROJECT-SERVICE-NUMBER.
@@ -9,20 +9,21 @@ name_on_network() {
 }
 
 case ${1:-} in
-uav | ground) ;;
+uav | vision | ground) ;;
 *) exec "$@" ;;
 esac
 role=$1
 shift
 if [ -z "${NODE:-}" ]; then
     NODE=ground
-    if [ "$role" = uav ]; then
+    if [ "$role" != ground ]; then
         number=$(name_on_network "$role")
         if [ -z "$number" ]; then
-            echo "rabit-node: no name: set NODE, for instance to uav1" >&2
+            echo "rabit-node: no name: set NODE, for instance to uav1, or for vision to uav1.vision" >&2
             exit 2
         fi
         NODE=uav$number
+        [ "$role" = uav ] || NODE=$NODE.vision
     fi
 fi
 
@@ -31,10 +32,11 @@ config=/etc/rabit/nodes/$NODE.yaml
 
 # The backends in turn: the ground station and uav1 have the first, uav2 the second, and from the start again.
 if [ -n "${TRANSPORTS:-}" ]; then
-    number=$(expr "$NODE" : '.*[^0-9]0*\([0-9][0-9]*\)$' || echo 1)
+    number=$(expr "${NODE%.vision}" : '.*[^0-9]0*\([0-9][0-9]*\)$' || echo 1)
     count=$(echo "$TRANSPORTS" | wc -w)
     wanted=$(((${number:-1} - 1) % count + 1))
     set -- --transport "$(echo "$TRANSPORTS" | awk -v n="$wanted" '{print $n}')" "$@"
 fi
+[ "$role" != vision ] || set -- --world /usr/local/share/rabit/world.yaml "$@"
 [ -z "${DOMAIN:-}" ] || set -- --domain "$DOMAIN" "$@"
 exec "$role" --config "$config" --node "$NODE" "$@"

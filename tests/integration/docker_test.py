@@ -47,14 +47,26 @@ class Console:
         raise AssertionError(f"no row of {node} with '{pattern}' within {LIMIT_S} s; the last one: {rows[-1:]}")
 
 
+    def wait_for_line(self, pattern):
+        """Until the ground station has shown such a line."""
+        wanted = re.compile(pattern)
+        end = time.monotonic() + 4 * LIMIT_S
+        while time.monotonic() < end:
+            if wanted.search(self("logs", "ground")):
+                return
+            time.sleep(2)
+        raise AssertionError(f"no line '{pattern}' within {4 * LIMIT_S} s")
+
+
 def fly_example(engine, transports):
-    """The example's aircraft come up, on these backends in turn, one is cut off and healed, one is killed and started
+    """The example's aircraft come up, on these backends in turn, and find a target; one is cut off and healed, one is killed and started
     again; all are removed."""
     fleet = Console(engine, transports)
     try:
         fleet("up", UAVS)
         for k in range(1, UAVS + 1):
             fleet.wait_for_row(f"uav{k}", r" UP .*[1-9] acknowledged")
+        fleet.wait_for_line(r"target uav\d-\d+ +TRACKED .* validated by uav\d")
         fleet("cut", "uav2")
         fleet.wait_for_row("uav2", " LOST ")
         fleet.wait_for_row("uav1", " UP ")
