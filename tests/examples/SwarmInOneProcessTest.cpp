@@ -104,8 +104,9 @@ TEST_F(SwarmInOneProcess, FindsValidatesAndTracksATarget)
 
     const auto targets = Latest<Uav::Targets>(_workspace, "uav1.vision/Targets").items;
     ASSERT_EQ(targets.size(), 1u);
-    EXPECT_LT(Swarm::LevelDistanceM(Swarm::PlaceOf(targets[0]), SwarmTest::WorldOfOneTarget().Targets[0].Start),
-              3 * targets[0].sigma_major_m);
+    EXPECT_LT(
+        Swarm::LevelDistanceM(Swarm::PlaceOf(targets[0]), SwarmTest::WorldOfOneTarget().Targets[0].Start),
+        3 * targets[0].sigma_major_m);
     EXPECT_LT(targets[0].sigma_major_m, 2);
 
     Run(60s);

@@ -9,24 +9,29 @@ namespace Swarm
 LawnMower::LawnMower(const Uav::SearchArea &area, std::size_t rank, std::size_t aircraft)
     : _middle{area.latitude_deg, area.longitude_deg, area.altitude_m},
       _lanesRunNorth(area.north_m > area.east_m),
-      _halfLengthM(std::max(area.north_m, area.east_m) / 2.0),
+      _halfLengthM(std::max(area.north_m, area.east_m) / 2.0 + TurnM),
       _breadthM(std::min(area.north_m, area.east_m)),
       _lanes(static_cast<std::size_t>(std::max(1.0, std::ceil(_breadthM / area.lane_m)))),
       _lane(_lanes * rank / std::max<std::size_t>(aircraft, 1) % _lanes)
 {
 }
 
-GeoPoint LawnMower::PointOn(double alongM) const
+// Of the lane, across from the middle of the area.
+double LawnMower::LaneM() const
 {
-    const double across =
-        _breadthM * ((static_cast<double>(_lane) + 0.5) / static_cast<double>(_lanes) - 0.5);
-    return Moved(_middle, _lanesRunNorth ? Offset{alongM, across, 0} : Offset{across, alongM, 0});
+    return _breadthM * ((static_cast<double>(_lane) + 0.5) / static_cast<double>(_lanes) - 0.5);
 }
 
-double LawnMower::AlongM(const GeoPoint &point) const
+GeoPoint LawnMower::PointAt(const Place &place) const
+{
+    const double across = LaneM() + place.BesideM;
+    return Moved(_middle, _lanesRunNorth ? Offset{place.AlongM, across, 0} : Offset{across, place.AlongM, 0});
+}
+
+LawnMower::Place LawnMower::PlaceOf(const GeoPoint &point) const
 {
     const Offset way = Between(_middle, point);
-    return _lanesRunNorth ? way.NorthM : way.EastM;
+    return _lanesRunNorth ? Place{way.NorthM, way.EastM - LaneM()} : Place{way.EastM, way.NorthM - LaneM()};
 }
 
 // From the end that is nearer to a place so far along it.
@@ -40,22 +45,23 @@ void LawnMower::BeginLane(std::size_t lane, double alongM)
 
 GeoPoint LawnMower::Next(const GeoPoint &from)
 {
-    const double along = AlongM(from);
+    Place place = PlaceOf(from);
     if (!_chosen)
-        BeginLane(_lane, along);
+        BeginLane(_lane, place.AlongM);
     _chosen = true;
-    if (_onLane && along * _direction >= _halfLengthM)
-        BeginLane((_lane + 1) % _lanes, along);
+    if (_onLane && place.AlongM * _direction >= _halfLengthM)
+    {
+        BeginLane((_lane + 1) % _lanes, place.AlongM);
+        place = PlaceOf(from);
+    }
     if (!_onLane)
     {
-        const GeoPoint place = PointOn(_comeToM);
-        const Offset way = Between(from, place);
-        if (std::hypot(way.NorthM, way.EastM) > NearM)
-            return place;
+        if (std::hypot(place.AlongM - _comeToM, place.BesideM) > NearM)
+            return PointAt({_comeToM, 0});
         _onLane = _begun = true;
     }
-    _comeToM = std::clamp(along, -_halfLengthM, _halfLengthM);
-    return PointOn(along + _direction * AheadM);
+    _comeToM = std::clamp(place.AlongM, -_halfLengthM, _halfLengthM);
+    return PointAt({place.AlongM + _direction * AheadM, -Counter * place.BesideM});
 }
 
 void LawnMower::Interrupt()

@@ -20,6 +20,10 @@ public:
     // near: about its turning circle.
     static constexpr double AheadM = 90;
     static constexpr double NearM = 60;
+    // Room to turn at both ends of a lane, outside the area.
+    static constexpr double TurnM = 50;
+    // An aircraft beside the lane aims at a point so much farther to its other side.
+    static constexpr double Counter = 2;
 
     // A valid area, and which of how many aircraft this one is, counted from 0.
     LawnMower(const Uav::SearchArea &area, std::size_t rank, std::size_t aircraft);
@@ -34,8 +38,15 @@ public:
     std::size_t Lanes() const { return _lanes; }
 
 private:
-    GeoPoint PointOn(double alongM) const;
-    double AlongM(const GeoPoint &point) const;
+    struct Place
+    {
+        double AlongM = 0;
+        double BesideM = 0;  // the lane
+    };
+
+    GeoPoint PointAt(const Place &place) const;
+    Place PlaceOf(const GeoPoint &point) const;
+    double LaneM() const;
     void BeginLane(std::size_t lane, double alongM);
 
     GeoPoint _middle;
