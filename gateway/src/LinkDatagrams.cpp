@@ -1,14 +1,14 @@
 #include "LinkDatagrams.h"
 
 #include "GatewayTopics.h"
+#include "LinkDataCodec.h"
 #include "MessageEncoder.h"
 #include "gateway.idl.h"
 
 namespace Rabit
 {
 
-void LinkDatagrams::Add(LinkTopic topic, std::string_view destination, const MessageType &type,
-                        const RabitMessage &sample)
+LinkDatagrams::Datagram &LinkDatagrams::Next(LinkTopic topic, std::string_view destination)
 {
     if (_used == _datagrams.size())
     {
@@ -17,8 +17,24 @@ void LinkDatagrams::Add(LinkTopic topic, std::string_view destination, const Mes
     Datagram &datagram = _datagrams[_used];
     datagram.Topic = topic;
     datagram.Destination.assign(destination);
-    datagram.Bytes.resize(type.SerializedSize(sample));
-    if (type.Serialize(sample, datagram.Bytes) == datagram.Bytes.size())
+    return datagram;
+}
+
+void LinkDatagrams::Add(const LinkData &data)
+{
+    Datagram &datagram = Next(LinkTopic::Data, data.Destination);
+    if (LinkDataCodec::Encode(data, datagram.Buffer.Resize(LinkDataCodec::EncodedSize(data))))
+    {
+        ++_used;
+    }
+}
+
+void LinkDatagrams::Add(LinkTopic topic, std::string_view destination, const MessageType &type,
+                        const RabitMessage &sample)
+{
+    Datagram &datagram = Next(topic, destination);
+    const std::size_t size = type.SerializedSize(sample);
+    if (type.Serialize(sample, datagram.Buffer.Resize(size)) == size)
     {
         ++_used;
     }
@@ -60,7 +76,7 @@ void LinkWriters::Write(const LinkDatagrams::Datagram &datagram, std::int64_t so
         writer = _session.CreateWriter(DescribeLinkTopic(datagram.Topic), LinkTopicQos(datagram.Topic),
                                        {datagram.Destination});
     }
-    static_cast<void>(writer->Write(BytesEncoder(datagram.Bytes), sourceTime));
+    static_cast<void>(writer->Write(BytesEncoder(datagram.Buffer.Bytes()), sourceTime));
 }
 
 }  // namespace Rabit

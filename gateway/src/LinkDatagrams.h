@@ -1,11 +1,13 @@
 #pragma once
 
+#include <rabit/gateway/links/LinkMessages.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
 
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,6 +23,29 @@ enum class LinkTopic
     Hello
 };
 
+// Memory for one datagram. Unlike a std::vector it is not filled with zeros before it is written.
+class DatagramBuffer
+{
+public:
+    // What it held is lost.
+    std::span<std::uint8_t> Resize(std::size_t size)
+    {
+        if (size > _capacity)
+        {
+            _memory = std::make_unique_for_overwrite<std::uint8_t[]>(size);
+            _capacity = size;
+        }
+        _size = size;
+        return {_memory.get(), _size};
+    }
+    std::span<const std::uint8_t> Bytes() const { return {_memory.get(), _size}; }
+
+private:
+    std::unique_ptr<std::uint8_t[]> _memory;
+    std::size_t _capacity = 0;
+    std::size_t _size = 0;
+};
+
 // Datagrams that wait for the gateway's thread, encoded. Memory of sent ones is used again. Not thread-safe.
 class LinkDatagrams
 {
@@ -29,9 +54,11 @@ public:
     {
         LinkTopic Topic = LinkTopic::Data;
         std::string Destination;
-        std::vector<std::uint8_t> Bytes;
+        DatagramBuffer Buffer;
     };
 
+    // Encodes it now. What cannot be encoded is left out.
+    void Add(const LinkData &data);
     void Add(LinkTopic topic, std::string_view destination, const MessageType &type,
              const RabitMessage &sample);
     bool IsEmpty() const { return _used == 0; }
@@ -45,6 +72,8 @@ public:
     const Datagram *end() const { return _datagrams.data() + _used; }
 
 private:
+    Datagram &Next(LinkTopic topic, std::string_view destination);
+
     std::vector<Datagram> _datagrams;
     std::size_t _used = 0;
 };

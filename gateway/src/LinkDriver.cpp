@@ -7,6 +7,7 @@
 
 #include "GatewayTopics.h"
 #include "GpsTime.h"
+#include "LinkDataCodec.h"
 #include "LinkWire.h"
 #include "NamePattern.h"
 #include "TypeDefinition.h"
@@ -112,9 +113,9 @@ void LinkDriver::Open(TransportSession &session)
                                                     }
                                                 }));
     };
-    open(LinkTopic::Data, &LinkDriver::OnDatagram<Gateway::LinkDataSample, LinkData, &LinkNode::OnData>);
-    open(LinkTopic::Ack, &LinkDriver::OnDatagram<Gateway::LinkAckSample, LinkAck, &LinkNode::OnAck>);
-    open(LinkTopic::Hello, &LinkDriver::OnDatagram<Gateway::LinkHelloSample, LinkHello, &LinkNode::OnHello>);
+    open(LinkTopic::Data, &LinkDriver::OnData);
+    open(LinkTopic::Ack, &LinkDriver::OnSample<Gateway::LinkAckSample, LinkAck, &LinkNode::OnAck>);
+    open(LinkTopic::Hello, &LinkDriver::OnSample<Gateway::LinkHelloSample, LinkHello, &LinkNode::OnHello>);
 }
 
 void LinkDriver::Close()
@@ -130,10 +131,24 @@ void LinkDriver::Close()
     Tell(news);
 }
 
-template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-void LinkDriver::OnDatagram(SampleBytes bytes)
+// Views are one for each thread of the transport, so that steady traffic allocates nothing for names and
+// lists.
+
+void LinkDriver::OnData(SampleBytes bytes)
 {
-    // One for each thread of the transport, so that steady traffic allocates nothing for names and lists.
+    static thread_local LinkData view;
+    if (!LinkDataCodec::Decode(bytes, view))
+    {
+        ++_malformed;
+        return;
+    }
+    TakeIn<LinkData, &LinkNode::OnData>(view);
+    view.Items.clear();  // they point to bytes that are only borrowed
+}
+
+template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
+void LinkDriver::OnSample(SampleBytes bytes)
+{
     static thread_local Sample sample;
     static thread_local View view;
     if (!GatewayTopics::TypeOf<Sample>().Deserialize(bytes, sample))
@@ -142,6 +157,12 @@ void LinkDriver::OnDatagram(SampleBytes bytes)
         return;
     }
     LinkWire::FromSample(sample, view);
+    TakeIn<View, Input>(view);
+}
+
+template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
+void LinkDriver::TakeIn(const View &view)
+{
     bool work = false;
     News news;
     {
@@ -253,9 +274,7 @@ std::size_t LinkDriver::Room(std::string_view queue) const
 
 void LinkDriver::Send(const LinkData &data)
 {
-    static thread_local Gateway::LinkDataSample sample;
-    LinkWire::ToSample(data, sample);
-    _outbox.Add(LinkTopic::Data, data.Destination, GatewayTopics::TypeOf<Gateway::LinkDataSample>(), sample);
+    _outbox.Add(data);
 }
 
 void LinkDriver::Send(const LinkAck &ack)

@@ -107,8 +107,12 @@ private:
     void ConfigureOnce(const std::string &node, const std::string &queue);
     LinkPayload Encode(const MessageType &type, const RabitMessage &message) const;
 
+    // Handlers of the transport, and what they have in common.
+    void OnData(SampleBytes bytes);
     template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-    void OnDatagram(SampleBytes bytes);
+    void OnSample(SampleBytes bytes);
+    template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
+    void TakeIn(const View &view);
     void FindLocalQueues();
     LinkTime Now() const { return _workspace.GetClock().Monotonic(); }
 

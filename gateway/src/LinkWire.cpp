@@ -5,32 +5,6 @@
 namespace Rabit::LinkWire
 {
 
-void ToSample(const LinkData &data, Gateway::LinkDataSample &sample)
-{
-    sample.version = data.Version;
-    sample.source.assign(data.Source);
-    sample.destination.assign(data.Destination);
-    sample.queue.assign(data.Queue);
-    sample.sender_incarnation = data.SenderIncarnation;
-    sample.receiver_incarnation = data.ReceiverIncarnation;
-    sample.base = data.Base;
-    sample.first = data.First;
-    sample.echo_clock = data.Echo.Clock;
-    sample.echo_time = data.Echo.Time;
-    sample.echo_held_for = data.Echo.HeldFor;
-    sample.sent_at = data.SentAt;
-    sample.items.resize(data.Items.size());
-    for (std::size_t i = 0; i < data.Items.size(); ++i)
-    {
-        const LinkItem &item = data.Items[i];
-        Gateway::LinkItemSample &wire = sample.items[i];
-        wire.flags = item.Flags;
-        wire.ttl_left = item.TtlLeft;
-        wire.type.assign(item.Type);
-        wire.payload.assign(item.Payload.begin(), item.Payload.end());
-    }
-}
-
 void ToSample(const LinkAck &ack, Gateway::LinkAckSample &sample)
 {
     sample.version = ack.Version;
@@ -59,32 +33,6 @@ void ToSample(const LinkHello &hello, Gateway::LinkHelloSample &sample)
     sample.your_incarnation = hello.YourIncarnation;
     sample.clock = hello.Clock;
     sample.time = hello.Time;
-}
-
-void FromSample(const Gateway::LinkDataSample &sample, LinkData &data)
-{
-    data.Version = sample.version;
-    data.Source = sample.source;
-    data.Destination = sample.destination;
-    data.Queue = sample.queue;
-    data.SenderIncarnation = sample.sender_incarnation;
-    data.ReceiverIncarnation = sample.receiver_incarnation;
-    data.Base = sample.base;
-    data.First = sample.first;
-    data.Echo.Clock = sample.echo_clock;
-    data.Echo.Time = sample.echo_time;
-    data.Echo.HeldFor = sample.echo_held_for;
-    data.SentAt = sample.sent_at;
-    data.Items.clear();
-    for (const Gateway::LinkItemSample &wire : sample.items)
-    {
-        LinkItem item;
-        item.Flags = wire.flags;
-        item.TtlLeft = wire.ttl_left;
-        item.Type = wire.type;
-        item.Payload = wire.payload;
-        data.Items.push_back(item);
-    }
 }
 
 void FromSample(const Gateway::LinkAckSample &sample, LinkAck &ack)

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace Rabit
 {
@@ -37,7 +36,7 @@ private:
 class BytesEncoder final : public SampleEncoder
 {
 public:
-    explicit BytesEncoder(const std::vector<std::uint8_t> &bytes) : _bytes(bytes) {}
+    explicit BytesEncoder(std::span<const std::uint8_t> bytes) : _bytes(bytes) {}
 
     std::size_t EncodedSize() const override { return _bytes.size(); }
 
@@ -52,7 +51,7 @@ public:
     }
 
 private:
-    const std::vector<std::uint8_t> &_bytes;
+    const std::span<const std::uint8_t> _bytes;
 };
 
 }  // namespace Rabit
