@@ -29,6 +29,7 @@ BenchOptions ParseOptions(int argc, char **argv, const char *description)
     app.add_option("--period", options.Period, "Nanoseconds between two messages; 0: as fast as it goes");
     app.add_option("--spawned-at", options.SpawnedAt, "CLOCK_MONOTONIC at the start of the process");
     app.add_flag("--in-listener", options.InListener, "Answer in the vendor's listener");
+    app.add_flag("--writer-thread", options.WriterThread, "Write on a thread of its own");
     app.add_option("--transport", options.Transport);
     try
     {

@@ -35,6 +35,9 @@ struct BenchOptions
     std::int64_t SpawnedAt = 0;
     // A plain program only: answer in the vendor's listener itself, without a thread of the application.
     bool InListener = false;
+    // A plain program only: leave the writing to a thread of its own, so that who sends never waits for the
+    // network.
+    bool WriterThread = false;
     // A node only: which backend.
     std::string Transport = "fastdds";
 

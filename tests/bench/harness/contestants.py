@@ -13,6 +13,7 @@ LIMIT_S = 120
 
 RAW_WORKER = "raw, worker"      # the listener hands over to a thread of the application
 RAW_LISTENER = "raw, listener"  # the application does its work in the vendor's listener
+RAW_THREADS = "raw, two threads"  # and who sends hands over to a thread that writes, as with Rabit
 NODE = "Rabit"                  # manager to manager, through two gateways
 LOCAL = "one process"           # manager to manager, without a gateway
 
@@ -32,6 +33,8 @@ class Contestants:
             argv = [self.folder / f"bench_raw_{transport}"]
             if contestant == RAW_LISTENER:
                 argv.append("--in-listener")
+            if contestant == RAW_THREADS:
+                argv.append("--writer-thread")
         argv += ["--role", role, "--domain", self.domain]
         for name, value in options.items():
             argv += [f"--{name}", value]

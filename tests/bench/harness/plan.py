@@ -3,7 +3,7 @@ what disturbs the machine disturbs all of them."""
 
 from dataclasses import dataclass, field
 
-from contestants import LOCAL, NODE, RAW_LISTENER, RAW_WORKER
+from contestants import LOCAL, NODE, RAW_LISTENER, RAW_THREADS, RAW_WORKER
 
 SIZES = {"100 B": 100, "1 kB": 1000, "64 kB": 65536, "1 MB": 1_000_000}
 ROUND_TRIPS = {"100 B": 10000, "1 kB": 5000, "64 kB": 2000, "1 MB": 300}
@@ -32,7 +32,8 @@ def latency(transports, scale):
         for size in sizes:
             options = options_of(carriage, size, max(int(ROUND_TRIPS[size] * scale), 100))
             for transport in transports:
-                yield Case("latency", transport, carriage, size, [RAW_WORKER, NODE, RAW_LISTENER], options)
+                yield Case("latency", transport, carriage, size,
+                           [RAW_WORKER, NODE, RAW_THREADS, RAW_LISTENER], options)
             if carriage != "telemetry":
                 yield Case("latency", "none", carriage, size, [LOCAL], options)
 

@@ -6,7 +6,7 @@ import pathlib
 import statistics
 import subprocess
 
-from contestants import LOCAL, NODE, RAW_LISTENER, RAW_WORKER
+from contestants import LOCAL, NODE, RAW_LISTENER, RAW_THREADS, RAW_WORKER
 from plan import SIZES
 
 median = statistics.median
@@ -100,16 +100,17 @@ def aims(table, transports):
             if ratio is not None:
                 met = ratio <= limit if direction == "at most" else ratio >= limit
                 raw, ours = (table.value(key.format(transport), who, name) for who in (RAW_WORKER, NODE))
+                threads = table.ratio(key.format(transport), name, RAW_THREADS)
                 lines.append([what, means, NAMES[transport], f"{direction} {limit} x raw", number(raw), number(ours),
-                              f"{ratio:.2f} x", "yes" if met else "no"])
+                              f"{ratio:.2f} x", f"{threads:.2f} x" if threads else "", "yes" if met else "no"])
     for what, means, key, name, limit, show in ABSOLUTE:
         for transport in transports:
             for nodes in ("alone", "pair"):
                 raw, ours = (table.value(key.format(nodes) + " " + transport, who, name) for who in (RAW_WORKER, NODE))
                 if ours is not None:
                     lines.append([f"{what} ({nodes})", means, NAMES[transport], f"at most {show(limit)}", show(raw),
-                                  show(ours), "", "yes" if ours <= limit else "no"])
-    return rows(["what", "to a user it is", "backend", "aim", "raw", "Rabit", "ratio", "met"], lines)
+                                  show(ours), "", "", "yes" if ours <= limit else "no"])
+    return rows(["what", "to a user it is", "backend", "aim", "raw, worker", "Rabit", "ratio", "to two threads", "met"], lines)
 
 
 def latency(table, transports, carriage):
@@ -121,9 +122,10 @@ def latency(table, transports, carriage):
                 continue
             line = [size, NAMES[transport]]
             for name in ("p50_us", "p99_us", "p999_us"):
-                values = [number(table.value(key, who, name)) for who in (RAW_LISTENER, RAW_WORKER, NODE)]
-                ratio = table.ratio(key, name)
-                line += [" / ".join(values), f"{ratio:.2f}" if ratio else ""]
+                values = [number(table.value(key, who, name))
+                          for who in (RAW_LISTENER, RAW_WORKER, RAW_THREADS, NODE)]
+                ratios = [table.ratio(key, name, who) for who in (RAW_WORKER, RAW_THREADS)]
+                line += [" / ".join(values), " / ".join(f"{ratio:.2f}" if ratio else "" for ratio in ratios)]
             low_high = table.spread(key, NODE, "p50_us")
             line.append(f"{number(low_high[0])} to {number(low_high[1])}" if low_high else "")
             lines.append(line)
@@ -202,8 +204,8 @@ def markdown(where, repetitions, results, transports):
     text += where_and_when(where, repetitions)
     for carriage, name in (("state", "mirrored messages, qos `state`"),
                            ("telemetry", "mirrored messages, qos `telemetry`"), ("queue", "queue messages")):
-        text += f"## Latency: {name}\n\nRaw in the listener / raw with a worker / Rabit; ratio: Rabit to raw with a "
-        text += "worker.\n\n" + latency(table, transports, carriage)
+        text += f"## Latency: {name}\n\nRaw in the listener / raw with a worker / raw with two threads / Rabit. Ratio: "
+        text += "Rabit to raw with a worker / to raw with two threads.\n\n" + latency(table, transports, carriage)
     text += "## Queues at full speed\n\nRaw with a worker / Rabit.\n\n" + throughput(table, transports)
     text += "## What a message costs\n\nBoth sides together, while it goes there and back. Raw with a worker / Rabit."
     text += "\n\n" + costs(table, transports)

@@ -17,7 +17,7 @@ import plan
 import report
 from contestants import LOCAL
 
-IDLE_S = 20
+IDLE_S = 10
 QUICK_IDLE_S = 2
 
 

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <iostream>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace Rabit::Bench
@@ -50,6 +53,68 @@ private:
     bool _rung = false;
 };
 
+// Writes what it was given last on a thread of its own.
+class WriterThread
+{
+public:
+    explicit WriterThread(std::function<void(const RawSample &)> write)
+        : _write(std::move(write)), _thread([this] { Run(); })
+    {
+    }
+    ~WriterThread()
+    {
+        {
+            const std::lock_guard lock(_mutex);
+            _ended = true;
+        }
+        _changed.notify_one();
+        _thread.join();
+    }
+
+    void Give(const RawSample &sample)
+    {
+        {
+            const std::lock_guard lock(_mutex);
+            _sample = sample;
+            _padding.assign(sample.Padding.begin(), sample.Padding.end());
+            _given = true;
+        }
+        _changed.notify_one();
+    }
+
+private:
+    void Run()
+    {
+        std::vector<std::uint8_t> padding;
+        while (true)
+        {
+            RawSample sample;
+            {
+                std::unique_lock lock(_mutex);
+                _changed.wait(lock, [this] { return _given || _ended; });
+                if (_ended)
+                {
+                    return;
+                }
+                _given = false;
+                sample = _sample;
+                padding.swap(_padding);
+            }
+            sample.Padding = padding;
+            _write(sample);
+        }
+    }
+
+    const std::function<void(const RawSample &)> _write;
+    std::mutex _mutex;
+    std::condition_variable _changed;
+    RawSample _sample;
+    std::vector<std::uint8_t> _padding;
+    bool _given = false;
+    bool _ended = false;
+    std::thread _thread;
+};
+
 // A program with one channel, whose samples are handled by the application's thread, or in the listener.
 class Program
 {
@@ -58,6 +123,11 @@ public:
         : Options(options), Padding(options.Padding(), std::uint8_t{0x5a})
     {
         Channel = OpenRawChannel(options, writes, reads, [this] { OnData(); });
+        if (options.WriterThread)
+        {
+            _writer =
+                std::make_unique<WriterThread>([this](const RawSample &sample) { WriteSurely(sample); });
+        }
         {
             const std::lock_guard lock(_opening);
             _open = true;
@@ -82,6 +152,19 @@ public:
             {
                 throw std::runtime_error("a sample was not taken within 30 s");
             }
+        }
+    }
+
+    // As WriteSurely, by the thread that is there for it if there is one.
+    void Send(const RawSample &sample)
+    {
+        if (_writer)
+        {
+            _writer->Give(sample);
+        }
+        else
+        {
+            WriteSurely(sample);
         }
     }
 
@@ -115,6 +198,7 @@ private:
 
     std::mutex _opening;
     bool _open = false;
+    std::unique_ptr<WriterThread> _writer;
 };
 
 class Ping final : public Program
@@ -125,7 +209,7 @@ public:
     int Run()
     {
         WaitUntilMatched();
-        Send(0);
+        Ask(0);
         while (!IsComplete())
         {
             if (Ready.Wait(Limit()))
@@ -157,7 +241,7 @@ private:
         const std::lock_guard lock(_mutex);
         if (_asked == 0)
         {
-            Send(0);
+            Ask(0);
         }
         else if (!_score.IsComplete() && Now() - _askedAt > 1'000'000'000)
         {
@@ -170,7 +254,7 @@ private:
     {
         if (!_score.IsComplete())
         {
-            Send(_asked + 1);
+            Ask(_asked + 1);
         }
         else
         {
@@ -178,11 +262,11 @@ private:
         }
     }
 
-    void Send(std::uint64_t number)
+    void Ask(std::uint64_t number)
     {
         _asked = number;
         _askedAt = Now();
-        WriteSurely({number, _askedAt, Padding});
+        Program::Send({number, _askedAt, Padding});
     }
 
     bool IsComplete()
@@ -222,7 +306,7 @@ public:
 private:
     void Handle(const RawSample &sample) override
     {
-        WriteSurely(sample);
+        Send(sample);
         _score.Add(sample.Number);
     }
 
