@@ -74,10 +74,14 @@ public:
         info.Incarnation = _owner.Incarnation;
         info.SourceTime = sourceTime;
         info.Sequence = ++_sequence;
+        ++_wire.Total.Writes;
+        _wire.Total.WrittenBytes += _buffer.size();
         for (const Wire::Reader *reader : _wire.Readers)
         {
             if (reader->Owner != &_owner && reader->Topic == _topic && Match(_partitions, reader->Partitions))
             {
+                ++_wire.Total.Arrivals;
+                _wire.Total.ArrivedBytes += _buffer.size();
                 reader->Handler(_buffer, info);
             }
         }

@@ -2,6 +2,7 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,17 @@ class Wire
 public:
     struct Reader;
     struct Session;
+
+    // Of all sessions so far. What is written once arrives at each reader that matches.
+    struct Traffic
+    {
+        std::uint64_t Writes = 0;
+        std::uint64_t WrittenBytes = 0;
+        std::uint64_t Arrivals = 0;
+        std::uint64_t ArrivedBytes = 0;
+    };
+
+    Traffic Total;
 
     std::vector<Session *> Sessions;
     std::vector<Reader *> Readers;
