@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The law by which the gateways' own traffic grows with a fleet, over a wire that counts: what a node writes does not grow
-beyond a few nodes, and what arrives at it grows with the number of the others.
+"""The law by which the gateways' own traffic grows with a fleet, over a wire that counts: what a node writes does not
+grow beyond a few nodes, and what arrives at it grows with the number of the others.
 
 Usage: fleet_test.py BENCH_FLEET [SIZE...]"""
 
@@ -23,8 +23,8 @@ def main():
     for size in map(int, sizes or SIZES):
         run = subprocess.run([program, str(size)], check=True, text=True, capture_output=True)
         row = json.loads(run.stdout)
-        print(f"| {size} | {row['writes_per_s']:.1f} | {row['written_bytes_per_s']:.0f} | {row['arrivals_per_s']:.0f} | "
-              f"{row['arrived_bytes_per_s']:.0f} |", flush=True)
+        print(f"| {size} | {row['writes_per_s']:.1f} | {row['written_bytes_per_s']:.0f} | "
+              f"{row['arrivals_per_s']:.0f} | {row['arrived_bytes_per_s']:.0f} |", flush=True)
         good = (good and row["writes_per_s"] <= MOST_WRITES_PER_S and row["written_bytes_per_s"] <= MOST_BYTES_PER_S
                 and row["arrivals_per_s"] <= MOST_WRITES_PER_S * (size - 1)
                 and row["arrived_bytes_per_s"] <= MOST_BYTES_PER_S * (size - 1))

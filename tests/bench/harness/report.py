@@ -101,8 +101,9 @@ def aims(table, transports):
                 met = ratio <= limit if direction == "at most" else ratio >= limit
                 raw, ours = (table.value(key.format(transport), who, name) for who in (RAW_WORKER, NODE))
                 threads = table.ratio(key.format(transport), name, RAW_THREADS)
-                lines.append([what, means, NAMES[transport], f"{direction} {limit} x raw", number(raw), number(ours),
-                              f"{ratio:.2f} x", f"{threads:.2f} x" if threads else "", "yes" if met else "no"])
+                lines.append([what, means, NAMES[transport], f"{direction} {limit} x raw", number(raw),
+                              number(ours), f"{ratio:.2f} x", f"{threads:.2f} x" if threads else "",
+                              "yes" if met else "no"])
     for what, means, key, name, limit, show in ABSOLUTE:
         for transport in transports:
             for nodes in ("alone", "pair"):
@@ -207,8 +208,8 @@ def markdown(where, repetitions, results, transports):
         text += f"## Latency: {name}\n\nRaw in the listener / raw with a worker / raw with two threads / Rabit. Ratio: "
         text += "Rabit to raw with a worker / to raw with two threads.\n\n" + latency(table, transports, carriage)
     text += "## Queues at full speed\n\nRaw with a worker / Rabit.\n\n" + throughput(table, transports)
-    text += "## What a message costs\n\nBoth sides together, while it goes there and back. Raw with a worker / Rabit."
-    text += "\n\n" + costs(table, transports)
+    text += "## What a message costs\n\nBoth sides together, while it goes there and back. Raw with a worker / "
+    text += "Rabit.\n\n" + costs(table, transports)
     text += "## Start and idle\n\n" + start_and_idle(table, transports)
     return text.rstrip() + "\n"
 

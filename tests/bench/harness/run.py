@@ -2,9 +2,9 @@
 """Measures what the gateway costs beside DDS called by hand, in one session.
 
 Usage: run.py [--quick] [--only TEXT] [--repeat N] [--output FOLDER] PROGRAMS
-PROGRAMS is the folder of the programs (build/release/bin). Writes results.json, results.md and the table of the aims in
-README.md into FOLDER; without it, or with --only, prints the tables. --quick: a short version that shows that everything
-works, whose figures mean little."""
+PROGRAMS is the folder of the programs (build/release/bin). Writes results.json, results.md and the table of the aims
+in README.md into FOLDER; without it, or with --only, prints the tables. --quick: a short version that shows that
+everything works, whose figures mean little."""
 
 import argparse
 import collections
