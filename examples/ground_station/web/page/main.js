@@ -40,6 +40,7 @@ const lists = [new CommandList(model), new TargetList(model), new EventList(mode
 // What handling takes, for the line at the top: snapshots since the last look, and the longest one.
 const measured = {since: performance.now(), received: 0, skipped: 0, longestMs: 0, text: ''};
 let waiting = false;
+let shownAt = 0;
 
 function receive(snapshot, takenAt) {
   model.take(snapshot, takenAt);
@@ -98,6 +99,7 @@ function showLink() {
 }
 
 function show(isNewSnapshot) {
+  shownAt = performance.now();
   setText(byId('station'), model.snapshot?.node ?? '');
   showCounts();
   showLink();
@@ -152,5 +154,5 @@ byId('help').addEventListener('click', help);
 showTheme();
 show(false);
 setInterval(() => {
-  if (!waiting) show(false);
+  if (!waiting && performance.now() - shownAt >= AGEING_MS) show(false);
 }, AGEING_MS);

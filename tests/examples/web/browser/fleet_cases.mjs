@@ -47,7 +47,7 @@ async function showsAKilledAircraftAsOld(programs) {
 }
 
 async function commandsAnAircraft(programs) {
-  const {url} = await startFleet(programs, 1);
+  const {ground, url} = await startFleet(programs, 1);
   await openBrowser();
   const fleet = await FleetPage.open(url);
   const {page} = fleet;
@@ -84,6 +84,9 @@ async function commandsAnAircraft(programs) {
   await becomes(async () => (await page.locator('#commands li').count()) === 2, 'there is a second command');
   await becomes(async () => /(accepted|done)/.test(await page.locator('#commands li').first().getAttribute('data-progress')),
     async () => `it is called home; ${await fleet.text('#commands')}`);
+  // An open page does not keep the ground station from ending in order.
+  assert.equal(await ground.end('SIGINT'), 0, ground.output.slice(-500));
+  await becomes(async () => (await fleet.data('live')) === 'false', 'the page notices');
   assert.deepEqual(fleet.errors, []);
 }
 
