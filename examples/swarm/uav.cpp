@@ -45,7 +45,7 @@ Swarm::Circle PatternFor(const std::string &node)
         std::find_if(node.rbegin(), node.rend(), [](unsigned char c) { return !std::isdigit(c); });
     const int number = std::atoi(std::string(digits.base(), node.end()).c_str()) % 1000;
     const Swarm::GeoPoint field{47.3977, 8.5456, 500};
-    return {Swarm::Moved(field, {-280 - number / perRow * apartM, (number % perRow - 2) * apartM,
+    return {Swarm::Moved(field, {-310 - number / perRow * apartM, (number % perRow - 2) * apartM,
                                  number % perRow * 5.0}),
             60, 12};
 }

@@ -531,6 +531,7 @@ TEST_F(MissionOf2, ValidatesATargetThatItsOwnCameraHasSeenSinceItWasAsked)
     EXPECT_EQ(State().target, "uav1/4");
     EXPECT_THAT(_output.Validations, IsEmpty()) << "what it saw before does not count";
     EXPECT_NEAR(Swarm::Between(Field, _output.Courses.back().Point).NorthM, 80, 0.1);
+    EXPECT_EQ(_output.Courses.back().Point.AltitudeM, 510 + Mission::AboveM);
     See(82, "uav1");
     EXPECT_TRUE(LastValidation().accepted);
     EXPECT_EQ(LastValidation().target, 4u);

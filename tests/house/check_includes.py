@@ -55,7 +55,8 @@ ALLOWED = {
     "tests/bench/raw": {"CLI11"},
     "tests/bench/raw/fastdds": {"Fast DDS", "Fast-CDR"},
     "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
-    "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11", "network"},
+    "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11", "network",
+                 "yaml-cpp"},
 }
 
 

@@ -68,6 +68,7 @@ public:
     static constexpr double BackToTrackS = 5;  // holds the point of a Goto if it has a recorded track
     static constexpr double StepM = 15;        // a point to fly to is worth a new course if it moved so far
     static constexpr double RepeatS = 2;       // a course that the autopilot does not fly is sent again
+    static constexpr double AboveM = 20;       // whoever validates flies above whoever circles the target
     static constexpr float HomeSpeedMps = 16;
 
     Mission(std::string aircraft, MissionOutput &output);

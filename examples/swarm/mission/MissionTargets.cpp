@@ -253,7 +253,9 @@ void Mission::ActOnValidate()
         Refuse(_report, "it was not to be seen", false);
         return SearchOn();
     }
-    FlyIfMoved(AtSearchHeight(nearest ? PlaceOf(*nearest) : place), _area->speed_mps);
+    GeoPoint above = AtSearchHeight(nearest ? PlaceOf(*nearest) : place);
+    above.AltitudeM += AboveM;
+    FlyIfMoved(above, _area->speed_mps);
 }
 
 void Mission::Refuse(const Uav::TargetReport &report, const std::string &reason, bool busy)
