@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -24,6 +26,13 @@ public:
     }
 
     const std::string &Aircraft() const { return _aircraft; }
+    // The number that the last three characters of an aircraft's name end with; 0 if there is none.
+    static int NumberOf(const std::string &aircraft)
+    {
+        const std::string end = aircraft.size() > 3 ? aircraft.substr(aircraft.size() - 3) : aircraft;
+        const std::size_t last = end.find_last_not_of("0123456789");
+        return std::atoi(end.substr(last == std::string::npos ? 0 : last + 1).c_str());
+    }
     static std::string VisionOf(const std::string &aircraft) { return aircraft + ".vision"; }
 
     // The name here of a message, queue or manager of any node.

@@ -41,9 +41,7 @@ Swarm::Circle PatternFor(const std::string &node)
 {
     constexpr int perRow = 5;
     constexpr double apartM = 130;
-    const auto digits =
-        std::find_if(node.rbegin(), node.rend(), [](unsigned char c) { return !std::isdigit(c); });
-    const int number = std::atoi(std::string(digits.base(), node.end()).c_str()) % 1000;
+    const int number = Swarm::Names::NumberOf(node);
     const Swarm::GeoPoint field{47.3977, 8.5456, 500};
     return {Swarm::Moved(field, {-310 - number / perRow * apartM, (number % perRow - 2) * apartM,
                                  number % perRow * 5.0}),

@@ -391,7 +391,7 @@ TEST_F(MissionOf2, AsksTheNearestAircraftAboutATargetAndCirclesItMeanwhile)
     EXPECT_EQ(StageOfFinding(), Uav::TargetStage::TARGET_VALIDATING);
     Pass(0.2);
     EXPECT_NEAR(Swarm::Between(Field, _output.Courses.back().Point).NorthM, 30, 0.1);
-    EXPECT_EQ(_output.Courses.back().Point.AltitudeM, 510);
+    EXPECT_EQ(_output.Courses.back().Point.AltitudeM, 520);
 }
 
 TEST_F(MissionOf2, LeavesATargetToWhoeverSawItFirst)
@@ -521,6 +521,13 @@ TEST_F(MissionOf2, IgnoresValidationsThatItDidNotAskFor)
     EXPECT_EQ(State().mode, Mode::MISSION_CONFIRM);
 }
 
+TEST_F(MissionOf2, SearchesInALayerOfItsOwn)
+{
+    GiveArea();
+    CommandSearch();
+    EXPECT_EQ(_output.Courses.back().Point.AltitudeM, 510 + Mission::LayerM);
+}
+
 TEST_F(MissionOf2, ValidatesATargetThatItsOwnCameraHasSeenSinceItWasAsked)
 {
     GiveArea();
@@ -531,7 +538,7 @@ TEST_F(MissionOf2, ValidatesATargetThatItsOwnCameraHasSeenSinceItWasAsked)
     EXPECT_EQ(State().target, "uav1/4");
     EXPECT_THAT(_output.Validations, IsEmpty()) << "what it saw before does not count";
     EXPECT_NEAR(Swarm::Between(Field, _output.Courses.back().Point).NorthM, 80, 0.1);
-    EXPECT_EQ(_output.Courses.back().Point.AltitudeM, 510 + Mission::AboveM);
+    EXPECT_EQ(_output.Courses.back().Point.AltitudeM, 520) << "uav2 keeps to the second layer";
     See(82, "uav1");
     EXPECT_TRUE(LastValidation().accepted);
     EXPECT_EQ(LastValidation().target, 4u);

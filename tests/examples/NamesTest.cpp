@@ -28,4 +28,14 @@ TEST(Names, AreAllFullWithoutALocalNode)
     EXPECT_EQ(names.OwnVision("Targets"), "uav1.vision/Targets");
 }
 
+TEST(Names, MayEndWithANumber)
+{
+    EXPECT_EQ(Names::NumberOf("uav7"), 7);
+    EXPECT_EQ(Names::NumberOf("uav012"), 12);
+    EXPECT_EQ(Names::NumberOf("north"), 0);
+    EXPECT_EQ(Names::NumberOf("uav99999999999999999999"), 999);
+    EXPECT_EQ(Names::NumberOf(""), 0);
+    EXPECT_EQ(Names::NumberOf("12"), 12);
+}
+
 }  // namespace

@@ -68,7 +68,11 @@ public:
     static constexpr double BackToTrackS = 5;  // holds the point of a Goto if it has a recorded track
     static constexpr double StepM = 15;        // a point to fly to is worth a new course if it moved so far
     static constexpr double RepeatS = 2;       // a course that the autopilot does not fly is sent again
-    static constexpr double AboveM = 20;       // whoever validates flies above whoever circles the target
+    // While it searches and looks at targets an aircraft keeps to a layer of its own above the altitude of
+    // the search area, by the number in its name, so that those that cross or circle one target keep apart
+    // without agreeing on it. uav1 and uav11 share one.
+    static constexpr double LayerM = 10;
+    static constexpr int Layers = 10;
     static constexpr float HomeSpeedMps = 16;
 
     Mission(std::string aircraft, MissionOutput &output);
@@ -130,7 +134,7 @@ private:
     void Answer(const Uav::TargetReport &report, Uav::Validation answer);
     void Refuse(const Uav::TargetReport &report, const std::string &reason, bool busy);
     std::set<std::string> NamesOfOthers() const;
-    GeoPoint AtSearchHeight(const GeoPoint &place) const;
+    GeoPoint InOwnLayer(const GeoPoint &place) const;
 
     const std::string _aircraft;
     MissionOutput &_output;

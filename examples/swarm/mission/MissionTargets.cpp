@@ -1,5 +1,7 @@
 // The search, and what the aircraft do about a target together.
 #include "Mission.h"
+
+#include "../Names.h"
 #include "WhyNot.h"
 
 #include <algorithm>
@@ -21,9 +23,10 @@ std::set<std::string> Mission::NamesOfOthers() const
     return names;
 }
 
-GeoPoint Mission::AtSearchHeight(const GeoPoint &place) const
+GeoPoint Mission::InOwnLayer(const GeoPoint &place) const
 {
-    return {place.LatitudeDeg, place.LongitudeDeg, _area->altitude_m};
+    const int layer = (Names::NumberOf(_aircraft) + Layers - 1) % Layers;
+    return {place.LatitudeDeg, place.LongitudeDeg, _area->altitude_m + layer * LayerM};
 }
 
 // Which lane to begin at follows from the names of the aircraft that are there, so that they need not agree.
@@ -44,7 +47,7 @@ void Mission::ActOnSearch()
         return BeginConfirm(number);
     if (!_mower)
         BeginSearch();
-    FlyIfMoved(_mower->Next(*_now.Position), _area->speed_mps);
+    FlyIfMoved(InOwnLayer(_mower->Next(*_now.Position)), _area->speed_mps);
     if (!_mower->HasBegun())
         return;
     _mode = Uav::MissionMode::MISSION_SEARCH;
@@ -150,7 +153,7 @@ void Mission::ActOnConfirm()
                 _book.Drop(_target);
                 return SearchOn();
             }
-    FlyIfMoved(AtSearchHeight(place), _area->speed_mps);
+    FlyIfMoved(InOwnLayer(place), _area->speed_mps);
     if (!_partner.empty())
     {
         if (_now.NowS - _askedS > AnswerS || !_now.Others.contains(_partner))
@@ -187,7 +190,7 @@ void Mission::ActOnTrack()
     Uav::Finding &finding = *_book.Find(_target);
     finding.stage = Uav::TargetStage::TARGET_TRACKED;
     finding.tracked_s = static_cast<float>(_trackedBeforeS + _now.NowS - _modeSinceS);
-    FlyIfMoved(AtSearchHeight(PlaceOf(finding)), _area->speed_mps);
+    FlyIfMoved(InOwnLayer(PlaceOf(finding)), _area->speed_mps);
     if (_now.NowS - _modeSinceS >= TrackS)
         SearchOn();
 }
@@ -253,9 +256,7 @@ void Mission::ActOnValidate()
         Refuse(_report, "it was not to be seen", false);
         return SearchOn();
     }
-    GeoPoint above = AtSearchHeight(nearest ? PlaceOf(*nearest) : place);
-    above.AltitudeM += AboveM;
-    FlyIfMoved(above, _area->speed_mps);
+    FlyIfMoved(InOwnLayer(nearest ? PlaceOf(*nearest) : place), _area->speed_mps);
 }
 
 void Mission::Refuse(const Uav::TargetReport &report, const std::string &reason, bool busy)
