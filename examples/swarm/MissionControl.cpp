@@ -8,6 +8,10 @@
 
 namespace Swarm
 {
+namespace
+{
+constexpr std::size_t MaxText = 128;  // what MissionState takes
+}
 
 MissionControl::MissionControl(const Names &names, const std::string &ground,
                                Rabit::RabitWorkspace &workspace)
@@ -125,7 +129,8 @@ void MissionControl::PostState()
     _mission.Describe(state);
     const std::string answers = _answers.Text();
     if (!answers.empty())
-        state.text += (state.text.empty() ? "" : "; ") + answers;
+        state.text = answers + (state.text.empty() ? "" : "; ") + state.text;
+    state.text.resize(std::min(state.text.size(), MaxText));
     std::vector<Uav::Finding> findings = _mission.Findings();
     const bool due = _stateTimes.Due(GetWorkspace().GetClock().Monotonic());
     if (due || state != *_state)

@@ -631,6 +631,15 @@ TEST_F(MissionOf2, TakesATargetUpAgainThatACommandCalledItAwayFrom)
     EXPECT_EQ(_mission.Findings().size(), 1u);
 }
 
+TEST_F(MissionOf2, KeepsTheNameOfATargetWithinWhatAMessageTakes)
+{
+    GiveArea();
+    CommandSearch();
+    BeAsked(std::string(64, 'a'), 80);
+    EXPECT_EQ(State().mode, Mode::MISSION_VALIDATE);
+    EXPECT_EQ(State().target, std::string(62, 'a') + "/4");
+}
+
 TEST_F(MissionOf2, IgnoresReportsThatMakeNoSense)
 {
     GiveArea();

@@ -6,6 +6,10 @@
 
 namespace Swarm
 {
+namespace
+{
+constexpr std::size_t MaxTargetText = 64;  // what MissionState takes
+}
 
 Mission::Mission(std::string aircraft, MissionOutput &output)
     : _aircraft(aircraft), _output(output), _book(std::move(aircraft))
@@ -206,7 +210,8 @@ void Mission::Describe(Uav::MissionState &state) const
     state.partner.clear();
     if (_mode == Uav::MissionMode::MISSION_VALIDATE)
     {
-        state.target = _report.seen_by + "/" + std::to_string(_report.target);
+        const std::string number = std::string("/").append(std::to_string(_report.target));
+        state.target = _report.seen_by.substr(0, MaxTargetText - number.size()) + number;
         state.partner = _report.seen_by;
     }
     else if (_target != 0)
