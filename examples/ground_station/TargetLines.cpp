@@ -32,7 +32,7 @@ std::string ToText(Uav::TargetStage stage)
 
 std::string NameOf(const FoundTarget &target)
 {
-    return Printable(target.Aircraft, LongestName) + "-" + std::to_string(target.Finding.target);
+    return Printable(target.Aircraft, LongestName) + "/" + std::to_string(target.Finding.target);
 }
 
 std::string TargetLine(const FoundTarget &target)

@@ -17,10 +17,10 @@ struct FoundTarget
 
 std::string ToText(Uav::TargetStage stage);
 
-// `uav1-3`: the aircraft that found it, and the number that it gave it.
+// `uav1/3`: the aircraft that found it, and the number that it gave it.
 std::string NameOf(const FoundTarget &target);
 
-// One line of ASCII, for instance `target uav1-3   TRACKED     47.39771     8.54560  validated by uav2,
+// One line of ASCII, for instance `target uav1/3   TRACKED     47.39771     8.54560  validated by uav2,
 // followed for 12 s`.
 std::string TargetLine(const FoundTarget &target);
 

@@ -16,12 +16,12 @@ Ground::FoundTarget Found()
 
 TEST(TargetLines, NameTheFinderAndItsNumber)
 {
-    EXPECT_EQ(Ground::NameOf(Found()), "uav1-3");
+    EXPECT_EQ(Ground::NameOf(Found()), "uav1/3");
 }
 
 TEST(TargetLines, SayWhereATargetIs)
 {
-    EXPECT_EQ(Ground::TargetLine(Found()), "target uav1-3   FOUND        47.39771     8.54560");
+    EXPECT_EQ(Ground::TargetLine(Found()), "target uav1/3   FOUND        47.39771     8.54560");
 }
 
 TEST(TargetLines, SayWhoValidatedItAndHowLongItWasFollowed)
@@ -31,7 +31,7 @@ TEST(TargetLines, SayWhoValidatedItAndHowLongItWasFollowed)
     target.Finding.validated_by = "uav2";
     target.Finding.tracked_s = 12;
     EXPECT_EQ(Ground::TargetLine(target),
-              "target uav1-3   TRACKED      47.39771     8.54560  validated by uav2, followed for 12 s");
+              "target uav1/3   TRACKED      47.39771     8.54560  validated by uav2, followed for 12 s");
 }
 
 TEST(TargetLines, AreAsciiWhateverTheNetworkSays)

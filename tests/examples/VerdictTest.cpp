@@ -207,7 +207,7 @@ protected:
 TEST_F(TargetVerdict, PassesWithATargetThatAnotherAircraftValidatedAndThatWasFollowed)
 {
     EXPECT_TRUE(Judged().Passed());
-    EXPECT_THAT(Judged().Summary, testing::Contains(HasSubstr("uav1-3")));
+    EXPECT_THAT(Judged().Summary, testing::Contains(HasSubstr("uav1/3")));
 }
 
 TEST_F(TargetVerdict, FailsWithoutATarget)

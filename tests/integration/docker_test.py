@@ -66,7 +66,7 @@ def fly_example(engine, transports):
         fleet("up", UAVS)
         for k in range(1, UAVS + 1):
             fleet.wait_for_row(f"uav{k}", r" UP .*[1-9] acknowledged")
-        fleet.wait_for_line(r"target uav\d-\d+ +TRACKED .* validated by uav\d")
+        fleet.wait_for_line(r"target uav\d/\d+ +TRACKED .* validated by uav\d")
         fleet("cut", "uav2")
         fleet.wait_for_row("uav2", " LOST ")
         fleet.wait_for_row("uav1", " UP ")
