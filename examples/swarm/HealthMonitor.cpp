@@ -19,6 +19,7 @@ HealthMonitor::HealthMonitor(const Names &names, const Options &options, Rabit::
 {
     AddPublishSubscribeMessage("Gateway/Fleet", _fleet);
     AddPublishSubscribeMessage(names.Own("Health"), _health);
+    SetWakeupManagerUponMessagePostedToManagersMessageQueue(false);
     SetWakeupTimeDelayMSec(static_cast<int>(std::chrono::milliseconds(Period).count()));
 }
 
@@ -33,14 +34,32 @@ void HealthMonitor::ExecuteUnitOfWork()
     const double silentS = GroundSilentS();
     _health->ground_silent_s = static_cast<float>(silentS);
     const std::string news = _rule.Judge(_health->battery_percent, silentS);
+    TakeAnswers();
     if (!news.empty())
         _toSend = news;
     _health->reason = _rule.Reason();
     _health->wants_home = !_health->reason.empty();
     _health->PostMessage();
-    if (_toSend.empty())
-        return;
+    if (!_toSend.empty())
+        SendHome();
+}
+
+// An autopilot that was not ready when it was asked may be by now.
+void HealthMonitor::TakeAnswers()
+{
+    std::shared_ptr<Rabit::RabitMessage> message;
+    while (GetManagerMessageQueue()->GetMessage(message))
+    {
+        const auto *answer = dynamic_cast<const Uav::CommandAck *>(message.get());
+        if (answer && answer->stage == Uav::CommandStage::COMMAND_DECLINED)
+            _toSend = _rule.Reason();
+    }
+}
+
+void HealthMonitor::SendHome()
+{
     auto home = std::make_shared<Uav::GoHome>();
+    home->reply_to = _names.Own("HealthMonitor");
     home->reason = _toSend;
     if (AddMessageToQueue(_names.Own("MissionControl"), home))
         _toSend.clear();

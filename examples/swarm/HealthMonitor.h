@@ -20,7 +20,8 @@ namespace Swarm
 // Fetches: Gateway/Fleet, to know whether the ground station is heard.
 // Posts:   Health (Uav::Health), each second.
 // Sends:   Uav::GoHome to the queue MissionControl, once when the battery is low or the ground station is
-//          silent for too long.
+//          silent for too long, and again each second while mission control declines it.
+// Queue:   HealthMonitor takes mission control's answers (Uav::CommandAck). They do not wake it.
 class HealthMonitor : public Rabit::RabitManager
 {
 public:
@@ -43,6 +44,8 @@ public:
 private:
     float BatteryPercent() const;
     double GroundSilentS();
+    void TakeAnswers();
+    void SendHome();
 
     const Names _names;
     const Options _options;

@@ -158,4 +158,40 @@ TEST_F(HealthMonitor, SendsTheAircraftHomeLaterIfMissionControlHasNoRoom)
     EXPECT_EQ(SentHomeFor().size(), 1u);
 }
 
+TEST_F(HealthMonitor, SendsTheAircraftHomeAgainEachSecondWhileMissionControlDeclines)
+{
+    const auto answer = [&](Uav::CommandStage stage)
+    {
+        auto ack = std::make_shared<Uav::CommandAck>();
+        ack->stage = stage;
+        EXPECT_TRUE(_workspace.AddMessageToQueue("HealthMonitor", ack));
+    };
+    Start(100.0);
+    Run(80s);
+    ASSERT_EQ(SentHomeFor().size(), 1u);
+    for (int i = 0; i < 3; ++i)
+    {
+        answer(Uav::CommandStage::COMMAND_DECLINED);
+        Run(1s);
+        EXPECT_EQ(SentHomeFor(), std::vector<std::string>{"the battery is low"});
+    }
+    answer(Uav::CommandStage::COMMAND_ACCEPTED);
+    Run(10s);
+    EXPECT_TRUE(SentHomeFor().empty());
+}
+
+TEST_F(HealthMonitor, DoesNotInsistOnceTheGroundStationIsHeardAgain)
+{
+    Start(std::nullopt);
+    HearOfGround(Rabit::Gateway::NodeState::LOST, 11);
+    Run(1s);
+    ASSERT_EQ(SentHomeFor().size(), 1u);
+    auto ack = std::make_shared<Uav::CommandAck>();
+    ack->stage = Uav::CommandStage::COMMAND_DECLINED;
+    ASSERT_TRUE(_workspace.AddMessageToQueue("HealthMonitor", ack));
+    HearOfGround(Rabit::Gateway::NodeState::UP, 0.1);
+    Run(2s);
+    EXPECT_TRUE(SentHomeFor().empty());
+}
+
 }  // namespace
