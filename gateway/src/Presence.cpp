@@ -16,6 +16,9 @@ namespace
 constexpr Presence::Duration AnnouncementPeriod = std::chrono::seconds(1);
 // One beat goes to everybody; with more nodes than this they take turns to be echoed.
 constexpr std::size_t EchoesInABeat = 8;
+// Whoever has just appeared may not be matched yet with those who send to it, and nothing of a node is posted
+// before a beat of it was heard: the first beats follow each other quickly, each step twice the one before.
+constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
 // More than this at once is no fleet but a fault.
 constexpr std::size_t LargestInbox = 10000;
 // What a node may offer: far more than any does, little enough to keep for a thousand nodes.
@@ -192,7 +195,7 @@ PeerTable::Change Presence::TakeIn(const Inbox &inbox, Duration now)
         // Whoever has just appeared wants to know who is here.
         if (event.What == PeerEvent::Kind::Appeared)
         {
-            _nextBeat = _nextAnnouncement = Duration(0);
+            Introduce();
         }
     }
     return all;
@@ -235,7 +238,7 @@ PeerTable::Change Presence::Service(Duration now)
     }
     if (change.NewLife)
     {
-        _nextBeat = _nextAnnouncement = Duration(0);
+        Introduce();
     }
     if (now >= _nextBeat)
     {
@@ -246,6 +249,12 @@ PeerTable::Change Presence::Service(Duration now)
         SendAnnouncement(now);
     }
     return change;
+}
+
+void Presence::Introduce()
+{
+    _nextBeat = _nextAnnouncement = Duration(0);
+    _beatStep = FirstBeatStep;
 }
 
 void Presence::SendBeat(Duration now)
@@ -265,7 +274,8 @@ void Presence::SendBeat(Duration now)
     beat.utc_ns = utc;
     beat.echoes = _peers.NextEchoes(time.Monotonic, EchoesInABeat);
     static_cast<void>(_beatWriter->Write(MessageEncoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat), utc));
-    _nextBeat = now + PeerTable::BeatPeriod;
+    _nextBeat = now + _beatStep;
+    _beatStep = std::min(2 * _beatStep, PeerTable::BeatPeriod);
 }
 
 void Presence::SendAnnouncement(Duration now)

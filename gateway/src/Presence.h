@@ -72,6 +72,7 @@ private:
     void OnAnnouncement(SampleBytes bytes, const SampleInfo &info);
     PeerTable::Change TakeIn(const Inbox &inbox, Duration now);
     void Publish(const std::string &node);
+    void Introduce();
     void SendBeat(Duration now);
     void SendAnnouncement(Duration now);
 
@@ -86,6 +87,7 @@ private:
     PeerTable _peers;
     Gateway::Announcement _announcement;
     Duration _nextBeat{0};
+    Duration _beatStep = PeerTable::BeatPeriod;  // from one beat to the next
     Duration _nextAnnouncement{0};
 
     mutable std::mutex _mutex;  // guards the inbox and the count
