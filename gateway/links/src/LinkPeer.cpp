@@ -8,7 +8,11 @@ namespace Rabit
 {
 
 LinkPeer::LinkPeer(LinkContext &context, std::string name, LinkTime now)
-    : _context(context), _name(std::move(name)), _heardAt(now), _helloAt(now)
+    : _context(context),
+      _name(std::move(name)),
+      _heardAt(now),
+      _helloAt(now),
+      _helloStep(2 * context.Settings.HelloGap)
 {
 }
 
@@ -164,7 +168,7 @@ void LinkPeer::RunHello(LinkTime now)
     _lastHelloAt = now;
     if (!_silent)
     {
-        _helloAt = now + _context.Settings.HelloPeriod;
+        _helloAt = now + NextHelloStep();
     }
     else
     {
@@ -172,6 +176,21 @@ void LinkPeer::RunHello(LinkTime now)
     }
     ++_context.Counters.HellosSent;
     _context.Output.Send(hello);
+}
+
+// The first hello often comes before the network has matched the two nodes, and is lost.
+LinkTime LinkPeer::NextHelloStep()
+{
+    const LinkTime period = _context.Settings.HelloPeriod;
+    const LinkTime first = 2 * _context.Settings.HelloGap;
+    if (_token.Clock != 0 || !HasPending())
+    {
+        _helloStep = first;
+        return period;
+    }
+    const LinkTime step = std::min(std::max(_helloStep, first), period);
+    _helloStep = 2 * step;
+    return step;
 }
 
 LinkTime LinkPeer::NextDue() const

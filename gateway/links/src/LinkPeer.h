@@ -62,6 +62,7 @@ private:
     bool HasPending() const;
     void HeardNow(LinkTime now);
     void RunHello(LinkTime now);
+    LinkTime NextHelloStep();
 
     LinkContext &_context;
     const std::string _name;
@@ -70,6 +71,7 @@ private:
     LinkTime _heardAt;     // when something of its present life came last; at first, when it was made
     bool _silent = false;  // not heard for SilentAfter
     LinkTime _helloAt;
+    LinkTime _helloStep;                // until the hello after the next, while a token is wanted
     LinkTime _lastHelloAt = LinkNever;  // LinkNever: none was sent
     Senders _senders;
     Receivers _receivers;

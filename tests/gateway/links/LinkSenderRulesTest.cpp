@@ -112,7 +112,28 @@ TEST_F(LinkSenderRules, S2_sends_no_message_without_a_token_but_a_hello_that_ask
     a.Enqueue("1");
     a.Live(1400ms);
     EXPECT_THAT(a.TakeDatas(), IsEmpty());
-    EXPECT_THAT(a.TakeHellos(), SizeIs(3)) << "at once and every half second";
+    EXPECT_THAT(a.TakeHellos(), SizeIs(6)) << "at 0, 40, 120, 280 and 600 ms, then every half second";
+}
+
+TEST_F(LinkSenderRules, S2_asks_for_a_token_every_half_second_while_nothing_pends)
+{
+    a.Configure({.Expire = 100ms});
+    a.Enqueue("1");
+    a.Live(1s);
+    a.TakeHellos();
+    a.Live(5s);
+    EXPECT_THAT(a.TakeHellos(), SizeIs(10));
+}
+
+TEST_F(LinkSenderRules, S2_asks_quickly_for_the_token_of_a_peer_that_has_restarted)
+{
+    Contact();
+    a.Live(3s);
+    a.Node->HeardOf("b", b.Life + 1, a.Now);
+    a.Enqueue("2");
+    a.TakeHellos();
+    a.Live(300ms);
+    EXPECT_THAT(a.TakeHellos(), SizeIs(testing::Ge(4U)));
 }
 
 TEST_F(LinkSenderRules, S2_sends_the_first_message_as_soon_as_a_hello_brings_the_token)

@@ -53,7 +53,8 @@ struct LinkSettings
     std::size_t SlowPath = 512 * 1024;
     // A LinkHello goes to each peer at this period. A peer that was not heard for SilentAfter is silent: it
     // gets no messages, and hellos only while messages wait for it, at SilentHelloPeriod. Hellos to one peer
-    // do not follow each other faster than HelloGap.
+    // do not follow each other faster than HelloGap. While messages wait for the first token of a peer, the
+    // first hellos come sooner, at twice HelloGap and each step twice the one before.
     LinkTime HelloPeriod{std::chrono::milliseconds(500)};
     LinkTime SilentAfter{std::chrono::seconds(10)};
     LinkTime SilentHelloPeriod{std::chrono::seconds(2)};
