@@ -26,14 +26,39 @@ std::string Listed(const Items &items, Name name)
     return text;
 }
 
-std::string WhyNoMatch(const SubscribeRule &rule, std::uint64_t definition, const PeerTable::Peer &peer)
+// What the node says of that message; null if it says nothing.
+const Gateway::PublishedMessage *OfferOf(const std::string &message, const PeerTable::Peer &peer)
 {
+    if (!peer.Offers)
+    {
+        return nullptr;
+    }
     const auto &offered = peer.Offers->publishes;
     const auto found =
         std::find_if(offered.begin(), offered.end(),
-                     [&rule](const auto &published) { return published.message == rule.Message; });
-    if (found == offered.end())
+                     [&message](const auto &published) { return published.message == message; });
+    return found == offered.end() ? nullptr : &*found;
+}
+
+// "From everybody" means from whoever has it: once somebody has, it is no problem that others have not.
+bool MayLack(const SubscribeRule &rule, const PeerTable &peers)
+{
+    if (std::find(rule.From.begin(), rule.From.end(), "*") == rule.From.end())
     {
+        return false;
+    }
+    const auto heard = peers.Heard();
+    return std::any_of(heard.begin(), heard.end(),
+                       [&rule](const PeerTable::Peer *peer)
+                       { return OfferOf(rule.Message, *peer) != nullptr; });
+}
+
+std::string WhyNoMatch(const SubscribeRule &rule, std::uint64_t definition, const PeerTable::Peer &peer)
+{
+    const Gateway::PublishedMessage *found = OfferOf(rule.Message, peer);
+    if (found == nullptr)
+    {
+        const auto &offered = peer.Offers->publishes;
         return peer.Node + " does not publish `" + rule.Message + "`; it publishes " +
                (offered.empty() ? std::string("nothing")
                                 : Listed(offered, [](const auto &published) { return published.message; }));
@@ -99,6 +124,7 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTab
         problem.reason = reason;
         problems.push_back(std::move(problem));
     };
+    const bool mayLack = MayLack(*wanted.Rule, peers);
     bool anyNode = false;
     for (const PeerTable::Peer *peer : peers.Heard())
     {
@@ -110,6 +136,10 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTab
         if (peer->State == Gateway::NodeState::LOST)
         {
             continue;  // its own row says so
+        }
+        if (mayLack && peer->Offers && OfferOf(wanted.Rule->Message, *peer) == nullptr)
+        {
+            continue;
         }
         const std::string reason = WhyNoData(wanted, *peer, now);
         if (!reason.empty())

@@ -96,6 +96,32 @@ TEST_F(DiagnosisTest, NothingPublishedThere)
     EXPECT_EQ(Problem(1s), "uav1: uav1 does not publish `Pose`; it publishes nothing");
 }
 
+TEST_F(DiagnosisTest, FromEverybodyNobodyNeedPublishWhatSomebodyDoes)
+{
+    Gateway::Announcement camera;
+    camera.node = "uav1.vision";
+    camera.incarnation = 5;
+    Gateway::Beat beat;
+    beat.node = camera.node;
+    beat.incarnation = camera.incarnation;
+    beat.monotonic_ns = beat.utc_ns = 1;
+    peers.OnBeat(beat, 1s);
+    peers.OnAnnouncement(camera, 1s);
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    reception.Received = 1;
+    EXPECT_EQ(Problem(1s), "uav1.vision: uav1.vision does not publish `Pose`; it publishes nothing");
+    rule.From = {"*"};
+    EXPECT_EQ(Problem(1s), "0 problems");
+}
+
+TEST_F(DiagnosisTest, FromEverybodyNobodyPublishesIt)
+{
+    rule.From = {"*"};
+    Hear();
+    EXPECT_EQ(Problem(1s), "uav1: uav1 does not publish `Pose`; it publishes nothing");
+}
+
 TEST_F(DiagnosisTest, OtherType)
 {
     Offer("Pose", "Uav::Goto", "telemetry", 11);
