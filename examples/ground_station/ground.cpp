@@ -1,6 +1,7 @@
 // A ground station: a view of the fleet, a commander, and the gateway that joins them to the aircraft.
 #include "Commander.h"
 #include "FleetView.h"
+#include "Limits.h"
 #include "Verdict.h"
 #include "WebPage.h"
 #include "WebServer.h"
@@ -93,16 +94,24 @@ Rabit::GatewayConfig LoadConfig(const Options &options)
     return config;
 }
 
+// Throws Rabit::ConfigError.
 Uav::SearchArea AreaOf(const Options &options)
 {
+    constexpr double speedMps = 16;
+    constexpr double laneM = 60;
+    std::vector<double> numbers = options.SearchArea;
+    numbers.insert(numbers.end(), {speedMps, laneM});
     Uav::SearchArea area;
-    area.latitude_deg = options.SearchArea[0];
-    area.longitude_deg = options.SearchArea[1];
-    area.north_m = static_cast<float>(options.SearchArea[2]);
-    area.east_m = static_cast<float>(options.SearchArea[3]);
-    area.altitude_m = static_cast<float>(options.SearchArea[4]);
-    area.speed_mps = 16;
-    area.lane_m = 60;
+    const auto take = [next = numbers.begin()]<typename Number>(const char *name, Number &number,
+                                                                const Common::Range &range) mutable
+    {
+        const double value = *next++;
+        const std::string problem = Common::WhyNot(name, value, range);
+        if (!problem.empty())
+            throw Rabit::ConfigError("--search-area: " + problem);
+        number = static_cast<Number>(value);
+    };
+    Common::ForEachNumberOfArea(area, take);
     return area;
 }
 
@@ -132,12 +141,13 @@ std::unique_ptr<Ground::WebPage> MakeWebPage(const Options &options, const std::
                                              std::move(server));
 }
 
-Ground::Commander::Settings CommanderSettings(const Options &options, const std::string &node)
+Ground::Commander::Settings CommanderSettings(const Options &options, const std::string &node,
+                                              const Uav::SearchArea &area)
 {
     Ground::Commander::Settings settings;
     settings.Node = node;
     settings.FirstId = FirstCommandId();
-    settings.Area = AreaOf(options);
+    settings.Area = area;
     settings.Searchers.insert(options.Searchers.begin(), options.Searchers.end());
     if (options.CommandPeriodS > 0)
         settings.Period = std::chrono::milliseconds(static_cast<int>(options.CommandPeriodS * 1000));
@@ -195,12 +205,13 @@ int Summarize(const Ground::FleetView &view, const Ground::Commander &commander,
 int Watch(const Options &options)
 {
     const Rabit::GatewayConfig config = LoadConfig(options);
+    const Uav::SearchArea area = AreaOf(options);
     std::unique_ptr<Ground::WebServer> server = MakeWebServer(options);
     if (options.Check)
         return 0;
     auto view = std::make_unique<Ground::FleetView>(
         options.Expected, Ground::FleetView::Output{std::cout, isatty(STDOUT_FILENO) == 1});
-    auto commander = std::make_unique<Ground::Commander>(CommanderSettings(options, config.Node));
+    auto commander = std::make_unique<Ground::Commander>(CommanderSettings(options, config.Node, area));
     const Ground::FleetView &theView = *view;  // the reactor keeps both until the end of this function
     Ground::Commander &theCommander = *commander;
 

@@ -108,7 +108,7 @@ TEST_F(MissionControl, DeclinesACommandThatCannotBeFlownAndSaysWhy)
     EXPECT_TRUE(_autopilot->IsEmpty());
     ASSERT_EQ(_gateway->Accepted.size(), 1u);
     EXPECT_EQ(_gateway->Accepted[0].second.stage, Uav::CommandStage::COMMAND_DECLINED);
-    EXPECT_EQ(_gateway->Accepted[0].second.reason, "speed_mps is not above 0 and up to 50");
+    EXPECT_EQ(_gateway->Accepted[0].second.reason, "speed_mps must be from 0.1 to 50, not 0");
 }
 
 TEST_F(MissionControl, DeclinesACommandThatTheAutopilotDoesNotTake)

@@ -1,9 +1,10 @@
 #include "PageRequest.h"
 
+#include "Limits.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
@@ -41,20 +42,16 @@ public:
             throw Refused(std::string("'") + name + "' must be a text");
         return field.get<std::string>();
     }
-    double Number(const char *name, double lowest, double highest)
+    double Number(const char *name, const Common::Range &range)
     {
         const Json &field = Take(name);
         if (!field.is_number())
             throw Refused(std::string("'") + name + "' must be a number");
         const double value = field.get<double>();
-        if (!(value >= lowest && value <= highest))
-            throw Refused(std::string("'") + name + "' must be from " + Short(lowest) + " to " +
-                          Short(highest));
+        const std::string problem = Common::WhyNot(std::string("'") + name + "'", value, range);
+        if (!problem.empty())
+            throw Refused(problem);
         return value;
-    }
-    float Single(const char *name, double lowest, double highest)
-    {
-        return static_cast<float>(Number(name, lowest, highest));
     }
     void MustBeAll() const
     {
@@ -63,22 +60,16 @@ public:
     }
 
 private:
-    static std::string Short(double value)
-    {
-        const std::string text = Json(value).dump();
-        return text.size() > 2 && text.substr(text.size() - 2) == ".0" ? text.substr(0, text.size() - 2)
-                                                                       : text;
-    }
-
     const Json &_object;
     std::size_t _taken = 0;
 };
 
-// The ranges of what aircraft can do, with room: the aircraft itself decides what it obeys.
-constexpr double LowestM = -500;
-constexpr double HighestM = 10'000;
-constexpr double SlowestMps = 0.1;
-constexpr double FastestMps = 50;
+// To be handed to ForEachNumberOf...: fills in each of the numbers.
+auto TakeEach(Fields &fields)
+{
+    return [&fields]<typename Number>(const char *name, Number &number, const Common::Range &range)
+    { number = static_cast<Number>(fields.Number(name, range)); };
+}
 
 Order ParseOrder(Fields &fields)
 {
@@ -98,10 +89,7 @@ Order ParseOrder(Fields &fields)
     else if (kind == "goto")
     {
         order.kind = OrderKind::ORDER_GOTO;
-        order.latitude_deg = fields.Number("latitude_deg", -90, 90);
-        order.longitude_deg = fields.Number("longitude_deg", -180, 180);
-        order.altitude_m = fields.Number("altitude_m", LowestM, HighestM);
-        order.speed_mps = fields.Single("speed_mps", SlowestMps, FastestMps);
+        Common::ForEachNumberOfGoto(order, TakeEach(fields));
     }
     else
     {
@@ -110,17 +98,10 @@ Order ParseOrder(Fields &fields)
     return order;
 }
 
-// The ranges are those of the IDL.
 Uav::SearchArea ParseArea(Fields &fields)
 {
     Uav::SearchArea area;
-    area.latitude_deg = fields.Number("latitude_deg", -90, 90);
-    area.longitude_deg = fields.Number("longitude_deg", -180, 180);
-    area.north_m = fields.Single("north_m", 10, 20'000);
-    area.east_m = fields.Single("east_m", 10, 20'000);
-    area.altitude_m = fields.Single("altitude_m", LowestM, HighestM);
-    area.speed_mps = fields.Single("speed_mps", SlowestMps, FastestMps);
-    area.lane_m = fields.Single("lane_m", 5, 1000);
+    Common::ForEachNumberOfArea(area, TakeEach(fields));
     return area;
 }
 
@@ -141,7 +122,7 @@ void Parse(const Json &object, PageRequest &request)
     decltype(request.Wish) wish;
     if (type == "clock")
     {
-        wish = ClockRequest{fields.Number("page_s", 0, 1e12)};
+        wish = ClockRequest{fields.Number("page_s", {0, 1e12})};
     }
     else
     {

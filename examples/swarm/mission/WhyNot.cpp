@@ -1,60 +1,48 @@
 #include "WhyNot.h"
 
-#include <cmath>
+#include "Limits.h"
 
 namespace Swarm
 {
 namespace
 {
-// All written so that a NaN is refused as well.
-std::string OfPlace(double latitudeDeg, double longitudeDeg)
-{
-    if (!(std::abs(latitudeDeg) <= 90))
-        return "latitude_deg is not between -90 and 90";
-    if (!(std::abs(longitudeDeg) <= 180))
-        return "longitude_deg is not between -180 and 180";
-    return "";
-}
+constexpr Common::Range SigmaM{0, 1000};
 
-std::string OfFlight(double altitudeM, float speedMps)
+// To be handed to ForEachNumberOf...: keeps what is wrong with the first that is.
+auto KeepFirstProblem(std::string &problem)
 {
-    if (!(altitudeM >= -500 && altitudeM <= 10000))
-        return "altitude_m is not between -500 and 10000";
-    if (!(speedMps > 0 && speedMps <= 50))
-        return "speed_mps is not above 0 and up to 50";
-    return "";
+    return [&problem](const char *name, auto value, const Common::Range &range)
+    {
+        if (problem.empty())
+            problem = Common::WhyNot(name, value, range);
+    };
 }
 }  // namespace
 
 std::string WhyNot(const Uav::Goto &command)
 {
-    const std::string place = OfPlace(command.latitude_deg, command.longitude_deg);
-    return place.empty() ? OfFlight(command.altitude_m, command.speed_mps) : place;
+    std::string problem;
+    Common::ForEachNumberOfGoto(command, KeepFirstProblem(problem));
+    return problem;
 }
 
 std::string WhyNot(const Uav::SearchArea &area)
 {
-    std::string problem = OfPlace(area.latitude_deg, area.longitude_deg);
-    if (problem.empty())
-        problem = OfFlight(area.altitude_m, area.speed_mps);
-    if (!problem.empty())
-        return problem;
-    if (!(area.north_m >= 10 && area.north_m <= 20000))
-        return "north_m is not between 10 and 20000";
-    if (!(area.east_m >= 10 && area.east_m <= 20000))
-        return "east_m is not between 10 and 20000";
-    if (!(area.lane_m >= 5 && area.lane_m <= 1000))
-        return "lane_m is not between 5 and 1000";
-    return "";
+    std::string problem;
+    Common::ForEachNumberOfArea(area, KeepFirstProblem(problem));
+    return problem;
 }
 
 std::string WhyNot(const Uav::TargetReport &report)
 {
     if (report.seen_by.empty())
         return "seen_by is empty";
-    if (!(report.sigma_m >= 0 && report.sigma_m <= 1000))
-        return "sigma_m is not between 0 and 1000";
-    return OfPlace(report.latitude_deg, report.longitude_deg);
+    std::string problem;
+    const auto check = KeepFirstProblem(problem);
+    check("sigma_m", report.sigma_m, SigmaM);
+    check("latitude_deg", report.latitude_deg, Common::LatitudeDeg);
+    check("longitude_deg", report.longitude_deg, Common::LongitudeDeg);
+    return problem;
 }
 
 }  // namespace Swarm

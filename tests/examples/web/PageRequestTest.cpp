@@ -144,7 +144,7 @@ TEST(PageRequest, TellsThePageWhichOneWasRefused)
               Json({{"type", "reply"},
                     {"ref", 7},
                     {"ok", false},
-                    {"reason", "'speed_mps' must be from 0.1 to 50"}}));
+                    {"reason", "'speed_mps' must be from 0.1 to 50, not 1000"}}));
     EXPECT_EQ(Json::parse(Ground::AcceptedReply(7)), Json({{"type", "reply"}, {"ref", 7}, {"ok", true}}));
     EXPECT_EQ(Json::parse(Ground::ClockReply({1.5}, 20)),
               Json({{"type", "clock"}, {"page_s", 1.5}, {"server_s", 20}}));

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Options of ground that are no use: one line, exit code 2, nothing started.
+#   ground_options_test.sh GROUND
+set -uo pipefail
+ground=$1
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+fail() {
+    echo "FAILED: $1"
+    cat "$work/out" "$work/err"
+    exit 1
+}
+
+# ground ARGUMENTS...: sets `status`.
+ground() {
+    timeout 60 "$ground" --config "$root/examples/ground_station/ground.yaml" "$@" >"$work/out" 2>"$work/err"
+    status=$?
+}
+
+# refused LINE ARGUMENTS...: also with --check.
+refused() {
+    local line=$1 extra
+    shift
+    for extra in --check --seconds=1; do
+        ground "$@" "$extra"
+        [ "$status" -eq 2 ] || fail "$* $extra: exit code $status"
+        [ "$(cat "$work/err")" = "$line" ] || fail "$* $extra: not the line '$line'"
+        [ ! -s "$work/out" ] || fail "$* $extra: something was started"
+    done
+}
+
+# refused_area FIELD VALUE RANGE NUMBERS...
+refused_area() {
+    refused "--search-area: $1 must be from $3, not $2" --search-area "${@:4}"
+}
+
+refused_area latitude_deg 999 '-90 to 90' 999 8.5456 400 600 510
+refused_area latitude_deg -90.5 '-90 to 90' -90.5 8.5456 400 600 510
+refused_area latitude_deg nan '-90 to 90' nan 8.5456 400 600 510
+refused_area longitude_deg 180.5 '-180 to 180' 47.3977 180.5 400 600 510
+refused_area north_m 0 '10 to 20000' 47.3977 8.5456 0 600 510
+refused_area north_m -400 '10 to 20000' 47.3977 8.5456 -400 600 510
+refused_area north_m inf '10 to 20000' 47.3977 8.5456 inf 600 510
+refused_area east_m 1e+300 '10 to 20000' 47.3977 8.5456 400 1e300 510
+refused_area altitude_m 10001 '-500 to 10000' 47.3977 8.5456 400 600 10001
+
+for area in '-90 -180 10 10 -500' '90 180 20000 20000 10000'; do
+    # shellcheck disable=SC2086 # five words
+    ground --check --search-area $area
+    [ "$status" -eq 0 ] || fail "--search-area $area: refused"
+done
+echo passed
