@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""How a fleet grows: for each size the time until everyone sees everyone, and what one node costs when nothing is
-published and with a message ten times a second to all. Prints a row of README.md's table for each size.
+"""How a fleet grows that publishes nothing, each node with an interface of its own: for each size the time until
+everyone sees everyone, and what one node costs. Prints a row of README.md's table for each size. Fleets that publish,
+beside plain DDS: tests/bench/run.sh --only fleet.
 
 Usage: growth.py LEDGER_NODE TRANSPORT SIZE..."""
 
@@ -54,12 +55,11 @@ def seconds_until_all_seen(ground, nodes):
     raise AssertionError(f"not all see all within {LIMIT_S} s")
 
 
-def measure(program, transport, size, options):
+def measure(program, transport, size):
     nodes = ["ground"] + [f"uav{k}" for k in range(1, size)]
     with field.Field(nodes) as ground:
         for node in nodes:
-            ground.start(node, [program, "--node", node, "--ledger", ledger(ground, node), "--transport", transport,
-                                *options])
+            ground.start(node, [program, "--node", node, "--ledger", ledger(ground, node), "--transport", transport])
         seen = seconds_until_all_seen(ground, nodes)
         time.sleep(SETTLE_S)
         before, began = costs(ground, nodes), time.monotonic()
@@ -71,13 +71,11 @@ def measure(program, transport, size, options):
 
 def main():
     program, transport, *sizes = sys.argv[1:]
-    print("| nodes | published | all see all, s | processor of a node, % | sent, kB/s | received, kB/s | memory, MiB |")
-    print("|---|---|---|---|---|---|---|")
+    print("| nodes | all see all, s | processor of a node, % | sent, kB/s | received, kB/s | memory, MiB |")
+    print("|---|---|---|---|---|---|")
     for size in map(int, sizes):
-        for name, options in (("nothing", []), ("10 Hz", ["--ticks"])):
-            seen, processor, sent, received, memory = measure(program, transport, size, options)
-            print(f"| {size} | {name} | {seen:.1f} | {processor:.1f} | {sent:.1f} | {received:.1f} | {memory:.0f} |",
-                  flush=True)
+        seen, processor, sent, received, memory = measure(program, transport, size)
+        print(f"| {size} | {seen:.1f} | {processor:.1f} | {sent:.1f} | {received:.1f} | {memory:.0f} |", flush=True)
 
 
 if __name__ == "__main__":

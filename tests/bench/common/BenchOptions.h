@@ -20,7 +20,7 @@ enum class Carriage
 struct BenchOptions
 {
     // ping, pong: round trips. source, sink: as fast as it goes in one direction. announce, join: how long it
-    // takes to hear of each other. Programs may know more roles.
+    // takes to hear of each other. member: one of a fleet. Programs may know more roles.
     std::string Role;
     Carriage How = Carriage::State;
     int Domain = 0;
@@ -33,6 +33,9 @@ struct BenchOptions
     std::int64_t Period = 0;
     // CLOCK_MONOTONIC when the process was started, in nanoseconds.
     std::int64_t SpawnedAt = 0;
+    // Of a fleet: which one this is, from 1, and how many there are.
+    std::size_t Member = 1;
+    std::size_t Members = 2;
     // A plain program only: answer in the vendor's listener itself, without a thread of the application.
     bool InListener = false;
     // A plain program only: leave the writing to a thread of its own, so that who sends never waits for the

@@ -80,7 +80,7 @@ class Contestants:
                     "bytes_per_s": (loopback_bytes() - bytes_before) / nodes / passed}
 
 
-def result(process, index=0):
+def result(process, index=0, limit_s=LIMIT_S):
     """The index-th line of JSON that the process writes."""
     seen = []
 
@@ -90,7 +90,7 @@ def result(process, index=0):
             if "failed" in seen[-1]:
                 raise AssertionError(f"{process.argv}: {text}")
         return seen[-1] if len(seen) > index else None
-    return process.wait_for(found, LIMIT_S)[1]
+    return process.wait_for(found, limit_s)[1]
 
 
 def processor_ns(pid):

@@ -8,11 +8,14 @@ from contestants import LOCAL, NODE, RAW_LISTENER, RAW_THREADS, RAW_WORKER
 SIZES = {"100 B": 100, "1 kB": 1000, "64 kB": 65536, "1 MB": 1_000_000}
 ROUND_TRIPS = {"100 B": 10000, "1 kB": 5000, "64 kB": 2000, "1 MB": 300}
 IN_ONE_DIRECTION = {"100 B": 200_000, "64 kB": 3000, "1 MB": 200}
+FLEETS = [2, 5, 10, 20, 40]
+# Of as many a short run takes the first transport alone.
+QUICK_FLEETS = [2, 5]
 
 
 @dataclass
 class Case:
-    measure: str  # latency, throughput, start-up, idle
+    measure: str  # latency, throughput, start-up, idle, fleet, instructions
     transport: str
     carriage: str = ""
     size: str = ""
@@ -45,6 +48,20 @@ def throughput(transports, scale):
             yield Case("throughput", transport, "queue", size, [RAW_WORKER, NODE], options)
 
 
+def fleet(transports):
+    for carriage in ("state", "telemetry"):
+        for transport in transports:
+            for size in FLEETS:
+                yield Case("fleet", transport, carriage, f"{size} nodes", [RAW_WORKER, NODE], {"members": size})
+
+
+def instructions(transports):
+    for carriage in ("state", "telemetry", "queue"):
+        for transport in transports:
+            options = {"carriage": carriage, "payload": SIZES["100 B"], "warm-up": 100}
+            yield Case("instructions", transport, carriage, "100 B", [RAW_WORKER, NODE], options)
+
+
 def all_cases(transports, scale):
     yield from latency(transports, scale)
     yield from throughput(transports, scale)
@@ -53,14 +70,21 @@ def all_cases(transports, scale):
     for transport in transports:
         yield Case("idle alone", transport, contestants=[RAW_WORKER, NODE])
         yield Case("idle pair", transport, contestants=[RAW_WORKER, NODE])
+    yield from fleet(transports)
+    yield from instructions(transports)
 
 
 def a_few(cases):
-    """Of each measure one case for each transport and carriage, the smallest one."""
+    """Of each measure one case for each transport and carriage, the smallest one; of fleets two and of instructions
+    none, which take long."""
     seen = set()
     few = []
     for case in cases:
         kind = (case.measure, case.transport, case.carriage)
+        if case.measure == "fleet" and case.options["members"] in QUICK_FLEETS:
+            kind = (case.measure, case.options["members"])
+        elif case.measure in ("fleet", "instructions"):
+            continue
         if kind not in seen:
             seen.add(kind)
             few.append(case)

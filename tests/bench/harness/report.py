@@ -6,11 +6,12 @@ import pathlib
 import statistics
 import subprocess
 
+import fleet_report
 from contestants import LOCAL, NODE, RAW_LISTENER, RAW_THREADS, RAW_WORKER
 from plan import SIZES
 
 median = statistics.median
-NAMES = {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS"}
+NAMES = fleet_report.NAMES
 
 
 def machine():
@@ -193,6 +194,20 @@ def start_and_idle(table, transports):
     return rows(["what", "backend", "raw", "Rabit"], lines)
 
 
+def instructions(table, transports):
+    lines = []
+    for carriage in ("state", "telemetry", "queue"):
+        for transport in transports:
+            key = f"instructions {transport} {carriage} 100 B"
+            if key in table.results:
+                line = [carriage, NAMES[transport]]
+                for who in (RAW_WORKER, NODE):
+                    low, high = table.spread(key, who, "instructions")
+                    line += [f"{table.value(key, who, 'instructions'):.0f}", f"{low:.0f} to {high:.0f}"]
+                lines.append(line + [f"{table.ratio(key, 'instructions'):.2f}"])
+    return rows(["carriage", "backend", "raw", "runs", "Rabit", "runs", "ratio"], lines) if lines else ""
+
+
 def where_and_when(where, repetitions):
     return (f"{where['date']}, {where['processor']}, {where['processors']} processors, Linux {where['kernel']}, load "
             f"{where['load']} (everything on the machine included), commit {where['commit']}, {repetitions} repetitions."
@@ -210,13 +225,29 @@ def markdown(where, repetitions, results, transports):
     text += "## Queues at full speed\n\nRaw with a worker / Rabit.\n\n" + throughput(table, transports)
     text += "## What a message costs\n\nBoth sides together, while it goes there and back. Raw with a worker / "
     text += "Rabit.\n\n" + costs(table, transports)
+    counted = instructions(table, transports)
+    if counted:
+        text += "## Instructions of a message of 100 B\n\nOf both processes together, with the vendor's and those of "
+        text += "the C library, without the kernel's.\n\n" + counted
     text += "## Start and idle\n\n" + start_and_idle(table, transports)
+    processes = fleet_report.markdown(table, rows)
+    if processes:
+        text += "## Fleets of processes\n\n" + processes
     return text.rstrip() + "\n"
 
 
-def with_aims(readme, where, repetitions, results, transports):
-    """The text of README.md with the table of the aims put in place of the former one."""
-    begin, end = "<!-- written by run.sh -->\n", "<!-- up to here -->"
-    head, _, rest = readme.partition(begin)
-    tail = rest.partition(end)[2]
-    return head + begin + where_and_when(where, repetitions) + aims(Table(results), transports) + end + tail
+def replaced(readme, begin, text):
+    """The text of README.md with another one between that mark and the next end."""
+    end = "<!-- up to here -->"
+    head, found, rest = readme.partition(begin)
+    if not found or end not in rest:
+        raise ValueError(f"README.md has no {begin!r} with an end")
+    return head + begin + text + end + rest.partition(end)[2]
+
+
+def with_tables(readme, where, repetitions, results, transports):
+    """The text of README.md with the tables of the aims and of the fleets put in place of the former ones."""
+    table, made = Table(results), where_and_when(where, repetitions)
+    readme = replaced(readme, "<!-- written by run.sh -->\n", made + aims(table, transports))
+    processes = fleet_report.markdown(table, rows)
+    return replaced(readme, "<!-- fleets, written by run.sh -->\n", made + processes) if processes else readme

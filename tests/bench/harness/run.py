@@ -2,9 +2,9 @@
 """Measures what the gateway costs beside DDS called by hand, in one session.
 
 Usage: run.py [--quick] [--only TEXT] [--repeat N] [--output FOLDER] PROGRAMS
-PROGRAMS is the folder of the programs (build/release/bin). Writes results.json, results.md and the table of the aims
-in README.md into FOLDER; without it, or with --only, prints the tables. --quick: a short version that shows that
-everything works, whose figures mean little."""
+PROGRAMS is the folder of the programs (build/release/bin). Writes results.json, results.md and the tables of
+the aims and of the fleets in README.md into FOLDER; without it, or with --only, prints the tables. --quick: a short
+version that shows that everything works, whose figures mean little."""
 
 import argparse
 import collections
@@ -13,20 +13,28 @@ import pathlib
 import sys
 
 import contestants
+import fleet
+import instructions
 import plan
 import report
 from contestants import LOCAL
 
-IDLE_S = 10
-QUICK_IDLE_S = 2
+# How long what goes on by itself is watched, and how often each measure is repeated; else as often as all.
+WATCHED_S = 10
+QUICK_WATCHED_S = 2
+REPETITIONS = {"idle alone": 1, "idle pair": 1, "fleet": 1, "instructions": 3}
 
 
-def run_once(programs, case, contestant, idle_s):
+def run_once(programs, case, contestant, watched_s):
     """One repetition: names and values."""
+    if case.measure == "fleet":
+        return fleet.run(programs, contestant, case.transport, case.carriage, case.options["members"], watched_s)
+    if case.measure == "instructions":
+        return {"instructions": instructions.of_a_message(programs, contestant, case.transport, case.options)}
     if case.measure == "start-up":
         return {"first_message_s": programs.start_up(contestant, case.transport)}
     if case.measure.startswith("idle"):
-        return programs.idle(contestant, case.transport, 1 if case.measure == "idle alone" else 2, idle_s)
+        return programs.idle(contestant, case.transport, 1 if case.measure == "idle alone" else 2, watched_s)
     roles = ("ping", "pong") if case.measure == "latency" else ("source", "sink")
     if contestant == LOCAL:
         roles = ("local-" + roles[0], None)
@@ -50,15 +58,15 @@ def run_once(programs, case, contestant, idle_s):
     return values
 
 
-def measure(programs, cases, repetitions, idle_s):
+def measure(programs, cases, repetitions, watched_s):
     """{case: {contestant: {name: [value of each repetition]}}}"""
     results = {}
     for case in cases:
         rows = {contestant: collections.defaultdict(list) for contestant in case.contestants}
-        times = 1 if case.measure.startswith("idle") else repetitions
+        times = min(repetitions, REPETITIONS.get(case.measure, repetitions))
         for _ in range(times):
             for contestant in case.contestants:
-                for name, value in run_once(programs, case, contestant, idle_s).items():
+                for name, value in run_once(programs, case, contestant, watched_s).items():
                     rows[contestant][name].append(value)
         results[case.key()] = rows
         print(case.key(), {contestant: {name: round(report.median(values), 3) for name, values in row.items()}
@@ -76,12 +84,14 @@ def main():
     arguments = parser.parse_args()
     contestants.harness.enter_namespace()
     programs = contestants.Contestants(arguments.programs, contestants.harness.domain())
+    if not instructions.available():
+        print("no valgrind: no instructions are counted", flush=True)
     cases = [case for case in plan.all_cases(programs.transports, 0.02 if arguments.quick else 1)
-             if arguments.only in case.key()]
+             if arguments.only in case.key() and (case.measure != "instructions" or instructions.available())]
     if arguments.quick:
         cases = plan.a_few(cases)
     repetitions = arguments.repeat or (1 if arguments.quick else 5)
-    results = measure(programs, cases, repetitions, QUICK_IDLE_S if arguments.quick else IDLE_S)
+    results = measure(programs, cases, repetitions, QUICK_WATCHED_S if arguments.quick else WATCHED_S)
     machine = report.machine()
     text = report.markdown(machine, repetitions, results, programs.transports)
     if arguments.output is None or arguments.only:
@@ -91,7 +101,7 @@ def main():
         json.dumps({"machine": machine, "repetitions": repetitions, "results": results}, indent=1) + "\n")
     (arguments.output / "results.md").write_text(text)
     readme = arguments.output / "README.md"
-    readme.write_text(report.with_aims(readme.read_text(), machine, repetitions, results, programs.transports))
+    readme.write_text(report.with_tables(readme.read_text(), machine, repetitions, results, programs.transports))
     return 0
 
 

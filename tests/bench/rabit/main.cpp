@@ -1,5 +1,6 @@
 // A node with a gateway and one manager that plays a role of the benchmarks, or both managers without a
 // gateway.
+#include "MemberManager.h"
 #include "NodeManagers.h"
 
 #include <rabit/RabitReactor.h>
@@ -36,8 +37,9 @@ Names NamesOf(const BenchOptions &options)
 Rabit::GatewayConfig ConfigOf(const BenchOptions &options)
 {
     const bool asks = Asks(options.Role);
+    const bool isMember = options.Role == "member";
     Rabit::GatewayConfig config;
-    config.Node = asks ? "ping" : "pong";
+    config.Node = isMember ? MemberNode(options.Member) : asks ? "ping" : "pong";
     config.Domain = options.Domain;
     config.Transport = options.Transport;
     config.Interfaces = {Interface};
@@ -49,6 +51,12 @@ Rabit::GatewayConfig ConfigOf(const BenchOptions &options)
         return config;
     }
     const auto qos = options.How == Carriage::State ? Rabit::QosProfile::State : Rabit::QosProfile::Telemetry;
+    if (isMember)
+    {
+        config.Publish.push_back({.Message = MemberMessage, .Type = type, .Qos = qos});
+        config.Subscribe.push_back({.Message = MemberMessage, .Type = type, .From = {"*"}});
+        return config;
+    }
     config.Publish.push_back({.Message = asks ? "Ping" : "Pong", .Type = type, .Qos = qos});
     config.Subscribe.push_back(
         {.Message = asks ? "Pong" : "Ping", .Type = type, .From = {asks ? "pong" : "ping"}});
@@ -80,6 +88,10 @@ std::unique_ptr<Rabit::RabitManager> MakeManager(const BenchOptions &options, co
     if (options.Role == "join")
     {
         return std::make_unique<JoinManager>(options, names);
+    }
+    if (options.Role == "member")
+    {
+        return std::make_unique<MemberManager>(options);
     }
     throw std::invalid_argument("a node has no role " + options.Role);
 }

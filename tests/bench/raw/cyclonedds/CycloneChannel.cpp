@@ -59,10 +59,12 @@ public:
                          "topic");
         };
         dds_qos_t *qos = MakeQos(options.How);
+        dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_PARTICIPANT);
         _writer = Check(dds_create_writer(participant, topic(writes), qos, nullptr), "writer");
         dds_listener_t *listener = dds_create_listener(this);
         dds_lset_data_available(
             listener, [](dds_entity_t, void *self) { static_cast<CycloneChannel *>(self)->_onData(); });
+        SetReaderDepth(options, qos);
         // No sample may come before the reader's handle is known.
         _reader = Check(dds_create_reader(participant, topic(reads), qos, nullptr), "reader");
         Check(dds_set_listener(_reader, listener), "listener");
@@ -145,6 +147,15 @@ private:
             qos, how == Carriage::State ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
         dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
         return qos;
+    }
+
+    // Where several write the same topic, one sample of each has room.
+    static void SetReaderDepth(const BenchOptions &options, dds_qos_t *qos)
+    {
+        if (options.Role == "member")
+        {
+            dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, static_cast<std::int32_t>(options.Members));
+        }
     }
 
     const std::function<void()> _onData;

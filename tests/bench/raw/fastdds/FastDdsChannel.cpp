@@ -88,10 +88,15 @@ dds::DataWriterQos WriterQos(Carriage how)
     return qos;
 }
 
-dds::DataReaderQos ReaderQos(Carriage how)
+dds::DataReaderQos ReaderQos(const BenchOptions &options)
 {
     dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-    Apply(how, qos);
+    Apply(options.How, qos);
+    if (options.Role == "member")
+    {
+        // Where several write the same topic, one sample of each has room.
+        qos.history().depth = static_cast<std::int32_t>(options.Members);
+    }
     auto &times = qos.reliable_reader_qos().times;
     times.heartbeatResponseDelay = {0, 1 * Milliseconds};
     times.initialAcknackDelay = {0, 10 * Milliseconds};
@@ -116,9 +121,11 @@ public:
         };
         auto *publisher = Check(_participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
         auto *subscriber = Check(_participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
-        _writer = Check(publisher->create_datawriter(topic(writes), WriterQos(options.How)), "writer");
+        dds::Topic *written = topic(writes);
+        dds::Topic *read = reads == writes ? written : topic(reads);
+        _writer = Check(publisher->create_datawriter(written, WriterQos(options.How)), "writer");
         // No sample may come before the reader is known.
-        _reader = Check(subscriber->create_datareader(topic(reads), ReaderQos(options.How)), "reader");
+        _reader = Check(subscriber->create_datareader(read, ReaderQos(options)), "reader");
         _reader->set_listener(this, dds::StatusMask::data_available());
     }
 
