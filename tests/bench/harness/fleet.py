@@ -1,4 +1,4 @@
-"""A fleet of processes on one machine: each publishes at 10 Hz and subscribes to that of all others."""
+"""A fleet of processes on one machine: each publishes at the same rate and subscribes to that of all others."""
 
 import os
 import pathlib
@@ -8,8 +8,6 @@ import time
 
 from contestants import LIMIT_S, harness, loopback_bytes, result
 
-PERIOD_NS = 100_000_000
-PAYLOAD = 100
 # A fleet has settled when within one second each has heard this share of what it should.
 SETTLED = 0.8
 # A machine that is too small for the fleet never gets there; the share that arrived is then in the results.
@@ -17,12 +15,11 @@ SETTLING_S = 10
 
 
 class Fleet:
-    """with Fleet(programs, contestant, transport, carriage, size) as fleet: fleet.measure(seconds)"""
+    """with Fleet(programs, contestant, transport, options) as fleet: fleet.discover(), fleet.measure(seconds)"""
 
-    def __init__(self, programs, contestant, transport, carriage, size):
-        self._argv = lambda member: programs.argv(contestant, transport, "member", {
-            "carriage": carriage, "payload": PAYLOAD, "period": PERIOD_NS, "member": member, "members": size})
-        self.size = size
+    def __init__(self, programs, contestant, transport, options):
+        self._argv = lambda member: programs.argv(contestant, transport, "member", {**options, "member": member})
+        self.size, self._period_ns = options["members"], options["period"]
         self.members = []
         self._processes = harness.Processes()
 
@@ -53,7 +50,7 @@ class Fleet:
         for _ in range(SETTLING_S):
             time.sleep(1)
             before, reports = reports, self._reports()
-            if min(arrived(b, a, self.size) for b, a in zip(before, reports)) >= SETTLED:
+            if min(self._arrived(b, a) for b, a in zip(before, reports)) >= SETTLED:
                 return
 
     def measure(self, seconds):
@@ -66,7 +63,7 @@ class Fleet:
         if strangers:
             raise AssertionError(f"{strangers} samples came from outside the fleet")
         shares = [(a["cpu_ns"] - b["cpu_ns"]) / (a["at_ns"] - b["at_ns"]) for b, a in zip(before, after)]
-        shares_arrived = [arrived(b, a, self.size) for b, a in zip(before, after)]
+        shares_arrived = [self._arrived(b, a) for b, a in zip(before, after)]
         memory = [memory_mib(member.pid) for member in self.members]
         return {"processor": statistics.mean(shares), "processor_of_the_dearest": max(shares),
                 "bytes_per_s": (bytes_after - bytes_before) / self.size / passed,
@@ -74,6 +71,11 @@ class Fleet:
                 "own_mib": statistics.mean(own for _, own in memory),
                 "arrived": statistics.mean(shares_arrived), "arrived_at_the_worst": min(shares_arrived),
                 "busy": (busy_after - busy_before) / passed / os.cpu_count()}
+
+    def _arrived(self, before, after):
+        """Share of what all others should have sent meanwhile that has come."""
+        due = (after["at_ns"] - before["at_ns"]) / self._period_ns * (self.size - 1)
+        return (after["received"] - before["received"]) / due
 
     def _reports(self):
         """A report of each member, of about the same moment."""
@@ -101,12 +103,6 @@ class Fleet:
         return text
 
 
-def arrived(before, after, size):
-    """Share of what all others should have sent meanwhile that has come."""
-    due = (after["at_ns"] - before["at_ns"]) / PERIOD_NS * (size - 1)
-    return (after["received"] - before["received"]) / due
-
-
 def memory_mib(pid):
     """(its proportional share of what it has in memory, what it has for itself alone and not of a file)"""
     fields = dict(line.split()[:2] for line in
@@ -120,9 +116,9 @@ def busy_s():
     return (sum(fields) - fields[3] - fields[4]) / os.sysconf("SC_CLK_TCK")
 
 
-def run(programs, contestant, transport, carriage, size, seconds):
+def run(programs, contestant, transport, options, seconds):
     """One fleet from its start to its end."""
-    with Fleet(programs, contestant, transport, carriage, size) as fleet:
+    with Fleet(programs, contestant, transport, options) as fleet:
         discovery = fleet.discover()
         fleet.settle()
         return {"discovery_s": discovery, **fleet.measure(seconds)}

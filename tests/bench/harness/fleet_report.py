@@ -8,7 +8,7 @@ from law import Law
 NAMES = {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS"}
 WHO = {RAW_WORKER: "raw", NODE: "Rabit"}
 # Where less than this share of the samples arrived, the machine did not do the work whose cost is asked for.
-MOST_ARRIVED = 0.95
+LEAST_ARRIVED = 0.9
 
 # What, name of the value, factor, digits.
 COSTS = [("processor, % of a core", "processor", 100, 2), ("bytes a second", "bytes_per_s", 1, 0),
@@ -16,19 +16,19 @@ COSTS = [("processor, % of a core", "processor", 100, 2), ("bytes a second", "by
 
 
 def fleets(table):
-    """{(carriage, transport, contestant): {size: {name: median}}}"""
+    """{(carriage and rate, transport, contestant): {size: {name: median}}}"""
     found = collections.defaultdict(dict)
     for key, contestants in table.results.items():
         if key.startswith("fleet "):
-            _, transport, carriage, size, _ = key.split()
+            _, transport, carriage, size, _, _, hertz, _ = key.split()
             for contestant, values in contestants.items():
-                found[carriage, transport, contestant][int(size)] = {
+                found[f"{carriage}, {hertz} Hz", transport, contestant][int(size)] = {
                     name: table.value(key, contestant, name) for name in values}
     return found
 
 
 def costs(table):
-    header = ["qos", "backend", "who", "nodes", "processor, % of a core", "the same for each other node",
+    header = ["what", "backend", "who", "nodes", "processor, % of a core", "the same for each other node",
               "memory, MiB", "of its own", "bytes a second", "all heard all, s", "arrived, %", "machine busy, %"]
     lines = []
     for (carriage, transport, contestant), sizes in fleets(table).items():
@@ -41,11 +41,11 @@ def costs(table):
 
 
 def laws(table):
-    header = ["qos", "backend", "who", "nodes", "what", "alone", "+ each other node", "furthest off",
+    header = ["what", "backend", "who", "nodes", "cost", "alone", "+ each other node", "furthest off",
               "a square's share at the largest", "needed"]
     lines = []
     for (carriage, transport, contestant), sizes in fleets(table).items():
-        taken = {size: value for size, value in sizes.items() if value["arrived"] >= MOST_ARRIVED}
+        taken = {size: value for size, value in sizes.items() if value["arrived"] >= LEAST_ARRIVED}
         if len(taken) < 3:
             continue
         for what, name, factor, digits in COSTS:
@@ -68,6 +68,6 @@ def markdown(table, rows):
     if not lines:
         return text
     text += (f"The law: what a node costs alone, and for each other node, by least squares of the relative deviations "
-             f"over the sizes of which at least {100 * MOST_ARRIVED:.0f} % of the samples arrived. A term in the square "
-             "of the number of others is needed if it is above zero with 95 % confidence.\n\n")
+             f"over the sizes of which at least {100 * LEAST_ARRIVED:.0f} % of the samples arrived. A term in the "
+             "square of the number of others is needed if it is above zero with 95 % confidence.\n\n")
     return text + rows(header, lines)

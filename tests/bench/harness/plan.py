@@ -49,10 +49,12 @@ def throughput(transports, scale):
 
 
 def fleet(transports):
-    for carriage in ("state", "telemetry"):
+    for carriage, hertz in (("state", 10), ("telemetry", 10), ("state", 2)):
         for transport in transports:
             for size in FLEETS:
-                yield Case("fleet", transport, carriage, f"{size} nodes", [RAW_WORKER, NODE], {"members": size})
+                options = {"carriage": carriage, "payload": SIZES["100 B"], "members": size,
+                           "period": 1_000_000_000 // hertz}
+                yield Case("fleet", transport, carriage, f"{size} nodes at {hertz} Hz", [RAW_WORKER, NODE], options)
 
 
 def instructions(transports):

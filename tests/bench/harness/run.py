@@ -28,7 +28,7 @@ REPETITIONS = {"idle alone": 1, "idle pair": 1, "fleet": 1, "instructions": 3}
 def run_once(programs, case, contestant, watched_s):
     """One repetition: names and values."""
     if case.measure == "fleet":
-        return fleet.run(programs, contestant, case.transport, case.carriage, case.options["members"], watched_s)
+        return fleet.run(programs, contestant, case.transport, case.options, watched_s)
     if case.measure == "instructions":
         return {"instructions": instructions.of_a_message(programs, contestant, case.transport, case.options)}
     if case.measure == "start-up":
