@@ -1,14 +1,16 @@
 // A ground station: a view of the fleet, a commander, and the gateway that joins them to the aircraft.
+#include "BadInput.h"
 #include "Commander.h"
 #include "FleetView.h"
 #include "Limits.h"
+#include "NodeProgram.h"
+#include "NumberWithin.h"
 #include "Verdict.h"
 #include "WebPage.h"
 #include "WebServer.h"
 
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
-#include <rabit/gateway/LoadGatewayConfig.h>
 #include <rabit/transport/TransportFactory.h>
 
 #include <boost/asio/io_context.hpp>
@@ -21,7 +23,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
-#include <exception>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -31,15 +32,9 @@
 
 namespace
 {
-constexpr int ExitFailed = 1;
-constexpr int ExitBadInput = 2;
-
 struct Options
 {
-    std::string ConfigFile = "ground.yaml";
-    std::string Node;
-    int Domain = -1;
-    std::string Transport;
+    Common::NodeOptions Node{.ConfigFile = "ground.yaml"};
     int Seconds = 0;
     double CommandPeriodS = 0;
     std::vector<double> SearchArea{47.3977, 8.5456, 400, 600, 510};
@@ -47,22 +42,17 @@ struct Options
     bool ExpectTarget = false;
     std::vector<std::string> Expected;
     std::string Web;
-    bool Check = false;
 };
 
 void Describe(CLI::App &app, Options &options)
 {
-    app.add_option("--config", options.ConfigFile, "The gateway's configuration file (default: ground.yaml)");
-    app.add_option("--node", options.Node, "Name of this ground station, in place of the file's");
-    app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
-        ->check(CLI::Range(0, 232));
-    app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
+    Common::Describe(app, options.Node);
     app.add_option("--seconds", options.Seconds, "End after so many seconds (default: run until Ctrl-C)")
         ->check(CLI::Range(1, 86400));
     app.add_option(
            "--command-period", options.CommandPeriodS,
            "Send every aircraft a command to fly somewhere near, this often in seconds (default: never)")
-        ->check(CLI::Range(0.1, 86400.0));
+        ->check(Common::NumberWithin({0.1, 86400}));
     app.add_option(
         "--search", options.Searchers,
         "Name of an aircraft that is told to search as soon as it is heard, or `*` for all; may be repeated");
@@ -78,23 +68,17 @@ void Describe(CLI::App &app, Options &options)
         "--web", options.Web,
         "Serve the web page at `PORT`, `ADDRESS:PORT` or `[ADDRESS]:PORT` (address: 127.0.0.1 unless "
         "given; port 0: any that is free)");
-    app.add_flag("--check", options.Check, "Check the options and files, start nothing");
 }
 
 Rabit::GatewayConfig LoadConfig(const Options &options)
 {
-    Rabit::GatewayConfig config = Rabit::LoadGatewayConfig(options.ConfigFile, options.Node);
-    if (options.Domain >= 0)
-        config.Domain = options.Domain;
-    if (!options.Transport.empty())
-        config.Transport = options.Transport;
-    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
+    Rabit::GatewayConfig config = Common::LoadConfig(options.Node);
     if (options.Web.empty())
         std::erase_if(config.Accept, [](const Rabit::AcceptRule &rule) { return rule.Queue == "Pictures"; });
     return config;
 }
 
-// Throws Rabit::ConfigError.
+// Throws Common::BadInput.
 Uav::SearchArea AreaOf(const Options &options)
 {
     constexpr double speedMps = 16;
@@ -108,7 +92,7 @@ Uav::SearchArea AreaOf(const Options &options)
         const double value = *next++;
         const std::string problem = Common::WhyNot(name, value, range);
         if (!problem.empty())
-            throw Rabit::ConfigError("--search-area: " + problem);
+            throw Common::BadInput("--search-area: " + problem);
         number = static_cast<Number>(value);
     };
     Common::ForEachNumberOfArea(area, take);
@@ -199,7 +183,7 @@ int Summarize(const Ground::FleetView &view, const Ground::Commander &commander,
     for (const std::string &line : verdict.Summary)
         std::cout << line << '\n';
     std::cout.flush();
-    return verdict.Passed() ? 0 : ExitFailed;
+    return verdict.Passed() ? 0 : Common::ExitFailed;
 }
 
 int Watch(const Options &options)
@@ -207,7 +191,7 @@ int Watch(const Options &options)
     const Rabit::GatewayConfig config = LoadConfig(options);
     const Uav::SearchArea area = AreaOf(options);
     std::unique_ptr<Ground::WebServer> server = MakeWebServer(options);
-    if (options.Check)
+    if (options.Node.Check)
         return 0;
     auto view = std::make_unique<Ground::FleetView>(
         options.Expected, Ground::FleetView::Output{std::cout, isatty(STDOUT_FILENO) == 1});
@@ -238,28 +222,5 @@ int main(int argc, char **argv)
     CLI::App app("A ground station for the example fleet.");
     Options options;
     Describe(app, options);
-    try
-    {
-        app.parse(argc, argv);
-        return Watch(options);
-    }
-    catch (const CLI::ParseError &error)
-    {
-        return app.exit(error) == 0 ? 0 : ExitBadInput;
-    }
-    catch (const Rabit::ConfigError &error)
-    {
-        std::cerr << error.what() << '\n';
-        return ExitBadInput;
-    }
-    catch (const Ground::WebServerError &error)
-    {
-        std::cerr << error.what() << '\n';
-        return ExitBadInput;
-    }
-    catch (const std::exception &error)
-    {
-        std::cerr << "ground: " << error.what() << '\n';
-        return ExitFailed;
-    }
+    return Common::RunProgram(app, argc, argv, [&] { return Watch(options); });
 }

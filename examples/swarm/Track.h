@@ -1,10 +1,10 @@
 #pragma once
 
+#include "BadInput.h"
 #include "Geo.h"
 
 #include <cstddef>
 #include <istream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,10 +13,10 @@ namespace Swarm
 
 // A track file that cannot be used. what() is one line for a person: `file:line:column: what was expected`,
 // or `file: reason` if the file cannot be read at all.
-class TrackError : public std::runtime_error
+class TrackError : public Common::BadInput
 {
 public:
-    using std::runtime_error::runtime_error;
+    using Common::BadInput::BadInput;
 };
 
 // A recorded flight, flown again and again.

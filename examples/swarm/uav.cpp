@@ -1,11 +1,13 @@
 // One aircraft: an autopilot, a mission control, a health monitor, and the gateway that joins them to the
 // other nodes.
+#include "AircraftConfig.h"
 #include "Autopilot.h"
 #include "Flight.h"
 #include "HealthMonitor.h"
 #include "MissionControl.h"
 #include "Names.h"
 #include "NodeProgram.h"
+#include "NumberWithin.h"
 #include "SimulatedVehicle.h"
 #include "Track.h"
 #include "mavlink/ByteChannel.h"
@@ -28,7 +30,7 @@ namespace
 {
 struct Options
 {
-    Swarm::NodeOptions Common{.ConfigFile = "uav.yaml"};
+    Common::NodeOptions Node{.ConfigFile = "uav.yaml"};
     std::string TrackFile;
     std::string Mavlink;
     std::string Ground = "ground";
@@ -66,14 +68,14 @@ Swarm::HealthMonitor::Options HealthOptions(const Options &options)
     return health;
 }
 
-void Fly(const Options &options)
+int Fly(const Options &options)
 {
-    Rabit::GatewayConfig config = Swarm::LoadConfig(options.Common);
+    Rabit::GatewayConfig config = Common::LoadConfig(options.Node);
     Swarm::CompleteAircraftConfig(config, options.Ground);
     const Swarm::Names names(config.Node, config.Node);
     std::unique_ptr<Swarm::Vehicle> vehicle = MakeVehicle(options, config.Node);
-    if (options.Common.Check)
-        return;
+    if (options.Node.Check)
+        return 0;
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, std::move(vehicle)));
     reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, options.Ground));
@@ -81,6 +83,7 @@ void Fly(const Options &options)
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
     reactor.Run();  // until SIGINT or SIGTERM
+    return 0;
 }
 }  // namespace
 
@@ -88,7 +91,7 @@ int main(int argc, char **argv)
 {
     CLI::App app("An aircraft of the example fleet.");
     Options options;
-    Swarm::Describe(app, options.Common);
+    Common::Describe(app, options.Node);
     app.add_option("--track", options.TrackFile, "CSV file of the track to fly (default: circles)");
     app.add_option("--mavlink", options.Mavlink,
                    "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
@@ -96,6 +99,6 @@ int main(int argc, char **argv)
     app.add_option("--ground", options.Ground, "Name of the ground station's node (default: ground)");
     app.add_option("--endurance", options.EnduranceMinutes,
                    "Minutes that the simulated battery lasts (default: 40)")
-        ->check(CLI::Range(0.1, 10000.0));
-    return Swarm::RunProgram(app, argc, argv, [&] { Fly(options); });
+        ->check(Common::NumberWithin({0.1, 10'000}));
+    return Common::RunProgram(app, argc, argv, [&] { return Fly(options); });
 }

@@ -1,5 +1,6 @@
 // The eyes of one simulated aircraft: a camera, what makes targets of its detections, and the gateway that
 // joins them to the other nodes.
+#include "AircraftConfig.h"
 #include "ImageProcessing.h"
 #include "Names.h"
 #include "NodeProgram.h"
@@ -20,17 +21,17 @@ namespace
 {
 struct Options
 {
-    Swarm::NodeOptions Common{.ConfigFile = "vision.yaml"};
+    Common::NodeOptions Node{.ConfigFile = "vision.yaml"};
     std::string WorldFile = "world.yaml";
 };
 
-void Look(const Options &options)
+int Look(const Options &options)
 {
-    const Rabit::GatewayConfig config = Swarm::LoadConfig(options.Common);
+    const Rabit::GatewayConfig config = Common::LoadConfig(options.Node);
     const Swarm::Names names(Swarm::AircraftOf(config.Node), config.Node);
     const Swarm::World world = Swarm::World::Load(options.WorldFile);
-    if (options.Common.Check)
-        return;
+    if (options.Node.Check)
+        return 0;
     const std::size_t seed = std::hash<std::string>()(config.Node);  // each camera misses something else
     Rabit::RabitReactor reactor;
     reactor.AddManager(std::make_unique<Swarm::ImageProcessing>(names, world, seed));
@@ -38,6 +39,7 @@ void Look(const Options &options)
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
     reactor.Run();  // until SIGINT or SIGTERM
+    return 0;
 }
 }  // namespace
 
@@ -45,8 +47,8 @@ int main(int argc, char **argv)
 {
     CLI::App app("The camera and sensor fusion of a simulated aircraft of the example fleet.");
     Options options;
-    Swarm::Describe(app, options.Common);
+    Common::Describe(app, options.Node);
     app.add_option("--world", options.WorldFile,
                    "YAML file of what there is to see on the ground (default: world.yaml)");
-    return Swarm::RunProgram(app, argc, argv, [&] { Look(options); });
+    return Common::RunProgram(app, argc, argv, [&] { return Look(options); });
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Options of ground that are no use: one line, exit code 2, nothing started.
+# Options of ground that are no use: what is wrong, exit code 2, nothing started.
 #   ground_options_test.sh GROUND
 set -uo pipefail
 ground=$1
@@ -45,6 +45,9 @@ refused_area north_m -400 '10 to 20000' 47.3977 8.5456 -400 600 510
 refused_area north_m inf '10 to 20000' 47.3977 8.5456 inf 600 510
 refused_area east_m 1e+300 '10 to 20000' 47.3977 8.5456 400 1e300 510
 refused_area altitude_m 10001 '-500 to 10000' 47.3977 8.5456 400 600 10001
+
+refused $'--command-period: it must be from 0.1 to 86400, not nan\nRun with --help for more information.' \
+    --command-period nan
 
 for area in '-90 -180 10 10 -500' '90 180 20000 20000 10000'; do
     # shellcheck disable=SC2086 # five words

@@ -1,18 +1,19 @@
 #pragma once
 
+#include "BadInput.h"
+
 #include <boost/asio/ip/tcp.hpp>
 
-#include <stdexcept>
 #include <string>
 
 namespace Ground
 {
 
 // An address that is not one, or that cannot be had. what() is one line for a person.
-class WebServerError : public std::runtime_error
+class WebServerError : public Common::BadInput
 {
 public:
-    using std::runtime_error::runtime_error;
+    using Common::BadInput::BadInput;
 };
 
 // `PORT`, `ADDRESS:PORT` or `[ADDRESS]:PORT`: a numerical IPv4 or IPv6 address (127.0.0.1 if there is none)

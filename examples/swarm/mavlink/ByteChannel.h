@@ -1,20 +1,21 @@
 #pragma once
 
+#include "BadInput.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 namespace Swarm
 {
 
 // A channel that cannot be opened, or whose description is wrong. what() is one line for a person.
-class ChannelError : public std::runtime_error
+class ChannelError : public Common::BadInput
 {
 public:
-    using std::runtime_error::runtime_error;
+    using Common::BadInput::BadInput;
 };
 
 // Bytes to and from an autopilot. Nothing here waits. Used by one thread.

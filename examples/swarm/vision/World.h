@@ -1,8 +1,8 @@
 #pragma once
 
 #include "../Geo.h"
+#include "BadInput.h"
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,10 +11,10 @@ namespace Swarm
 
 // A world file that cannot be used. what() is one line for a person: `file:line: what is wrong`, or
 // `file: reason` if the file cannot be read at all.
-class WorldError : public std::runtime_error
+class WorldError : public Common::BadInput
 {
 public:
-    using std::runtime_error::runtime_error;
+    using Common::BadInput::BadInput;
 };
 
 // Something on the ground that a camera can see. It stands, or walks back and forth.

@@ -1,9 +1,6 @@
 #include "NodeProgram.h"
 
-#include "Names.h"
-#include "Track.h"
-#include "mavlink/ByteChannel.h"
-#include "vision/World.h"
+#include "BadInput.h"
 
 #include <rabit/gateway/LoadGatewayConfig.h>
 #include <rabit/transport/TransportFactory.h>
@@ -13,13 +10,10 @@
 #include <exception>
 #include <iostream>
 
-namespace Swarm
+namespace Common
 {
 namespace
 {
-constexpr int ExitFailed = 1;
-constexpr int ExitBadInput = 2;
-
 int Refuse(const std::exception &error)
 {
     std::cerr << error.what() << '\n';
@@ -49,32 +43,12 @@ Rabit::GatewayConfig LoadConfig(const NodeOptions &options)
     return config;
 }
 
-std::string AircraftOf(const std::string &visionNode)
-{
-    const std::string ending = Names::VisionOf("");
-    if (!visionNode.ends_with(ending) || visionNode.size() == ending.size())
-        throw Rabit::ConfigError("the node name `" + visionNode + "` is not its aircraft's name and `" +
-                                 ending + "`");
-    return visionNode.substr(0, visionNode.size() - ending.size());
-}
-
-void CompleteAircraftConfig(Rabit::GatewayConfig &config, const std::string &ground)
-{
-    for (Rabit::SubscribeRule &rule : config.Subscribe)
-        if (rule.Message == "SearchArea")
-            rule.From = {ground};
-    config.Subscribe.push_back(
-        {.Message = "Targets", .Type = "Uav::Targets", .From = {Names::VisionOf(config.Node)}});
-    Rabit::ValidateGatewayConfig(config);
-}
-
-int RunProgram(CLI::App &app, int argc, char **argv, const std::function<void()> &body)
+int RunProgram(CLI::App &app, int argc, char **argv, const std::function<int()> &body)
 {
     try
     {
         app.parse(argc, argv);
-        body();
-        return 0;
+        return body();
     }
     catch (const CLI::ParseError &error)
     {
@@ -84,15 +58,7 @@ int RunProgram(CLI::App &app, int argc, char **argv, const std::function<void()>
     {
         return Refuse(error);
     }
-    catch (const ChannelError &error)
-    {
-        return Refuse(error);
-    }
-    catch (const TrackError &error)
-    {
-        return Refuse(error);
-    }
-    catch (const WorldError &error)
+    catch (const BadInput &error)
     {
         return Refuse(error);
     }
@@ -103,4 +69,4 @@ int RunProgram(CLI::App &app, int argc, char **argv, const std::function<void()>
     }
 }
 
-}  // namespace Swarm
+}  // namespace Common
