@@ -199,7 +199,7 @@ def instructions(table, transports):
     for carriage in ("state", "telemetry", "queue"):
         for transport in transports:
             key = f"instructions {transport} {carriage} 100 B"
-            if key in table.results:
+            if table.ratio(key, "instructions"):
                 line = [carriage, NAMES[transport]]
                 for who in (RAW_WORKER, NODE):
                     low, high = table.spread(key, who, "instructions")

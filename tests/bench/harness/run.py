@@ -30,7 +30,11 @@ def run_once(programs, case, contestant, watched_s):
     if case.measure == "fleet":
         return fleet.run(programs, contestant, case.transport, case.options, watched_s)
     if case.measure == "instructions":
-        return {"instructions": instructions.of_a_message(programs, contestant, case.transport, case.options)}
+        try:
+            return instructions.of_a_message(programs, contestant, case.transport, case.options)
+        except AssertionError as error:  # callgrind is fifty times as slow: too slow on a full machine
+            print(f"not counted: {error}", flush=True)
+            return {}
     if case.measure == "start-up":
         return {"first_message_s": programs.start_up(contestant, case.transport)}
     if case.measure.startswith("idle"):
