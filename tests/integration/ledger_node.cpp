@@ -1,14 +1,11 @@
 // A node that writes down everything that it does and sees, one line per event, for judge.py. README.md lists
 // the lines. Each line is one write(2), so a kill loses at most the line being written.
+#include "TestNode.h"
+#include "gateway.idl.h"
 #include "ledger.idl.h"
 
-#include "gateway.idl.h"
-
 #include <rabit/RabitManager.h>
-#include <rabit/RabitReactor.h>
-#include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
-#include <rabit/transport/TransportFactory.h>
 
 #include <CLI/CLI.hpp>
 
@@ -20,8 +17,6 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <exception>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <set>
@@ -322,13 +317,8 @@ bool Clerk::SendOne(const std::string &to, Row &row)
 
 void Describe(CLI::App &app, Options &o)
 {
-    app.add_option("--node", o.Gateway.Node)->required();
+    TestNode::DescribeNetwork(app, o.Gateway);
     app.add_option("--ledger", o.LedgerFile, "File to which the lines are appended")->required();
-    app.add_option("--transport", o.Gateway.Transport);
-    app.add_option("--domain", o.Gateway.Domain);
-    app.add_option("--interface", o.Gateway.Interfaces);
-    app.add_option("--peer", o.Gateway.Peers, "Address of another node, for unicast discovery");
-    app.add_flag("!--no-multicast", o.Gateway.Multicast);
     app.add_option("--state-dir", o.Gateway.StateDir);
     app.add_option("--to", o.To, "Node to send notes to");
     app.add_option("--count", o.Count, "Notes to have accepted by each of these nodes' links");
@@ -355,12 +345,7 @@ void Run(Options &options)
     rule.Window = options.Window;
     rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(options.ExpireS * 1000));
     config.Send.push_back(rule);
-    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
-    Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<Clerk>(options));
-    reactor.AddManager(
-        std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
-    reactor.Run();  // until SIGINT or SIGTERM
+    TestNode::Run(config, std::make_unique<Clerk>(options));
 }
 }  // namespace
 
@@ -369,24 +354,5 @@ int main(int argc, char **argv)
     CLI::App app("A node that keeps a ledger of what it sends and receives.");
     Options options;
     Describe(app, options);
-    try
-    {
-        app.parse(argc, argv);
-        Run(options);
-        return 0;
-    }
-    catch (const CLI::ParseError &error)
-    {
-        return app.exit(error) == 0 ? 0 : 2;
-    }
-    catch (const Rabit::ConfigError &error)
-    {
-        std::cerr << error.what() << '\n';
-        return 2;
-    }
-    catch (const std::exception &error)
-    {
-        std::cerr << "ledger_node: " << error.what() << '\n';
-        return 1;
-    }
+    return TestNode::Main(app, argc, argv, [&] { Run(options); });
 }

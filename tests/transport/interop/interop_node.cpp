@@ -14,22 +14,19 @@
 //   lost round=R outcome=...              never: another outcome
 // Ends on SIGTERM with exit code 0.
 #include <rabit/RabitManager.h>
-#include <rabit/RabitReactor.h>
-#include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
-#include <rabit/transport/TransportFactory.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <exception>
 #include <iostream>
 #include <memory>
 #include <sstream>
 #include <string>
 
+#include "TestNode.h"
 #include "gateway.idl.h"
 #include "interop.idl.h"
 
@@ -310,13 +307,8 @@ private:
 
 void Describe(CLI::App &app, Options &options)
 {
-    app.add_option("--node", options.Gateway.Node)->required();
+    TestNode::DescribeNetwork(app, options.Gateway);
     app.add_option("--other", options.Other, "Name of the other node")->required();
-    app.add_option("--transport", options.Gateway.Transport)->required();
-    app.add_option("--domain", options.Gateway.Domain);
-    app.add_option("--interface", options.Gateway.Interfaces);
-    app.add_option("--peer", options.Gateway.Peers);
-    app.add_flag("!--no-multicast", options.Gateway.Multicast);
     app.add_option("--count", options.Count, "Orders for each life of the other node");
     app.add_option("--rate", options.Rate, "Orders a second");
     app.add_flag("!--no-frame", options.Frame, "Send no frame of 4 MB");
@@ -331,12 +323,7 @@ void Run(Options &options)
     config.Publish.push_back({.Message = "Frame", .Type = "Interop::Frame"});
     config.Subscribe.push_back({.Message = "Frame", .Type = "Interop::Frame"});
     config.Accept.push_back({.Queue = Queue, .Types = {"Interop::Order"}});
-    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
-    Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<Exchange>(options));
-    reactor.AddManager(
-        std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
-    reactor.Run();  // until SIGTERM
+    TestNode::Run(config, std::make_unique<Exchange>(options));
 }
 
 }  // namespace
@@ -346,24 +333,5 @@ int main(int argc, char **argv)
     CLI::App app("A node that exchanges every kind of traffic with one other node.");
     Options options;
     Describe(app, options);
-    try
-    {
-        app.parse(argc, argv);
-        Run(options);
-        return 0;
-    }
-    catch (const CLI::ParseError &error)
-    {
-        return app.exit(error) == 0 ? 0 : 2;
-    }
-    catch (const Rabit::ConfigError &error)
-    {
-        std::cerr << error.what() << '\n';
-        return 2;
-    }
-    catch (const std::exception &error)
-    {
-        std::cerr << "interop_node: " << error.what() << '\n';
-        return 1;
-    }
+    return TestNode::Main(app, argc, argv, [&] { Run(options); });
 }

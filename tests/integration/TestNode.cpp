@@ -1,0 +1,61 @@
+#include "TestNode.h"
+
+#include <rabit/RabitReactor.h>
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <CLI/CLI.hpp>
+
+#include <exception>
+#include <iostream>
+#include <utility>
+
+namespace TestNode
+{
+
+void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
+{
+    app.add_option("--node", config.Node)->required();
+    app.add_option("--transport", config.Transport);
+    app.add_option("--domain", config.Domain);
+    app.add_option("--interface", config.Interfaces);
+    app.add_option("--peer", config.Peers, "Address of another node, for unicast discovery");
+    app.add_flag("!--no-multicast", config.Multicast);
+}
+
+void Run(const Rabit::GatewayConfig &config, std::unique_ptr<Rabit::RabitManager> manager)
+{
+    Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
+    Rabit::RabitReactor reactor;
+    reactor.AddManager(std::move(manager));
+    reactor.AddManager(
+        std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
+    reactor.Run();
+}
+
+int Main(CLI::App &app, int argc, char **argv, const std::function<void()> &body)
+{
+    try
+    {
+        app.parse(argc, argv);
+        body();
+        return 0;
+    }
+    catch (const CLI::ParseError &error)
+    {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    catch (const Rabit::ConfigError &error)
+    {
+        std::cerr << error.what() << '\n';
+        return 2;
+    }
+    catch (const std::exception &error)
+    {
+        std::cerr << argv[0] << ": " << error.what() << '\n';
+        return 1;
+    }
+}
+
+}  // namespace TestNode

@@ -1,0 +1,28 @@
+// What the nodes share that run as processes of their own in tests.
+#pragma once
+
+#include <rabit/RabitManager.h>
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <functional>
+#include <memory>
+
+namespace CLI
+{
+class App;
+}
+
+namespace TestNode
+{
+
+// The options that say who the node is and on which network.
+void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config);
+
+// Runs the manager and a gateway until SIGINT or SIGTERM. Throws Rabit::ConfigError.
+void Run(const Rabit::GatewayConfig &config, std::unique_ptr<Rabit::RabitManager> manager);
+
+// Parses the arguments and runs the body. Returns the exit code: 0; 1 if the body failed; 2 if an option is
+// wrong.
+int Main(CLI::App &app, int argc, char **argv, const std::function<void()> &body);
+
+}  // namespace TestNode
