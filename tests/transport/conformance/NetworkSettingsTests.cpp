@@ -1,0 +1,144 @@
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <random>
+#include <string_view>
+#include <vector>
+
+#include "NetworkSettings.h"
+#include "Recorder.h"
+#include "TestSample.h"
+
+namespace Rabit::Conformance
+{
+
+namespace
+{
+
+using Kind = PeerEvent::Kind;
+
+// Sends datagrams to the ports of that domain on this host that are no RTPS message at all, or only begin
+// like one.
+void SendNoise(int domain)
+{
+    constexpr std::string_view beginnings[] = {"", "RTPS", "RTPS\2\1"};
+    const int noise = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    ASSERT_GE(noise, 0);
+    std::mt19937 random(1);
+    const int firstPort = 7400 + 250 * domain;  // RTPS 2.3, 9.6.1.1
+    for (int i = 0; i < 20000; ++i)
+    {
+        std::vector<std::uint8_t> bytes(random() % 200);
+        for (auto &byte : bytes)
+        {
+            byte = static_cast<std::uint8_t>(random());
+        }
+        const std::string_view beginning = beginnings[random() % std::size(beginnings)];
+        std::copy_n(beginning.begin(), std::min(beginning.size(), bytes.size()), bytes.begin());
+        sockaddr_in to{};
+        to.sin_family = AF_INET;
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        to.sin_port = htons(static_cast<std::uint16_t>(firstPort + 10 + i % 40));
+        sendto(noise, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr *>(&to), sizeof to);
+    }
+    close(noise);
+}
+
+TEST_P(NetworkSettings, AnUnknownInterfaceIsRefusedByName)
+{
+    auto settings = Settings("uav1");
+    settings.Interfaces = {"lo", "radio99"};
+    ExpectRefusal(settings, "radio99", "interfaces");
+}
+
+TEST_P(NetworkSettings, AnImpossiblePeerIsRefusedByName)
+{
+    auto settings = Settings("uav1");
+    settings.Peers = {"127.0.0.1:notaport"};
+    ExpectRefusal(settings, "127.0.0.1:notaport", "peers");
+}
+
+TEST_P(NetworkSettings, AMissingConfigurationFileIsRefusedByName)
+{
+    auto settings = Settings("uav1");
+    settings.BackendConfig = "/nowhere/vendor.xml";
+    ExpectRefusal(settings, "/nowhere/vendor.xml", "backend_config");
+}
+
+TEST_P(NetworkSettings, ABrokenConfigurationFileIsRefusedByName)
+{
+    auto settings = Settings("uav1");
+    settings.BackendConfig = TemporaryFile("<dds><profiles>");
+    ExpectRefusal(settings, settings.BackendConfig, "backend_config");
+}
+
+TEST_P(NetworkSettings, PeersFindEachOtherWithoutMulticast)
+{
+    auto one = Settings("uav1");
+    auto other = Settings("ground");
+    for (auto *settings : {&one, &other})
+    {
+        settings->Multicast = false;
+        settings->Peers = {"127.0.0.1"};
+    }
+    ExpectDelivery(one, other);
+}
+
+TEST_P(NetworkSettings, APeerListedOnOneSideIsEnough)
+{
+    auto one = Settings("uav1");
+    auto other = Settings("ground");
+    one.Multicast = false;
+    other.Multicast = false;
+    other.Peers = {"localhost"};
+    ExpectDelivery(one, other);
+}
+
+TEST_P(NetworkSettings, AListOfPeersDoesNotEndMulticast)
+{
+    auto one = Settings("uav1");
+    auto other = Settings("ground");
+    one.Peers = {"127.0.0.1:9"};
+    other.Peers = {"127.0.0.1:9"};
+    ExpectDelivery(one, other);
+}
+
+TEST_P(NetworkSettings, LargeAndSmallDatagramsUnderstandEachOther)
+{
+    auto one = Settings("uav1");
+    auto other = Settings("ground");
+    one.MaxDatagram = 65000;
+    other.MaxDatagram = 1000;
+    ExpectDelivery(one, other);
+    ExpectDelivery(other, one);
+}
+
+TEST_P(NetworkSettings, ANodeNameOfFullLengthArrives)
+{
+    const std::string name(200, 'n');
+    PeerRecorder peers;
+    const auto ground = Backend().Open(Settings("ground"), peers.Handler());
+    const auto uav = Backend().Open(Settings(name), {});
+    EXPECT_TRUE(Net().Until([&] { return peers.Count(Kind::Appeared, name, 1) == 1; }));
+}
+
+TEST_P(NetworkSettings, NoiseOnItsPortsDoesNotDisturbASession)
+{
+    SampleRecorder recorder;
+    const auto writing = Backend().Open(Settings("uav1"), {});
+    const auto reading = Backend().Open(Settings("ground"), {});
+    const auto writer = writing->CreateWriter(TextTopic(), Stream(10), {});
+    const auto reader = reading->CreateReader(TextTopic(), Stream(10), {}, recorder.Handler());
+    ASSERT_TRUE(Net().Until([&] { return writer->MatchedReaders() == 1 && reader->MatchedWriters() == 1; }));
+    ASSERT_NO_FATAL_FAILURE(SendNoise(Settings("").Domain));
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "still here"), 1), WriteResult::Ok);
+    EXPECT_TRUE(Net().Until([&] { return recorder.Count() == 1; }));
+    EXPECT_TRUE(Net().Until([&] { return writing->Counters().MalformedDatagrams > 0; }));
+}
+
+}  // namespace
+
+}  // namespace Rabit::Conformance
