@@ -24,6 +24,7 @@ TEST_EACH_SAMPLE(MessageType, CreateMakesAMessageOfTheType)
 {
     const Rabit::MessageType *type = Rabit::MessageTypeRegistry::Of(message);
     EXPECT_TRUE(type->IsTypeOf(*type->Create()));
+    EXPECT_TRUE(type->IsTypeOf(*type->CreateShared()));
     EXPECT_EQ(type->CppType(), std::type_index(typeid(message)));
 }
 

@@ -103,6 +103,16 @@ public:
         text = std::string_view(begin, length - 1);
         return _cdr.jump(length);
     }
+    // Reads so many bytes as a view of them.
+    bool GetBytes(std::size_t count, std::span<const std::uint8_t> &bytes)
+    {
+        if (count > Left())
+        {
+            return false;
+        }
+        bytes = _bytes.subspan(Used(), count);
+        return count == 0 || _cdr.jump(count);
+    }
     // Passes by count primitive values side by side.
     bool Skip(std::size_t size, std::size_t count)
     {

@@ -44,6 +44,7 @@ public:
     const std::string &Name() const override { return _name; }
     const std::string &IdlText() const override { return _idlText; }
     std::unique_ptr<RabitMessage> Create() const override { return std::make_unique<Message>(); }
+    std::shared_ptr<RabitMessage> CreateShared() const override { return std::make_shared<Message>(); }
     std::type_index CppType() const override { return typeid(Message); }
     bool IsTypeOf(const RabitMessage &message) const override { return typeid(message) == typeid(Message); }
 

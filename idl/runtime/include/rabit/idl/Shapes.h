@@ -231,8 +231,23 @@ struct List
         {
             return false;
         }
-        values.resize(length);
-        return Elements<Element, Value>::Read(reader, values);
+        if constexpr (IsBlock<Element> && Element::MinSize == 1)
+        {
+            // Not resized first, which would fill a new vector with zeros.
+            std::span<const std::uint8_t> bytes;
+            if (!reader.GetBytes(length, bytes))
+            {
+                return false;
+            }
+            const auto *begin = reinterpret_cast<const typename Value::value_type *>(bytes.data());
+            values.assign(begin, begin + length);
+            return true;
+        }
+        else
+        {
+            values.resize(length);
+            return Elements<Element, Value>::Read(reader, values);
+        }
     }
     static bool Scan(CdrReader &reader, KeyHasher *key)
     {
