@@ -88,7 +88,7 @@ LocalQueueResult AcceptedQueue::Deliver(std::string_view typeName, std::span<con
     {
         return LocalQueueResult::Full;
     }
-    const std::shared_ptr<RabitMessage> message = type->second->Create();
+    const std::shared_ptr<RabitMessage> message = type->second->CreateShared();
     if (!type->second->Deserialize(payload, *message))
     {
         return LocalQueueResult::Undecodable;

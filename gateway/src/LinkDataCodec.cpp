@@ -56,19 +56,14 @@ bool PutData(CdrWriter &writer, const LinkData &data)
     return true;
 }
 
-bool GetItem(CdrReader &reader, std::span<const std::uint8_t> body, LinkItem &item)
+bool GetItem(CdrReader &reader, LinkItem &item)
 {
     std::size_t size = 0;
-    if (!(reader.Get(item.Flags) && reader.Get(item.TtlLeft) && reader.GetString(LinkMaxName, item.Type) &&
-          reader.GetLength(0, 1, size)))
-    {
-        return false;
-    }
-    item.Payload = body.subspan(reader.Used(), size);  // GetLength has seen that they are there
-    return reader.Skip(1, size);
+    return reader.Get(item.Flags) && reader.Get(item.TtlLeft) && reader.GetString(LinkMaxName, item.Type) &&
+           reader.GetLength(0, 1, size) && reader.GetBytes(size, item.Payload);
 }
 
-bool GetData(CdrReader &reader, std::span<const std::uint8_t> body, LinkData &data)
+bool GetData(CdrReader &reader, LinkData &data)
 {
     std::size_t items = 0;
     if (!(reader.Get(data.Version) && reader.GetString(LinkMaxName, data.Source) &&
@@ -83,7 +78,7 @@ bool GetData(CdrReader &reader, std::span<const std::uint8_t> body, LinkData &da
     data.Items.resize(items);
     for (LinkItem &item : data.Items)
     {
-        if (!GetItem(reader, body, item))
+        if (!GetItem(reader, item))
         {
             return false;
         }
@@ -147,7 +142,7 @@ bool Decode(SampleBytes bytes, LinkData &data)
     try
     {
         CdrReader reader(body, littleEndian);
-        return GetData(reader, body, data) && reader.Left() <= Idl::MaxPadding;
+        return GetData(reader, data) && reader.Left() <= Idl::MaxPadding;
     }
     catch (const eprosima::fastcdr::exception::Exception &)
     {

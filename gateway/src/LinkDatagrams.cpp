@@ -7,6 +7,27 @@
 
 namespace Rabit
 {
+namespace
+{
+
+// Lets the transport encode a LinkData straight into its own buffer.
+class LinkDataEncoder final : public SampleEncoder
+{
+public:
+    explicit LinkDataEncoder(const LinkData &data) : _data(data), _size(LinkDataCodec::EncodedSize(data)) {}
+
+    std::size_t EncodedSize() const override { return _size; }
+    bool Encode(std::span<std::uint8_t> buffer) const override
+    {
+        return LinkDataCodec::Encode(_data, buffer);
+    }
+
+private:
+    const LinkData &_data;
+    const std::size_t _size;
+};
+
+}  // namespace
 
 LinkDatagrams::Datagram &LinkDatagrams::Next(LinkTopic topic, std::string_view destination)
 {
@@ -22,11 +43,17 @@ LinkDatagrams::Datagram &LinkDatagrams::Next(LinkTopic topic, std::string_view d
 
 void LinkDatagrams::Add(const LinkData &data)
 {
-    Datagram &datagram = Next(LinkTopic::Data, data.Destination);
-    if (LinkDataCodec::Encode(data, datagram.Buffer.Resize(LinkDataCodec::EncodedSize(data))))
+    Next(LinkTopic::Data, data.Destination).Data = data;
+    ++_used;
+}
+
+void LinkDatagrams::Clear()
+{
+    for (std::size_t i = 0; i < _used; ++i)
     {
-        ++_used;
+        _datagrams[i].Data.Items.clear();
     }
+    _used = 0;
 }
 
 void LinkDatagrams::Add(LinkTopic topic, std::string_view destination, const MessageType &type,
@@ -76,7 +103,10 @@ void LinkWriters::Write(const LinkDatagrams::Datagram &datagram, std::int64_t so
         writer = _session.CreateWriter(DescribeLinkTopic(datagram.Topic), LinkTopicQos(datagram.Topic),
                                        {datagram.Destination});
     }
-    static_cast<void>(writer->Write(BytesEncoder(datagram.Buffer.Bytes()), sourceTime));
+    const WriteResult result = datagram.Topic == LinkTopic::Data
+                                   ? writer->Write(LinkDataEncoder(datagram.Data), sourceTime)
+                                   : writer->Write(BytesEncoder(datagram.Buffer.Bytes()), sourceTime);
+    static_cast<void>(result);
 }
 
 }  // namespace Rabit

@@ -46,7 +46,7 @@ private:
     std::size_t _size = 0;
 };
 
-// Datagrams that wait for the gateway's thread, encoded. Memory of sent ones is used again. Not thread-safe.
+// Datagrams that wait for the gateway's thread. Memory of sent ones is used again. Not thread-safe.
 class LinkDatagrams
 {
 public:
@@ -54,15 +54,17 @@ public:
     {
         LinkTopic Topic = LinkTopic::Data;
         std::string Destination;
-        DatagramBuffer Buffer;
+        LinkData Data;  // of topic Data: encoded when it is written, straight into the transport's memory
+        DatagramBuffer Buffer;  // of the others: encoded
     };
 
-    // Encodes it now. What cannot be encoded is left out.
+    // Keeps the payloads. The names must stay valid until the datagram is written (as LinkOutput::Send says).
     void Add(const LinkData &data);
+    // Encodes it now. What cannot be encoded is left out.
     void Add(LinkTopic topic, std::string_view destination, const MessageType &type,
              const RabitMessage &sample);
     bool IsEmpty() const { return _used == 0; }
-    void Clear() { _used = 0; }
+    void Clear();
     void Swap(LinkDatagrams &other) noexcept
     {
         _datagrams.swap(other._datagrams);

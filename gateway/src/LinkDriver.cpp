@@ -131,8 +131,8 @@ void LinkDriver::Close()
     Tell(news);
 }
 
-// Views are one for each thread of the transport, so that steady traffic allocates nothing for names and
-// lists.
+// Views and news are one for each thread of the transport, so that steady traffic allocates nothing for names
+// and lists.
 
 void LinkDriver::OnData(SampleBytes bytes)
 {
@@ -163,20 +163,31 @@ void LinkDriver::OnSample(SampleBytes bytes)
 template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
 void LinkDriver::TakeIn(const View &view)
 {
-    bool work = false;
-    News news;
+    static thread_local News news;
+    bool sooner = false;
     {
         const std::lock_guard lock(_mutex);
-        const LinkTime now = Now();
-        (_links.get()->*Input)(view, now);
-        work = !_outbox.IsEmpty() || _links->NextDue() < _nextService;
-        news = TakeNews();
+        (_links.get()->*Input)(view, Now());
+        sooner = ServeBy(_outbox.IsEmpty() ? _links->NextDue() : LinkTime(0));
+        std::swap(news, _news);
     }
     Tell(news);
-    if (work)
+    news.Delivered.clear();
+    news.Settled.clear();
+    if (sooner)
     {
         _wake();
     }
+}
+
+bool LinkDriver::ServeBy(LinkTime due)
+{
+    if (due >= _nextService)
+    {
+        return false;
+    }
+    _nextService = due;
+    return true;
 }
 
 void LinkDriver::Tell(const News &news)
@@ -311,8 +322,8 @@ bool LinkDriver::Handles(const std::string &queueName) const
 
 LinkPayload LinkDriver::Encode(const MessageType &type, const RabitMessage &message) const
 {
-    auto payload = std::make_shared<std::vector<std::uint8_t>>(type.SerializedSize(message));
-    const bool encoded = type.Serialize(message, *payload) == payload->size();
+    const std::shared_ptr<LinkBytes> payload = _payloads->Make(type.SerializedSize(message));
+    const bool encoded = type.Serialize(message, payload->Writable()) == payload->Size();
     return encoded ? payload : nullptr;
 }
 
@@ -385,6 +396,7 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
         return Refuse(node, queue, answer.What, answer.Reason, receipt);
     }
     LinkEnqueued enqueued;
+    bool sooner = false;
     News news;
     {
         const std::lock_guard lock(_mutex);
@@ -397,6 +409,7 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
             {
                 _receipts.emplace(enqueued.Id, receipt);
             }
+            sooner = ServeBy(enqueued.Due);
         }
         news = TakeNews();
     }
@@ -405,16 +418,21 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
     {
         return Settle(receipt, QueueOutcome::Refused);
     }
-    _wake();
+    if (sooner)
+    {
+        _wake();
+    }
     return true;
 }
 
 void LinkDriver::ConfigureOnce(const std::string &node, const std::string &queue)
 {
-    if (!_configured.emplace(node, queue).second)
+    std::set<std::string> &queues = _configured[node];
+    if (queues.count(queue) > 0)
     {
         return;
     }
+    queues.insert(queue);
     const auto rule = std::find_if(
         _config.Send.begin(), _config.Send.end(),
         [&node, &queue](const SendRule &candidate)

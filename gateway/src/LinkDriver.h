@@ -22,6 +22,7 @@
 
 #include "AcceptedQueue.h"
 #include "LinkDatagrams.h"
+#include "LinkPayloadPool.h"
 #include "LinkRefusals.h"
 #include "RemoteQueues.h"
 #include "gateway.idl.h"
@@ -102,6 +103,9 @@ private:
     static bool Settle(const Receipt &receipt, QueueOutcome outcome);
     // With the mutex held.
     News TakeNews() { return std::exchange(_news, {}); }
+    // Something is due then. True if the gateway's thread must be woken for it: it would come later, and was
+    // not woken for anything as early.
+    bool ServeBy(LinkTime due);
     // Without it.
     static void Tell(const News &news);
     void ConfigureOnce(const std::string &node, const std::string &queue);
@@ -121,6 +125,7 @@ private:
     const RemoteQueues &_remote;
     IncarnationStore &_incarnations;  // guarded by the mutex
     const std::function<void()> _wake;
+    const std::shared_ptr<LinkPayloadPool> _payloads = std::make_shared<LinkPayloadPool>();
 
     mutable std::mutex _mutex;
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;
@@ -128,7 +133,7 @@ private:
     News _news;
     LinkDatagrams _outbox;
     LinkRefusals _refusals;
-    std::set<LinkRefusals::LinkName> _configured;
+    std::map<std::string, std::set<std::string>, std::less<>> _configured;  // queues of a node
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
 

@@ -75,7 +75,7 @@ TopicSubscriber::Source *TopicSubscriber::SourceOf(std::string_view node)
 void TopicSubscriber::Register(Source &source)
 {
     const std::string name = source.Counters.node + "/" + _rule.Message;
-    const std::shared_ptr<RabitMessage> message = _type.Create();
+    const std::shared_ptr<RabitMessage> message = _type.CreateShared();
     std::string problem;
     if (!_workspace.AddPublishSubscribeMessage(name, message))
     {

@@ -135,7 +135,7 @@ LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view qu
         return {.Refusal = refusal};
     }
     peer->OnEnqueued(now);
-    return {.Refusal = LinkRefusal::None, .Id = _nextId++};
+    return {.Refusal = LinkRefusal::None, .Id = _nextId++, .Due = peer->NextDue()};
 }
 
 bool LinkNode::IsForUs(std::string_view name)

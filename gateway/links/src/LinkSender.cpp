@@ -26,6 +26,7 @@ LinkSender::LinkSender(LinkContext &context, std::string destination, std::strin
       _queue(std::move(queue)),
       _options(options),
       _outbox(_options),
+      _window(_options, context.Settings.ShortRoundTrip),
       _allowed(_options.Window),
       _timer(context.Settings)
 {
@@ -35,7 +36,7 @@ LinkSender::LinkSender(LinkContext &context, std::string destination, std::strin
 LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now)
 {
     ExpireWaiting(now);
-    const std::size_t bytes = payload ? payload->size() : 0;
+    const std::size_t bytes = payload ? payload->Size() : 0;
     const LinkRefusal refusal = _outbox.Check(bytes);
     switch (refusal)
     {
@@ -120,6 +121,7 @@ void LinkSender::OnResendTimer(LinkTime now)
     {
         // With no credit it is the receiver that is slow, not the path that loses.
         _allowed = FrontDatagram();
+        _window.Restore();
         ++_counters.Timeouts;
     }
     _timer.BackOff();
@@ -152,7 +154,7 @@ bool LinkSender::MaySendNext() const
         return _probe || _cursor <= _creditLimit;
     }
     return _cursor <= _creditLimit && inFlight < std::min(_options.Window, _allowed) &&
-           _bytesInFlight + AtCursor().Bytes <= _options.WindowBytes;
+           _window.Fits(_bytesInFlight, AtCursor().Bytes);
 }
 
 // The next message to send. There must be one.
@@ -186,6 +188,10 @@ void LinkSender::SendDatagram(const PeerView &peer, LinkTime now)
     data.Items.clear();
 
     const bool fromTheFront = _cursor == _outbox.FirstSequence();
+    if (_outbox.SentCount() == 0 && now > _lastSentAt + _timer.PlainTimeout())
+    {
+        _window.Restore();
+    }
     std::size_t bytes = DatagramOverhead + data.Source.size() + data.Destination.size() + data.Queue.size();
     while (data.Items.size() < LinkMaxItems && MaySendNext() && Append(data, bytes, now))
     {
@@ -197,7 +203,7 @@ void LinkSender::SendDatagram(const PeerView &peer, LinkTime now)
     _lastSentAt = now;
     ++_counters.DatagramsSent;
     _context.Output.Send(data);
-    // The payloads are the outbox's: keep nothing that points to them.
+    // The payloads are the outbox's: keep none of them.
     data.Items.clear();
 }
 
@@ -229,8 +235,11 @@ bool LinkSender::Append(LinkData &data, std::size_t &bytes, LinkTime now)
     {
         item.TtlLeft = message.ExpiresAt == LinkNever ? LinkNoExpiry : (message.ExpiresAt - now).count();
         item.Type = *message.Type;
-        item.Payload = message.Payload ? std::span<const std::uint8_t>(*message.Payload)
-                                       : std::span<const std::uint8_t>();
+        if (message.Payload)
+        {
+            item.Payload = message.Payload->View();
+            item.Owner = message.Payload;
+        }
     }
     ++_counters.MessagesSent;
     _counters.MessagesResent += first ? 0 : 1;
@@ -257,11 +266,14 @@ void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
     if (ack.EchoSentAt > _echoedSentAt && ack.EchoSentAt + ack.EchoHeldFor <= now.count())
     {
         _echoedSentAt = ack.EchoSentAt;
-        _timer.Measured(now - LinkTime(ack.EchoSentAt + ack.EchoHeldFor));
+        const LinkTime roundTrip = now - LinkTime(ack.EchoSentAt + ack.EchoHeldFor);
+        _timer.Measured(roundTrip);
+        _window.Measured(roundTrip);
     }
     const std::uint64_t first = _outbox.FirstSequence();
     if (ack.Cumulative >= first)
     {
+        const std::size_t inFlight = _bytesInFlight;
         for (std::uint64_t sequence = first; sequence <= ack.Cumulative; ++sequence)
         {
             const OutboxMessage message = _outbox.TakeSent();
@@ -284,6 +296,7 @@ void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
                 Report(message, refused ? LinkOutcome::RefusedThere : LinkOutcome::Expired);
             }
         }
+        _window.Acknowledged(inFlight - _bytesInFlight, inFlight);
         _cursor = std::max(_cursor, ack.Cumulative + 1);
         _allowed = std::min(_options.Window, _allowed + static_cast<std::size_t>(ack.Cumulative + 1 - first));
         _resendAt = ResendTime(now, _timer.Timeout());
@@ -328,6 +341,7 @@ void LinkSender::Restart()
     _base = _outbox.NextSequence();
     _cursor = _base;
     _bytesInFlight = 0;
+    _window.Restore();
     _allowed = _options.Window;
     _creditLimit = 0;
     _creditTime = 0;
@@ -386,8 +400,8 @@ std::string LinkSender::Describe() const
     out << "to " << _destination << '/' << _queue << ": base " << _base << " first "
         << _outbox.FirstSequence() << " cursor " << _cursor << " next " << _outbox.NextSequence()
         << " pending " << _outbox.Count() << " bytes " << _outbox.Bytes() << " in flight " << _bytesInFlight
-        << " allowed " << _allowed << " credit to " << _creditLimit << " of " << _creditTime
-        << (_probe ? " probe" : "") << " resend at " << _resendAt.count() << " timeout "
+        << " of " << _window.Bytes() << " allowed " << _allowed << " credit to " << _creditLimit << " of "
+        << _creditTime << (_probe ? " probe" : "") << " resend at " << _resendAt.count() << " timeout "
         << _timer.Timeout().count() << " echoed " << _echoedSentAt;
     return out.str();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ByteWindow.h"
 #include "LinkContext.h"
 #include "LinkOutbox.h"
 #include "PeerToken.h"
@@ -80,6 +81,7 @@ private:
     std::uint64_t _cursor = 1;
     // Bytes of the messages from the first unacknowledged one up to the cursor.
     std::size_t _bytesInFlight = 0;
+    ByteWindow _window;
     // Messages that may be in flight: the window, or fewer after a timeout until acknowledgements come again.
     std::size_t _allowed;
     // Highest number that the receiver has given credit for, and when (by its clock) it did.

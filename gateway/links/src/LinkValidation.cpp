@@ -102,6 +102,7 @@ void RequireValid(const LinkSettings &settings)
             "MinResend <= FirstResend <= MaxResend must hold");
     Require(settings.MaxResend <= std::chrono::hours(1), "MaxResend must be at most an hour");
     Require(settings.SlowPath >= 1, "SlowPath must be at least 1");
+    Require(settings.ShortRoundTrip >= LinkTime(0), "ShortRoundTrip must not be negative");
     Require(settings.HelloPeriod > LinkTime(0), "HelloPeriod must be positive");
     Require(settings.HelloPeriod <= settings.SilentHelloPeriod, "HelloPeriod <= SilentHelloPeriod must hold");
     Require(settings.HelloGap >= LinkTime(0), "HelloGap must not be negative");

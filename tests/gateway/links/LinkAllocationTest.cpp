@@ -77,7 +77,7 @@ TEST(LinkAllocation, a_message_in_the_steady_state_costs_none)
     a.Other = &b;
     b.Other = &a;
     a.Now = b.Now = &now;
-    const LinkPayload payload = std::make_shared<const std::vector<std::uint8_t>>(100);
+    const LinkPayload payload = std::make_shared<const LinkBytes>(100);
     const auto exchange = [&](int messages)
     {
         for (int i = 0; i < messages; ++i)

@@ -1,4 +1,5 @@
 // The small parts that the rules are made of.
+#include "ByteWindow.h"
 #include "OutcomeHistory.h"
 #include "ResendTimer.h"
 #include "RingBuffer.h"
@@ -136,6 +137,62 @@ TEST(ResendTimer, stays_within_its_bounds)
     ResendTimer zero{LinkSettings()};
     zero.Measured(0ns);
     EXPECT_EQ(zero.Timeout(), 20ms);
+}
+
+LinkOptions Windows(std::size_t smallest, std::size_t largest)
+{
+    LinkOptions options;
+    options.WindowBytes = smallest;
+    options.LargestWindowBytes = largest;
+    return options;
+}
+
+TEST(ByteWindow, doubles_with_each_short_round_trip_that_fills_it_up_to_the_largest)
+{
+    ByteWindow window(Windows(100, 350), 10ms);
+    for (const std::size_t expected : {200U, 350U, 350U})
+    {
+        const std::size_t inFlight = window.Bytes();
+        window.Measured(10ms);
+        window.Acknowledged(inFlight, inFlight);
+        EXPECT_EQ(window.Bytes(), expected);
+    }
+    EXPECT_TRUE(window.Fits(300, 50));
+    EXPECT_FALSE(window.Fits(300, 51));
+}
+
+TEST(ByteWindow, does_not_grow_before_a_round_trip_was_measured)
+{
+    ByteWindow window(Windows(100, 1000), 10ms);
+    window.Acknowledged(100, 100);
+    EXPECT_EQ(window.Bytes(), 100U);
+}
+
+TEST(ByteWindow, does_not_grow_while_less_than_half_of_it_is_used)
+{
+    ByteWindow window(Windows(100, 1000), 10ms);
+    window.Measured(1ms);
+    window.Acknowledged(49, 49);
+    EXPECT_EQ(window.Bytes(), 100U);
+}
+
+TEST(ByteWindow, is_as_at_the_beginning_after_a_long_round_trip)
+{
+    ByteWindow window(Windows(100, 1000), 10ms);
+    window.Measured(1ms);
+    window.Acknowledged(100, 100);
+    window.Measured(10ms + 1ns);
+    EXPECT_EQ(window.Bytes(), 100U);
+    window.Acknowledged(100, 100);
+    EXPECT_EQ(window.Bytes(), 100U);
+}
+
+TEST(ByteWindow, is_never_smaller_than_the_smallest)
+{
+    ByteWindow window(Windows(100, 0), 10ms);
+    window.Measured(1ms);
+    window.Acknowledged(100, 100);
+    EXPECT_EQ(window.Bytes(), 100U);
 }
 
 TEST(LinkOutcome, has_words_for_logs)

@@ -360,12 +360,12 @@ TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_sixteen_messages)
     EXPECT_EQ(Acknowledgement().Cumulative, 17U);
 }
 
-TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_sixteen_kilobytes)
+TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_half_of_a_window_in_bytes)
 {
     OpenSession();
-    a.Hear(Data(2, std::vector<std::string>(3, std::string(4096, 'm'))));
+    a.Hear(Data(2, std::vector<std::string>(3, std::string(32 * 1024, 'm'))));
     EXPECT_THAT(a.TakeAcks(), IsEmpty());
-    a.Hear(Data(5, {std::string(4096, 'm')}));
+    a.Hear(Data(5, {std::string(32 * 1024, 'm')}));
     EXPECT_EQ(Acknowledgement().Cumulative, 5U);
 }
 

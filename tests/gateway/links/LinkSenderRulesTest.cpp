@@ -223,7 +223,7 @@ TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_unacknowledged)
 
 TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_bytes_unacknowledged)
 {
-    a.Configure({.WindowBytes = 10});
+    a.Configure({.WindowBytes = 10, .LargestWindowBytes = 10});
     Contact();
     a.Enqueue("1234");
     a.Enqueue("123456");
@@ -237,6 +237,61 @@ TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_bytes_unacknowledged
     a.Hear(b.Ack(4));
     a.Pass(0ms);
     EXPECT_THAT(SentTexts(), ElementsAre("a single larger message"));
+}
+
+TEST_F(LinkSenderRules, S2_keeps_more_bytes_unacknowledged_while_the_round_trip_is_short)
+{
+    a.Configure({.WindowBytes = 10, .LargestWindowBytes = 40});
+    Contact();
+    for (int i = 0; i < 8; ++i)
+    {
+        a.Enqueue("12345");
+    }
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), SizeIs(2));
+    StoredAck ack = b.Ack(3);
+    ack.Fields.EchoSentAt = a.Now.count();
+    a.Pass(5ms);
+    a.Hear(ack);
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), SizeIs(4));
+}
+
+TEST_F(LinkSenderRules, S2_keeps_the_smallest_window_after_a_long_round_trip_and_after_a_pause)
+{
+    a.Configure({.WindowBytes = 10, .LargestWindowBytes = 40});
+    Contact();
+    const auto fill = [this]
+    {
+        for (int i = 0; i < 4; ++i)
+        {
+            a.Enqueue("12345");
+        }
+        a.Pass(0ms);
+        return SentTexts().size();
+    };
+    const auto acknowledge = [this](std::uint64_t cumulative, LinkTime after)
+    {
+        StoredAck ack = b.Ack(cumulative);
+        ack.Fields.EchoSentAt = a.Now.count();
+        a.Pass(after);
+        a.TakeDatas();
+        a.Hear(ack);
+    };
+    EXPECT_EQ(fill(), 2U);
+    acknowledge(3, 5ms);
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), SizeIs(2)) << "the rest";
+    acknowledge(5, 5ms);
+    EXPECT_EQ(fill(), 4U) << "the window has grown";
+    acknowledge(9, 11ms);
+    EXPECT_EQ(fill(), 2U) << "a long round trip";
+    acknowledge(11, 5ms);
+    a.Pass(0ms);
+    acknowledge(13, 5ms);
+    a.Hear(b.Hello());
+    a.Pass(3s);
+    EXPECT_EQ(fill(), 2U) << "a pause";
 }
 
 TEST_F(LinkSenderRules, S2_packs_waiting_messages_up_to_the_datagram_size)

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 inline LinkPayload PayloadOf(std::string_view text)
 {
-    return std::make_shared<const std::vector<std::uint8_t>>(text.begin(), text.end());
+    return LinkBytes::CopyOf({reinterpret_cast<const std::uint8_t *>(text.data()), text.size()});
 }
 
 struct DeliveredMessage

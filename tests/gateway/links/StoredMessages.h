@@ -45,7 +45,7 @@ struct StoredData
         data.Queue = Queue;
         for (const StoredItem &item : Items)
         {
-            data.Items.push_back({item.Flags, item.TtlLeft, item.Type, item.Payload});
+            data.Items.push_back({item.Flags, item.TtlLeft, item.Type, item.Payload, nullptr});
         }
         return data;
     }

@@ -58,6 +58,7 @@ LinkOptions DrawOptions(SimRandom &random)
     options.Expire = random.Chance(0.5) ? 0ms : random.LogBetween(20ms, 60s);
     options.Window = static_cast<std::size_t>(random.LogBetween(1, 256));
     options.WindowBytes = static_cast<std::size_t>(random.LogBetween(100, 100000));
+    options.LargestWindowBytes = options.WindowBytes * static_cast<std::size_t>(random.LogBetween(1, 100));
     options.RedeliverInDoubt = random.Chance(0.3);
     return options;
 }

@@ -98,12 +98,11 @@ void SimNode::Enqueue(std::size_t link)
                                   : kind < 0.98 ? WrongType
                                   : kind < 0.99 ? UnknownType
                                                 : BrokenType;
-    const auto payload =
-        std::make_shared<const std::vector<std::uint8_t>>(_world.Oracle.MakePayload(_world.Random));
+    const std::vector<std::uint8_t> payload = _world.Oracle.MakePayload(_world.Random);
     const LinkTime now = LocalNow();
     _links->Configure(destination, queue, plan.Options, now);
-    const LinkEnqueued result = _links->Enqueue(destination, queue, type, payload, now);
-    _world.Oracle.OnEnqueue(link, type, *payload, result.Refusal, result.Id, now);
+    const LinkEnqueued result = _links->Enqueue(destination, queue, type, LinkBytes::CopyOf(payload), now);
+    _world.Oracle.OnEnqueue(link, type, payload, result.Refusal, result.Id, now);
 }
 
 void SimNode::Receive(const Packet &packet)

@@ -5,6 +5,8 @@
 // Times are nanoseconds. A "clock" names the monotonic clock of one process by a random number.
 #pragma once
 
+#include <rabit/gateway/links/LinkPayload.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -53,6 +55,8 @@ struct LinkItem
     std::int64_t TtlLeft = LinkNoExpiry;
     std::string_view Type;                  // IDL name, for instance `Uav::Goto`; empty with LinkFlagSkip
     std::span<const std::uint8_t> Payload;  // the serialized message; empty with LinkFlagSkip
+    // Whose bytes Payload are: who holds it may keep Payload. Null in what was received.
+    LinkPayload Owner = nullptr;
 };
 
 // Some consecutive messages of one link, from the sender to the receiver.

@@ -55,7 +55,7 @@ public:
                           LinkTime now);
 
     // Accepts a message for a queue of another node, or refuses it at once. The link is made on first use,
-    // with the options of Configure or else default ones. Rule S1. Call Run soon afterwards.
+    // with the options of Configure or else default ones. Rule S1. Call Run when LinkEnqueued::Due says.
     LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
                          LinkPayload payload, LinkTime now);
 

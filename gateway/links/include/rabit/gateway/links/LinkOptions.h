@@ -20,8 +20,11 @@ struct LinkOptions
     LinkTime Expire{0};
     // Messages sent and not acknowledged, at most; 1 to LinkOutcomeBits.
     std::size_t Window = 128;
-    // Bytes of their payloads together, at most; a single larger message is sent alone.
+    // Bytes of their payloads together, at most; a single larger message is sent alone. The second holds
+    // while the window is used to the full and the round trip is not above LinkSettings::ShortRoundTrip; a
+    // value below the first means the first.
     std::size_t WindowBytes = 256 * 1024;
+    std::size_t LargestWindowBytes = 4 * 1024 * 1024;
     // What to do with messages that were sent and not acknowledged when the receiver restarted. False: they
     // are in doubt. True: they are sent again, marked as redelivered, so that the queue gets each at least
     // once.
@@ -38,11 +41,11 @@ struct LinkSettings
     // Bytes up to which messages that wait anyway share a LinkData, the names and numbers included. A message
     // that is larger by itself goes alone.
     std::size_t MaxDatagram = 1300;
-    // An acknowledgement waits this long for more to acknowledge, unless AckEvery messages or AckEveryBytes of
-    // payload were consumed: few large messages fill the sender's window, which then waits for it.
+    // An acknowledgement waits this long for more to acknowledge, unless AckEvery messages or AckEveryBytes
+    // of payload were consumed: few large messages fill the sender's window, which then waits for it.
     LinkTime AckDelay{std::chrono::milliseconds(2)};
     std::size_t AckEvery = 16;
-    std::size_t AckEveryBytes = 16 * 1024;
+    std::size_t AckEveryBytes = 128 * 1024;
     // Bounds of the resend timer, and its value before the first measurement (RFC 6298, with bounds for our
     // links).
     LinkTime MinResend{std::chrono::milliseconds(20)};
@@ -51,6 +54,8 @@ struct LinkSettings
     // Bytes per second that the slowest path is assumed to carry: what is on its way is sent again only after
     // the time that it needs at this rate, on top of the resend timer.
     std::size_t SlowPath = 512 * 1024;
+    // A round trip up to this shows that nothing queues up on the way, so that more may be in flight.
+    LinkTime ShortRoundTrip{std::chrono::milliseconds(10)};
     // A LinkHello goes to each peer at this period. A peer that was not heard for SilentAfter is silent: it
     // gets no messages, and hellos only while messages wait for it, at SilentHelloPeriod. Hellos to one peer
     // do not follow each other faster than HelloGap. While messages wait for the first token of a peer, the
