@@ -1,7 +1,6 @@
 #include "LinkDriver.h"
 
 #include <rabit/RabitLog.h>
-#include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 
@@ -9,8 +8,6 @@
 #include "GpsTime.h"
 #include "LinkDataCodec.h"
 #include "LinkWire.h"
-#include "NamePattern.h"
-#include "TypeDefinition.h"
 
 namespace Rabit
 {
@@ -30,17 +27,6 @@ LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
     return settings;
 }
 
-LinkOptions OptionsOf(const SendRule &rule)
-{
-    LinkOptions options;
-    options.Capacity = rule.Capacity;
-    options.CapacityBytes = rule.CapacityBytes;
-    options.Expire = rule.Expire;
-    options.Window = rule.Window;
-    options.RedeliverInDoubt = rule.RedeliverInDoubt;
-    return options;
-}
-
 QueueOutcome OutcomeOf(LinkOutcome outcome)
 {
     switch (outcome)
@@ -55,14 +41,6 @@ QueueOutcome OutcomeOf(LinkOutcome outcome)
             break;
     }
     return QueueOutcome::InDoubt;
-}
-
-void Begin(const std::shared_ptr<RabitQueueReceipt> &receipt, std::size_t messages)
-{
-    if (receipt)
-    {
-        receipt->Begin(static_cast<std::uint32_t>(messages));
-    }
 }
 
 }  // namespace
@@ -163,7 +141,7 @@ void LinkDriver::OnSample(SampleBytes bytes)
 template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
 void LinkDriver::TakeIn(const View &view)
 {
-    static thread_local News news;
+    News &news = OwnNews();
     bool sooner = false;
     {
         const std::lock_guard lock(_mutex);
@@ -172,12 +150,17 @@ void LinkDriver::TakeIn(const View &view)
         std::swap(news, _news);
     }
     Tell(news);
-    news.Delivered.clear();
-    news.Settled.clear();
+    news.Clear();
     if (sooner)
     {
         _wake();
     }
+}
+
+LinkDriver::News &LinkDriver::OwnNews()
+{
+    static thread_local News news;
+    return news;
 }
 
 bool LinkDriver::ServeBy(LinkTime due)
@@ -226,16 +209,17 @@ void LinkDriver::FindLocalQueues()
 LinkDriver::Duration LinkDriver::Service()
 {
     LinkTime next = LinkNever;
-    News news;
+    News &news = OwnNews();
     {
         const std::lock_guard lock(_mutex);
         FindLocalQueues();
         _links->Run(Now());
         _sending.Swap(_outbox);
         next = _nextService = _links->NextDue();
-        news = TakeNews();
+        std::swap(news, _news);
     }
     Tell(news);
+    news.Clear();
     const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
@@ -313,151 +297,6 @@ void LinkDriver::OnOutcome(std::uint64_t id, std::string_view /*destination*/, s
         _news.Settled.emplace_back(std::move(found->second), OutcomeOf(outcome));
         _receipts.erase(found);
     }
-}
-
-bool LinkDriver::Handles(const std::string &queueName) const
-{
-    return queueName.find('/') != std::string::npos;
-}
-
-LinkPayload LinkDriver::Encode(const MessageType &type, const RabitMessage &message) const
-{
-    const std::shared_ptr<LinkBytes> payload = _payloads->Make(type.SerializedSize(message));
-    const bool encoded = type.Serialize(message, payload->Writable()) == payload->Size();
-    return encoded ? payload : nullptr;
-}
-
-bool LinkDriver::Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
-                         const std::shared_ptr<RabitQueueReceipt> &receipt)
-{
-    const std::size_t slash = queueName.find('/');
-    const std::string node = queueName.substr(0, slash);
-    const std::string queue = queueName.substr(slash + 1);
-    if (node == _config.Node)
-    {
-        const bool added = _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
-        Begin(receipt, 1);
-        return Settle(receipt, added ? QueueOutcome::Delivered : QueueOutcome::Refused);
-    }
-    const MessageType *type = MessageTypeRegistry::Of(*message);
-    if (type == nullptr)
-    {
-        Begin(receipt, 1);
-        return Refuse(node, queue, RemoteQueues::Verdict::WrongType,
-                      "the message is of a type that was not made from IDL", receipt);
-    }
-    const LinkPayload payload = Encode(*type, *message);
-    if (!payload)
-    {
-        Begin(receipt, 1);
-        return Refuse(node, queue, RemoteQueues::Verdict::WrongType,
-                      "the message does not fit its IDL type `" + type->Name() +
-                          "`: a bounded string or sequence is too long",
-                      receipt);
-    }
-    if (node == "*")
-    {
-        return ForwardToAll(queue, *type, payload, receipt);
-    }
-    Begin(receipt, 1);
-    return ForwardTo(node, queue, *type, payload, receipt);
-}
-
-bool LinkDriver::ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
-                              const Receipt &receipt)
-{
-    const std::vector<std::string> nodes =
-        _remote.LiveNodesAccepting(queue, type.Name(), DefinitionHash(type));
-    if (nodes.empty())
-    {
-        Begin(receipt, 1);
-        return Refuse("*", queue, RemoteQueues::Verdict::UnknownNode,
-                      "no live node accepts `" + type.Name() + "` for `" + queue + "`", receipt);
-    }
-    {
-        const std::lock_guard lock(_mutex);
-        _refusals.Forgive({"*", queue});
-    }
-    Begin(receipt, nodes.size());
-    bool all = true;
-    for (const std::string &node : nodes)
-    {
-        all = ForwardTo(node, queue, type, payload, receipt) && all;
-    }
-    return all;
-}
-
-bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
-                           const LinkPayload &payload, const Receipt &receipt)
-{
-    const RemoteQueues::Answer answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
-    if (answer.What != RemoteQueues::Verdict::Accepted)
-    {
-        return Refuse(node, queue, answer.What, answer.Reason, receipt);
-    }
-    LinkEnqueued enqueued;
-    bool sooner = false;
-    News news;
-    {
-        const std::lock_guard lock(_mutex);
-        ConfigureOnce(node, queue);
-        enqueued = _links->Enqueue(node, queue, type.Name(), payload, Now());
-        if (enqueued.Accepted())
-        {
-            _refusals.Forgive({node, queue});
-            if (receipt)
-            {
-                _receipts.emplace(enqueued.Id, receipt);
-            }
-            sooner = ServeBy(enqueued.Due);
-        }
-        news = TakeNews();
-    }
-    Tell(news);  // to accept one may mean to find that others have expired
-    if (!enqueued.Accepted())
-    {
-        return Settle(receipt, QueueOutcome::Refused);
-    }
-    if (sooner)
-    {
-        _wake();
-    }
-    return true;
-}
-
-void LinkDriver::ConfigureOnce(const std::string &node, const std::string &queue)
-{
-    std::set<std::string> &queues = _configured[node];
-    if (queues.count(queue) > 0)
-    {
-        return;
-    }
-    queues.insert(queue);
-    const auto rule = std::find_if(
-        _config.Send.begin(), _config.Send.end(),
-        [&node, &queue](const SendRule &candidate)
-        { return MatchesPattern(candidate.To, node) && MatchesPattern(candidate.Queue, queue); });
-    if (rule != _config.Send.end())
-    {
-        _links->Configure(node, queue, OptionsOf(*rule), Now());
-    }
-}
-
-bool LinkDriver::Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
-                        const std::string &reason, const Receipt &receipt)
-{
-    bool isNew = false;
-    {
-        const std::lock_guard lock(_mutex);
-        isNew = _refusals.Add({node, queue}, verdict, reason);
-    }
-    if (isNew)
-    {
-        RabitLog::Write(RabitLogLevel::Warning,
-                        "gateway: refused a message for `" + node + "/" + queue + "`: " + reason);
-        _wake();
-    }
-    return Settle(receipt, QueueOutcome::Refused);
 }
 
 }  // namespace Rabit

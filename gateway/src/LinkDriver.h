@@ -90,6 +90,13 @@ private:
     {
         std::vector<AcceptedQueue *> Delivered;                 // queues with new messages
         std::vector<std::pair<Receipt, QueueOutcome>> Settled;  // receipts with an outcome
+
+        bool IsEmpty() const { return Delivered.empty() && Settled.empty(); }
+        void Clear()
+        {
+            Delivered.clear();
+            Settled.clear();
+        }
     };
 
     // The receipt has had its Begin for this message.
@@ -101,8 +108,10 @@ private:
     bool Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
                 const std::string &reason, const Receipt &receipt);
     static bool Settle(const Receipt &receipt, QueueOutcome outcome);
+    // Empty, with the memory that it had: of the thread, and not for where another call may be under way.
+    static News &OwnNews();
     // With the mutex held.
-    News TakeNews() { return std::exchange(_news, {}); }
+    News TakeNews() { return _news.IsEmpty() ? News() : std::exchange(_news, {}); }
     // Something is due then. True if the gateway's thread must be woken for it: it would come later, and was
     // not woken for anything as early.
     bool ServeBy(LinkTime due);
