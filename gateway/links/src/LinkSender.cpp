@@ -163,10 +163,13 @@ const OutboxMessage &LinkSender::AtCursor() const
     return _cursor == _outbox.NextSequence() ? _outbox.FirstWaiting() : _outbox.Sent(_cursor);
 }
 
-// When to send again what is in flight now. Large payloads get the time that a slow path needs for them.
+// When to send again what is in flight now. Large payloads get the time that a slow path needs for them; a
+// window that has grown shows that the path is not slow.
 LinkTime LinkSender::ResendTime(LinkTime now, LinkTime timeout) const
 {
-    const auto transfer = std::chrono::duration<double>(static_cast<double>(_bytesInFlight) /
+    const std::size_t front = _outbox.SentCount() > 0 ? _outbox.Sent(_outbox.FirstSequence()).Bytes : 0;
+    const std::size_t bytes = std::min(_bytesInFlight, std::max(_options.WindowBytes, front));
+    const auto transfer = std::chrono::duration<double>(static_cast<double>(bytes) /
                                                         static_cast<double>(_context.Settings.SlowPath));
     return now + timeout + std::chrono::duration_cast<LinkTime>(transfer);
 }

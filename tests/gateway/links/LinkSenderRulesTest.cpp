@@ -294,6 +294,35 @@ TEST_F(LinkSenderRules, S2_keeps_the_smallest_window_after_a_long_round_trip_and
     EXPECT_EQ(fill(), 2U) << "a pause";
 }
 
+TEST_F(LinkSenderRules, S2_resends_out_of_a_grown_window_as_soon_as_out_of_the_smallest)
+{
+    LinkSettings settings;
+    settings.SlowPath = 10;  // bytes a second
+    NodeUnderTest sender(settings);
+    sender.Configure({.WindowBytes = 10, .LargestWindowBytes = 40});
+    sender.Hear(b.Hello());
+    sender.Enqueue("1");
+    sender.Pass(0ms);
+    sender.Hear(b.Ack(1));
+    sender.Enqueue("12345");
+    sender.Enqueue("12345");
+    sender.Pass(0ms);
+    StoredAck ack = b.Ack(3);
+    ack.Fields.EchoSentAt = sender.Now.count();
+    sender.Pass(5ms);
+    sender.Hear(ack);
+    for (int i = 0; i < 4; ++i)
+    {
+        sender.Enqueue("12345");
+    }
+    sender.Pass(0ms);
+    ASSERT_EQ(sender.SenderCounters().Unacknowledged, 4U);
+    sender.Live(900ms);
+    EXPECT_EQ(sender.SenderCounters().MessagesResent, 0U);
+    sender.Live(300ms);
+    EXPECT_EQ(sender.SenderCounters().MessagesResent, 2U) << "10 bytes need a second, 20 would need two";
+}
+
 TEST_F(LinkSenderRules, S2_packs_waiting_messages_up_to_the_datagram_size)
 {
     LinkSettings settings;
