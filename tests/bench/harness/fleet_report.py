@@ -60,14 +60,15 @@ def laws(table):
     return header, lines
 
 
-def markdown(table, rows):
-    if not fleets(table):
-        return ""
-    text = "What each process costs on average.\n\n" + rows(*costs(table))
+def costs_and_laws(table, rows):
+    return "What each process costs on average.\n\n" + rows(*costs(table)) + laws_alone(table, rows)
+
+
+def laws_alone(table, rows):
     header, lines = laws(table)
     if not lines:
-        return text
-    text += (f"The law: what a node costs alone, and for each other node, by least squares of the relative deviations "
-             f"over the sizes of which at least {100 * LEAST_ARRIVED:.0f} % of the samples arrived. A term in the "
-             "square of the number of others is needed if it is above zero with 95 % confidence.\n\n")
+        return ""
+    text = (f"The law: what a node costs alone, and for each other node, by least squares of the relative deviations "
+            f"over the sizes of which at least {100 * LEAST_ARRIVED:.0f} % of the samples arrived. A term in the "
+            "square of the number of others is needed if it is above zero with 95 % confidence.\n\n")
     return text + rows(header, lines)

@@ -13,6 +13,11 @@ FLEETS = [2, 5, 10, 20, 40]
 QUICK_FLEETS = [2, 5]
 
 
+# Measured, written and compared each by itself.
+PAIRS = "pairs"
+PARTS = (PAIRS, "fleet", "instructions")
+
+
 @dataclass
 class Case:
     measure: str  # latency, throughput, start-up, idle, fleet, instructions
@@ -21,6 +26,10 @@ class Case:
     size: str = ""
     contestants: list = field(default_factory=list)
     options: dict = field(default_factory=dict)
+
+    def part(self):
+        """The part of the results that it belongs to."""
+        return self.measure if self.measure in PARTS else PAIRS
 
     def key(self):
         return " ".join(part for part in (self.measure, self.transport, self.carriage, self.size) if part)

@@ -1,12 +1,14 @@
 """Results as Markdown."""
 
 import datetime
+import json
 import os
 import pathlib
 import statistics
 import subprocess
 
 import fleet_report
+import plan
 from contestants import LOCAL, NODE, RAW_LISTENER, RAW_THREADS, RAW_WORKER
 from plan import SIZES
 
@@ -208,16 +210,8 @@ def instructions(table, transports):
     return rows(["carriage", "backend", "raw", "runs", "Rabit", "runs", "ratio"], lines) if lines else ""
 
 
-def where_and_when(where, repetitions):
-    return (f"{where['date']}, {where['processor']}, {where['processors']} processors, Linux {where['kernel']}, load "
-            f"{where['load']} (everything on the machine included), commit {where['commit']}, {repetitions} repetitions."
-            "\n\n")
-
-
-def markdown(where, repetitions, results, transports):
-    table = Table(results)
-    text = "# Results\n\nWritten by `run.sh`; [README.md](README.md) says what was done.\n\n"
-    text += where_and_when(where, repetitions)
+def pairs(table, transports):
+    text = ""
     for carriage, name in (("state", "mirrored messages, qos `state`"),
                            ("telemetry", "mirrored messages, qos `telemetry`"), ("queue", "queue messages")):
         text += f"## Latency: {name}\n\nRaw in the listener / raw with a worker / raw with two threads / Rabit. Ratio: "
@@ -225,15 +219,16 @@ def markdown(where, repetitions, results, transports):
     text += "## Queues at full speed\n\nRaw with a worker / Rabit.\n\n" + throughput(table, transports)
     text += "## What a message costs\n\nBoth sides together, while it goes there and back. Raw with a worker / "
     text += "Rabit.\n\n" + costs(table, transports)
-    counted = instructions(table, transports)
-    if counted:
-        text += "## Instructions of a message of 100 B\n\nOf both processes together, with the vendor's and those of "
-        text += "the C library, without the kernel's.\n\n" + counted
-    text += "## Start and idle\n\n" + start_and_idle(table, transports)
-    processes = fleet_report.markdown(table, rows)
-    if processes:
-        text += "## Fleets of processes\n\n" + processes
-    return text.rstrip() + "\n"
+    return text + "## Start and idle\n\n" + start_and_idle(table, transports)
+
+
+# Of each part: its title, what its file says, and the table in README.md.
+PARTS = {
+    plan.PAIRS: ("Pairs of processes", pairs, aims),
+    "fleet": ("Fleets of processes", lambda table, _: fleet_report.costs_and_laws(table, rows),
+              lambda table, _: fleet_report.laws_alone(table, rows)),
+    "instructions": ("Instructions of a message of 100 B", instructions, instructions),
+}
 
 
 def replaced(readme, begin, text):
@@ -245,9 +240,34 @@ def replaced(readme, begin, text):
     return head + begin + text + end + rest.partition(end)[2]
 
 
-def with_tables(readme, where, repetitions, results, transports):
-    """The text of README.md with the tables of the aims and of the fleets put in place of the former ones."""
-    table, made = Table(results), where_and_when(where, repetitions)
-    readme = replaced(readme, "<!-- written by run.sh -->\n", made + aims(table, transports))
-    processes = fleet_report.markdown(table, rows)
-    return replaced(readme, "<!-- fleets, written by run.sh -->\n", made + processes) if processes else readme
+class Report:
+    """What was measured of one part, and where and when."""
+
+    def __init__(self, part, repetitions, results, transports):
+        self._part = part
+        self._repetitions = repetitions
+        self._results = results
+        self._transports = transports
+        self._machine = machine()
+
+    def _where_and_when(self):
+        where = self._machine
+        return (f"{where['date']}, {where['processor']}, {where['processors']} processors, Linux {where['kernel']}, "
+                f"load {where['load']} (everything on the machine included), commit {where['commit']}, at most "
+                f"{self._repetitions} repetitions.\n\n")
+
+    def markdown(self):
+        title, whole, _ = PARTS[self._part]
+        text = f"# {title}\n\nWritten by `run.sh`; [README.md](../README.md) says what was done.\n\n"
+        return (text + self._where_and_when() + whole(Table(self._results), self._transports)).rstrip() + "\n"
+
+    def write(self, folder):
+        """Into that folder: results/ and its README.md."""
+        results = folder / "results"
+        results.mkdir(exist_ok=True)
+        (results / f"{self._part}.json").write_text(json.dumps(
+            {"machine": self._machine, "repetitions": self._repetitions, "results": self._results}, indent=1) + "\n")
+        (results / f"{self._part}.md").write_text(self.markdown())
+        readme = folder / "README.md"
+        table = self._where_and_when() + PARTS[self._part][2](Table(self._results), self._transports)
+        readme.write_text(replaced(readme.read_text(), f"<!-- {self._part}, written by run.sh -->\n", table))

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Measures what the gateway costs beside DDS called by hand, in one session.
 
-Usage: run.py [--quick] [--only TEXT] [--repeat N] [--output FOLDER] PROGRAMS
-PROGRAMS is the folder of the programs (build/release/bin). Writes results.json, results.md and the tables of
-the aims and of the fleets in README.md into FOLDER; without it, or with --only, prints the tables. --quick: a short
-version that shows that everything works, whose figures mean little."""
+Usage: run.py [--quick] [--part PART] [--only TEXT] [--repeat N] [--output FOLDER] PROGRAMS
+PROGRAMS is the folder of the programs (build/release/bin). The parts are: pairs (latency, throughput, start, idle),
+fleet and instructions. Each is written when it is complete: results/PART.json, results/PART.md and its table in
+README.md of FOLDER; without that, or with --only, the tables are printed. --quick: a short version that shows that
+everything works, whose figures mean little."""
 
 import argparse
 import collections
-import json
 import pathlib
 import sys
 
@@ -81,6 +81,7 @@ def measure(programs, cases, repetitions, watched_s):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--part", choices=plan.PARTS, help="this part alone")
     parser.add_argument("--only", default="", help="cases whose name contains this")
     parser.add_argument("--repeat", type=int)
     parser.add_argument("--output", type=pathlib.Path)
@@ -95,17 +96,16 @@ def main():
     if arguments.quick:
         cases = plan.a_few(cases)
     repetitions = arguments.repeat or (1 if arguments.quick else 5)
-    results = measure(programs, cases, repetitions, QUICK_WATCHED_S if arguments.quick else WATCHED_S)
-    machine = report.machine()
-    text = report.markdown(machine, repetitions, results, programs.transports)
-    if arguments.output is None or arguments.only:
-        print(text)
-        return 0
-    (arguments.output / "results.json").write_text(
-        json.dumps({"machine": machine, "repetitions": repetitions, "results": results}, indent=1) + "\n")
-    (arguments.output / "results.md").write_text(text)
-    readme = arguments.output / "README.md"
-    readme.write_text(report.with_tables(readme.read_text(), machine, repetitions, results, programs.transports))
+    for part in plan.PARTS:
+        of_part = [case for case in cases if case.part() == part and arguments.part in (None, part)]
+        if not of_part:
+            continue
+        results = measure(programs, of_part, repetitions, QUICK_WATCHED_S if arguments.quick else WATCHED_S)
+        made = report.Report(part, repetitions, results, programs.transports)
+        if arguments.output is None or arguments.only:
+            print(made.markdown())
+        else:
+            made.write(arguments.output)
     return 0
 
 
