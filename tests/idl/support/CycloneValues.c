@@ -11,23 +11,6 @@
         ._maximum = (count), ._length = (count), ._buffer = (buffer), ._release = false \
     }
 
-static Constructs_Numbers NumbersExtreme(void)
-{
-    return (Constructs_Numbers){.flag = true,
-                                .i64 = INT64_MIN,
-                                .letter = '\xff',
-                                .real64 = -1.5e-300,
-                                .raw = 255,
-                                .i16 = INT16_MIN,
-                                .i8 = INT8_MIN,
-                                .u32 = UINT32_MAX,
-                                .u8 = UINT8_MAX,
-                                .u64 = UINT64_MAX,
-                                .u16 = UINT16_MAX,
-                                .real32 = INFINITY,
-                                .i32 = INT32_MIN};
-}
-
 static Constructs_Texts TextsFull(void)
 {
     static char words[2][4] = {"abc", ""};
@@ -145,9 +128,31 @@ static Keys_WideBoundedTextKey WideBoundedTextKey(void)
         return (CycloneValue){.type = &c_type##_desc, &value}; \
     }
 
+// Cyclone DDS copies a type of numbers alone as a block, with what lies between them: zeros in a static
+// object.
+#define RETURN_PLAIN(text, c_type, ...)                        \
+    if (strcmp(name, text) == 0)                               \
+    {                                                          \
+        static c_type value = __VA_ARGS__;                     \
+        return (CycloneValue){.type = &c_type##_desc, &value}; \
+    }
+
 CycloneValue CycloneValueNamed(const char *name)
 {
-    RETURN_VALUE("NumbersExtreme", Constructs_Numbers, NumbersExtreme())
+    RETURN_PLAIN("NumbersExtreme", Constructs_Numbers,
+                 {.flag = true,
+                  .i64 = INT64_MIN,
+                  .letter = '\xff',
+                  .real64 = -1.5e-300,
+                  .raw = 255,
+                  .i16 = INT16_MIN,
+                  .i8 = INT8_MIN,
+                  .u32 = UINT32_MAX,
+                  .u8 = UINT8_MAX,
+                  .u64 = UINT64_MAX,
+                  .u16 = UINT16_MAX,
+                  .real32 = INFINITY,
+                  .i32 = INT32_MIN})
     RETURN_VALUE("TextsFull", Constructs_Texts, TextsFull())
     RETURN_VALUE("ChoicesFull", Constructs_Choices, ChoicesFull())
     RETURN_VALUE("CollectionsFull", Constructs_Collections, CollectionsFull())
@@ -155,17 +160,17 @@ CycloneValue CycloneValueNamed(const char *name)
     RETURN_VALUE("DerivedFull", Constructs_Derived, DerivedFull())
     RETURN_VALUE("InnerEmpty", Constructs_Inner_Empty, InnerEmpty())
     RETURN_VALUE("ShortKey", Keys_ShortKey, ShortKey())
-    RETURN_VALUE("ExactKey", Keys_ExactKey, ((Keys_ExactKey){UINT64_MAX, -2}))
-    RETURN_VALUE("LongKey", Keys_LongKey, ((Keys_LongKey){1, 2, 3}))
-    RETURN_VALUE("TextKey", Keys_TextKey, ((Keys_TextKey){1, "name", 2}))
+    RETURN_PLAIN("ExactKey", Keys_ExactKey, {UINT64_MAX, -2})
+    RETURN_PLAIN("LongKey", Keys_LongKey, {1, 2, 3})
+    RETURN_PLAIN("TextKey", Keys_TextKey, {1, "name", 2})
     RETURN_VALUE("BoundedTextKey", Keys_BoundedTextKey, BoundedTextKey())
     RETURN_VALUE("WideBoundedTextKey", Keys_WideBoundedTextKey, WideBoundedTextKey())
-    RETURN_VALUE("NestedKey", Keys_NestedKey,
-                 ((Keys_NestedKey){.place = {7, 0.5, 'z'}, .value = 8, .plain = {true, 1.5F}}))
-    RETURN_VALUE("ArrayKey", Keys_ArrayKey, ((Keys_ArrayKey){{{1, 2, 3}, {4, 5, 6}}, Keys_K1, 7}))
-    RETURN_VALUE("DerivedKey", Keys_DerivedKey, ((Keys_DerivedKey){{5, "base"}, 0.5}))
+    RETURN_PLAIN("NestedKey", Keys_NestedKey, {.place = {7, 0.5, 'z'}, .value = 8, .plain = {true, 1.5F}})
+    RETURN_PLAIN("ArrayKey", Keys_ArrayKey, {{{1, 2, 3}, {4, 5, 6}}, Keys_K1, 7})
+    RETURN_PLAIN("DerivedKey", Keys_DerivedKey, {{5, "base"}, 0.5})
     return (CycloneValue){.type = NULL, .value = NULL};
 }
 
 #undef RETURN_VALUE
+#undef RETURN_PLAIN
 #undef LIST
