@@ -243,9 +243,8 @@ def replaced(readme, begin, text):
 class Report:
     """What was measured of one part, and where and when."""
 
-    def __init__(self, part, repetitions, results, transports):
+    def __init__(self, part, results, transports):
         self._part = part
-        self._repetitions = repetitions
         self._results = results
         self._transports = transports
         self._machine = machine()
@@ -254,7 +253,11 @@ class Report:
         where = self._machine
         return (f"{where['date']}, {where['processor']}, {where['processors']} processors, Linux {where['kernel']}, "
                 f"load {where['load']} (everything on the machine included), commit {where['commit']}, at most "
-                f"{self._repetitions} repetitions.\n\n")
+                f"{self._repetitions()} repetitions of a case.\n\n")
+
+    def _repetitions(self):
+        return max((len(values) for contestants in self._results.values() for names in contestants.values()
+                    for values in names.values()), default=0)
 
     def markdown(self):
         title, whole, _ = PARTS[self._part]
@@ -266,7 +269,7 @@ class Report:
         results = folder / "results"
         results.mkdir(exist_ok=True)
         (results / f"{self._part}.json").write_text(json.dumps(
-            {"machine": self._machine, "repetitions": self._repetitions, "results": self._results}, indent=1) + "\n")
+            {"machine": self._machine, "results": self._results}, indent=1) + "\n")
         (results / f"{self._part}.md").write_text(self.markdown())
         readme = folder / "README.md"
         table = self._where_and_when() + PARTS[self._part][2](Table(self._results), self._transports)

@@ -101,7 +101,7 @@ def main():
         if not of_part:
             continue
         results = measure(programs, of_part, repetitions, QUICK_WATCHED_S if arguments.quick else WATCHED_S)
-        made = report.Report(part, repetitions, results, programs.transports)
+        made = report.Report(part, results, programs.transports)
         if arguments.output is None or arguments.only:
             print(made.markdown())
         else:
