@@ -108,14 +108,15 @@ private:
     bool Refuse(const std::string &node, const std::string &queue, RemoteQueues::Verdict verdict,
                 const std::string &reason, const Receipt &receipt);
     static bool Settle(const Receipt &receipt, QueueOutcome outcome);
-    // Empty, with the memory that it had: of the thread, and not for where another call may be under way.
+    // The calling thread's own, empty, with the memory that it had. For the threads of the transport and of
+    // the gateway; not for managers, which are called while it is read.
     static News &OwnNews();
     // With the mutex held.
     News TakeNews() { return _news.IsEmpty() ? News() : std::exchange(_news, {}); }
-    // Something is due then. True if the gateway's thread must be woken for it: it would come later, and was
-    // not woken for anything as early.
+    // With the mutex held: something is due then. True if the gateway's thread must be woken for it: it would
+    // come later, and was not woken for anything as early.
     bool ServeBy(LinkTime due);
-    // Without it.
+    // Without the mutex.
     static void Tell(const News &news);
     void ConfigureOnce(const std::string &node, const std::string &queue);
     LinkPayload Encode(const MessageType &type, const RabitMessage &message) const;
@@ -142,7 +143,7 @@ private:
     News _news;
     LinkDatagrams _outbox;
     LinkRefusals _refusals;
-    std::map<std::string, std::set<std::string>, std::less<>> _configured;  // queues of a node
+    std::map<std::string, std::set<std::string>> _configured;  // queues of a node
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
 

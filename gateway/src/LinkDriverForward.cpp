@@ -146,12 +146,10 @@ bool LinkDriver::ForwardTo(const std::string &node, const std::string &queue, co
 
 void LinkDriver::ConfigureOnce(const std::string &node, const std::string &queue)
 {
-    std::set<std::string> &queues = _configured[node];
-    if (queues.count(queue) > 0)
+    if (!_configured[node].insert(queue).second)
     {
         return;
     }
-    queues.insert(queue);
     const auto rule = std::find_if(
         _config.Send.begin(), _config.Send.end(),
         [&node, &queue](const SendRule &candidate)

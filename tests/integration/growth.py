@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How a fleet grows that publishes nothing, each node with an interface of its own: for each size the time until
 everyone sees everyone, and what one node costs. Prints a row of README.md's table for each size. Fleets that publish,
-beside plain DDS: tests/bench/run.sh --only fleet.
+beside plain DDS: tests/bench/run.sh --part fleet.
 
 Usage: growth.py LEDGER_NODE TRANSPORT SIZE..."""
 

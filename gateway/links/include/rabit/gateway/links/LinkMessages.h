@@ -1,8 +1,9 @@
 // What the queue links of two nodes say to each other: LinkData, LinkAck and LinkHello.
 //
 // They are views: names and payloads are borrowed from whoever made the object and are valid only during the
-// call that hands it over. Nothing in them is trusted; LinkNode checks each one before it changes anything.
-// Times are nanoseconds. A "clock" names the monotonic clock of one process by a random number.
+// call that hands it over, unless that says more (LinkOutput::Send). Nothing in them is trusted; LinkNode
+// checks each one before it changes anything. Times are nanoseconds. A "clock" names the monotonic clock of
+// one process by a random number.
 #pragma once
 
 #include <rabit/gateway/links/LinkPayload.h>
