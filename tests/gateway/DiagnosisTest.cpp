@@ -1,6 +1,8 @@
-#include "Diagnosis.h"
+#include "report/Diagnosis.h"
 
 #include <gtest/gtest.h>
+
+#include "presence/QueueAcceptance.h"
 
 namespace Rabit
 {
@@ -72,7 +74,7 @@ protected:
 
     SubscribeRule rule;
     Diagnosis::Wanted wanted;
-    Diagnosis::Reception reception;
+    Reception reception;
     Gateway::Announcement offers;
     PeerTable peers{"ground", 1};
 };
@@ -200,7 +202,7 @@ TEST_F(DiagnosisTest, WhyAQueueDoesNotTakeAMessage)
     Hear();
     const PeerTable::Peer &uav1 = *peers.Find("uav1");
     const auto reason = [&uav1](const char *queue, const char *type, std::uint64_t definition)
-    { return Diagnosis::OfQueue(uav1, queue, type, definition).Reason; };
+    { return WhyNotAccepted(AcceptanceOf(uav1, queue, type, definition), uav1, queue, type); };
 
     EXPECT_EQ(reason("MissionControl", "Uav::Goto", 21), "");
     EXPECT_EQ(reason("Missions", "Uav::Goto", 21),

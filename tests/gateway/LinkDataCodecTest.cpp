@@ -1,5 +1,5 @@
 // The codec of LinkData against the class that was generated for the same sample.
-#include "LinkDataCodec.h"
+#include "wire/LinkDataCodec.h"
 
 #include <gtest/gtest.h>
 #include <rabit/idl/MessageType.h>
@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "GatewayTopics.h"
 #include "gateway.idl.h"
+#include "wire/GatewayTopics.h"
 
 namespace Rabit
 {

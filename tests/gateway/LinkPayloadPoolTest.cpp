@@ -1,4 +1,4 @@
-#include "LinkPayloadPool.h"
+#include "queues/LinkPayloadPool.h"
 
 #include <gtest/gtest.h>
 

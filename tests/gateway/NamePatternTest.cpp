@@ -1,10 +1,10 @@
-#include "NamePattern.h"
+#include "names/NamePattern.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "NearestWord.h"
+#include "names/NearestWord.h"
 
 namespace Rabit
 {

@@ -1,4 +1,4 @@
-#include "PeerClock.h"
+#include "clocks/PeerClock.h"
 
 #include <gtest/gtest.h>
 

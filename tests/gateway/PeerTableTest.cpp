@@ -1,4 +1,4 @@
-#include "PeerTable.h"
+#include "presence/PeerTable.h"
 
 #include <gtest/gtest.h>
 

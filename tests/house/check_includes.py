@@ -12,8 +12,25 @@ import sys
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 SOURCES = {".h", ".hpp", ".c", ".cpp", ".cc"}
 
+# The rooms of the gateway, from the bottom up, and the rooms that each may look into. Who drives the protocol in
+# gateway/links is among them: "links" stands for its public headers.
+ROOMS = {
+    "names": [],
+    "clocks": [],
+    "configuration": ["names"],
+    "incarnation": ["links"],
+    "wire": ["links"],
+    "presence": ["names", "clocks", "wire"],
+    "mirrors": ["names", "clocks", "wire", "presence"],
+    "queues": ["names", "clocks", "incarnation", "wire", "links", "presence"],
+    "report": ["names", "presence", "mirrors", "queues"],
+    "manager": ["names", "clocks", "configuration", "incarnation", "wire", "links", "presence", "mirrors", "queues",
+                "report"],
+}
+
 # What a header's path says about where it belongs. The first pattern that fits holds.
 OWNERS = [
+    *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"rabit/idl/", "idl"),
     (r"rabit/transport/TransportFactory\.h", "factory"),
     (r"rabit/transport/", "transport"),
@@ -46,8 +63,11 @@ ALLOWED = {
     "transport/fastdds": {"transport", "fastdds backend", "Fast DDS", "network"},
     "transport/cyclonedds": {"transport", "cyclonedds backend", "Cyclone DDS", "network"},
     "transport/simulated": {"transport", "simulated backend"},
-    "gateway": {"core", "idl", "transport", "gateway", "links", "gateway messages", "yaml-cpp"},
+    "gateway/include": {"core", "transport", "gateway"},
     "gateway/links": {"links"},
+    **{f"gateway/{room}": {"core", "idl", "transport", "gateway", "gateway messages", f"room {room}"}
+       | ({"yaml-cpp"} if room == "configuration" else set())
+       | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.
     "tests/bench": {"core", "idl", "transport", "factory", "simulated backend", "gateway", "gateway messages",
@@ -58,6 +78,22 @@ ALLOWED = {
     "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11", "network",
                  "yaml-cpp"},
 }
+
+
+def upward_rooms():
+    """Rooms that look into one that does not stand below them, so that includes would not run one way."""
+    order = ["links", *ROOMS]
+    for room, below in ROOMS.items():
+        for other in below:
+            if other not in order[:order.index(room)]:
+                yield f"tests/house: room {room} may not look into {other}, which does not stand below it"
+
+
+def rooms_unknown(root):
+    """Folders of the gateway that are no rooms, and so are not checked."""
+    for folder in sorted((root / "gateway").glob("*/")):
+        if folder.name not in {"include", "links", *ROOMS} and any(folder.rglob("*.h")):
+            yield f"gateway/{folder.name}: no room that the house knows"
 
 
 def owner_of(header):
@@ -90,7 +126,7 @@ def violations(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    found = list(violations(root))
+    found = [*upward_rooms(), *rooms_unknown(root), *violations(root)]
     for line in found:
         print(line)
     checked = [folder for folder in ALLOWED if (root / folder).is_dir()]

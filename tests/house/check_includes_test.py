@@ -28,7 +28,7 @@ class CheckIncludes(unittest.TestCase):
         text = "#include <fastdds/dds/domain/DomainParticipant.hpp>\n"
         self.assertEqual(self.violations("transport/fastdds/src/A.cpp", text), [])
         self.assertEqual(len(self.violations("transport/simulated/src/A.cpp", text)), 1)
-        self.assertEqual(len(self.violations("gateway/src/A.cpp", text)), 1)
+        self.assertEqual(len(self.violations("gateway/queues/A.cpp", text)), 1)
 
     def test_the_transport_knows_no_message_class(self):
         self.assertEqual(len(self.violations("transport/fastdds/src/A.cpp", "#include <rabit/RabitMessage.h>\n")), 1)
@@ -38,7 +38,24 @@ class CheckIncludes(unittest.TestCase):
         self.assertEqual(self.violations("gateway/links/src/A.cpp", "#include <rabit/gateway/links/LinkNode.h>\n"), [])
 
     def test_the_gateway_names_no_backend(self):
-        self.assertEqual(len(self.violations("gateway/src/A.cpp", "#include <rabit/transport/TransportFactory.h>\n")), 1)
+        self.assertEqual(len(self.violations("gateway/queues/A.cpp", "#include <rabit/transport/TransportFactory.h>\n")), 1)
+
+    def test_rooms_of_the_gateway_look_down_only(self):
+        self.assertEqual(self.violations("gateway/queues/A.cpp", '#include "presence/PeerTable.h"\n'), [])
+        self.assertEqual(self.violations("gateway/presence/A.cpp", '#include "queues/LinkDriver.h"\n'),
+                         ["gateway/presence/A.cpp:1: gateway/presence/ must not include <queues/LinkDriver.h> (room queues)"])
+        self.assertEqual(len(self.violations("gateway/mirrors/A.cpp", '#include "report/Diagnosis.h"\n')), 1)
+        self.assertEqual(list(check_includes.upward_rooms()), [])
+
+    def test_only_the_configuration_of_the_gateway_reads_yaml(self):
+        self.assertEqual(len(self.violations("gateway/presence/A.cpp", "#include <yaml-cpp/yaml.h>\n")), 1)
+
+    def test_a_folder_of_the_gateway_that_is_no_room_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "gateway/attic").mkdir(parents=True)
+            (root / "gateway/attic/A.h").write_text("")
+            self.assertEqual(len(list(check_includes.rooms_unknown(root))), 1)
 
     def test_standard_headers_are_for_everybody(self):
         self.assertEqual(self.violations("core/src/A.cpp", "#include <vector>\n#include <boost/bind/bind.hpp>\n"), [])

@@ -3,9 +3,9 @@
 
     mutations.py --source REPOSITORY --build DIRECTORY --work DIRECTORY [--seeds 500] [--jobs 2] [--only TEXT]
 
-Needs a finished build with ninja. For each mutation of mutation_list.py one changed source file of
-gateway/src is compiled and linked in the place of its original. Exit status 1 if a mutation is not noticed, or does not
-fit the sources any more.
+Needs a finished build with ninja. For each mutation of mutation_list.py one changed source file of a room of the gateway
+is compiled and linked in the place of its original. Exit status 1 if a mutation is not noticed, or does not fit the
+sources any more.
 """
 
 import argparse
@@ -26,7 +26,7 @@ class Build:
     """The commands of a build directory, turned to mutants."""
 
     def __init__(self, source, build, work):
-        self.gateway = source / "gateway/src"
+        self.gateway = source / "gateway"
         self.build = build
         self.work = work
         work.mkdir(parents=True, exist_ok=True)
@@ -34,8 +34,8 @@ class Build:
         self.compilers = {}
         for entry in entries:
             file = (build / entry["file"]).resolve()
-            if file.parent == self.gateway and "rabit_gateway.dir" in entry["output"]:
-                self.compilers[file.name] = (shlex.split(entry["command"]), entry["file"], entry["output"])
+            if file.parent.parent == self.gateway and "rabit_gateway.dir" in entry["output"]:
+                self.compilers[file.name] = (shlex.split(entry["command"]), file, entry["file"], entry["output"])
 
     def ninja(self, tool, *arguments):
         return subprocess.run(["ninja", "-C", str(self.build), "-t", tool, *arguments], check=True, capture_output=True,
@@ -49,13 +49,13 @@ class Build:
     def mutate(self, change):
         """Returns the program that must notice, with the changed file in it."""
         changed = self.work / f"mutant_{change.file}"
-        changed.write_text(mutation.apply((self.gateway / change.file).read_text(), change))
-        command, file, output = self.compilers[change.file]
+        command, original, file, output = self.compilers[change.file]
+        changed.write_text(mutation.apply(original.read_text(), change))
         mutant = self.work / "mutant.o"
         # Unused parameters and the like are what mutations leave behind.
         words = [str(changed) if word == file else str(mutant) if word == output else word for word in command
                  if word != "-Werror"]
-        self.run([*words, f"-I{self.gateway}"])
+        self.run(words)
         # Before the library, of which the original is not taken then.
         program = self.work / f"mutant_{change.noticed_by}"
         link = self.ninja("commands", change.noticed_by).splitlines()[-1]

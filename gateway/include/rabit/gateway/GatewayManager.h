@@ -2,7 +2,7 @@
 
 #include <rabit/RabitManager.h>
 #include <rabit/gateway/GatewayConfig.h>
-#include <rabit/gateway/links/RandomSource.h>
+#include <rabit/gateway/RandomSource.h>
 #include <rabit/transport/Transport.h>
 
 #include <memory>

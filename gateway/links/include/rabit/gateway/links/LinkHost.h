@@ -61,7 +61,7 @@ protected:
     ~LinkOutput() = default;
 };
 
-// Makes incarnations. IncarnationStore is the real one. Called inside calls of LinkNode.
+// Makes incarnations. The gateway's IncarnationStore is the real one. Called inside calls of LinkNode.
 class IncarnationSource
 {
 public:

@@ -1,0 +1,166 @@
+#include <rabit/gateway/LoadGatewayConfig.h>
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "configuration/YamlMap.h"
+
+namespace Rabit
+{
+namespace
+{
+
+// A configuration is a page of text; more is some other file.
+constexpr std::size_t LargestFile = 1u << 20;
+
+std::string ReadFile(const std::string &file)
+{
+    errno = 0;
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    if (!stream || !(text << stream.rdbuf()))
+    {
+        const std::string why = errno != 0 ? std::generic_category().message(errno) : "it is empty";
+        throw ConfigError(file, 0, "cannot read the configuration: " + why);
+    }
+    if (text.str().size() > LargestFile)
+    {
+        throw ConfigError(file, 0, "the configuration is larger than 1 MiB");
+    }
+    return text.str();
+}
+
+YAML::Node Parse(const std::string &file, const std::string &text)
+{
+    try
+    {
+        return YAML::Load(text);
+    }
+    catch (const YAML::Exception &problem)
+    {
+        throw ConfigError(file, problem.mark.line + 1, "not YAML: " + problem.msg);
+    }
+}
+
+void ReadNetwork(const YamlMap &map, GatewayConfig &config)
+{
+    map.Read("domain", config.Domain, 0, 232);
+    map.Read("transport", config.Transport);
+    map.Read("interfaces", config.Interfaces);
+    map.Read("peers", config.Peers);
+    map.Read("multicast", config.Multicast);
+    map.Read("max_datagram", config.MaxDatagram, 500, 65500);
+    map.Read("shared_memory", config.SharedMemory);
+    map.Read("lease", config.Lease);
+    map.Read("backend_config", config.BackendConfig);
+    map.Read("state_dir", config.StateDir);
+}
+
+// A profile's index in the list is its value.
+const std::vector<std::string> QosNames = {"state", "telemetry"};
+
+void ReadPublish(const YamlMap &map, GatewayConfig &config)
+{
+    for (const YamlMap &entry :
+         map.Maps("publish", "a `publish` entry", {"message", "type", "qos", "max_rate"}))
+    {
+        entry.Require("message");
+        entry.Require("type");
+        PublishRule rule;
+        rule.Line = entry.Line();
+        entry.Read("message", rule.Message);
+        entry.Read("type", rule.Type);
+        entry.Read("max_rate", rule.MaxRate);
+        const int qos = entry.ReadChoice("qos", QosNames);
+        rule.Qos = qos < 0 ? rule.Qos : static_cast<QosProfile>(qos);
+        config.Publish.push_back(rule);
+    }
+}
+
+void ReadSubscribe(const YamlMap &map, GatewayConfig &config)
+{
+    for (const YamlMap &entry :
+         map.Maps("subscribe", "a `subscribe` entry", {"message", "type", "from", "qos"}))
+    {
+        entry.Require("message");
+        entry.Require("type");
+        SubscribeRule rule;
+        rule.Line = entry.Line();
+        entry.Read("message", rule.Message);
+        entry.Read("type", rule.Type);
+        entry.Read("from", rule.From);
+        const int qos = entry.ReadChoice("qos", QosNames);
+        if (qos >= 0)
+        {
+            rule.Qos = static_cast<QosProfile>(qos);
+        }
+        config.Subscribe.push_back(rule);
+    }
+}
+
+void ReadAccept(const YamlMap &map, GatewayConfig &config)
+{
+    for (const YamlMap &entry : map.Maps("accept", "an `accept` entry", {"queue", "types"}))
+    {
+        entry.Require("queue");
+        entry.Require("types");
+        AcceptRule rule;
+        rule.Line = entry.Line();
+        entry.Read("queue", rule.Queue);
+        entry.Read("types", rule.Types);
+        config.Accept.push_back(rule);
+    }
+}
+
+void ReadSend(const YamlMap &map, GatewayConfig &config)
+{
+    for (const YamlMap &entry :
+         map.Maps("send", "a `send` entry",
+                  {"to", "queue", "capacity", "capacity_bytes", "expire", "window", "redeliver_in_doubt"}))
+    {
+        SendRule rule;
+        rule.Line = entry.Line();
+        entry.Read("to", rule.To);
+        entry.Read("queue", rule.Queue);
+        entry.Read("capacity", rule.Capacity, 1, 1'000'000);
+        entry.Read("capacity_bytes", rule.CapacityBytes, 1, std::size_t{1} << 40);
+        entry.Read("expire", rule.Expire);
+        entry.Read("window", rule.Window, 1, 256);
+        entry.Read("redeliver_in_doubt", rule.RedeliverInDoubt);
+        config.Send.push_back(rule);
+    }
+}
+
+}  // namespace
+
+GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride)
+{
+    const YAML::Node root = Parse(file, ReadFile(file));
+    const YamlMap map(
+        file, root, "the configuration",
+        {"node", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram", "shared_memory",
+         "lease", "backend_config", "state_dir", "publish", "subscribe", "accept", "send"});
+    GatewayConfig config;
+    config.File = file;
+    config.Lines = map.Lines();
+    map.Read("node", config.Node);
+    if (!nodeOverride.empty())
+    {
+        config.Node = nodeOverride;
+    }
+    if (config.Node.empty())
+    {
+        map.Require("node");
+    }
+    ReadNetwork(map, config);
+    ReadPublish(map, config);
+    ReadSubscribe(map, config);
+    ReadAccept(map, config);
+    ReadSend(map, config);
+    ValidateGatewayConfig(config);
+    return config;
+}
+
+}  // namespace Rabit

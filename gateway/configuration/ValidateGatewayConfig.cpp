@@ -1,0 +1,226 @@
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+#include <map>
+
+#include "names/NamePattern.h"
+#include "names/NearestWord.h"
+
+namespace Rabit
+{
+namespace
+{
+
+class Validator
+{
+public:
+    explicit Validator(const GatewayConfig &config) : _config(config) {}
+
+    void Run() const
+    {
+        CheckNode();
+        CheckPublish();
+        CheckSubscribe();
+        CheckAccept();
+        CheckSend();
+    }
+
+private:
+    [[noreturn]] void Fail(int line, const std::string &message) const
+    {
+        throw ConfigError(_config.File, line, message);
+    }
+
+    int LineOf(const std::string &key) const
+    {
+        const auto found = _config.Lines.find(key);
+        return found == _config.Lines.end() ? 0 : found->second;
+    }
+
+    void CheckNode() const
+    {
+        if (!IsNodeName(_config.Node))
+        {
+            Fail(LineOf("node"),
+                 _config.Node.empty()
+                     ? "no node name; expected `node: <name>`"
+                     : "`" + _config.Node + "` is no node name; expected 1 to 64 of A-Z a-z 0-9 _ . -");
+        }
+        if (_config.Domain < 0 || _config.Domain > 232)
+        {
+            Fail(LineOf("domain"),
+                 "domain " + std::to_string(_config.Domain) + " is out of range; expected 0 to 232");
+        }
+        if (_config.Lease < std::chrono::milliseconds(200) || _config.Lease > std::chrono::hours(1))
+        {
+            Fail(LineOf("lease"), "the lease is out of range; expected 200ms to 3600s");
+        }
+    }
+
+    void CheckType(const std::string &type, int line) const
+    {
+        if (MessageTypeRegistry::Find(type) == nullptr)
+        {
+            Fail(line,
+                 "unknown IDL type `" + type + "`" + NearestWordHint(type, MessageTypeRegistry::Names()));
+        }
+    }
+
+    void CheckName(const std::string &name, const char *what, int line) const
+    {
+        if (!IsMessageName(name))
+        {
+            Fail(line, "`" + name + "` is no " + what + " name; expected 1 to 200 of A-Z a-z 0-9 _ . - : /");
+        }
+    }
+
+    // Remembers a name; fails if it was there before.
+    void CheckOnce(std::map<std::string, int> &seen, const std::string &name, const char *list,
+                   int line) const
+    {
+        const auto [place, isNew] = seen.emplace(name, line);
+        if (!isNew)
+        {
+            const std::string where =
+                place->second > 0 ? " (first in line " + std::to_string(place->second) + ")" : "";
+            Fail(line, "`" + name + "` stands twice under `" + list + "`" + where);
+        }
+    }
+
+    void CheckPublish() const
+    {
+        std::map<std::string, int> seen;
+        for (const PublishRule &rule : _config.Publish)
+        {
+            CheckName(rule.Message, "message", rule.Line);
+            if (rule.Message.find('/') != std::string::npos)
+            {
+                Fail(rule.Line,
+                     "`" + rule.Message +
+                         "` belongs to another node or to the gateway; expected a name without `/`");
+            }
+            CheckOnce(seen, rule.Message, "publish", rule.Line);
+            CheckType(rule.Type, rule.Line);
+            if (!(rule.MaxRate >= 0.0 && rule.MaxRate <= 1e6))
+            {
+                Fail(rule.Line, "max_rate is out of range; expected 0 (no limit) to 1000000 a second");
+            }
+        }
+    }
+
+    void CheckSubscribe() const
+    {
+        std::map<std::string, int> seen;
+        for (const SubscribeRule &rule : _config.Subscribe)
+        {
+            CheckName(rule.Message, "message", rule.Line);
+            CheckOnce(seen, rule.Message, "subscribe", rule.Line);
+            CheckType(rule.Type, rule.Line);
+            CheckPatterns(rule.From, "from", rule.Line);
+        }
+    }
+
+    void CheckPatterns(const std::vector<std::string> &patterns, const char *key, int line) const
+    {
+        if (patterns.empty())
+        {
+            Fail(line, std::string("`") + key + "` is empty; expected node names, `*` and `?` stand for any");
+        }
+        for (const std::string &pattern : patterns)
+        {
+            CheckPattern(pattern, key, line);
+        }
+    }
+
+    void CheckPattern(const std::string &pattern, const char *key, int line) const
+    {
+        std::string plain = pattern;
+        for (char &c : plain)
+        {
+            c = c == '*' || c == '?' ? 'x' : c;
+        }
+        if (!IsNodeName(plain))
+        {
+            Fail(line,
+                 "`" + pattern + "` in `" + key + "` is no node name; `*` and `?` stand for any characters");
+        }
+    }
+
+    void CheckAccept() const
+    {
+        std::map<std::string, int> seen;
+        for (const AcceptRule &rule : _config.Accept)
+        {
+            CheckName(rule.Queue, "queue", rule.Line);
+            CheckOnce(seen, rule.Queue, "accept", rule.Line);
+            if (rule.Types.empty())
+            {
+                Fail(rule.Line, "queue `" + rule.Queue + "` accepts no types; expected a list of IDL types");
+            }
+            std::map<std::string, int> types;
+            for (const std::string &type : rule.Types)
+            {
+                CheckType(type, rule.Line);
+                CheckOnce(types, type, "types", rule.Line);
+            }
+        }
+    }
+
+    void CheckSend() const
+    {
+        std::map<std::string, int> seen;
+        for (const SendRule &rule : _config.Send)
+        {
+            CheckPattern(rule.To, "to", rule.Line);
+            if (rule.Queue != "*")
+            {
+                CheckName(rule.Queue, "queue", rule.Line);
+            }
+            CheckOnce(seen, rule.To + "/" + rule.Queue, "send", rule.Line);
+            CheckRange(rule.Capacity, 1'000'000, "capacity", rule.Line);
+            CheckRange(rule.CapacityBytes, std::size_t{1} << 40, "capacity_bytes", rule.Line);
+            CheckRange(rule.Window, 256, "window", rule.Line);
+            if (rule.Expire < std::chrono::milliseconds(0) || rule.Expire > std::chrono::hours(24 * 365))
+            {
+                Fail(rule.Line, "`expire` is out of range; expected 0 (never) to a year");
+            }
+        }
+    }
+
+    void CheckRange(std::size_t value, std::size_t most, const char *key, int line) const
+    {
+        if (value < 1 || value > most)
+        {
+            Fail(line, std::string("`") + key + "` is out of range; expected 1 to " + std::to_string(most));
+        }
+    }
+
+    const GatewayConfig &_config;
+};
+
+}  // namespace
+
+void ValidateGatewayConfig(const GatewayConfig &config)
+{
+    Validator(config).Run();
+}
+
+void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available,
+                           const std::vector<std::string> &known)
+{
+    const auto isIn = [&config](const std::vector<std::string> &names)
+    { return std::find(names.begin(), names.end(), config.Transport) != names.end(); };
+    if (isIn(available))
+    {
+        return;
+    }
+    const auto line = config.Lines.find("transport");
+    const std::string hint = NearestWordHint(config.Transport, available);
+    throw ConfigError(config.File, line == config.Lines.end() ? 0 : line->second,
+                      isIn(known) ? "this build is without the transport `" + config.Transport + "`" + hint
+                                  : "unknown transport `" + config.Transport + "`" + hint);
+}
+
+}  // namespace Rabit

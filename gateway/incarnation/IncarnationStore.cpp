@@ -1,0 +1,179 @@
+#include "incarnation/IncarnationStore.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <fstream>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+namespace Rabit
+{
+
+namespace
+{
+
+// Above this, no higher incarnation could be taken.
+constexpr std::uint32_t MaxCounter = std::numeric_limits<std::uint32_t>::max() - 1;
+
+std::int64_t SecondsOfWallClock()
+{
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::seconds>(now).count();
+}
+
+std::string FileName(const std::string &node)
+{
+    constexpr char Digits[] = "0123456789abcdef";
+    std::string name;
+    for (const char c : node)
+    {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                           c == '.' || c == '-' || c == '_';
+        if (plain)
+        {
+            name += c;
+        }
+        else
+        {
+            name += '%';
+            name += Digits[byte >> 4];
+            name += Digits[byte & 15];
+        }
+    }
+    return name + ".incarnation";
+}
+
+// A file descriptor that is closed at the end.
+class SyncedFile
+{
+public:
+    SyncedFile(const std::filesystem::path &path, int flags)
+        : _descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0644))
+    {
+    }
+    ~SyncedFile()
+    {
+        if (_descriptor >= 0)
+        {
+            ::close(_descriptor);
+        }
+    }
+    SyncedFile(const SyncedFile &) = delete;
+    SyncedFile &operator=(const SyncedFile &) = delete;
+
+    bool IsOpen() const { return _descriptor >= 0; }
+    bool Write(const std::string &text) const
+    {
+        return ::write(_descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    }
+    bool Sync() const { return ::fsync(_descriptor) == 0; }
+
+private:
+    int _descriptor;
+};
+
+std::string SystemError(const std::string &what, const std::filesystem::path &path)
+{
+    return what + ' ' + path.string() + ": " + std::generic_category().message(errno);
+}
+
+}  // namespace
+
+IncarnationStore::IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node)
+    : IncarnationStore(stateDirectory, node, SecondsOfWallClock)
+{
+}
+
+IncarnationStore::IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node,
+                                   WallClock wallClock, RandomSource random)
+    : _file(stateDirectory.empty() ? std::filesystem::path() : stateDirectory / FileName(node)),
+      _wallClock(std::move(wallClock)),
+      _random(std::move(random))
+{
+}
+
+std::uint64_t IncarnationStore::Above(std::uint64_t floor)
+{
+    _error.clear();
+    const std::uint32_t stored = std::max(ReadCounter(), _last);
+    const auto known = std::max(stored, static_cast<std::uint32_t>(floor >> 32));
+    const auto next = known < MaxCounter ? known + 1 : MaxCounter;
+    const std::int64_t seconds = std::clamp<std::int64_t>(_wallClock(), 0, MaxCounter);
+    const std::uint32_t counter = std::max(next, static_cast<std::uint32_t>(seconds));
+    WriteCounter(counter);
+    _last = counter;
+    return (static_cast<std::uint64_t>(counter) << 32) | (_random() >> 32);
+}
+
+// 0 if there is no file, or nothing usable in it.
+std::uint32_t IncarnationStore::ReadCounter()
+{
+    std::error_code ignored;
+    if (_file.empty() || !std::filesystem::exists(_file, ignored))
+    {
+        return 0;
+    }
+    std::ifstream in(_file);
+    std::string text;
+    if (!std::getline(in, text))
+    {
+        _error = "cannot read the incarnation from " + _file.string();
+        return 0;
+    }
+    std::uint32_t counter = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), counter);
+    if (problem != std::errc() || end != text.data() + text.size())
+    {
+        _error = "no incarnation in " + _file.string() + ": '" + text.substr(0, 40) + "'";
+        return 0;
+    }
+    return counter;
+}
+
+// Writes a new file beside the old one and renames it, so that at any moment one of them is whole on the
+// disk.
+void IncarnationStore::WriteCounter(std::uint32_t counter)
+{
+    if (_file.empty())
+    {
+        return;
+    }
+    const std::filesystem::path directory = _file.parent_path();
+    std::error_code problem;
+    std::filesystem::create_directories(directory, problem);
+    if (problem)
+    {
+        _error = "cannot make " + directory.string() + ": " + problem.message();
+        return;
+    }
+    std::filesystem::path fresh = _file;
+    fresh += ".new";
+    {
+        const SyncedFile file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
+        if (!file.IsOpen() || !file.Write(std::to_string(counter) + '\n') || !file.Sync())
+        {
+            _error = SystemError("cannot write", fresh);
+            return;
+        }
+    }
+    std::filesystem::rename(fresh, _file, problem);
+    if (problem)
+    {
+        _error = "cannot rename " + fresh.string() + ": " + problem.message();
+        return;
+    }
+    const SyncedFile entry(directory, O_RDONLY | O_DIRECTORY);
+    if (!entry.IsOpen() || !entry.Sync())
+    {
+        _error = SystemError("cannot sync", directory);
+    }
+}
+
+}  // namespace Rabit

@@ -1,0 +1,344 @@
+#include <rabit/RabitLog.h>
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+#include <deque>
+#include <stdexcept>
+
+#include "clocks/GpsTime.h"
+#include "clocks/SourceClock.h"
+#include "gateway.idl.h"
+#include "incarnation/IncarnationStore.h"
+#include "mirrors/Subscriptions.h"
+#include "mirrors/TopicPublisher.h"
+#include "names/TypeDefinition.h"
+#include "presence/OriginTable.h"
+#include "presence/Presence.h"
+#include "presence/RemoteQueues.h"
+#include "queues/LinkDriver.h"
+#include "report/Diagnosis.h"
+#include "report/FleetReport.h"
+#include "wire/GatewayTopics.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using Duration = std::chrono::nanoseconds;
+
+constexpr std::int64_t NanosecondsInSecond = 1000000000;
+constexpr Duration FleetPeriod = std::chrono::seconds(1);
+// Less than this is not worth a sleep of its own.
+constexpr Duration ShortestSleep = std::chrono::microseconds(200);
+
+TransportSettings SettingsOf(const GatewayConfig &config, std::uint64_t incarnation)
+{
+    TransportSettings settings;
+    settings.Node = config.Node;
+    settings.Incarnation = incarnation;
+    settings.Domain = config.Domain;
+    settings.Interfaces = config.Interfaces;
+    settings.Peers = config.Peers;
+    settings.Multicast = config.Multicast;
+    settings.MaxDatagram = config.MaxDatagram;
+    settings.SharedMemory = config.SharedMemory;
+    settings.Lease = config.Lease;
+    settings.AnnouncementPeriod =
+        std::min<std::chrono::milliseconds>(std::chrono::seconds(1), config.Lease / 3);
+    settings.BackendConfig = config.BackendConfig;
+    settings.Log = [](const std::string &line)
+    { RabitLog::Write(RabitLogLevel::Warning, "transport: " + line); };
+    return settings;
+}
+
+Gateway::Announcement AnnouncementOf(const GatewayConfig &config, std::uint64_t incarnation)
+{
+    Gateway::Announcement announcement;
+    announcement.node = config.Node;
+    announcement.incarnation = incarnation;
+    for (const PublishRule &rule : config.Publish)
+    {
+        Gateway::PublishedMessage published;
+        published.message = rule.Message;
+        published.type = rule.Type;
+        published.qos = GatewayTopics::NameOf(rule.Qos);
+        published.definition = DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
+        announcement.publishes.push_back(published);
+    }
+    for (const AcceptRule &rule : config.Accept)
+    {
+        Gateway::AcceptedQueue accepted;
+        accepted.queue = rule.Queue;
+        for (const std::string &name : rule.Types)
+        {
+            Gateway::QueueType type;
+            type.type = name;
+            type.definition = DefinitionHash(*MessageTypeRegistry::Find(name));
+            accepted.types.push_back(type);
+        }
+        announcement.accepts.push_back(accepted);
+    }
+    return announcement;
+}
+
+const GatewayConfig &Validated(const GatewayConfig &config)
+{
+    ValidateGatewayConfig(config);
+    return config;
+}
+
+}  // namespace
+
+// The parts of a gateway, and the order in which they serve, start and end.
+class GatewayManager::Parts
+{
+public:
+    Parts(const GatewayConfig &config, std::shared_ptr<Transport> transport, GatewayManager &manager,
+          const RandomSource &random)
+        : _config(Validated(config)),
+          _manager(manager),
+          _workspace(manager.GetWorkspace()),
+          _transport(std::move(transport)),
+          _incarnations(
+              config.StateDir, config.Node,
+              [this] {
+                  return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()) /
+                         NanosecondsInSecond;
+              },
+              random),
+          _links(std::make_shared<LinkDriver>(_config, _workspace, _remote, _incarnations, random(),
+                                              manager.WakeUpHandler())),
+          _incarnation(_links->Incarnation()),
+          _source(_workspace.GetClock()),
+          _presence(config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote,
+                    manager.WakeUpHandler()),
+          _subscriptions(_config.Subscribe, _origins, _workspace),
+          _fleet(std::make_shared<Gateway::Fleet>())
+    {
+        if (!_transport)
+        {
+            throw std::invalid_argument("GatewayManager needs a transport");
+        }
+        if (!manager.AddPublishSubscribeMessage(FleetMessageName, _fleet))
+        {
+            throw ConfigError(_config.File, 0,
+                              std::string("the local message `") + FleetMessageName + "` is of another type");
+        }
+        Open();
+    }
+
+    ~Parts() { Close(); }
+
+    bool IsOpen() const { return _session != nullptr; }
+
+    // Leaves the network, for good.
+    void Close()
+    {
+        if (!_session)
+        {
+            return;
+        }
+        _workspace.SetQueueForwarder(nullptr);
+        ReportUndelivered();
+        _presence.Close();
+        _subscriptions.Close();
+        _links->Close();
+        _publishers.clear();
+        _session.reset();
+    }
+
+    // Returns when to be called again at the latest.
+    Duration Service()
+    {
+        const Duration now = Now();
+        const PeerTable::Change change = _presence.Service(now);
+        if (change.Offers || change.NewLife)
+        {
+            _subscriptions.OnOffers(_presence.Peers());
+        }
+        if (change.NewLife)
+        {
+            for (const PeerTable::Peer *peer : _presence.Peers().Heard())
+            {
+                _links->HeardOf(peer->Node, peer->Incarnation);
+            }
+        }
+        Duration next = std::min(_presence.NextDue(), _links->Service());
+        for (TopicPublisher &publisher : _publishers)
+        {
+            if (change.NewLife)
+            {
+                publisher.Repeat();
+            }
+            next = std::min(next, publisher.Service(Now()));
+        }
+        if (change.State || change.Offers || now >= _nextFleet)
+        {
+            PostFleet(now);
+            _nextFleet = now + FleetPeriod;
+        }
+        return std::min(next, _nextFleet);
+    }
+
+    Duration Now() const { return _workspace.GetClock().Monotonic(); }
+
+private:
+    void Open()
+    {
+        try
+        {
+            OpenSession();
+        }
+        catch (const TransportError &error)
+        {
+            Close();
+            const std::string setting = error.Setting().empty() ? "interfaces" : error.Setting();
+            const auto line = _config.Lines.find(setting);
+            throw ConfigError(_config.File, line == _config.Lines.end() ? 0 : line->second, error.what());
+        }
+    }
+
+    void OpenSession()
+    {
+        _session = _transport->Open(SettingsOf(_config, _incarnation),
+                                    [this](const PeerEvent &event) { _presence.OnPeer(event); });
+        _openedAt = Now();
+        _links->Open(*_session);
+        _subscriptions.Open(*_session);
+        for (const PublishRule &rule : _config.Publish)
+        {
+            _publishers.emplace_back(rule, *MessageTypeRegistry::Find(rule.Type), _config.Node, _source,
+                                     *_session);
+            Attach(_publishers.back());
+        }
+        _presence.Open(*_session, AnnouncementOf(_config, _incarnation));
+        _workspace.SetQueueForwarder(_links);
+    }
+
+    void Attach(TopicPublisher &publisher)
+    {
+        if (_manager.AddPublishSubscribeMessage(publisher.Rule().Message, publisher.Local()))
+        {
+            _manager.WakeUpManagerOnMessagePost(publisher.Local());
+            publisher.SetAttached();
+        }
+    }
+
+    void ReportUndelivered() const
+    {
+        for (const Gateway::LinkStatus &link : _links->OutboundStatus())
+        {
+            if (link.outbox > 0)
+            {
+                RabitLog::Write(RabitLogLevel::Warning,
+                                "gateway: " + std::to_string(link.outbox) + " messages for `" + link.node +
+                                    "/" + link.queue + "` were accepted and not acknowledged before the end");
+            }
+        }
+    }
+
+    void PostFleet(Duration now)
+    {
+        Gateway::Fleet &fleet = *_fleet;
+        fleet.Clear();
+        fleet.node = _config.Node;
+        fleet.incarnation = _incarnation;
+        _subscriptions.Report(fleet);
+        for (const TopicPublisher &publisher : _publishers)
+        {
+            fleet.publications.push_back(publisher.Status());
+        }
+        fleet.links = _links->OutboundStatus();
+        fleet.inbound = _links->InboundStatus();
+        fleet.malformed = _presence.Malformed() + _links->Malformed();
+        FleetReport::FillNodes(_presence.Peers(), now, fleet);
+        FleetReport::AddNameProblems(_presence.Peers(), fleet);
+        AddProblems(now, fleet);
+        fleet.PostMessage();
+    }
+
+    void AddProblems(Duration now, Gateway::Fleet &fleet) const
+    {
+        for (const TopicPublisher &publisher : _publishers)
+        {
+            if (!publisher.IsAttached())
+            {
+                Gateway::Problem problem;
+                problem.subject = "publish " + publisher.Rule().Message;
+                problem.reason = "the local message `" + publisher.Rule().Message +
+                                 "` is of another type than `" + publisher.Rule().Type + "`";
+                fleet.problems.push_back(problem);
+            }
+        }
+        for (const auto &problems :
+             {Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
+              _links->Problems()})
+        {
+            fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
+        }
+    }
+
+    const GatewayConfig &_config;  // the manager's
+    GatewayManager &_manager;
+    RabitWorkspace &_workspace;
+    const std::shared_ptr<Transport> _transport;
+    IncarnationStore _incarnations;
+    OriginTable _origins;
+    RemoteQueues _remote;
+    const std::shared_ptr<LinkDriver> _links;
+    const std::uint64_t _incarnation;
+    const SourceClock _source;
+    Presence _presence;
+    Subscriptions _subscriptions;
+    std::shared_ptr<Gateway::Fleet> _fleet;
+    Duration _nextFleet{0};
+    Duration _openedAt{0};
+    std::unique_ptr<TransportSession> _session;
+    std::deque<TopicPublisher> _publishers;
+};
+
+GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport)
+    : GatewayManager(config, std::move(transport), *RabitWorkspace::GetWorkspace())
+{
+}
+
+GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
+                               RabitWorkspace &workspace, RandomSource random)
+    : RabitManager("Gateway", workspace),
+      _config(config),
+      _transport(std::move(transport)),
+      _random(std::move(random)),
+      _parts(std::make_unique<Parts>(_config, _transport, *this, _random))
+{
+}
+
+GatewayManager::~GatewayManager() = default;
+
+void GatewayManager::Startup()
+{
+    if (!_parts || !_parts->IsOpen())
+    {
+        _parts.reset();
+        _parts = std::make_unique<Parts>(_config, _transport, *this, _random);
+    }
+}
+
+void GatewayManager::ExecuteUnitOfWork()
+{
+    const Duration next = _parts->Service();
+    const Duration sleep = std::max(next - _parts->Now(), ShortestSleep);
+    SetWakeupTimeDelaySec(std::chrono::duration<double>(sleep).count());
+}
+
+void GatewayManager::Shutdown()
+{
+    if (_parts)
+    {
+        _parts->Close();
+    }
+}
+
+}  // namespace Rabit

@@ -1,0 +1,79 @@
+#include "mirrors/TopicPublisher.h"
+
+#include <algorithm>
+
+#include "wire/GatewayTopics.h"
+#include "wire/MessageEncoder.h"
+
+namespace Rabit
+{
+
+// Both partitions: plain DDS programs read the default one, nodes read those of the nodes they want.
+TopicPublisher::TopicPublisher(const PublishRule &rule, const MessageType &type, const std::string &node,
+                               const SourceClock &source, TransportSession &session)
+    : _rule(rule),
+      _type(type),
+      _source(source),
+      _local(type.Create()),
+      _writer(session.CreateWriter(GatewayTopics::Describe(rule.Message, type),
+                                   GatewayTopics::QosOf(rule.Qos), {"", node}))
+{
+}
+
+TopicPublisher::Duration TopicPublisher::MinimumGap() const
+{
+    return _rule.MaxRate > 0.0 ? Duration(static_cast<std::int64_t>(1e9 / _rule.MaxRate)) : Duration(0);
+}
+
+TopicPublisher::Duration TopicPublisher::Service(Duration now)
+{
+    if (!_attached)
+    {
+        return Duration::max();
+    }
+    _pending = (_local->FetchMessage() && _local->WasPosted()) || _pending;
+    const Duration mayWriteAt = _everWritten ? _lastWrite + MinimumGap() : now;
+    const bool repeats = _rule.Qos == QosProfile::State && _everWritten;
+    const bool repeatDue = repeats && (_repeatNow || now >= _lastWrite + StateRepeatPeriod);
+    if ((_pending && now >= mayWriteAt) || repeatDue)
+    {
+        Write(now);
+    }
+    _repeatNow = false;
+
+    Duration next = Duration::max();
+    if (_pending)
+    {
+        next = std::max(_lastWrite + MinimumGap(), now);
+    }
+    if (_rule.Qos == QosProfile::State && _everWritten)
+    {
+        next = std::min(next, _lastWrite + StateRepeatPeriod);
+    }
+    return next;
+}
+
+void TopicPublisher::Write(Duration now)
+{
+    const WriteResult result =
+        _writer->Write(MessageEncoder(_type, *_local), _source.At(_local->GetPostTime().Monotonic));
+    _written += result == WriteResult::Ok ? 1 : 0;
+    _failures += result == WriteResult::Ok ? 0 : 1;
+    // A value that the network did not take in time is tried again after the usual gap; one that can never be
+    // sent would only fail again.
+    _pending = result == WriteResult::TimedOut;
+    _everWritten = true;
+    _lastWrite = now;
+}
+
+Gateway::PublicationStatus TopicPublisher::Status() const
+{
+    Gateway::PublicationStatus status;
+    status.message = _rule.Message;
+    status.written = _written;
+    status.write_failures = _failures;
+    status.readers = static_cast<std::uint32_t>(std::max(0, _writer->MatchedReaders()));
+    return status;
+}
+
+}  // namespace Rabit

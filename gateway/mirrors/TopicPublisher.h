@@ -1,0 +1,64 @@
+#pragma once
+
+#include <rabit/RabitMessage.h>
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/idl/MessageType.h>
+#include <rabit/transport/Transport.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "clocks/SourceClock.h"
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+// Mirrors one local message to a topic: writes its newest value whenever it was posted, no more often than
+// the rule allows, and repeats a State once a second. Intermediate values may be skipped, as with a fetch.
+// Used by the gateway's thread only.
+class TopicPublisher
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    static constexpr Duration StateRepeatPeriod = std::chrono::seconds(1);
+
+    TopicPublisher(const PublishRule &rule, const MessageType &type, const std::string &node,
+                   const SourceClock &source, TransportSession &session);
+
+    const PublishRule &Rule() const { return _rule; }
+    const MessageType &Type() const { return _type; }
+    // The local copy, to be registered under the message's name; fetched by Service.
+    const std::shared_ptr<RabitMessage> &Local() const { return _local; }
+    // Call once it is registered; without it Service does nothing.
+    void SetAttached() { _attached = true; }
+    bool IsAttached() const { return _attached; }
+
+    // Has the next Service write a State again at once: somebody new is listening.
+    void Repeat() { _repeatNow = true; }
+    // Fetches and writes what is due. Returns when to call again even if nothing is posted (Duration::max():
+    // never).
+    Duration Service(Duration now);
+    Gateway::PublicationStatus Status() const;
+
+private:
+    void Write(Duration now);
+    Duration MinimumGap() const;
+
+    PublishRule _rule;
+    const MessageType &_type;
+    const SourceClock _source;
+    std::shared_ptr<RabitMessage> _local;
+    std::unique_ptr<TransportWriter> _writer;
+    bool _attached = false;
+    bool _pending = false;  // fetched and not written yet
+    bool _everWritten = false;
+    bool _repeatNow = false;
+    Duration _lastWrite{0};
+    std::uint64_t _written = 0;
+    std::uint64_t _failures = 0;
+};
+
+}  // namespace Rabit

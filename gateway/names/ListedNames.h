@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace Rabit
+{
+
+// "`A`, `B`" of the first few items, by what `name` says of each; for lines that people read.
+template <typename Items, typename Name>
+std::string ListedNames(const Items &items, Name name)
+{
+    constexpr std::size_t most = 6;
+    std::string text;
+    for (std::size_t i = 0; i < items.size() && i < most; ++i)
+    {
+        text += (i > 0 ? ", `" : "`") + name(items[i]) + "`";
+    }
+    if (items.size() > most)
+    {
+        text += " and " + std::to_string(items.size() - most) + " more";
+    }
+    return text;
+}
+
+}  // namespace Rabit

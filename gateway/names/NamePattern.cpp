@@ -1,0 +1,71 @@
+#include "names/NamePattern.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace Rabit
+{
+namespace
+{
+
+bool IsNodeCharacter(char c)
+{
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.' || c == '-';
+}
+
+}  // namespace
+
+bool MatchesPattern(std::string_view pattern, std::string_view name)
+{
+    std::size_t p = 0;
+    std::size_t n = 0;
+    std::size_t starAt = std::string_view::npos;
+    std::size_t nameAtStar = 0;
+    while (n < name.size())
+    {
+        if (p < pattern.size() && pattern[p] == '*')
+        {
+            starAt = p++;
+            nameAtStar = n;
+        }
+        else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
+        {
+            ++p;
+            ++n;
+        }
+        else if (starAt != std::string_view::npos)
+        {
+            // Let the last star take one character more.
+            p = starAt + 1;
+            n = ++nameAtStar;
+        }
+        else
+        {
+            return false;
+        }
+    }
+    return std::all_of(pattern.begin() + static_cast<std::ptrdiff_t>(p), pattern.end(),
+                       [](char c) { return c == '*'; });
+}
+
+bool MatchesAny(const std::vector<std::string> &patterns, std::string_view name)
+{
+    return std::any_of(patterns.begin(), patterns.end(),
+                       [name](const std::string &pattern) { return MatchesPattern(pattern, name); });
+}
+
+bool IsNodeName(std::string_view text)
+{
+    return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), IsNodeCharacter);
+}
+
+bool IsMessageName(std::string_view text)
+{
+    return !text.empty() && text.size() <= 200 && text.front() != '/' && text.back() != '/' &&
+           text.find("//") == std::string_view::npos &&
+           std::all_of(text.begin(), text.end(),
+                       [](char c) { return IsNodeCharacter(c) || c == ':' || c == '/'; });
+}
+
+}  // namespace Rabit

@@ -1,0 +1,74 @@
+#include "names/TypeDefinition.h"
+
+#include <cctype>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <string>
+
+namespace Rabit
+{
+namespace
+{
+
+// The IDL with each run of white space and comments replaced by one blank.
+std::string Normalized(const std::string &idl)
+{
+    std::string normalized;
+    std::size_t at = 0;
+    bool gap = false;
+    while (at < idl.size())
+    {
+        if (idl.compare(at, 2, "//") == 0)
+        {
+            at = idl.find('\n', at);
+            at = at == std::string::npos ? idl.size() : at;
+            gap = true;
+        }
+        else if (idl.compare(at, 2, "/*") == 0)
+        {
+            const std::size_t end = idl.find("*/", at + 2);
+            at = end == std::string::npos ? idl.size() : end + 2;
+            gap = true;
+        }
+        else if (std::isspace(static_cast<unsigned char>(idl[at])) != 0)
+        {
+            ++at;
+            gap = true;
+        }
+        else
+        {
+            if (gap && !normalized.empty())
+            {
+                normalized += ' ';
+            }
+            gap = false;
+            normalized += idl[at++];
+        }
+    }
+    return normalized;
+}
+
+std::uint64_t ComputeHash(const MessageType &type)
+{
+    std::uint64_t hash = 14695981039346656037ULL;
+    for (const char c : Normalized(type.Name() + "\n" + type.IdlText()))
+    {
+        hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    }
+    return hash;
+}
+
+}  // namespace
+
+std::uint64_t DefinitionHash(const MessageType &type)
+{
+    // Asked for every message that is sent. Types live as long as the process, so entries stay true.
+    static std::mutex mutex;
+    static std::map<const MessageType *, std::uint64_t> hashes;
+    const std::lock_guard lock(mutex);
+    const auto found = hashes.find(&type);
+    return found != hashes.end() ? found->second : hashes.emplace(&type, ComputeHash(type)).first->second;
+}
+
+}  // namespace Rabit

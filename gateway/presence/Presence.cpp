@@ -1,0 +1,309 @@
+#include "presence/Presence.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "clocks/GpsTime.h"
+#include "names/NamePattern.h"
+#include "wire/GatewayTopics.h"
+#include "wire/MessageEncoder.h"
+
+namespace Rabit
+{
+namespace
+{
+
+constexpr Presence::Duration AnnouncementPeriod = std::chrono::seconds(1);
+// One beat goes to everybody; with more nodes than this they take turns to be echoed.
+constexpr std::size_t EchoesInABeat = 8;
+// Whoever has just appeared may not be matched yet with those who send to it, and nothing of a node is posted
+// before a beat of it was heard: the first beats follow each other quickly, each step twice the one before.
+constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
+// More than this at once is no fleet but a fault.
+constexpr std::size_t LargestInbox = 10000;
+// What a node may offer: far more than any does, little enough to keep for a thousand nodes.
+constexpr std::size_t MostOffers = 1000;
+
+// Clock readings on which arithmetic cannot overflow: three centuries either way are more than any clock
+// shows.
+bool IsPlausible(std::int64_t nanoseconds)
+{
+    constexpr std::int64_t most = std::int64_t{1} << 61;
+    return nanoseconds >= 0 && nanoseconds < most;
+}
+
+bool IsPlausible(const Gateway::Beat &beat)
+{
+    return IsNodeName(beat.node) && IsPlausible(beat.monotonic_ns) && IsPlausible(beat.source_ns) &&
+           IsPlausible(beat.utc_ns) && beat.echoes.size() <= 64 &&
+           std::all_of(beat.echoes.begin(), beat.echoes.end(),
+                       [](const Gateway::BeatEcho &echo)
+                       { return IsPlausible(echo.monotonic_ns) && IsPlausible(echo.held_ns); });
+}
+
+bool IsPlausible(const Gateway::Announcement &announcement)
+{
+    return IsNodeName(announcement.node) && announcement.publishes.size() <= MostOffers &&
+           announcement.accepts.size() <= MostOffers &&
+           std::all_of(announcement.publishes.begin(), announcement.publishes.end(),
+                       [](const auto &published)
+                       { return IsMessageName(published.message) && published.type.size() <= 255; }) &&
+           std::all_of(announcement.accepts.begin(), announcement.accepts.end(),
+                       [](const auto &accepted)
+                       { return IsMessageName(accepted.queue) && accepted.types.size() <= MostOffers; });
+}
+
+}  // namespace
+
+Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
+                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote,
+                   std::function<void()> wake)
+    : _node(node),
+      _incarnation(incarnation),
+      _clock(clock),
+      _source(source),
+      _origins(origins),
+      _remote(remote),
+      _wake(std::move(wake)),
+      _peers(node, incarnation)
+{
+}
+
+Presence::~Presence()
+{
+    // The handlers use the rest.
+    _beatReader.reset();
+    _announcementReader.reset();
+}
+
+void Presence::Open(TransportSession &session, Gateway::Announcement announcement)
+{
+    _announcement = std::move(announcement);
+    _nextBeat = _nextAnnouncement = Duration(0);
+    const auto open = [&session](const char *topic, const MessageType &type, QosProfile profile, auto &writer)
+    {
+        writer =
+            session.CreateWriter(GatewayTopics::Describe(topic, type), GatewayTopics::QosOf(profile), {});
+    };
+    open(GatewayTopics::Beat, GatewayTopics::TypeOf<Gateway::Beat>(), QosProfile::Telemetry, _beatWriter);
+    open(GatewayTopics::Announcement, GatewayTopics::TypeOf<Gateway::Announcement>(), QosProfile::State,
+         _announcementWriter);
+    _beatReader = session.CreateReader(
+        GatewayTopics::Describe(GatewayTopics::Beat, GatewayTopics::TypeOf<Gateway::Beat>()),
+        GatewayTopics::QosOf(QosProfile::Telemetry), {},
+        [this](SampleBytes bytes, const SampleInfo &info) { OnBeat(bytes, info); });
+    _announcementReader = session.CreateReader(
+        GatewayTopics::Describe(GatewayTopics::Announcement, GatewayTopics::TypeOf<Gateway::Announcement>()),
+        GatewayTopics::QosOf(QosProfile::State), {},
+        [this](SampleBytes bytes, const SampleInfo &info) { OnAnnouncement(bytes, info); });
+}
+
+void Presence::Close()
+{
+    if (_announcementWriter)
+    {
+        _announcement.leaving = true;
+        SendAnnouncement(_clock.Monotonic());
+    }
+    _beatReader.reset();
+    _announcementReader.reset();
+    _beatWriter.reset();
+    _announcementWriter.reset();
+}
+
+void Presence::OnPeer(const PeerEvent &event)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        if (_inbox.Events.size() >= LargestInbox)
+        {
+            ++_malformed;
+            return;
+        }
+        _inbox.Events.push_back(event);
+    }
+    _wake();
+}
+
+void Presence::OnBeat(SampleBytes bytes, const SampleInfo &info)
+{
+    if (!info.Alive)
+    {
+        return;
+    }
+    Heard heard;
+    heard.Arrival = _clock.Monotonic();
+    const bool good =
+        GatewayTopics::TypeOf<Gateway::Beat>().Deserialize(bytes, heard.Beat) && IsPlausible(heard.Beat);
+    {
+        const std::lock_guard lock(_mutex);
+        if (!good || _inbox.Beats.size() >= LargestInbox)
+        {
+            ++_malformed;
+            return;
+        }
+        _inbox.Beats.push_back(std::move(heard));
+    }
+    _wake();
+}
+
+void Presence::OnAnnouncement(SampleBytes bytes, const SampleInfo &info)
+{
+    if (!info.Alive)
+    {
+        return;
+    }
+    Gateway::Announcement announcement;
+    const bool good = GatewayTopics::TypeOf<Gateway::Announcement>().Deserialize(bytes, announcement) &&
+                      IsPlausible(announcement);
+    {
+        const std::lock_guard lock(_mutex);
+        if (!good || _inbox.Announcements.size() >= LargestInbox)
+        {
+            ++_malformed;
+            return;
+        }
+        _inbox.Announcements.push_back(std::move(announcement));
+    }
+    _wake();
+}
+
+PeerTable::Change Presence::TakeIn(const Inbox &inbox, Duration now)
+{
+    PeerTable::Change all;
+    const auto note = [&all, this](const PeerTable::Change &change, const std::string &node)
+    {
+        all.State |= change.State;
+        all.NewLife |= change.NewLife;
+        all.Offers |= change.Offers;
+        Publish(node);
+    };
+    for (const Gateway::Announcement &announcement : inbox.Announcements)
+    {
+        note(_peers.OnAnnouncement(announcement, now), announcement.node);
+    }
+    for (const Heard &heard : inbox.Beats)
+    {
+        note(_peers.OnBeat(heard.Beat, heard.Arrival), heard.Beat.node);
+    }
+    for (const PeerEvent &event : inbox.Events)
+    {
+        if (event.What == PeerEvent::Kind::Left)
+        {
+            note(_peers.OnLeft(event.Node, event.Incarnation), event.Node);
+        }
+        // Whoever has just appeared wants to know who is here.
+        if (event.What == PeerEvent::Kind::Appeared)
+        {
+            Introduce();
+        }
+    }
+    return all;
+}
+
+// Hands what is known of a node to those who read it on other threads.
+void Presence::Publish(const std::string &node)
+{
+    const PeerTable::Peer *peer = _peers.Find(node);
+    if (peer == nullptr)
+    {
+        return;
+    }
+    _remote.Update(*peer);
+    const std::optional<Duration> offset = peer->Clock.SourceToLocal();
+    if (peer->Heard && offset)
+    {
+        _origins.Set(node, OriginTable::Origin{peer->Incarnation, *offset, peer->Clock.SourceToWall()});
+    }
+}
+
+PeerTable::Change Presence::Service(Duration now)
+{
+    Inbox inbox;
+    {
+        const std::lock_guard lock(_mutex);
+        std::swap(inbox, _inbox);
+    }
+    PeerTable::Change change = TakeIn(inbox, now);
+    if (_peers.Advance(now).State)
+    {
+        change.State = true;
+    }
+    if (change.State)
+    {
+        for (const PeerTable::Peer *peer : _peers.Heard())
+        {
+            _remote.Update(*peer);
+        }
+    }
+    if (change.NewLife)
+    {
+        Introduce();
+    }
+    if (now >= _nextBeat)
+    {
+        SendBeat(now);
+    }
+    if (now >= _nextAnnouncement)
+    {
+        SendAnnouncement(now);
+    }
+    return change;
+}
+
+void Presence::Introduce()
+{
+    _nextBeat = _nextAnnouncement = Duration(0);
+    _beatStep = FirstBeatStep;
+}
+
+void Presence::SendBeat(Duration now)
+{
+    if (!_beatWriter)
+    {
+        return;
+    }
+    // All clocks read at one moment: the others compute one from the other.
+    const PostTime time = _clock.Now();
+    const std::int64_t utc = GpsTime::ToUtcNanoseconds(time.GpsTimeSeconds);
+    Gateway::Beat beat;
+    beat.node = _node;
+    beat.incarnation = _incarnation;
+    beat.monotonic_ns = time.Monotonic.count();
+    beat.source_ns = _source.At(time.Monotonic);
+    beat.utc_ns = utc;
+    beat.echoes = _peers.NextEchoes(time.Monotonic, EchoesInABeat);
+    static_cast<void>(_beatWriter->Write(MessageEncoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat), utc));
+    _nextBeat = now + _beatStep;
+    _beatStep = std::min(2 * _beatStep, PeerTable::BeatPeriod);
+}
+
+void Presence::SendAnnouncement(Duration now)
+{
+    if (!_announcementWriter)
+    {
+        return;
+    }
+    const std::int64_t utc = GpsTime::ToUtcNanoseconds(_clock.GpsTimeSeconds());
+    static_cast<void>(_announcementWriter->Write(
+        MessageEncoder(GatewayTopics::TypeOf<Gateway::Announcement>(), _announcement), utc));
+    _nextAnnouncement = now + AnnouncementPeriod;
+}
+
+Presence::Duration Presence::NextDue() const
+{
+    Duration next = std::min(_nextBeat, _nextAnnouncement);
+    if (const std::optional<Duration> change = _peers.NextChange())
+    {
+        next = std::min(next, *change);
+    }
+    return next;
+}
+
+std::uint64_t Presence::Malformed() const
+{
+    const std::lock_guard lock(_mutex);
+    return _malformed;
+}
+
+}  // namespace Rabit

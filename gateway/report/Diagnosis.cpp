@@ -1,0 +1,165 @@
+#include "report/Diagnosis.h"
+
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+
+#include "mirrors/Subscriptions.h"
+#include "names/ListedNames.h"
+#include "names/NamePattern.h"
+#include "names/TypeDefinition.h"
+
+namespace Rabit::Diagnosis
+{
+namespace
+{
+
+// What the node says of that message; null if it says nothing.
+const Gateway::PublishedMessage *OfferOf(const std::string &message, const PeerTable::Peer &peer)
+{
+    if (!peer.Offers)
+    {
+        return nullptr;
+    }
+    const auto &offered = peer.Offers->publishes;
+    const auto found =
+        std::find_if(offered.begin(), offered.end(),
+                     [&message](const auto &published) { return published.message == message; });
+    return found == offered.end() ? nullptr : &*found;
+}
+
+// "From everybody" means from whoever has it: once somebody has, it is no problem that others have not.
+bool MayLack(const SubscribeRule &rule, const PeerTable &peers)
+{
+    if (std::find(rule.From.begin(), rule.From.end(), "*") == rule.From.end())
+    {
+        return false;
+    }
+    const auto heard = peers.Heard();
+    return std::any_of(heard.begin(), heard.end(),
+                       [&rule](const PeerTable::Peer *peer)
+                       { return OfferOf(rule.Message, *peer) != nullptr; });
+}
+
+std::string WhyNoMatch(const SubscribeRule &rule, std::uint64_t definition, const PeerTable::Peer &peer)
+{
+    const Gateway::PublishedMessage *found = OfferOf(rule.Message, peer);
+    if (found == nullptr)
+    {
+        const auto &offered = peer.Offers->publishes;
+        return peer.Node + " does not publish `" + rule.Message + "`; it publishes " +
+               (offered.empty()
+                    ? std::string("nothing")
+                    : ListedNames(offered, [](const auto &published) { return published.message; }));
+    }
+    if (found->type != rule.Type)
+    {
+        return peer.Node + " publishes `" + rule.Message + "` as `" + found->type + "`, this node wants `" +
+               rule.Type + "`";
+    }
+    if (found->definition != definition)
+    {
+        return peer.Node + " was built with another definition of `" + rule.Type + "`";
+    }
+    if (rule.Qos == QosProfile::State && found->qos != "state")
+    {
+        return peer.Node + " publishes `" + rule.Message + "` with qos " + found->qos +
+               ", this node wants qos state";
+    }
+    return "";
+}
+
+std::string WhyNoData(const Wanted &wanted, const PeerTable::Peer &peer, std::chrono::nanoseconds now)
+{
+    if (!peer.Offers)
+    {
+        return now - peer.FirstHeard < Patience ? "" : "no announcement of " + peer.Node + " has arrived yet";
+    }
+    const std::string mismatch = WhyNoMatch(*wanted.Rule, wanted.Definition, peer);
+    if (!mismatch.empty())
+    {
+        return mismatch;
+    }
+    const Reception reception = wanted.ReceptionFrom(peer.Node);
+    if (!reception.LocalProblem.empty())
+    {
+        return reception.LocalProblem;
+    }
+    if (reception.Received > 0 || now - peer.OffersSince < Patience || now - peer.FirstHeard < Patience)
+    {
+        return "";
+    }
+    if (reception.MatchedWriters == 0)
+    {
+        return peer.Node + " announces `" + wanted.Rule->Message +
+               "`, but its writer has not been discovered";
+    }
+    return "nothing has been received: " + peer.Node + " has posted no `" + wanted.Rule->Message +
+           "` yet, or its samples do not get through";
+}
+
+}  // namespace
+
+std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTable &peers,
+                                             std::chrono::nanoseconds sinceStart,
+                                             std::chrono::nanoseconds now)
+{
+    std::vector<Gateway::Problem> problems;
+    const auto add = [&problems, &wanted](const std::string &node, const std::string &reason)
+    {
+        Gateway::Problem problem;
+        problem.subject = "subscribe " + wanted.Rule->Message;
+        problem.node = node;
+        problem.reason = reason;
+        problems.push_back(std::move(problem));
+    };
+    const bool mayLack = MayLack(*wanted.Rule, peers);
+    bool anyNode = false;
+    for (const PeerTable::Peer *peer : peers.Heard())
+    {
+        if (!MatchesAny(wanted.Rule->From, peer->Node))
+        {
+            continue;
+        }
+        anyNode = true;
+        if (peer->State == Gateway::NodeState::LOST)
+        {
+            continue;  // its own row says so
+        }
+        if (mayLack && peer->Offers && OfferOf(wanted.Rule->Message, *peer) == nullptr)
+        {
+            continue;
+        }
+        const std::string reason = WhyNoData(wanted, *peer, now);
+        if (!reason.empty())
+        {
+            add(peer->Node, reason);
+        }
+    }
+    if (!anyNode && sinceStart >= Patience)
+    {
+        add("", "no node named " + ListedNames(wanted.Rule->From, [](const auto &name) { return name; }) +
+                    " has been heard");
+    }
+    return problems;
+}
+
+std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeerTable &peers,
+                                              std::chrono::nanoseconds sinceStart,
+                                              std::chrono::nanoseconds now)
+{
+    std::vector<Gateway::Problem> problems;
+    for (const SubscribeRule &rule : subscriptions.Rules())
+    {
+        Wanted wanted;
+        wanted.Rule = &rule;
+        wanted.Definition = DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
+        wanted.ReceptionFrom = [&subscriptions, &rule](const std::string &node)
+        { return subscriptions.ReceptionFrom(node, rule); };
+        const auto found = OfSubscription(wanted, peers, sinceStart, now);
+        problems.insert(problems.end(), found.begin(), found.end());
+    }
+    return problems;
+}
+
+}  // namespace Rabit::Diagnosis

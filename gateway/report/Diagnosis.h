@@ -1,0 +1,48 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gateway.idl.h"
+#include "mirrors/Reception.h"
+#include "presence/PeerTable.h"
+
+namespace Rabit
+{
+
+class Subscriptions;
+
+// Tells, by name, why an expected message does not come: compares what this node wants with what the others
+// announce. Pure functions of their arguments.
+namespace Diagnosis
+{
+
+struct Wanted
+{
+    const SubscribeRule *Rule = nullptr;
+    std::uint64_t Definition = 0;  // hash of the type's IDL here
+    std::function<Reception(const std::string &node)> ReceptionFrom;
+};
+
+// A node's data are given this long before their absence is called a problem.
+inline constexpr std::chrono::nanoseconds Patience = std::chrono::milliseconds(1500);
+
+// Problems of one subscription, at most one for each node that it covers; one without a node if there is no
+// such node.
+std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTable &peers,
+                                             std::chrono::nanoseconds sinceStart,
+                                             std::chrono::nanoseconds now);
+
+// Problems of all subscriptions.
+std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeerTable &peers,
+                                              std::chrono::nanoseconds sinceStart,
+                                              std::chrono::nanoseconds now);
+
+}  // namespace Diagnosis
+}  // namespace Rabit

@@ -1,0 +1,78 @@
+#include "report/FleetReport.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace Rabit::FleetReport
+{
+namespace
+{
+
+double Seconds(std::chrono::nanoseconds duration)
+{
+    return std::chrono::duration<double>(duration).count();
+}
+
+Gateway::NodeStatus StatusOf(const PeerTable::Peer &peer, std::chrono::nanoseconds now,
+                             const Gateway::Fleet &fleet)
+{
+    Gateway::NodeStatus status;
+    status.node = peer.Node;
+    status.state = peer.State;
+    status.reason = peer.Reason;
+    status.incarnation = peer.Incarnation;
+    status.last_heard_s = std::max(0.0, Seconds(now - peer.LastHeard));
+    const auto roundTrip = peer.Clock.RoundTrip();
+    status.round_trip_s = roundTrip ? Seconds(*roundTrip) : std::numeric_limits<double>::quiet_NaN();
+    for (const Gateway::LinkStatus &link : fleet.links)
+    {
+        status.outbox += link.node == peer.Node ? link.outbox : 0;
+    }
+    for (const Gateway::TopicStatus &topic : fleet.topics)
+    {
+        if (topic.node == peer.Node)
+        {
+            status.messages_received += topic.received;
+            status.undecodable += topic.undecodable;
+        }
+    }
+    return status;
+}
+
+void AddProblem(const std::string &subject, const std::string &node, const std::string &reason,
+                Gateway::Fleet &fleet)
+{
+    Gateway::Problem problem;
+    problem.subject = subject;
+    problem.node = node;
+    problem.reason = reason;
+    fleet.problems.push_back(std::move(problem));
+}
+
+}  // namespace
+
+void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet)
+{
+    fleet.nodes.clear();
+    for (const PeerTable::Peer *peer : peers.Heard())
+    {
+        fleet.nodes.push_back(StatusOf(*peer, now, fleet));
+    }
+}
+
+void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet)
+{
+    if (peers.OwnNameTwice())
+    {
+        AddProblem("node " + fleet.node, "", "another live node has the name of this one", fleet);
+    }
+    for (const PeerTable::Peer *peer : peers.Heard())
+    {
+        if (peer->Twice)
+        {
+            AddProblem("node " + peer->Node, peer->Node, "two live nodes have this name", fleet);
+        }
+    }
+}
+
+}  // namespace Rabit::FleetReport

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <chrono>
+
+#include "gateway.idl.h"
+#include "presence/PeerTable.h"
+
+namespace Rabit::FleetReport
+{
+
+// Fills the list of nodes: states, times and reasons from the peer table, sums from the topics and links that
+// are already in the message.
+void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet);
+
+// Problems with names that two live nodes share.
+void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet);
+
+}  // namespace Rabit::FleetReport

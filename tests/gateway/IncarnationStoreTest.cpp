@@ -1,0 +1,151 @@
+#include "incarnation/IncarnationStore.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace Rabit::Test
+{
+namespace
+{
+
+class IncarnationStoreFile : public testing::Test
+{
+protected:
+    IncarnationStoreFile()
+        : _directory(std::filesystem::temp_directory_path() /
+                     ("rabit_incarnation_" + std::to_string(::getpid()) + "_" +
+                      testing::UnitTest::GetInstance()->current_test_info()->name()))
+    {
+        std::filesystem::remove_all(_directory);
+    }
+    ~IncarnationStoreFile() override { std::filesystem::remove_all(_directory); }
+
+    // A start of the process, at this reading of the wall clock.
+    IncarnationStore Start(std::int64_t seconds) const
+    {
+        return IncarnationStore(_directory, "uav1", [seconds] { return seconds; });
+    }
+    void WriteFile(const std::string &text) const
+    {
+        std::filesystem::create_directories(_directory);
+        std::ofstream(_directory / "uav1.incarnation") << text;
+    }
+    std::string ReadFile() const
+    {
+        std::ifstream in(_directory / "uav1.incarnation");
+        std::ostringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+
+    std::filesystem::path _directory;
+};
+
+std::uint64_t CounterOf(std::uint64_t incarnation)
+{
+    return incarnation >> 32;
+}
+
+TEST_F(IncarnationStoreFile, rises_at_every_start_even_within_a_second_and_when_the_clock_steps_back)
+{
+    EXPECT_EQ(CounterOf(Start(1000).Above(0)), 1000U);
+    EXPECT_EQ(CounterOf(Start(1000).Above(0)), 1001U);
+    EXPECT_EQ(CounterOf(Start(5).Above(0)), 1002U);
+    EXPECT_EQ(CounterOf(Start(2000).Above(0)), 2000U);
+}
+
+TEST_F(IncarnationStoreFile, is_stored_before_it_is_returned)
+{
+    IncarnationStore store = Start(1000);
+    store.Above(0);
+    EXPECT_EQ(ReadFile(), "1000\n");
+    store.Above(5000ULL << 32);
+    EXPECT_EQ(ReadFile(), "5001\n");
+    EXPECT_EQ(store.Error(), "");
+}
+
+TEST_F(IncarnationStoreFile, rises_above_a_floor_and_above_itself)
+{
+    IncarnationStore store = Start(1000);
+    const std::uint64_t first = store.Above(0);
+    const std::uint64_t second = store.Above(first);
+    EXPECT_GT(CounterOf(second), CounterOf(first));
+    EXPECT_GT(CounterOf(store.Above(0)), CounterOf(second));
+    EXPECT_EQ(CounterOf(store.Above((7000ULL << 32) | 0xffffffff)), 7001U);
+}
+
+TEST_F(IncarnationStoreFile, is_made_from_the_wall_clock_when_the_file_is_lost)
+{
+    Start(1000).Above(0);
+    std::filesystem::remove_all(_directory);
+    EXPECT_EQ(CounterOf(Start(1300).Above(0)), 1300U);
+}
+
+TEST_F(IncarnationStoreFile, tells_of_an_unusable_file_and_replaces_it)
+{
+    for (const char *text : {"rubbish\n", "", "12x\n", "-3\n", "99999999999999\n"})
+    {
+        WriteFile(text);
+        IncarnationStore store = Start(1000);
+        EXPECT_EQ(CounterOf(store.Above(0)), 1000U) << text;
+        EXPECT_NE(store.Error(), "") << text;
+        EXPECT_EQ(ReadFile(), "1000\n") << text;
+        store.Above(0);
+        EXPECT_EQ(store.Error(), "") << "all is well again";
+    }
+}
+
+TEST_F(IncarnationStoreFile, tells_of_a_directory_that_cannot_be_made)
+{
+    WriteFile("1\n");
+    const std::filesystem::path notADirectory = _directory / "uav1.incarnation" / "state";
+    IncarnationStore store(notADirectory, "uav1", [] { return 1000; });
+    EXPECT_EQ(CounterOf(store.Above(0)), 1000U);
+    EXPECT_NE(store.Error().find("uav1.incarnation/state"), std::string::npos) << store.Error();
+    EXPECT_EQ(CounterOf(store.Above(0)), 1001U) << "within one process it rises all the same";
+}
+
+TEST_F(IncarnationStoreFile, needs_no_file)
+{
+    IncarnationStore store("", "uav1", [] { return 1000; });
+    EXPECT_EQ(CounterOf(store.Above(0)), 1000U);
+    EXPECT_EQ(store.Error(), "");
+    EXPECT_TRUE(store.File().empty());
+}
+
+TEST_F(IncarnationStoreFile, has_random_low_bits)
+{
+    const std::uint64_t first = IncarnationStore("", "uav1", [] { return 1000; }).Above(0);
+    bool differs = false;
+    for (int i = 0; i < 10 && !differs; ++i)
+    {
+        differs = IncarnationStore("", "uav1", [] { return 1000; }).Above(0) != first;
+    }
+    EXPECT_TRUE(differs);
+}
+
+TEST_F(IncarnationStoreFile, never_gives_out_the_highest_counter)
+{
+    IncarnationStore store = Start(1LL << 40);
+    EXPECT_EQ(CounterOf(store.Above(0)), 0xfffffffeU);
+    EXPECT_EQ(CounterOf(store.Above(0)), 0xfffffffeU);
+}
+
+TEST_F(IncarnationStoreFile, a_node_name_cannot_leave_the_directory)
+{
+    const IncarnationStore store(_directory, "../u v1", [] { return 1; });
+    EXPECT_EQ(store.File(), _directory / "..%2fu%20v1.incarnation");
+}
+
+TEST_F(IncarnationStoreFile, the_real_wall_clock_is_used_by_default)
+{
+    EXPECT_GT(CounterOf(IncarnationStore("", "uav1").Above(0)), 1600000000U);
+}
+
+}  // namespace
+}  // namespace Rabit::Test
