@@ -20,6 +20,7 @@
 #include "queues/LinkDriver.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
+#include "report/ProblemLog.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -229,6 +230,12 @@ private:
 
     void ReportUndelivered() const
     {
+        // A program that ends soon after a refusal learns the reason nevertheless. Other problems may only be
+        // the end of the other managers.
+        std::vector<Gateway::Problem> refusals = _links->Problems();
+        std::erase_if(refusals,
+                      [](const Gateway::Problem &problem) { return problem.subject.rfind("send ", 0) != 0; });
+        Log(_problemLog.AtEnd(refusals));
         for (const Gateway::LinkStatus &link : _links->OutboundStatus())
         {
             if (link.outbox > 0)
@@ -237,6 +244,14 @@ private:
                                 "gateway: " + std::to_string(link.outbox) + " messages for `" + link.node +
                                     "/" + link.queue + "` were accepted and not acknowledged before the end");
             }
+        }
+    }
+
+    static void Log(const std::vector<std::string> &lines)
+    {
+        for (const std::string &line : lines)
+        {
+            RabitLog::Write(RabitLogLevel::Warning, "gateway: " + line);
         }
     }
 
@@ -258,6 +273,7 @@ private:
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
         AddProblems(now, fleet);
         fleet.PostMessage();
+        Log(_problemLog.Look(fleet.problems, now));
     }
 
     void AddProblems(Duration now, Gateway::Fleet &fleet) const
@@ -294,6 +310,7 @@ private:
     Presence _presence;
     Subscriptions _subscriptions;
     std::shared_ptr<Gateway::Fleet> _fleet;
+    ProblemLog _problemLog{FleetMessageName};
     Duration _nextFleet{0};
     Duration _openedAt{0};
     std::unique_ptr<TransportSession> _session;

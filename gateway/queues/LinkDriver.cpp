@@ -1,6 +1,5 @@
 #include "queues/LinkDriver.h"
 
-#include <rabit/RabitLog.h>
 
 #include <algorithm>
 
@@ -59,10 +58,6 @@ LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, c
     }
     _links = std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
                                         static_cast<LocalQueues &>(*this), incarnations);
-    if (!_incarnations.Error().empty())
-    {
-        RabitLog::Write(RabitLogLevel::Warning, "gateway: " + _incarnations.Error());
-    }
 }
 
 LinkDriver::~LinkDriver()

@@ -1,5 +1,4 @@
 // What LinkDriver does with a message of a local manager for a queue of another node. Any thread.
-#include <rabit/RabitLog.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
@@ -163,16 +162,9 @@ void LinkDriver::ConfigureOnce(const std::string &node, const std::string &queue
 bool LinkDriver::Refuse(const std::string &node, const std::string &queue, QueueAcceptance verdict,
                         const std::string &reason, const Receipt &receipt)
 {
-    bool isNew = false;
     {
         const std::lock_guard lock(_mutex);
-        isNew = _refusals.Add({node, queue}, verdict, reason);
-    }
-    if (isNew)
-    {
-        RabitLog::Write(RabitLogLevel::Warning,
-                        "gateway: refused a message for `" + node + "/" + queue + "`: " + reason);
-        _wake();
+        _refusals.Add({node, queue}, verdict, reason);
     }
     return Settle(receipt, QueueOutcome::Refused);
 }

@@ -10,7 +10,7 @@ constexpr std::size_t MostLinks = 1000;
 
 }  // namespace
 
-bool LinkRefusals::Add(const LinkName &link, QueueAcceptance verdict, const std::string &reason)
+void LinkRefusals::Add(const LinkName &link, QueueAcceptance verdict, const std::string &reason)
 {
     if (_entries.size() >= MostLinks && _entries.count(link) == 0)
     {
@@ -20,9 +20,7 @@ bool LinkRefusals::Add(const LinkName &link, QueueAcceptance verdict, const std:
     const bool aboutType =
         verdict == QueueAcceptance::WrongType || verdict == QueueAcceptance::OtherDefinition;
     ++(aboutType ? entry.Type : entry.Unknown);
-    const bool isNew = entry.Reason != reason;
     entry.Reason = reason;
-    return isNew;
 }
 
 void LinkRefusals::Forgive(const LinkName &link)

@@ -19,8 +19,7 @@ class LinkRefusals
 public:
     using LinkName = std::pair<std::string, std::string>;  // node, queue
 
-    // Counts one. Returns whether the reason is another than that of the last one.
-    bool Add(const LinkName &link, QueueAcceptance verdict, const std::string &reason);
+    void Add(const LinkName &link, QueueAcceptance verdict, const std::string &reason);
     // A message was accepted: whatever was wrong is over.
     void Forgive(const LinkName &link);
 

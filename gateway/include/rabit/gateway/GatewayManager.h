@@ -27,7 +27,8 @@ inline constexpr const char *FleetMessageName = "Gateway/Fleet";
 //   InDoubt.
 // - `accept` queues receive messages of other nodes in order; a full queue holds the sender back, without
 //   loss.
-// - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come.
+// - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come. A problem that
+//   lasts two seconds is logged once (RabitLog, as a warning), and once more when it is gone.
 //
 // Threads: Startup, ExecuteUnitOfWork and Shutdown run as for every manager. Mirrored messages are posted on
 // the transport's thread, so handlers registered on them run there and must be quick. One gateway serves one
