@@ -1,8 +1,9 @@
 // A node that exchanges every kind of traffic with one other node and prints a line for each thing that it
-// sees, for interop_test.py and outage_test.py:
+// sees, for interop_test.py, outage_test.py and suspension_test.py:
 //   ready life=L                          this process is up
 //   peer STATE                            UP, STALE or LOST
 //   mirror life=L                         the first counter of a life of the other node
+//   ten counters                          came since the last such line
 //   resumed life=L after_s=S              counters come again, after more than a second without
 //   frame life=L                          the 4 MB frame of that life is whole; `frame life=L garbled` if not
 //   orders life=L round=R count=N skipped=S    the last order of a round came; so many came, so many did not
@@ -144,6 +145,10 @@ private:
                 Say(line.str());
             }
             _lastCounter = now;
+            if (++_counters % 10 == 0)
+            {
+                Say("ten counters");
+            }
         }
         if (_otherFrame->FetchMessage() && _otherFrame->life != _frameLife)
         {
@@ -289,6 +294,7 @@ private:
     std::string _state;
     std::uint64_t _counterLife = 0;
     std::uint64_t _frameLife = 0;
+    std::uint64_t _counters = 0;
     Clock::time_point _lastCounter{};
     Clock::time_point _nextCounter{};
     bool _framePosted = false;

@@ -3,8 +3,10 @@
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 
+#include <mutex>
 #include <utility>
 
+#include "AcknowledgementTranslator.h"
 #include "RtpsCheck.h"
 
 namespace Rabit::FastDds
@@ -41,6 +43,11 @@ public:
     {
         if (IsSoundRtps({buffer, size}))
         {
+            {
+                // The buffer is the vendor's own for receiving, const only on the way through here.
+                const std::lock_guard lock(_mutex);
+                _acknowledgements.Translate({const_cast<rtps::octet *>(buffer), size});
+            }
             next->OnDataReceived(buffer, size, local, remote);
             return;
         }
@@ -49,6 +56,8 @@ public:
 
 private:
     GuardedUdpDescriptor _descriptor;
+    std::mutex _mutex;                            // several sockets receive at once
+    AcknowledgementTranslator _acknowledgements;  // guarded by _mutex
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
-// UDP as the vendor does it, with two differences: datagrams of up to 64 kB are received whatever size we
-// send, so that nodes with different settings understand each other; and what is no sound RTPS is dropped
-// before the vendor's parser sees it.
+// UDP as the vendor does it, with three differences: datagrams of up to 64 kB are received whatever size we
+// send, so that nodes with different settings understand each other; what is no sound RTPS is dropped before
+// the vendor's parser sees it; and a peer that had lost us is heard when it acknowledges anew
+// (AcknowledgementTranslator.h).
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
