@@ -8,6 +8,8 @@ namespace
 {
 
 constexpr PeerClock::Duration FilterPeriod = std::chrono::seconds(15);
+// More than drift adds up to while the filter remembers, and than threads that wait for a processor take.
+constexpr PeerClock::Duration Tolerance = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -26,6 +28,13 @@ void PeerClock::MinimumFilter::Add(Duration value, Duration now)
     _current = std::min(*_current, value);
 }
 
+void PeerClock::MinimumFilter::Restart(Duration value, Duration now)
+{
+    _previous.reset();
+    _current = value;
+    _periodStart = now;
+}
+
 std::optional<PeerClock::Duration> PeerClock::MinimumFilter::Value() const
 {
     if (_current && _previous)
@@ -37,17 +46,27 @@ std::optional<PeerClock::Duration> PeerClock::MinimumFilter::Value() const
 
 void PeerClock::OnBeat(const Reading &peer, Duration arrival)
 {
-    _difference.Add(arrival - peer.Monotonic, arrival);
+    _lastDifference = arrival - peer.Monotonic;
+    _lastSource = peer.Source;
+    _difference.Add(_lastDifference, arrival);
     _monotonicToSource = peer.Source - peer.Monotonic;
     _sourceToWall = peer.Wall - peer.Source;
 }
 
 void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
 {
-    if (roundTrip >= Duration(0))
+    if (roundTrip < Duration(0))
     {
-        _roundTrip.Add(roundTrip, now);
-        _lastRoundTrip = roundTrip;
+        return;
+    }
+    _roundTrip.Add(roundTrip, now);
+    _lastRoundTrip = roundTrip;
+    const Duration delay = _lastDifference - _difference.Value().value_or(_lastDifference);
+    if (delay > roundTrip + Tolerance)
+    {
+        _stoodStill += delay;
+        _stoodStillUntil = _lastSource;
+        _difference.Restart(_lastDifference, now);
     }
 }
 
@@ -61,10 +80,19 @@ std::optional<PeerClock::Duration> PeerClock::MonotonicToLocal() const
     return *difference - _roundTrip.Value().value_or(Duration(0)) / 2;
 }
 
-std::optional<PeerClock::Duration> PeerClock::SourceToLocal() const
+std::optional<PeerClock::SourceRelation> PeerClock::Source() const
 {
     const std::optional<Duration> offset = MonotonicToLocal();
-    return offset ? std::optional<Duration>(*offset - _monotonicToSource) : std::nullopt;
+    return offset ? std::optional(SourceRelation{.ToLocal = *offset - _monotonicToSource,
+                                                 .StoodStill = _stoodStill,
+                                                 .StoodStillUntil = _stoodStillUntil})
+                  : std::nullopt;
+}
+
+std::optional<PeerClock::Duration> PeerClock::ToLocal(Duration source) const
+{
+    const std::optional<SourceRelation> relation = Source();
+    return relation ? std::optional(relation->At(source)) : std::nullopt;
 }
 
 std::optional<PeerClock::Duration> PeerClock::SentAt(Duration peerMonotonic) const

@@ -14,7 +14,19 @@ namespace Rabit
 // A beat carries the sender's monotonic and wall clock read together. The smallest difference between arrival
 // here and the sender's monotonic clock belongs to the beat that was least delayed (the minimum filter of
 // NTP, RFC 5905, section 10); half the smallest round trip is taken as its delay. The filter forgets after 15
-// to 30 seconds, so that drift does not add up. Not thread-safe; no clock of its own.
+// to 30 seconds, so that drift does not add up.
+//
+// A clock that stood still (a virtual machine that was paused, a computer that was suspended) makes all later
+// differences larger, as a delay of every beat would. The two are told apart by the echo that a beat carries:
+// it cannot have been on its way for longer than the round trip that it ends. If the estimate says that it
+// was, by more than a tenth of a second, the estimate is wrong, and the filter begins anew with that beat.
+// One beat is proof: a delay, however long, constant or slowly varying, lengthens the round trip as much. The
+// limits: a standstill no longer than the round trip passes unnoticed until the filter forgets, and so does
+// one of a peer that does not hear us, for its beats carry no echo of ours.
+//
+// What the peer stamped before it stood still is as old as it was: ToLocal knows. Of what it stamped between
+// its return and the proof it believes the same, and so of two standstills the first: it errs towards older.
+// Not thread-safe; no clock of its own.
 class PeerClock
 {
 public:
@@ -30,13 +42,28 @@ public:
 
     // A beat, and when it arrived here (monotonic).
     void OnBeat(const Reading &peer, Duration arrival);
-    // A round trip measured at that moment; negative ones (a garbled echo) are ignored.
+    // A round trip that ended with the last beat, at that moment; negative ones (a garbled echo) are ignored.
     void OnRoundTrip(Duration roundTrip, Duration now);
 
     // The last round trip; empty while there was none.
     std::optional<Duration> RoundTrip() const { return _lastRoundTrip; }
-    // What to add to the peer's source clock to get this node's monotonic clock; empty before the first beat.
-    std::optional<Duration> SourceToLocal() const;
+    // How the peer's source clock relates to this node's monotonic clock.
+    struct SourceRelation
+    {
+        Duration ToLocal{0};          // to be added to a source time
+        Duration StoodStill{0};       // how long the peer's clock stood still in all
+        Duration StoodStillUntil{0};  // source times before this lack that
+
+        // A source time by this node's monotonic clock.
+        Duration At(Duration source) const
+        {
+            return source + ToLocal - (source < StoodStillUntil ? StoodStill : Duration(0));
+        }
+    };
+    // Empty before the first beat.
+    std::optional<SourceRelation> Source() const;
+    // A source time, by this node's monotonic clock; empty before the first beat.
+    std::optional<Duration> ToLocal(Duration source) const;
     // What to add to the peer's source clock to get its wall clock, as of the last beat.
     Duration SourceToWall() const { return _sourceToWall; }
     // When a beat with that monotonic reading was sent, by this node's monotonic clock; empty before the
@@ -49,6 +76,8 @@ private:
     {
     public:
         void Add(Duration value, Duration now);
+        // Forgets all but this value.
+        void Restart(Duration value, Duration now);
         std::optional<Duration> Value() const;
 
     private:
@@ -61,6 +90,10 @@ private:
 
     MinimumFilter _difference;
     MinimumFilter _roundTrip;
+    Duration _lastDifference{0};
+    Duration _lastSource{0};
+    Duration _stoodStill{0};
+    Duration _stoodStillUntil{0};
     Duration _monotonicToSource{0};
     Duration _sourceToWall{0};
     std::optional<Duration> _lastRoundTrip;

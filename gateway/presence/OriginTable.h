@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "clocks/PeerClock.h"
+
 namespace Rabit
 {
 
@@ -24,8 +26,8 @@ public:
         static constexpr std::chrono::nanoseconds Slack = std::chrono::seconds(1);
 
         std::uint64_t Incarnation = 0;
-        // Add these to the node's source times to get this node's monotonic clock, and the node's wall clock.
-        std::chrono::nanoseconds SourceToLocal{0};
+        PeerClock::SourceRelation Source;
+        // Add this to the node's source times to get its wall clock.
         std::chrono::nanoseconds SourceToWall{0};
 
         // When, by this node's monotonic clock, something was posted that arrived now. Empty if that is in
@@ -34,7 +36,7 @@ public:
         std::optional<std::chrono::nanoseconds> PostedAt(std::int64_t sourceTime,
                                                          std::chrono::nanoseconds arrival) const
         {
-            const std::chrono::nanoseconds posted = std::chrono::nanoseconds(sourceTime) + SourceToLocal;
+            const std::chrono::nanoseconds posted = Source.At(std::chrono::nanoseconds(sourceTime));
             return posted > arrival + Slack ? std::nullopt : std::optional(std::min(posted, arrival));
         }
     };

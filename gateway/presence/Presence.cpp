@@ -210,10 +210,10 @@ void Presence::Publish(const std::string &node)
         return;
     }
     _remote.Update(*peer);
-    const std::optional<Duration> offset = peer->Clock.SourceToLocal();
-    if (peer->Heard && offset)
+    const std::optional<PeerClock::SourceRelation> source = peer->Clock.Source();
+    if (peer->Heard && source)
     {
-        _origins.Set(node, OriginTable::Origin{peer->Incarnation, *offset, peer->Clock.SourceToWall()});
+        _origins.Set(node, OriginTable::Origin{peer->Incarnation, *source, peer->Clock.SourceToWall()});
     }
 }
 

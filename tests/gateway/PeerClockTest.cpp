@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 namespace Rabit
 {
 namespace
@@ -13,7 +16,7 @@ using Ns = std::chrono::nanoseconds;
 TEST(PeerClock, KnowsNothingBeforeTheFirstBeat)
 {
     const PeerClock clock;
-    EXPECT_FALSE(clock.SourceToLocal().has_value());
+    EXPECT_FALSE(clock.ToLocal(1s).has_value());
     EXPECT_FALSE(clock.RoundTrip().has_value());
 }
 
@@ -29,8 +32,7 @@ TEST(PeerClock, TurnsAPeersSourceClockIntoOursWhateverItShows)
         clock.OnBeat({100s + sent, sourceOfPeer + sent, 0s}, sent + 10ms);
         clock.OnRoundTrip(20ms, sent + 10ms);
     }
-    ASSERT_TRUE(clock.SourceToLocal().has_value());
-    EXPECT_EQ(sourceOfPeer + 23s + *clock.SourceToLocal(), Ns(23s));
+    EXPECT_EQ(clock.ToLocal(sourceOfPeer + 23s), Ns(23s));
     EXPECT_EQ(clock.SentAt(100s + 23s), Ns(23s));
 }
 
@@ -40,7 +42,7 @@ TEST(PeerClock, IgnoresBeatsThatWereDelayed)
     clock.OnBeat({1s, 1001s, 0s}, 1s + 1ms);
     clock.OnRoundTrip(2ms, 1s + 1ms);
     clock.OnBeat({2s, 1002s, 0s}, 2s + 700ms);
-    EXPECT_EQ(1002s + *clock.SourceToLocal(), Ns(2s));
+    EXPECT_EQ(clock.ToLocal(1002s), Ns(2s));
 }
 
 TEST(PeerClock, AStepOfThePeersWallClockChangesTheStampAndNotTheAge)
@@ -48,7 +50,7 @@ TEST(PeerClock, AStepOfThePeersWallClockChangesTheStampAndNotTheAge)
     PeerClock clock;
     clock.OnBeat({1s, 1001s, 1001s}, 1s);
     clock.OnBeat({2s, 1002s, 1002s + 3600s}, 2s);
-    EXPECT_EQ(1002s + *clock.SourceToLocal(), Ns(2s));
+    EXPECT_EQ(clock.ToLocal(1002s), Ns(2s));
     EXPECT_EQ(clock.SourceToWall(), Ns(3600s));
 }
 
@@ -64,7 +66,7 @@ TEST(PeerClock, ForgetsAnOldMinimumSoThatDriftDoesNotAddUp)
         peer += 499500us;
         clock.OnBeat({peer, peer, peer}, now);
     }
-    const Ns error = now - (peer + *clock.SourceToLocal());
+    const Ns error = now - *clock.ToLocal(peer);
     EXPECT_LE(error, Ns(30ms));
     EXPECT_GE(error, Ns(0));
 }
@@ -87,6 +89,120 @@ TEST(PeerClock, IgnoresANegativeRoundTrip)
     PeerClock clock;
     clock.OnRoundTrip(-5ms, 0s);
     EXPECT_FALSE(clock.RoundTrip().has_value());
+}
+
+// A peer whose monotonic clock is as ours, 100 s ahead, and whose source clock is 1000 s ahead.
+class PeerClockAfterAStandstill : public ::testing::Test
+{
+protected:
+    static PeerClock::Reading ReadingAt(Ns monotonic)
+    {
+        return {.Monotonic = 100s + monotonic, .Source = 1000s + monotonic, .Wall = 0s};
+    }
+
+    // A beat, and how long it and the one of ours that it echoes were on their way.
+    void Beat(Ns peerSent, Ns arrival, Ns roundTrip)
+    {
+        clock.OnBeat(ReadingAt(peerSent), arrival);
+        clock.OnRoundTrip(roundTrip, arrival);
+    }
+
+    // Beats on a short path until now = 20 s; then the peer stands still for 60 s.
+    void SetUp() override
+    {
+        for (Ns sent = 0s; sent < 20s; sent += 500ms)
+        {
+            Beat(sent, sent + 10ms, 20ms);
+        }
+    }
+    static constexpr Ns StoodStill = 60s;
+
+    PeerClock clock;
+};
+
+TEST_F(PeerClockAfterAStandstill, ABeatThatIsYoungerThanTheEstimateByItsOwnRoundTripCorrectsIt)
+{
+    Beat(20s, 20s + StoodStill + 10ms, 20ms);
+    EXPECT_EQ(clock.SentAt(100s + 20s), Ns(20s + StoodStill));
+    EXPECT_EQ(clock.ToLocal(1000s + 21s), Ns(21s + StoodStill));
+}
+
+TEST_F(PeerClockAfterAStandstill, NoBeatWithoutARoundTripCorrectsTheEstimate)
+{
+    for (Ns sent = 20s; sent < 25s; sent += 500ms)
+    {
+        clock.OnBeat(ReadingAt(sent), sent + StoodStill + 10ms);
+    }
+    EXPECT_EQ(clock.SentAt(100s + 25s), Ns(25s)) << "they may all have been held up as long";
+}
+
+TEST_F(PeerClockAfterAStandstill, AnEchoOfABeatFromBeforeItProvesNothing)
+{
+    // The peer does not know that it held the echo for as long.
+    Beat(20s, 20s + StoodStill + 10ms, StoodStill + 20ms);
+    EXPECT_EQ(clock.SentAt(100s + 20s), Ns(20s));
+}
+
+TEST_F(PeerClockAfterAStandstill, ABeatThatWasHeldUpIsAsOldAsItIs)
+{
+    Beat(20s, 20s + StoodStill, StoodStill + 10ms);
+    EXPECT_EQ(clock.SentAt(100s + 20s), Ns(20s));
+}
+
+TEST_F(PeerClockAfterAStandstill, WhatWasStampedBeforeItIsNotMadeYounger)
+{
+    Beat(20s, 20s + StoodStill + 10ms, 20ms);
+    EXPECT_EQ(clock.ToLocal(1000s + 5s), Ns(5s));
+}
+
+TEST_F(PeerClockAfterAStandstill, WhatWasStampedBeforeSeveralIsNeverMadeYounger)
+{
+    Beat(20s, 20s + StoodStill + 10ms, 20ms);
+    Beat(30s, 30s + 2 * StoodStill + 10ms, 20ms);
+    EXPECT_EQ(clock.ToLocal(1000s + 5s), Ns(5s));
+    EXPECT_LE(clock.ToLocal(1000s + 25s), Ns(25s + StoodStill));
+    EXPECT_EQ(clock.ToLocal(1000s + 31s), Ns(31s + 2 * StoodStill));
+}
+
+TEST_F(PeerClockAfterAStandstill, OfOursMovesWhatWasStampedBeforeOneOfThePeersToo)
+{
+    Beat(20s, 20s + StoodStill + 10ms, 20ms);
+    // Our clock stands still for 7 s.
+    Beat(37s, 30s + StoodStill + 10ms, 20ms);
+    EXPECT_EQ(clock.ToLocal(1000s + 38s), Ns(31s + StoodStill));
+    EXPECT_EQ(clock.ToLocal(1000s + 5s), Ns(-2s));
+}
+
+TEST(PeerClock, DelaysOfSecondsThatRiseAndFallAreNotTakenForAStandstill)
+{
+    // A thin radio with full queues: each way takes up to 4 s, slowly varying and in turns.
+    for (unsigned seed = 0; seed < 200; ++seed)
+    {
+        std::mt19937 random(seed);
+        const auto step = [&](Ns &delay)
+        {
+            delay += Ns(std::uniform_int_distribution<std::int64_t>(-300'000'000, 300'000'000)(random));
+            delay = std::clamp(delay, Ns(20ms), Ns(4s));
+        };
+        PeerClock clock;
+        Ns there = 20ms;
+        Ns back = 20ms;
+        Ns shortest = 1h;
+        for (Ns sent = 0s; sent < 60s; sent += 500ms)
+        {
+            step(there);
+            step(back);
+            const auto before = clock.SentAt(0s);
+            clock.OnBeat({sent, sent, 0s}, sent + back);
+            shortest = std::min(shortest, back);
+            clock.OnRoundTrip(there + back, sent + back);
+            if (before && sent < 15s)
+            {
+                EXPECT_LE(*clock.SentAt(0s), shortest) << "seed " << seed;
+            }
+            EXPECT_EQ(*clock.ToLocal(sent) - *clock.ToLocal(0s), sent) << "seed " << seed;
+        }
+    }
 }
 
 }  // namespace

@@ -104,6 +104,49 @@ TEST_F(PeerTableTest, ABeatThatWasHeldUpOnTheWayDoesNotMakeItsNodeLookLive)
     EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
 }
 
+// A beat of a peer whose monotonic clock stood still for `behind` in all, which echoes one that we sent so
+// long before it came.
+Gateway::Beat EchoingBeat(Ns sent, Ns behind, Ns arrival, Ns roundTrip)
+{
+    Gateway::Beat beat = BeatOf("uav1", 5, sent - behind);
+    Gateway::BeatEcho echo;
+    echo.node = "ground";
+    echo.incarnation = 7;
+    echo.monotonic_ns = (arrival - roundTrip).count();
+    beat.echoes.push_back(echo);
+    return beat;
+}
+
+TEST_F(PeerTableTest, ANodeWhoseClockStoodStillIsUpWithTheFirstBeatThatEchoesOneSentSince)
+{
+    for (Ns sent = 1s; sent < 20s; sent += 500ms)
+    {
+        table.OnBeat(EchoingBeat(sent, 0s, sent + 10ms, 20ms), sent + 10ms);
+    }
+    table.Advance(120s);
+    EXPECT_FALSE(table.OnBeat(BeatOf("uav1", 5, 20s), 120s).State) << "it may have been held up";
+    const PeerTable::Change change = table.OnBeat(EchoingBeat(120500ms, 100s, 120510ms, 20ms), 120510ms);
+    EXPECT_TRUE(change.State);
+    EXPECT_FALSE(change.NewLife);
+    EXPECT_EQ(StateOf("uav1"), NodeState::UP);
+    EXPECT_EQ(table.Find("uav1")->LastHeard, Ns(120500ms));
+}
+
+TEST_F(PeerTableTest, ABeatThatWasHeldUpWithItsEchoDoesNotMakeItsNodeLookLive)
+{
+    for (Ns sent = 1s; sent < 20s; sent += 500ms)
+    {
+        table.OnBeat(EchoingBeat(sent, 0s, sent + 10ms, 20ms), sent + 10ms);
+    }
+    table.Advance(120s);
+    for (Ns sent = 20s; sent < 25s; sent += 500ms)
+    {
+        const Ns arrival = sent + 100s;
+        EXPECT_FALSE(table.OnBeat(EchoingBeat(sent, 0s, arrival, 100s + 10ms), arrival).State);
+    }
+    EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
+}
+
 TEST_F(PeerTableTest, ADuplicateOfABeatChangesNothing)
 {
     Hear("uav1", 5, 1s);
