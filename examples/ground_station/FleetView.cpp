@@ -1,5 +1,7 @@
 #include "FleetView.h"
 
+#include "ProblemLines.h"
+
 #include <rabit/gateway/GatewayManager.h>
 
 #include <sys/ioctl.h>
@@ -91,21 +93,35 @@ void FleetView::Print()
     const double elapsedS =
         std::chrono::duration<double>(GetWorkspace().GetClock().Monotonic() - _start).count();
     if (_output.IsTerminal)
-    {
-        std::vector<TableLine> lines = FleetTableLines(rows, elapsedS);
-        for (const Seen &seen : _seen)
-            for (const FoundTarget &target : seen.Targets)
-                lines.push_back({TargetLine(target)});
-        _output.Stream << _screen.Redraw(lines, TerminalSize());
-    }
+        PrintTable(rows, elapsedS);
     else
-    {
-        for (const std::string &line : FleetLogLines(rows, elapsedS))
-            _output.Stream << line << '\n';
-        for (const std::string &line : TargetLinesThatChanged())
-            _output.Stream << line << '\n';
-    }
+        PrintLog(rows, elapsedS);
     _output.Stream.flush();
+}
+
+void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
+{
+    std::vector<TableLine> lines = FleetTableLines(rows, elapsedS);
+    for (const Seen &seen : _seen)
+        for (const FoundTarget &target : seen.Targets)
+            lines.push_back({TargetLine(target)});
+    for (TableLine &line : ProblemTableLines(_fleet->problems, _fleet->GetAgeSeconds()))
+        lines.push_back(std::move(line));
+    std::vector<std::string> above;
+    if (_output.TakeLog)
+        above = _output.TakeLog();
+    _output.Stream << _screen.Redraw(lines, TerminalSize(), above);
+}
+
+void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
+{
+    for (const std::string &line : FleetLogLines(rows, elapsedS))
+        _output.Stream << line << '\n';
+    for (const std::string &line : TargetLinesThatChanged())
+        _output.Stream << line << '\n';
+    const std::string problems = ProblemLogLine(_fleet->problems, _fleet->GetAgeSeconds(), elapsedS);
+    if (!problems.empty())
+        _output.Stream << problems << '\n';
 }
 
 std::vector<std::string> FleetView::TargetLinesThatChanged()

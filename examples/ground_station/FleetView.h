@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <ostream>
@@ -22,7 +23,8 @@ namespace Ground
 {
 
 // Shows the fleet on the standard output: the manager `FleetView`. On a terminal it redraws a table in place,
-// else it writes a line a second for each aircraft.
+// else it writes a line a second for each aircraft. What keeps data from flowing stands below, as long as it
+// is so.
 //
 // Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose, <node>/MissionState and
 // <node>/Findings of each of them; and CommandTally of the Commander.
@@ -40,6 +42,8 @@ public:
     {
         std::ostream &Stream;
         bool IsTerminal = false;  // the standard output is one
+        // If it is set and the output is a terminal: what to write once, above the table.
+        std::function<std::vector<std::string>()> TakeLog{};
     };
 
     // What was seen of one aircraft, for the summary at the end.
@@ -70,6 +74,8 @@ private:
     void Look();
     void FollowNewNodes();
     void Print();
+    void PrintTable(const std::vector<FleetRow> &rows, double elapsedS);
+    void PrintLog(const std::vector<FleetRow> &rows, double elapsedS);
     std::vector<std::string> TargetLinesThatChanged();
 
     const Output _output;

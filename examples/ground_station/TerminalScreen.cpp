@@ -28,7 +28,8 @@ const char *StyleOf(Emphasis shown)
 }
 }  // namespace
 
-std::string TerminalScreen::Redraw(const std::vector<TableLine> &lines, const Size &size)
+std::string TerminalScreen::Redraw(const std::vector<TableLine> &lines, const Size &size,
+                                   const std::vector<std::string> &above)
 {
     std::string text;
     if (_drawn > 0 && size != _size)
@@ -36,6 +37,8 @@ std::string TerminalScreen::Redraw(const std::vector<TableLine> &lines, const Si
     else if (_drawn > 0)
         text = "\x1b[" + std::to_string(_drawn) + "A\r";
 
+    for (const std::string &line : above)
+        text += EraseBelow + line + "\n";
     // Each line is erased before it is written: behind a line as wide as the terminal, erasing would take its
     // last character. The cursor rests on the line below the last one.
     const std::size_t room = std::max<std::size_t>(size.Rows, 3) - 1;

@@ -24,8 +24,9 @@ public:
 
     // What to write so that the terminal shows these lines in place of the last ones. Lines too wide are cut,
     // because a wrapped line would spoil the next redraw; if there are too many, the last line shown says how
-    // many are not.
-    std::string Redraw(const std::vector<TableLine> &lines, const Size &size);
+    // many are not. `above` is written once, above them, and scrolls away like any other output.
+    std::string Redraw(const std::vector<TableLine> &lines, const Size &size,
+                       const std::vector<std::string> &above = {});
 
 private:
     std::size_t _drawn = 0;

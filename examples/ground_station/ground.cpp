@@ -5,6 +5,7 @@
 #include "Limits.h"
 #include "NodeProgram.h"
 #include "NumberWithin.h"
+#include "ScreenLog.h"
 #include "Verdict.h"
 #include "WebPage.h"
 #include "WebServer.h"
@@ -25,6 +26,7 @@
 #include <cstdint>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -193,8 +195,14 @@ int Watch(const Options &options)
     std::unique_ptr<Ground::WebServer> server = MakeWebServer(options);
     if (options.Node.Check)
         return 0;
-    auto view = std::make_unique<Ground::FleetView>(
-        options.Expected, Ground::FleetView::Output{std::cout, isatty(STDOUT_FILENO) == 1});
+    Ground::FleetView::Output output{std::cout, isatty(STDOUT_FILENO) == 1};
+    std::optional<Ground::ScreenLog> log;  // outlives the reactor, whose managers use it
+    if (output.IsTerminal && isatty(STDERR_FILENO) == 1)
+    {
+        log.emplace();
+        output.TakeLog = [&log] { return log->Take(); };
+    }
+    auto view = std::make_unique<Ground::FleetView>(options.Expected, output);
     auto commander = std::make_unique<Ground::Commander>(CommanderSettings(options, config.Node, area));
     const Ground::FleetView &theView = *view;  // the reactor keeps both until the end of this function
     Ground::Commander &theCommander = *commander;

@@ -119,6 +119,20 @@ TEST_F(FleetView, PutsNamesInTheOrderOfTheirNumbers)
     EXPECT_THAT(names, testing::ElementsAre("uav1", "uav2", "uav10"));
 }
 
+TEST_F(FleetView, ShowsWhatKeepsDataFromFlowingAsLongAsItIsSo)
+{
+    Start({"uav1"});
+    Rabit::Gateway::Problem problem;
+    problem.subject = "subscribe Pse";
+    problem.node = "uav1";
+    problem.reason = "uav1 does not publish `Pse`";
+    _fleet->problems = {problem};
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr("1 problem: subscribe Pse (uav1)"));
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr("1 problem: subscribe Pse (uav1)"));
+    _fleet->problems.clear();
+    EXPECT_THAT(Show(NodeState::UP), testing::Not(HasSubstr("problem")));
+}
+
 TEST_F(FleetView, ShowsWhatTheCommanderHasSent)
 {
     Start({"uav1"});

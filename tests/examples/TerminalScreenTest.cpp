@@ -42,6 +42,15 @@ TEST(TerminalScreen, ClearsEverythingWhenTheTerminalHasChangedItsSize)
     EXPECT_EQ(screen.Redraw({{"one"}}, {60, 24}), "\x1b[2J\x1b[H\x1b[Kone\n\x1b[J");
 }
 
+TEST(TerminalScreen, LeavesALineOfTheLogAboveTheOthersForGood)
+{
+    TerminalScreen screen;
+    screen.Redraw({{"one"}, {"two"}}, {80, 24});
+    EXPECT_EQ(screen.Redraw({{"one"}, {"two"}}, {80, 24}, {"a warning"}),
+              "\x1b[2A\r\x1b[Ja warning\n\x1b[Kone\n\x1b[Ktwo\n\x1b[J");
+    EXPECT_EQ(screen.Redraw({{"one"}}, {80, 24}), "\x1b[2A\r\x1b[Kone\n\x1b[J") << "it is not drawn over";
+}
+
 TEST(TerminalScreen, EndsTheStyleOfALineWithTheLine)
 {
     TerminalScreen screen;

@@ -1,0 +1,70 @@
+#include "ProblemLines.h"
+
+#include "NodeState.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace Ground
+{
+namespace
+{
+constexpr std::size_t LongestName = 64;
+constexpr std::size_t LongestReason = 400;
+
+std::string Seconds(double seconds, const char *format)
+{
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), format, seconds);
+    return text.data();
+}
+
+std::string Count(std::size_t problems, double fleetAgeS)
+{
+    return std::to_string(problems) + (problems == 1 ? " problem" : " problems") +
+           (fleetAgeS > FleetFreshS ? " (" + Seconds(fleetAgeS, "%.0f s") + " ago)" : "");
+}
+
+std::string More(std::size_t problems)
+{
+    return "and " + std::to_string(problems - ProblemsOnScreen) + " more";
+}
+
+// The subject names the node where it must.
+std::string Name(const Rabit::Gateway::Problem &problem, const char *before, const char *after)
+{
+    std::string name = Printable(problem.subject, LongestName);
+    if (!problem.node.empty() && problem.subject.find(problem.node) == std::string::npos)
+        name += before + Printable(problem.node, LongestName) + after;
+    return name;
+}
+}  // namespace
+
+std::vector<TableLine> ProblemTableLines(const std::vector<Rabit::Gateway::Problem> &problems,
+                                         double fleetAgeS)
+{
+    std::vector<TableLine> lines;
+    if (problems.empty())
+        return lines;
+    lines.push_back({Count(problems.size(), fleetAgeS) + ":", Emphasis::Warning});
+    for (std::size_t i = 0; i < std::min(problems.size(), ProblemsOnScreen); ++i)
+        lines.push_back(
+            {"  " + Name(problems[i], ", ", "") + ": " + Printable(problems[i].reason, LongestReason)});
+    if (problems.size() > ProblemsOnScreen)
+        lines.push_back({"  " + More(problems.size())});
+    return lines;
+}
+
+std::string ProblemLogLine(const std::vector<Rabit::Gateway::Problem> &problems, double fleetAgeS,
+                           double elapsedS)
+{
+    if (problems.empty())
+        return "";
+    std::string line = Seconds(elapsedS, "%7.1f s  ") + Count(problems.size(), fleetAgeS) + ": ";
+    for (std::size_t i = 0; i < std::min(problems.size(), ProblemsOnScreen); ++i)
+        line += (i > 0 ? ", " : "") + Name(problems[i], " (", ")");
+    return problems.size() > ProblemsOnScreen ? line + " " + More(problems.size()) : line;
+}
+
+}  // namespace Ground
