@@ -196,6 +196,18 @@ Json ToJson(const std::deque<StationEvent> &events, double nowS)
                          {"text", event->Text}});
     return items;
 }
+
+Json ToJson(const std::vector<Rabit::Gateway::Problem> &problems)
+{
+    Json items = Json::array();
+    for (const Rabit::Gateway::Problem &problem : problems)
+    {
+        if (items.size() == ProblemsInSnapshot)
+            break;
+        items.push_back({{"subject", problem.subject}, {"node", problem.node}, {"reason", problem.reason}});
+    }
+    return {{"count", problems.size()}, {"items", std::move(items)}};
+}
 }  // namespace
 
 std::string SnapshotText(const StationData &data, const std::deque<StationEvent> &events)
@@ -210,7 +222,8 @@ std::string SnapshotText(const StationData &data, const std::deque<StationEvent>
                      {"server_s", Short(data.NowS)},
                      {"fleet_age_s", Short(data.FleetAgeS)},
                      {"aircraft", std::move(aircraft)},
-                     {"events", ToJson(events, data.NowS)}};
+                     {"events", ToJson(events, data.NowS)},
+                     {"problems", ToJson(data.Problems)}};
     Add(snapshot, "area", data.Area);
     snapshot["commands"] = data.Commands ? ToJson(*data.Commands.Content, data.Commands.AgeS) : Json::array();
     return snapshot.dump(-1, ' ', false, Json::error_handler_t::replace);

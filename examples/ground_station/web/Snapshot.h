@@ -13,6 +13,8 @@ namespace Ground
 // The newest commands and events that go into a snapshot.
 inline constexpr std::size_t CommandsInSnapshot = 40;
 inline constexpr std::size_t EventsInSnapshot = 40;
+// The first of the problems there are now; all are counted.
+inline constexpr std::size_t ProblemsInSnapshot = 20;
 
 // What the page is told, as JSON. Units and names are those of the IDL; what is not known is null or left
 // out. Every part has the age that it had at `server_s`, so that the page can count on. Texts from the

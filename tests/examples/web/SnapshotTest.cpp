@@ -130,6 +130,31 @@ TEST_F(Snapshot, HoldsTheNewestCommandsAndEventsOnly)
     EXPECT_EQ(shown["events"].back()["weight"], "alarm");
 }
 
+TEST_F(Snapshot, TellsWhatKeepsDataFromFlowingNow)
+{
+    EXPECT_EQ(Shown()["problems"], Json({{"count", 0}, {"items", Json::array()}}));
+    Rabit::Gateway::Problem problem;
+    problem.subject = "subscribe Pse";
+    problem.node = "uav1";
+    problem.reason = "uav1 does not publish `Pse`";
+    _data.Problems = {problem};
+    const Json shown = Shown()["problems"];
+    EXPECT_EQ(shown["count"], 1);
+    EXPECT_EQ(
+        shown["items"][0],
+        Json({{"subject", "subscribe Pse"}, {"node", "uav1"}, {"reason", "uav1 does not publish `Pse`"}}));
+}
+
+TEST_F(Snapshot, HoldsTheFirstProblemsAndCountsAll)
+{
+    _data.Problems.resize(1000);
+    _data.Problems[0].subject = "first";
+    const Json shown = Shown()["problems"];
+    EXPECT_EQ(shown["count"], 1000);
+    EXPECT_EQ(shown["items"].size(), Ground::ProblemsInSnapshot);
+    EXPECT_EQ(shown["items"][0]["subject"], "first");
+}
+
 TEST_F(Snapshot, TellsOfTargetsHowLongTheyWereNotSeenByTheClockOfTheAircraft)
 {
     Uav::Targets targets;

@@ -1,8 +1,8 @@
 // The real web page over a scripted fleet, for the tests in a browser:
 //   web_fixture AIRCRAFT [hostile] [PORT]
 // Prints the page's address, then each order that it gets. Lines on the standard input say what happens to
-// the fleet: `stale NODE`, `lost NODE`, `up NODE`, `silence` (nothing is posted any more); it ends at their
-// end.
+// the fleet: `stale NODE`, `lost NODE`, `up NODE`, `problems COUNT` (there are so many now), `silence`
+// (nothing is posted any more); it ends at their end.
 #include "WebPage.h"
 #include "WebServer.h"
 
@@ -146,11 +146,23 @@ private:
             words >> what >> node;
             if (what == "silence")
                 _silent = true;
+            if (what == "problems")
+                SetProblems(std::stoul(node));
             for (FlyingAircraft &one : _aircraft)
                 if (one.Node == node)
                     one.State = what == "up"      ? NodeState::UP
                                 : what == "stale" ? NodeState::STALE
                                                   : NodeState::LOST;
+        }
+    }
+    void SetProblems(std::size_t count)
+    {
+        _fleet->problems.resize(count);
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            _fleet->problems[i].node = "uav" + std::to_string(i + 1);
+            _fleet->problems[i].subject = "subscribe Pse";
+            _fleet->problems[i].reason = _fleet->problems[i].node + " does not publish `Pse`";
         }
     }
     void TakeOrders()
@@ -196,9 +208,11 @@ private:
             _fleet->nodes.push_back(status);
         }
         if (_hostile)
+        {
             _fleet->problems.resize(1);
-        for (auto &problem : _fleet->problems)
-            problem.subject = problem.reason = problem.node = Markup;
+            for (auto &problem : _fleet->problems)
+                problem.subject = problem.reason = problem.node = Markup;
+        }
         _fleet->PostMessage();
     }
     void Fly(FlyingAircraft &one, int index)

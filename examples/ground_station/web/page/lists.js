@@ -73,6 +73,33 @@ export class TargetList {
   }
 }
 
+// What keeps data from flowing now, as the gateway of the ground station knows it.
+export class ProblemList {
+  constructor(model) {
+    this.model = model;
+    this.items = new Map();
+  }
+  update() {
+    const {count = 0, items = []} = this.model.snapshot?.problems ?? {};
+    const fresh = this.model.fleetFresh;
+    const panel = byId('problems-panel');
+    panel.hidden = count === 0;
+    setClass(panel, fresh ? 'panel problems' : 'panel problems old');
+    setText(byId('problems-title'), `▲ ${count} ${count === 1 ? 'problem' : 'problems'}${fresh ? '' : ' (old)'}`);
+    keepList(byId('problems'), this.items, items, (one) => `${one.node}|${one.subject}`, () => {
+      const item = {root: element('li', 'warning'), who: element('span', 'who'), what: element('span', 'what')};
+      item.root.append(item.who, item.what);
+      return item;
+    }, ({who, what}, one) => {
+      setText(who, one.node);
+      setText(what, `${one.subject}: ${one.reason}`);
+    });
+    const more = count - items.length;
+    byId('problems-more').hidden = more <= 0;
+    setText(byId('problems-more'), `and ${more} more`);
+  }
+}
+
 export class EventList {
   static LONGEST = 200;
   constructor(model, say) {

@@ -48,10 +48,13 @@ export class Model {
     return isNumber(ageInSnapshot) ? ageInSnapshot + this.staleness : NaN;
   }
 
+  // Whether what the gateway tells of nodes and problems is of now.
+  get fleetFresh() {
+    return this.live && this.age(this.snapshot?.fleet_age_s) <= FLEET_FRESH_S;
+  }
   state(aircraft) {
     if (aircraft.state !== 'up') return aircraft.state;
-    const fleetAge = this.age(this.snapshot.fleet_age_s);
-    return this.live && fleetAge <= FLEET_FRESH_S ? 'up' : 'stale';
+    return this.fleetFresh ? 'up' : 'stale';
   }
   isPoseFresh(aircraft) {
     return this.state(aircraft) === 'up' && this.age(aircraft.pose?.age_s) <= POSE_FRESH_S;

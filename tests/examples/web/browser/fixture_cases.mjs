@@ -59,14 +59,14 @@ async function showsHostileTextsAsText(programs) {
   await fleet.page.keyboard.press('Enter');
   fixture.tell('lost uav1');
   const markup = '<img src=x onerror=';
-  for (const place of ['#selected-text', '#commands', '#events']) {
+  for (const place of ['#selected-text', '#commands', '#problems', '#events']) {
     await becomes(async () => (await fleet.text(place)).includes(markup), `${place} shows the text as it is`);
   }
   await becomes(async () => (await fleet.text('#targets')).includes('<b>uav</b>'), 'the list of targets shows the text');
   await becomes(async () => (await fleet.text('#fleet')).includes('<svg onload='), 'the table shows the text');
   await watch(fleet.page, 10);
   assert.equal(await fleet.page.evaluate(() => window.pwned), undefined, 'a script of the network ran');
-  assert.equal(await fleet.page.locator('img[src="x"], #events script, #events img, td b, td svg').count(), 0);
+  assert.equal(await fleet.page.locator('img[src="x"], #events script, #events img, #problems script, #problems img, td b, td svg').count(), 0);
   // What has no way to run would be stopped by the policy as well.
   const blocked = await fleet.page.evaluate(() => new Promise((resolve) => {
     document.addEventListener('securitypolicyviolation', (event) => resolve(event.effectiveDirective), {once: true});
@@ -76,6 +76,29 @@ async function showsHostileTextsAsText(programs) {
   }));
   assert.match(blocked, /script-src/);
   assert.equal(await fleet.page.evaluate(() => window.pwned), undefined);
+}
+
+async function showsTheProblemsThatThereAreNow(programs) {
+  const {fixture, url} = await start(programs, 3);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state), 'is shown');
+  assert.equal(await page.isVisible('#problems-panel'), false, 'where nothing is wrong there is no panel');
+  fixture.tell('problems 25');
+  await becomes(async () => /25 problems/.test(await fleet.text('#problems-title')), 'they are counted');
+  assert.equal(await page.isVisible('#problems-panel'), true);
+  assert.equal(await page.locator('#problems li').count(), 20);
+  assert.match(await fleet.text('#problems li'), /uav1.*subscribe Pse: uav1 does not publish `Pse`/);
+  assert.match(await fleet.text('#problems-more'), /and 5 more/);
+  fixture.tell('problems 1');
+  await becomes(async () => /1 problem$/.test(await fleet.text('#problems-title')), 'what is gone goes');
+  assert.equal(await page.locator('#problems li').count(), 1);
+  await watch(page, 30);
+  assert.equal(await page.isVisible('#problems-panel'), true, 'what is still there does not scroll away');
+  fixture.tell('silence');
+  await becomes(async () => /old/.test(await fleet.text('#problems-title')), 'they are marked as old');
+  assert.deepEqual(fleet.errors, []);
 }
 
 async function sendsADraggedSearchArea(programs) {
@@ -269,6 +292,7 @@ async function hasThemesThatLast(programs) {
 export const cases = {
   follows_twenty_aircraft: followsTwentyAircraft,
   shows_hostile_texts_as_text: showsHostileTextsAsText,
+  shows_the_problems_that_there_are_now: showsTheProblemsThatThereAreNow,
   sends_a_dragged_search_area: sendsADraggedSearchArea,
   recovers_from_a_reload_and_a_restart: recoversFromAReloadAndARestart,
   works_by_keyboard_alone: worksByKeyboardAlone,
