@@ -7,6 +7,7 @@
 
 #include "names/NamePattern.h"
 #include "names/NearestWord.h"
+#include "wire/Announcements.h"
 
 namespace Rabit
 {
@@ -25,6 +26,7 @@ public:
         CheckSubscribe();
         CheckAccept();
         CheckSend();
+        CheckAnnouncement();
     }
 
 private:
@@ -186,6 +188,16 @@ private:
             {
                 Fail(rule.Line, "`expire` is out of range; expected 0 (never) to a year");
             }
+        }
+    }
+
+    // Others would not take what is larger, and nobody would learn why.
+    void CheckAnnouncement() const
+    {
+        const std::string excess = Announcements::WhyTooLarge(Announcements::Of(_config, 0));
+        if (!excess.empty())
+        {
+            Fail(0, excess);
         }
     }
 

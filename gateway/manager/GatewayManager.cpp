@@ -13,7 +13,6 @@
 #include "incarnation/IncarnationStore.h"
 #include "mirrors/Subscriptions.h"
 #include "mirrors/TopicPublisher.h"
-#include "names/TypeDefinition.h"
 #include "presence/OriginTable.h"
 #include "presence/Presence.h"
 #include "presence/RemoteQueues.h"
@@ -21,7 +20,7 @@
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
 #include "report/ProblemLog.h"
-#include "wire/GatewayTopics.h"
+#include "wire/Announcements.h"
 
 namespace Rabit
 {
@@ -53,36 +52,6 @@ TransportSettings SettingsOf(const GatewayConfig &config, std::uint64_t incarnat
     settings.Log = [](const std::string &line)
     { RabitLog::Write(RabitLogLevel::Warning, "transport: " + line); };
     return settings;
-}
-
-Gateway::Announcement AnnouncementOf(const GatewayConfig &config, std::uint64_t incarnation)
-{
-    Gateway::Announcement announcement;
-    announcement.node = config.Node;
-    announcement.incarnation = incarnation;
-    for (const PublishRule &rule : config.Publish)
-    {
-        Gateway::PublishedMessage published;
-        published.message = rule.Message;
-        published.type = rule.Type;
-        published.qos = GatewayTopics::NameOf(rule.Qos);
-        published.definition = DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
-        announcement.publishes.push_back(published);
-    }
-    for (const AcceptRule &rule : config.Accept)
-    {
-        Gateway::AcceptedQueue accepted;
-        accepted.queue = rule.Queue;
-        for (const std::string &name : rule.Types)
-        {
-            Gateway::QueueType type;
-            type.type = name;
-            type.definition = DefinitionHash(*MessageTypeRegistry::Find(name));
-            accepted.types.push_back(type);
-        }
-        announcement.accepts.push_back(accepted);
-    }
-    return announcement;
 }
 
 const GatewayConfig &Validated(const GatewayConfig &config)
@@ -215,7 +184,7 @@ private:
                                      *_session);
             Attach(_publishers.back());
         }
-        _presence.Open(*_session, AnnouncementOf(_config, _incarnation));
+        _presence.Open(*_session, Announcements::Of(_config, _incarnation));
         _workspace.SetQueueForwarder(_links);
     }
 

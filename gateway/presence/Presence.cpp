@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "clocks/GpsTime.h"
-#include "names/NamePattern.h"
 #include "wire/GatewayTopics.h"
 #include "wire/MessageEncoder.h"
 
@@ -19,40 +18,6 @@ constexpr std::size_t EchoesInABeat = 8;
 // Whoever has just appeared may not be matched yet with those who send to it, and nothing of a node is posted
 // before a beat of it was heard: the first beats follow each other quickly, each step twice the one before.
 constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
-// More than this at once is no fleet but a fault.
-constexpr std::size_t LargestInbox = 10000;
-// What a node may offer: far more than any does, little enough to keep for a thousand nodes.
-constexpr std::size_t MostOffers = 1000;
-
-// Clock readings on which arithmetic cannot overflow: three centuries either way are more than any clock
-// shows.
-bool IsPlausible(std::int64_t nanoseconds)
-{
-    constexpr std::int64_t most = std::int64_t{1} << 61;
-    return nanoseconds >= 0 && nanoseconds < most;
-}
-
-bool IsPlausible(const Gateway::Beat &beat)
-{
-    return IsNodeName(beat.node) && IsPlausible(beat.monotonic_ns) && IsPlausible(beat.source_ns) &&
-           IsPlausible(beat.utc_ns) && beat.echoes.size() <= 64 &&
-           std::all_of(beat.echoes.begin(), beat.echoes.end(),
-                       [](const Gateway::BeatEcho &echo)
-                       { return IsPlausible(echo.monotonic_ns) && IsPlausible(echo.held_ns); });
-}
-
-bool IsPlausible(const Gateway::Announcement &announcement)
-{
-    return IsNodeName(announcement.node) && announcement.publishes.size() <= MostOffers &&
-           announcement.accepts.size() <= MostOffers &&
-           std::all_of(announcement.publishes.begin(), announcement.publishes.end(),
-                       [](const auto &published)
-                       { return IsMessageName(published.message) && published.type.size() <= 255; }) &&
-           std::all_of(announcement.accepts.begin(), announcement.accepts.end(),
-                       [](const auto &accepted)
-                       { return IsMessageName(accepted.queue) && accepted.types.size() <= MostOffers; });
-}
-
 }  // namespace
 
 Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
@@ -91,11 +56,13 @@ void Presence::Open(TransportSession &session, Gateway::Announcement announcemen
     _beatReader = session.CreateReader(
         GatewayTopics::Describe(GatewayTopics::Beat, GatewayTopics::TypeOf<Gateway::Beat>()),
         GatewayTopics::QosOf(QosProfile::Telemetry), {},
-        [this](SampleBytes bytes, const SampleInfo &info) { OnBeat(bytes, info); });
+        [this](SampleBytes bytes, const SampleInfo &info)
+        { WakeIf(info.Alive && _inbox.AddBeat(bytes, _clock.Monotonic())); });
     _announcementReader = session.CreateReader(
         GatewayTopics::Describe(GatewayTopics::Announcement, GatewayTopics::TypeOf<Gateway::Announcement>()),
         GatewayTopics::QosOf(QosProfile::State), {},
-        [this](SampleBytes bytes, const SampleInfo &info) { OnAnnouncement(bytes, info); });
+        [this](SampleBytes bytes, const SampleInfo &info)
+        { WakeIf(info.Alive && _inbox.AddAnnouncement(bytes)); });
 }
 
 void Presence::Close()
@@ -113,62 +80,18 @@ void Presence::Close()
 
 void Presence::OnPeer(const PeerEvent &event)
 {
-    {
-        const std::lock_guard lock(_mutex);
-        if (_inbox.Events.size() >= LargestInbox)
-        {
-            ++_malformed;
-            return;
-        }
-        _inbox.Events.push_back(event);
-    }
-    _wake();
+    WakeIf(_inbox.AddEvent(event));
 }
 
-void Presence::OnBeat(SampleBytes bytes, const SampleInfo &info)
+void Presence::WakeIf(bool somethingCame)
 {
-    if (!info.Alive)
+    if (somethingCame)
     {
-        return;
+        _wake();
     }
-    Heard heard;
-    heard.Arrival = _clock.Monotonic();
-    const bool good =
-        GatewayTopics::TypeOf<Gateway::Beat>().Deserialize(bytes, heard.Beat) && IsPlausible(heard.Beat);
-    {
-        const std::lock_guard lock(_mutex);
-        if (!good || _inbox.Beats.size() >= LargestInbox)
-        {
-            ++_malformed;
-            return;
-        }
-        _inbox.Beats.push_back(std::move(heard));
-    }
-    _wake();
 }
 
-void Presence::OnAnnouncement(SampleBytes bytes, const SampleInfo &info)
-{
-    if (!info.Alive)
-    {
-        return;
-    }
-    Gateway::Announcement announcement;
-    const bool good = GatewayTopics::TypeOf<Gateway::Announcement>().Deserialize(bytes, announcement) &&
-                      IsPlausible(announcement);
-    {
-        const std::lock_guard lock(_mutex);
-        if (!good || _inbox.Announcements.size() >= LargestInbox)
-        {
-            ++_malformed;
-            return;
-        }
-        _inbox.Announcements.push_back(std::move(announcement));
-    }
-    _wake();
-}
-
-PeerTable::Change Presence::TakeIn(const Inbox &inbox, Duration now)
+PeerTable::Change Presence::TakeIn(const PresenceInbox::Contents &inbox, Duration now)
 {
     PeerTable::Change all;
     const auto note = [&all, this](const PeerTable::Change &change, const std::string &node)
@@ -182,7 +105,7 @@ PeerTable::Change Presence::TakeIn(const Inbox &inbox, Duration now)
     {
         note(_peers.OnAnnouncement(announcement, now), announcement.node);
     }
-    for (const Heard &heard : inbox.Beats)
+    for (const PresenceInbox::Heard &heard : inbox.Beats)
     {
         note(_peers.OnBeat(heard.Beat, heard.Arrival), heard.Beat.node);
     }
@@ -219,12 +142,7 @@ void Presence::Publish(const std::string &node)
 
 PeerTable::Change Presence::Service(Duration now)
 {
-    Inbox inbox;
-    {
-        const std::lock_guard lock(_mutex);
-        std::swap(inbox, _inbox);
-    }
-    PeerTable::Change change = TakeIn(inbox, now);
+    PeerTable::Change change = TakeIn(_inbox.Take(), now);
     if (_peers.Advance(now).State)
     {
         change.State = true;
@@ -298,12 +216,6 @@ Presence::Duration Presence::NextDue() const
         next = std::min(next, *change);
     }
     return next;
-}
-
-std::uint64_t Presence::Malformed() const
-{
-    const std::lock_guard lock(_mutex);
-    return _malformed;
 }
 
 }  // namespace Rabit

@@ -8,14 +8,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <vector>
 
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
 #include "presence/OriginTable.h"
 #include "presence/PeerTable.h"
+#include "presence/PresenceInbox.h"
 #include "presence/RemoteQueues.h"
 
 namespace Rabit
@@ -53,24 +52,11 @@ public:
 
     const PeerTable &Peers() const { return _peers; }
     // Samples of the gateways' topics that made no sense, or came faster than they could be taken in.
-    std::uint64_t Malformed() const;
+    std::uint64_t Malformed() const { return _inbox.Dropped(); }
 
 private:
-    struct Heard
-    {
-        Gateway::Beat Beat;
-        Duration Arrival{0};
-    };
-    struct Inbox
-    {
-        std::vector<Heard> Beats;
-        std::vector<Gateway::Announcement> Announcements;
-        std::vector<PeerEvent> Events;
-    };
-
-    void OnBeat(SampleBytes bytes, const SampleInfo &info);
-    void OnAnnouncement(SampleBytes bytes, const SampleInfo &info);
-    PeerTable::Change TakeIn(const Inbox &inbox, Duration now);
+    void WakeIf(bool somethingCame);
+    PeerTable::Change TakeIn(const PresenceInbox::Contents &inbox, Duration now);
     void Publish(const std::string &node);
     void Introduce();
     void SendBeat(Duration now);
@@ -90,9 +76,7 @@ private:
     Duration _beatStep = PeerTable::BeatPeriod;  // from one beat to the next
     Duration _nextAnnouncement{0};
 
-    mutable std::mutex _mutex;  // guards the inbox and the count
-    Inbox _inbox;
-    std::uint64_t _malformed = 0;
+    PresenceInbox _inbox;
 
     std::unique_ptr<TransportWriter> _beatWriter;
     std::unique_ptr<TransportWriter> _announcementWriter;

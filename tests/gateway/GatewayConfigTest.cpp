@@ -245,6 +245,28 @@ TEST_F(GatewayConfigTest, AConfigurationMadeInCodeIsCheckedAlike)
     EXPECT_NO_THROW(ValidateGatewayConfig(config));
 }
 
+TEST_F(GatewayConfigTest, AConfigurationWhoseAnnouncementOthersWouldDropIsRefused)
+{
+    GatewayConfig config;
+    config.Node = "a";
+    for (int i = 0; i < 513; ++i)
+    {
+        config.Publish.push_back({.Message = std::string("m").append(std::to_string(i)), .Type = "Uav::Pose"});
+    }
+    try
+    {
+        ValidateGatewayConfig(config);
+        FAIL() << "accepted";
+    }
+    catch (const ConfigError &error)
+    {
+        EXPECT_STREQ(error.what(),
+                     "this node would announce 513 messages and queues; others take at most 512");
+    }
+    config.Publish.pop_back();
+    EXPECT_NO_THROW(ValidateGatewayConfig(config));
+}
+
 TEST_F(GatewayConfigTest, GarbledFilesAreRefusedOrReadButNeverEndTheProcess)
 {
     const std::string good =

@@ -17,9 +17,9 @@ SOURCES = {".h", ".hpp", ".c", ".cpp", ".cc"}
 ROOMS = {
     "names": [],
     "clocks": [],
-    "configuration": ["names"],
     "incarnation": ["links"],
-    "wire": ["links"],
+    "wire": ["names", "links"],
+    "configuration": ["names", "wire"],
     "presence": ["names", "clocks", "wire"],
     "mirrors": ["names", "clocks", "wire", "presence"],
     "queues": ["names", "clocks", "incarnation", "wire", "links", "presence"],

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+// Beats, announcements and events of peers on their way from the transport's threads to the gateway's. What
+// is too large is dropped before it is decoded, what makes no sense after that, and what comes faster than
+// the gateway takes it in when the inbox is full; all are counted. Thread-safe.
+class PresenceInbox
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // Bytes of a beat as it is on the wire, and echoes in it.
+    static constexpr std::size_t LargestBeat = 8 * 1024;
+    static constexpr std::size_t MostEchoes = 64;
+    // What the inbox holds at most, samples counted as they are on the wire plus the size of an entry. More
+    // is no fleet but a fault: 1000 nodes that announce themselves in 4 kB each within one pass of the
+    // gateway.
+    static constexpr std::size_t LargestContents = 4 * 1024 * 1024;
+
+    struct Heard
+    {
+        Gateway::Beat Beat;
+        Duration Arrival{0};
+    };
+    struct Contents
+    {
+        std::vector<Heard> Beats;
+        std::vector<Gateway::Announcement> Announcements;
+        std::vector<PeerEvent> Events;
+    };
+
+    // These return whether there is something to take.
+    bool AddBeat(SampleBytes bytes, Duration arrival);
+    bool AddAnnouncement(SampleBytes bytes);
+    bool AddEvent(const PeerEvent &event);
+
+    Contents Take();
+    // Samples that made no sense, and what found the inbox full.
+    std::uint64_t Dropped() const;
+
+private:
+    bool HasRoomFor(std::size_t bytes);
+    bool Drop();
+
+    mutable std::mutex _mutex;
+    Contents _contents;
+    std::size_t _bytes = 0;
+    std::uint64_t _dropped = 0;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,126 @@
+#include "wire/Announcements.h"
+
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "names/NamePattern.h"
+#include "names/TypeDefinition.h"
+#include "wire/GatewayTopics.h"
+
+namespace Rabit::Announcements
+{
+namespace
+{
+
+std::size_t OffersOf(const Gateway::Announcement &announcement)
+{
+    return announcement.publishes.size() + announcement.accepts.size();
+}
+
+std::size_t TypesOf(const Gateway::Announcement &announcement)
+{
+    return std::accumulate(announcement.accepts.begin(), announcement.accepts.end(), std::size_t{0},
+                           [](std::size_t sum, const Gateway::AcceptedQueue &accepted)
+                           { return sum + accepted.types.size(); });
+}
+
+bool IsType(const std::string &name)
+{
+    return !name.empty() && name.size() <= LongestType;
+}
+
+bool IsPlausible(const Gateway::PublishedMessage &published)
+{
+    return IsMessageName(published.message) && IsType(published.type) &&
+           (published.qos == GatewayTopics::NameOf(QosProfile::State) ||
+            published.qos == GatewayTopics::NameOf(QosProfile::Telemetry));
+}
+
+bool IsPlausible(const Gateway::AcceptedQueue &accepted)
+{
+    return IsMessageName(accepted.queue) &&
+           std::all_of(accepted.types.begin(), accepted.types.end(),
+                       [](const Gateway::QueueType &type) { return IsType(type.type); });
+}
+
+}  // namespace
+
+Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation)
+{
+    Gateway::Announcement announcement;
+    announcement.node = config.Node;
+    announcement.incarnation = incarnation;
+    for (const PublishRule &rule : config.Publish)
+    {
+        Gateway::PublishedMessage published;
+        published.message = rule.Message;
+        published.type = rule.Type;
+        published.qos = GatewayTopics::NameOf(rule.Qos);
+        published.definition = DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
+        announcement.publishes.push_back(published);
+    }
+    for (const AcceptRule &rule : config.Accept)
+    {
+        Gateway::AcceptedQueue accepted;
+        accepted.queue = rule.Queue;
+        for (const std::string &name : rule.Types)
+        {
+            Gateway::QueueType type;
+            type.type = name;
+            type.definition = DefinitionHash(*MessageTypeRegistry::Find(name));
+            accepted.types.push_back(type);
+        }
+        announcement.accepts.push_back(accepted);
+    }
+    return announcement;
+}
+
+std::string WhyTooLarge(const Gateway::Announcement &announcement)
+{
+    const auto tooMany = [](std::size_t count, const char *what, std::size_t most)
+    {
+        return "this node would announce " + std::to_string(count) + " " + what + "; others take at most " +
+               std::to_string(most);
+    };
+    if (OffersOf(announcement) > MostOffers)
+    {
+        return tooMany(OffersOf(announcement), "messages and queues", MostOffers);
+    }
+    if (TypesOf(announcement) > MostTypes)
+    {
+        return tooMany(TypesOf(announcement), "types of queues", MostTypes);
+    }
+    for (const Gateway::PublishedMessage &published : announcement.publishes)
+    {
+        if (!IsType(published.type))
+        {
+            return tooMany(published.type.size(), "bytes as the name of a type", LongestType);
+        }
+    }
+    for (const Gateway::AcceptedQueue &accepted : announcement.accepts)
+    {
+        for (const Gateway::QueueType &type : accepted.types)
+        {
+            if (!IsType(type.type))
+            {
+                return tooMany(type.type.size(), "bytes as the name of a type", LongestType);
+            }
+        }
+    }
+    const std::size_t size = GatewayTopics::TypeOf<Gateway::Announcement>().SerializedSize(announcement);
+    return size > LargestEncoded ? tooMany(size, "bytes of names", LargestEncoded) : "";
+}
+
+bool IsPlausible(const Gateway::Announcement &announcement)
+{
+    return IsNodeName(announcement.node) && OffersOf(announcement) <= MostOffers &&
+           TypesOf(announcement) <= MostTypes &&
+           std::all_of(announcement.publishes.begin(), announcement.publishes.end(),
+                       [](const auto &published) { return IsPlausible(published); }) &&
+           std::all_of(announcement.accepts.begin(), announcement.accepts.end(),
+                       [](const auto &accepted) { return IsPlausible(accepted); });
+}
+
+}  // namespace Rabit::Announcements

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "gateway.idl.h"
+
+// Announcements, and how large one may be: each node keeps one of every other node, for hours, and anybody
+// can send one. What exceeds these bounds is dropped by whoever hears it, so no node may be configured to
+// send it. They are far above what a fleet uses.
+namespace Rabit::Announcements
+{
+
+// Bytes of an announcement as it is on the wire; a larger one is not even decoded.
+inline constexpr std::size_t LargestEncoded = 32 * 1024;
+// Messages published and queues accepted, together; types of these queues, together.
+inline constexpr std::size_t MostOffers = 512;
+inline constexpr std::size_t MostTypes = 1024;
+// Bytes of the name of a type. Those of nodes, messages and queues are in names/NamePattern.h.
+inline constexpr std::size_t LongestType = 255;
+
+// What a node with that configuration says of itself. Its types must be known in this process.
+Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation);
+
+// Why others would not take the announcement, in words; empty if they would.
+std::string WhyTooLarge(const Gateway::Announcement &announcement);
+
+// Whether what came from the network is within the bounds and each name in it can be one.
+bool IsPlausible(const Gateway::Announcement &announcement);
+
+}  // namespace Rabit::Announcements
