@@ -83,7 +83,7 @@ public:
                                               manager.WakeUpHandler())),
           _incarnation(_links->Incarnation()),
           _source(_workspace.GetClock()),
-          _presence(config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote,
+          _presence(config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
                     manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace),
           _fleet(std::make_shared<Gateway::Fleet>())
@@ -124,7 +124,8 @@ public:
     Duration Service()
     {
         const Duration now = Now();
-        const PeerTable::Change change = _presence.Service(now);
+        const Presence::Served served = _presence.Service(now);
+        const PeerTable::Change &change = served.Change;
         if (change.Offers || change.NewLife)
         {
             _subscriptions.OnOffers(_presence.Peers());
@@ -139,7 +140,7 @@ public:
         Duration next = std::min(_presence.NextDue(), _links->Service());
         for (TopicPublisher &publisher : _publishers)
         {
-            if (change.NewLife)
+            if (served.RepeatStates)
             {
                 publisher.Repeat();
             }

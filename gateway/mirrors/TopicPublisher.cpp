@@ -32,25 +32,24 @@ TopicPublisher::Duration TopicPublisher::Service(Duration now)
         return Duration::max();
     }
     _pending = (_local->FetchMessage() && _local->WasPosted()) || _pending;
-    const Duration mayWriteAt = _everWritten ? _lastWrite + MinimumGap() : now;
-    const bool repeats = _rule.Qos == QosProfile::State && _everWritten;
-    const bool repeatDue = repeats && (_repeatNow || now >= _lastWrite + StateRepeatPeriod);
-    if ((_pending && now >= mayWriteAt) || repeatDue)
+    if (now >= DueAt(now))
     {
         Write(now);
     }
-    _repeatNow = false;
+    return std::max(DueAt(now), now);
+}
 
-    Duration next = Duration::max();
-    if (_pending)
+// What was posted, and what somebody new waits for, at once; a State's repetition in its period; nothing more
+// often than the rule allows.
+TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
+{
+    const bool repeats = _rule.Qos == QosProfile::State && _everWritten;
+    const Duration mayWriteAt = _everWritten ? _lastWrite + MinimumGap() : now;
+    if (_pending || (repeats && _repeatNow))
     {
-        next = std::max(_lastWrite + MinimumGap(), now);
+        return mayWriteAt;
     }
-    if (_rule.Qos == QosProfile::State && _everWritten)
-    {
-        next = std::min(next, _lastWrite + StateRepeatPeriod);
-    }
-    return next;
+    return repeats ? std::max(_lastWrite + StateRepeatPeriod, mayWriteAt) : Duration::max();
 }
 
 void TopicPublisher::Write(Duration now)
@@ -63,6 +62,7 @@ void TopicPublisher::Write(Duration now)
     // sent would only fail again.
     _pending = result == WriteResult::TimedOut;
     _everWritten = true;
+    _repeatNow = false;
     _lastWrite = now;
 }
 

@@ -15,9 +15,9 @@
 namespace Rabit
 {
 
-// Mirrors one local message to a topic: writes its newest value whenever it was posted, no more often than
-// the rule allows, and repeats a State once a second. Intermediate values may be skipped, as with a fetch.
-// Used by the gateway's thread only.
+// Mirrors one local message to a topic: writes its newest value whenever it was posted, and repeats a State
+// once a second; all no more often than the rule allows. Intermediate values may be skipped, as with a
+// fetch. Used by the gateway's thread only.
 class TopicPublisher
 {
 public:
@@ -36,8 +36,8 @@ public:
     void SetAttached() { _attached = true; }
     bool IsAttached() const { return _attached; }
 
-    // Has the next Service write a State again at once: somebody new is listening.
-    void Repeat() { _repeatNow = true; }
+    // Has a State that was written be written again as soon as the rule allows: somebody new is listening.
+    void Repeat() { _repeatNow = _everWritten; }
     // Fetches and writes what is due. Returns when to call again even if nothing is posted (Duration::max():
     // never).
     Duration Service(Duration now);
@@ -45,6 +45,7 @@ public:
 
 private:
     void Write(Duration now);
+    Duration DueAt(Duration now) const;
     Duration MinimumGap() const;
 
     PublishRule _rule;

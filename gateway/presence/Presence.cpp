@@ -21,7 +21,7 @@ constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
 }  // namespace
 
 Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote,
+                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
                    std::function<void()> wake)
     : _node(node),
       _incarnation(incarnation),
@@ -30,7 +30,8 @@ Presence::Presence(const std::string &node, std::uint64_t incarnation, const Rab
       _origins(origins),
       _remote(remote),
       _wake(std::move(wake)),
-      _peers(node, incarnation)
+      _peers(node, incarnation),
+      _introductions(std::move(random))
 {
 }
 
@@ -107,7 +108,13 @@ PeerTable::Change Presence::TakeIn(const PresenceInbox::Contents &inbox, Duratio
     }
     for (const PresenceInbox::Heard &heard : inbox.Beats)
     {
-        note(_peers.OnBeat(heard.Beat, heard.Arrival), heard.Beat.node);
+        const PeerTable::Change change = _peers.OnBeat(heard.Beat, heard.Arrival);
+        note(change, heard.Beat.node);
+        if (change.NewLife)
+        {
+            _introductions.Ask(heard.Beat.node, Introductions::Reason::Heard, OthersThan(heard.Beat.node),
+                               now);
+        }
     }
     for (const PeerEvent &event : inbox.Events)
     {
@@ -118,10 +125,20 @@ PeerTable::Change Presence::TakeIn(const PresenceInbox::Contents &inbox, Duratio
         // Whoever has just appeared wants to know who is here.
         if (event.What == PeerEvent::Kind::Appeared)
         {
-            Introduce();
+            _introductions.Ask(event.Node, Introductions::Reason::Appeared, OthersThan(event.Node), now);
         }
     }
     return all;
+}
+
+std::size_t Presence::OthersThan(const std::string &node) const
+{
+    const auto heard = _peers.Heard();
+    return static_cast<std::size_t>(std::count_if(heard.begin(), heard.end(),
+                                                  [&node](const PeerTable::Peer *peer) {
+                                                      return peer->State != Gateway::NodeState::LOST &&
+                                                             peer->Node != node;
+                                                  }));
 }
 
 // Hands what is known of a node to those who read it on other threads.
@@ -140,9 +157,11 @@ void Presence::Publish(const std::string &node)
     }
 }
 
-PeerTable::Change Presence::Service(Duration now)
+Presence::Served Presence::Service(Duration now)
 {
-    PeerTable::Change change = TakeIn(_inbox.Take(), now);
+    Served served;
+    PeerTable::Change &change = served.Change;
+    change = TakeIn(_inbox.Take(), now);
     if (_peers.Advance(now).State)
     {
         change.State = true;
@@ -154,10 +173,11 @@ PeerTable::Change Presence::Service(Duration now)
             _remote.Update(*peer);
         }
     }
-    if (change.NewLife)
+    if (_introductions.TakeBeats(now))
     {
         Introduce();
     }
+    served.RepeatStates = _introductions.TakeStates(now);
     if (now >= _nextBeat)
     {
         SendBeat(now);
@@ -166,7 +186,7 @@ PeerTable::Change Presence::Service(Duration now)
     {
         SendAnnouncement(now);
     }
-    return change;
+    return served;
 }
 
 void Presence::Introduce()
@@ -211,9 +231,9 @@ void Presence::SendAnnouncement(Duration now)
 Presence::Duration Presence::NextDue() const
 {
     Duration next = std::min(_nextBeat, _nextAnnouncement);
-    if (const std::optional<Duration> change = _peers.NextChange())
+    for (const std::optional<Duration> &due : {_peers.NextChange(), _introductions.Due()})
     {
-        next = std::min(next, *change);
+        next = due ? std::min(next, *due) : next;
     }
     return next;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <rabit/RabitClock.h>
-#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/RandomSource.h>
 #include <rabit/transport/Transport.h>
 
 #include <chrono>
@@ -12,6 +12,7 @@
 
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
+#include "presence/Introductions.h"
 #include "presence/OriginTable.h"
 #include "presence/PeerTable.h"
 #include "presence/PresenceInbox.h"
@@ -34,7 +35,7 @@ public:
     // `wake` makes the gateway's thread call Service soon; called on any thread. References must outlive the
     // object.
     Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-             const SourceClock &source, OriginTable &origins, RemoteQueues &remote,
+             const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
              std::function<void()> wake);
     ~Presence();
 
@@ -45,8 +46,15 @@ public:
     // The transport's peer handler.
     void OnPeer(const PeerEvent &event);
 
+    struct Served
+    {
+        PeerTable::Change Change;
+        // Somebody has come that can use what this node publishes, and now is the time to repeat it.
+        bool RepeatStates = false;
+    };
+
     // Takes in what has come and sends what is due.
-    PeerTable::Change Service(Duration now);
+    Served Service(Duration now);
     // When to call Service again at the latest.
     Duration NextDue() const;
 
@@ -59,6 +67,7 @@ private:
     PeerTable::Change TakeIn(const PresenceInbox::Contents &inbox, Duration now);
     void Publish(const std::string &node);
     void Introduce();
+    std::size_t OthersThan(const std::string &node) const;
     void SendBeat(Duration now);
     void SendAnnouncement(Duration now);
 
@@ -71,6 +80,7 @@ private:
     const std::function<void()> _wake;
 
     PeerTable _peers;
+    Introductions _introductions;
     Gateway::Announcement _announcement;
     Duration _nextBeat{0};
     Duration _beatStep = PeerTable::BeatPeriod;  // from one beat to the next

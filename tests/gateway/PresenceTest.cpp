@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "SimulatedFleet.h"
@@ -15,47 +17,62 @@ namespace
 
 using namespace std::chrono_literals;
 
-// Hears the beats of all nodes, and when they came.
-class BeatListener
+// Hears one topic of all nodes, and when what came from whom.
+class Listener
 {
 public:
-    explicit BeatListener(SimulatedNetwork &network) : _network(network)
+    Listener(SimulatedNetwork &network, const std::string &topic, const std::string &type,
+             const std::string &name = "listener")
+        : _network(network)
     {
         TransportSettings settings;
-        settings.Node = "listener";
+        settings.Node = name;
         settings.Incarnation = 1;
         _session = SimulatedTransport(network).Open(settings, [](const PeerEvent &) {});
         TopicQos qos;
         qos.Reliability = Reliability::BestEffort;
-        _reader = _session->CreateReader({"rabit/Beat", "Rabit::Gateway::Beat", {}}, qos, {},
-                                         [this](SampleBytes, const SampleInfo &)
-                                         { _times.push_back(_network.Now()); });
+        _reader = _session->CreateReader({topic, type, {}}, qos, {},
+                                         [this](SampleBytes, const SampleInfo &info)
+                                         { _heard.emplace_back(info.Node, _network.Now()); });
     }
-    // Beats that came in [from, to).
-    std::ptrdiff_t Count(std::chrono::nanoseconds from, std::chrono::nanoseconds to) const
+    // Samples that came in [from, to), of one node or of all.
+    std::ptrdiff_t Count(std::chrono::nanoseconds from, std::chrono::nanoseconds to,
+                         const std::string &node = "") const
     {
-        return std::count_if(_times.begin(), _times.end(),
-                             [&](std::chrono::nanoseconds time) { return time >= from && time < to; });
+        return std::count_if(_heard.begin(), _heard.end(),
+                             [&](const auto &sample) {
+                                 return (node.empty() || sample.first == node) && sample.second >= from &&
+                                        sample.second < to;
+                             });
     }
+    const std::vector<std::pair<std::string, std::chrono::nanoseconds>> &Heard() const { return _heard; }
 
 private:
     SimulatedNetwork &_network;
-    std::vector<std::chrono::nanoseconds> _times;
+    std::vector<std::pair<std::string, std::chrono::nanoseconds>> _heard;
     std::unique_ptr<TransportSession> _session;
     std::unique_ptr<TransportReader> _reader;
 };
 
-GatewayConfig Uav1()
+class BeatListener : public Listener
+{
+public:
+    explicit BeatListener(SimulatedNetwork &network) : Listener(network, "rabit/Beat", "Rabit::Gateway::Beat")
+    {
+    }
+};
+
+GatewayConfig Node(const std::string &name)
 {
     GatewayConfig config;
-    config.Node = "uav1";
+    config.Node = name;
     return config;
 }
 
 TEST(Presence, ANodeThatAppearsHearsSeveralBeatsBeforeAPeriodIsOver)
 {
     SimulatedFleet fleet;
-    fleet.Add(Uav1());
+    fleet.Add(Node("uav1"));
     fleet.RunFor(10s);
     const BeatListener listener(fleet.Network);
     const auto appeared = fleet.Network.Now();
@@ -66,10 +83,117 @@ TEST(Presence, ANodeThatAppearsHearsSeveralBeatsBeforeAPeriodIsOver)
 TEST(Presence, BeatsTwiceASecondOnceAllKnowIt)
 {
     SimulatedFleet fleet;
-    fleet.Add(Uav1());
+    fleet.Add(Node("uav1"));
     const BeatListener listener(fleet.Network);
     fleet.RunFor(12s);
     EXPECT_EQ(listener.Count(2s, 12s), 20);
+}
+
+// Ten aircraft that publish a State, and one more that crashes and starts again each second.
+class CrashLoopTest : public ::testing::Test
+{
+protected:
+    static constexpr int Fleet = 10;
+
+    CrashLoopTest()
+    {
+        for (int i = 0; i < Fleet; ++i)
+        {
+            SimulatedNode &node = fleet.Add(AircraftConfig(NameOf(i)));
+            _states.push_back(node.Register<Uav::MissionState>("MissionState"));
+            _states.back()->PostMessage();
+        }
+        fleet.RunFor(60s);
+    }
+
+    static std::string NameOf(int i) { return std::string("uav").append(std::to_string(i)); }
+
+    void CrashEachSecond(int times)
+    {
+        for (int i = 0; i < times; ++i)
+        {
+            fleet.Add(AircraftConfig("crasher"));
+            fleet.RunFor(1s);
+            fleet.Kill("crasher");
+        }
+    }
+
+    SimulatedFleet fleet;
+
+private:
+    std::vector<std::shared_ptr<Uav::MissionState>> _states;
+};
+
+TEST_F(CrashLoopTest, DoesNotMakeTheOthersShout)
+{
+    const BeatListener beats(fleet.Network);
+    const Listener states(fleet.Network, "MissionState", "Uav::MissionState", "listener2");
+    fleet.RunFor(5s);
+    const auto start = fleet.Network.Now();
+    CrashEachSecond(30);
+    const auto end = fleet.Network.Now();
+    // In 30 s: a beat each half second and two answers of seven beats each 5 s; a State each second and one
+    // more each 5 s.
+    for (int i = 0; i < Fleet; ++i)
+    {
+        EXPECT_LE(beats.Count(start, end, NameOf(i)), 60 + 7 * 2 * 6) << NameOf(i);
+        EXPECT_GE(beats.Count(start, end, NameOf(i)), 58) << NameOf(i);
+        EXPECT_LE(states.Count(start, end, NameOf(i)), 30 + 6 + 1) << NameOf(i);
+        EXPECT_GE(states.Count(start, end, NameOf(i)), 28) << NameOf(i);
+    }
+}
+
+TEST_F(CrashLoopTest, DoesNotKeepANewcomerWaiting)
+{
+    CrashEachSecond(12);
+    fleet.Add(AircraftConfig("crasher"));
+    GatewayConfig config = GroundConfig();
+    SimulatedNode &ground = fleet.Add(config);
+    std::vector<std::shared_ptr<Uav::MissionState>> mirrored;
+    for (int i = 0; i < Fleet; ++i)
+    {
+        mirrored.push_back(ground.Register<Uav::MissionState>(NameOf(i) + "/MissionState"));
+    }
+    const auto hasAll = [&mirrored]
+    {
+        return std::all_of(mirrored.begin(), mirrored.end(),
+                           [](const auto &state) { return state->FetchMessage() || state->WasPosted(); });
+    };
+    EXPECT_TRUE(fleet.RunUntil(hasAll, 150ms));
+}
+
+TEST(Presence, ANewcomerHasStatesAsSoonAsTheNodesKnowEachOther)
+{
+    SimulatedFleet fleet;
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    auto state = uav.Register<Uav::MissionState>("MissionState");
+    state->PostMessage();
+    fleet.RunFor(60s);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto mirrored = ground.Register<Uav::MissionState>("uav1/MissionState");
+    EXPECT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 60ms));
+}
+
+TEST(Presence, AStateIsNotRepeatedMoreOftenThanItsRateAllows)
+{
+    SimulatedFleet fleet;
+    GatewayConfig config = AircraftConfig("uav1");
+    config.Publish[1].MaxRate = 0.25;
+    SimulatedNode &uav = fleet.Add(config);
+    auto state = uav.Register<Uav::MissionState>("MissionState");
+    state->PostMessage();
+    fleet.RunFor(3s);
+    const Listener listener(fleet.Network, "MissionState", "Uav::MissionState");
+    for (int i = 0; i < 20; ++i)
+    {
+        fleet.Add(Node(std::string("new").append(std::to_string(i))));
+        fleet.RunFor(1s);
+    }
+    ASSERT_GE(listener.Heard().size(), 4u);
+    for (std::size_t i = 1; i < listener.Heard().size(); ++i)
+    {
+        EXPECT_GE(listener.Heard()[i].second - listener.Heard()[i - 1].second, 3999ms);
+    }
 }
 
 }  // namespace

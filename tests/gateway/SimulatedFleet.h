@@ -13,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -44,7 +45,9 @@ public:
           Reactor(Workspace)
     {
         Reactor.AddManager(std::make_unique<GatewayManager>(
-            config, std::make_shared<SimulatedTransport>(network), Workspace));
+            config, std::make_shared<SimulatedTransport>(network), Workspace,
+            [engine = std::mt19937_64(static_cast<std::uint64_t>(monotonic.count()))]() mutable
+            { return engine(); }));
     }
 
     IdleManager &AddIdleManager(const std::string &name)

@@ -1,0 +1,74 @@
+#include "presence/Introductions.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace Rabit
+{
+
+void Introductions::Ask(const std::string &node, Reason reason, std::size_t others, Duration now)
+{
+    if (!MayAsk(node, reason, now))
+    {
+        return;
+    }
+    _statesWanted |= reason == Reason::Heard;
+    if (!_beatsAt)
+    {
+        _beatsAt = std::max(now + Spread(others), _last ? *_last + Together : now);
+    }
+}
+
+// What is remembered is bounded: only who was granted something, and no longer than it counts.
+bool Introductions::MayAsk(const std::string &node, Reason reason, Duration now)
+{
+    std::erase_if(_asked, [now](const auto &entry) { return now - entry.second >= RestForOne; });
+    const Duration restedAt = std::max(_restedAt, now) + RestForAll;
+    if (_asked.count({node, reason}) > 0 || restedAt - now > MostInARow * RestForAll)
+    {
+        return false;
+    }
+    _restedAt = restedAt;
+    _asked[{node, reason}] = now;
+    return true;
+}
+
+Introductions::Duration Introductions::Spread(std::size_t others)
+{
+    const auto most = std::min<Duration::rep>(
+        static_cast<Duration::rep>(std::min<std::size_t>(others, 1000)) * SpreadForOne.count(),
+        LongestSpread.count());
+    return Duration(static_cast<Duration::rep>(_random() % static_cast<std::uint64_t>(most + 1)));
+}
+
+std::optional<Introductions::Duration> Introductions::Due() const
+{
+    return _beatsAt && _statesAt ? std::min(_beatsAt, _statesAt) : _beatsAt ? _beatsAt : _statesAt;
+}
+
+bool Introductions::TakeBeats(Duration now)
+{
+    if (!_beatsAt || now < *_beatsAt)
+    {
+        return false;
+    }
+    _beatsAt.reset();
+    _last = now;
+    if (std::exchange(_statesWanted, false))
+    {
+        _statesAt = now + StatesAfter;
+    }
+    return true;
+}
+
+bool Introductions::TakeStates(Duration now)
+{
+    if (!_statesAt || now < *_statesAt)
+    {
+        return false;
+    }
+    _statesAt.reset();
+    return true;
+}
+
+}  // namespace Rabit
