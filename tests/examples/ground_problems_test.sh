@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# A ground station whose configuration does not fit the fleet says so by name, in its log and on its terminal; a real
+# aircraft and a real ground station on loopback.
+#   ground_problems_test.sh FOLDER_OF_PROGRAMS TRANSPORT
+set -uo pipefail
+bin=$1
+transport=$2
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+pids=()
+trap 'for pid in "${pids[@]}"; do kill -KILL "$pid"; wait "$pid"; done 2>/dev/null; rm -rf "$work"' EXIT
+
+fail() {
+    echo "FAILED: $1"
+    tail -n +1 "$work"/*.out "$work"/*.err
+    exit 1
+}
+
+# wait_for FILE TEXT: until a line of the file has it. The limit only keeps a broken test from hanging.
+wait_for() {
+    local tries
+    for ((tries = 0; tries < 600; tries++)); do
+        grep -qF -- "$2" "$1" && return
+        sleep 0.1
+    done
+    fail "no line with '$2' came within a minute"
+}
+
+# A domain whose port no process of this machine has.
+domain=
+for ((i = 0, first = RANDOM % 80; i < 80; i++)); do
+    domain=$((20 + (first + i) % 80))
+    grep -q "$(printf ':%04X ' $((7400 + 250 * domain)))" /proc/net/udp || break
+done
+
+cat >"$work/uav.yaml" <<YAML
+node: uav1
+interfaces: [127.0.0.1]
+publish:
+  - {message: Pose, type: Uav::Pose, qos: telemetry}
+  - {message: MissionState, type: Uav::MissionState}
+accept:
+  - {queue: MissionControl, types: [Uav::Goto]}
+YAML
+cat >"$work/ground.yaml" <<YAML
+node: ground
+interfaces: [127.0.0.1]
+subscribe:
+  - {message: Pse, type: Uav::Pose, from: [uav1]}               # misspelt
+  - {message: MissionState, type: Uav::Health, from: [uav1]}    # of another type
+  - {message: Health, type: Uav::Health, from: [uav9]}          # not there
+  - {message: Pose, type: Uav::Pose, from: [uav1]}
+accept:
+  - {queue: Comands, types: [Uav::CommandAck]}                  # misspelt
+YAML
+
+common=(--domain "$domain" --transport "$transport")
+"$bin/uav" --config "$work/uav.yaml" "${common[@]}" >"$work/uav.out" 2>"$work/uav.err" &
+pids+=($!)
+# It is told to search, and its queue does not take that.
+ground=("$bin/ground" --config "$work/ground.yaml" "${common[@]}" --expect uav1 --search uav1 --command-period 1)
+"${ground[@]}" >"$work/ground.out" 2>"$work/ground.err" &
+pids+=($!)
+
+wait_for "$work/ground.err" 'gateway: subscribe Pse, uav1: uav1 does not publish `Pse`; it publishes `Pose`, `MissionState`'
+wait_for "$work/ground.err" 'gateway: subscribe MissionState, uav1: uav1 publishes `MissionState` as `Uav::MissionState`, this node wants `Uav::Health`'
+wait_for "$work/ground.err" 'gateway: subscribe Health: no node named `uav9` has been heard'
+wait_for "$work/ground.err" 'gateway: accept Comands: there is no local queue `Comands`'
+wait_for "$work/ground.err" 'gateway: send uav1/MissionControl: '
+wait_for "$work/uav.err" 'gateway: send ground/Commands: '
+wait_for "$work/ground.out" ' 5 problems: '
+
+# What is wrong is said once, and shown on.
+lines=$(wc -l <"$work/ground.out")
+for ((tries = 0; tries < 600 && $(wc -l <"$work/ground.out") < lines + 20; tries++)); do sleep 0.1; done
+tail -n 4 "$work/ground.out" | grep -q ' 5 problems: ' || fail "the problems are not shown any more"
+[ "$(grep -c 'subscribe Pse' "$work/ground.err")" -eq 1 ] || fail "it was said more than once"
+
+# On a terminal the log stands above the table, and what is wrong now below it.
+script -qefc "${ground[*]} --node ground2 --seconds 6" /dev/null >"$work/terminal.out" 2>"$work/terminal.err" </dev/null
+grep -qF '5 problems:' "$work/terminal.out" || fail "the terminal shows no problems"
+grep -qF '  subscribe Pse, uav1: uav1 does not publish' "$work/terminal.out" || fail "the terminal names no problem"
+[ "$(grep -c 'gateway: subscribe Pse, uav1' "$work/terminal.out")" -eq 1 ] || fail "the log is not on the terminal once"
+echo passed
