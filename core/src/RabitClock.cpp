@@ -1,6 +1,7 @@
 #include <rabit/ManualClock.h>
 #include <rabit/RabitClock.h>
 #include <rabit/SystemTimeClock.h>
+#include <rabit/UptimeClock.h>
 
 #include <stdexcept>
 
@@ -14,7 +15,7 @@ class SystemRabitClock final : public RabitClock
 public:
     std::chrono::nanoseconds Monotonic() const override
     {
-        return std::chrono::steady_clock::now().time_since_epoch();
+        return UptimeClock::now().time_since_epoch();
     }
     double GpsTimeSeconds() const override { return Now().GpsTimeSeconds; }
     PostTime Now() const override { return _clock->Now(); }

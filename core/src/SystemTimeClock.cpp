@@ -17,9 +17,9 @@ using std::chrono::system_clock;
 
 constexpr std::int64_t NanosecondsPerSecond = 1000000000;
 
-std::int64_t SteadyNow()
+std::int64_t UptimeNow()
 {
-    return duration_cast<nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return duration_cast<nanoseconds>(UptimeClock::now().time_since_epoch()).count();
 }
 
 std::int64_t WallNow()
@@ -73,7 +73,7 @@ void SystemTimeClock::SetGpsTimeOffset()
     MeasureWallOffset();
 }
 
-// Reads the wall clock between two readings of the steady clock. A thread that is put aside in between would
+// Reads the wall clock between two readings of the uptime. A thread that is put aside in between would
 // give a bad measurement, so the closest of a few is taken, and a difference that is within the uncertainty
 // is not taken over, so that time does not jitter.
 void SystemTimeClock::MeasureWallOffset()
@@ -85,9 +85,9 @@ void SystemTimeClock::MeasureWallOffset()
     std::int64_t after = 0;
     for (int i = 0; i < attempts; ++i)
     {
-        const std::int64_t before = SteadyNow();
+        const std::int64_t before = UptimeNow();
         const std::int64_t wall = WallNow();
-        after = SteadyNow();
+        after = UptimeNow();
         const std::int64_t width = after - before;
         if (i == 0 || width < bestWidth)
         {

@@ -26,14 +26,15 @@ public:
     RabitClock(const RabitClock &) = delete;
     RabitClock &operator=(const RabitClock &) = delete;
 
-    // Time since some fixed moment; never goes back.
+    // Time since some fixed moment; never goes back. On a computer it also counts the time for which that was
+    // suspended, so it is not std::chrono::steady_clock.
     virtual std::chrono::nanoseconds Monotonic() const = 0;
     // GPS seconds since 1980-01-06. Follows the wall clock: it may step in either direction.
     virtual double GpsTimeSeconds() const = 0;
     // Both, of the same moment. The system clock overrides it to pay for one clock read only.
     virtual PostTime Now() const { return PostTime{GpsTimeSeconds(), Monotonic()}; }
 
-    // The clocks of this computer: std::chrono::steady_clock, and SystemTimeClock for GPS seconds.
+    // The clocks of this computer: UptimeClock, and SystemTimeClock for GPS seconds.
     static const std::shared_ptr<RabitClock> &System();
 
 protected:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/RabitClock.h>
+#include <rabit/UptimeClock.h>
 
 #include <atomic>
 #include <chrono>
@@ -16,8 +17,8 @@ namespace Rabit
 // std::chrono. Both count from 1980-01-06T00:00:00; GPS seconds are ahead of UTC seconds by the leap second
 // offset. One object for the process. All methods may be called from any thread.
 //
-// The current time is computed from std::chrono::steady_clock and its distance to the wall clock, which is
-// measured anew when the last measurement is 10 ms old: a step of the wall clock shows within that time.
+// The current time is computed from the UptimeClock and its distance to the wall clock, which is measured
+// anew when the last measurement is 10 ms old: a step of the wall clock shows within that time.
 class SystemTimeClock
 {
 public:
@@ -92,7 +93,7 @@ private:
 // Inline for the sake of posting, of which it is the largest part.
 inline PostTime SystemTimeClock::Now()
 {
-    const std::chrono::nanoseconds monotonic = std::chrono::steady_clock::now().time_since_epoch();
+    const std::chrono::nanoseconds monotonic = UptimeClock::now().time_since_epoch();
     if (monotonic.count() - _measuredAt.load(std::memory_order_acquire) >= MeasurementLifetime)
     {
         MeasureWallOffset();

@@ -21,6 +21,8 @@
 //   network anew by itself, and logs it: all peers are Lost and appear again, readers get transient-local
 //   history once more, writers start with an empty history, a new WriterId and new numbers. Meanwhile writes
 //   end TimedOut.
+//   Processes that were stopped, or that heard nothing, for longer than the lease come together again as
+//   well, whichever side had lost the other: what is Lost here appears again, and endpoints match again.
 //
 // Errors
 //   Opening something with impossible settings throws TransportError with one clear line. What can fail in

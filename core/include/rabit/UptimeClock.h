@@ -1,0 +1,28 @@
+#pragma once
+
+#include <chrono>
+#include <ctime>
+
+namespace Rabit
+{
+
+// The monotonic clock behind all times and ages in Rabit: the time since this computer was started. Unlike
+// std::chrono::steady_clock it goes on while the computer is suspended, so that what was posted or queued
+// before is afterwards as old as it is. Not for waiting: timed waits of the standard library do stand still.
+struct UptimeClock
+{
+    using duration = std::chrono::nanoseconds;
+    using rep = duration::rep;
+    using period = duration::period;
+    using time_point = std::chrono::time_point<UptimeClock>;
+    static constexpr bool is_steady = true;
+
+    static time_point now() noexcept
+    {
+        std::timespec time{};
+        clock_gettime(CLOCK_BOOTTIME, &time);
+        return time_point(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
+    }
+};
+
+}  // namespace Rabit
