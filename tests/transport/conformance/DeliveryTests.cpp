@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "ConformanceTest.h"
+#include "ProcessMemory.h"
 
 namespace Rabit::Conformance
 {
@@ -365,6 +366,65 @@ void Conformance::ExpectArrivalOf(std::size_t size)
     ASSERT_EQ(all[0].Bytes.size(), size + 4);
     EXPECT_TRUE(std::equal(body.begin(), body.end(), all[0].Bytes.begin() + 4));
     EXPECT_EQ(all[1].Text, "small");
+}
+
+TEST_P(Conformance, AVolatileWriterLetsGoOfWhatAllItsReadersHave)
+{
+    if (MemoryIsNotGivenBack)
+    {
+        GTEST_SKIP() << "with AddressSanitizer, what is freed is kept for a while";
+    }
+    constexpr int Count = 100;
+    constexpr double MostKept = 40;
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    std::atomic<int> received{0};
+    const auto reader = reading->CreateReader(TextTopic(), Stream(2 * Count), {},
+                                              [&](SampleBytes, const SampleInfo &) { ++received; });
+    const auto writer = writing->CreateWriter(TextTopic(), Stream(2 * Count), {});
+    ASSERT_TRUE(Matched(writer, reader));
+    const std::string megabyte(1 << 20, 'x');
+    const auto write = [&]
+    {
+        const int before = received;
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, megabyte), 1), WriteResult::Ok);
+        ASSERT_TRUE(Until([&] { return received > before; }));
+    };
+    // What a backend needs to send such samples at all, it keeps.
+    for (int i = 0; i < 5; ++i)
+    {
+        write();
+    }
+    Net().Settle();
+    const double before = MemoryInMegabytes();
+    for (int i = 0; i < Count; ++i)
+    {
+        write();
+    }
+    Net().Settle();
+    write();
+    EXPECT_LT(MemoryInMegabytes(), before + MostKept);
+}
+
+TEST_P(Conformance, AVolatileWriterKeepsNothingForNobody)
+{
+    if (MemoryIsNotGivenBack)
+    {
+        GTEST_SKIP() << "with AddressSanitizer, what is freed is kept for a while";
+    }
+    constexpr int Count = 100;
+    const auto session = Open("uav1");
+    const auto writer = session->CreateWriter(TextTopic(), Stream(2 * Count), {});
+    const std::string megabyte(1 << 20, 'x');
+    const auto write = [&]
+    { ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, megabyte), 1), WriteResult::Ok); };
+    write();
+    const double before = MemoryInMegabytes();
+    for (int i = 0; i < Count; ++i)
+    {
+        write();
+    }
+    EXPECT_LT(MemoryInMegabytes(), before + 40);
 }
 
 TEST_P(Conformance, ASampleOfOneMegabyteArrives)

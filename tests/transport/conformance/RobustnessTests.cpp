@@ -55,7 +55,7 @@ TEST_P(Conformance, ASampleThatCannotBeSentIsRefusedAndCounted)
     };
     EXPECT_EQ(writer->Write(FakeSample(100, refuse), 1), WriteResult::Failed);
     EXPECT_EQ(writer->Write(FakeSample(3, neverAsked), 1), WriteResult::Failed);
-    EXPECT_EQ(writer->Write(FakeSample(std::size_t{1} << 30, neverAsked), 1), WriteResult::TooLarge);
+    EXPECT_EQ(writer->Write(FakeSample(LargestSample + 1, neverAsked), 1), WriteResult::TooLarge);
     EXPECT_EQ(writer->Dispose(MakeSample(0, "no key"), 1), WriteResult::Failed);
     EXPECT_EQ(writing->Counters().WriteFailures, 4u);
     ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "good"), 1), WriteResult::Ok);

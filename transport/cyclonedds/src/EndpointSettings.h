@@ -12,7 +12,7 @@ namespace Rabit::Cyclone
 {
 
 // Larger samples are neither sent nor accepted.
-constexpr std::size_t MaxSample = std::size_t{64} << 20;
+constexpr std::size_t MaxSample = LargestSample;
 
 Qos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions);
 Qos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions);

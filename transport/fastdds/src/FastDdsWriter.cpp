@@ -37,7 +37,8 @@ FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescr
       _topic(topic),
       _use(_core->Topics(), topic),
       _pool(std::make_shared<PayloadPool>([] {})),
-      _history(qos.Depth, static_cast<bool>(topic.KeyOf))
+      _keepsForLateReaders(qos.Durability == Durability::TransientLocal),
+      _history(qos.Depth)
 {
     auto attributes = MakeWriterAttributes(topic, qos);
     _writer = rtps::RTPSDomain::createRTPSWriter(&_core->Participant(), attributes, _pool, &_history, this);
@@ -181,6 +182,15 @@ void FastDdsWriter::onWriterMatched(rtps::RTPSWriter *writer, rtps::MatchingInfo
     else
     {
         _matched.erase(info.remoteEndpointGuid);
+    }
+}
+
+void FastDdsWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter * /*writer*/, rtps::CacheChange_t *change)
+{
+    // Under the writer's mutex, and no other one of ours.
+    if (!_keepsForLateReaders)
+    {
+        _history.Drop(*change);
     }
 }
 

@@ -35,6 +35,8 @@ private:
 
     void onWriterMatched(eprosima::fastrtps::rtps::RTPSWriter *writer,
                          eprosima::fastrtps::rtps::MatchingInfo &info) override;
+    void onWriterChangeReceivedByAll(eprosima::fastrtps::rtps::RTPSWriter *writer,
+                                     eprosima::fastrtps::rtps::CacheChange_t *change) override;
     void on_offered_incompatible_qos(eprosima::fastrtps::rtps::RTPSWriter *writer,
                                      eprosima::fastdds::dds::PolicyMask qos) override;
 
@@ -42,6 +44,7 @@ private:
     const TopicDescription _topic;
     const TopicRegistry::Use _use;
     const std::shared_ptr<PayloadPool> _pool;
+    const bool _keepsForLateReaders;
     KeepLastHistory _history;
     mutable std::mutex _mutex;
     std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex

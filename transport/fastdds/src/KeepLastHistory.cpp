@@ -4,6 +4,8 @@
 #include <fastdds/rtps/common/CacheChange.h>
 
 #include <algorithm>
+#include <functional>
+#include <string_view>
 
 namespace Rabit::FastDds
 {
@@ -22,34 +24,58 @@ rtps::HistoryAttributes MakeAttributes(int depth)
 
 }  // namespace
 
-KeepLastHistory::KeepLastHistory(int depth, bool keyed)
-    : WriterHistory(MakeAttributes(depth)), _depth(static_cast<std::size_t>(depth)), _keyed(keyed)
+KeepLastHistory::KeepLastHistory(int depth)
+    : WriterHistory(MakeAttributes(depth)), _kept(static_cast<std::size_t>(depth))
 {
 }
 
-bool KeepLastHistory::Add(rtps::CacheChange_t &change, rtps::WriteParams &params,
+bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
                           std::chrono::steady_clock::time_point deadline)
 {
-    MakeRoom(change.instanceHandle);
-    return add_change_(&change, params, deadline);
+    const rtps::InstanceHandle_t instance = change.instanceHandle;
+    while (const auto oldest = _kept.PushedOut(instance))
+    {
+        remove_change_nts(Find(*oldest));
+        _kept.Remove(instance, *oldest);  // even if the history had lost it: this must end
+    }
+    // Before it is sent: with nobody to wait for, it is dropped again on the way.
+    const std::uint64_t number = next_sequence_number().to64long();
+    _kept.Add(instance, number);
+    if (!add_change_(&change, params, deadline))
+    {
+        _kept.Remove(instance, number);
+        return false;
+    }
+    return true;
 }
 
-void KeepLastHistory::MakeRoom(const rtps::InstanceHandle_t &instance)
+void KeepLastHistory::Drop(const Change &change)
 {
-    if (!_keyed)
+    remove_change_nts(Find(change.sequenceNumber.to64long()));
+}
+
+KeepLastHistory::iterator KeepLastHistory::remove_change_nts(const_iterator removal, bool release)
+{
+    if (removal != m_changes.end())
     {
-        while (m_changes.size() >= _depth)
-        {
-            remove_change_nts(m_changes.begin());
-        }
-        return;
+        _kept.Remove((*removal)->instanceHandle, (*removal)->sequenceNumber.to64long());
     }
-    const auto same = [&](const rtps::CacheChange_t *kept) { return kept->instanceHandle == instance; };
-    auto count = static_cast<std::size_t>(std::count_if(m_changes.begin(), m_changes.end(), same));
-    for (; count >= _depth; --count)
-    {
-        remove_change_nts(std::find_if(m_changes.begin(), m_changes.end(), same));
-    }
+    return WriterHistory::remove_change_nts(removal, release);
+}
+
+KeepLastHistory::iterator KeepLastHistory::Find(std::uint64_t number)
+{
+    const auto found = std::lower_bound(m_changes.begin(), m_changes.end(), number,
+                                        [](const Change *kept, std::uint64_t wanted)
+                                        { return kept->sequenceNumber.to64long() < wanted; });
+    return found != m_changes.end() && (*found)->sequenceNumber.to64long() == number ? found
+                                                                                     : m_changes.end();
+}
+
+std::size_t KeepLastHistory::HashOf::operator()(const rtps::InstanceHandle_t &instance) const
+{
+    const rtps::octet *bytes = instance.value;
+    return std::hash<std::string_view>()({reinterpret_cast<const char *>(bytes), 16});
 }
 
 }  // namespace Rabit::FastDds

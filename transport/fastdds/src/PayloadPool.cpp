@@ -81,6 +81,7 @@ void PayloadPool::Release(Buffer buffer)
 
 void PayloadPool::Adopt(Buffer buffer, std::uint32_t length, Change &change)
 {
+    _held += buffer.Capacity;
     auto &payload = change.serializedPayload;
     payload.data = buffer.Data;
     payload.max_size = buffer.Capacity;
@@ -91,7 +92,7 @@ void PayloadPool::Adopt(Buffer buffer, std::uint32_t length, Change &change)
 
 bool PayloadPool::get_payload(std::uint32_t size, Change &change)
 {
-    if (size > MaxSample)
+    if (size > MaxSample || _held + size > MostArriving)
     {
         _onRefused();
         return false;
@@ -125,6 +126,7 @@ bool PayloadPool::get_payload(Payload &data, IPayloadPool *& /*owner*/, Change &
 bool PayloadPool::release_payload(Change &change)
 {
     auto &payload = change.serializedPayload;
+    _held -= payload.max_size;
     Release({payload.data, payload.max_size});
     payload.data = nullptr;
     payload.max_size = 0;

@@ -7,7 +7,10 @@
 
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/history/IPayloadPool.h>
+#include <rabit/transport/Transport.h>
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -18,7 +21,7 @@ namespace Rabit::FastDds
 {
 
 // Larger samples are neither sent nor accepted.
-constexpr std::uint32_t MaxSample = 64u << 20;
+constexpr std::uint32_t MaxSample = LargestSample;
 
 // Thread-safe.
 class PayloadPool final : public eprosima::fastrtps::rtps::IPayloadPool
@@ -33,9 +36,14 @@ public:
         std::uint32_t Capacity = 0;
     };
 
-    // `onRefused` is called, on the vendor's thread, when a sample larger than MaxSample arrives.
+    // `onRefused` is called, on the vendor's thread, when a sample arrives that is larger than MaxSample, or for
+    // which MostArriving leaves no room.
     explicit PayloadPool(std::function<void()> onRefused) : _onRefused(std::move(onRefused)) {}
     ~PayloadPool() override;
+
+    // Samples whose fragments are still coming take no more bytes than this together: the first fragment says how
+    // large its sample is going to be, and the others may never come.
+    static constexpr std::size_t MostArriving = 4 * std::size_t{MaxSample};
 
     // A buffer for at least `size` bytes, which the caller owns until it releases or adopts it. Throws
     // std::bad_alloc.
@@ -52,7 +60,8 @@ public:
 private:
     const std::function<void()> _onRefused;
     std::mutex _mutex;
-    std::vector<Buffer> _free;  // guarded by _mutex
+    std::vector<Buffer> _free;           // guarded by _mutex
+    std::atomic<std::size_t> _held = 0;  // bytes in changes
 };
 
 }  // namespace Rabit::FastDds

@@ -50,6 +50,24 @@ void PutIntoHistory(WriterState &writer, SamplePtr sample)
     history.push_back(std::move(sample));
 }
 
+// A volatile writer keeps a sample for those alone that are matched and have not acknowledged it yet.
+void LetGo(WriterState &writer)
+{
+    if (writer.Info->Qos.Durability == Durability::TransientLocal)
+    {
+        return;
+    }
+    std::uint64_t known = writer.LastSequence;
+    for (const auto &[id, reader] : writer.Readers)
+    {
+        known = std::min(known, reader.Reliable ? reader.Acknowledged : writer.LastSequence);
+    }
+    while (!writer.History.empty() && writer.History.front()->Sequence <= known)
+    {
+        writer.History.pop_front();
+    }
+}
+
 }  // namespace
 
 bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
@@ -66,6 +84,7 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     {
         SendSample(participant, writer, id, reader, sample);
     }
+    LetGo(writer);
     KeepHeartbeat(writer);
     return true;
 }
@@ -176,6 +195,7 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
             SendSample(me, writer, found->first, reader, *sample, _timings.ResponseDelay);
         }
     }
+    LetGo(writer);
 }
 
 void NetworkCore::HearSample(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram)

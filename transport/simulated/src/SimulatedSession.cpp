@@ -10,7 +10,7 @@ namespace Rabit::Simulated
 namespace
 {
 
-constexpr std::size_t MaxSample = std::size_t{64} << 20;
+constexpr std::size_t MaxSample = LargestSample;
 constexpr std::size_t HeaderSize = 4;
 
 class SimulatedWriter final : public TransportWriter

@@ -107,13 +107,20 @@ enum class Durability
                     // more
 };
 
+// What every backend can send as one sample, in bytes, the encapsulation header included. Larger ones are
+// neither sent nor accepted, so that nobody is made to allocate more.
+inline constexpr std::size_t LargestSample = std::size_t{64} << 20;
+
 // Quality of service of a writer or reader, in the terms of the OMG DDS specification, section 2.2.3.
 // The history is always keep-last: a slow reader never blocks a writer for ever.
 struct TopicQos
 {
     Rabit::Reliability Reliability = Rabit::Reliability::Reliable;
     Rabit::Durability Durability = Rabit::Durability::Volatile;
-    // Samples kept by the writer for repair and for late readers (for each key if the topic is keyed).
+    // Samples kept by the writer for repair and for late readers (for each key if the topic is keyed). A
+    // volatile writer lets go of a sample before that, once all readers that are matched have acknowledged it
+    // (best-effort ones: once it is sent), at the latest with the next write; so it holds what is under way,
+    // and nothing while nobody is matched. A transient-local one keeps it until another pushes it out.
     // A reader hands each sample over as it arrives and keeps none back: samples of one writer never push out
     // those of another, keyed topic or not.
     int Depth = 1;
@@ -181,7 +188,7 @@ enum class WriteResult
 {
     Ok,        // handed to the network; a reliable writer repairs it as long as it is in its history
     TimedOut,  // the network did not take it in time; the sample was not written
-    TooLarge,  // larger than the backend can send
+    TooLarge,  // larger than LargestSample
     Failed     // the encoder failed, or the session is closed; the backend logged why
 };
 
@@ -236,7 +243,9 @@ struct TransportCounters
     std::uint64_t SamplesLost = 0;         // samples that a reader knows it has missed
     std::uint64_t InconsistentTypes = 0;   // endpoints of our topics elsewhere that have another type name
     std::uint64_t MalformedSamples = 0;    // samples dropped: too short, too large, or without a readable key
-    std::uint64_t MalformedDatagrams = 0;  // datagrams dropped because they are not of the backend's protocol
+    // Datagrams dropped, in whole or in part, because they are not of the backend's protocol or say what their
+    // sender cannot honestly say.
+    std::uint64_t MalformedDatagrams = 0;
 };
 
 // One participant in the network.
@@ -248,7 +257,9 @@ public:
     // Makes a writer on a topic. The partitions are those of the OMG DDS specification, 2.2.3.13: names,
     // matched by equal names or by the other side's `*` and `?` patterns; "" is the default partition. An
     // empty list means {""}. Throws TransportError if the same topic name was opened with another type in
-    // this session.
+    // this session. Does not wait for readers, and never for the network: it may take as long as a handler or
+    // a write that is under way (100 ms), and while the session joins the network anew as long as that takes
+    // (a second or so). The writer is announced when this returns; readers match it as they hear of it.
     virtual std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
                                                           const std::vector<std::string> &partitions) = 0;
     // Makes a reader on a topic; the handler may be called before this returns. Samples of this session's own
@@ -260,6 +271,12 @@ public:
 };
 
 // A backend.
+//
+// What its discovery has to carry, so that nodes know each other, those over other DDS backends included
+// (transport/common/ParticipantIdentity.h): with each participant its node name, as the participant's name, and
+// its incarnation, in the participant's user data; with each endpoint, the participant that it belongs to, the
+// names of topic and type, QoS and partitions. A participant with other user data is no Rabit node: its samples
+// are handed over without a node name, and it makes no PeerEvent. Two sessions may have one name.
 class Transport
 {
 public:

@@ -1,0 +1,29 @@
+// How much memory this process holds.
+#pragma once
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace Rabit::Conformance
+{
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool MemoryIsNotGivenBack = true;
+#else
+constexpr bool MemoryIsNotGivenBack = false;
+#endif
+
+// What is resident, without what the allocator keeps for later.
+inline double MemoryInMegabytes()
+{
+    ::malloc_trim(0);
+    std::ifstream file("/proc/self/statm");
+    double all = 0;
+    double resident = 0;
+    file >> all >> resident;
+    return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+}  // namespace Rabit::Conformance

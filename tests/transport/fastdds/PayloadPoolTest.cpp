@@ -1,0 +1,73 @@
+// How much memory samples take that arrive.
+#include "PayloadPool.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+namespace
+{
+
+using Rabit::FastDds::MaxSample;
+using Rabit::FastDds::PayloadPool;
+
+class PayloadPoolTest : public testing::Test
+{
+protected:
+    bool Get(std::uint32_t size)
+    {
+        if (!Pool.get_payload(size, Changes.emplace_back()))
+        {
+            Changes.pop_back();
+            return false;
+        }
+        return true;
+    }
+    void GiveBack()
+    {
+        Pool.release_payload(Changes.front());
+        Changes.pop_front();
+    }
+    ~PayloadPoolTest() override
+    {
+        while (!Changes.empty())
+        {
+            GiveBack();
+        }
+    }
+
+    int Refused = 0;
+    PayloadPool Pool{[this] { ++Refused; }};
+    std::deque<PayloadPool::Change> Changes;
+};
+
+TEST_F(PayloadPoolTest, ASampleLargerThanTheLargestIsRefused)
+{
+    EXPECT_TRUE(Get(MaxSample));
+    EXPECT_FALSE(Get(MaxSample + 1));
+    EXPECT_EQ(Refused, 1);
+}
+
+TEST_F(PayloadPoolTest, SamplesWhoseRestNeverComesDoNotFillTheMemory)
+{
+    for (int i = 0; i < 4; ++i)
+    {
+        EXPECT_TRUE(Get(MaxSample)) << i;
+    }
+    EXPECT_FALSE(Get(1000));
+    EXPECT_EQ(Refused, 1);
+    GiveBack();
+    EXPECT_TRUE(Get(MaxSample));
+}
+
+TEST_F(PayloadPoolTest, WhatIsGivenBackCountsNoMore)
+{
+    for (int i = 0; i < 100'000; ++i)
+    {
+        ASSERT_TRUE(Get(20'000)) << i;
+        GiveBack();
+    }
+    EXPECT_EQ(Refused, 0);
+}
+
+}  // namespace

@@ -1,0 +1,93 @@
+// Which samples of each instance are kept: the last ones.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace Rabit::FastDds
+{
+
+// The numbers of the samples in a history, by instance. Every call looks one instance up, however many there
+// are and however many samples are kept. Not thread-safe.
+template <typename Key, typename Hash>
+class KeepLast
+{
+public:
+    // Keeps at most `depth` samples of each instance, at least one.
+    explicit KeepLast(std::size_t depth) : _depth(depth) {}
+
+    // The sample that another one of this instance pushes out; nothing if there is room.
+    std::optional<std::uint64_t> PushedOut(const Key &instance) const
+    {
+        const auto found = _instances.find(instance);
+        if (found == _instances.end() || found->second.Size() < _depth)
+        {
+            return std::nullopt;
+        }
+        return found->second.Numbers[found->second.First];
+    }
+
+    // Numbers rise.
+    void Add(const Key &instance, std::uint64_t number) { _instances[instance].Numbers.push_back(number); }
+
+    // Whatever the reason. A number that is not there is passed over.
+    void Remove(const Key &instance, std::uint64_t number)
+    {
+        const auto found = _instances.find(instance);
+        if (found == _instances.end())
+        {
+            return;
+        }
+        found->second.Remove(number);
+        if (found->second.Size() == 0 && _instances.size() > MostEmpty)
+        {
+            _instances.erase(found);
+        }
+    }
+
+    std::size_t Instances() const { return _instances.size(); }
+
+private:
+    // Of no samples any more: they are kept up to this number so that the same few instances, written again
+    // and again, cost no allocation.
+    static constexpr std::size_t MostEmpty = 256;
+
+    // In rising order. The oldest goes by a step of First, not by moving the others.
+    struct Samples
+    {
+        std::vector<std::uint64_t> Numbers;
+        std::size_t First = 0;
+
+        std::size_t Size() const { return Numbers.size() - First; }
+
+        void Remove(std::uint64_t number)
+        {
+            const auto begin = Numbers.begin() + static_cast<std::ptrdiff_t>(First);
+            const auto found = std::lower_bound(begin, Numbers.end(), number);
+            if (found == Numbers.end() || *found != number)
+            {
+                return;
+            }
+            if (found != begin)
+            {
+                Numbers.erase(found);
+                return;
+            }
+            ++First;
+            if (2 * First >= Numbers.size())
+            {
+                Numbers.erase(Numbers.begin(), Numbers.begin() + static_cast<std::ptrdiff_t>(First));
+                First = 0;
+            }
+        }
+    };
+
+    const std::size_t _depth;
+    std::unordered_map<Key, Samples, Hash> _instances;
+};
+
+}  // namespace Rabit::FastDds
