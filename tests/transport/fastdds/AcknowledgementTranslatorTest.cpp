@@ -110,6 +110,15 @@ TEST(AcknowledgementTranslator, RepeatsAndStragglersAreNoNews)
     EXPECT_LE(CountAfter(translator, {.Base = 2, .Count = 1}), newest);
 }
 
+// Whoever sends the highest count once would silence the honest ones behind it for good.
+TEST(AcknowledgementTranslator, AForgedCountDoesNotSilenceTheHonestOnes)
+{
+    AcknowledgementTranslator translator;
+    CountAfter(translator, {.Base = 2, .Count = 1});
+    const auto forged = CountAfter(translator, {.Base = 2, .Count = 0xffffffff});
+    EXPECT_GT(CountAfter(translator, {.Base = 3, .Count = 2}), forged);
+}
+
 TEST(AcknowledgementTranslator, AReaderThatBeginsAnewIsNews)
 {
     AcknowledgementTranslator translator;

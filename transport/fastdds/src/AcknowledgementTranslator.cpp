@@ -27,6 +27,9 @@ constexpr std::size_t SequenceAt = 8;
 constexpr std::size_t AckNackBitsAt = 16;
 constexpr std::size_t NackFragBitsAt = 20;
 constexpr std::size_t CountSize = 4;
+// A count farther behind the last one is no straggler: either it or the last one was forged, and the honest ones
+// go on from the lower.
+constexpr std::uint32_t FarthestBehind = 16;
 
 std::uint32_t Read(std::span<const std::uint8_t> bytes, bool littleEndian)
 {
@@ -116,7 +119,7 @@ std::uint32_t AcknowledgementTranslator::CountOf(const Prefix &sender, const Exc
         }
         known = _exchanges.emplace(key, Counts{theirs, _floor + 1, something}).first;
     }
-    else if (theirs > known->second.Theirs)
+    else if (known->second.Theirs - theirs > FarthestBehind)  // or ahead: unsigned
     {
         known->second = {theirs, known->second.Ours + 1, something};
     }

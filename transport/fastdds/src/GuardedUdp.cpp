@@ -3,11 +3,8 @@
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 
-#include <mutex>
+#include <chrono>
 #include <utility>
-
-#include "AcknowledgementTranslator.h"
-#include "RtpsCheck.h"
 
 namespace Rabit::FastDds
 {
@@ -25,7 +22,7 @@ class GuardedUdp final : public ChainingTransport
 {
 public:
     explicit GuardedUdp(const GuardedUdpDescriptor &descriptor)
-        : ChainingTransport(descriptor), _descriptor(descriptor)
+        : ChainingTransport(descriptor), _descriptor(descriptor), _guard(descriptor.Mode())
     {
     }
 
@@ -35,37 +32,36 @@ public:
               rtps::LocatorsIterator *begin, rtps::LocatorsIterator *end,
               const std::chrono::steady_clock::time_point &timeout) override
     {
-        return sender->send(buffer, size, begin, end, timeout);
+        const auto left = static_cast<std::uint32_t>(SizeWithoutStatistics({buffer, size}));
+        _guard.Sending({buffer, left});
+        return sender->send(buffer, left, begin, end, timeout);
     }
 
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
                  const rtps::Locator_t &local, const rtps::Locator_t &remote) override
     {
-        if (IsSoundRtps({buffer, size}))
+        // The vendor's receive buffer, which is not used again before this returns.
+        const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
+        const auto handOn = [&](std::span<const std::uint8_t> admitted) {
+            next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()), local, remote);
+        };
+        if (!_guard.Admit(datagram, std::chrono::steady_clock::now(), std::cref(handOn)))
         {
-            {
-                // The buffer is the vendor's own for receiving, const only on the way through here.
-                const std::lock_guard lock(_mutex);
-                _acknowledgements.Translate({const_cast<rtps::octet *>(buffer), size});
-            }
-            next->OnDataReceived(buffer, size, local, remote);
-            return;
+            _descriptor.OnDropped()();
         }
-        _descriptor.OnDropped()();
     }
 
 private:
     GuardedUdpDescriptor _descriptor;
-    std::mutex _mutex;                            // several sockets receive at once
-    AcknowledgementTranslator _acknowledgements;  // guarded by _mutex
+    RtpsGuard _guard;
 };
 
 }  // namespace
 
 GuardedUdpDescriptor::GuardedUdpDescriptor(
     std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp, std::uint32_t maxDatagram,
-    std::function<void()> onDropped)
-    : ChainingTransportDescriptor(std::move(udp)), _onDropped(std::move(onDropped))
+    RtpsGuard::Mode mode, std::function<void()> onDropped)
+    : ChainingTransportDescriptor(std::move(udp)), _mode(mode), _onDropped(std::move(onDropped))
 {
     maxMessageSize = maxDatagram;
 }

@@ -60,6 +60,27 @@ rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
     return profile.rtps;
 }
 
+RtpsGuard::Mode GuardMode(const TransportSettings &settings,
+                          const rtps::RTPSParticipantAttributes &attributes)
+{
+    if (rtps::PropertyPolicyHelper::find_property(attributes.properties, "dds.sec.auth.plugin") != nullptr)
+    {
+        return RtpsGuard::Mode::Secured;
+    }
+    return settings.SharedMemory ? RtpsGuard::Mode::StructureOnly : RtpsGuard::Mode::Full;
+}
+
+// So that strangers who announce themselves without end do not fill the memory.
+void LimitPeers(rtps::RTPSParticipantAttributes &attributes)
+{
+    constexpr std::size_t MostParticipants = 1024;
+    constexpr std::size_t MostEndpoints = 4096;  // of each kind, for each participant
+    auto &allocation = attributes.allocation;
+    allocation.participants.maximum = std::min(allocation.participants.maximum, MostParticipants);
+    allocation.readers.maximum = std::min(allocation.readers.maximum, MostEndpoints);
+    allocation.writers.maximum = std::min(allocation.writers.maximum, MostEndpoints);
+}
+
 void AddTransports(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
                    rtps::RTPSParticipantAttributes &attributes)
 {
@@ -73,7 +94,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
     attributes.userTransports.push_back(std::make_shared<GuardedUdpDescriptor>(
-        udp, static_cast<std::uint32_t>(settings.MaxDatagram), [log] { log->MalformedDatagram(); }));
+        udp, static_cast<std::uint32_t>(settings.MaxDatagram), GuardMode(settings, attributes),
+        [log] { log->MalformedDatagram(); }));
     if (settings.SharedMemory)
     {
         attributes.userTransports.push_back(std::make_shared<SharedMemTransportDescriptor>());
@@ -134,6 +156,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     discovery.initial_announcements.count = 5;
     discovery.initial_announcements.period =
         ToDuration(std::min(std::chrono::milliseconds(100), settings.AnnouncementPeriod));
+    LimitPeers(attributes);
     if (attributes.userTransports.empty())
     {
         AddTransports(settings, log, attributes);

@@ -1,0 +1,213 @@
+// What a peer can say, given what it has said before.
+#include "KnownPeers.h"
+
+#include <gtest/gtest.h>
+
+#include "DeliveryCheck.h"
+#include "RtpsBytes.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using namespace std::chrono_literals;
+using Rabit::FastDds::KnownPeers;
+
+class KnownPeersTest : public testing::Test
+{
+protected:
+    KnownPeersTest()
+    {
+        Peers.Announced(Sender, 1, Now);
+        Peers.WriterAnnounced(Sender, UserWriter);
+    }
+
+    static GuidPrefix Stranger(int number)
+    {
+        GuidPrefix prefix = Other;
+        prefix[0] = static_cast<std::uint8_t>(number);
+        prefix[1] = static_cast<std::uint8_t>(number >> 8);
+        prefix[2] = 77;
+        return prefix;
+    }
+
+    KnownPeers Peers;
+    KnownPeers::TimePoint Now{1h};
+};
+
+TEST_F(KnownPeersTest, OnlyAnnouncedPeersAreHeard)
+{
+    EXPECT_TRUE(Peers.Hears(Sender, Now));
+    EXPECT_FALSE(Peers.Hears(Other, Now));
+}
+
+TEST_F(KnownPeersTest, APeerDoesNotMoveElsewhereWhileItIsHeard)
+{
+    EXPECT_TRUE(Peers.Announced(Sender, 1, Now + 59s));
+    EXPECT_FALSE(Peers.Announced(Sender, 2, Now + 118s));
+    EXPECT_TRUE(Peers.Announced(Sender, 2, Now + 120s));
+    EXPECT_FALSE(Peers.Announced(Sender, 1, Now + 121s));
+}
+
+TEST_F(KnownPeersTest, TheFirstNumberOfAWriterMayBeAny)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 5'000'000, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 5'000'001, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 3, Now));
+}
+
+TEST_F(KnownPeersTest, NumbersDoNotJump)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 26, Now));
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 43, Now));
+    // What was refused moves nothing, and neither does time alone.
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 43, Now + 1999ms));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 42, Now + 1999ms));
+}
+
+TEST_F(KnownPeersTest, AFastWriterMayBeFartherTheLongerNothingWasHeardOfIt)
+{
+    for (int i = 0; i <= 2000; ++i)
+    {
+        ASSERT_TRUE(Peers.Hears(Sender, Now));
+        ASSERT_TRUE(Peers.Reaches(Sender, UserWriter, 1 + i, Now));
+        Now += 1ms;
+    }
+    // A thousand a second, and twice as far is believed.
+    Now += 499ms;
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 2001 + 1017, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 2001 + 1016, Now));
+}
+
+TEST_F(KnownPeersTest, AJumpIsBelievedWhenEightInARowAgree)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1, Now));
+    for (std::int64_t number = 5001; number <= 5007; ++number)
+    {
+        EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, number, Now)) << number;
+    }
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 5008, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 5009, Now));
+}
+
+TEST_F(KnownPeersTest, AHeartbeatThatRepeatsItsNumberAgrees)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1, Now));
+    for (int i = 0; i < 7; ++i)
+    {
+        EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 5000, Now));
+    }
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 5000, Now));
+}
+
+TEST_F(KnownPeersTest, AJumpIsNotBelievedWhileTheWriterGoesOnFromWhereItWas)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1, Now));
+    for (int i = 0; i < 100; ++i)
+    {
+        EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 5000, Now)) << i;
+        if (i % 7 == 6)
+        {
+            EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 2 + i / 7, Now));
+        }
+    }
+}
+
+TEST_F(KnownPeersTest, JumpsToHereAndThereAreNotBelieved)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1, Now));
+    for (int i = 0; i < 100; ++i)
+    {
+        EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 5000 + 17 * i, Now)) << i;
+        EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 4000, Now)) << i;
+    }
+}
+
+TEST_F(KnownPeersTest, AfterAPeersSilenceItsWritersMayBeAnywhere)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1, Now));
+    EXPECT_TRUE(Peers.Hears(Sender, Now + 1999ms));
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 1'000'000, Now + 1999ms));
+    EXPECT_TRUE(Peers.Hears(Sender, Now + 3999ms));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1'000'000, Now + 3999ms));
+    // Whatever it says first.
+    EXPECT_TRUE(Peers.Announced(Sender, 1, Now + 10s));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 2'000'000, Now + 10s));
+}
+
+TEST_F(KnownPeersTest, AWriterThatWasNotAnnouncedReachesNothing)
+{
+    EXPECT_FALSE(Peers.HasWriter(Sender, 0x00000203));
+    EXPECT_FALSE(Peers.Reaches(Sender, 0x00000203, 1, Now));
+    EXPECT_TRUE(Peers.HasWriter(Sender, Rabit::FastDds::PublicationsWriter));
+}
+
+TEST_F(KnownPeersTest, NobodyKnowsOfSamplesFarAhead)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1000, Now));
+    EXPECT_TRUE(Peers.CanKnowOf(Sender, UserWriter, 1016));
+    EXPECT_FALSE(Peers.CanKnowOf(Sender, UserWriter, 1017));
+    EXPECT_FALSE(Peers.CanKnowOf(Sender, 0x00000203, 1));
+}
+
+TEST_F(KnownPeersTest, CountsRiseByOneWhateverThePeerCounts)
+{
+    const auto first = Peers.CountOf(Sender, UserWriter, 7);
+    EXPECT_GT(first, 0u);  // the vendor begins at 0
+    EXPECT_EQ(Peers.CountOf(Sender, UserWriter, 8), first + 1);
+    EXPECT_EQ(Peers.CountOf(Sender, UserWriter, 0xffffffff), first + 2);
+    EXPECT_EQ(Peers.CountOf(Sender, UserWriter, 9), first + 3);
+}
+
+TEST_F(KnownPeersTest, ARepeatKeepsItsCount)
+{
+    const auto first = Peers.CountOf(Sender, UserWriter, 7);
+    EXPECT_EQ(Peers.CountOf(Sender, UserWriter, 7), first);
+}
+
+TEST_F(KnownPeersTest, CountsDoNotFallWhenTheWriterWasForgotten)
+{
+    std::uint32_t last = 0;
+    for (std::uint32_t i = 0; i < 1000; ++i)
+    {
+        last = Peers.CountOf(Sender, UserWriter, i);
+    }
+    for (EntityId writer = 1; writer <= 5000; ++writer)
+    {
+        Peers.WriterAnnounced(Sender, writer << 8 | 3u);
+    }
+    ASSERT_FALSE(Peers.HasWriter(Sender, UserWriter));
+    Peers.WriterAnnounced(Sender, UserWriter);
+    EXPECT_GT(Peers.CountOf(Sender, UserWriter, 1), last);
+}
+
+TEST_F(KnownPeersTest, StrangersPushNobodyOutWhoIsHeard)
+{
+    for (int i = 0; i < 5000; ++i)
+    {
+        Peers.Announced(Stranger(i), 1, Now);
+    }
+    EXPECT_EQ(Peers.Size(), 1024u);
+    EXPECT_TRUE(Peers.Hears(Sender, Now));
+    EXPECT_FALSE(Peers.Announced(Stranger(6000), 1, Now + 59s));
+    // Those who fell silent make room; the others remain.
+    EXPECT_TRUE(Peers.Hears(Sender, Now + 61s));
+    EXPECT_TRUE(Peers.Announced(Stranger(6000), 1, Now + 61s));
+    EXPECT_TRUE(Peers.Hears(Sender, Now + 61s));
+    EXPECT_EQ(Peers.Size(), 1024u);
+}
+
+TEST_F(KnownPeersTest, OfTooManyWritersTheOneThatWasSilentForLongestIsForgotten)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1, Now));
+    for (EntityId writer = 1; writer <= 5000; ++writer)
+    {
+        Peers.WriterAnnounced(Sender, writer << 8 | 3u);
+    }
+    EXPECT_TRUE(Peers.HasWriter(Sender, UserWriter));
+    EXPECT_TRUE(Peers.HasWriter(Sender, 5000u << 8 | 3u));
+    EXPECT_TRUE(Peers.HasWriter(Sender, Rabit::FastDds::PublicationsWriter));
+}
+
+}  // namespace

@@ -1,0 +1,329 @@
+// What of a datagram gets through to the vendor's parser.
+#include "RtpsGuard.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "RtpsBytes.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using namespace std::chrono_literals;
+using Rabit::FastDds::RtpsGuard;
+
+class Gate
+{
+public:
+    explicit Gate(RtpsGuard::Mode mode = RtpsGuard::Mode::Full) : _guard(mode) {}
+
+    // Whether the guard found nothing to count; what it handed on is in Handed.
+    bool Admit(Bytes datagram)
+    {
+        Handed.clear();
+        return _guard.Admit(datagram, Now,
+                            [this](std::span<const std::uint8_t> admitted)
+                            { Handed.emplace_back(admitted.begin(), admitted.end()); });
+    }
+    // That the datagram gets through as it is.
+    bool Passes(const Bytes &datagram) { return Admit(datagram) && Handed == std::vector<Bytes>{datagram}; }
+    // That nothing of it does, and that this is counted.
+    bool Stops(const Bytes &datagram) { return !Admit(datagram) && Handed.empty(); }
+
+    void Sending(const Bytes &datagram) { _guard.Sending(datagram); }
+
+    std::vector<Bytes> Handed;
+    RtpsGuard::TimePoint Now{1h};
+
+private:
+    RtpsGuard _guard;
+};
+
+// With the sender, and a writer of his, announced and at number 10.
+class RtpsGuardTest : public testing::Test
+{
+protected:
+    RtpsGuardTest()
+    {
+        EXPECT_TRUE(Guard.Passes(ParticipantMessage()));
+        EXPECT_TRUE(Guard.Passes(WriterMessage()));
+        EXPECT_TRUE(Guard.Passes(Message(Data, DataBody(10), 5)));
+    }
+
+    Gate Guard;
+};
+
+TEST_F(RtpsGuardTest, OtherProtocolsAreStopped)
+{
+    Bytes message = Message(Data, DataBody(11), 5);
+    message[0] = 'X';
+    EXPECT_TRUE(Guard.Stops(message));
+    message = Message(Data, DataBody(11), 5);
+    message[4] = 9;  // protocol version 9
+    EXPECT_TRUE(Guard.Stops(message));
+    EXPECT_TRUE(Guard.Stops({}));
+    EXPECT_TRUE(Guard.Stops(Join({Header(GuidPrefix{}), Submessage(Data, DataBody(11), 5)})));
+}
+
+// As it was sent: 52 bytes that had the vendor take 2.3 GB in 8 seconds.
+TEST_F(RtpsGuardTest, AGapOfBillionsFromAKnownWriterIsStopped)
+{
+    const Bytes gap = Message(Gap, GapBody(12, std::int64_t{1} << 32));
+    EXPECT_EQ(gap.size(), 52u);
+    EXPECT_TRUE(Guard.Stops(gap));
+}
+
+TEST_F(RtpsGuardTest, AGapFarBeyondWhatTheWriterWroteIsStopped)
+{
+    EXPECT_TRUE(Guard.Passes(Message(Gap, GapBody(11, 13))));
+    EXPECT_TRUE(Guard.Stops(Message(Gap, GapBody(11, 300))));
+    EXPECT_TRUE(Guard.Stops(Message(Gap, GapBody(11, 20, 256))));
+    // Time does not move a writer.
+    Guard.Now += 1h;
+    EXPECT_TRUE(Guard.Stops(Message(Gap, GapBody(11, 300))));
+}
+
+// The assertion at RTPSStatisticsMessages.hpp:128: the vendor rounds the length of a submessage up and finds
+// statistics where none are, or finds them in front of something else.
+TEST_F(RtpsGuardTest, StatisticsNeverGetThrough)
+{
+    const Bytes data = Message(Data, DataBody(11), 5);
+    const Bytes statistics = Submessage(Statistics, Bytes(56));
+    EXPECT_TRUE(Guard.Admit(Join({data, statistics})));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{data});
+    EXPECT_TRUE(Guard.Stops(Join({data, statistics, statistics})));
+    EXPECT_TRUE(Guard.Stops(Join({Header(), statistics, Submessage(Data, DataBody(11), 5)})));
+}
+
+TEST_F(RtpsGuardTest, ASubmessageOfAnOddLengthBeforeAnotherOneIsStopped)
+{
+    const Bytes odd = DataBody(11, {0, 1, 0, 0, 7});
+    EXPECT_TRUE(Guard.Passes(Message(Data, odd, 5)));
+    EXPECT_TRUE(Guard.Stops(Join({Message(Data, odd, 5), Submessage(Data, DataBody(12), 5)})));
+}
+
+// The assertion at PDP.cpp:1140.
+TEST_F(RtpsGuardTest, AParticipantWithAnotherNameInItsDataIsStopped)
+{
+    const Bytes data = ParticipantData(Other);
+    EXPECT_TRUE(Guard.Stops(Message(Data, DataBody(1, data, 0x000100c2), 5)));
+}
+
+TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsIsStopped)
+{
+    const auto goodbye = [](const Bytes &key)
+    {
+        return Message(
+            Data,
+            DataBody(2, Join({Parameter(0x0070, key), Parameter(0x0071, {0, 0, 0, 3}), {1, 0, 0, 0}}),
+                     0x000100c2),
+            3);
+    };
+    EXPECT_TRUE(Guard.Passes(goodbye(Guid(Sender, 0x000001c1))));
+    EXPECT_TRUE(Guard.Stops(goodbye(Guid(Other, 0x000001c1))));
+}
+
+TEST_F(RtpsGuardTest, WhoSpeaksForOthersOrOfOtherAddressesIsStopped)
+{
+    EXPECT_TRUE(Guard.Stops(Join({Message(InfoSource, Bytes(20)), Submessage(Data, DataBody(11), 5)})));
+    EXPECT_TRUE(Guard.Stops(Join({Message(InfoReply, Bytes(28)), Submessage(Data, DataBody(11), 5)})));
+    EXPECT_TRUE(Guard.Stops(Message(SecurePrefix, Bytes(32))));
+    EXPECT_TRUE(Guard.Stops(Message(0x20, Bytes(32))));
+}
+
+TEST_F(RtpsGuardTest, WhatOtherVendorsAddIsBlanked)
+{
+    const Bytes data = Submessage(Data, DataBody(11), 5);
+    EXPECT_TRUE(Guard.Admit(Join({Message(0x81, {1, 2, 3, 4}), data})));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{Join({Message(0x01, {1, 2, 3, 4}), data})});
+}
+
+TEST_F(RtpsGuardTest, BuiltinTopicsThatWeDoNotHaveAreBlanked)
+{
+    EXPECT_TRUE(Guard.Admit(Message(Data, DataBody(1, Bytes(8), 0x000300c3), 5)));
+    EXPECT_TRUE(Guard.Handed.empty());
+}
+
+TEST_F(RtpsGuardTest, StrangersAreNotHeardBeforeTheyAnnounceThemselves)
+{
+    const Bytes data = Join({Header(Other), Submessage(Data, DataBody(1), 5)});
+    EXPECT_TRUE(Guard.Admit(data));
+    EXPECT_TRUE(Guard.Handed.empty());
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage(Other)));
+    EXPECT_TRUE(Guard.Admit(data));
+    EXPECT_TRUE(Guard.Handed.empty());
+    EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 1, Other)));
+    EXPECT_TRUE(Guard.Passes(data));
+}
+
+TEST_F(RtpsGuardTest, APeerThatIsHeardCannotBeSentElsewhere)
+{
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage(Sender, 7410)));
+    EXPECT_TRUE(Guard.Stops(ParticipantMessage(Sender, 9999)));
+}
+
+TEST_F(RtpsGuardTest, AWriterThatJumpsIsStoppedAndOneThatGoesOnIsNot)
+{
+    EXPECT_TRUE(Guard.Stops(Message(Data, DataBody(100'000), 5)));
+    EXPECT_TRUE(Guard.Stops(Message(Heartbeat, HeartbeatBody(1, 100'000, 1))));
+    EXPECT_TRUE(Guard.Stops(Message(Heartbeat, HeartbeatBody(100'001, 100'000, 1))));
+    EXPECT_TRUE(Guard.Passes(Message(Data, DataBody(11), 5)));
+    EXPECT_TRUE(Guard.Admit(Message(Heartbeat, HeartbeatBody(12, 11, 1))));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    Guard.Now += 10s;
+    EXPECT_TRUE(Guard.Passes(Message(Data, DataBody(100'000), 5)));
+}
+
+// Whoever sends the highest count once would silence the honest ones behind it for good.
+TEST_F(RtpsGuardTest, AForgedCountDoesNotSilenceTheHonestOnes)
+{
+    const auto countOf = [this](std::uint8_t kind, const Bytes &body)
+    {
+        EXPECT_TRUE(Guard.Admit(Message(kind, body)));
+        const Bytes &handed = Guard.Handed.at(0);
+        const auto *count = &handed[handed.size() - 4];
+        return std::uint32_t{count[0]} | std::uint32_t{count[1]} << 8 | std::uint32_t{count[2]} << 16;
+    };
+    const auto first = countOf(Heartbeat, HeartbeatBody(1, 10, 1));
+    EXPECT_EQ(countOf(Heartbeat, HeartbeatBody(1, 10, 0xffffffff)), first + 1);
+    EXPECT_EQ(countOf(Heartbeat, HeartbeatBody(1, 10, 2)), first + 2);
+    const auto ack = countOf(AckNack, AckNackBody(3, 0, 0xffffffff));
+    EXPECT_EQ(countOf(AckNack, AckNackBody(3, 0, 4)), ack + 1);
+}
+
+// The vendor would read past the end of the sample.
+TEST_F(RtpsGuardTest, FragmentsThatAreNotThereCannotBeAskedFor)
+{
+    EXPECT_TRUE(Guard.Stops(Message(NackFrag, NackFragBody(1, 1, 1, 1))));
+    Guard.Sending(Message(DataFrag, FragmentBody(1, 1, 1000, 2500, 1000)));
+    EXPECT_TRUE(Guard.Admit(Message(NackFrag, NackFragBody(1, 1, 3, 1))));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    EXPECT_TRUE(Guard.Stops(Message(NackFrag, NackFragBody(1, 1, 4, 2))));
+    EXPECT_TRUE(Guard.Stops(Message(NackFrag, NackFragBody(1, 5, 1, 3))));
+}
+
+// What is stopped takes nothing with it that came in the same datagram.
+TEST_F(RtpsGuardTest, WhatIsRefusedIsBlankedAndTheRestGetsThrough)
+{
+    const Bytes data = Submessage(Data, DataBody(11), 5);
+    EXPECT_FALSE(Guard.Admit(Join({Message(Gap, GapBody(11, 900)), data})));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{Join({Message(0x01, GapBody(11, 900)), data})});
+}
+
+std::vector<Bytes> Cut(const Bytes &payload, std::uint16_t size)
+{
+    std::vector<Bytes> fragments;
+    for (std::size_t at = 0; at < payload.size(); at += size)
+    {
+        const auto begin = payload.begin() + static_cast<std::ptrdiff_t>(at);
+        const Bytes piece(
+            begin, begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(size, payload.size() - at)));
+        fragments.push_back(Message(DataFrag, Join({{0, 0, 28, 0},
+                                                    Ids(0, 0x000003c2),
+                                                    Sequence(2),
+                                                    U32(static_cast<std::uint32_t>(at / size + 1)),
+                                                    U16(1),
+                                                    U16(size),
+                                                    U32(static_cast<std::uint32_t>(payload.size())),
+                                                    piece})));
+    }
+    return fragments;
+}
+
+TEST_F(RtpsGuardTest, AnAnnouncementInFragmentsGetsThroughWhole)
+{
+    auto fragments = Cut(WriterData(0x00000203), 64);
+    ASSERT_GT(fragments.size(), 1u);
+    std::reverse(fragments.begin(), fragments.end());
+    for (std::size_t i = 0; i + 1 < fragments.size(); ++i)
+    {
+        EXPECT_TRUE(Guard.Admit(fragments[i]));
+        EXPECT_TRUE(Guard.Handed.empty());
+    }
+    EXPECT_TRUE(Guard.Admit(fragments.back()));
+    const Bytes whole = Join({Message(InfoDestination, Bytes(12)),
+                              Submessage(Data, DataBody(2, WriterData(0x00000203), 0x000003c2), 5)});
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{whole});
+    EXPECT_TRUE(Guard.Passes(Message(Data, DataBody(1, Bytes(8), 0x00000203), 5)));
+}
+
+TEST_F(RtpsGuardTest, AnUnsoundAnnouncementInFragmentsIsStopped)
+{
+    const auto fragments = Cut(WriterData(UserWriter, Other), 64);
+    for (std::size_t i = 0; i + 1 < fragments.size(); ++i)
+    {
+        EXPECT_TRUE(Guard.Admit(fragments[i]));
+    }
+    EXPECT_TRUE(Guard.Stops(fragments.back()));
+}
+
+TEST(RtpsGuardModes, WhereSharedMemoryIsInUseOnlyTheStructureIsChecked)
+{
+    Gate guard(RtpsGuard::Mode::StructureOnly);
+    EXPECT_TRUE(guard.Passes(Message(Data, DataBody(10), 5)));
+    EXPECT_TRUE(guard.Passes(Message(Heartbeat, HeartbeatBody(1, 1'000'000, 7))));
+    EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
+    EXPECT_TRUE(guard.Stops(Message(Data, DataBody(1, ParticipantData(Other), 0x000100c2), 5)));
+}
+
+TEST(RtpsGuardModes, WithDdsSecurityItsSubmessagesAndTokensGetThroughAsTheyAre)
+{
+    Gate guard(RtpsGuard::Mode::Secured);
+    EXPECT_TRUE(guard.Passes(Join({Message(SecurePrefix, Bytes(32)), Submessage(Gap, Bytes(4))})));
+    EXPECT_TRUE(guard.Passes(Message(Data, DataBody(1, Bytes(8), 0xff0003c2), 5)));
+    const Bytes token = Parameter(0x1001, Bytes(16, 7));
+    Bytes data = ParticipantData();
+    data.resize(data.size() - 4);
+    data = Join({data, token, {1, 0, 0, 0}});
+    EXPECT_TRUE(guard.Passes(Message(Data, DataBody(1, data, 0x000100c2), 5)));
+    EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
+}
+
+// With AddressSanitizer this tells whether anything outside of the datagram is read or written.
+TEST_F(RtpsGuardTest, AnyBytesAreSafeToCheck)
+{
+    std::mt19937 random(1);
+    std::vector<Bytes> seeds = {
+        ParticipantMessage(),
+        WriterMessage(),
+        Message(Data, DataBody(11, Join({Parameter(0x0070, Bytes(16)), {1, 0, 0, 0}, Bytes(8)})), 7),
+        Message(DataFrag, FragmentBody(1, 1, 64, 250, 64)),
+        Message(AckNack, AckNackBody(1, 64, 1)),
+        Message(NackFrag, NackFragBody(1, 1, 64, 1)),
+        Message(Gap, GapBody(3, 5, 32)),
+        Join({Message(InfoDestination, Bytes(12)), Submessage(Heartbeat, HeartbeatBody(1, 10, 1)),
+              Submessage(Statistics, Bytes(56))})};
+    const auto fragments = Cut(WriterData(), 64);
+    seeds.insert(seeds.end(), fragments.begin(), fragments.end());
+    int handed = 0;
+    for (int i = 0; i < 300000; ++i)
+    {
+        Bytes bytes = seeds[random() % seeds.size()];
+        for (auto changes = random() % 4; changes > 0; --changes)
+        {
+            bytes[20 + random() % (bytes.size() - 20)] = static_cast<std::uint8_t>(random());
+        }
+        bytes.resize(bytes.size() - random() % 3);
+        bytes.shrink_to_fit();
+        Guard.Admit(bytes);
+        handed += Guard.Handed.empty() ? 0 : 1;
+    }
+    EXPECT_GT(handed, 0);
+    EXPECT_LT(handed, 300000);
+}
+
+TEST(RtpsMessage, StatisticsAreNotSentUnlessTheVendorWouldTakeSomethingElseForThem)
+{
+    const Bytes data = Message(Data, DataBody(11, Bytes(80)), 5);
+    const Bytes statistics = Submessage(Statistics, Bytes(56));
+    EXPECT_EQ(Rabit::FastDds::SizeWithoutStatistics(Join({data, statistics})), data.size());
+    EXPECT_EQ(Rabit::FastDds::SizeWithoutStatistics(data), data.size());
+    Bytes mistaken = Join({data, statistics});
+    mistaken[data.size() - 60] = Statistics;
+    EXPECT_EQ(Rabit::FastDds::SizeWithoutStatistics(mistaken), mistaken.size());
+}
+
+}  // namespace

@@ -1,0 +1,268 @@
+#include "DeliveryCheck.h"
+
+#include "PayloadPool.h"
+#include "RtpsReader.h"
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+// Each number of a gap costs the vendor a step, and up to 56 bytes as long as an earlier sample is missing.
+// An honest gap is as wide as the hole in a history.
+constexpr std::int64_t WidestGap = std::int64_t{1} << 20;
+// Smaller ones are of no use to anybody, and the vendor writes a mark for each into the sample's buffer.
+constexpr std::uint16_t SmallestFragment = 64;
+constexpr int MostInlineParameters = 64;
+
+bool IsSequence(std::int64_t number)
+{
+    return number >= 1 && number < LargestSequence;
+}
+
+void ReadEntities(RtpsReader &body, Delivery &delivery)
+{
+    delivery.Reader = body.Entity();
+    delivery.Writer = body.Entity();
+}
+
+// Of a sample, heartbeat or gap: the reader may be left open.
+bool AreFromWriter(const Delivery &delivery)
+{
+    if (!IsWriter(delivery.Writer))
+    {
+        return false;
+    }
+    // Readers of the protocol's own topics hear writers of the same topic alone, and nobody else does.
+    return delivery.Reader == 0 ||
+           (IsReader(delivery.Reader) && IsBuiltin(delivery.Reader) == IsBuiltin(delivery.Writer) &&
+            (!IsBuiltin(delivery.Reader) || delivery.Reader >> 8 == delivery.Writer >> 8));
+}
+
+bool AreFromReader(const Delivery &delivery)
+{
+    return delivery.Reader != 0 && AreFromWriter(delivery);
+}
+
+// The parameters in front of a sample (8.7), up to the sentinel.
+bool ReadInlineQos(RtpsReader &body, Delivery &delivery)
+{
+    constexpr std::uint16_t Sentinel = 0x0001;
+    constexpr std::uint16_t KeyHash = 0x0070;
+    constexpr std::uint16_t StatusInfo = 0x0071;
+    constexpr std::uint16_t RelatedSample = 0x800f;
+    for (int i = 0; i < MostInlineParameters && body.IsGood(); ++i)
+    {
+        const std::uint16_t id = body.U16();
+        const std::uint16_t length = body.U16();
+        if (id == Sentinel)
+        {
+            return body.IsGood();
+        }
+        const auto value = body.Bytes(length);
+        if (length % 4 != 0 || (id == KeyHash && length != 16) || (id == StatusInfo && length != 4) ||
+            (id == RelatedSample && length != 24))
+        {
+            return false;
+        }
+        if (id == KeyHash)
+        {
+            delivery.KeyHash = value;
+        }
+        if (id == StatusInfo && !value.empty() && (value[3] & 3) != 0)
+        {
+            delivery.Alive = false;
+        }
+    }
+    return false;
+}
+
+// The numbers of the fragments, and whether the bytes at hand are those that they promise.
+bool ReadFragments(RtpsReader &body, Delivery &delivery)
+{
+    delivery.FirstFragment = body.U32();
+    const std::uint16_t count = body.U16();
+    delivery.FragmentSize = body.U16();
+    delivery.SampleSize = body.U32();
+    if (!body.IsGood() || delivery.FirstFragment == 0 || count == 0 ||
+        delivery.FragmentSize < SmallestFragment || delivery.SampleSize == 0 ||
+        delivery.SampleSize > MaxSample)
+    {
+        return false;
+    }
+    const std::uint64_t last = std::uint64_t{delivery.FirstFragment} + count - 1;
+    const std::uint64_t all =
+        (std::uint64_t{delivery.SampleSize} + delivery.FragmentSize - 1) / delivery.FragmentSize;
+    delivery.LastFragment = static_cast<std::uint32_t>(last);
+    return last <= all;
+}
+
+bool HasItsFragments(const Delivery &delivery)
+{
+    const std::uint64_t begin = std::uint64_t{delivery.FirstFragment - 1} * delivery.FragmentSize;
+    const std::uint64_t end = std::uint64_t{delivery.LastFragment} * delivery.FragmentSize;
+    const std::uint64_t size = (end < delivery.SampleSize ? end : delivery.SampleSize) - begin;
+    return delivery.Payload.size() >= size;
+}
+
+std::optional<Delivery> CheckSample(const Submessage &submessage, RtpsReader body)
+{
+    constexpr std::uint8_t InlineQos = 0x02;
+    const bool fragmented = submessage.Kind == SubmessageKind::DataFrag;
+    const std::uint8_t dataFlag = fragmented ? 0x00 : 0x04;
+    const std::uint8_t keyFlag = fragmented ? 0x04 : 0x08;
+    // Where the inline QoS begins, told from after this field on: behind the entities, the number and the
+    // fragments, and no version of the protocol has had anything else there.
+    const std::uint16_t toInlineQos = fragmented ? 28 : 16;
+    Delivery delivery;
+    delivery.Alive = true;
+    body.Skip(2);  // extra flags
+    const bool sound = body.U16() == toInlineQos;
+    ReadEntities(body, delivery);
+    delivery.First = delivery.Last = body.Sequence();
+    if (!sound || !IsSequence(delivery.First) || !AreFromWriter(delivery) ||
+        (fragmented && !ReadFragments(body, delivery)) ||
+        ((submessage.Flags & InlineQos) != 0 && !ReadInlineQos(body, delivery)) || !body.IsGood())
+    {
+        return std::nullopt;
+    }
+    delivery.Payload = submessage.Body().subspan(body.Position());
+    delivery.HasKeyPayload = (submessage.Flags & keyFlag) != 0;
+    const bool hasData = fragmented || (submessage.Flags & dataFlag) != 0;
+    if (fragmented)
+    {
+        return !delivery.HasKeyPayload && HasItsFragments(delivery) ? std::optional(delivery) : std::nullopt;
+    }
+    if (hasData && delivery.HasKeyPayload)
+    {
+        return std::nullopt;
+    }
+    constexpr std::size_t EncapsulationSize = 4;
+    if ((hasData || delivery.HasKeyPayload) && delivery.Payload.size() < EncapsulationSize)
+    {
+        return std::nullopt;
+    }
+    // What is alive has a value; the vendor would hand on a sample without bytes.
+    if (delivery.Alive && !hasData)
+    {
+        return std::nullopt;
+    }
+    return delivery;
+}
+
+std::optional<Delivery> CheckHeartbeat(RtpsReader body)
+{
+    Delivery delivery;
+    ReadEntities(body, delivery);
+    delivery.First = body.Sequence();
+    delivery.Last = body.Sequence();
+    delivery.CountAt = body.Position();
+    body.U32();
+    const bool sound = body.IsGood() && AreFromWriter(delivery) && IsSequence(delivery.First) &&
+                       delivery.Last >= delivery.First - 1 && delivery.Last < LargestSequence;
+    return sound ? std::optional(delivery) : std::nullopt;
+}
+
+std::optional<Delivery> CheckHeartbeatFrag(RtpsReader body)
+{
+    Delivery delivery;
+    ReadEntities(body, delivery);
+    delivery.First = delivery.Last = body.Sequence();
+    delivery.FirstFragment = delivery.LastFragment = body.U32();
+    delivery.CountAt = body.Position();
+    body.U32();
+    const bool sound = body.IsGood() && AreFromWriter(delivery) && IsSequence(delivery.First);
+    return sound ? std::optional(delivery) : std::nullopt;
+}
+
+std::optional<Delivery> CheckGap(RtpsReader body)
+{
+    Delivery delivery;
+    ReadEntities(body, delivery);
+    delivery.First = body.Sequence();
+    const std::int64_t base = body.Sequence();
+    delivery.Last = base - 1 + body.Bits();
+    const bool sound = body.IsGood() && AreFromWriter(delivery) && IsSequence(delivery.First) &&
+                       base >= delivery.First && base - delivery.First <= WidestGap &&
+                       delivery.Last < LargestSequence;
+    return sound ? std::optional(delivery) : std::nullopt;
+}
+
+std::optional<Delivery> CheckAckNack(RtpsReader body)
+{
+    Delivery delivery;
+    ReadEntities(body, delivery);
+    delivery.First = body.Sequence();
+    delivery.Last = delivery.First - 1 + body.Bits();
+    delivery.CountAt = body.Position();
+    body.U32();
+    const bool sound =
+        body.IsGood() && AreFromReader(delivery) && delivery.First >= 0 && delivery.Last < LargestSequence;
+    return sound ? std::optional(delivery) : std::nullopt;
+}
+
+std::optional<Delivery> CheckNackFrag(RtpsReader body)
+{
+    Delivery delivery;
+    ReadEntities(body, delivery);
+    delivery.First = delivery.Last = body.Sequence();
+    delivery.FirstFragment = body.U32();
+    const std::uint32_t bits = body.Bits();
+    delivery.LastFragment = delivery.FirstFragment + (bits > 0 ? bits - 1 : 0);
+    delivery.CountAt = body.Position();
+    body.U32();
+    const bool sound = body.IsGood() && AreFromReader(delivery) && IsSequence(delivery.First) &&
+                       delivery.FirstFragment >= 1 && delivery.FirstFragment <= MaxSample;
+    return sound ? std::optional(delivery) : std::nullopt;
+}
+
+}  // namespace
+
+bool IsBuiltin(EntityId entity)
+{
+    return (entity & 0xc0) == 0xc0;
+}
+
+bool IsKnownBuiltin(EntityId writer)
+{
+    return writer == ParticipantWriter || writer == PublicationsWriter || writer == SubscriptionsWriter ||
+           writer == LivelinessWriter;
+}
+
+bool IsWriter(EntityId entity)
+{
+    const EntityId kind = entity & 0x3f;
+    return kind == 0x02 || kind == 0x03;
+}
+
+bool IsReader(EntityId entity)
+{
+    const EntityId kind = entity & 0x3f;
+    return kind == 0x04 || kind == 0x07;
+}
+
+std::optional<Delivery> CheckDelivery(const Submessage &submessage)
+{
+    const RtpsReader body(submessage.Body(), submessage.LittleEndian);
+    switch (submessage.Kind)
+    {
+        case SubmessageKind::Data:
+        case SubmessageKind::DataFrag:
+            return CheckSample(submessage, body);
+        case SubmessageKind::Heartbeat:
+            return CheckHeartbeat(body);
+        case SubmessageKind::HeartbeatFrag:
+            return CheckHeartbeatFrag(body);
+        case SubmessageKind::Gap:
+            return CheckGap(body);
+        case SubmessageKind::AckNack:
+            return CheckAckNack(body);
+        case SubmessageKind::NackFrag:
+            return CheckNackFrag(body);
+        default:
+            return std::nullopt;
+    }
+}
+
+}  // namespace Rabit::FastDds

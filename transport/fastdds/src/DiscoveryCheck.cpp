@@ -1,0 +1,347 @@
+#include "DiscoveryCheck.h"
+
+#include <algorithm>
+#include <array>
+
+#include "DeliveryCheck.h"
+#include "RtpsReader.h"
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+// RTPS 2.3, 9.6.3; the last ones are the vendor's.
+enum Parameter : std::uint16_t
+{
+    Pad = 0x0000,
+    Sentinel = 0x0001,
+    LeaseDuration = 0x0002,
+    TimeBasedFilter = 0x0004,
+    TopicName = 0x0005,
+    OwnershipStrength = 0x0006,
+    TypeName = 0x0007,
+    ProtocolVersion = 0x0015,
+    VendorId = 0x0016,
+    Reliability = 0x001a,
+    Liveliness = 0x001b,
+    Durability = 0x001d,
+    DurabilityService = 0x001e,
+    Ownership = 0x001f,
+    Presentation = 0x0021,
+    Deadline = 0x0023,
+    DestinationOrder = 0x0025,
+    LatencyBudget = 0x0027,
+    Partition = 0x0029,
+    Lifespan = 0x002b,
+    UserData = 0x002c,
+    GroupData = 0x002d,
+    TopicData = 0x002e,
+    UnicastLocator = 0x002f,
+    MulticastLocator = 0x0030,
+    DefaultUnicastLocator = 0x0031,
+    MetatrafficUnicastLocator = 0x0032,
+    MetatrafficMulticastLocator = 0x0033,
+    ExpectsInlineQos = 0x0043,
+    DefaultMulticastLocator = 0x0048,
+    ParticipantGuid = 0x0050,
+    BuiltinEndpointSet = 0x0058,
+    EndpointGuid = 0x005a,
+    EntityName = 0x0062,
+    KeyHash = 0x0070,
+    DataRepresentation = 0x0073,
+    DisablePositiveAcks = 0x8005
+};
+
+constexpr int MostParameters = 128;
+constexpr int MostLocators = 64;
+constexpr std::uint32_t MostPartitions = 1024;
+
+// What has been seen of one sample so far.
+struct Found
+{
+    EntityId Subject = 0;
+    bool Lease = false;
+    bool Topic = false;
+    bool Type = false;
+    int Locators = 0;
+    std::uint64_t Digest = 14695981039346656037u;
+
+    // FNV-1a
+    void Digested(std::uint16_t id, std::span<const std::uint8_t> value)
+    {
+        const auto add = [this](std::uint8_t byte) { Digest = (Digest ^ byte) * 1099511628211u; };
+        add(static_cast<std::uint8_t>(id));
+        std::for_each(value.begin(), value.end(), add);
+    }
+};
+
+// A string that ends where it says, within a limit that the vendor does not check but has.
+bool IsString(RtpsReader &value)
+{
+    constexpr std::uint32_t Longest = 256;
+    const std::uint32_t size = value.U32();
+    if (size == 0 || size > Longest)
+    {
+        return false;
+    }
+    const auto text = value.Bytes(size);
+    value.Skip(std::min<std::size_t>((4 - size % 4) % 4, value.Left()));
+    return value.IsGood() && text.back() == 0;
+}
+
+bool IsOneString(RtpsReader value)
+{
+    return IsString(value) && value.Left() == 0;
+}
+
+bool IsListOfStrings(RtpsReader value)
+{
+    const std::uint32_t count = value.U32();
+    bool good = count <= MostPartitions;
+    for (std::uint32_t i = 0; good && i < count; ++i)
+    {
+        good = IsString(value);
+    }
+    return good && value.IsGood() && value.Left() == 0;
+}
+
+bool IsBytes(RtpsReader value)
+{
+    const std::uint32_t size = value.U32();
+    value.Skip(size);
+    return value.IsGood() && value.Left() == (4 - size % 4) % 4;
+}
+
+bool IsRepresentations(RtpsReader value)
+{
+    const std::uint32_t count = value.U32();
+    return value.IsGood() && count <= value.Left() / 2 && value.Left() - 2 * std::size_t{count} < 4;
+}
+
+bool IsGuidOf(const GuidPrefix &sender, std::span<const std::uint8_t> guid)
+{
+    return std::equal(sender.begin(), sender.end(), guid.begin(), guid.begin() + sender.size());
+}
+
+// Which endpoint an announcement of this topic may be about.
+bool IsSubjectOf(EntityId writer, EntityId entity)
+{
+    switch (writer)
+    {
+        case ParticipantWriter:
+            return entity == ParticipantEntity;
+        case PublicationsWriter:
+            return IsWriter(entity) && !IsBuiltin(entity);
+        case SubscriptionsWriter:
+            return IsReader(entity) && !IsBuiltin(entity);
+        default:
+            return false;
+    }
+}
+
+// A lease of nothing would have the vendor's timer run without a pause.
+bool IsLease(RtpsReader value)
+{
+    const auto seconds = static_cast<std::int32_t>(value.U32());
+    const std::uint32_t fraction = value.U32();
+    constexpr std::uint32_t TenthOfASecond = 429496729;
+    return value.IsGood() && value.Left() == 0 &&
+           (seconds > 0 || (seconds == 0 && fraction >= TenthOfASecond));
+}
+
+bool IsLocator(RtpsReader value)
+{
+    constexpr std::uint32_t LargestPort = 65535;
+    value.U32();  // kind: the vendor passes over those that it does not have
+    const std::uint32_t port = value.U32();
+    return value.IsGood() && value.Left() == 16 && port <= LargestPort;
+}
+
+// The vendor reads these for participants and endpoints alike, and refuses another size or reads past the
+// end.
+std::size_t FixedSize(std::uint16_t id)
+{
+    switch (id)
+    {
+        case OwnershipStrength:
+        case ProtocolVersion:
+        case VendorId:
+        case Durability:
+        case Ownership:
+        case DestinationOrder:
+        case ExpectsInlineQos:
+        case BuiltinEndpointSet:
+        case DisablePositiveAcks:
+            return 4;
+        case TimeBasedFilter:
+        case Presentation:
+        case Deadline:
+        case LatencyBudget:
+        case Lifespan:
+            return 8;
+        case Reliability:
+        case Liveliness:
+            return 12;
+        case DurabilityService:
+            return 28;
+        default:
+            return 0;
+    }
+}
+
+// Whether the parameter is sound; `wanted` is false afterwards if we have no use for it.
+bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
+                    std::span<const std::uint8_t> bytes, bool littleEndian, Found &found, bool &wanted)
+{
+    const RtpsReader value(bytes, littleEndian);
+    if (const std::size_t size = FixedSize(id))
+    {
+        if (id == BuiltinEndpointSet)
+        {
+            found.Digested(id, bytes);
+        }
+        return bytes.size() == size;
+    }
+    switch (id)
+    {
+        case LeaseDuration:
+            found.Lease = true;
+            found.Digested(id, bytes);
+            return IsLease(value);
+        case TopicName:
+            found.Topic = true;
+            return IsOneString(value);
+        case TypeName:
+            found.Type = true;
+            return IsOneString(value);
+        case EntityName:
+            return IsOneString(value);
+        case Partition:
+            return IsListOfStrings(value);
+        case UserData:
+        case GroupData:
+        case TopicData:
+            return IsBytes(value);
+        case DataRepresentation:
+            return IsRepresentations(value);
+        case UnicastLocator:
+        case MulticastLocator:
+        case DefaultUnicastLocator:
+        case DefaultMulticastLocator:
+        case MetatrafficUnicastLocator:
+        case MetatrafficMulticastLocator:
+            found.Digested(id, bytes);
+            return IsLocator(value) && ++found.Locators <= MostLocators;
+        case ParticipantGuid:
+            if (bytes.size() != 16 || !IsGuidOf(sender, bytes) || EntityOf(bytes) != ParticipantEntity)
+            {
+                return false;
+            }
+            if (writer == ParticipantWriter)
+            {
+                found.Subject = ParticipantEntity;
+            }
+            return true;
+        case EndpointGuid:
+            if (bytes.size() != 16 || !IsGuidOf(sender, bytes) || writer == ParticipantWriter ||
+                !IsSubjectOf(writer, EntityOf(bytes)) ||
+                (found.Subject != 0 && found.Subject != EntityOf(bytes)))
+            {
+                return false;
+            }
+            found.Subject = EntityOf(bytes);
+            return true;
+        case KeyHash:
+            if (bytes.size() != 16 || !IsKeyOf(writer, sender, bytes) ||
+                (found.Subject != 0 && found.Subject != EntityOf(bytes)))
+            {
+                return false;
+            }
+            found.Subject = EntityOf(bytes);
+            return true;
+        default:
+            wanted = false;
+            return true;
+    }
+}
+
+std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &sender,
+                                            std::span<std::uint8_t> list, bool littleEndian, bool keepOthers)
+{
+    RtpsReader rest(list, littleEndian);
+    Found found;
+    for (int i = 0; i < MostParameters; ++i)
+    {
+        const std::size_t at = rest.Position();
+        const std::uint16_t id = rest.U16();
+        const std::uint16_t length = rest.U16();
+        if (!rest.IsGood())
+        {
+            return std::nullopt;
+        }
+        if (id == Sentinel)
+        {
+            const bool isParticipant = writer == ParticipantWriter;
+            const bool complete =
+                found.Subject != 0 && (isParticipant ? found.Lease : found.Topic && found.Type);
+            return complete ? std::optional(Announcement{found.Subject, isParticipant ? found.Digest : 0})
+                            : std::nullopt;
+        }
+        const auto value = rest.Bytes(length);
+        bool wanted = true;
+        if (!rest.IsGood() || length % 4 != 0 ||
+            !CheckParameter(writer, sender, id, value, littleEndian, found, wanted))
+        {
+            return std::nullopt;
+        }
+        if (!wanted && !keepOthers)
+        {
+            list[at] = list[at + 1] = Pad;
+        }
+    }
+    return std::nullopt;
+}
+
+// Who is alive, and how it said so (8.4.13.5).
+bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payload)
+{
+    constexpr std::size_t SmallestSize = 4 + 12 + 4 + 4;
+    return payload.size() >= SmallestSize && payload[0] == 0 && payload[1] <= 1 &&
+           IsGuidOf(sender, payload.subspan(4));
+}
+
+}  // namespace
+
+std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
+                                           std::span<std::uint8_t> payload, bool keepOthers)
+{
+    constexpr std::size_t EncapsulationSize = 4;
+    constexpr std::uint8_t BigEndianList = 2;
+    constexpr std::uint8_t LittleEndianList = 3;
+    if (writer == LivelinessWriter)
+    {
+        return IsLivelinessOf(sender, payload) ? std::optional(Announcement{}) : std::nullopt;
+    }
+    if (payload.size() < EncapsulationSize || payload[0] != 0 ||
+        (payload[1] != BigEndianList && payload[1] != LittleEndianList))
+    {
+        return std::nullopt;
+    }
+    return CheckParameters(writer, sender, payload.subspan(EncapsulationSize), payload[1] == LittleEndianList,
+                           keepOthers);
+}
+
+EntityId EntityOf(std::span<const std::uint8_t> guid)
+{
+    return RtpsReader(guid.subspan(sizeof(GuidPrefix)), false).Entity();
+}
+
+bool IsKeyOf(EntityId writer, const GuidPrefix &sender, std::span<const std::uint8_t> keyHash)
+{
+    return keyHash.size() == 16 && IsGuidOf(sender, keyHash) &&
+           (writer == LivelinessWriter || IsSubjectOf(writer, EntityOf(keyHash)));
+}
+
+}  // namespace Rabit::FastDds

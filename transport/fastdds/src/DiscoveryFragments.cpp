@@ -1,0 +1,104 @@
+#include "DiscoveryFragments.h"
+
+#include <algorithm>
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+constexpr std::size_t MostSamples = 64;
+constexpr std::uint32_t LargestSample = 60000;
+
+void AppendHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::uint8_t flags,
+                  std::size_t length)
+{
+    message.insert(message.end(),
+                   {static_cast<std::uint8_t>(kind), static_cast<std::uint8_t>(flags | 1u),
+                    static_cast<std::uint8_t>(length), static_cast<std::uint8_t>(length >> 8)});
+}
+
+void AppendEntity(std::vector<std::uint8_t> &message, EntityId entity)
+{
+    for (int shift = 24; shift >= 0; shift -= 8)
+    {
+        message.push_back(static_cast<std::uint8_t>(entity >> shift));
+    }
+}
+
+void AppendNumber(std::vector<std::uint8_t> &message, std::uint32_t number)
+{
+    for (int shift = 0; shift < 32; shift += 8)
+    {
+        message.push_back(static_cast<std::uint8_t>(number >> shift));
+    }
+}
+
+}  // namespace
+
+DiscoveryFragments::Sample *DiscoveryFragments::Find(const GuidPrefix &sender, const Delivery &delivery)
+{
+    const auto found = std::find_if(_samples.begin(), _samples.end(),
+                                    [&](const Sample &sample) {
+                                        return sample.Sender == sender && sample.Writer == delivery.Writer &&
+                                               sample.Sequence == delivery.First;
+                                    });
+    if (found != _samples.end())
+    {
+        const bool same =
+            found->FragmentSize == delivery.FragmentSize && found->Bytes.size() == delivery.SampleSize;
+        return same ? &*found : nullptr;
+    }
+    if (delivery.SampleSize > LargestSample)
+    {
+        return nullptr;
+    }
+    if (_samples.size() >= MostSamples)
+    {
+        _samples.pop_front();
+    }
+    const std::size_t count =
+        (std::size_t{delivery.SampleSize} + delivery.FragmentSize - 1) / delivery.FragmentSize;
+    _samples.push_back({sender, delivery.Writer, delivery.First, delivery.FragmentSize,
+                        std::vector<std::uint8_t>(delivery.SampleSize), std::vector<bool>(count, true)});
+    return &_samples.back();
+}
+
+std::vector<std::uint8_t> DiscoveryFragments::Add(std::span<const std::uint8_t> datagram,
+                                                  const Delivery &delivery, const GuidPrefix &destination)
+{
+    const GuidPrefix sender = SenderOf(datagram);
+    Sample *sample = Find(sender, delivery);
+    if (sample == nullptr)
+    {
+        return {};
+    }
+    const std::size_t begin = std::size_t{delivery.FirstFragment - 1} * delivery.FragmentSize;
+    const std::size_t end =
+        std::min(std::size_t{delivery.LastFragment} * delivery.FragmentSize, sample->Bytes.size());
+    std::copy_n(delivery.Payload.begin(), end - begin,
+                sample->Bytes.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::fill(sample->Missing.begin() + delivery.FirstFragment - 1,
+              sample->Missing.begin() + delivery.LastFragment, false);
+    if (std::find(sample->Missing.begin(), sample->Missing.end(), true) != sample->Missing.end())
+    {
+        return {};
+    }
+    std::vector<std::uint8_t> message(datagram.begin(), datagram.begin() + RtpsHeaderSize);
+    AppendHeader(message, SubmessageKind::InfoDestination, 0, destination.size());
+    message.insert(message.end(), destination.begin(), destination.end());
+    constexpr std::uint8_t HasData = 0x04;
+    AppendHeader(message, SubmessageKind::Data, HasData, 20 + sample->Bytes.size());
+    message.insert(message.end(), {0, 0, 16, 0});
+    AppendEntity(message, delivery.Reader);
+    AppendEntity(message, delivery.Writer);
+    AppendNumber(message, static_cast<std::uint32_t>(delivery.First >> 32));
+    AppendNumber(message, static_cast<std::uint32_t>(delivery.First));
+    message.insert(message.end(), sample->Bytes.begin(), sample->Bytes.end());
+    _samples.erase(std::find_if(_samples.begin(), _samples.end(),
+                                [sample](const Sample &each) { return &each == sample; }));
+    return message;
+}
+
+}  // namespace Rabit::FastDds

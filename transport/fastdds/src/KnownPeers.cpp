@@ -1,0 +1,201 @@
+#include "KnownPeers.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "DeliveryCheck.h"
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+constexpr std::size_t MostPeers = 1024;
+constexpr std::size_t MostWriters = 4096;
+// Longer than the announcement periods and leases in use.
+constexpr std::chrono::seconds Forgotten{60};
+// After so long without a word of a peer, its writers may be anywhere.
+constexpr std::chrono::seconds Silence{2};
+// What may be lost at once, or taken back, whatever the pace.
+constexpr std::int64_t LargestStep = 16;
+// Heartbeats come every 20 ms, so it takes them 160 ms.
+constexpr int EnoughAgreeing = 8;
+
+}  // namespace
+
+bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        if (found->second.Digest != digest && now - found->second.Heard < Forgotten)
+        {
+            return false;
+        }
+        found->second.Digest = digest;
+        Hear(found->second, now);
+        return true;
+    }
+    if (_peers.size() >= MostPeers && !MakeRoom(now))
+    {
+        return false;
+    }
+    Peer &added = _peers[peer];
+    added.Digest = digest;
+    added.Heard = now;
+    // The protocol's own need no announcement.
+    for (const EntityId writer :
+         {ParticipantWriter, PublicationsWriter, SubscriptionsWriter, LivelinessWriter})
+    {
+        added.Writers[writer];
+    }
+    return true;
+}
+
+bool KnownPeers::MakeRoom(TimePoint now)
+{
+    const auto oldest =
+        std::min_element(_peers.begin(), _peers.end(),
+                         [](const auto &a, const auto &b) { return a.second.Heard < b.second.Heard; });
+    if (now - oldest->second.Heard < Forgotten)
+    {
+        return false;
+    }
+    _peers.erase(oldest);
+    return true;
+}
+
+bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found == _peers.end())
+    {
+        return false;
+    }
+    Hear(found->second, now);
+    return true;
+}
+
+void KnownPeers::Hear(Peer &peer, TimePoint now)
+{
+    if (now - peer.Heard >= Silence)
+    {
+        for (auto &[writer, numbers] : peer.Writers)
+        {
+            numbers.Highest = 0;
+        }
+    }
+    peer.Heard = now;
+}
+
+void KnownPeers::WriterAnnounced(const GuidPrefix &peer, EntityId writer)
+{
+    auto &writers = _peers.at(peer).Writers;
+    if (writers.count(writer) > 0)
+    {
+        return;
+    }
+    if (writers.size() >= MostWriters)
+    {
+        const auto silentLonger = [](const auto &a, const auto &b)
+        {
+            // The protocol's own remain.
+            return std::pair(IsBuiltin(a.first), a.second.Moved) <
+                   std::pair(IsBuiltin(b.first), b.second.Moved);
+        };
+        writers.erase(std::min_element(writers.begin(), writers.end(), silentLonger));
+    }
+    writers[writer];
+}
+
+bool KnownPeers::HasWriter(const GuidPrefix &peer, EntityId writer) const
+{
+    return _peers.at(peer).Writers.count(writer) > 0;
+}
+
+bool KnownPeers::Reaches(const GuidPrefix &peer, EntityId writer, std::int64_t number, TimePoint now)
+{
+    auto &writers = _peers.at(peer).Writers;
+    const auto found = writers.find(writer);
+    if (found == writers.end())
+    {
+        return false;
+    }
+    Numbers &numbers = found->second;
+    if (number > numbers.Highest && !IsPlausible(numbers, number, now))
+    {
+        return false;
+    }
+    numbers.Agreeing = 0;
+    if (number > numbers.Highest)
+    {
+        Move(numbers, number, now);
+    }
+    return true;
+}
+
+bool KnownPeers::IsPlausible(Numbers &numbers, std::int64_t number, TimePoint now)
+{
+    if (numbers.Highest == 0)
+    {
+        return true;
+    }
+    const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Moved).count();
+    if (number - numbers.Highest <= LargestStep + 2 * numbers.Pace * elapsed / 1000)
+    {
+        return true;
+    }
+    const bool agrees = numbers.Agreeing > 0 && number >= numbers.Suspect &&
+                        number - numbers.Suspect <= LargestStep + numbers.Pace;
+    numbers.Agreeing = agrees ? numbers.Agreeing + 1 : 1;
+    numbers.Suspect = number;
+    return numbers.Agreeing >= EnoughAgreeing;
+}
+
+void KnownPeers::Move(Numbers &numbers, std::int64_t number, TimePoint now)
+{
+    constexpr std::chrono::seconds Window{1};
+    if (numbers.Highest == 0)
+    {
+        numbers.Pace = 0;
+        numbers.Begun = number;
+        numbers.Began = now;
+    }
+    const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Began);
+    if (elapsed >= Window)
+    {
+        // A pause does not make a fast writer a slow one at once.
+        numbers.Pace = std::max(1000 * (number - numbers.Begun) / elapsed.count(), numbers.Pace / 2);
+        numbers.Begun = number;
+        numbers.Began = now;
+    }
+    numbers.Highest = number;
+    numbers.Moved = now;
+}
+
+bool KnownPeers::CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const
+{
+    const auto &writers = _peers.at(peer).Writers;
+    const auto found = writers.find(writer);
+    return found != writers.end() && number <= found->second.Highest + LargestStep;
+}
+
+std::uint32_t KnownPeers::CountOf(const GuidPrefix &peer, EntityId writer, std::uint32_t count)
+{
+    Numbers &numbers = _peers.at(peer).Writers.at(writer);
+    if (numbers.OurCount == 0)
+    {
+        // Above all that the vendor can have been given for it, in case that it was forgotten.
+        numbers.OurCount = _highestCount + 1;
+    }
+    else if (count != numbers.TheirCount)
+    {
+        ++numbers.OurCount;
+    }
+    numbers.TheirCount = count;
+    _highestCount = std::max(_highestCount, numbers.OurCount);
+    return numbers.OurCount;
+}
+
+}  // namespace Rabit::FastDds

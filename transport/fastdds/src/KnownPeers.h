@@ -1,0 +1,77 @@
+// What the participants that were announced have said so far, to tell what they cannot say next.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+#include "RtpsMessage.h"
+
+namespace Rabit::FastDds
+{
+
+// A writer's numbers rise in steps. One that jumped would have the vendor walk through millions of samples
+// that never were, and pass over all that come until they reach that number. Bounded: what is full takes
+// nobody new, a table of peers until somebody in it was silent for a minute. Not thread-safe.
+class KnownPeers
+{
+public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    // A participant announced itself; `digest` is of where it is heard. False if that is not to be believed:
+    // it said otherwise before, or there are too many.
+    bool Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoint now);
+    // Whether the peer was announced; if so, it is heard of at this moment.
+    bool Hears(const GuidPrefix &peer, TimePoint now);
+
+    // The peer, which must be known, announced a writer. If it has too many, the one that was silent for
+    // longest is forgotten.
+    void WriterAnnounced(const GuidPrefix &peer, EntityId writer);
+    bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
+
+    // Whether a writer that was announced can be at this number. If so, it is there. The first number of a
+    // writer may be any.
+    bool Reaches(const GuidPrefix &peer, EntityId writer, std::int64_t number, TimePoint now);
+    // Whether a writer that was announced can know what became of the samples up to this number.
+    bool CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const;
+
+    // Heartbeats are told from their repeats by a count that must rise, and one that was forged high would
+    // silence all honest ones after it. This gives each an own count, which rises by one with each that is
+    // not a repeat of the one before. The writer must have been announced.
+    std::uint32_t CountOf(const GuidPrefix &peer, EntityId writer, std::uint32_t count);
+
+    std::size_t Size() const { return _peers.size(); }
+
+private:
+    struct Numbers
+    {
+        std::int64_t Highest = 0;  // 0: nothing was heard of it
+        TimePoint Moved{};
+        // Its pace: samples in a second, and what it has written in the second under way.
+        std::int64_t Pace = 0;
+        std::int64_t Begun = 0;
+        TimePoint Began{};
+        // The last number that was not believed, and how many in a row agreed.
+        std::int64_t Suspect = 0;
+        int Agreeing = 0;
+        std::uint32_t TheirCount = 0;
+        std::uint32_t OurCount = 0;
+    };
+    struct Peer
+    {
+        std::uint64_t Digest = 0;
+        TimePoint Heard{};
+        std::map<EntityId, Numbers> Writers;
+    };
+
+    bool MakeRoom(TimePoint now);
+    static void Hear(Peer &peer, TimePoint now);
+    static bool IsPlausible(Numbers &numbers, std::int64_t number, TimePoint now);
+    static void Move(Numbers &numbers, std::int64_t number, TimePoint now);
+
+    std::map<GuidPrefix, Peer> _peers;
+    std::uint32_t _highestCount = 0;  // of all given, for writers that were forgotten
+};
+
+}  // namespace Rabit::FastDds

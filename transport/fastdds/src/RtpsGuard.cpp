@@ -1,0 +1,278 @@
+#include "RtpsGuard.h"
+
+#include <algorithm>
+
+#include "DiscoveryCheck.h"
+#include "RtpsReader.h"
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+bool IsSecure(SubmessageKind kind)
+{
+    return kind >= SubmessageKind::FirstSecure && kind <= SubmessageKind::LastSecure;
+}
+
+bool IsOfVendor(SubmessageKind kind)
+{
+    return kind >= SubmessageKind::Statistics;
+}
+
+bool HasSize(const Submessage &submessage, std::size_t size)
+{
+    return submessage.Body().size() >= size;
+}
+
+}  // namespace
+
+bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, TimePoint now, const Deliver &deliver)
+{
+    if (!HasRtpsHeader(datagram))
+    {
+        return false;
+    }
+    Passage passage;
+    passage.Datagram = datagram;
+    passage.Sender = SenderOf(datagram);
+    passage.Now = now;
+    std::span<const std::uint8_t> left;
+    {
+        const std::lock_guard lock(_mutex);
+        left = Filter(passage);
+    }
+    for (auto &message : passage.Whole)
+    {
+        passage.Honest = Admit(message, now, deliver) && passage.Honest;
+    }
+    if (!left.empty())
+    {
+        deliver(left);
+    }
+    return passage.Honest;
+}
+
+std::span<const std::uint8_t> RtpsGuard::Filter(Passage &passage)
+{
+    auto rest = passage.Datagram.subspan(RtpsHeaderSize);
+    auto end = passage.Datagram.size();
+    while (!rest.empty())
+    {
+        const std::size_t at = passage.Datagram.size() - rest.size();
+        const auto submessage = TakeSubmessage(rest);
+        if (!submessage)
+        {
+            passage.Honest = false;
+            return {};
+        }
+        if (_mode == Mode::Secured && IsSecure(submessage->Kind))
+        {
+            // What follows may be covered by a signature: nothing of it is changed.
+            passage.Useful = true;
+            break;
+        }
+        if (submessage->Kind == SubmessageKind::Statistics && rest.empty())
+        {
+            end = at;
+            break;
+        }
+        switch (Judge(*submessage, passage))
+        {
+            case Verdict::Pass:
+                break;
+            case Verdict::Refuse:
+                passage.Honest = false;
+                Blank(*submessage);
+                break;
+            case Verdict::Ignore:
+                Blank(*submessage);
+                break;
+            case Verdict::Drop:
+                passage.Honest = false;
+                return {};
+        }
+    }
+    if (!passage.Useful)
+    {
+        return {};
+    }
+    _acknowledgements.Translate(passage.Datagram.first(end));
+    return passage.Datagram.first(end);
+}
+
+RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passage)
+{
+    constexpr std::uint8_t Invalidate = 0x02;
+    switch (submessage.Kind)
+    {
+        case SubmessageKind::Pad:
+            return Verdict::Pass;
+        case SubmessageKind::InfoTimestamp:
+            return (submessage.Flags & Invalidate) != 0 || HasSize(submessage, 8) ? Verdict::Pass
+                                                                                  : Verdict::Drop;
+        case SubmessageKind::InfoDestination:
+            if (!HasSize(submessage, passage.Destination.size()))
+            {
+                return Verdict::Drop;
+            }
+            std::copy_n(submessage.Body().begin(), passage.Destination.size(), passage.Destination.begin());
+            return Verdict::Pass;
+        case SubmessageKind::Data:
+        case SubmessageKind::DataFrag:
+        case SubmessageKind::Heartbeat:
+        case SubmessageKind::HeartbeatFrag:
+        case SubmessageKind::Gap:
+        case SubmessageKind::AckNack:
+        case SubmessageKind::NackFrag:
+        {
+            const auto delivery = CheckDelivery(submessage);
+            return delivery ? JudgeDelivery(submessage, *delivery, passage) : Verdict::Drop;
+        }
+        default:
+            // Those that speak in another one's name (INFO_SRC) or redirect answers (INFO_REPLY), which
+            // nobody sends without DDS Security, are among those that are not known here.
+            return IsOfVendor(submessage.Kind) && submessage.Kind != SubmessageKind::Statistics
+                       ? Verdict::Ignore
+                       : Verdict::Drop;
+    }
+}
+
+RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const Delivery &delivery,
+                                            Passage &passage)
+{
+    const bool isSample =
+        submessage.Kind == SubmessageKind::Data || submessage.Kind == SubmessageKind::DataFrag;
+    auto verdict = Verdict::Pass;
+    if (IsBuiltin(delivery.Writer) && !IsKnownBuiltin(delivery.Writer))
+    {
+        verdict = _mode == Mode::Secured ? Verdict::Pass : Verdict::Ignore;
+    }
+    else if (IsBuiltin(delivery.Writer) && isSample)
+    {
+        verdict = JudgeBuiltinSample(submessage, delivery, passage);
+    }
+    if (verdict == Verdict::Pass && _mode == Mode::Full)
+    {
+        verdict = Compare(submessage, delivery, passage);
+    }
+    passage.Useful = passage.Useful || verdict == Verdict::Pass;
+    return verdict;
+}
+
+RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery,
+                                                 Passage &passage)
+{
+    if (submessage.Kind == SubmessageKind::DataFrag)
+    {
+        if (_mode == Mode::Secured)
+        {
+            return Verdict::Pass;
+        }
+        auto whole = _fragments.Add(passage.Datagram, delivery, passage.Destination);
+        if (!whole.empty())
+        {
+            passage.Whole.push_back(std::move(whole));
+        }
+        return Verdict::Ignore;
+    }
+    // A short payload that is a key would be taken for the key hash.
+    constexpr std::size_t KeySize = 16;
+    if ((!delivery.KeyHash.empty() && !IsKeyOf(delivery.Writer, passage.Sender, delivery.KeyHash)) ||
+        (delivery.HasKeyPayload && delivery.Payload.size() <= KeySize))
+    {
+        return Verdict::Drop;
+    }
+    if (delivery.HasKeyPayload || delivery.Payload.empty())
+    {
+        return Verdict::Pass;
+    }
+    const auto announcement =
+        CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload, _mode == Mode::Secured);
+    if (!announcement)
+    {
+        return Verdict::Drop;
+    }
+    if (_mode == Mode::Full && delivery.Alive && delivery.Writer == ParticipantWriter &&
+        !_peers.Announced(passage.Sender, announcement->Digest, passage.Now))
+    {
+        return Verdict::Refuse;
+    }
+    if (_mode == Mode::Full && delivery.Alive && delivery.Writer == PublicationsWriter &&
+        _peers.Hears(passage.Sender, passage.Now))
+    {
+        _peers.WriterAnnounced(passage.Sender, announcement->Subject);
+    }
+    return Verdict::Pass;
+}
+
+RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delivery &delivery,
+                                      const Passage &passage)
+{
+    // The vendor has no use either for what comes before the announcement of the participant, or of the
+    // writer: there is nobody yet who takes it.
+    if (!_peers.Hears(passage.Sender, passage.Now))
+    {
+        return Verdict::Ignore;
+    }
+    switch (submessage.Kind)
+    {
+        case SubmessageKind::Data:
+        case SubmessageKind::DataFrag:
+        case SubmessageKind::Heartbeat:
+            if (!_peers.HasWriter(passage.Sender, delivery.Writer))
+            {
+                return Verdict::Ignore;
+            }
+            if (!_peers.Reaches(passage.Sender, delivery.Writer, std::max(delivery.First - 1, delivery.Last),
+                                passage.Now))
+            {
+                return Verdict::Refuse;
+            }
+            break;
+        case SubmessageKind::Gap:
+            if (!_peers.HasWriter(passage.Sender, delivery.Writer))
+            {
+                return Verdict::Ignore;
+            }
+            if (!_peers.CanKnowOf(passage.Sender, delivery.Writer, delivery.Last))
+            {
+                return Verdict::Refuse;
+            }
+            break;
+        case SubmessageKind::NackFrag:
+            if (!_sent.Has(delivery.Writer, delivery.First, delivery.LastFragment))
+            {
+                return Verdict::Refuse;
+            }
+            break;
+        default:
+            break;
+    }
+    if (submessage.Kind == SubmessageKind::Heartbeat)
+    {
+        ReplaceCount(submessage, delivery, passage.Sender);
+    }
+    return Verdict::Pass;
+}
+
+void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender)
+{
+    auto bytes = submessage.Body().subspan(delivery.CountAt, 4);
+    const std::uint32_t theirs = RtpsReader(bytes, submessage.LittleEndian).U32();
+    const std::uint32_t ours = _peers.CountOf(sender, delivery.Writer, theirs);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+    {
+        const std::size_t shift = 8 * (submessage.LittleEndian ? i : bytes.size() - 1 - i);
+        bytes[i] = static_cast<std::uint8_t>(ours >> shift);
+    }
+}
+
+void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)
+{
+    const std::lock_guard lock(_mutex);
+    _sent.Sent(datagram);
+}
+
+}  // namespace Rabit::FastDds

@@ -1,0 +1,92 @@
+// Stands between the network and the vendor's parser, which trusts what it reads.
+//
+// Debian builds the vendor's library with its assertions on, so a datagram that breaks one ends the process;
+// and others have it allocate gigabytes, or walk through numbers for hours with its locks held.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "AcknowledgementTranslator.h"
+#include "DeliveryCheck.h"
+#include "DiscoveryFragments.h"
+#include "KnownPeers.h"
+#include "RtpsMessage.h"
+#include "SentFragments.h"
+
+namespace Rabit::FastDds
+{
+
+// What is let through is sound in itself (RtpsMessage, DeliveryCheck, DiscoveryCheck) and agrees with what
+// its sender has said before (KnownPeers, SentFragments). Whoever forges a neighbour's datagrams with care
+// still does harm to its streams, though not to the process: that is a matter for DDS Security. Thread-safe.
+class RtpsGuard
+{
+public:
+    enum class Mode
+    {
+        Full,
+        // Only what a datagram shows by itself is checked: what peers say of themselves may come another way,
+        // by shared memory.
+        StructureOnly,
+        // As StructureOnly, and what DDS Security needs gets through as it is.
+        Secured
+    };
+
+    using TimePoint = KnownPeers::TimePoint;
+    using Deliver = std::function<void(std::span<const std::uint8_t>)>;
+
+    explicit RtpsGuard(Mode mode) : _mode(mode) {}
+
+    // Hands on what of a datagram the vendor may see: all, a part, or nothing. Parts that it must not see are
+    // blanked in place, and the counts that it tells repeats by are replaced (those of acknowledgements as
+    // AcknowledgementTranslator.h says). Returns false if something was
+    // kept back that an honest sender does not send.
+    bool Admit(std::span<std::uint8_t> datagram, TimePoint now, const Deliver &deliver);
+
+    // Takes note of what we send.
+    void Sending(std::span<const std::uint8_t> datagram);
+
+private:
+    enum class Verdict
+    {
+        Pass,
+        Ignore,  // of no use to us: blanked
+        Refuse,  // blanked and counted
+        Drop     // the whole datagram, and counted
+    };
+
+    // One datagram under way. Holds _mutex.
+    struct Passage
+    {
+        std::span<std::uint8_t> Datagram;
+        GuidPrefix Sender{};
+        GuidPrefix Destination{};
+        TimePoint Now{};
+        bool Useful = false;
+        bool Honest = true;
+        // Announcements whose last fragment came, as messages of their own.
+        std::vector<std::vector<std::uint8_t>> Whole;
+    };
+
+    // What is left of the datagram; empty if nothing.
+    std::span<const std::uint8_t> Filter(Passage &passage);
+    Verdict Judge(const Submessage &submessage, Passage &passage);
+    Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
+    Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
+    // Against what was said before.
+    Verdict Compare(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
+    void ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender);
+
+    const Mode _mode;
+    std::mutex _mutex;                            // several sockets receive at once
+    KnownPeers _peers;                            // guarded by _mutex
+    SentFragments _sent;                          // guarded by _mutex
+    DiscoveryFragments _fragments;                // guarded by _mutex
+    AcknowledgementTranslator _acknowledgements;  // guarded by _mutex
+};
+
+}  // namespace Rabit::FastDds

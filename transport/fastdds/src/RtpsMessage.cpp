@@ -1,0 +1,86 @@
+#include "RtpsMessage.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "RtpsReader.h"
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+constexpr std::size_t PrefixOffset = 8;
+
+}  // namespace
+
+bool HasRtpsHeader(std::span<const std::uint8_t> datagram)
+{
+    constexpr std::uint8_t MajorVersion = 2;
+    return datagram.size() >= RtpsHeaderSize && std::memcmp(datagram.data(), "RTPS", 4) == 0 &&
+           datagram[4] == MajorVersion && SenderOf(datagram) != GuidPrefix{};
+}
+
+GuidPrefix SenderOf(std::span<const std::uint8_t> datagram)
+{
+    GuidPrefix prefix;
+    std::copy_n(datagram.begin() + PrefixOffset, prefix.size(), prefix.begin());
+    return prefix;
+}
+
+std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest)
+{
+    constexpr std::uint8_t LittleEndian = 0x01;
+    if (rest.size() < SubmessageHeaderSize)
+    {
+        return std::nullopt;
+    }
+    Submessage taken;
+    taken.Kind = static_cast<SubmessageKind>(rest[0]);
+    taken.Flags = rest[1];
+    taken.LittleEndian = (taken.Flags & LittleEndian) != 0;
+    const std::size_t left = rest.size() - SubmessageHeaderSize;
+    std::size_t length = RtpsReader(rest.subspan(2, 2), taken.LittleEndian).U16();
+    if (length == 0 && taken.Kind != SubmessageKind::Pad && taken.Kind != SubmessageKind::InfoTimestamp)
+    {
+        length = left;  // 9.4.5.1.3: it extends to the end of the message
+    }
+    // 9.4.1: each begins at a multiple of 4. A parser that rounds up would go on elsewhere than one that does
+    // not.
+    if (length > left || (length < left && length % 4 != 0))
+    {
+        return std::nullopt;
+    }
+    taken.Whole = rest.first(SubmessageHeaderSize + length);
+    rest = rest.subspan(taken.Whole.size());
+    return taken;
+}
+
+std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram)
+{
+    constexpr std::size_t StatisticsSize = SubmessageHeaderSize + 56;
+    constexpr auto Statistics = static_cast<std::uint8_t>(SubmessageKind::Statistics);
+    if (datagram.size() < RtpsHeaderSize + StatisticsSize ||
+        datagram[datagram.size() - StatisticsSize] != Statistics)
+    {
+        return datagram.size();
+    }
+    const std::size_t size = datagram.size() - StatisticsSize;
+    // The vendor's sockets fill in the statistics, and take any byte with this value in the place where they
+    // would be for them: in a message that has it there, they remain.
+    const bool mistaken =
+        size >= RtpsHeaderSize + StatisticsSize && datagram[size - StatisticsSize] == Statistics;
+    return mistaken ? datagram.size() : size;
+}
+
+void Blank(const Submessage &submessage)
+{
+    // A length of 0 says "to the end" for other kinds, but nothing for padding: written out here.
+    const auto length = submessage.Whole.size() - SubmessageHeaderSize;
+    submessage.Whole[0] = static_cast<std::uint8_t>(SubmessageKind::Pad);
+    submessage.Whole[submessage.LittleEndian ? 2 : 3] = static_cast<std::uint8_t>(length);
+    submessage.Whole[submessage.LittleEndian ? 3 : 2] = static_cast<std::uint8_t>(length >> 8);
+}
+
+}  // namespace Rabit::FastDds

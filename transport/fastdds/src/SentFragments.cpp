@@ -1,0 +1,60 @@
+#include "SentFragments.h"
+
+#include "RtpsReader.h"
+
+namespace Rabit::FastDds
+{
+
+namespace
+{
+
+// More than a history keeps of samples that are so large.
+constexpr std::size_t MostSamples = 4096;
+
+}  // namespace
+
+void SentFragments::Sent(std::span<const std::uint8_t> datagram)
+{
+    // Our own: it is sound. Fragments are alone in a datagram but for what is said of the time and the
+    // destination, so the walk is short.
+    RtpsReader rest(datagram, true);
+    rest.Skip(RtpsHeaderSize);
+    while (rest.Left() >= SubmessageHeaderSize)
+    {
+        const auto head = rest.Bytes(2);
+        const std::uint16_t length = rest.U16();
+        const auto body = rest.Bytes(length == 0 ? rest.Left() : length);
+        if (static_cast<SubmessageKind>(head[0]) != SubmessageKind::DataFrag)
+        {
+            continue;
+        }
+        RtpsReader fragment(body, true);
+        fragment.Skip(8);  // flags, where the inline QoS is, the reader
+        const EntityId writer = fragment.Entity();
+        const std::int64_t sequence = fragment.Sequence();
+        fragment.Skip(6);  // which ones these are
+        const std::uint32_t size = fragment.U16();
+        const std::uint32_t whole = fragment.U32();
+        if (!fragment.IsGood() || size == 0)
+        {
+            return;
+        }
+        if (_fragments.insert_or_assign({writer, sequence}, (whole + size - 1) / size).second)
+        {
+            _order.emplace_back(writer, sequence);
+        }
+        if (_order.size() > MostSamples)
+        {
+            _fragments.erase(_order.front());
+            _order.pop_front();
+        }
+    }
+}
+
+bool SentFragments::Has(EntityId writer, std::int64_t sequence, std::uint32_t fragment) const
+{
+    const auto found = _fragments.find({writer, sequence});
+    return found != _fragments.end() && fragment >= 1 && fragment <= found->second;
+}
+
+}  // namespace Rabit::FastDds
