@@ -1,5 +1,7 @@
 #include <rabit/gateway/LoadGatewayConfig.h>
 
+#include <rabit/transport/Transport.h>
+
 #include <cerrno>
 #include <fstream>
 #include <sstream>
@@ -51,7 +53,8 @@ void ReadNetwork(const YamlMap &map, GatewayConfig &config)
     map.Read("interfaces", config.Interfaces);
     map.Read("peers", config.Peers);
     map.Read("multicast", config.Multicast);
-    map.Read("max_datagram", config.MaxDatagram, 500, 65500);
+    map.Read("max_datagram", config.MaxDatagram, TransportSettings::SmallestDatagram,
+             TransportSettings::LargestDatagram);
     map.Read("shared_memory", config.SharedMemory);
     map.Read("lease", config.Lease);
     map.Read("backend_config", config.BackendConfig);

@@ -1,9 +1,11 @@
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/idl/MessageTypeRegistry.h>
+#include <rabit/transport/Transport.h>
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "names/NamePattern.h"
 #include "names/NearestWord.h"
@@ -14,6 +16,9 @@ namespace Rabit
 namespace
 {
 
+// How the names of the gateways' own topics begin.
+constexpr const char *OwnTopics = "rabit/";
+
 class Validator
 {
 public:
@@ -22,8 +27,10 @@ public:
     void Run() const
     {
         CheckNode();
+        CheckNetwork();
         CheckPublish();
         CheckSubscribe();
+        CheckTopicTypes();
         CheckAccept();
         CheckSend();
         CheckAnnouncement();
@@ -61,6 +68,32 @@ private:
         }
     }
 
+    void CheckNetwork() const
+    {
+        if (_config.MaxDatagram < TransportSettings::SmallestDatagram ||
+            _config.MaxDatagram > TransportSettings::LargestDatagram)
+        {
+            Fail(LineOf("max_datagram"), "max_datagram " + std::to_string(_config.MaxDatagram) +
+                                             " is out of range; expected " +
+                                             std::to_string(TransportSettings::SmallestDatagram) + " to " +
+                                             std::to_string(TransportSettings::LargestDatagram));
+        }
+        CheckNoneTwice(_config.Interfaces, "interfaces", LineOf("interfaces"));
+        CheckNoneTwice(_config.Peers, "peers", LineOf("peers"));
+    }
+
+    void CheckNoneTwice(const std::vector<std::string> &list, const char *key, int line) const
+    {
+        std::set<std::string> seen;
+        for (const std::string &entry : list)
+        {
+            if (!seen.insert(entry).second)
+            {
+                Fail(line, "`" + entry + "` stands twice under `" + key + "`");
+            }
+        }
+    }
+
     void CheckType(const std::string &type, int line) const
     {
         if (MessageTypeRegistry::Find(type) == nullptr)
@@ -78,6 +111,11 @@ private:
         }
     }
 
+    static std::string FirstIn(int line)
+    {
+        return line > 0 ? " (first in line " + std::to_string(line) + ")" : "";
+    }
+
     // Remembers a name; fails if it was there before.
     void CheckOnce(std::map<std::string, int> &seen, const std::string &name, const char *list,
                    int line) const
@@ -85,9 +123,7 @@ private:
         const auto [place, isNew] = seen.emplace(name, line);
         if (!isNew)
         {
-            const std::string where =
-                place->second > 0 ? " (first in line " + std::to_string(place->second) + ")" : "";
-            Fail(line, "`" + name + "` stands twice under `" + list + "`" + where);
+            Fail(line, "`" + name + "` stands twice under `" + list + "`" + FirstIn(place->second));
         }
     }
 
@@ -121,6 +157,29 @@ private:
             CheckOnce(seen, rule.Message, "subscribe", rule.Line);
             CheckType(rule.Type, rule.Line);
             CheckPatterns(rule.From, "from", rule.Line);
+            if (rule.Message.rfind(OwnTopics, 0) == 0)
+            {
+                Fail(rule.Line, "`" + rule.Message + "` is a topic of the gateways themselves");
+            }
+        }
+    }
+
+    // One topic of DDS has one type, whoever writes it. A local message and that of the others are different
+    // messages here, but the same topic.
+    void CheckTopicTypes() const
+    {
+        for (const SubscribeRule &wanted : _config.Subscribe)
+        {
+            const auto offered =
+                std::find_if(_config.Publish.begin(), _config.Publish.end(),
+                             [&wanted](const PublishRule &rule) { return rule.Message == wanted.Message; });
+            if (offered != _config.Publish.end() && offered->Type != wanted.Type)
+            {
+                Fail(wanted.Line, "`" + wanted.Message + "` is subscribed as `" + wanted.Type +
+                                      "` and published as `" + offered->Type + "`" +
+                                      (offered->Line > 0 ? " in line " + std::to_string(offered->Line) : "") +
+                                      "; a message has one type");
+            }
         }
     }
 
@@ -134,16 +193,19 @@ private:
         {
             CheckPattern(pattern, key, line);
         }
+        CheckNoneTwice(patterns, key, line);
+    }
+
+    static std::string WithoutWildcards(std::string pattern)
+    {
+        std::replace_if(
+            pattern.begin(), pattern.end(), [](char c) { return c == '*' || c == '?'; }, 'x');
+        return pattern;
     }
 
     void CheckPattern(const std::string &pattern, const char *key, int line) const
     {
-        std::string plain = pattern;
-        for (char &c : plain)
-        {
-            c = c == '*' || c == '?' ? 'x' : c;
-        }
-        if (!IsNodeName(plain))
+        if (!IsNodeName(WithoutWildcards(pattern)))
         {
             Fail(line,
                  "`" + pattern + "` in `" + key + "` is no node name; `*` and `?` stand for any characters");
@@ -176,11 +238,12 @@ private:
         for (const SendRule &rule : _config.Send)
         {
             CheckPattern(rule.To, "to", rule.Line);
-            if (rule.Queue != "*")
+            if (!IsMessageName(WithoutWildcards(rule.Queue)))
             {
                 CheckName(rule.Queue, "queue", rule.Line);
             }
             CheckOnce(seen, rule.To + "/" + rule.Queue, "send", rule.Line);
+            CheckReached(rule);
             CheckRange(rule.Capacity, 1'000'000, "capacity", rule.Line);
             CheckRange(rule.CapacityBytes, std::size_t{1} << 40, "capacity_bytes", rule.Line);
             CheckRange(rule.Window, 256, "window", rule.Line);
@@ -198,6 +261,25 @@ private:
         if (!excess.empty())
         {
             Fail(0, excess);
+        }
+    }
+
+    // The first rule that fits a link holds: one behind another that fits all the same links does nothing.
+    void CheckReached(const SendRule &rule) const
+    {
+        for (const SendRule &before : _config.Send)
+        {
+            if (&before == &rule)
+            {
+                return;
+            }
+            if (CoversPattern(before.To, rule.To) && CoversPattern(before.Queue, rule.Queue))
+            {
+                Fail(rule.Line, "this `send` entry is never used: `" + before.To + "/" + before.Queue + "`" +
+                                    (before.Line > 0 ? " in line " + std::to_string(before.Line) : "") +
+                                    " fits all that `" + rule.To + "/" + rule.Queue +
+                                    "` fits, and the first that fits holds");
+            }
         }
     }
 

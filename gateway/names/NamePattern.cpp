@@ -49,6 +49,23 @@ bool MatchesPattern(std::string_view pattern, std::string_view name)
                        [](char c) { return c == '*'; });
 }
 
+bool CoversPattern(std::string_view wider, std::string_view pattern)
+{
+    // Characters that are in no pattern can be matched by wildcards alone. Where the pattern takes any number
+    // of them, more than `wider` is long must go into a star of it; and none at all must fit as well.
+    constexpr char Strange = '\x01';
+    const auto withStarsAs = [pattern](std::size_t length)
+    {
+        std::string name;
+        for (const char c : pattern)
+        {
+            name.append(c == '*' ? length : 1, c == '*' || c == '?' ? Strange : c);
+        }
+        return name;
+    };
+    return MatchesPattern(wider, withStarsAs(0)) && MatchesPattern(wider, withStarsAs(wider.size() + 1));
+}
+
 bool MatchesAny(const std::vector<std::string> &patterns, std::string_view name)
 {
     return std::any_of(patterns.begin(), patterns.end(),

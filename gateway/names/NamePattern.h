@@ -10,6 +10,8 @@ namespace Rabit
 // Whether a name fits a pattern in which `*` stands for any characters and `?` for one, as DDS partitions
 // match (OMG DDS 1.4, 2.2.3.13).
 bool MatchesPattern(std::string_view pattern, std::string_view name);
+// Whether `wider` matches every name that `pattern` matches.
+bool CoversPattern(std::string_view wider, std::string_view pattern);
 bool MatchesAny(const std::vector<std::string> &patterns, std::string_view name);
 
 // Whether the text is a node name: 1 to 64 of A-Z a-z 0-9 _ . -

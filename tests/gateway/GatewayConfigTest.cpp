@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/transport/Transport.h>
 
 #include <filesystem>
 #include <fstream>
@@ -107,6 +108,40 @@ send:
     EXPECT_TRUE(config.Send[0].RedeliverInDoubt);
 }
 
+TEST_F(GatewayConfigTest, AMessageMayBePublishedAndSubscribedWithOneType)
+{
+    const GatewayConfig config = Load(R"(
+node: uav1
+publish:
+  - {message: Pose, type: Uav::Pose, qos: telemetry}
+subscribe:
+  - {message: Pose, type: Uav::Pose, qos: state}
+)");
+    EXPECT_EQ(config.Subscribe[0].Type, config.Publish[0].Type);
+}
+
+TEST_F(GatewayConfigTest, ASendEntryMayNameQueuesByAPatternAndTheSpecialOnesFirst)
+{
+    const GatewayConfig config = Load(R"(
+node: uav1
+send:
+  - {to: "uav*", queue: "Mission*", capacity: 10}
+  - {to: "uav*", capacity: 20}
+  - {capacity: 30}
+)");
+    EXPECT_EQ(config.Send[0].Queue, "Mission*");
+}
+
+TEST_F(GatewayConfigTest, TheTransportTakesEveryDatagramThatTheFileMayAskFor)
+{
+    EXPECT_EQ(Load("node: a\nmax_datagram: 1000\n").MaxDatagram, TransportSettings::SmallestDatagram);
+    EXPECT_EQ(Load("node: a\nmax_datagram: 65000\n").MaxDatagram, TransportSettings::LargestDatagram);
+    GatewayConfig made;
+    made.Node = "a";
+    made.MaxDatagram = 500;
+    EXPECT_THROW(ValidateGatewayConfig(made), ConfigError);
+}
+
 TEST_F(GatewayConfigTest, TheNodeNameCanBeGivenBesideTheFile)
 {
     EXPECT_EQ(Load("domain: 3\n", "uav2").Node, "uav2");
@@ -189,6 +224,35 @@ const BadConfig BadConfigs[] = {
      "node.yaml:3: `capacity` is `0`; expected a whole number from 1 to 1000000"},
     {"BadSwitch", "node: a\nmulticast: maybe\n",
      "node.yaml:2: `multicast` is `maybe`; expected one of `off`, `on`, `false`, `true`"},
+    {"PublishedAndSubscribedWithOtherTypes",
+     "node: a\npublish:\n  - {message: Pose, type: Uav::Pose}\nsubscribe:\n  - {message: Pose, type: "
+     "Uav::Health}\n",
+     "node.yaml:5: `Pose` is subscribed as `Uav::Health` and published as `Uav::Pose` in line 3; a message "
+     "has "
+     "one type"},
+    {"SubscribedTwice",
+     "node: a\nsubscribe:\n  - {message: Pose, type: Uav::Pose, from: [b]}\n"
+     "  - {message: Pose, type: Uav::Pose, from: [c]}\n",
+     "node.yaml:4: `Pose` stands twice under `subscribe` (first in line 3)"},
+    {"TopicOfTheGateways", "node: a\nsubscribe:\n  - {message: rabit/Beat, type: Uav::Pose}\n",
+     "node.yaml:3: `rabit/Beat` is a topic of the gateways themselves"},
+    {"DatagramTooSmall", "node: a\nmax_datagram: 999\n",
+     "node.yaml:2: `max_datagram` is `999`; expected a whole number from 1000 to 65000"},
+    {"DatagramTooLarge", "node: a\nmax_datagram: 65001\n",
+     "node.yaml:2: `max_datagram` is `65001`; expected a whole number from 1000 to 65000"},
+    {"NodeTwiceInFrom", "node: a\nsubscribe:\n  - {message: Pose, type: Uav::Pose, from: [b, c, b]}\n",
+     "node.yaml:3: `b` stands twice under `from`"},
+    {"InterfaceTwice", "node: a\ninterfaces: [wlan0, wlan0]\n",
+     "node.yaml:2: `wlan0` stands twice under `interfaces`"},
+    {"PeerTwice", "node: a\npeers: [10.0.0.1, 10.0.0.1]\n",
+     "node.yaml:2: `10.0.0.1` stands twice under `peers`"},
+    {"BadQueuePattern", "node: a\nsend:\n  - {queue: \"Mission *\"}\n",
+     "node.yaml:3: `Mission *` is no queue name; expected 1 to 200 of A-Z a-z 0-9 _ . - : /"},
+    {"SendNeverUsed",
+     "node: a\nsend:\n  - {to: \"*\", capacity: 10}\n  - {to: \"uav*\", queue: Q, capacity: 20}\n",
+     "node.yaml:4: this `send` entry is never used: `*/*` in line 3 fits all that `uav*/Q` fits, and the "
+     "first "
+     "that fits holds"},
     {"EmptyValue", "node:\n", "node.yaml:1: key `node` in the configuration has no value"},
 };
 
@@ -251,7 +315,8 @@ TEST_F(GatewayConfigTest, AConfigurationWhoseAnnouncementOthersWouldDropIsRefuse
     config.Node = "a";
     for (int i = 0; i < 513; ++i)
     {
-        config.Publish.push_back({.Message = std::string("m").append(std::to_string(i)), .Type = "Uav::Pose"});
+        config.Publish.push_back(
+            {.Message = std::string("m").append(std::to_string(i)), .Type = "Uav::Pose"});
     }
     try
     {

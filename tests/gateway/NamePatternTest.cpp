@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "names/NearestWord.h"
 
@@ -64,6 +66,36 @@ TEST(NearestWord, ListsWhatIsExpectedWhenNothingIsNear)
     EXPECT_EQ(NearestWordHint("zzzzzz", {"on", "off"}), "; expected one of `on`, `off`");
     EXPECT_EQ(NearestWordHint("zzzzzz", {"fastdds"}), "; expected `fastdds`");
     EXPECT_EQ(NearestWordHint("zzzzzz", {}), "");
+}
+
+TEST(NamePatternTest, OnePatternCoversAnotherThatMatchesNoMore)
+{
+    for (const auto &[wider, pattern] : std::vector<std::pair<const char *, const char *>>{{"*", "*"},
+                                                                                           {"*", "uav1"},
+                                                                                           {"uav*", "uav1"},
+                                                                                           {"uav*", "uav?"},
+                                                                                           {"uav*", "uav1*"},
+                                                                                           {"u*1", "uav*1"},
+                                                                                           {"uav?", "uav?"},
+                                                                                           {"uav?", "uav1"},
+                                                                                           {"*a*", "*b*a*"},
+                                                                                           {"?*", "?*?"}})
+    {
+        EXPECT_TRUE(CoversPattern(wider, pattern)) << wider << " " << pattern;
+    }
+    for (const auto &[wider, pattern] :
+         std::vector<std::pair<const char *, const char *>>{{"uav1", "uav2"},
+                                                            {"uav1", "uav?"},
+                                                            {"uav?", "uav*"},
+                                                            {"uav?*", "uav*"},
+                                                            {"uav*", "*"},
+                                                            {"u*1", "u*"},
+                                                            {"*a*", "*b*"},
+                                                            {"????????", "*"},
+                                                            {"uav??", "uav?*"}})
+    {
+        EXPECT_FALSE(CoversPattern(wider, pattern)) << wider << " " << pattern;
+    }
 }
 
 }  // namespace

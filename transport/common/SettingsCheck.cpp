@@ -19,8 +19,6 @@ namespace
 
 constexpr std::size_t MaxNodeName = 200;
 constexpr int MaxDomain = 232;
-constexpr std::size_t SmallestDatagram = 1000;
-constexpr std::size_t LargestDatagram = 65000;
 
 std::string ToText(const sockaddr *address)
 {
@@ -78,11 +76,14 @@ void CheckSettings(const TransportSettings &settings)
     {
         throw TransportError("the domain must be 0 to 232, not " + std::to_string(settings.Domain), "domain");
     }
-    if (settings.MaxDatagram < SmallestDatagram || settings.MaxDatagram > LargestDatagram)
+    if (settings.MaxDatagram < TransportSettings::SmallestDatagram ||
+        settings.MaxDatagram > TransportSettings::LargestDatagram)
     {
-        throw TransportError(
-            "the largest datagram must be 1000 to 65000 bytes, not " + std::to_string(settings.MaxDatagram),
-            "max_datagram");
+        throw TransportError("the largest datagram must be " +
+                                 std::to_string(TransportSettings::SmallestDatagram) + " to " +
+                                 std::to_string(TransportSettings::LargestDatagram) + " bytes, not " +
+                                 std::to_string(settings.MaxDatagram),
+                             "max_datagram");
     }
     if (settings.AnnouncementPeriod.count() <= 0 || settings.Lease <= settings.AnnouncementPeriod)
     {

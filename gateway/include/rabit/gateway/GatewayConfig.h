@@ -93,7 +93,7 @@ struct GatewayConfig
     std::map<std::string, int> Lines;
 };
 
-// Checks ranges, names used twice, and that every type is linked into this process. Throws ConfigError. The
+// Checks ranges, names used twice, entries that contradict each other or are never used, and that every type is linked into this process. Throws ConfigError. The
 // constructor of GatewayManager calls it; call it earlier to fail earlier.
 void ValidateGatewayConfig(const GatewayConfig &config);
 

@@ -78,6 +78,9 @@ struct TransportSettings
     std::vector<std::string> Peers;
     // Whether multicast may be used for discovery and data.
     bool Multicast = true;
+    // The range of MaxDatagram.
+    static constexpr std::size_t SmallestDatagram = 1000;
+    static constexpr std::size_t LargestDatagram = 65000;
     // Largest datagram to send, 1000 to 65000 bytes; larger ones are received all the same. The default stays
     // below the MTU of radios, because one lost IP fragment of a larger datagram loses the whole of it. Use
     // 65000 on loopback and wired networks.
