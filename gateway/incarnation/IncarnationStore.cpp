@@ -1,6 +1,7 @@
 #include "incarnation/IncarnationStore.h"
 
 #include <fcntl.h>
+#include <rabit/gateway/links/LinkMessages.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,8 @@ namespace
 
 // Above this, no higher incarnation could be taken.
 constexpr std::uint32_t MaxCounter = std::numeric_limits<std::uint32_t>::max() - 1;
+// In the year 2097: a wall clock that shows this or more would use up the counter.
+constexpr std::int64_t FarthestSecond = std::int64_t{LinkLargestClaim};
 
 std::int64_t SecondsOfWallClock()
 {
@@ -101,15 +104,42 @@ IncarnationStore::IncarnationStore(const std::filesystem::path &stateDirectory, 
 
 std::uint64_t IncarnationStore::Above(std::uint64_t floor)
 {
-    _error.clear();
-    const std::uint32_t stored = std::max(ReadCounter(), _last);
-    const auto known = std::max(stored, static_cast<std::uint32_t>(floor >> 32));
+    const std::lock_guard lock(_mutex);
+    if (!_isRead)
+    {
+        _isRead = true;
+        _last = ReadCounter();
+    }
+    const auto known = std::max(_last, static_cast<std::uint32_t>(floor >> 32));
     const auto next = known < MaxCounter ? known + 1 : MaxCounter;
-    const std::int64_t seconds = std::clamp<std::int64_t>(_wallClock(), 0, MaxCounter);
-    const std::uint32_t counter = std::max(next, static_cast<std::uint32_t>(seconds));
-    WriteCounter(counter);
-    _last = counter;
-    return (static_cast<std::uint64_t>(counter) << 32) | (_random() >> 32);
+    const std::int64_t seconds = std::max<std::int64_t>(_wallClock(), 0);
+    _last = seconds < FarthestSecond ? std::max(next, static_cast<std::uint32_t>(seconds)) : next;
+    _unsaved = !_file.empty();
+    return (static_cast<std::uint64_t>(_last) << 32) | (_random() >> 32);
+}
+
+void IncarnationStore::Save()
+{
+    if (!_unsaved)
+    {
+        return;
+    }
+    std::uint32_t counter = 0;
+    {
+        const std::lock_guard lock(_mutex);
+        counter = _last;
+        _unsaved = false;
+    }
+    const std::string error = Write(counter);
+    const std::lock_guard lock(_mutex);
+    const std::string readError = std::exchange(_readError, "");
+    _error = error.empty() ? readError : error;
+}
+
+std::string IncarnationStore::Error() const
+{
+    const std::lock_guard lock(_mutex);
+    return _error;
 }
 
 // 0 if there is no file, or nothing usable in it.
@@ -124,34 +154,29 @@ std::uint32_t IncarnationStore::ReadCounter()
     std::string text;
     if (!std::getline(in, text))
     {
-        _error = "cannot read the incarnation from " + _file.string();
+        _readError = "cannot read the incarnation from " + _file.string();
         return 0;
     }
     std::uint32_t counter = 0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), counter);
     if (problem != std::errc() || end != text.data() + text.size())
     {
-        _error = "no incarnation in " + _file.string() + ": '" + text.substr(0, 40) + "'";
+        _readError = "no incarnation in " + _file.string() + ": '" + text.substr(0, 40) + "'";
         return 0;
     }
     return counter;
 }
 
 // Writes a new file beside the old one and renames it, so that at any moment one of them is whole on the
-// disk.
-void IncarnationStore::WriteCounter(std::uint32_t counter)
+// disk. Returns what went wrong.
+std::string IncarnationStore::Write(std::uint32_t counter) const
 {
-    if (_file.empty())
-    {
-        return;
-    }
     const std::filesystem::path directory = _file.parent_path();
     std::error_code problem;
     std::filesystem::create_directories(directory, problem);
     if (problem)
     {
-        _error = "cannot make " + directory.string() + ": " + problem.message();
-        return;
+        return "cannot make " + directory.string() + ": " + problem.message();
     }
     std::filesystem::path fresh = _file;
     fresh += ".new";
@@ -159,21 +184,16 @@ void IncarnationStore::WriteCounter(std::uint32_t counter)
         const SyncedFile file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
         if (!file.IsOpen() || !file.Write(std::to_string(counter) + '\n') || !file.Sync())
         {
-            _error = SystemError("cannot write", fresh);
-            return;
+            return SystemError("cannot write", fresh);
         }
     }
     std::filesystem::rename(fresh, _file, problem);
     if (problem)
     {
-        _error = "cannot rename " + fresh.string() + ": " + problem.message();
-        return;
+        return "cannot rename " + fresh.string() + ": " + problem.message();
     }
     const SyncedFile entry(directory, O_RDONLY | O_DIRECTORY);
-    if (!entry.IsOpen() || !entry.Sync())
-    {
-        _error = SystemError("cannot sync", directory);
-    }
+    return entry.IsOpen() && entry.Sync() ? "" : SystemError("cannot sync", directory);
 }
 
 }  // namespace Rabit

@@ -3,25 +3,30 @@
 #include <rabit/gateway/RandomSource.h>
 #include <rabit/gateway/links/LinkHost.h>
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <string>
 
 namespace Rabit
 {
 
 // The incarnations of one node: a counter in the high 32 bits that rises at every start, and a random number
-// in the low 32. The counter is kept in a small file, which is written and synced before the incarnation is
-// used.
+// in the low 32. The counter is kept in a small file, which is written and synced before anybody else is told
+// the incarnation.
 //
-// The counter never falls below the wall clock's seconds since 1970 if the clock is ahead of it. So the loss
-// of the file is harmless as long as the wall clock is right; without a file the seconds are all there is. If
-// both are wrong, peers that remember a higher incarnation make the node take one above it (rules R1 and S6
-// of the links).
+// The counter never falls below the wall clock's seconds since 1970 if the clock is ahead of it (a clock that
+// shows 2097 or later is not believed). So the loss of the file is harmless as long as the wall clock is
+// right; without a file the seconds are all there is. If both are wrong, peers that remember a higher
+// incarnation make the node take one above it (rules R1 and S6 of the links).
+//
+// Giving out a number and storing it are two calls, because a disk may take seconds to sync: the first is
+// made under the lock of the links, the second is not.
 //
 // Nothing here throws and nothing stops the node: what goes wrong with the file is told by Error(), and the
-// incarnation is then made from the wall clock. Not thread-safe.
+// incarnation is then made from the wall clock. Thread-safe.
 class IncarnationStore : public IncarnationSource
 {
 public:
@@ -35,24 +40,33 @@ public:
     IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node,
                      WallClock wallClock, RandomSource random = SystemRandom);
 
-    // An incarnation above the stored one and above `floor`, stored before this returns if there is a file.
+    // An incarnation above all that this object gave out, above `floor`, and above the stored one: the first
+    // call reads the file. Save must have returned before anybody is told of it.
     std::uint64_t Above(std::uint64_t floor) override;
 
-    // What went wrong with the file at the last call of Above, in one line; empty if nothing did (a file that
-    // does not exist yet is not an error).
-    const std::string &Error() const { return _error; }
+    // Stores what Above has given out since the last call; may take as long as the disk does. Costs next to
+    // nothing if there is nothing to store. What fails is not tried again before the next incarnation.
+    void Save();
+
+    // What went wrong with the file when it was last read or written, in one line; empty if nothing did (a
+    // file that does not exist yet is not an error).
+    std::string Error() const;
     // The file; empty if there is none.
     const std::filesystem::path &File() const { return _file; }
 
 private:
     std::uint32_t ReadCounter();
-    void WriteCounter(std::uint32_t counter);
+    std::string Write(std::uint32_t counter) const;
 
-    std::filesystem::path _file;
-    WallClock _wallClock;
-    RandomSource _random;
-    std::uint32_t _last = 0;  // the counter of this process's latest incarnation
+    const std::filesystem::path _file;
+    const WallClock _wallClock;
+    const RandomSource _random;
+    mutable std::mutex _mutex;  // not held while the file is written
+    bool _isRead = false;
+    std::uint32_t _last = 0;  // the counter of the newest incarnation, or the stored one
+    std::string _readError;   // until it is told by _error once
     std::string _error;
+    std::atomic<bool> _unsaved{false};  // changed under the mutex
 };
 
 }  // namespace Rabit

@@ -17,6 +17,7 @@
 #include "presence/Presence.h"
 #include "presence/RemoteQueues.h"
 #include "queues/LinkDriver.h"
+#include "queues/OutgoingQueues.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
 #include "report/ProblemLog.h"
@@ -79,9 +80,9 @@ public:
                          NanosecondsInSecond;
               },
               random),
-          _links(std::make_shared<LinkDriver>(_config, _workspace, _remote, _incarnations, random(),
-                                              manager.WakeUpHandler())),
-          _incarnation(_links->Incarnation()),
+          _links(_config, _workspace, _incarnations, random(), manager.WakeUpHandler()),
+          _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links)),
+          _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),
           _presence(config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
                     manager.WakeUpHandler()),
@@ -115,7 +116,7 @@ public:
         ReportUndelivered();
         _presence.Close();
         _subscriptions.Close();
-        _links->Close();
+        _links.Close();
         _publishers.clear();
         _session.reset();
     }
@@ -134,10 +135,10 @@ public:
         {
             for (const PeerTable::Peer *peer : _presence.Peers().Heard())
             {
-                _links->HeardOf(peer->Node, peer->Incarnation);
+                _links.HeardOf(peer->Node, peer->Incarnation);
             }
         }
-        Duration next = std::min(_presence.NextDue(), _links->Service());
+        Duration next = std::min(_presence.NextDue(), _links.Service());
         for (TopicPublisher &publisher : _publishers)
         {
             if (served.RepeatStates)
@@ -177,7 +178,7 @@ private:
         _session = _transport->Open(SettingsOf(_config, _incarnation),
                                     [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
-        _links->Open(*_session);
+        _links.Open(*_session);
         _subscriptions.Open(*_session);
         for (const PublishRule &rule : _config.Publish)
         {
@@ -186,7 +187,7 @@ private:
             Attach(_publishers.back());
         }
         _presence.Open(*_session, Announcements::Of(_config, _incarnation));
-        _workspace.SetQueueForwarder(_links);
+        _workspace.SetQueueForwarder(_outgoing);
     }
 
     void Attach(TopicPublisher &publisher)
@@ -202,11 +203,8 @@ private:
     {
         // A program that ends soon after a refusal learns the reason nevertheless. Other problems may only be
         // the end of the other managers.
-        std::vector<Gateway::Problem> refusals = _links->Problems();
-        std::erase_if(refusals,
-                      [](const Gateway::Problem &problem) { return problem.subject.rfind("send ", 0) != 0; });
-        Log(_problemLog.AtEnd(refusals));
-        for (const Gateway::LinkStatus &link : _links->OutboundStatus())
+        Log(_problemLog.AtEnd(_outgoing->Problems()));
+        for (const Gateway::LinkStatus &link : _outgoing->Status())
         {
             if (link.outbox > 0)
             {
@@ -236,9 +234,9 @@ private:
         {
             fleet.publications.push_back(publisher.Status());
         }
-        fleet.links = _links->OutboundStatus();
-        fleet.inbound = _links->InboundStatus();
-        fleet.malformed = _presence.Malformed() + _links->Malformed();
+        fleet.links = _outgoing->Status();
+        fleet.inbound = _links.InboundStatus();
+        fleet.malformed = _presence.Malformed() + _links.Malformed();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
         AddProblems(now, fleet);
@@ -261,7 +259,7 @@ private:
         }
         for (const auto &problems :
              {Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
-              _links->Problems()})
+              _outgoing->Problems(), _links.Problems()})
         {
             fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
         }
@@ -274,7 +272,8 @@ private:
     IncarnationStore _incarnations;
     OriginTable _origins;
     RemoteQueues _remote;
-    const std::shared_ptr<LinkDriver> _links;
+    LinkDriver _links;
+    const std::shared_ptr<OutgoingQueues> _outgoing;
     const std::uint64_t _incarnation;
     const SourceClock _source;
     Presence _presence;

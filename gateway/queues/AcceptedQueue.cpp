@@ -55,28 +55,25 @@ std::string AcceptedQueue::Problem() const
     return _queue ? "" : "there is no local queue `" + _rule.Queue + "`";
 }
 
-bool AcceptedQueue::Add(const std::shared_ptr<RabitMessage> &message)
-{
-    if (_queue->AddMessageNoEventTrigger(message))
-    {
-        return true;
-    }
-    // A message may be taken before the flag is up: then nobody would say that there is room, so try once
-    // more.
-    _gate->Full = true;
-    if (!_queue->AddMessageNoEventTrigger(message))
-    {
-        return false;
-    }
-    _gate->Full = false;
-    return true;
-}
-
-LocalQueueResult AcceptedQueue::Deliver(std::string_view typeName, std::span<const std::uint8_t> payload,
-                                        bool redelivered)
+AcceptedQueue::Decoded AcceptedQueue::Decode(std::string_view typeName,
+                                             std::span<const std::uint8_t> payload) const
 {
     const auto type = _types.find(typeName);
     if (type == _types.end())
+    {
+        return {LocalQueueResult::WrongType, nullptr};
+    }
+    std::shared_ptr<RabitMessage> message = type->second->CreateShared();
+    if (!type->second->Deserialize(payload, *message))
+    {
+        return {LocalQueueResult::Undecodable, nullptr};
+    }
+    return {LocalQueueResult::Ok, std::move(message)};
+}
+
+LocalQueueResult AcceptedQueue::Deliver(const Decoded &decoded, bool redelivered)
+{
+    if (decoded.Result == LocalQueueResult::WrongType)
     {
         return LocalQueueResult::WrongType;
     }
@@ -88,31 +85,41 @@ LocalQueueResult AcceptedQueue::Deliver(std::string_view typeName, std::span<con
     {
         return LocalQueueResult::Full;
     }
-    const std::shared_ptr<RabitMessage> message = type->second->CreateShared();
-    if (!type->second->Deserialize(payload, *message))
+    if (!decoded.Message)
     {
-        return LocalQueueResult::Undecodable;
+        return decoded.Result;
     }
-    message->SetRedelivered(redelivered);
-    return Add(message) ? LocalQueueResult::Ok : LocalQueueResult::Full;
+    decoded.Message->SetRedelivered(redelivered);
+    if (_queue->AddMessageNoEventTrigger(decoded.Message))
+    {
+        return LocalQueueResult::Ok;
+    }
+    // A message may be taken before the gate is told to watch for it: then nobody would say that there is
+    // room, so try once more.
+    return Room() > 0 && _queue->AddMessageNoEventTrigger(decoded.Message) ? LocalQueueResult::Ok
+                                                                           : LocalQueueResult::Full;
 }
 
-void AcceptedQueue::Notify()
+std::size_t AcceptedQueue::Free() const
 {
-    if (_queue)
-    {
-        _queue->NotifyEnqueued();
-    }
+    return static_cast<std::size_t>(
+        std::max(0, _queue->GetMaxNoMessagesAllowedInQueue() - _queue->NoMessagesInQueue()));
 }
 
+// Who is told that there is no room sends nothing more, so that no failing Deliver would raise the flag: it
+// is raised here, and the queue looked at once more, since a message may have been taken in between.
 std::size_t AcceptedQueue::Room() const
 {
     if (!_queue)
     {
         return _wrongKind ? 1 : 0;
     }
-    return static_cast<std::size_t>(
-        std::max(0, _queue->GetMaxNoMessagesAllowedInQueue() - _queue->NoMessagesInQueue()));
+    if (const std::size_t room = Free(); room > 0)
+    {
+        return room;
+    }
+    _gate->Full = true;
+    return Free();
 }
 
 bool AcceptedQueue::TakeRoomCame()

@@ -19,28 +19,40 @@
 namespace Rabit
 {
 
-// One local queue into which other nodes may put messages. Not thread-safe, but for what it says of itself.
+// One local queue into which other nodes may put messages. Not thread-safe, but for Decode.
 class AcceptedQueue
 {
 public:
     using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
 
-    // `wake` is called when a message was taken from the queue after it had been full: on the taker's thread,
-    // and possibly for a moment after this object is gone. The rule must name known types.
+    // What a payload is here: a message, or why there is none (WrongType, Undecodable).
+    struct Decoded
+    {
+        LocalQueueResult Result = LocalQueueResult::WrongType;
+        std::shared_ptr<RabitMessage> Message;
+    };
+
+    // `wake` is called when a message was taken from the queue after there was no room in it: on the taker's
+    // thread, and possibly for a moment after this object is gone. The rule must name known types.
     AcceptedQueue(const AcceptRule &rule, RabitWorkspace &workspace, std::function<void()> wake);
 
-    const AcceptRule &Rule() const { return _rule; }
     // Looks the queue up: its manager may come later than the gateway, go, and come back with a new one.
     // Returns whether something changed.
     bool Find();
     // What keeps messages from being delivered; empty if nothing does.
     std::string Problem() const;
 
-    // Decodes and adds a message without telling the queue's handlers: call Notify once no lock is held.
-    LocalQueueResult Deliver(std::string_view type, std::span<const std::uint8_t> payload, bool redelivered);
-    void Notify();
+    // Any thread, at any time.
+    Decoded Decode(std::string_view type, std::span<const std::uint8_t> payload) const;
+
+    // Adds a message without telling the queue's handlers: once no lock is held, call NotifyEnqueued of the
+    // queue that it went into.
+    LocalQueueResult Deliver(const Decoded &decoded, bool redelivered);
+    // Null while there is none.
+    const std::shared_ptr<Queue> &Local() const { return _queue; }
+    // Messages that the queue would take now. If that is none, TakeRoomCame will tell when there is room.
     std::size_t Room() const;
-    // Whether room came since Deliver found the queue full.
+    // Whether room came since there was none.
     bool TakeRoomCame();
 
 private:
@@ -52,11 +64,11 @@ private:
         std::function<void()> Wake;
     };
 
-    bool Add(const std::shared_ptr<RabitMessage> &message);
+    std::size_t Free() const;
 
     AcceptRule _rule;
     RabitWorkspace &_workspace;
-    std::map<std::string, const MessageType *, std::less<>> _types;
+    std::map<std::string, const MessageType *, std::less<>> _types;  // unchanged after construction
     std::shared_ptr<Queue> _queue;
     bool _wrongKind = false;
     std::shared_ptr<Gate> _gate;

@@ -1,9 +1,10 @@
 #include "queues/LinkDriver.h"
 
-
 #include <algorithm>
 
 #include "clocks/GpsTime.h"
+#include "queues/LinkStatus.h"
+#include "queues/SendOptions.h"
 #include "wire/GatewayTopics.h"
 #include "wire/LinkDataCodec.h"
 #include "wire/LinkWire.h"
@@ -44,20 +45,17 @@ QueueOutcome OutcomeOf(LinkOutcome outcome)
 
 }  // namespace
 
-LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, const RemoteQueues &remote,
-                       IncarnationStore &incarnations, std::uint64_t clockName, std::function<void()> wake)
+LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
+                       std::uint64_t clockName, std::function<void()> wake)
     : _config(config),
       _workspace(workspace),
-      _remote(remote),
       _incarnations(incarnations),
-      _wake(std::move(wake))
+      _wake(std::move(wake)),
+      _incoming(config.Accept, workspace, _wake),
+      _links(std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
+                                        static_cast<LocalQueues &>(_incoming), incarnations))
 {
-    for (const AcceptRule &rule : config.Accept)
-    {
-        _accepted.try_emplace(rule.Queue, rule, workspace, _wake);
-    }
-    _links = std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
-                                        static_cast<LocalQueues &>(*this), incarnations);
+    _incarnations.Save();
 }
 
 LinkDriver::~LinkDriver()
@@ -99,7 +97,7 @@ void LinkDriver::Close()
     {
         const std::lock_guard lock(_mutex);
         _links->Close();
-        news = TakeNews();
+        TakeNews(news);
     }
     Tell(news);
 }
@@ -110,12 +108,15 @@ void LinkDriver::Close()
 void LinkDriver::OnData(SampleBytes bytes)
 {
     static thread_local LinkData view;
+    static thread_local IncomingQueues::DecodedMessages messages;
     if (!LinkDataCodec::Decode(bytes, view))
     {
         ++_malformed;
         return;
     }
-    TakeIn<LinkData, &LinkNode::OnData>(view);
+    _incoming.Decode(view, messages);
+    TakeIn<LinkData, &LinkNode::OnData>(view, messages);
+    messages.clear();
     view.Items.clear();  // they point to bytes that are only borrowed
 }
 
@@ -134,15 +135,17 @@ void LinkDriver::OnSample(SampleBytes bytes)
 }
 
 template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-void LinkDriver::TakeIn(const View &view)
+void LinkDriver::TakeIn(const View &view, std::span<const IncomingQueues::Decoded> messages)
 {
     News &news = OwnNews();
     bool sooner = false;
     {
         const std::lock_guard lock(_mutex);
+        _incoming.Offer(messages);
         (_links.get()->*Input)(view, Now());
+        _incoming.Offer({});
         sooner = ServeBy(_outbox.IsEmpty() ? _links->NextDue() : LinkTime(0));
-        std::swap(news, _news);
+        TakeNews(news);
     }
     Tell(news);
     news.Clear();
@@ -158,6 +161,19 @@ LinkDriver::News &LinkDriver::OwnNews()
     return news;
 }
 
+void LinkDriver::TakeNews(News &news)
+{
+    // Not when there is nothing: the lists would lose their memory to lists that have none.
+    if (_incoming.AnyDelivered())
+    {
+        _incoming.TakeDelivered(news.Delivered);
+    }
+    if (!_settled.empty())
+    {
+        news.Settled.swap(_settled);
+    }
+}
+
 bool LinkDriver::ServeBy(LinkTime due)
 {
     if (due >= _nextService)
@@ -170,34 +186,13 @@ bool LinkDriver::ServeBy(LinkTime due)
 
 void LinkDriver::Tell(const News &news)
 {
-    for (AcceptedQueue *queue : news.Delivered)
+    for (const auto &queue : news.Delivered)
     {
-        queue->Notify();
+        queue->NotifyEnqueued();
     }
     for (const auto &[receipt, outcome] : news.Settled)
     {
-        Settle(receipt, outcome);
-    }
-}
-
-bool LinkDriver::Settle(const Receipt &receipt, QueueOutcome outcome)
-{
-    if (receipt)
-    {
         receipt->Settle(outcome);
-    }
-    return outcome == QueueOutcome::Delivered;
-}
-
-void LinkDriver::FindLocalQueues()
-{
-    for (auto &[name, queue] : _accepted)
-    {
-        const bool changed = queue.Find();
-        if (queue.TakeRoomCame() || changed)
-        {
-            _links->OnRoom(name, Now());
-        }
     }
 }
 
@@ -207,14 +202,16 @@ LinkDriver::Duration LinkDriver::Service()
     News &news = OwnNews();
     {
         const std::lock_guard lock(_mutex);
-        FindLocalQueues();
+        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
         _links->Run(Now());
         _sending.Swap(_outbox);
         next = _nextService = _links->NextDue();
-        std::swap(news, _news);
+        TakeNews(news);
     }
     Tell(news);
     news.Clear();
+    // What is sent now may tell of a new life.
+    _incarnations.Save();
     const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
@@ -233,33 +230,40 @@ void LinkDriver::HeardOf(const std::string &node, std::uint64_t incarnation)
     {
         const std::lock_guard lock(_mutex);
         _links->HeardOf(node, incarnation, Now());
-        news = TakeNews();
+        TakeNews(news);
     }
     Tell(news);
 }
 
-LocalQueueResult LinkDriver::Deliver(std::string_view /*source*/, std::string_view queue,
-                                     std::string_view type, std::span<const std::uint8_t> payload,
-                                     bool redelivered)
+bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, const std::string &type,
+                         const LinkPayload &payload, const Receipt &receipt)
 {
-    const auto found = _accepted.find(queue);
-    if (found == _accepted.end())
+    LinkEnqueued enqueued;
+    bool sooner = false;
+    News news;
     {
-        return LocalQueueResult::Unknown;
+        const std::lock_guard lock(_mutex);
+        if (!_links->HasLinkTo(node, queue))
+        {
+            _links->Configure(node, queue, SendOptions(_config.Send, node, queue), Now());
+        }
+        enqueued = _links->Enqueue(node, queue, type, payload, Now());
+        if (enqueued.Accepted())
+        {
+            if (receipt)
+            {
+                _receipts.emplace(enqueued.Id, receipt);
+            }
+            sooner = ServeBy(enqueued.Due);
+        }
+        TakeNews(news);
     }
-    const LocalQueueResult result = found->second.Deliver(type, payload, redelivered);
-    if (result == LocalQueueResult::Ok &&
-        std::find(_news.Delivered.begin(), _news.Delivered.end(), &found->second) == _news.Delivered.end())
+    Tell(news);  // to accept one may mean to find that others have expired
+    if (sooner)
     {
-        _news.Delivered.push_back(&found->second);
+        _wake();
     }
-    return result;
-}
-
-std::size_t LinkDriver::Room(std::string_view queue) const
-{
-    const auto found = _accepted.find(queue);
-    return found == _accepted.end() ? 1 : found->second.Room();
+    return enqueued.Accepted();
 }
 
 void LinkDriver::Send(const LinkData &data)
@@ -289,9 +293,51 @@ void LinkDriver::OnOutcome(std::uint64_t id, std::string_view /*destination*/, s
     const auto found = _receipts.find(id);
     if (found != _receipts.end())
     {
-        _news.Settled.emplace_back(std::move(found->second), OutcomeOf(outcome));
+        _settled.emplace_back(std::move(found->second), OutcomeOf(outcome));
         _receipts.erase(found);
     }
+}
+
+std::vector<Gateway::LinkStatus> LinkDriver::OutboundStatus() const
+{
+    const std::lock_guard lock(_mutex);
+    return LinkStatus::Outbound(*_links);
+}
+
+std::vector<Gateway::InboundStatus> LinkDriver::InboundStatus() const
+{
+    const std::lock_guard lock(_mutex);
+    return LinkStatus::Inbound(*_links, _incoming);
+}
+
+std::vector<Gateway::Problem> LinkDriver::Problems() const
+{
+    const std::string storeError = _incarnations.Error();
+    const std::lock_guard lock(_mutex);
+    std::vector<Gateway::Problem> problems = _incoming.Problems();
+    if (!storeError.empty())
+    {
+        Gateway::Problem problem;
+        problem.subject = "state_dir " + _config.StateDir;
+        problem.reason = storeError;
+        problems.push_back(problem);
+    }
+    if (_links->NameInUseElsewhere())
+    {
+        Gateway::Problem problem;
+        problem.subject = "node " + _config.Node;
+        problem.reason =
+            "the incarnation of this node had to be raised again and again: another live node must have this "
+            "name";
+        problems.push_back(problem);
+    }
+    return problems;
+}
+
+std::uint64_t LinkDriver::Malformed() const
+{
+    const std::lock_guard lock(_mutex);
+    return _malformed + _links->Counters().Malformed + _links->Counters().NotForUs;
 }
 
 }  // namespace Rabit

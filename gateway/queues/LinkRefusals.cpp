@@ -10,30 +10,47 @@ constexpr std::size_t MostLinks = 1000;
 
 }  // namespace
 
-void LinkRefusals::Add(const LinkName &link, QueueAcceptance verdict, const std::string &reason)
+void LinkRefusals::Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+                       const std::string &reason)
 {
+    const LinkName link{node, queue};
+    const std::lock_guard lock(_mutex);
     if (_entries.size() >= MostLinks && _entries.count(link) == 0)
     {
+        SetReason(_entries.begin()->second, "");
         _entries.erase(_entries.begin());
     }
     Entry &entry = _entries[link];
     const bool aboutType =
-        verdict == QueueAcceptance::WrongType || verdict == QueueAcceptance::OtherDefinition;
+        acceptance == QueueAcceptance::WrongType || acceptance == QueueAcceptance::OtherDefinition;
     ++(aboutType ? entry.Type : entry.Unknown);
+    SetReason(entry, reason);
+}
+
+void LinkRefusals::SetReason(Entry &entry, const std::string &reason)
+{
+    _reasons += reason.empty() ? 0 : 1;
+    _reasons -= entry.Reason.empty() ? 0 : 1;
     entry.Reason = reason;
 }
 
-void LinkRefusals::Forgive(const LinkName &link)
+void LinkRefusals::Forgive(const std::string &node, const std::string &queue)
 {
-    const auto found = _entries.find(link);
+    if (_reasons == 0)
+    {
+        return;
+    }
+    const std::lock_guard lock(_mutex);
+    const auto found = _entries.find({node, queue});
     if (found != _entries.end())
     {
-        found->second.Reason.clear();
+        SetReason(found->second, "");
     }
 }
 
 void LinkRefusals::Report(std::map<LinkName, Gateway::LinkStatus> &rows) const
 {
+    const std::lock_guard lock(_mutex);
     for (const auto &[link, entry] : _entries)
     {
         rows[link].refused_unknown = entry.Unknown;
@@ -43,6 +60,7 @@ void LinkRefusals::Report(std::map<LinkName, Gateway::LinkStatus> &rows) const
 
 std::vector<Gateway::Problem> LinkRefusals::Problems() const
 {
+    const std::lock_guard lock(_mutex);
     std::vector<Gateway::Problem> problems;
     for (const auto &[link, entry] : _entries)
     {

@@ -1,27 +1,32 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "gateway.idl.h"
-#include "presence/RemoteQueues.h"
+#include "presence/QueueAcceptance.h"
 
 namespace Rabit
 {
 
 // Messages that were refused at the call, before they reached a link: counted by link, and why the last one
-// was. Not thread-safe.
+// was. Thread-safe.
 class LinkRefusals
 {
 public:
     using LinkName = std::pair<std::string, std::string>;  // node, queue
 
-    void Add(const LinkName &link, QueueAcceptance verdict, const std::string &reason);
-    // A message was accepted: whatever was wrong is over.
-    void Forgive(const LinkName &link);
+    // Counts one.
+    void Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+             const std::string &reason);
+    // A message was accepted: whatever was wrong is over. Costs nothing while nothing is wrong.
+    void Forgive(const std::string &node, const std::string &queue);
 
     void Report(std::map<LinkName, Gateway::LinkStatus> &rows) const;
     std::vector<Gateway::Problem> Problems() const;
@@ -31,9 +36,14 @@ private:
     {
         std::uint64_t Unknown = 0;
         std::uint64_t Type = 0;
-        std::string Reason;
+        std::string Reason;  // empty: over
     };
-    std::map<LinkName, Entry> _entries;
+
+    void SetReason(Entry &entry, const std::string &reason);
+
+    mutable std::mutex _mutex;
+    std::map<LinkName, Entry> _entries;    // guarded by _mutex
+    std::atomic<std::size_t> _reasons{0};  // entries with a reason; changed under _mutex
 };
 
 }  // namespace Rabit

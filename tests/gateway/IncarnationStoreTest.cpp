@@ -30,6 +30,14 @@ protected:
     {
         return IncarnationStore(_directory, "uav1", [seconds] { return seconds; });
     }
+    // The incarnation of a whole life.
+    std::uint64_t Live(std::int64_t seconds) const
+    {
+        IncarnationStore store = Start(seconds);
+        const std::uint64_t incarnation = store.Above(0);
+        store.Save();
+        return incarnation;
+    }
     void WriteFile(const std::string &text) const
     {
         std::filesystem::create_directories(_directory);
@@ -53,18 +61,22 @@ std::uint64_t CounterOf(std::uint64_t incarnation)
 
 TEST_F(IncarnationStoreFile, rises_at_every_start_even_within_a_second_and_when_the_clock_steps_back)
 {
-    EXPECT_EQ(CounterOf(Start(1000).Above(0)), 1000U);
-    EXPECT_EQ(CounterOf(Start(1000).Above(0)), 1001U);
-    EXPECT_EQ(CounterOf(Start(5).Above(0)), 1002U);
-    EXPECT_EQ(CounterOf(Start(2000).Above(0)), 2000U);
+    EXPECT_EQ(CounterOf(Live(1000)), 1000U);
+    EXPECT_EQ(CounterOf(Live(1000)), 1001U);
+    EXPECT_EQ(CounterOf(Live(5)), 1002U);
+    EXPECT_EQ(CounterOf(Live(2000)), 2000U);
 }
 
-TEST_F(IncarnationStoreFile, is_stored_before_it_is_returned)
+TEST_F(IncarnationStoreFile, is_stored_when_save_returns_and_not_before)
 {
     IncarnationStore store = Start(1000);
     store.Above(0);
+    EXPECT_FALSE(std::filesystem::exists(_directory / "uav1.incarnation"));
+    store.Save();
     EXPECT_EQ(ReadFile(), "1000\n");
     store.Above(5000ULL << 32);
+    EXPECT_EQ(ReadFile(), "1000\n") << "no file is written by who holds a lock";
+    store.Save();
     EXPECT_EQ(ReadFile(), "5001\n");
     EXPECT_EQ(store.Error(), "");
 }
@@ -81,9 +93,9 @@ TEST_F(IncarnationStoreFile, rises_above_a_floor_and_above_itself)
 
 TEST_F(IncarnationStoreFile, is_made_from_the_wall_clock_when_the_file_is_lost)
 {
-    Start(1000).Above(0);
+    Live(1000);
     std::filesystem::remove_all(_directory);
-    EXPECT_EQ(CounterOf(Start(1300).Above(0)), 1300U);
+    EXPECT_EQ(CounterOf(Live(1300)), 1300U);
 }
 
 TEST_F(IncarnationStoreFile, tells_of_an_unusable_file_and_replaces_it)
@@ -93,9 +105,11 @@ TEST_F(IncarnationStoreFile, tells_of_an_unusable_file_and_replaces_it)
         WriteFile(text);
         IncarnationStore store = Start(1000);
         EXPECT_EQ(CounterOf(store.Above(0)), 1000U) << text;
+        store.Save();
         EXPECT_NE(store.Error(), "") << text;
         EXPECT_EQ(ReadFile(), "1000\n") << text;
         store.Above(0);
+        store.Save();
         EXPECT_EQ(store.Error(), "") << "all is well again";
     }
 }
@@ -106,6 +120,7 @@ TEST_F(IncarnationStoreFile, tells_of_a_directory_that_cannot_be_made)
     const std::filesystem::path notADirectory = _directory / "uav1.incarnation" / "state";
     IncarnationStore store(notADirectory, "uav1", [] { return 1000; });
     EXPECT_EQ(CounterOf(store.Above(0)), 1000U);
+    store.Save();
     EXPECT_NE(store.Error().find("uav1.incarnation/state"), std::string::npos) << store.Error();
     EXPECT_EQ(CounterOf(store.Above(0)), 1001U) << "within one process it rises all the same";
 }
@@ -131,9 +146,16 @@ TEST_F(IncarnationStoreFile, has_random_low_bits)
 
 TEST_F(IncarnationStoreFile, never_gives_out_the_highest_counter)
 {
-    IncarnationStore store = Start(1LL << 40);
+    IncarnationStore store = Start(1000);
+    EXPECT_EQ(CounterOf(store.Above(0xfffffffdULL << 32)), 0xfffffffeU);
     EXPECT_EQ(CounterOf(store.Above(0)), 0xfffffffeU);
-    EXPECT_EQ(CounterOf(store.Above(0)), 0xfffffffeU);
+}
+
+TEST_F(IncarnationStoreFile, does_not_believe_a_clock_that_would_use_up_the_counter)
+{
+    EXPECT_EQ(CounterOf(Live(1000)), 1000U);
+    EXPECT_EQ(CounterOf(Live(0xf0000000LL)), 1001U);
+    EXPECT_EQ(CounterOf(Live(1LL << 40)), 1002U);
 }
 
 TEST_F(IncarnationStoreFile, a_node_name_cannot_leave_the_directory)

@@ -98,6 +98,34 @@ TEST_F(QueueTest, OnAPathThatLosesNothingNothingIsSentTwice)
     EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").resent, 0u);
 }
 
+TEST_F(QueueTest, AQueueThatIsExactlyFullIsFilledAgainAsSoonAsThereIsRoom)
+{
+    constexpr int Messages = 100;
+    GatewayConfig config = AircraftConfig("uav2");
+    config.Accept.push_back({.Queue = "Small", .Types = {"Uav::Goto"}});
+    SimulatedNode &other = fleet.Add(config);
+    const auto small = std::make_shared<RabitMessageQueue<std::shared_ptr<RabitMessage>>>(4, "Small");
+    other.Workspace.AddManagerMessageQueue("Small", small);
+    fleet.RunFor(2s);
+    for (std::uint32_t i = 1; i <= Messages; ++i)
+    {
+        EXPECT_TRUE(SendGoto(i, "uav2/Small"));
+    }
+    // A manager that takes all that is there every 5 ms: four at a time, if they come as soon as there is
+    // room. Left to the resend timer they come every 20 ms at best.
+    int taken = 0;
+    for (int turn = 0; turn < 40; ++turn)
+    {
+        fleet.RunFor(5ms);
+        std::shared_ptr<RabitMessage> message;
+        while (small->GetMessage(message))
+        {
+            ++taken;
+        }
+    }
+    EXPECT_EQ(taken, Messages);
+}
+
 TEST_F(QueueTest, LossDoesNotLoseMessages)
 {
     SimulatedFaults lossy;

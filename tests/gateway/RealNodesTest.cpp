@@ -132,7 +132,7 @@ protected:
     struct Node
     {
         Node(const std::string &transport, const std::string &name, const std::string &other,
-             Condition &condition)
+             Condition &condition, const std::vector<std::string> &alsoAccepted = {})
             : Reactor(Workspace)
         {
             GatewayConfig config;
@@ -142,6 +142,10 @@ protected:
             config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose"});
             config.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose"});
             config.Accept.push_back({.Queue = "Traffic", .Types = {"Uav::Goto"}});
+            for (const std::string &queue : alsoAccepted)
+            {
+                config.Accept.push_back({.Queue = queue, .Types = {"Uav::Goto"}});
+            }
             Reactor.SetHandleSignals(false);
             auto traffic = std::make_unique<TrafficManager>(Workspace, other, condition);
             Traffic = traffic.get();
@@ -177,6 +181,49 @@ TEST_P(RealNodesTest, QueuesAreCompleteAndInOrderAndTheLastPostArrivesUnderLoadB
         }))
         << "received " << first.Traffic->Received << " and " << second.Traffic->Received << ", last pose "
         << first.Traffic->LastPose << " and " << second.Traffic->LastPose;
+}
+
+// A manager may go at any time, also while its queue is told of a message on the transport's thread.
+TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
+{
+    using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
+    Node first(GetParam().first, "first", "second", condition, {"Passing"});
+    Node second(GetParam().second, "second", "first", condition);
+    const auto next = std::make_shared<Queue>(100, "Passing");
+    auto going = std::make_shared<Queue>(100, "Passing");
+    const std::weak_ptr<Queue> watched = going;
+    bool called = false;
+    bool alive = false;
+    going->Register_SomethingEnqueued(
+        [&, replaced = false]() mutable
+        {
+            if (std::exchange(replaced, true))
+            {
+                return;
+            }
+            // Until the workspace and the gateway's thread have let go of it.
+            const long others = watched.use_count() - 2;
+            first.Workspace.AddManagerMessageQueue("Passing", next);
+            const auto end = std::chrono::steady_clock::now() + Limit;
+            while (watched.use_count() > others && std::chrono::steady_clock::now() < end)
+            {
+                std::this_thread::yield();
+            }
+            condition.Set(
+                [&]
+                {
+                    called = true;
+                    alive = !watched.expired();
+                });
+        });
+    first.Workspace.AddManagerMessageQueue("Passing", going);
+    going.reset();
+    while (!second.Workspace.AddMessageToQueue("first/Passing", std::make_shared<Uav::Goto>()))
+    {
+        std::this_thread::yield();  // not announced yet
+    }
+    ASSERT_TRUE(condition.Wait([&] { return called; }));
+    EXPECT_TRUE(alive);
 }
 
 std::vector<std::pair<std::string, std::string>> AllPairs()

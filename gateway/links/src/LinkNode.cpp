@@ -98,6 +98,12 @@ LinkRefusal LinkNode::FindOrAddSender(std::string_view destination, std::string_
     return LinkRefusal::None;
 }
 
+bool LinkNode::HasLinkTo(std::string_view destination, std::string_view queue) const
+{
+    const LinkPeer *peer = FindPeer(destination);
+    return peer != nullptr && peer->FindSender(queue) != nullptr;
+}
+
 LinkRefusal LinkNode::Configure(std::string_view destination, std::string_view queue,
                                 const LinkOptions &options, LinkTime now)
 {
@@ -161,6 +167,17 @@ void LinkNode::HeardOfMyself(std::uint64_t incarnation, LinkTime now)
     {
         return;
     }
+    if ((incarnation >> 32) > LinkLargestClaim)
+    {
+        ++_context->Counters.FalseClaims;
+        return;
+    }
+    if (now < _mayRaiseAt)
+    {
+        ++_context->Counters.RaisesPutOff;
+        return;
+    }
+    _mayRaiseAt = now + _context->Settings.RaiseGap;
     _context->Incarnation = _incarnations.Above(incarnation);
     ++_context->Counters.Raises;
     for (const auto &[name, peer] : _peers)

@@ -107,6 +107,7 @@ void RequireValid(const LinkSettings &settings)
     Require(settings.HelloPeriod <= settings.SilentHelloPeriod, "HelloPeriod <= SilentHelloPeriod must hold");
     Require(settings.HelloGap >= LinkTime(0), "HelloGap must not be negative");
     Require(settings.SilentAfter >= settings.HelloPeriod, "SilentAfter must not be below HelloPeriod");
+    Require(settings.RaiseGap >= LinkTime(0), "RaiseGap must not be negative");
     Require(settings.MaxPeers >= 1 && settings.MaxLinksPerPeer >= 1,
             "MaxPeers and MaxLinksPerPeer must be >= 1");
 }

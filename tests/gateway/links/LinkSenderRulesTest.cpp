@@ -781,9 +781,40 @@ TEST_F(LinkSenderRules, S6_raises_the_alarm_when_it_repeats)
         EXPECT_FALSE(a.Node->NameInUseElsewhere());
         b.KnownLife = a.Node->Incarnation() + 1;
         a.Hear(b.Hello());
+        a.Pass(LinkSettings().RaiseGap);
     }
     EXPECT_TRUE(a.Node->NameInUseElsewhere());
     EXPECT_EQ(a.Node->Counters().Raises, 3U);
+}
+
+TEST_F(LinkSenderRules, S6_a_foolish_peer_cannot_have_all_sessions_dropped_again_and_again)
+{
+    Contact(1);
+    const LinkTime start = a.Now;
+    for (int i = 0; i < 100; ++i)
+    {
+        b.KnownLife = a.Node->Incarnation() + 1;
+        a.Hear(b.Hello());
+        a.Pass(50ms);
+    }
+    ASSERT_EQ(a.Now - start, LinkSettings().RaiseGap);
+    EXPECT_EQ(a.Node->Counters().Raises, 1U);
+    EXPECT_EQ(a.Node->Counters().RaisesPutOff, 99U);
+    a.Hear(b.Hello());
+    EXPECT_EQ(a.Node->Counters().Raises, 2U) << "what is still so after the gap is heeded";
+}
+
+TEST_F(LinkSenderRules, S6_one_false_hello_does_not_use_up_the_numbers_of_later_lives)
+{
+    Contact(1);
+    const std::uint64_t before = a.Node->Incarnation();
+    b.KnownLife = 0xfffffffdULL << 32;
+    a.Hear(b.Hello());
+    EXPECT_EQ(a.Node->Incarnation(), before);
+    EXPECT_EQ(a.Node->Counters().FalseClaims, 1U);
+    b.KnownLife = static_cast<std::uint64_t>(LinkLargestClaim) << 32;
+    a.Hear(b.Hello());
+    EXPECT_GT(a.Node->Incarnation(), b.KnownLife) << "a number that a life could have had";
 }
 
 TEST_F(LinkSenderRules, close_gives_every_pending_message_an_outcome)

@@ -45,6 +45,7 @@ void SimNode::Start(bool storageLost)
     _world.Oracle.NewEpoch(_index);
     _world.LifeClocks.push_back(_clock);
     _queueLengths.assign(_world.Plan.Queues.size(), 0);
+    _toldFull.assign(_world.Plan.Queues.size(), false);
     LinkSettings settings = _world.Plan.Settings;
     settings.Node = _world.Plan.Nodes[_index].Name;
     settings.Clock = _world.Random.Next() | 1;
@@ -125,8 +126,10 @@ bool SimNode::Consume(std::size_t queue)
     if (length > 0)
     {
         --length;
-        if (_calm || !_world.Random.Chance(plan.PopEventLoss))
+        // As a driver does: room is told of once, after there was none.
+        if (_toldFull[queue] && (_calm || !_world.Random.Chance(plan.PopEventLoss)))
         {
+            _toldFull[queue] = false;
             _links->OnRoom(plan.Name, LocalNow());
         }
     }
@@ -190,6 +193,7 @@ LocalQueueResult SimNode::Deliver(std::string_view source, std::string_view queu
     const std::size_t index = QueueOf(queue);
     if (_queueLengths[index] >= _world.Plan.Queues[index].Capacity)
     {
+        _toldFull[index] = true;
         return LocalQueueResult::Full;
     }
     if (++_queueLengths[index] == 1)
@@ -207,7 +211,9 @@ std::size_t SimNode::Room(std::string_view queue) const
     {
         return static_cast<std::size_t>(_world.Random.Between(0, 300));
     }
-    return _world.Plan.Queues[index].Capacity - _queueLengths[index];
+    const std::size_t room = _world.Plan.Queues[index].Capacity - _queueLengths[index];
+    _toldFull[index] = _toldFull[index] || room == 0;
+    return room;
 }
 
 }  // namespace Rabit::Sim

@@ -74,6 +74,8 @@ private:
     DriftingClock _clock;
     std::unique_ptr<LinkNode> _links;
     std::vector<std::size_t> _queueLengths;
+    mutable std::vector<bool>
+        _toldFull;  // by queue: the links were told of no room since they were told of room
     std::uint64_t _storedCounter = 0;
     std::int64_t _wallSeconds;
     bool _calm = false;

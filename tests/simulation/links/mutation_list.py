@@ -88,6 +88,8 @@ MUTATIONS = [
              "_creditLimit = 0;", "direct"),
     Mutation("S6 no incarnation is taken", "LinkNode.cpp", "if (incarnation <= _context->Incarnation)", "if (true)",
              "simulation"),
+    Mutation("S6 as often as a peer says so", "LinkNode.cpp", "if (now < _mayRaiseAt)", "if (false)", "direct"),
+    Mutation("S6 for any number", "LinkNode.cpp", "if ((incarnation >> 32) > LinkLargestClaim)", "if (false)", "direct"),
     Mutation("S6 not for acknowledgements", "LinkNode.cpp", "HeardOfMyself(ack.YourIncarnation, now); // rule S6", "",
              "direct"),
     Mutation("S6 the streams go on", "LinkPeer.cpp",

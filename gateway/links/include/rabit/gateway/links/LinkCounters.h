@@ -23,8 +23,8 @@ struct LinkSenderCounters
     std::uint64_t MessagesSent = 0;  // in datagrams, resent ones included
     std::uint64_t MessagesResent = 0;
     std::uint64_t DatagramsSent = 0;
-    std::uint64_t Timeouts = 0;     // times the resend timer ran out with something unacknowledged
-    std::uint64_t Restarts = 0;     // times the stream was started anew (receiver's or own new incarnation)
+    std::uint64_t Timeouts = 0;  // times the resend timer ran out with something unacknowledged
+    std::uint64_t Restarts = 0;  // times the stream was started anew (receiver's or own new incarnation)
     // Present state.
     std::size_t Pending = 0;         // messages without an outcome
     std::size_t PendingBytes = 0;    // bytes of their payloads
@@ -61,6 +61,8 @@ struct LinkNodeCounters
     std::uint64_t RefusedBadName = 0;  // Enqueue: LinkRefusal::BadName
     std::uint64_t RefusedTooMany = 0;  // Enqueue: LinkRefusal::TooManyPeers and TooManyLinks
     std::uint64_t Raises = 0;        // incarnations taken because a peer knew a higher one (rules R1 and S6)
+    std::uint64_t FalseClaims = 0;   // higher incarnations said of this node that none of its lives had
+    std::uint64_t RaisesPutOff = 0;  // messages of a higher one within LinkSettings::RaiseGap, ignored
     std::uint64_t PeerRestarts = 0;  // peers seen with a new incarnation
     std::uint64_t HellosSent = 0;
 };

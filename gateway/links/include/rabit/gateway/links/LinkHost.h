@@ -65,9 +65,9 @@ protected:
 class IncarnationSource
 {
 public:
-    // Returns an incarnation above `floor`, after it is safely stored if there is a store, so that no later
-    // life of this node starts below it. Called for the first incarnation (floor 0) and when a peer knows a
-    // higher one.
+    // Returns an incarnation above `floor`. If there is a store, it must be safely stored before anything is
+    // sent that LinkOutput was given after this, so that no later life of this node starts below what others
+    // have heard. Called for the first incarnation (floor 0) and when a peer knows a higher one.
     virtual std::uint64_t Above(std::uint64_t floor) = 0;
 
 protected:

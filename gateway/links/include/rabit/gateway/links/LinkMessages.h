@@ -33,6 +33,10 @@ inline constexpr std::int64_t LinkNoExpiry = -1;
 inline constexpr std::size_t LinkOutcomeBits = 256;
 using LinkBitmap = std::array<std::uint64_t, LinkOutcomeBits / 64>;
 
+// Counters (the high half of an incarnation) above this are no reason to raise one's own: the wall clock's
+// seconds reach it in 2097. Else one false message would take a node to the top, with no later life above it.
+inline constexpr std::uint32_t LinkLargestClaim = 0xf0000000;
+
 // Largest number of messages in one LinkData.
 inline constexpr std::size_t LinkMaxItems = 256;
 

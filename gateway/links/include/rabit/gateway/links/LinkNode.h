@@ -54,6 +54,9 @@ public:
     LinkRefusal Configure(std::string_view destination, std::string_view queue, const LinkOptions &options,
                           LinkTime now);
 
+    // Whether there is a link to that queue of that node, with options that no Configure changes.
+    bool HasLinkTo(std::string_view destination, std::string_view queue) const;
+
     // Accepts a message for a queue of another node, or refuses it at once. The link is made on first use,
     // with the options of Configure or else default ones. Rule S1. Call Run when LinkEnqueued::Due says.
     LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
@@ -119,6 +122,7 @@ private:
     Peers _peers;
     std::set<std::string, std::less<>> _types;  // type names that messages in outboxes point to
     std::uint64_t _nextId = 1;
+    LinkTime _mayRaiseAt{LinkTime::min()};
 };
 
 }  // namespace Rabit

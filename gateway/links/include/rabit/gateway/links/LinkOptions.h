@@ -67,6 +67,9 @@ struct LinkSettings
     // Other nodes known, at most; links to one of them, and links from one of them, at most.
     std::size_t MaxPeers = 1024;
     std::size_t MaxLinksPerPeer = 256;
+    // Time between two new incarnations that this node takes because peers know of a higher one: each drops
+    // all sessions, so one foolish peer must not ask for them one after the other.
+    LinkTime RaiseGap{std::chrono::seconds(5)};
     // New incarnations that this process may have to take (its storage was lost) before it must be assumed
     // that another live node has the same name.
     std::uint32_t AlarmAfterRaises = 3;

@@ -39,7 +39,8 @@ struct LinkEnqueued
     // Names the message in its outcome; rises by one for each message accepted by a LinkNode, from 1. 0:
     // refused.
     std::uint64_t Id = 0;
-    // When Run has something to do for this peer: 0 if at once. As LinkNode::NextDue, without the other peers.
+    // When Run has something to do for this peer: 0 if at once. As LinkNode::NextDue, without the other
+    // peers.
     LinkTime Due = LinkNever;
 
     bool Accepted() const { return Refusal == LinkRefusal::None; }

@@ -1,0 +1,151 @@
+#include "queues/OutgoingQueues.h"
+
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <map>
+#include <utility>
+
+#include "names/TypeDefinition.h"
+
+namespace Rabit
+{
+namespace
+{
+
+void Begin(const std::shared_ptr<RabitQueueReceipt> &receipt, std::size_t messages)
+{
+    if (receipt)
+    {
+        receipt->Begin(static_cast<std::uint32_t>(messages));
+    }
+}
+
+bool Settle(const std::shared_ptr<RabitQueueReceipt> &receipt, QueueOutcome outcome)
+{
+    if (receipt)
+    {
+        receipt->Settle(outcome);
+    }
+    return outcome == QueueOutcome::Delivered;
+}
+
+}  // namespace
+
+OutgoingQueues::OutgoingQueues(const std::string &ownNode, RabitWorkspace &workspace,
+                               const RemoteQueues &remote, LinkDriver &links)
+    : _ownNode(ownNode), _workspace(workspace), _remote(remote), _links(links)
+{
+}
+
+bool OutgoingQueues::Handles(const std::string &queueName) const
+{
+    return queueName.find('/') != std::string::npos;
+}
+
+LinkPayload OutgoingQueues::Encode(const MessageType &type, const RabitMessage &message) const
+{
+    const std::shared_ptr<LinkBytes> payload = _payloads->Make(type.SerializedSize(message));
+    const bool encoded = type.Serialize(message, payload->Writable()) == payload->Size();
+    return encoded ? payload : nullptr;
+}
+
+bool OutgoingQueues::Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
+                             const std::shared_ptr<RabitQueueReceipt> &receipt)
+{
+    const std::size_t slash = queueName.find('/');
+    const std::string node = queueName.substr(0, slash);
+    const std::string queue = queueName.substr(slash + 1);
+    if (node == _ownNode)
+    {
+        const bool added = _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
+        Begin(receipt, 1);
+        return Settle(receipt, added ? QueueOutcome::Delivered : QueueOutcome::Refused);
+    }
+    const MessageType *type = MessageTypeRegistry::Of(*message);
+    if (type == nullptr)
+    {
+        Begin(receipt, 1);
+        return Refuse(node, queue, QueueAcceptance::WrongType,
+                      "the message is of a type that was not made from IDL", receipt);
+    }
+    const LinkPayload payload = Encode(*type, *message);
+    if (!payload)
+    {
+        Begin(receipt, 1);
+        return Refuse(node, queue, QueueAcceptance::WrongType,
+                      "the message does not fit its IDL type `" + type->Name() +
+                          "`: a bounded string or sequence is too long",
+                      receipt);
+    }
+    if (node == "*")
+    {
+        return ForwardToAll(queue, *type, payload, receipt);
+    }
+    Begin(receipt, 1);
+    return ForwardTo(node, queue, *type, payload, receipt);
+}
+
+bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &type,
+                                  const LinkPayload &payload, const Receipt &receipt)
+{
+    const std::vector<std::string> nodes =
+        _remote.LiveNodesAccepting(queue, type.Name(), DefinitionHash(type));
+    if (nodes.empty())
+    {
+        Begin(receipt, 1);
+        return Refuse("*", queue, QueueAcceptance::UnknownNode,
+                      "no live node accepts `" + type.Name() + "` for `" + queue + "`", receipt);
+    }
+    _refusals.Forgive("*", queue);
+    Begin(receipt, nodes.size());
+    bool all = true;
+    for (const std::string &node : nodes)
+    {
+        all = ForwardTo(node, queue, type, payload, receipt) && all;
+    }
+    return all;
+}
+
+bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
+                               const LinkPayload &payload, const Receipt &receipt)
+{
+    const RemoteQueues::Answer answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
+    if (answer.What != QueueAcceptance::Accepted)
+    {
+        return Refuse(node, queue, answer.What, answer.Reason, receipt);
+    }
+    if (!_links.Enqueue(node, queue, type.Name(), payload, receipt))
+    {
+        return Settle(receipt, QueueOutcome::Refused);  // counted by the link
+    }
+    _refusals.Forgive(node, queue);
+    return true;
+}
+
+bool OutgoingQueues::Refuse(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+                            const std::string &reason, const Receipt &receipt)
+{
+    _refusals.Add(node, queue, acceptance, reason);
+    return Settle(receipt, QueueOutcome::Refused);
+}
+
+std::vector<Gateway::LinkStatus> OutgoingQueues::Status() const
+{
+    std::map<LinkRefusals::LinkName, Gateway::LinkStatus> rows;
+    for (Gateway::LinkStatus &row : _links.OutboundStatus())
+    {
+        LinkRefusals::LinkName name{row.node, row.queue};
+        rows.emplace(std::move(name), std::move(row));
+    }
+    _refusals.Report(rows);
+    std::vector<Gateway::LinkStatus> status;
+    for (auto &[name, row] : rows)
+    {
+        row.node = name.first;
+        row.queue = name.second;
+        status.push_back(std::move(row));
+    }
+    return status;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <rabit/QueueForwarder.h>
+#include <rabit/RabitQueueReceipt.h>
+#include <rabit/RabitWorkspace.h>
+#include <rabit/gateway/links/LinkPayload.h>
+#include <rabit/idl/MessageType.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gateway.idl.h"
+#include "presence/RemoteQueues.h"
+#include "queues/LinkDriver.h"
+#include "queues/LinkPayloadPool.h"
+#include "queues/LinkRefusals.h"
+
+namespace Rabit
+{
+
+// Queues of other nodes, as the managers of this one see them: takes what they add to `<node>/<queue>`,
+// encodes it once, and hands it to the links, or refuses it at the call with a reason.
+//
+// Threads: any manager's thread calls Forward; Status and Problems are for any.
+class OutgoingQueues final : public QueueForwarder
+{
+public:
+    // References must outlive the object.
+    OutgoingQueues(const std::string &ownNode, RabitWorkspace &workspace, const RemoteQueues &remote,
+                   LinkDriver &links);
+
+    bool Handles(const std::string &queueName) const override;
+    bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
+                 const std::shared_ptr<RabitQueueReceipt> &receipt) override;
+
+    // All links to other nodes, with what was refused before it reached one.
+    std::vector<Gateway::LinkStatus> Status() const;
+    std::vector<Gateway::Problem> Problems() const { return _refusals.Problems(); }
+
+private:
+    using Receipt = std::shared_ptr<RabitQueueReceipt>;
+
+    LinkPayload Encode(const MessageType &type, const RabitMessage &message) const;
+    // The receipt has had its Begin for this message.
+    bool ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
+                   const LinkPayload &payload, const Receipt &receipt);
+    bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
+                      const Receipt &receipt);
+    // Returns false.
+    bool Refuse(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+                const std::string &reason, const Receipt &receipt);
+
+    const std::string _ownNode;
+    RabitWorkspace &_workspace;
+    const RemoteQueues &_remote;
+    LinkDriver &_links;
+    const std::shared_ptr<LinkPayloadPool> _payloads = std::make_shared<LinkPayloadPool>();
+    LinkRefusals _refusals;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,28 @@
+#include "queues/SendOptions.h"
+
+#include <algorithm>
+
+#include "names/NamePattern.h"
+
+namespace Rabit
+{
+
+LinkOptions SendOptions(const std::vector<SendRule> &rules, std::string_view node, std::string_view queue)
+{
+    LinkOptions options;
+    const auto rule = std::find_if(
+        rules.begin(), rules.end(),
+        [node, queue](const SendRule &candidate)
+        { return MatchesPattern(candidate.To, node) && MatchesPattern(candidate.Queue, queue); });
+    if (rule != rules.end())
+    {
+        options.Capacity = rule->Capacity;
+        options.CapacityBytes = rule->CapacityBytes;
+        options.Expire = rule->Expire;
+        options.Window = rule->Window;
+        options.RedeliverInDoubt = rule->RedeliverInDoubt;
+    }
+    return options;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/links/LinkOptions.h>
+
+#include <string_view>
+#include <vector>
+
+namespace Rabit
+{
+
+// How messages to that queue of that node are kept: by the first rule that fits, or by default.
+LinkOptions SendOptions(const std::vector<SendRule> &rules, std::string_view node, std::string_view queue);
+
+}  // namespace Rabit
