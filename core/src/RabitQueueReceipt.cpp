@@ -30,8 +30,9 @@ std::uint32_t &CountOf(RabitQueueReceipt::Counts &counts, QueueOutcome outcome)
 
 QueueOutcome RabitQueueReceipt::Outcome() const
 {
-    const Counts counts = GetCounts();
-    if (counts.Pending > 0)
+    const std::lock_guard<std::mutex> lock(*_mutex);
+    const Counts &counts = _counts;
+    if (counts.Pending > 0 || _holds > 0)
     {
         return QueueOutcome::Pending;
     }
@@ -79,6 +80,36 @@ void RabitQueueReceipt::Settle(QueueOutcome outcome)
         }
         ++count;
         if (--_counts.Pending == 0)
+        {
+            if (_holds > 0)
+            {
+                _settledWhileHeld = true;
+            }
+            else
+            {
+                handlers = _known.Snapshot();
+            }
+        }
+    }
+    handlers.Call();
+}
+
+void RabitQueueReceipt::Hold()
+{
+    const std::lock_guard<std::mutex> lock(*_mutex);
+    ++_holds;
+}
+
+void RabitQueueReceipt::Release()
+{
+    RabitEvent::Handlers handlers;
+    {
+        const std::lock_guard<std::mutex> lock(*_mutex);
+        if (_holds == 0)
+        {
+            throw std::logic_error("a receipt was released more often than it was held");
+        }
+        if (--_holds == 0 && _counts.Pending == 0 && std::exchange(_settledWhileHeld, false))
         {
             handlers = _known.Snapshot();
         }

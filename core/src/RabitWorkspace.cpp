@@ -1,5 +1,6 @@
 #include <rabit/RabitWorkspace.h>
 
+#include "WorkspaceForwarders.h"
 #include "WorkspaceRegistry.h"
 
 #include <rabit/RabitLog.h>
@@ -22,7 +23,8 @@ RabitWorkspace *RabitWorkspace::GetWorkspace()
 
 RabitWorkspace::RabitWorkspace(std::shared_ptr<RabitClock> clock)
     : _clock(clock ? std::move(clock) : RabitClock::System()),
-      _registry(std::make_unique<WorkspaceRegistry>(_clock))
+      _registry(std::make_unique<WorkspaceRegistry>(_clock)),
+      _forwarders(std::make_unique<WorkspaceForwarders>())
 {
 }
 
@@ -98,15 +100,31 @@ RabitConnection RabitWorkspace::ConnectDequeuedEvent(const std::string &name, Ra
     return queue ? queue->ConnectDequeued(std::move(handler)) : RabitConnection();
 }
 
+bool RabitWorkspace::AddQueueForwarder(const std::string &forwarderName,
+                                       std::shared_ptr<QueueForwarder> forwarder)
+{
+    return _forwarders->Add(forwarderName, std::move(forwarder));
+}
+
+void RabitWorkspace::RemoveQueueForwarder(const std::string &forwarderName)
+{
+    _forwarders->Replace(forwarderName, nullptr);
+}
+
+std::vector<std::string> RabitWorkspace::GetListOfQueueForwarders() const
+{
+    return _forwarders->Names();
+}
+
 void RabitWorkspace::SetQueueForwarder(std::shared_ptr<QueueForwarder> forwarder)
 {
-    _registry->SetForwarder(std::move(forwarder));
+    _forwarders->Replace("", std::move(forwarder));
 }
 
 bool RabitWorkspace::ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message,
                                     const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
-    const std::optional<bool> forwarded = _registry->Forward(name, message, receipt);
+    const std::optional<bool> forwarded = _forwarders->Forward(name, message, receipt);
     return forwarded ? *forwarded : TellReceipt(receipt, false);
 }
 

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <rabit/QueueForwarder.h>
 #include <rabit/RabitClock.h>
 #include <rabit/RabitWorkspace.h>
 
-#include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -18,7 +15,7 @@ namespace Rabit
 {
 class RabitWakeup;
 
-// The tables behind a RabitWorkspace: names, who registered them, the managers present, the forwarder.
+// The tables behind a RabitWorkspace: names, who registered them, the managers present.
 // Thread-safe; calls nothing of the user's while it holds its lock, except that a message is cloned when it
 // becomes a global copy.
 //
@@ -54,11 +51,6 @@ public:
 
     void ForgetAllNames();
 
-    void SetForwarder(std::shared_ptr<QueueForwarder> forwarder);
-    // Nothing: there is no forwarder for this name.
-    std::optional<bool> Forward(const std::string &name, const std::shared_ptr<RabitMessage> &message,
-                                const std::shared_ptr<RabitQueueReceipt> &receipt);
-
 private:
     using Owners = std::unordered_set<std::uint64_t>;
     struct MessageEntry
@@ -71,11 +63,6 @@ private:
     {
         std::shared_ptr<RabitQueueHandle> Handle;
         Owners OwnedBy;
-    };
-    struct ForwarderSlot
-    {
-        std::shared_ptr<QueueForwarder> Forwarder;
-        int CallsInProgress = 0;
     };
     using MessageMap = std::unordered_map<std::string, MessageEntry>;
     using QueueMap = std::unordered_map<std::string, QueueEntry>;
@@ -97,10 +84,6 @@ private:
     std::vector<std::string> _managerNames;
     std::unordered_map<std::uint64_t, std::shared_ptr<RabitWakeup>> _present;
     std::uint64_t _lastOwner = 0;
-
-    std::mutex _forwarderMutex;
-    std::condition_variable _forwarderIdle;
-    std::shared_ptr<ForwarderSlot> _forwarder;
 };
 
 }  // namespace Rabit

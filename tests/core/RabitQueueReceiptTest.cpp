@@ -204,5 +204,27 @@ TEST(RabitQueueReceiptWakeup, NeedsAReceipt)
     EXPECT_THROW(manager.WakeUpManagerOnOutcome(nullptr), std::invalid_argument);
 }
 
+TEST(RabitQueueReceipt, IsNotKnownWhileItIsHeld)
+{
+    RabitQueueReceipt receipt;
+    int known = 0;
+    const RabitConnection connection = receipt.ConnectOutcomeKnown([&known] { ++known; });
+    receipt.Hold();
+    for (int i = 0; i < 2; ++i)
+    {
+        receipt.Begin();
+        receipt.Settle(QueueOutcome::Delivered);
+        EXPECT_EQ(receipt.Outcome(), QueueOutcome::Pending);
+    }
+    EXPECT_EQ(known, 0);
+    receipt.Release();
+    EXPECT_EQ(known, 1);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Delivered);
+    EXPECT_THROW(receipt.Release(), std::logic_error);
+    receipt.Hold();
+    receipt.Release();
+    EXPECT_EQ(known, 1) << "nothing was settled";
+}
+
 }  // namespace
 }  // namespace Rabit

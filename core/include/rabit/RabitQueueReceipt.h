@@ -60,10 +60,16 @@ public:
     // (throws std::logic_error).
     void Begin(std::uint32_t messages = 1);
     void Settle(QueueOutcome outcome);
+    // For who hands one message to several: from Hold to Release the outcome is Pending and not known,
+    // whatever is settled, because more messages may begin.
+    void Hold();
+    void Release();
 
 private:
     const std::shared_ptr<std::mutex> _mutex = std::make_shared<std::mutex>();
     Counts _counts;
+    std::uint32_t _holds = 0;
+    bool _settledWhileHeld = false;
     RabitEvent _known{_mutex};
 };
 

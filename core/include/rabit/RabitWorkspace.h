@@ -25,6 +25,7 @@
 
 namespace Rabit
 {
+class WorkspaceForwarders;
 class WorkspaceRegistry;
 
 // What came of registering a message under a name.
@@ -150,8 +151,16 @@ public:
     RabitConnection ConnectEnqueuedEvent(const std::string &name, RabitHandler handler);
     RabitConnection ConnectDequeuedEvent(const std::string &name, RabitHandler handler);
 
-    // Sets who takes messages for names that are not queues here; null: nobody. Returns only when no call of
-    // the former one is in progress any more; so it must not be called from inside one.
+    // Who takes messages for names that are not queues here; QueueForwarder.h says who of several. False, and
+    // nothing is added, if the workspace has a forwarder of that name.
+    bool AddQueueForwarder(const std::string &forwarderName, std::shared_ptr<QueueForwarder> forwarder);
+    // Takes away the one of that name, if there is one. Returns only when no call of it is in progress any
+    // more; so it must not be called from inside one.
+    void RemoveQueueForwarder(const std::string &forwarderName);
+    // Their names, in the order in which they were added.
+    std::vector<std::string> GetListOfQueueForwarders() const;
+    // For programs with one forwarder: it takes the place of the one that was set before; null: of none.
+    // Returns as RemoveQueueForwarder does. It has the name "".
     void SetQueueForwarder(std::shared_ptr<QueueForwarder> forwarder);
 
     // Registers the message under the name and attaches it to the name's global copy, see
@@ -207,6 +216,7 @@ private:
 
     const std::shared_ptr<RabitClock> _clock;
     const std::unique_ptr<WorkspaceRegistry> _registry;
+    const std::unique_ptr<WorkspaceForwarders> _forwarders;
 };
 
 template <typename T>
