@@ -1,7 +1,6 @@
 #include "common/RejoiningSession.h"
 
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <mutex>
 #include <system_error>
@@ -10,9 +9,10 @@
 
 #include "common/AddressWatch.h"
 #include "common/HandlerGate.h"
-#include "common/SessionLog.h"
+#include "common/RejoiningReader.h"
+#include "common/RejoiningShared.h"
+#include "common/RejoiningWriter.h"
 #include "common/SettingsCheck.h"
-#include "common/UseGate.h"
 
 namespace Rabit
 {
@@ -20,8 +20,6 @@ namespace Rabit
 namespace
 {
 
-// As long as Write may wait for the network.
-constexpr std::chrono::milliseconds LongestWait{100};
 // Between attempts to join again while that fails.
 constexpr std::chrono::milliseconds RetryPeriod{1000};
 
@@ -48,133 +46,6 @@ std::string Join(const std::vector<std::string> &words)
     return text.empty() ? "none" : text;
 }
 
-// A writer or reader that can be made anew in another session of the backend.
-class Endpoint
-{
-public:
-    virtual void Open(TransportSession &session) = 0;
-    virtual void Close() = 0;
-
-protected:
-    ~Endpoint() = default;
-};
-
-// What the session shares with its writers and readers.
-struct Shared
-{
-    explicit Shared(const TransportSettings &settings) : Log(std::make_shared<SessionLog>(settings)) {}
-
-    const std::shared_ptr<SessionLog> Log;
-    UseGate Gate;                             // of what the endpoints hold of the backend
-    std::mutex Structure;                     // of the session and the list; taken before Gate
-    std::unique_ptr<TransportSession> Inner;  // nullptr while it cannot be joined; guarded by Structure
-    std::vector<Endpoint *> Endpoints;        // guarded by Structure
-};
-
-// Enters the list as it is made, and opens itself if there is a session.
-template <typename Made>
-void Enter(Shared &shared, Made &endpoint)
-{
-    const std::lock_guard lock(shared.Structure);
-    if (shared.Inner != nullptr)
-    {
-        endpoint.Open(*shared.Inner);
-    }
-    shared.Endpoints.push_back(&endpoint);
-}
-
-void Leave(Shared &shared, Endpoint *endpoint)
-{
-    const std::lock_guard lock(shared.Structure);
-    std::erase(shared.Endpoints, endpoint);
-}
-
-class RejoiningWriter final : public TransportWriter, private Endpoint
-{
-public:
-    RejoiningWriter(std::shared_ptr<Shared> shared, const TopicDescription &topic, const TopicQos &qos,
-                    const std::vector<std::string> &partitions)
-        : _shared(std::move(shared)), _topic(topic), _qos(qos), _partitions(partitions)
-    {
-        Enter(*_shared, *this);
-    }
-    ~RejoiningWriter() { Leave(*_shared, this); }
-
-    WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override
-    {
-        const UseGate::Use use(_shared->Gate, LongestWait);
-        return use.Allowed() && _inner != nullptr ? _inner->Write(sample, sourceTime) : NotJoined();
-    }
-    WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override
-    {
-        const UseGate::Use use(_shared->Gate, LongestWait);
-        return use.Allowed() && _inner != nullptr ? _inner->Dispose(sample, sourceTime) : NotJoined();
-    }
-    int MatchedReaders() const override
-    {
-        const UseGate::Use use(_shared->Gate, LongestWait);
-        return use.Allowed() && _inner != nullptr ? _inner->MatchedReaders() : 0;
-    }
-
-private:
-    friend void Enter<RejoiningWriter>(Shared &, RejoiningWriter &);
-
-    void Open(TransportSession &session) override
-    {
-        _inner = session.CreateWriter(_topic, _qos, _partitions);
-    }
-    void Close() override { _inner.reset(); }
-    WriteResult NotJoined()
-    {
-        _shared->Log->WriteTimedOut(_topic.Name);
-        return WriteResult::TimedOut;
-    }
-
-    const std::shared_ptr<Shared> _shared;
-    const TopicDescription _topic;
-    const TopicQos _qos;
-    const std::vector<std::string> _partitions;
-    std::unique_ptr<TransportWriter> _inner;  // under the gate
-};
-
-class RejoiningReader final : public TransportReader, private Endpoint
-{
-public:
-    RejoiningReader(std::shared_ptr<Shared> shared, const TopicDescription &topic, const TopicQos &qos,
-                    const std::vector<std::string> &partitions, SampleHandler handler)
-        : _shared(std::move(shared)),
-          _topic(topic),
-          _qos(qos),
-          _partitions(partitions),
-          _handler(std::move(handler))
-    {
-        Enter(*_shared, *this);
-    }
-    ~RejoiningReader() { Leave(*_shared, this); }
-
-    int MatchedWriters() const override
-    {
-        const UseGate::Use use(_shared->Gate, LongestWait);
-        return use.Allowed() && _inner != nullptr ? _inner->MatchedWriters() : 0;
-    }
-
-private:
-    friend void Enter<RejoiningReader>(Shared &, RejoiningReader &);
-
-    void Open(TransportSession &session) override
-    {
-        _inner = session.CreateReader(_topic, _qos, _partitions, _handler);
-    }
-    void Close() override { _inner.reset(); }
-
-    const std::shared_ptr<Shared> _shared;
-    const TopicDescription _topic;
-    const TopicQos _qos;
-    const std::vector<std::string> _partitions;
-    const SampleHandler _handler;
-    std::unique_ptr<TransportReader> _inner;  // under the gate
-};
-
 class RejoiningSession final : public TransportSession
 {
 public:
@@ -182,7 +53,7 @@ public:
         : _settings(settings),
           _onPeer(std::move(onPeer)),
           _open(std::move(open)),
-          _shared(std::make_shared<Shared>(settings)),
+          _shared(std::make_shared<RejoiningShared>(settings)),
           _peerGate(_shared->Log, "peer events"),
           _addresses(FindAddresses(settings.Interfaces))
     {
@@ -291,7 +162,7 @@ private:
         _shared->Inner = _open(settings, [this](const PeerEvent &event) { OnPeer(event); });
         try
         {
-            for (Endpoint *endpoint : _shared->Endpoints)
+            for (RejoiningEndpoint *endpoint : _shared->Endpoints)
             {
                 endpoint->Open(*_shared->Inner);
             }
@@ -305,7 +176,7 @@ private:
 
     void CloseAll()
     {
-        for (Endpoint *endpoint : _shared->Endpoints)
+        for (RejoiningEndpoint *endpoint : _shared->Endpoints)
         {
             endpoint->Close();
         }
@@ -331,7 +202,7 @@ private:
     const TransportSettings _settings;
     const PeerHandler _onPeer;
     const OpenSession _open;
-    const std::shared_ptr<Shared> _shared;
+    const std::shared_ptr<RejoiningShared> _shared;
     HandlerGate _peerGate;
     TransportCounters _before;  // of the backend's sessions before this one; guarded by Structure
     std::mutex _mutex;

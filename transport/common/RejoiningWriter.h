@@ -1,0 +1,64 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/RejoiningEndpoint.h"
+#include "common/RejoiningShared.h"
+
+namespace Rabit
+{
+
+class RejoiningWriter final : public TransportWriter, private RejoiningEndpoint
+{
+public:
+    RejoiningWriter(std::shared_ptr<RejoiningShared> shared, const TopicDescription &topic,
+                    const TopicQos &qos, const std::vector<std::string> &partitions)
+        : _shared(std::move(shared)), _topic(topic), _qos(qos), _partitions(partitions)
+    {
+        Enter(*_shared, *this);
+    }
+    ~RejoiningWriter() { Leave(*_shared, this); }
+
+    WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override
+    {
+        const UseGate::Use use(_shared->Gate, LongestWait);
+        return use.Allowed() && _inner != nullptr ? _inner->Write(sample, sourceTime) : NotJoined();
+    }
+    WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override
+    {
+        const UseGate::Use use(_shared->Gate, LongestWait);
+        return use.Allowed() && _inner != nullptr ? _inner->Dispose(sample, sourceTime) : NotJoined();
+    }
+    int MatchedReaders() const override
+    {
+        const UseGate::Use use(_shared->Gate, LongestWait);
+        return use.Allowed() && _inner != nullptr ? _inner->MatchedReaders() : 0;
+    }
+
+private:
+    friend void Enter<RejoiningWriter>(RejoiningShared &, RejoiningWriter &);
+
+    void Open(TransportSession &session) override
+    {
+        _inner = session.CreateWriter(_topic, _qos, _partitions);
+    }
+    void Close() override { _inner.reset(); }
+    WriteResult NotJoined()
+    {
+        _shared->Log->WriteTimedOut(_topic.Name);
+        return WriteResult::TimedOut;
+    }
+
+    const std::shared_ptr<RejoiningShared> _shared;
+    const TopicDescription _topic;
+    const TopicQos _qos;
+    const std::vector<std::string> _partitions;
+    std::unique_ptr<TransportWriter> _inner;  // under the gate
+};
+
+}  // namespace Rabit
