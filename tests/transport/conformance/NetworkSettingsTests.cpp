@@ -97,6 +97,23 @@ TEST_P(NetworkSettings, APeerListedOnOneSideIsEnough)
     ExpectDelivery(one, other);
 }
 
+// More have come and gone than a peer without a port is looked for.
+TEST_P(NetworkSettings, ASessionThatIsClosedLeavesItsPortToTheNext)
+{
+    auto one = Settings("uav1");
+    auto other = Settings("ground");
+    for (auto *settings : {&one, &other})
+    {
+        settings->Multicast = false;
+        settings->Peers = {"127.0.0.1"};
+    }
+    for (int i = 0; i < 20; ++i)
+    {
+        Backend().Open(one, {});
+    }
+    ExpectDelivery(one, other);
+}
+
 TEST_P(NetworkSettings, AListOfPeersDoesNotEndMulticast)
 {
     auto one = Settings("uav1");

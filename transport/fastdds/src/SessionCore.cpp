@@ -31,7 +31,9 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer))
 {
-    const auto attributes = MakeParticipantAttributes(settings, _log);
+    auto attributes = MakeParticipantAttributes(settings, _log);
+    attributes.participantID = _number.Get();
+    attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
     // Disabled at first, so that nothing is discovered before _participant is known here.
     _participant = rtps::RTPSDomain::createParticipant(static_cast<std::uint32_t>(settings.Domain), false,

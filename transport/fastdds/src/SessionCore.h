@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 
+#include "ParticipantNumber.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/SessionLog.h"
@@ -65,6 +66,7 @@ private:
     std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>
         _peers;                        // Rabit nodes; guarded by _mutex
     std::deque<GuidPrefix> _departed;  // the last that said goodbye; guarded by _mutex
+    const ParticipantNumber _number;
     eprosima::fastrtps::rtps::RTPSParticipant *_participant = nullptr;
 };
 
