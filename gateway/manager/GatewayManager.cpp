@@ -239,6 +239,7 @@ private:
         fleet.malformed = _presence.Malformed() + _links.Malformed();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
+        FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
         AddProblems(now, fleet);
         fleet.PostMessage();
         Log(_problemLog.Look(fleet.problems, now));

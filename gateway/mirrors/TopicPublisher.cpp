@@ -25,6 +25,11 @@ TopicPublisher::Duration TopicPublisher::MinimumGap() const
     return _rule.MaxRate > 0.0 ? Duration(static_cast<std::int64_t>(1e9 / _rule.MaxRate)) : Duration(0);
 }
 
+TopicPublisher::Duration TopicPublisher::NextGap() const
+{
+    return _timedOut ? std::max(MinimumGap(), RetryGap) : MinimumGap();
+}
+
 TopicPublisher::Duration TopicPublisher::Service(Duration now)
 {
     if (!_attached)
@@ -44,7 +49,7 @@ TopicPublisher::Duration TopicPublisher::Service(Duration now)
 TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
 {
     const bool repeats = _rule.Qos == QosProfile::State && _everWritten;
-    const Duration mayWriteAt = _everWritten ? _lastWrite + MinimumGap() : now;
+    const Duration mayWriteAt = _everWritten ? _lastWrite + NextGap() : now;
     if (_pending || (repeats && _repeatNow))
     {
         return mayWriteAt;
@@ -58,9 +63,10 @@ void TopicPublisher::Write(Duration now)
         _writer->Write(MessageEncoder(_type, *_local), _source.At(_local->GetPostTime().Monotonic));
     _written += result == WriteResult::Ok ? 1 : 0;
     _failures += result == WriteResult::Ok ? 0 : 1;
-    // A value that the network did not take in time is tried again after the usual gap; one that can never be
-    // sent would only fail again.
-    _pending = result == WriteResult::TimedOut;
+    // A value that the network did not take in time is tried again; one that can never be sent would only
+    // fail again.
+    _timedOut = result == WriteResult::TimedOut;
+    _pending = _timedOut;
     _everWritten = true;
     _repeatNow = false;
     _lastWrite = now;

@@ -24,6 +24,8 @@ public:
     using Duration = std::chrono::nanoseconds;
 
     static constexpr Duration StateRepeatPeriod = std::chrono::seconds(1);
+    // Between attempts of which the network takes none: while there is none, a write ends at once.
+    static constexpr Duration RetryGap = std::chrono::milliseconds(50);
 
     TopicPublisher(const PublishRule &rule, const MessageType &type, const std::string &node,
                    const SourceClock &source, TransportSession &session);
@@ -47,6 +49,7 @@ private:
     void Write(Duration now);
     Duration DueAt(Duration now) const;
     Duration MinimumGap() const;
+    Duration NextGap() const;
 
     PublishRule _rule;
     const MessageType &_type;
@@ -54,7 +57,8 @@ private:
     std::shared_ptr<RabitMessage> _local;
     std::unique_ptr<TransportWriter> _writer;
     bool _attached = false;
-    bool _pending = false;  // fetched and not written yet
+    bool _pending = false;   // fetched and not written yet
+    bool _timedOut = false;  // the last write
     bool _everWritten = false;
     bool _repeatNow = false;
     Duration _lastWrite{0};

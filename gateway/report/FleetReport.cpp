@@ -75,4 +75,16 @@ void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet)
     }
 }
 
+void AddNetworkProblems(const std::vector<SettingsProblem> &problems, Gateway::Fleet &fleet)
+{
+    for (const SettingsProblem &found : problems)
+    {
+        Gateway::Problem problem;
+        problem.subject = found.Setting.empty() ? "network" : found.Setting;
+        problem.subject += found.Entry.empty() ? "" : " " + found.Entry;
+        problem.reason = found.Text;
+        fleet.problems.push_back(problem);
+    }
+}
+
 }  // namespace Rabit::FleetReport

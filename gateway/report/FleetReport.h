@@ -1,6 +1,9 @@
 #pragma once
 
+#include <rabit/transport/Transport.h>
+
 #include <chrono>
+#include <vector>
 
 #include "gateway.idl.h"
 #include "presence/PeerTable.h"
@@ -14,5 +17,8 @@ void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fl
 
 // Problems with names that two live nodes share.
 void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet);
+
+// What of the network is missing that the configuration asks for.
+void AddNetworkProblems(const std::vector<SettingsProblem> &problems, Gateway::Fleet &fleet);
 
 }  // namespace Rabit::FleetReport

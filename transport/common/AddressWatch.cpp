@@ -19,7 +19,8 @@ namespace
 {
 
 // An interface that comes up tells several things, each within milliseconds of the one before.
-constexpr int BurstMSec = 200;
+constexpr std::chrono::milliseconds Pause{100};
+constexpr std::chrono::milliseconds LongestBurst{500};
 constexpr int Forever = -1;
 
 }  // namespace
@@ -37,8 +38,8 @@ AddressWatch::Descriptor::~Descriptor()
     close(_value);
 }
 
-AddressWatch::AddressWatch(std::function<std::chrono::milliseconds()> changed)
-    : _changed(std::move(changed)),
+AddressWatch::AddressWatch(std::function<std::optional<std::chrono::milliseconds>()> look)
+    : _look(std::move(look)),
       _netlink(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE), "netlink socket"),
       _stop(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK), "eventfd")
 {
@@ -62,43 +63,38 @@ AddressWatch::~AddressWatch()
 
 void AddressWatch::Run()
 {
-    int again = Forever;
+    using Clock = std::chrono::steady_clock;
     while (true)
     {
-        bool news = false;
-        if (!Wait(again, news))
+        const auto again = _look();
+        Event event = Wait(again ? static_cast<int>(again->count()) : Forever);
+        for (const auto end = Clock::now() + LongestBurst; event == Event::News && Clock::now() < end;)
+        {
+            event = Wait(static_cast<int>(Pause.count()));
+        }
+        if (event == Event::Stop)
         {
             return;
         }
-        for (bool more = news; more;)
-        {
-            more = false;
-            if (!Wait(BurstMSec, more))
-            {
-                return;
-            }
-        }
-        const auto next = _changed();
-        again = next.count() > 0 ? static_cast<int>(next.count()) : Forever;
     }
 }
 
-bool AddressWatch::Wait(int milliseconds, bool &news)
+AddressWatch::Event AddressWatch::Wait(int milliseconds)
 {
     std::array<pollfd, 2> descriptors{{{_netlink.Get(), POLLIN, 0}, {_stop.Get(), POLLIN, 0}}};
     poll(descriptors.data(), descriptors.size(), milliseconds);
     if (descriptors[1].revents != 0)
     {
-        return false;
+        return Event::Stop;
     }
-    // What exactly changed does not matter: the addresses are listed afresh.
+    // What exactly changed does not matter: the networks are listed afresh. An error says that more came
+    // than the kernel could keep, which is news too.
     std::array<char, 8192> ignored;
-    while (recv(_netlink.Get(), ignored.data(), ignored.size(), 0) > 0)
+    for (int messages = 0; messages < 1000 && recv(_netlink.Get(), ignored.data(), ignored.size(), 0) > 0;
+         ++messages)
     {
-        news = true;
     }
-    news = news || descriptors[0].revents != 0;
-    return true;
+    return descriptors[0].revents != 0 ? Event::News : Event::Silence;
 }
 
 }  // namespace Rabit

@@ -1,8 +1,9 @@
-// Tells when the IPv4 addresses of this host change.
+// Tells when the IPv4 addresses or the interfaces of this host change.
 #pragma once
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <thread>
 
 namespace Rabit
@@ -11,11 +12,11 @@ namespace Rabit
 class AddressWatch
 {
 public:
-    // Calls `changed` on a thread of its own, once after each burst of changes to interfaces and addresses.
-    // What it returns is the time after which to call it again even without a change; none if that is zero.
-    // Throws std::system_error if the kernel does not tell of changes.
-    explicit AddressWatch(std::function<std::chrono::milliseconds()> changed);
-    // Returns when `changed` does not run any more.
+    // Calls `look` on a thread of its own: at once, after each burst of changes, and while changes come
+    // without a pause at least twice a second. What it returns is the time after which to call it again even
+    // without a change; none: only then. Throws std::system_error if the kernel does not tell of changes.
+    explicit AddressWatch(std::function<std::optional<std::chrono::milliseconds>()> look);
+    // Returns when `look` does not run any more.
     ~AddressWatch();
     AddressWatch(const AddressWatch &) = delete;
     AddressWatch &operator=(const AddressWatch &) = delete;
@@ -34,11 +35,17 @@ private:
         const int _value;
     };
 
-    void Run();
-    // False: it is to stop.
-    bool Wait(int milliseconds, bool &news);
+    enum class Event
+    {
+        News,
+        Silence,  // for that long
+        Stop
+    };
 
-    const std::function<std::chrono::milliseconds()> _changed;
+    void Run();
+    Event Wait(int milliseconds);
+
+    const std::function<std::optional<std::chrono::milliseconds>()> _look;
     const Descriptor _netlink;
     const Descriptor _stop;
     std::thread _thread;

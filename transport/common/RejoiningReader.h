@@ -9,6 +9,8 @@
 
 #include "common/RejoiningEndpoint.h"
 #include "common/RejoiningShared.h"
+#include "common/SettingsCheck.h"
+#include "common/TopicRegistry.h"
 
 namespace Rabit
 {
@@ -22,21 +24,21 @@ public:
           _topic(topic),
           _qos(qos),
           _partitions(partitions),
-          _handler(std::move(handler))
+          _handler(std::move(handler)),
+          _use(_shared->Topics, topic)
     {
+        CheckQos(topic, qos);
         Enter(*_shared, *this);
     }
-    ~RejoiningReader() { Leave(*_shared, this); }
+    ~RejoiningReader() { Leave(*_shared, *this); }
 
     int MatchedWriters() const override
     {
-        const UseGate::Use use(_shared->Gate, LongestWait);
+        const UseGate::Use use(_shared->Gate);
         return use.Allowed() && _inner != nullptr ? _inner->MatchedWriters() : 0;
     }
 
 private:
-    friend void Enter<RejoiningReader>(RejoiningShared &, RejoiningReader &);
-
     void Open(TransportSession &session) override
     {
         _inner = session.CreateReader(_topic, _qos, _partitions, _handler);
@@ -48,6 +50,7 @@ private:
     const TopicQos _qos;
     const std::vector<std::string> _partitions;
     const SampleHandler _handler;
+    const TopicRegistry::Use _use;
     std::unique_ptr<TransportReader> _inner;  // under the gate
 };
 

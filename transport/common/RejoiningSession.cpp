@@ -1,16 +1,13 @@
 #include "common/RejoiningSession.h"
 
 #include <algorithm>
-#include <map>
-#include <mutex>
+#include <exception>
+#include <iterator>
 #include <system_error>
-#include <utility>
-#include <vector>
 
-#include "common/AddressWatch.h"
-#include "common/HandlerGate.h"
+#include "common/PeerAddress.h"
+#include "common/PeerResolver.h"
 #include "common/RejoiningReader.h"
-#include "common/RejoiningShared.h"
 #include "common/RejoiningWriter.h"
 #include "common/SettingsCheck.h"
 
@@ -20,8 +17,10 @@ namespace Rabit
 namespace
 {
 
-// Between attempts to join again while that fails.
-constexpr std::chrono::milliseconds RetryPeriod{1000};
+using std::chrono::milliseconds;
+
+// Between looks at what nobody tells of: addresses of peers that have none yet, and what peers say of theirs.
+constexpr milliseconds PeerPeriod{500};
 
 TransportCounters Sum(TransportCounters a, const TransportCounters &b)
 {
@@ -36,190 +35,355 @@ TransportCounters Sum(TransportCounters a, const TransportCounters &b)
     return a;
 }
 
-std::string Join(const std::vector<std::string> &words)
+const TransportSettings &Checked(const TransportSettings &settings)
 {
-    std::string text;
-    for (const auto &word : words)
-    {
-        text += (text.empty() ? "" : ", ") + word;
-    }
-    return text.empty() ? "none" : text;
+    CheckSettings(settings);
+    return settings;
 }
 
-class RejoiningSession final : public TransportSession
+NetworkChoice Choose(const std::vector<HostNetwork> &host, TransportSettings settings, bool hasOwnNetworks,
+                     const RejoiningBackend &backend)
 {
-public:
-    RejoiningSession(const TransportSettings &settings, PeerHandler onPeer, OpenSession open)
-        : _settings(settings),
-          _onPeer(std::move(onPeer)),
-          _open(std::move(open)),
-          _shared(std::make_shared<RejoiningShared>(settings)),
-          _peerGate(_shared->Log, "peer events"),
-          _addresses(FindAddresses(settings.Interfaces))
+    if (hasOwnNetworks)
     {
-        _shared->Inner = _open(_settings, [this](const PeerEvent &event) { OnPeer(event); });
-        try
-        {
-            _watch = std::make_unique<AddressWatch>([this] { return Check(); });
-        }
-        catch (const std::system_error &error)
-        {
-            _shared->Log->Line(std::string("changes of addresses cannot be followed: ") + error.what());
-        }
+        settings.Interfaces.clear();
     }
-    ~RejoiningSession() override
-    {
-        _watch.reset();
-        const std::lock_guard lock(_shared->Structure);
-        _shared->Inner.reset();
-    }
+    return ChooseNetworks(host, settings, backend.MostNetworks());
+}
 
-    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
-                                                  const std::vector<std::string> &partitions) override
+// Those that have an address, as `address` or `address:port`; the others are problems.
+std::vector<std::string> ResolvePeers(
+    const std::vector<std::string> &peers,
+    const std::function<std::optional<std::string>(const std::string &)> &addressOf,
+    std::vector<SettingsProblem> &problems)
+{
+    std::vector<std::string> resolved;
+    for (const std::string &peer : peers)
     {
-        return std::make_unique<RejoiningWriter>(_shared, topic, qos, partitions);
-    }
-    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
-                                                  const std::vector<std::string> &partitions,
-                                                  SampleHandler handler) override
-    {
-        return std::make_unique<RejoiningReader>(_shared, topic, qos, partitions, std::move(handler));
-    }
-    TransportCounters Counters() const override
-    {
-        const std::lock_guard lock(_shared->Structure);
-        const auto own = Sum(_before, _shared->Log->Read());
-        return _shared->Inner != nullptr ? Sum(own, _shared->Inner->Counters()) : own;
-    }
-
-private:
-    using Identity = std::pair<std::string, std::uint64_t>;
-
-    void OnPeer(const PeerEvent &event)
-    {
+        const PeerAddress parsed = ParsePeer(peer);
+        const auto address = parsed.HasAddress() ? parsed.Host : addressOf(parsed.Host);
+        if (address)
         {
-            const std::lock_guard lock(_mutex);
-            const Identity peer{event.Node, event.Incarnation};
-            if (event.What == PeerEvent::Kind::Appeared)
+            resolved.push_back(*address);
+            if (parsed.Port != 0)
             {
-                ++_peers[peer];
-            }
-            else if (--_peers[peer] <= 0)
-            {
-                _peers.erase(peer);
+                resolved.back().append(":").append(std::to_string(parsed.Port));
             }
         }
-        if (_onPeer)
+        else
         {
-            _onPeer(event);
+            problems.push_back(
+                {"peers", peer, "the peer " + peer + " has no IPv4 address: looking for one", false});
         }
     }
+    return resolved;
+}
 
-    // On the watch's thread.
-    std::chrono::milliseconds Check()
+std::vector<std::string> NamesToLookUp(const TransportSettings &settings)
+{
+    std::vector<std::string> names;
+    for (const std::string &peer : settings.Peers)
     {
-        auto now = FindAddresses(_settings.Interfaces);
-        const bool complete = std::includes(now.begin(), now.end(), _addresses.begin(), _addresses.end());
-        if (!complete && !_missing)
+        if (const PeerAddress parsed = ParsePeer(peer); !parsed.HasAddress())
         {
-            _missing = true;
-            _shared->Log->Line("an address of this host is gone; it had " + Join(_addresses) + ", it has " +
-                               Join(now));
-        }
-        // Interfaces that nobody named may come as they like; one that is named is wanted when it comes.
-        const bool wanted = _settings.Interfaces.empty() ? _addresses.empty() : now != _addresses;
-        if (now.empty() || (_joined && !_missing && !wanted))
-        {
-            return {};
-        }
-        _shared->Log->Line("joining the network again, with the addresses " + Join(now));
-        _joined = false;
-        try
-        {
-            Rejoin(now);
-            _joined = true;
-            _missing = false;
-            _addresses = std::move(now);
-            return {};
-        }
-        catch (const TransportError &error)
-        {
-            _shared->Log->Line(std::string("cannot join the network again: ") + error.what());
-            return RetryPeriod;
+            names.push_back(parsed.Host);
         }
     }
-
-    void Rejoin(const std::vector<std::string> &addresses)
-    {
-        TransportSettings settings = _settings;
-        if (!settings.Interfaces.empty())
-        {
-            settings.Interfaces = addresses;  // those that are not there now may come later
-        }
-        const std::lock_guard lock(_shared->Structure);
-        const UseGate::Change change(_shared->Gate);
-        CloseAll();
-        _shared->Inner = _open(settings, [this](const PeerEvent &event) { OnPeer(event); });
-        try
-        {
-            for (RejoiningEndpoint *endpoint : _shared->Endpoints)
-            {
-                endpoint->Open(*_shared->Inner);
-            }
-        }
-        catch (...)
-        {
-            CloseAll();
-            throw;
-        }
-    }
-
-    void CloseAll()
-    {
-        for (RejoiningEndpoint *endpoint : _shared->Endpoints)
-        {
-            endpoint->Close();
-        }
-        if (_shared->Inner != nullptr)
-        {
-            _before = Sum(_before, _shared->Inner->Counters());
-            _shared->Inner.reset();
-        }
-        std::map<Identity, int> lost;
-        {
-            const std::lock_guard lock(_mutex);
-            lost.swap(_peers);
-        }
-        for (const auto &[peer, count] : lost)
-        {
-            for (int i = 0; i < count && _onPeer; ++i)
-            {
-                _peerGate.Run([&] { _onPeer({PeerEvent::Kind::Lost, peer.first, peer.second}); });
-            }
-        }
-    }
-
-    const TransportSettings _settings;
-    const PeerHandler _onPeer;
-    const OpenSession _open;
-    const std::shared_ptr<RejoiningShared> _shared;
-    HandlerGate _peerGate;
-    TransportCounters _before;  // of the backend's sessions before this one; guarded by Structure
-    std::mutex _mutex;
-    std::map<Identity, int> _peers;  // sessions that the backend knows now; guarded by _mutex
-    // On the watch's thread:
-    std::vector<std::string> _addresses;  // that the backend's session was opened with, sorted
-    bool _missing = false;                // one of them was seen to be gone since
-    bool _joined = true;
-    std::unique_ptr<AddressWatch> _watch;
-};
+    return names;
+}
 
 }  // namespace
 
-std::unique_ptr<TransportSession> OpenRejoining(const TransportSettings &settings, PeerHandler onPeer,
-                                                OpenSession open)
+RejoiningSession::RejoiningSession(const TransportSettings &settings, PeerHandler onPeer,
+                                   std::shared_ptr<RejoiningBackend> backend, Host host)
+    : _settings(Checked(settings)),
+      _hasOwnNetworks(backend->HasOwnNetworks(settings)),
+      _onPeer(std::move(onPeer)),
+      _backend(std::move(backend)),
+      _host(std::move(host)),
+      _shared(std::make_shared<RejoiningShared>(settings)),
+      _peerGate(_shared->Log, "peer events")
 {
-    return std::make_unique<RejoiningSession>(settings, std::move(onPeer), std::move(open));
+    const Current current = See({});
+    if (current.Usable.empty() && !_hasOwnNetworks)
+    {
+        _backend->CheckConfig(_settings);
+        return;
+    }
+    const std::lock_guard lock(_shared->Structure);
+    Open(current);
+}
+
+RejoiningSession::~RejoiningSession()
+{
+    _watch.reset();
+    const std::lock_guard lock(_shared->Structure);
+    _shared->Inner.reset();
+}
+
+void RejoiningSession::Watch()
+{
+    try
+    {
+        _watch = std::make_unique<AddressWatch>([this] { return Look(); });
+    }
+    catch (const std::system_error &error)
+    {
+        _shared->Log->Line(std::string("changes of networks cannot be followed: ") + error.what());
+    }
+}
+
+std::unique_ptr<TransportWriter> RejoiningSession::CreateWriter(const TopicDescription &topic,
+                                                                const TopicQos &qos,
+                                                                const std::vector<std::string> &partitions)
+{
+    return std::make_unique<RejoiningWriter>(_shared, topic, qos, partitions);
+}
+
+std::unique_ptr<TransportReader> RejoiningSession::CreateReader(const TopicDescription &topic,
+                                                                const TopicQos &qos,
+                                                                const std::vector<std::string> &partitions,
+                                                                SampleHandler handler)
+{
+    return std::make_unique<RejoiningReader>(_shared, topic, qos, partitions, std::move(handler));
+}
+
+TransportCounters RejoiningSession::Counters() const
+{
+    std::unique_lock structure(_shared->Structure, std::try_to_lock);
+    if (!structure)
+    {
+        // Whoever asks does not wait for the network to be joined.
+        const std::lock_guard lock(_mutex);
+        return _lastCounters;
+    }
+    auto counters = Sum(_before, _shared->Log->Read());
+    if (_shared->Inner != nullptr)
+    {
+        counters = Sum(counters, _shared->Inner->Counters());
+    }
+    const std::lock_guard lock(_mutex);
+    return _lastCounters = counters;
+}
+
+std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
+{
+    const std::lock_guard lock(_mutex);
+    return _problems;
+}
+
+std::optional<milliseconds> RejoiningSession::Look()
+{
+    const auto peers = PeerPlaces();
+    const Current current = See(peers);
+    const auto now = _host.Now();
+    const auto verdict =
+        _decision.Look(now, {current.Host, current.Usable, peers, current.Settings.Peers != _openedPeers});
+    if (verdict.Join)
+    {
+        Rejoin(current, verdict.Why);
+        return milliseconds(0);
+    }
+    std::optional<milliseconds> again;
+    if (verdict.Again)
+    {
+        // Up, so as not to come a moment too early.
+        again = std::chrono::ceil<milliseconds>(*verdict.Again - now);
+    }
+    const bool isLookedFor = current.Settings.Peers.size() < _settings.Peers.size();
+    const bool mayHaveDuplicates = _backend->IsMisledByDuplicates() && current.Usable.size() > 1;
+    if (isLookedFor || mayHaveDuplicates)
+    {
+        again = std::min(again.value_or(PeerPeriod), PeerPeriod);
+    }
+    return again;
+}
+
+void RejoiningSession::LeaveOutDuplicates(const std::vector<PeerPlace> &peers, NetworkChoice &choice)
+{
+    _duplicates.Look(choice.Usable, peers);
+    std::erase_if(choice.Usable,
+                  [&](const HostNetwork &network)
+                  {
+                      const bool isLeftOut = _duplicates.Has(network);
+                      if (isLeftOut)
+                      {
+                          choice.Problems.push_back(
+                              {"interfaces", network.Label,
+                               "the interface " + network.Label +
+                                   " is not used, because another node has its address " + network.Address +
+                                   " too, on another network: name the interfaces that matter",
+                               false});
+                      }
+                      return isLeftOut;
+                  });
+}
+
+RejoiningSession::Current RejoiningSession::See(const std::vector<PeerPlace> &peers)
+{
+    Current current;
+    current.Host = _host.Networks();
+    auto choice = Choose(current.Host, _settings, _hasOwnNetworks, *_backend);
+    if (_backend->IsMisledByDuplicates() && !_hasOwnNetworks)
+    {
+        LeaveOutDuplicates(peers, choice);
+    }
+    current.Usable = std::move(choice.Usable);
+    current.Settings = _settings;
+    current.Settings.Peers = ResolvePeers(_settings.Peers, _host.AddressOf, choice.Problems);
+    const bool vendorFinds = _hasOwnNetworks || (_settings.Interfaces.empty() && _backend->FindsNetworks());
+    current.Settings.Interfaces.clear();
+    for (const HostNetwork &network : current.Usable)
+    {
+        if (!vendorFinds)
+        {
+            current.Settings.Interfaces.push_back(network.Address);
+        }
+    }
+    if (_failure)
+    {
+        choice.Problems.push_back(*_failure);
+    }
+    const std::lock_guard lock(_mutex);
+    _problems = std::move(choice.Problems);
+    return current;
+}
+
+std::vector<PeerPlace> RejoiningSession::PeerPlaces() const
+{
+    const std::lock_guard lock(_shared->Structure);
+    return _shared->Inner != nullptr ? _shared->Inner->PeerPlaces() : std::vector<PeerPlace>();
+}
+
+void RejoiningSession::OnPeer(const PeerEvent &event)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        const Identity peer{event.Node, event.Incarnation};
+        if (event.What == PeerEvent::Kind::Appeared)
+        {
+            ++_peers[peer];
+        }
+        else if (--_peers[peer] <= 0)
+        {
+            _peers.erase(peer);
+        }
+    }
+    if (_onPeer)
+    {
+        _onPeer(event);
+    }
+}
+
+void RejoiningSession::Open(const Current &current)
+{
+    _shared->Inner = _backend->Open(current.Settings, [this](const PeerEvent &event) { OnPeer(event); });
+    _openedPeers = current.Settings.Peers;
+    try
+    {
+        for (RejoiningEndpoint *endpoint : _shared->Endpoints)
+        {
+            endpoint->Open(*_shared->Inner);
+        }
+    }
+    catch (...)
+    {
+        CloseAll();
+        throw;
+    }
+    _decision.Joined(_host.Now(), current.Usable);
+    _failure.reset();
+}
+
+void RejoiningSession::Rejoin(const Current &current, const std::string &why)
+{
+    _shared->Log->Line("joining the network anew, because " + why + "; the networks are " +
+                       Describe(current.Usable));
+    const auto start = _host.Now();
+    const std::lock_guard lock(_shared->Structure);
+    const UseGate::Change change(_shared->Gate);
+    CloseAll();
+    try
+    {
+        Open(current);
+        const auto took = std::chrono::duration_cast<milliseconds>(_host.Now() - start);
+        _shared->Log->Line("joined the network anew within " + std::to_string(took.count()) + " ms");
+    }
+    catch (const TransportError &error)
+    {
+        Fail(error.Setting(), error.what());
+    }
+    catch (const std::exception &error)
+    {
+        Fail("", error.what());
+    }
+}
+
+void RejoiningSession::Fail(const std::string &setting, const std::string &why)
+{
+    _decision.Failed(_host.Now());
+    _failure = SettingsProblem{setting, "", "cannot join the network: " + why, false};
+}
+
+void RejoiningSession::CloseAll()
+{
+    for (RejoiningEndpoint *endpoint : _shared->Endpoints)
+    {
+        endpoint->Close();
+    }
+    if (_shared->Inner != nullptr)
+    {
+        _before = Sum(_before, _shared->Inner->Counters());
+        _shared->Inner.reset();
+    }
+    std::map<Identity, int> lost;
+    {
+        const std::lock_guard lock(_mutex);
+        lost.swap(_peers);
+    }
+    for (const auto &[peer, count] : lost)
+    {
+        for (int i = 0; i < count && _onPeer; ++i)
+        {
+            _peerGate.Run([&] { _onPeer({PeerEvent::Kind::Lost, peer.first, peer.second}); });
+        }
+    }
+}
+
+std::unique_ptr<TransportSession> OpenRejoining(const TransportSettings &settings, PeerHandler onPeer,
+                                                std::shared_ptr<RejoiningBackend> backend)
+{
+    CheckSettings(settings);
+    const auto resolver = std::make_shared<PeerResolver>(NamesToLookUp(settings));
+    auto session = std::make_unique<RejoiningSession>(
+        settings, std::move(onPeer), std::move(backend),
+        RejoiningSession::Host{&ListHostNetworks, &std::chrono::steady_clock::now,
+                               [resolver](const std::string &name) { return resolver->AddressOf(name); }});
+    session->Watch();
+    return session;
+}
+
+std::vector<SettingsProblem> CheckRejoining(const TransportSettings &settings,
+                                            const RejoiningBackend &backend)
+{
+    auto problems = FindImpossible(settings);
+    try
+    {
+        backend.CheckConfig(settings);
+    }
+    catch (const TransportError &error)
+    {
+        problems.push_back({error.Setting(), settings.BackendConfig, error.what(), true});
+    }
+    if (!problems.empty())
+    {
+        return problems;  // what else is missing would only hide them
+    }
+    problems = Choose(ListHostNetworks(), settings, backend.HasOwnNetworks(settings), backend).Problems;
+    const PeerResolver resolver(NamesToLookUp(settings));
+    ResolvePeers(
+        settings.Peers, [&](const std::string &name) { return resolver.AddressOf(name); }, problems);
+    return problems;
 }
 
 }  // namespace Rabit

@@ -1,25 +1,115 @@
-// A session that joins the network again when an address that it was opened with is gone and there is
-// another.
+// A session that joins the network when there is one, and joins it anew when the host's networks change in
+// a way that matters (RejoinDecision says which).
 //
-// Neither vendor follows a change of addresses: what a participant announces of itself is fixed when it is
+// Neither vendor follows a change of networks: what a participant announces of itself is fixed when it is
 // made. So the backend's session is closed and opened again, with all its writers and readers, while those
 // who hold them notice nothing but what Transport.h says of it.
 #pragma once
 
 #include <rabit/transport/Transport.h>
 
+#include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/AddressWatch.h"
+#include "common/DuplicateAddresses.h"
+#include "common/HandlerGate.h"
+#include "common/HostNetworks.h"
+#include "common/NetworkChoice.h"
+#include "common/RejoinDecision.h"
+#include "common/RejoiningBackend.h"
+#include "common/RejoiningShared.h"
 
 namespace Rabit
 {
 
-// Opens a session of the backend itself. Throws TransportError.
-using OpenSession =
-    std::function<std::unique_ptr<TransportSession>(const TransportSettings &settings, PeerHandler onPeer)>;
+class RejoiningSession final : public TransportSession
+{
+public:
+    // Where the session lives. Called on the thread that looks; the functions must outlive the session.
+    struct Host
+    {
+        std::function<std::vector<HostNetwork>()> Networks;
+        std::function<std::chrono::steady_clock::time_point()> Now;
+        // Of a peer's name: its address, if it is known now.
+        std::function<std::optional<std::string>(const std::string &name)> AddressOf;
+    };
 
-// Throws TransportError if the first opening fails.
+    // Joins the network if there is one. Throws TransportError for impossible settings, and if the backend
+    // does not open although there is a network.
+    RejoiningSession(const TransportSettings &settings, PeerHandler onPeer,
+                     std::shared_ptr<RejoiningBackend> backend, Host host);
+    ~RejoiningSession() override;
+
+    // Looks at the host, and joins the network anew if that is due. Gives the time after which to look again
+    // even if nothing is known to have changed. One at a time.
+    std::optional<std::chrono::milliseconds> Look();
+
+    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
+                                                  const std::vector<std::string> &partitions) override;
+    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
+                                                  const std::vector<std::string> &partitions,
+                                                  SampleHandler handler) override;
+    TransportCounters Counters() const override;
+    std::vector<SettingsProblem> NetworkProblems() const override;
+
+    // Looks from now on, on a thread of the session, whenever the kernel tells of a change.
+    void Watch();
+
+private:
+    using Identity = std::pair<std::string, std::uint64_t>;
+
+    // The settings for the backend, with what of them is there now.
+    struct Current
+    {
+        std::vector<HostNetwork> Host;
+        std::vector<HostNetwork> Usable;
+        TransportSettings Settings;
+    };
+
+    // Lists what is there; what is missing is told by NetworkProblems from then on.
+    Current See(const std::vector<PeerPlace> &peers);
+    void LeaveOutDuplicates(const std::vector<PeerPlace> &peers, NetworkChoice &choice);
+    std::vector<PeerPlace> PeerPlaces() const;
+    void OnPeer(const PeerEvent &event);
+    void Open(const Current &current);
+    void Rejoin(const Current &current, const std::string &why);
+    void Fail(const std::string &setting, const std::string &why);
+    void CloseAll();
+
+    const TransportSettings _settings;
+    const bool _hasOwnNetworks;
+    const PeerHandler _onPeer;
+    const std::shared_ptr<RejoiningBackend> _backend;
+    const Host _host;
+    const std::shared_ptr<RejoiningShared> _shared;
+    HandlerGate _peerGate;
+    TransportCounters _before;  // of the backend's sessions before this one; guarded by Structure
+    mutable std::mutex _mutex;
+    std::map<Identity, int> _peers;           // sessions that the backend knows now; guarded by _mutex
+    std::vector<SettingsProblem> _problems;   // guarded by _mutex
+    mutable TransportCounters _lastCounters;  // guarded by _mutex
+    // Of the one that looks:
+    RejoinDecision _decision;
+    DuplicateAddresses _duplicates;
+    std::vector<std::string> _openedPeers;    // that the backend's session was opened with
+    std::optional<SettingsProblem> _failure;  // of the last attempt to join
+    std::unique_ptr<AddressWatch> _watch;     // the last, so that nobody looks when the others go
+};
+
+// A RejoiningSession on this host, which follows its changes. Throws TransportError.
 std::unique_ptr<TransportSession> OpenRejoining(const TransportSettings &settings, PeerHandler onPeer,
-                                                OpenSession open);
+                                                std::shared_ptr<RejoiningBackend> backend);
+
+// Transport::Check of such a backend.
+std::vector<SettingsProblem> CheckRejoining(const TransportSettings &settings,
+                                            const RejoiningBackend &backend);
 
 }  // namespace Rabit

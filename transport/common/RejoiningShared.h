@@ -2,38 +2,38 @@
 
 #include <rabit/transport/Transport.h>
 
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "common/RejoiningBackend.h"
 #include "common/RejoiningEndpoint.h"
 #include "common/SessionLog.h"
+#include "common/TopicRegistry.h"
 #include "common/UseGate.h"
 
 namespace Rabit
 {
 
-// As long as Write may wait for the network.
-constexpr std::chrono::milliseconds LongestWait{100};
-
 // What the session shares with its writers and readers.
 struct RejoiningShared
 {
-    explicit RejoiningShared(const TransportSettings &settings) : Log(std::make_shared<SessionLog>(settings))
+    explicit RejoiningShared(const TransportSettings &settings)
+        : Log(std::make_shared<SessionLog>(settings)), Topics(Log)
     {
     }
 
     const std::shared_ptr<SessionLog> Log;
+    // While there is no session of the backend, nobody else would refuse a topic that is impossible.
+    TopicRegistry Topics;
     UseGate Gate;                                // of what the endpoints hold of the backend
     std::mutex Structure;                        // of the session and the list; taken before Gate
-    std::unique_ptr<TransportSession> Inner;     // nullptr while it cannot be joined; guarded by Structure
+    std::unique_ptr<BackendSession> Inner;       // nullptr while it is not joined; guarded by Structure
     std::vector<RejoiningEndpoint *> Endpoints;  // guarded by Structure
 };
 
 // Enters the list as it is made, and opens itself if there is a session.
-template <typename Made>
-void Enter(RejoiningShared &shared, Made &endpoint)
+inline void Enter(RejoiningShared &shared, RejoiningEndpoint &endpoint)
 {
     const std::lock_guard lock(shared.Structure);
     if (shared.Inner != nullptr)
@@ -43,10 +43,12 @@ void Enter(RejoiningShared &shared, Made &endpoint)
     shared.Endpoints.push_back(&endpoint);
 }
 
-inline void Leave(RejoiningShared &shared, RejoiningEndpoint *endpoint)
+// Leaves it and closes, before the session can.
+inline void Leave(RejoiningShared &shared, RejoiningEndpoint &endpoint)
 {
     const std::lock_guard lock(shared.Structure);
-    std::erase(shared.Endpoints, endpoint);
+    std::erase(shared.Endpoints, &endpoint);
+    endpoint.Close();
 }
 
 }  // namespace Rabit

@@ -9,6 +9,8 @@
 
 #include "common/RejoiningEndpoint.h"
 #include "common/RejoiningShared.h"
+#include "common/SettingsCheck.h"
+#include "common/TopicRegistry.h"
 
 namespace Rabit
 {
@@ -18,31 +20,34 @@ class RejoiningWriter final : public TransportWriter, private RejoiningEndpoint
 public:
     RejoiningWriter(std::shared_ptr<RejoiningShared> shared, const TopicDescription &topic,
                     const TopicQos &qos, const std::vector<std::string> &partitions)
-        : _shared(std::move(shared)), _topic(topic), _qos(qos), _partitions(partitions)
+        : _shared(std::move(shared)),
+          _topic(topic),
+          _qos(qos),
+          _partitions(partitions),
+          _use(_shared->Topics, topic)
     {
+        CheckQos(topic, qos);
         Enter(*_shared, *this);
     }
-    ~RejoiningWriter() { Leave(*_shared, this); }
+    ~RejoiningWriter() { Leave(*_shared, *this); }
 
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override
     {
-        const UseGate::Use use(_shared->Gate, LongestWait);
+        const UseGate::Use use(_shared->Gate);
         return use.Allowed() && _inner != nullptr ? _inner->Write(sample, sourceTime) : NotJoined();
     }
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override
     {
-        const UseGate::Use use(_shared->Gate, LongestWait);
+        const UseGate::Use use(_shared->Gate);
         return use.Allowed() && _inner != nullptr ? _inner->Dispose(sample, sourceTime) : NotJoined();
     }
     int MatchedReaders() const override
     {
-        const UseGate::Use use(_shared->Gate, LongestWait);
+        const UseGate::Use use(_shared->Gate);
         return use.Allowed() && _inner != nullptr ? _inner->MatchedReaders() : 0;
     }
 
 private:
-    friend void Enter<RejoiningWriter>(RejoiningShared &, RejoiningWriter &);
-
     void Open(TransportSession &session) override
     {
         _inner = session.CreateWriter(_topic, _qos, _partitions);
@@ -58,6 +63,7 @@ private:
     const TopicDescription _topic;
     const TopicQos _qos;
     const std::vector<std::string> _partitions;
+    const TopicRegistry::Use _use;
     std::unique_ptr<TransportWriter> _inner;  // under the gate
 };
 

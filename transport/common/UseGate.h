@@ -1,7 +1,7 @@
-// Lets many threads use something, and one change it while nobody does.
+// Lets many threads use something, and one change it while nobody does. Nobody waits for a change: as soon as
+// one is wanted, users are turned away.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <mutex>
 
@@ -15,8 +15,7 @@ public:
     class Use
     {
     public:
-        // Waits for a change under way at most that long.
-        Use(UseGate &gate, std::chrono::milliseconds longest) : _gate(gate), _allowed(gate.Enter(longest)) {}
+        explicit Use(UseGate &gate) : _gate(gate), _allowed(gate.Enter()) {}
         ~Use()
         {
             if (_allowed)
@@ -33,7 +32,7 @@ public:
         const bool _allowed;
     };
 
-    // Nobody uses the thing while it lives. One at a time.
+    // Waits for the users that are there. Nobody uses the thing while it lives. One at a time.
     class Change
     {
     public:
@@ -45,11 +44,8 @@ public:
         }
         ~Change()
         {
-            {
-                const std::lock_guard lock(_gate._mutex);
-                _gate._changing = false;
-            }
-            _gate._event.notify_all();
+            const std::lock_guard lock(_gate._mutex);
+            _gate._changing = false;
         }
         Change(const Change &) = delete;
         Change &operator=(const Change &) = delete;
@@ -59,10 +55,10 @@ public:
     };
 
 private:
-    bool Enter(std::chrono::milliseconds longest)
+    bool Enter()
     {
-        std::unique_lock lock(_mutex);
-        if (_changing && !_event.wait_for(lock, longest, [this] { return !_changing; }))
+        const std::lock_guard lock(_mutex);
+        if (_changing)
         {
             return false;
         }

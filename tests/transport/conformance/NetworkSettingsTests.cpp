@@ -47,11 +47,88 @@ void SendNoise(int domain)
     close(noise);
 }
 
-TEST_P(NetworkSettings, AnUnknownInterfaceIsRefusedByName)
+TEST_P(NetworkSettings, AnUnknownInterfaceIsWaitedForAndToldByName)
 {
     auto settings = Settings("uav1");
-    settings.Interfaces = {"lo", "radio99"};
-    ExpectRefusal(settings, "radio99", "interfaces");
+    settings.Interfaces = {"radio99"};
+    const auto session = Backend().Open(settings, {});
+    const auto problems = session->NetworkProblems();
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].Setting, "interfaces");
+    EXPECT_EQ(problems[0].Entry, "radio99");
+    EXPECT_EQ(problems[0].Text, "the interface radio99 does not exist: waiting for it");
+    EXPECT_FALSE(problems[0].Impossible);
+    const auto writer = session->CreateWriter(TextTopic(), Stream(10), {});
+    EXPECT_EQ(writer->Write(MakeSample(0, "to nobody"), 1), WriteResult::TimedOut);
+    EXPECT_THROW(session->CreateWriter({TextTopic().Name, "Another", {}}, Stream(10), {}), TransportError);
+}
+
+TEST_P(NetworkSettings, AnUnknownInterfaceBesideAnotherKeepsNothingBack)
+{
+    auto one = Settings("uav1");
+    one.Interfaces = {"radio99", "lo"};
+    ExpectDelivery(one, Settings("ground"));
+}
+
+TEST_P(NetworkSettings, AnInterfaceThatCanBeNoneIsRefusedByName)
+{
+    auto settings = Settings("uav1");
+    settings.Interfaces = {"lo", "radio/99"};
+    ExpectRefusal(settings, "radio/99", "interfaces");
+}
+
+TEST_P(NetworkSettings, APeerWithoutAnAddressIsToldByNameAndKeepsNothingBack)
+{
+    auto one = Settings("uav1");
+    one.Peers = {"no-such-host.invalid:7410"};
+    const auto session = Backend().Open(one, {});
+    const auto problems = session->NetworkProblems();
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].Setting, "peers");
+    EXPECT_EQ(problems[0].Entry, "no-such-host.invalid:7410");
+    ExpectDelivery(one, Settings("ground"));
+}
+
+TEST_P(NetworkSettings, GoodSettingsPassTheCheck)
+{
+    auto settings = Settings("uav1");
+    settings.Peers = {"127.0.0.1", "localhost:7410"};
+    EXPECT_TRUE(Backend().Check(settings).empty());
+}
+
+TEST_P(NetworkSettings, TheCheckTellsWhatIsMissingFromWhatIsImpossible)
+{
+    auto settings = Settings("uav1");
+    settings.Interfaces = {"radio99"};
+    settings.Peers = {"no-such-host.invalid"};
+    const auto missing = Backend().Check(settings);
+    ASSERT_EQ(missing.size(), 2u);
+    EXPECT_EQ(missing[0].Entry, "radio99");
+    EXPECT_FALSE(missing[0].Impossible);
+    EXPECT_EQ(missing[1].Entry, "no-such-host.invalid");
+    EXPECT_FALSE(missing[1].Impossible);
+    settings.Interfaces = {"radio/99"};
+    settings.Peers = {"127.0.0.1:notaport"};
+    const auto impossible = Backend().Check(settings);
+    ASSERT_EQ(impossible.size(), 2u);
+    EXPECT_EQ(impossible[0].Setting, "interfaces");
+    EXPECT_TRUE(impossible[0].Impossible);
+    EXPECT_EQ(impossible[1].Setting, "peers");
+    EXPECT_TRUE(impossible[1].Impossible);
+}
+
+TEST_P(NetworkSettings, TheCheckRefusesABadConfigurationFile)
+{
+    auto settings = Settings("uav1");
+    for (const std::string &file : {std::string("/nowhere/vendor.xml"), TemporaryFile("<dds><profiles>")})
+    {
+        settings.BackendConfig = file;
+        const auto problems = Backend().Check(settings);
+        ASSERT_EQ(problems.size(), 1u) << file;
+        EXPECT_EQ(problems[0].Setting, "backend_config");
+        EXPECT_NE(problems[0].Text.find(file), std::string::npos) << problems[0].Text;
+        EXPECT_TRUE(problems[0].Impossible);
+    }
 }
 
 TEST_P(NetworkSettings, AnImpossiblePeerIsRefusedByName)

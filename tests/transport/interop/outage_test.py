@@ -7,14 +7,13 @@ Needs to make network namespaces; ends with 77 where it may not."""
 
 import pathlib
 import re
-import subprocess
 import sys
 import threading
 import time
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "integration"))
-import harness  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import namespace  # noqa: E402
+from namespace import harness, Holder  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 90
@@ -22,25 +21,6 @@ RECOVERY_S = 10
 ORDERS = 100000  # more than come, so that orders are always under way
 RATE = 50
 SKIPPED = 77
-
-
-class Holder:
-    """A network namespace that lives as long as this object, held by a process in it."""
-
-    def __init__(self):
-        self.process = subprocess.Popen(["unshare", "--net", "sh", "-c", "echo ready; exec cat"], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, text=True, preexec_fn=harness.die_with_parent)
-        self.process.stdout.readline()
-
-    def run(self, *argv):
-        subprocess.run([*self.inside(), *argv], check=True)
-
-    def inside(self):
-        return ["nsenter", "--net", "--target", str(self.process.pid)]
-
-    def close(self):
-        self.process.kill()
-        self.process.wait()
 
 
 class Case:
@@ -124,7 +104,7 @@ class Case:
 
 def main():
     node, transports = sys.argv[1], sys.argv[2:]
-    if subprocess.run(["unshare", "--net", "true"], stderr=subprocess.DEVNULL, check=False).returncode != 0:
+    if not namespace.supported():
         print("skipped: no network namespaces can be made here")
         sys.exit(SKIPPED)
     cases = [Case(node, (first, second), event) for first in transports for second in transports

@@ -1,10 +1,16 @@
 #include <rabit/cyclonedds/CycloneDdsTransport.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "CycloneReader.h"
 #include "CycloneWriter.h"
+#include "DomainConfig.h"
+#include "PeerAddresses.h"
 #include "SessionCore.h"
+#include "VendorDomain.h"
+#include "common/HostNetworks.h"
+#include "common/RejoiningBackend.h"
 #include "common/RejoiningSession.h"
 #include "common/SettingsCheck.h"
 
@@ -16,7 +22,7 @@ namespace
 
 using namespace Cyclone;
 
-class CycloneSession final : public TransportSession
+class CycloneSession final : public BackendSession
 {
 public:
     CycloneSession(const TransportSettings &settings, PeerHandler onPeer)
@@ -39,9 +45,51 @@ public:
         return std::make_unique<CycloneReader>(_core, topic, qos, partitions, std::move(handler));
     }
     TransportCounters Counters() const override { return _core->Log()->Read(); }
+    std::vector<PeerPlace> PeerPlaces() const override { return _core->PeerPlaces(); }
 
 private:
     const std::shared_ptr<SessionCore> _core;
+};
+
+class CycloneBackend final : public RejoiningBackend
+{
+public:
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer) override
+    {
+        return std::make_unique<CycloneSession>(settings, std::move(onPeer));
+    }
+    void CheckConfig(const TransportSettings &settings) const override
+    {
+        if (!settings.BackendConfig.empty())
+        {
+            CheckDomainConfig(settings);
+        }
+    }
+    bool HasOwnNetworks(const TransportSettings &settings) const override
+    {
+        return HasOwnInterfaces(settings.BackendConfig);
+    }
+    bool FindsNetworks() const override { return false; }
+    bool IsMisledByDuplicates() const override { return true; }
+    std::size_t MostNetworks() const override { return RabitCycloneMostInterfaces(); }
+
+private:
+    // The vendor reads its configuration only as it makes a domain, which tells nothing to the network
+    // as long as there is no participant in it.
+    static void CheckDomainConfig(TransportSettings settings)
+    {
+        HasOwnInterfaces(settings.BackendConfig);
+        const auto host = ListHostNetworks();
+        const auto network = std::find_if(
+            host.begin(), host.end(), [](const HostNetwork &one) { return one.Up && !one.Address.empty(); });
+        if (network == host.end())
+        {
+            return;  // it would only say that it has no interface
+        }
+        settings.Interfaces = {network->Address};
+        settings.Peers.clear();
+        const VendorDomain domain(settings, std::make_shared<SessionLog>(settings));
+    }
 };
 
 }  // namespace
@@ -54,9 +102,12 @@ std::string CycloneDdsTransport::Name() const
 std::unique_ptr<TransportSession> CycloneDdsTransport::Open(const TransportSettings &settings,
                                                             PeerHandler onPeer)
 {
-    return OpenRejoining(settings, std::move(onPeer),
-                         [](const TransportSettings &current, PeerHandler handler)
-                         { return std::make_unique<CycloneSession>(current, std::move(handler)); });
+    return OpenRejoining(settings, std::move(onPeer), std::make_shared<CycloneBackend>());
+}
+
+std::vector<SettingsProblem> CycloneDdsTransport::Check(const TransportSettings &settings) const
+{
+    return CheckRejoining(settings, CycloneBackend());
 }
 
 }  // namespace Rabit

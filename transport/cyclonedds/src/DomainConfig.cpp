@@ -4,7 +4,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/SettingsCheck.h"
+#include "common/HostNetworks.h"
+#include "common/PeerAddress.h"
 
 namespace Rabit::Cyclone
 {
@@ -32,16 +33,30 @@ int DiscoveryPort(int domain, int participant)
 void AddInterfaces(const TransportSettings &settings, std::ostream &xml)
 {
     xml << "<Interfaces>";
-    for (const auto &address : ResolveInterfaces(settings.Interfaces))
+    for (const auto &address : settings.Interfaces)
     {
+        // Linux does not call loopback capable of multicast, and it is.
+        const bool isLoopback = address.starts_with("127.");
         xml << "<NetworkInterface address=\"" << address << "\" multicast=\""
-            << (settings.Multicast ? "true" : "false") << "\"/>";
-    }
-    if (settings.Interfaces.empty())
-    {
-        xml << "<NetworkInterface autodetermine=\"true\"/>";
+            << (!settings.Multicast ? "false"
+                : isLoopback        ? "true"
+                                    : "default")
+            << "\"/>";
     }
     xml << "</Interfaces>";
+}
+
+// Whether a peer is to be reached that is on none of our networks.
+bool IsRoutingNeeded(const TransportSettings &settings)
+{
+    const auto host = ListHostNetworks();
+    const auto isHere = [&](const std::string &peer)
+    {
+        return std::any_of(host.begin(), host.end(),
+                           [&](const HostNetwork &network)
+                           { return network.Contains(ParsePeer(peer).Host); });
+    };
+    return !std::all_of(settings.Peers.begin(), settings.Peers.end(), isHere);
 }
 
 void AddPeers(const TransportSettings &settings, std::ostream &xml)
@@ -49,12 +64,12 @@ void AddPeers(const TransportSettings &settings, std::ostream &xml)
     xml << "<Peers>";
     for (const auto &peer : settings.Peers)
     {
-        const PeerAddress address = ResolvePeer(peer);
+        const PeerAddress address = ParsePeer(peer);
         const int count = address.Port != 0 ? 1 : ParticipantsPerPeer;
         for (int i = 0; i < count; ++i)
         {
             const int port = address.Port != 0 ? address.Port : DiscoveryPort(settings.Domain, i);
-            xml << "<Peer address=\"" << address.Address << ":" << port << "\"/>";
+            xml << "<Peer address=\"" << address.Host << ":" << port << "\"/>";
         }
     }
     xml << "</Peers>";
@@ -73,14 +88,23 @@ std::string Read(const std::string &path)
 
 }  // namespace
 
+bool HasOwnInterfaces(const std::string &configFile)
+{
+    return !configFile.empty() && Read(configFile).find("<NetworkInterface") != std::string::npos;
+}
+
 std::string MakeDomainConfig(const TransportSettings &settings)
 {
     std::ostringstream xml;
     xml << "<Domain><General>";
-    AddInterfaces(settings, xml);
+    if (!HasOwnInterfaces(settings.BackendConfig))
+    {
+        AddInterfaces(settings, xml);
+    }
     // Multicast finds peers; samples go to each reader, because radios send multicast slowly and without
     // repair.
     xml << "<AllowMulticast>" << (settings.Multicast ? "spdp" : "false") << "</AllowMulticast>"
+        << "<DontRoute>" << (IsRoutingNeeded(settings) ? "false" : "true") << "</DontRoute>"
         << "<MaxMessageSize>" << settings.MaxDatagram << "B</MaxMessageSize>"
         << "<FragmentSize>" << settings.MaxDatagram - HeaderRoom
         << "B</FragmentSize></General>"

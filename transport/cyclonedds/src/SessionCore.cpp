@@ -1,9 +1,12 @@
 #include "SessionCore.h"
 
+#include <arpa/inet.h>
+
 #include <string>
 #include <utility>
 
 #include "ParticipantLease.h"
+#include "PeerAddresses.h"
 #include "common/SettingsCheck.h"
 
 namespace Rabit::Cyclone
@@ -31,6 +34,23 @@ Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain)
     dds_qset_userdata(qos.get(), data.data(), data.size());
     return {dds_create_participant(domain, qos.get(), nullptr),
             "join domain " + std::to_string(settings.Domain)};
+}
+
+// Only from a listener of a built-in topic.
+PeerPlace PlaceOf(const Prefix &prefix)
+{
+    PeerPlace place;
+    const ddsi_guid_t participant = ParticipantOf(prefix);
+    RabitCyclonePeerAddresses(
+        &participant,
+        [](const unsigned char *address, void *argument)
+        {
+            char text[INET_ADDRSTRLEN] = "";
+            inet_ntop(AF_INET, address, text, sizeof text);
+            static_cast<PeerPlace *>(argument)->push_back(text);
+        },
+        &place);
+    return place;
 }
 
 // Calls work(sample, info) with each sample of a built-in topic.
@@ -104,6 +124,17 @@ std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const WriterI
     return gone == _gone.end() ? nullptr : gone->second.Who;
 }
 
+std::vector<PeerPlace> SessionCore::PeerPlaces() const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<PeerPlace> places;
+    for (const auto &[prefix, place] : _places)
+    {
+        places.push_back(place);
+    }
+    return places;
+}
+
 void SessionCore::OnParticipants(dds_entity_t reader, void *self)
 {
     auto &core = *static_cast<SessionCore *>(self);
@@ -162,6 +193,7 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
     const auto identity = std::make_shared<const ParticipantIdentity>(
         ParticipantIdentity{name != nullptr ? name : "", *incarnation});
     dds_free(name);
+    const PeerPlace place = PlaceOf(prefix);
     {
         // A prefix belongs to one life of one participant: the one who has left does not come back.
         const std::lock_guard lock(_mutex);
@@ -171,6 +203,7 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
         {
             return;
         }
+        _places.insert_or_assign(prefix, place);
     }
     Tell(PeerEvent::Kind::Appeared, identity);
 }
@@ -190,6 +223,7 @@ void SessionCore::PeerGone(const Prefix &prefix)
         }
         identity = found->second;
         _peers.erase(found);
+        _places.erase(prefix);
         if (_gone.insert_or_assign(prefix, Gone{identity, how}).second)
         {
             _goneOrder.push_back(prefix);

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "Entity.h"
 #include "Guid.h"
@@ -15,6 +16,7 @@
 #include "Worker.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
+#include "common/PeerPlace.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -41,6 +43,8 @@ public:
     dds_entity_t Participant() const { return _participant.Get(); }
     // Who a writer's participant is or was; nullptr if it is not a Rabit node, or unknown.
     std::shared_ptr<const ParticipantIdentity> IdentityOf(const WriterId &writer) const;
+    // Where the Rabit nodes are that it knows.
+    std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _log; }
     TopicRegistry &Topics() { return _topics; }
 
@@ -66,9 +70,10 @@ private:
     std::atomic<bool> _closed{false};
     Prefix _own{};  // set before anything is discovered
     mutable std::mutex _mutex;
-    std::map<Prefix, Identity> _peers;  // Rabit nodes; guarded by _mutex
-    std::map<Prefix, Gone> _gone;       // the last that went; guarded by _mutex
-    std::deque<Prefix> _goneOrder;      // guarded by _mutex
+    std::map<Prefix, Identity> _peers;    // Rabit nodes; guarded by _mutex
+    std::map<Prefix, PeerPlace> _places;  // of those; guarded by _mutex
+    std::map<Prefix, Gone> _gone;         // the last that went; guarded by _mutex
+    std::deque<Prefix> _goneOrder;        // guarded by _mutex
     // Tells of peers: the vendor tells us under locks of its own.
     Worker _worker;
     VendorDomain _domain;

@@ -5,7 +5,9 @@
 
 #include "FastDdsReader.h"
 #include "FastDdsWriter.h"
+#include "ParticipantSettings.h"
 #include "SessionCore.h"
+#include "common/RejoiningBackend.h"
 #include "common/RejoiningSession.h"
 #include "common/SettingsCheck.h"
 
@@ -15,7 +17,7 @@ namespace Rabit
 namespace
 {
 
-class FastDdsSession final : public TransportSession
+class FastDdsSession final : public BackendSession
 {
 public:
     FastDdsSession(const TransportSettings &settings, PeerHandler onPeer)
@@ -41,8 +43,29 @@ public:
 
     TransportCounters Counters() const override { return _core->Log()->Read(); }
 
+    std::vector<PeerPlace> PeerPlaces() const override { return _core->PeerPlaces(); }
+
 private:
     const std::shared_ptr<FastDds::SessionCore> _core;
+};
+
+class FastDdsBackend final : public RejoiningBackend
+{
+public:
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer) override
+    {
+        return std::make_unique<FastDdsSession>(settings, std::move(onPeer));
+    }
+    void CheckConfig(const TransportSettings &settings) const override
+    {
+        FastDds::HasOwnTransports(settings.BackendConfig);
+    }
+    bool HasOwnNetworks(const TransportSettings &settings) const override
+    {
+        return FastDds::HasOwnTransports(settings.BackendConfig);
+    }
+    bool FindsNetworks() const override { return true; }
+    bool IsMisledByDuplicates() const override { return false; }
 };
 
 }  // namespace
@@ -55,9 +78,12 @@ std::string FastDdsTransport::Name() const
 std::unique_ptr<TransportSession> FastDdsTransport::Open(const TransportSettings &settings,
                                                          PeerHandler onPeer)
 {
-    return OpenRejoining(settings, std::move(onPeer),
-                         [](const TransportSettings &current, PeerHandler handler)
-                         { return std::make_unique<FastDdsSession>(current, std::move(handler)); });
+    return OpenRejoining(settings, std::move(onPeer), std::make_shared<FastDdsBackend>());
+}
+
+std::vector<SettingsProblem> FastDdsTransport::Check(const TransportSettings &settings) const
+{
+    return CheckRejoining(settings, FastDdsBackend());
 }
 
 }  // namespace Rabit

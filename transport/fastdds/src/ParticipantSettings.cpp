@@ -14,6 +14,7 @@
 
 #include "GuardedUdp.h"
 #include "common/ParticipantIdentity.h"
+#include "common/PeerAddress.h"
 #include "common/SettingsCheck.h"
 
 namespace Rabit::FastDds
@@ -90,7 +91,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     // A full send buffer loses the datagram, which a reliable writer repairs, instead of blocking the thread
     // that writes for as long as a slow link needs to drain the buffer.
     udp->non_blocking_send = true;
-    udp->interfaceWhiteList = ResolveInterfaces(settings.Interfaces);
+    udp->interfaceWhiteList = settings.Interfaces;
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
     attributes.userTransports.push_back(std::make_shared<GuardedUdpDescriptor>(
@@ -119,9 +120,9 @@ void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes
     }
     for (const auto &peer : settings.Peers)
     {
-        const PeerAddress address = ResolvePeer(peer);
+        const PeerAddress address = ParsePeer(peer);
         rtps::Locator_t locator;
-        rtps::IPLocator::setIPv4(locator, address.Address);
+        rtps::IPLocator::setIPv4(locator, address.Host);
         locator.port = address.Port;
         builtin.initialPeersList.push_back(locator);
     }
@@ -163,6 +164,11 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     }
     AddPeers(settings, attributes);
     return attributes;
+}
+
+bool HasOwnTransports(const std::string &profilesFile)
+{
+    return !profilesFile.empty() && !LoadProfile(profilesFile).userTransports.empty();
 }
 
 void SetLibraryDefaults()

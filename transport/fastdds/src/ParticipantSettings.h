@@ -5,15 +5,20 @@
 #include <rabit/transport/Transport.h>
 
 #include <memory>
+#include <string>
 
 #include "common/SessionLog.h"
 
 namespace Rabit::FastDds
 {
 
-// Throws TransportError for settings that cannot be honoured. The log hears of datagrams that are dropped.
+// Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws
+// TransportError for settings that cannot be honoured. The log hears of datagrams that are dropped.
 eprosima::fastrtps::rtps::RTPSParticipantAttributes MakeParticipantAttributes(
     const TransportSettings &settings, const std::shared_ptr<SessionLog> &log);
+
+// Whether a profiles file, if there is one, defines transports. Throws TransportError if it is not accepted.
+bool HasOwnTransports(const std::string &profilesFile);
 
 // Switches intraprocess delivery off, once per process.
 void SetLibraryDefaults();

@@ -5,6 +5,7 @@
 #include <fastdds/rtps/builtin/data/ReaderProxyData.h>
 #include <fastdds/rtps/builtin/data/WriterProxyData.h>
 #include <fastdds/rtps/participant/RTPSParticipant.h>
+#include <fastrtps/utils/IPLocator.h>
 
 #include <algorithm>
 #include <utility>
@@ -22,6 +23,22 @@ namespace
 
 // Announcements are overtaken by milliseconds: nobody closes so many sessions in that time.
 constexpr std::size_t MostDeparted = 64;
+
+PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
+{
+    PeerPlace place;
+    for (const auto *locators : {&peer.metatraffic_locators.unicast, &peer.default_locators.unicast})
+    {
+        for (const rtps::Locator_t &locator : *locators)
+        {
+            if (locator.kind == LOCATOR_KIND_UDPv4)
+            {
+                place.push_back(rtps::IPLocator::toIPv4string(locator));
+            }
+        }
+    }
+    return place;
+}
 
 }  // namespace
 
@@ -70,6 +87,17 @@ std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const GuidPre
     return found == _peers.end() ? nullptr : found->second;
 }
 
+std::vector<PeerPlace> SessionCore::PeerPlaces() const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<PeerPlace> places;
+    for (const auto &[prefix, place] : _places)
+    {
+        places.push_back(place);
+    }
+    return places;
+}
+
 std::string SessionCore::NodeOf(const GuidPrefix &prefix) const
 {
     const auto identity = IdentityOf(prefix);
@@ -112,6 +140,7 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
         {
             return;
         }
+        _places.emplace(peer.m_guid.guidPrefix, PlaceOf(peer));
     }
     _peerGate.Run(
         [&]
@@ -143,6 +172,7 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
         }
         identity = found->second;
         _peers.erase(found);
+        _places.erase(prefix);
     }
     _peerGate.Run(
         [&]

@@ -10,10 +10,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "ParticipantNumber.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
+#include "common/PeerPlace.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -42,6 +44,8 @@ public:
     bool IsOwn(const GuidPrefix &prefix) const;
     // Who a participant is; nullptr if it is not a Rabit node, or unknown.
     std::shared_ptr<const ParticipantIdentity> IdentityOf(const GuidPrefix &prefix) const;
+    // Where the Rabit nodes are that it knows.
+    std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _log; }
     TopicRegistry &Topics() { return _topics; }
 
@@ -64,8 +68,9 @@ private:
     std::atomic<bool> _closed{false};
     mutable std::mutex _mutex;
     std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>
-        _peers;                        // Rabit nodes; guarded by _mutex
-    std::deque<GuidPrefix> _departed;  // the last that said goodbye; guarded by _mutex
+        _peers;                               // Rabit nodes; guarded by _mutex
+    std::map<GuidPrefix, PeerPlace> _places;  // of those; guarded by _mutex
+    std::deque<GuidPrefix> _departed;         // the last that said goodbye; guarded by _mutex
     const ParticipantNumber _number;
     eprosima::fastrtps::rtps::RTPSParticipant *_participant = nullptr;
 };

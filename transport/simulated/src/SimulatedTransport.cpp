@@ -23,4 +23,9 @@ std::unique_ptr<TransportSession> SimulatedTransport::Open(const TransportSettin
     return std::make_unique<Simulated::SimulatedSession>(_core, settings, std::move(onPeer));
 }
 
+std::vector<SettingsProblem> SimulatedTransport::Check(const TransportSettings &settings) const
+{
+    return FindImpossible(settings);
+}
+
 }  // namespace Rabit

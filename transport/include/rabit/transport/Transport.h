@@ -16,11 +16,19 @@
 //   any more; none starts afterwards.
 //
 // Changes of the network
-//   A network that vanishes and returns needs nothing: peers are Lost and appear again. When an address that
-//   the session was opened with is gone, and there is another or the same again, a real backend joins the
-//   network anew by itself, and logs it: all peers are Lost and appear again, readers get transient-local
-//   history once more, writers start with an empty history, a new WriterId and new numbers. Meanwhile writes
-//   end TimedOut.
+//   A session may be opened before there is a network. A real backend follows the host's networks by itself.
+//   One that vanishes and returns as it was needs nothing: peers are Lost and appear again. When a usable one
+//   comes that the session was not opened with, or another address, the backend joins the network anew, and
+//   logs it: all peers are Lost and appear again, readers get transient-local history once more, writers start
+//   with an empty history, a new WriterId and new numbers. It also does so without a network that is gone
+//   if a peer may go on to send there, or for loopback if no other is left. It does it seldom: for an interface
+//   that comes and goes later and later, and never twice in a second.
+//   Meanwhile, and as long as there is no usable network, writes end TimedOut at once and nothing is matched.
+//   Who makes or destroys a writer or reader meanwhile waits for it to end, milliseconds to tenths of a second.
+//   Usable is a network whose interface is up and has a carrier and an IPv4 address. Where no interface is
+//   named, it must also be capable of multicast, unless multicast is off or there are peers to look for; loopback
+//   counts only when it is named or nothing else is there. What the settings name and is not there is
+//   waited for, and NetworkProblems says so.
 //   Processes that were stopped, or that heard nothing, for longer than the lease come together again as
 //   well, whichever side had lost the other: what is Lost here appears again, and endpoints match again.
 //
@@ -45,7 +53,7 @@
 namespace Rabit
 {
 
-// Settings that a backend cannot honour: a bad interface name, an unparsable peer, an exhausted domain.
+// Settings that a backend cannot honour: an unparsable peer, a bad configuration file, an exhausted domain.
 class TransportError : public std::runtime_error
 {
 public:
@@ -72,9 +80,11 @@ struct TransportSettings
     std::uint64_t Incarnation = 0;
     // DDS domain, 0 to 232.
     int Domain = 0;
-    // Network interfaces to use, by name or address; empty: all that the backend finds.
+    // Network interfaces to use, by name or address; empty: all that are usable. One that is not there is waited
+    // for.
     std::vector<std::string> Interfaces;
-    // Addresses of peers for unicast discovery, `host` or `host:port`; empty: discovery by multicast alone.
+    // Addresses of peers for unicast discovery, `host` or `host:port`; empty: discovery by multicast alone. A host
+    // may be a name; one that has no address yet is looked up again and again.
     std::vector<std::string> Peers;
     // Whether multicast may be used for discovery and data.
     bool Multicast = true;
@@ -95,6 +105,16 @@ struct TransportSettings
     // Takes the session's log lines (handlers that threw, writes that failed, types that differ ...), without
     // a newline; called on any thread, must be quick and thread-safe. Not set: they go to standard error.
     std::function<void(const std::string &)> Log;
+};
+
+// Something that is wrong with a setting, here and now.
+struct SettingsProblem
+{
+    std::string Setting;  // as a configuration file calls it: `interfaces`, `peers`, `backend_config` ...
+    std::string Entry;    // the one of several that is meant: an interface, a peer; else empty
+    std::string Text;     // one line for people, with the entry's name in it
+    // Opening a session throws for it. If not, the session waits for what is missing, and does without.
+    bool Impossible = false;
 };
 
 enum class Reliability
@@ -271,6 +291,10 @@ public:
                                                           const std::vector<std::string> &partitions,
                                                           SampleHandler handler) = 0;
     virtual TransportCounters Counters() const = 0;
+    // What of the network that the settings ask for is missing now: interfaces that do not exist or have no
+    // carrier or address, peers' names without an address; and why it could not be joined. None of them
+    // Impossible, and none is logged: whoever holds the session tells people. Empty if all is well.
+    virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
 };
 
 // A backend.
@@ -288,6 +312,9 @@ public:
     virtual std::string Name() const = 0;
     // Joins the network. The peer handler may be called before this returns. Throws TransportError.
     virtual std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) = 0;
+    // All that is wrong with the settings on this host now, without joining the network: what is Impossible
+    // would make Open throw. May wait a second for the names of peers.
+    virtual std::vector<SettingsProblem> Check(const TransportSettings & /*settings*/) const { return {}; }
 };
 
 }  // namespace Rabit

@@ -19,6 +19,7 @@ public:
     // `cyclonedds`
     std::string Name() const override;
     std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
+    std::vector<SettingsProblem> Check(const TransportSettings &settings) const override;
 };
 
 }  // namespace Rabit

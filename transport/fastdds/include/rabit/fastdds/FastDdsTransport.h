@@ -26,6 +26,7 @@ public:
     std::string Name() const override;
     // Any number of sessions may be open in one process. Thread-safe.
     std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
+    std::vector<SettingsProblem> Check(const TransportSettings &settings) const override;
 };
 
 }  // namespace Rabit

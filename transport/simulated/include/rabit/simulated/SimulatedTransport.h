@@ -21,6 +21,7 @@ public:
     // `simulated`
     std::string Name() const override;
     std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
+    std::vector<SettingsProblem> Check(const TransportSettings &settings) const override;
 
 private:
     const std::shared_ptr<Simulated::NetworkCore> _core;

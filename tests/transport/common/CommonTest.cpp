@@ -11,6 +11,7 @@
 #include "common/HandlerGate.h"
 #include "common/InstanceTable.h"
 #include "common/ParticipantIdentity.h"
+#include "common/PeerAddress.h"
 #include "common/SettingsCheck.h"
 #include "common/TopicRegistry.h"
 #include "common/UseGate.h"
@@ -214,54 +215,81 @@ TEST(Settings, OutOfRangeIsRefused)
                  TransportError);
 }
 
-TEST(Settings, AnInterfaceIsFoundByNameAndByAddress)
+TEST(Settings, AnInterfaceThatCanBeNoneIsImpossible)
 {
-    EXPECT_THAT(ResolveInterfaces({"lo"}), ElementsAre("127.0.0.1"));
-    EXPECT_THAT(ResolveInterfaces({"127.0.0.1", "lo"}), ElementsAre("127.0.0.1"));
-    EXPECT_THAT(ResolveInterfaces({}), IsEmpty());
+    TransportSettings settings;
+    settings.Node = "uav1";
+    settings.Interfaces = {"eth0", "10.0.0.1", "radio/0", "", "10.0.0.256", "averylongname016", "a b"};
+    std::vector<std::string> refused;
+    for (const SettingsProblem &problem : FindImpossible(settings))
+    {
+        EXPECT_TRUE(problem.Impossible);
+        EXPECT_EQ(problem.Setting, "interfaces");
+        refused.push_back(problem.Entry);
+    }
+    EXPECT_THAT(refused, ElementsAre("radio/0", "", "10.0.0.256", "averylongname016", "a b"));
 }
 
-TEST(Settings, AnInterfaceThatDoesNotExistIsRefusedByName)
+TEST(Settings, EachPeerThatCanBeNoneIsImpossible)
 {
-    try
-    {
-        ResolveInterfaces({"lo", "radio99"});
-        FAIL() << "there is no such interface";
-    }
-    catch (const TransportError &error)
-    {
-        EXPECT_THAT(error.what(), HasSubstr("radio99"));
-    }
+    TransportSettings settings;
+    settings.Node = "uav1";
+    settings.Peers = {"ground", "ground:port", "10.0.0.1:7410"};
+    const auto problems = FindImpossible(settings);
+    ASSERT_THAT(problems, SizeIs(1));
+    EXPECT_EQ(problems[0].Setting, "peers");
+    EXPECT_EQ(problems[0].Entry, "ground:port");
 }
 
 TEST(Settings, PeersAreParsed)
 {
-    EXPECT_EQ(ResolvePeer("127.0.0.1").Address, "127.0.0.1");
-    EXPECT_EQ(ResolvePeer("127.0.0.1").Port, 0);
-    EXPECT_EQ(ResolvePeer("127.0.0.1:7410").Port, 7410);
-    for (const char *bad :
-         {"", ":7410", "127.0.0.1:", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:x", "127.0.0.1:7410x"})
+    EXPECT_EQ(ParsePeer("127.0.0.1").Host, "127.0.0.1");
+    EXPECT_EQ(ParsePeer("127.0.0.1").Port, 0);
+    EXPECT_EQ(ParsePeer("127.0.0.1:7410").Port, 7410);
+    EXPECT_TRUE(ParsePeer("127.0.0.1:7410").HasAddress());
+    EXPECT_EQ(ParsePeer("ground-1.local:7410").Host, "ground-1.local");
+    EXPECT_FALSE(ParsePeer("ground").HasAddress());
+    for (const char *bad : {"", ":7410", "127.0.0.1:", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:x",
+                            "127.0.0.1:7410x", "127.0.0", "10.0.0.256", "a b", "ground/1"})
     {
-        EXPECT_THROW(ResolvePeer(bad), TransportError) << bad;
+        EXPECT_THROW(ParsePeer(bad), TransportError) << bad;
     }
 }
 
-TEST(Settings, AddressesAreThoseOfTheNamedInterfaces)
-{
-    EXPECT_THAT(FindAddresses({"lo"}), ElementsAre("127.0.0.1"));
-    EXPECT_THAT(FindAddresses({"127.0.0.1"}), ElementsAre("127.0.0.1"));
-    EXPECT_THAT(FindAddresses({"radio99"}), IsEmpty());
-    EXPECT_THAT(FindAddresses({}), testing::Not(testing::Contains("127.0.0.1")));
-}
-
-TEST(UseGate, AUserWaitsForAChangeOnlyAsLongAsItSays)
+TEST(UseGate, AUserIsTurnedAwayWhileAChangeLasts)
 {
     UseGate gate;
-    const UseGate::Change change(gate);
-    EXPECT_FALSE(UseGate::Use(gate, std::chrono::milliseconds(1)).Allowed());
+    {
+        const UseGate::Change change(gate);
+        EXPECT_FALSE(UseGate::Use(gate).Allowed());
+    }
+    EXPECT_TRUE(UseGate::Use(gate).Allowed());
 }
 
-TEST(UseGate, AChangeWaitsForItsUsersAndTheNextOnesForIt)
+TEST(UseGate, AUserIsTurnedAwayWhileAChangeWaitsForAnother)
+{
+    UseGate gate;
+    std::atomic<bool> changed{false};
+    std::jthread changer;
+    {
+        const UseGate::Use first(gate);
+        changer = std::jthread(
+            [&]
+            {
+                const UseGate::Change change(gate);
+                changed = true;
+            });
+        while (UseGate::Use(gate).Allowed())
+        {
+            std::this_thread::yield();
+        }
+        EXPECT_FALSE(changed);
+    }
+    changer.join();
+    EXPECT_TRUE(changed);
+}
+
+TEST(UseGate, AChangeAndItsUsersNeverOverlap)
 {
     UseGate gate;
     std::atomic<int> users{0};
@@ -275,11 +303,13 @@ TEST(UseGate, AChangeWaitsForItsUsersAndTheNextOnesForIt)
                 {
                     for (int i = 0; i < 500; ++i)
                     {
-                        const UseGate::Use use(gate, std::chrono::minutes(1));
-                        EXPECT_TRUE(use.Allowed());
-                        ++users;
-                        std::this_thread::yield();
-                        --users;
+                        const UseGate::Use use(gate);
+                        if (use.Allowed())
+                        {
+                            ++users;
+                            std::this_thread::yield();
+                            --users;
+                        }
                     }
                 });
         }

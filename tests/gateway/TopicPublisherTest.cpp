@@ -1,0 +1,91 @@
+// What a publisher does with a network that takes nothing.
+#include "mirrors/TopicPublisher.h"
+
+#include <gtest/gtest.h>
+#include <rabit/ManualClock.h>
+#include <rabit/RabitWorkspace.h>
+
+#include <memory>
+
+#include "uav.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+struct Network
+{
+    WriteResult Result = WriteResult::Ok;
+    int Writes = 0;
+};
+
+class Writer final : public TransportWriter
+{
+public:
+    explicit Writer(Network &network) : _network(network) {}
+    WriteResult Write(const SampleEncoder &, std::int64_t) override
+    {
+        ++_network.Writes;
+        return _network.Result;
+    }
+    WriteResult Dispose(const SampleEncoder &, std::int64_t) override { return WriteResult::Failed; }
+    int MatchedReaders() const override { return 0; }
+
+private:
+    Network &_network;
+};
+
+class Session final : public TransportSession
+{
+public:
+    explicit Session(Network &network) : _network(network) {}
+    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &, const TopicQos &,
+                                                  const std::vector<std::string> &) override
+    {
+        return std::make_unique<Writer>(_network);
+    }
+    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &, const TopicQos &,
+                                                  const std::vector<std::string> &, SampleHandler) override
+    {
+        return nullptr;
+    }
+    TransportCounters Counters() const override { return {}; }
+
+private:
+    Network &_network;
+};
+
+// While there is no network a write ends at once: without a gap the gateway's thread would do nothing else.
+TEST(TopicPublisher, WhatTheNetworkDoesNotTakeIsTriedAgainAfterAGap)
+{
+    Network network;
+    Session session(network);
+    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
+    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
+    RabitWorkspace workspace;
+    auto pose = std::make_shared<Uav::Pose>();
+    workspace.AddPublishSubscribeMessage("Pose", pose);
+    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    publisher.SetAttached();
+    pose->PostMessage();
+
+    network.Result = WriteResult::TimedOut;
+    std::chrono::nanoseconds now = 10s;
+    EXPECT_EQ(publisher.Service(now), now + TopicPublisher::RetryGap);
+    pose->PostMessage();
+    publisher.Service(now + 1ms);
+    EXPECT_EQ(network.Writes, 1);
+    now += TopicPublisher::RetryGap;
+    network.Result = WriteResult::Ok;
+    EXPECT_EQ(publisher.Service(now), std::chrono::nanoseconds::max());
+    EXPECT_EQ(network.Writes, 2);
+    pose->PostMessage();
+    publisher.Service(now + 1ms);
+    EXPECT_EQ(network.Writes, 3);
+}
+
+}  // namespace
+}  // namespace Rabit

@@ -1,0 +1,43 @@
+// The IPv4 networks that this host has.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace Rabit
+{
+
+// One address of an interface, or an interface without any. An interface with several addresses is in
+// several.
+struct HostNetwork
+{
+    unsigned Index = 0;      // the kernel's, of the interface: another one of the same name has another
+    std::string Interface;   // name
+    std::string Label;       // the name by which this address is listed: the interface's, or `eth0:1`
+    std::string Address;     // IPv4, dotted; empty: none
+    std::uint32_t Mask = 0;  // of the address, in host order
+    bool Up = false;         // switched on
+    bool Running = false;    // and with a carrier
+    bool Multicast = false;
+    bool Loopback = false;
+
+    bool IsCalled(const std::string &name) const
+    {
+        return name == Interface || name == Label || (!Address.empty() && name == Address);
+    }
+    // The same address on the same interface: sockets that were opened on it serve again when it returns.
+    bool IsSame(const HostNetwork &other) const { return Index == other.Index && Address == other.Address; }
+    // Whether an address is of this network, by its mask. False for one that does not parse.
+    bool Contains(const std::string &address) const;
+};
+
+// `eth0 10.0.0.1`, for people.
+std::string Describe(const HostNetwork &network);
+// All of them with commas between; `none` if there is none.
+std::string Describe(const std::vector<HostNetwork> &networks);
+
+// Those of this host now, in the order of their interfaces. Empty if they cannot be listed.
+std::vector<HostNetwork> ListHostNetworks();
+
+}  // namespace Rabit

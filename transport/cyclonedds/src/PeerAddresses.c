@@ -1,0 +1,49 @@
+#include "PeerAddresses.h"
+
+#include <dds/ddsi/ddsi_domaingv.h>
+#include <dds/ddsi/ddsi_entity_index.h>
+#include <dds/ddsi/ddsi_proxy_participant.h>
+#include <dds/ddsi/q_addrset.h>
+#include <dds/ddsi/q_thread.h>
+
+struct Visit
+{
+    void (*found)(const unsigned char address[4], void *argument);
+    void *argument;
+};
+
+static void VisitLocator(const ddsi_xlocator_t *locator, void *argument)
+{
+    const struct Visit *visit = argument;
+    /* An IPv4 address is the last four of sixteen bytes; the first of a multicast one is 224 to 239. */
+    const unsigned char *address = locator->c.address + 12;
+    if (locator->c.kind == NN_LOCATOR_KIND_UDPv4 && (address[0] & 0xf0) != 0xe0)
+    {
+        visit->found(address, visit->argument);
+    }
+}
+
+void RabitCyclonePeerAddresses(const ddsi_guid_t *participant,
+                               void (*found)(const unsigned char address[4], void *argument), void *argument)
+{
+    /* The vendor's thread that calls the listener works for one domain. */
+    const struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);
+    if (domain == NULL)
+    {
+        return;
+    }
+    const struct ddsi_proxy_participant *known =
+        entidx_lookup_proxy_participant_guid(domain->entity_index, participant);
+    if (known == NULL)
+    {
+        return;
+    }
+    struct Visit visit = {found, argument};
+    addrset_forall(known->as_meta, VisitLocator, &visit);
+    addrset_forall(known->as_default, VisitLocator, &visit);
+}
+
+unsigned RabitCycloneMostInterfaces(void)
+{
+    return MAX_XMIT_CONNS;
+}
