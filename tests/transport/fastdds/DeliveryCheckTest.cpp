@@ -53,11 +53,11 @@ TEST(DeliveryCheck, EveryTruncationIsUnsound)
 
 TEST(DeliveryCheck, ImpossibleNumbersAreUnsound)
 {
-    for (const std::int64_t number : {std::int64_t{0}, std::int64_t{-1}, LargestSequence, INT64_MAX})
+    for (const std::int64_t number : {std::int64_t{0}, std::int64_t{-1}, LargestSequence, INT64_MIN, INT64_MAX})
     {
         EXPECT_FALSE(IsSound(Data, DataBody(number), 5)) << number;
         EXPECT_FALSE(IsSound(Heartbeat, HeartbeatBody(number, number, 1))) << number;
-        EXPECT_FALSE(IsSound(Gap, GapBody(number, number + 1))) << number;
+        EXPECT_FALSE(IsSound(Gap, GapBody(number, number))) << number;
     }
     EXPECT_FALSE(IsSound(Heartbeat, HeartbeatBody(5, 3, 1)));
     EXPECT_FALSE(IsSound(AckNack, AckNackBody(-1, 0, 1)));

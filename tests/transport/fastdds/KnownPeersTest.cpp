@@ -19,7 +19,7 @@ protected:
     KnownPeersTest()
     {
         Peers.Announced(Sender, 1, Now);
-        Peers.WriterAnnounced(Sender, UserWriter);
+        Peers.EndpointAnnounced(Sender, UserWriter, 1);
     }
 
     static GuidPrefix Stranger(int number)
@@ -47,6 +47,16 @@ TEST_F(KnownPeersTest, APeerDoesNotMoveElsewhereWhileItIsHeard)
     EXPECT_FALSE(Peers.Announced(Sender, 2, Now + 118s));
     EXPECT_TRUE(Peers.Announced(Sender, 2, Now + 120s));
     EXPECT_FALSE(Peers.Announced(Sender, 1, Now + 121s));
+}
+
+TEST_F(KnownPeersTest, AnEndpointStaysAsItWasAnnounced)
+{
+    for (const EntityId endpoint : {0x00000203u, UserReader})
+    {
+        EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, 7));
+        EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, 7));
+        EXPECT_FALSE(Peers.EndpointAnnounced(Sender, endpoint, 8));
+    }
 }
 
 TEST_F(KnownPeersTest, TheFirstNumberOfAWriterMayBeAny)
@@ -175,10 +185,10 @@ TEST_F(KnownPeersTest, CountsDoNotFallWhenTheWriterWasForgotten)
     }
     for (EntityId writer = 1; writer <= 5000; ++writer)
     {
-        Peers.WriterAnnounced(Sender, writer << 8 | 3u);
+        Peers.EndpointAnnounced(Sender, writer << 8 | 3u, 1);
     }
     ASSERT_FALSE(Peers.HasWriter(Sender, UserWriter));
-    Peers.WriterAnnounced(Sender, UserWriter);
+    Peers.EndpointAnnounced(Sender, UserWriter, 1);
     EXPECT_GT(Peers.CountOf(Sender, UserWriter, 1), last);
 }
 
@@ -203,7 +213,7 @@ TEST_F(KnownPeersTest, OfTooManyWritersTheOneThatWasSilentForLongestIsForgotten)
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1, Now));
     for (EntityId writer = 1; writer <= 5000; ++writer)
     {
-        Peers.WriterAnnounced(Sender, writer << 8 | 3u);
+        Peers.EndpointAnnounced(Sender, writer << 8 | 3u, 1);
     }
     EXPECT_TRUE(Peers.HasWriter(Sender, UserWriter));
     EXPECT_TRUE(Peers.HasWriter(Sender, 5000u << 8 | 3u));

@@ -165,6 +165,17 @@ TEST_F(RtpsGuardTest, APeerThatIsHeardCannotBeSentElsewhere)
     EXPECT_TRUE(Guard.Stops(ParticipantMessage(Sender, 9999)));
 }
 
+// The next number of the topic of writers, and a writer that has moved to another topic: its readers here
+// would lose it for good.
+TEST_F(RtpsGuardTest, AnEndpointThatIsKnownCannotBeChanged)
+{
+    Bytes changed = WriterMessage(UserWriter, 2);
+    const Bytes name = {'P', 'o', 's', 'e'};
+    std::search(changed.begin(), changed.end(), name.begin(), name.end())[3] = 'f';
+    EXPECT_TRUE(Guard.Stops(changed));
+    EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 2)));
+}
+
 TEST_F(RtpsGuardTest, AWriterThatJumpsIsStoppedAndOneThatGoesOnIsNot)
 {
     EXPECT_TRUE(Guard.Stops(Message(Data, DataBody(100'000), 5)));

@@ -286,8 +286,7 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
             const bool isParticipant = writer == ParticipantWriter;
             const bool complete =
                 found.Subject != 0 && (isParticipant ? found.Lease : found.Topic && found.Type);
-            return complete ? std::optional(Announcement{found.Subject, isParticipant ? found.Digest : 0})
-                            : std::nullopt;
+            return complete ? std::optional(Announcement{found.Subject, found.Digest}) : std::nullopt;
         }
         const auto value = rest.Bytes(length);
         bool wanted = true;
@@ -295,6 +294,10 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
             !CheckParameter(writer, sender, id, value, littleEndian, found, wanted))
         {
             return std::nullopt;
+        }
+        if (wanted && writer != ParticipantWriter)
+        {
+            found.Digested(id, value);
         }
         if (!wanted && !keepOthers)
         {

@@ -15,7 +15,7 @@ struct Announcement
 {
     // The participant, or the endpoint; 0 on the topic of liveliness.
     EntityId Subject = 0;
-    // Of what says where the participant is heard; 0 on other topics than the participants'.
+    // Of a participant: of what says where it is heard. Of an endpoint: of all that we have a use for.
     std::uint64_t Digest = 0;
 };
 

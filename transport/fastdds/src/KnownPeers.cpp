@@ -13,6 +13,7 @@ namespace
 
 constexpr std::size_t MostPeers = 1024;
 constexpr std::size_t MostWriters = 4096;
+constexpr std::size_t MostReaders = 4096;
 // Longer than the announcement periods and leases in use.
 constexpr std::chrono::seconds Forgotten{60};
 // After so long without a word of a peer, its writers may be anywhere.
@@ -89,12 +90,22 @@ void KnownPeers::Hear(Peer &peer, TimePoint now)
     peer.Heard = now;
 }
 
-void KnownPeers::WriterAnnounced(const GuidPrefix &peer, EntityId writer)
+bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest)
 {
-    auto &writers = _peers.at(peer).Writers;
-    if (writers.count(writer) > 0)
+    if (!IsWriter(endpoint))
     {
-        return;
+        auto &readers = _peers.at(peer).Readers;
+        if (readers.size() >= MostReaders && readers.count(endpoint) == 0)
+        {
+            return true;
+        }
+        return readers.try_emplace(endpoint, digest).first->second == digest;
+    }
+    auto &writers = _peers.at(peer).Writers;
+    const auto known = writers.find(endpoint);
+    if (known != writers.end())
+    {
+        return known->second.Digest == digest;
     }
     if (writers.size() >= MostWriters)
     {
@@ -106,7 +117,8 @@ void KnownPeers::WriterAnnounced(const GuidPrefix &peer, EntityId writer)
         };
         writers.erase(std::min_element(writers.begin(), writers.end(), silentLonger));
     }
-    writers[writer];
+    writers[endpoint].Digest = digest;
+    return true;
 }
 
 bool KnownPeers::HasWriter(const GuidPrefix &peer, EntityId writer) const

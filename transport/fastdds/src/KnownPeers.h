@@ -27,7 +27,7 @@ public:
 
     // The peer, which must be known, announced a writer. If it has too many, the one that was silent for
     // longest is forgotten.
-    void WriterAnnounced(const GuidPrefix &peer, EntityId writer);
+    bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest);
     bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
 
     // Whether a writer that was announced can be at this number. If so, it is there. The first number of a
@@ -46,6 +46,7 @@ public:
 private:
     struct Numbers
     {
+        std::uint64_t Digest = 0;
         std::int64_t Highest = 0;  // 0: nothing was heard of it
         TimePoint Moved{};
         // Its pace: samples in a second, and what it has written in the second under way.
@@ -63,6 +64,7 @@ private:
         std::uint64_t Digest = 0;
         TimePoint Heard{};
         std::map<EntityId, Numbers> Writers;
+        std::map<EntityId, std::uint64_t> Readers;  // and their digests
     };
 
     bool MakeRoom(TimePoint now);

@@ -199,10 +199,11 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return Verdict::Refuse;
     }
-    if (_mode == Mode::Full && delivery.Alive && delivery.Writer == PublicationsWriter &&
-        _peers.Hears(passage.Sender, passage.Now))
+    const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
+    if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&
+        !_peers.EndpointAnnounced(passage.Sender, announcement->Subject, announcement->Digest))
     {
-        _peers.WriterAnnounced(passage.Sender, announcement->Subject);
+        return Verdict::Refuse;
     }
     return Verdict::Pass;
 }

@@ -36,11 +36,14 @@ public:
     std::uint16_t U16() { return static_cast<std::uint16_t>(Number(2, _littleEndian)); }
     std::uint32_t U32() { return static_cast<std::uint32_t>(Number(4, _littleEndian)); }
     EntityId Entity() { return static_cast<EntityId>(Number(4, false)); }
-    // A sequence number: a signed high word, then a low one.
+    // A sequence number: a signed high word, then a low one. -1 if it is negative, or so large that one could
+    // not reckon with it.
     std::int64_t Sequence()
     {
-        const auto high = static_cast<std::int32_t>(U32());
-        return static_cast<std::int64_t>(high) * (std::int64_t{1} << 32) + U32();
+        constexpr std::uint32_t TooHigh = 1u << 30;
+        const std::uint32_t high = U32();
+        const std::uint32_t low = U32();
+        return high < TooHigh ? static_cast<std::int64_t>(std::uint64_t{high} << 32 | low) : -1;
     }
     // The bits of a set of at most 256 numbers (9.4.2.6, 9.4.2.8); returns how many they are.
     std::uint32_t Bits()
