@@ -84,6 +84,11 @@ class Process:
                     raise AssertionError(f"not seen within {seconds} s in the output of {self.argv}:\n{tail}")
                 self._changed.wait(left)
 
+    def tell(self, line):
+        """A line on its standard input."""
+        self._popen.stdin.write(line + "\n")
+        self._popen.stdin.flush()
+
     def kill(self):
         self._popen.kill()
         return self._popen.wait()

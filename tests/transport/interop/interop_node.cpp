@@ -1,5 +1,5 @@
 // A node that exchanges every kind of traffic with one other node and prints a line for each thing that it
-// sees, for interop_test.py, outage_test.py and suspension_test.py:
+// sees, for interop_test.py, outage_test.py, suspension_test.py and ../fuzz:
 //   ready life=L                          this process is up
 //   peer STATE                            UP, STALE or LOST
 //   mirror life=L                         the first counter of a life of the other node
@@ -13,13 +13,17 @@
 //   settled round=R delivered=D in_doubt=I     all orders of a round have their outcome
 //   in doubt round=R                      never; the first of a round
 //   lost round=R outcome=...              never: another outcome
+//   stopped round=R sent=N delivered=D in_doubt=I    after SIGUSR1, which says that enough was sent: all of
+//                       this round have their outcome
 // Ends on SIGTERM with exit code 0.
 #include <rabit/RabitManager.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <deque>
 #include <iostream>
@@ -49,6 +53,8 @@ struct Options
     double Rate = 200;
     bool Frame = true;
 };
+
+std::atomic<bool> stopped{false};
 
 void Say(const std::string &line)
 {
@@ -230,7 +236,7 @@ private:
     void Send()
     {
         const double due = std::chrono::duration<double>(Clock::now() - _roundStart).count() * _options.Rate;
-        while (_round > 0 && _sent < _options.Count && _sent < due)
+        while (_round > 0 && !stopped && _sent < _options.Count && _sent < due)
         {
             auto order = std::make_shared<Interop::Order>();
             order->life = _life;
@@ -281,6 +287,14 @@ private:
                 Say(line.str());
             }
         }
+        if (stopped && _receipts.empty() && !_saidStopped)
+        {
+            _saidStopped = true;
+            std::ostringstream line;
+            line << "stopped round=" << _receiptRound << " sent=" << _sent << " delivered=" << _delivered
+                 << " in_doubt=" << _inDoubt;
+            Say(line.str());
+        }
     }
 
     const Options &_options;
@@ -298,6 +312,7 @@ private:
     Clock::time_point _lastCounter{};
     Clock::time_point _nextCounter{};
     bool _framePosted = false;
+    bool _saidStopped = false;
     std::uint32_t _round = 0;
     std::uint32_t _sent = 0;
     Clock::time_point _roundStart{};
@@ -336,6 +351,7 @@ void Run(Options &options)
 
 int main(int argc, char **argv)
 {
+    std::signal(SIGUSR1, [](int) { stopped = true; });
     CLI::App app("A node that exchanges every kind of traffic with one other node.");
     Options options;
     Describe(app, options);

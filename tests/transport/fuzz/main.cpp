@@ -1,0 +1,126 @@
+// Records the RTPS traffic of nodes on loopback, then sends damaged copies of it to all the ports that it
+// went to, for fuzz_test.py:
+//   recording           all traffic from here on is recorded
+//   recorded N ports P  after a line came on standard input: so many datagrams are known, of so many ports
+//   sent N of M         now and then
+//   done N dropped D    all are sent; so many were lost because a socket was full
+// Run it in a network namespace of its own: it knows no addresses but those that it hears of.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdint>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <thread>
+
+#include "Mutator.h"
+#include "Network.h"
+
+namespace
+{
+
+constexpr std::size_t Burst = 64;
+// What a reader may be behind: less than its buffer, so that what is sent is what arrives.
+constexpr std::size_t MostUnread = 60000;
+
+struct Options
+{
+    std::uint64_t Seed = 1;
+    std::uint64_t Count = 100000;
+    std::string Save;
+};
+
+void Record(Sniffer &sniffer)
+{
+    std::cout << "recording" << std::endl;
+    std::atomic<bool> begin{false};
+    std::thread reader(
+        [&]
+        {
+            std::string line;
+            std::getline(std::cin, line);
+            begin = true;
+        });
+    while (!begin)
+    {
+        sniffer.Read(50);
+    }
+    reader.join();
+}
+
+void SaveBurst(const std::string &file, const std::vector<Datagram> &burst)
+{
+    std::ofstream out(file, std::ios::binary | std::ios::trunc);
+    for (const auto &datagram : burst)
+    {
+        const auto size = static_cast<std::uint32_t>(datagram.size());
+        out.write(reinterpret_cast<const char *>(&size), sizeof size);
+        out.write(reinterpret_cast<const char *>(datagram.data()), static_cast<std::streamsize>(size));
+    }
+}
+
+int Run(const Options &options)
+{
+    std::vector<Datagram> recorded;
+    std::vector<sockaddr_in> destinations;
+    {
+        Sniffer sniffer;
+        Record(sniffer);
+        recorded = sniffer.Kept();
+        destinations = sniffer.Destinations();
+    }
+    std::cout << "recorded " << recorded.size() << " ports " << destinations.size() << std::endl;
+    if (recorded.empty())
+    {
+        return 1;
+    }
+    Mutator mutator(options.Seed);
+    mutator.Learn(recorded);
+    std::mt19937_64 random(options.Seed);
+    Sender sender;
+    const std::uint64_t lostBefore = Sender::Dropped();
+    std::vector<Datagram> burst(Burst);
+    std::vector<sockaddr_in> to(Burst);
+    for (std::uint64_t sent = 0; sent < options.Count; sent += Burst)
+    {
+        for (std::size_t i = 0; i < Burst; ++i)
+        {
+            burst[i] = mutator.Next();
+            to[i] = destinations[random() % destinations.size()];
+        }
+        if (!options.Save.empty())
+        {
+            SaveBurst(options.Save, burst);
+        }
+        sender.Send(burst, to);
+        sender.WaitForReaders(MostUnread);
+        if (sent % (Burst * 4096) == 0)
+        {
+            std::cout << "sent " << sent << " of " << options.Count << std::endl;
+        }
+    }
+    std::cout << "done " << options.Count << " dropped " << Sender::Dropped() - lostBefore << std::endl;
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char **argv)
+{
+    CLI::App app("Sends damaged copies of the RTPS traffic on loopback.");
+    Options options;
+    app.add_option("--seed", options.Seed, "Of the damage");
+    app.add_option("--count", options.Count, "Datagrams to send");
+    app.add_option("--save", options.Save,
+                   "Keeps the burst sent last in this file, each datagram after its size");
+    CLI11_PARSE(app, argc, argv);
+    try
+    {
+        return Run(options);
+    }
+    catch (const std::exception &error)
+    {
+        std::cerr << error.what() << std::endl;
+        return 1;
+    }
+}
