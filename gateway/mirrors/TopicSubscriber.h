@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "gateway.idl.h"
-#include "mirrors/RepeatGuard.h"
+#include "mirrors/LogThrottle.h"
 #include "presence/OriginTable.h"
 
 namespace Rabit
@@ -60,7 +60,7 @@ private:
         std::int64_t LastTime = 0;
         std::uint64_t LastHash = 0;
         bool AnyPosted = false;
-        RepeatGuard Log;
+        LogThrottle Log;
     };
 
     void OnSample(SampleBytes bytes, const SampleInfo &info);

@@ -131,10 +131,10 @@ bool OutgoingQueues::Refuse(const std::string &node, const std::string &queue, Q
 
 std::vector<Gateway::LinkStatus> OutgoingQueues::Status() const
 {
-    std::map<LinkRefusals::LinkName, Gateway::LinkStatus> rows;
+    std::map<RefusalCounts::LinkName, Gateway::LinkStatus> rows;
     for (Gateway::LinkStatus &row : _links.OutboundStatus())
     {
-        LinkRefusals::LinkName name{row.node, row.queue};
+        RefusalCounts::LinkName name{row.node, row.queue};
         rows.emplace(std::move(name), std::move(row));
     }
     _refusals.Report(rows);

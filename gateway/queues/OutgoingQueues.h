@@ -14,7 +14,7 @@
 #include "presence/RemoteQueues.h"
 #include "queues/LinkDriver.h"
 #include "queues/LinkPayloadPool.h"
-#include "queues/LinkRefusals.h"
+#include "queues/RefusalCounts.h"
 
 namespace Rabit
 {
@@ -56,7 +56,7 @@ private:
     const RemoteQueues &_remote;
     LinkDriver &_links;
     const std::shared_ptr<LinkPayloadPool> _payloads = std::make_shared<LinkPayloadPool>();
-    LinkRefusals _refusals;
+    RefusalCounts _refusals;
 };
 
 }  // namespace Rabit

@@ -209,6 +209,30 @@ TEST(GatewayLives, TheCounterInTheStateDirectoryRisesWithEachLife)
     std::filesystem::remove_all(directory);
 }
 
+TEST(GatewayLives, ALifeThatIsTakenBecauseOthersKnowAHigherOneIsStored)
+{
+    const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / "rabit_state_lost";
+    std::filesystem::remove_all(directory);
+    SimulatedFleet fleet;
+    GatewayConfig config = AircraftConfig("uav1");
+    config.StateDir = directory.string();
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    const std::uint64_t before = fleet.Add(config).Fleet().incarnation >> 32;
+    fleet.RunFor(2s);
+    EXPECT_TRUE(ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
+    fleet.RunFor(2s);
+    fleet.Kill("uav1");
+    std::filesystem::remove_all(directory);
+    fleet.RunFor(5s);
+    // It comes back without its file, and with a clock that is a year behind.
+    fleet.Add(config, 1.4e9 - 365.0 * 86400);
+    fleet.RunFor(20s);
+    std::uint64_t stored = 0;
+    std::ifstream(directory / "uav1.incarnation") >> stored;
+    EXPECT_GT(stored, before);
+    std::filesystem::remove_all(directory);
+}
+
 TEST(GatewayLives, AGatewayThatIsRunAgainJoinsInANewLife)
 {
     SimulatedFleet fleet;

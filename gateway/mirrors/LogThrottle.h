@@ -8,10 +8,10 @@ namespace Rabit
 
 // Lets a line through at most once in a period, for logs about what arrives from the network. Not
 // thread-safe.
-class RepeatGuard
+class LogThrottle
 {
 public:
-    explicit RepeatGuard(std::chrono::nanoseconds period = std::chrono::minutes(1)) : _period(period) {}
+    explicit LogThrottle(std::chrono::nanoseconds period = std::chrono::minutes(1)) : _period(period) {}
 
     bool MayPass(std::chrono::nanoseconds now)
     {

@@ -17,7 +17,7 @@ namespace Rabit
 
 // Messages that were refused at the call, before they reached a link: counted by link, and why the last one
 // was. Thread-safe.
-class LinkRefusals
+class RefusalCounts
 {
 public:
     using LinkName = std::pair<std::string, std::string>;  // node, queue

@@ -1,4 +1,4 @@
-#include "queues/LinkRefusals.h"
+#include "queues/RefusalCounts.h"
 
 namespace Rabit
 {
@@ -10,8 +10,8 @@ constexpr std::size_t MostLinks = 1000;
 
 }  // namespace
 
-void LinkRefusals::Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
-                       const std::string &reason)
+void RefusalCounts::Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+                        const std::string &reason)
 {
     const LinkName link{node, queue};
     const std::lock_guard lock(_mutex);
@@ -27,14 +27,14 @@ void LinkRefusals::Add(const std::string &node, const std::string &queue, QueueA
     SetReason(entry, reason);
 }
 
-void LinkRefusals::SetReason(Entry &entry, const std::string &reason)
+void RefusalCounts::SetReason(Entry &entry, const std::string &reason)
 {
     _reasons += reason.empty() ? 0 : 1;
     _reasons -= entry.Reason.empty() ? 0 : 1;
     entry.Reason = reason;
 }
 
-void LinkRefusals::Forgive(const std::string &node, const std::string &queue)
+void RefusalCounts::Forgive(const std::string &node, const std::string &queue)
 {
     if (_reasons == 0)
     {
@@ -48,7 +48,7 @@ void LinkRefusals::Forgive(const std::string &node, const std::string &queue)
     }
 }
 
-void LinkRefusals::Report(std::map<LinkName, Gateway::LinkStatus> &rows) const
+void RefusalCounts::Report(std::map<LinkName, Gateway::LinkStatus> &rows) const
 {
     const std::lock_guard lock(_mutex);
     for (const auto &[link, entry] : _entries)
@@ -58,7 +58,7 @@ void LinkRefusals::Report(std::map<LinkName, Gateway::LinkStatus> &rows) const
     }
 }
 
-std::vector<Gateway::Problem> LinkRefusals::Problems() const
+std::vector<Gateway::Problem> RefusalCounts::Problems() const
 {
     const std::lock_guard lock(_mutex);
     std::vector<Gateway::Problem> problems;
