@@ -217,8 +217,9 @@ TEST(GatewayLives, ALifeThatIsTakenBecauseOthersKnowAHigherOneIsStored)
     GatewayConfig config = AircraftConfig("uav1");
     config.StateDir = directory.string();
     SimulatedNode &ground = fleet.Add(GroundConfig());
-    const std::uint64_t before = fleet.Add(config).Fleet().incarnation >> 32;
+    SimulatedNode &uav = fleet.Add(config);
     fleet.RunFor(2s);
+    const std::uint64_t before = uav.Fleet().incarnation >> 32;
     EXPECT_TRUE(ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
     fleet.RunFor(2s);
     fleet.Kill("uav1");
