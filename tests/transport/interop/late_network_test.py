@@ -181,8 +181,8 @@ class ThickEvents(Event):
         place.other_network()
 
     def after(self, place):
-        place.first.run("sh", "-c", "(while ip address add 10.99.0.1/32 dev lo && ip address del 10.99.0.1/32 dev lo; "
-                        "do sleep 0.02; done) >/dev/null 2>&1 &")
+        place.first.keep_running("sh", "-c", "while ip address add 10.99.0.1/32 dev lo && "
+                                 "ip address del 10.99.0.1/32 dev lo; do sleep 0.02; done")
         place.address()
 
 

@@ -20,6 +20,12 @@ class Holder:
         self.process = subprocess.Popen(["unshare", "--net", "sh", "-c", "echo ready; exec cat"], stdin=subprocess.PIPE,
                                         stdout=subprocess.PIPE, text=True, preexec_fn=harness.die_with_parent)
         self.process.stdout.readline()
+        self._helpers = []
+
+    def keep_running(self, *argv):
+        """In the background, until this object is closed or its maker dies."""
+        self._helpers.append(subprocess.Popen([*self.inside(), *argv], stdout=subprocess.DEVNULL,
+                                              stderr=subprocess.DEVNULL, preexec_fn=harness.die_with_parent))
 
     def run(self, *argv):
         subprocess.run([*self.inside(), *argv], check=True)
@@ -28,5 +34,6 @@ class Holder:
         return ["nsenter", "--net", "--target", str(self.process.pid)]
 
     def close(self):
-        self.process.kill()
-        self.process.wait()
+        for process in (*self._helpers, self.process):
+            process.kill()
+            process.wait()
