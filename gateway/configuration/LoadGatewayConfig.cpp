@@ -143,12 +143,13 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     const YAML::Node root = Parse(file, ReadFile(file));
     const YamlMap map(
         file, root, "the configuration",
-        {"node", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram", "shared_memory",
-         "lease", "backend_config", "state_dir", "publish", "subscribe", "accept", "send"});
+        {"node", "name", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram",
+         "shared_memory", "lease", "backend_config", "state_dir", "publish", "subscribe", "accept", "send"});
     GatewayConfig config;
     config.File = file;
     config.Lines = map.Lines();
     map.Read("node", config.Node);
+    map.Read("name", config.Name);
     if (!nodeOverride.empty())
     {
         config.Node = nodeOverride;

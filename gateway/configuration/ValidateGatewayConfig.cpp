@@ -57,6 +57,17 @@ private:
                      ? "no node name; expected `node: <name>`"
                      : "`" + _config.Node + "` is no node name; expected 1 to 64 of A-Z a-z 0-9 _ . -");
         }
+        if (!IsNodeName(_config.Name))
+        {
+            Fail(LineOf("name"),
+                 "`" + _config.Name + "` is no name of a gateway; expected 1 to 64 of A-Z a-z 0-9 _ . -");
+        }
+        if (_config.Name == _config.Node)
+        {
+            Fail(LineOf(_config.Lines.count("name") > 0 ? "name" : "node"),
+                 "node and gateway are both called `" + _config.Node +
+                     "`: messages of the two would have the same names");
+        }
         if (_config.Domain < 0 || _config.Domain > 232)
         {
             Fail(LineOf("domain"),

@@ -20,6 +20,7 @@
 #include "queues/OutgoingQueues.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
+#include "report/OtherGateways.h"
 #include "report/ProblemLog.h"
 #include "wire/Announcements.h"
 
@@ -55,6 +56,12 @@ TransportSettings SettingsOf(const GatewayConfig &config, std::uint64_t incarnat
     return settings;
 }
 
+// Of the file that counts the lives of this node. Two gateways of one node count for themselves.
+std::string CounterName(const GatewayConfig &config)
+{
+    return config.Name == GatewayConfig().Name ? config.Node : config.Node + "@" + config.Name;
+}
+
 const GatewayConfig &Validated(const GatewayConfig &config)
 {
     ValidateGatewayConfig(config);
@@ -74,7 +81,7 @@ public:
           _workspace(manager.GetWorkspace()),
           _transport(std::move(transport)),
           _incarnations(
-              config.StateDir, config.Node,
+              config.StateDir, CounterName(config),
               [this] {
                   return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()) /
                          NanosecondsInSecond;
@@ -93,10 +100,15 @@ public:
         {
             throw std::invalid_argument("GatewayManager needs a transport");
         }
-        if (!manager.AddPublishSubscribeMessage(FleetMessageName, _fleet))
+        const std::vector<std::string> forwarders = _workspace.GetListOfQueueForwarders();
+        if (std::find(forwarders.begin(), forwarders.end(), _config.Name) != forwarders.end())
+        {
+            throw NameTaken();
+        }
+        if (!manager.AddPublishSubscribeMessage(FleetMessageNameOf(_config), _fleet))
         {
             throw ConfigError(_config.File, 0,
-                              std::string("the local message `") + FleetMessageName + "` is of another type");
+                              "the local message `" + FleetMessageNameOf(_config) + "` is of another type");
         }
         Open();
     }
@@ -112,7 +124,10 @@ public:
         {
             return;
         }
-        _workspace.SetQueueForwarder(nullptr);
+        if (std::exchange(_forwards, false))
+        {
+            _workspace.RemoveQueueForwarder(_config.Name);
+        }
         ReportUndelivered();
         _presence.Close();
         _subscriptions.Close();
@@ -187,7 +202,20 @@ private:
             Attach(_publishers.back());
         }
         _presence.Open(*_session, Announcements::Of(_config, _incarnation));
-        _workspace.SetQueueForwarder(_outgoing);
+        _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
+        if (!_forwards)
+        {
+            Close();
+            throw NameTaken();
+        }
+    }
+
+    ConfigError NameTaken() const
+    {
+        const auto line = _config.Lines.find("name");
+        return {_config.File, line == _config.Lines.end() ? 0 : line->second,
+                "there is a gateway `" + _config.Name +
+                    "` in this workspace already; each needs a `name` of its own"};
     }
 
     void Attach(TopicPublisher &publisher)
@@ -209,17 +237,17 @@ private:
             if (link.outbox > 0)
             {
                 RabitLog::Write(RabitLogLevel::Warning,
-                                "gateway: " + std::to_string(link.outbox) + " messages for `" + link.node +
-                                    "/" + link.queue + "` were accepted and not acknowledged before the end");
+                                _logName + std::to_string(link.outbox) + " messages for `" + link.node + "/" +
+                                    link.queue + "` were accepted and not acknowledged before the end");
             }
         }
     }
 
-    static void Log(const std::vector<std::string> &lines)
+    void Log(const std::vector<std::string> &lines) const
     {
         for (const std::string &line : lines)
         {
-            RabitLog::Write(RabitLogLevel::Warning, "gateway: " + line);
+            RabitLog::Write(RabitLogLevel::Warning, _logName + line);
         }
     }
 
@@ -241,6 +269,7 @@ private:
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
         FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
         AddProblems(now, fleet);
+        OtherGateways::AddSharedNodes(_workspace, _config.Name, fleet);
         fleet.PostMessage();
         Log(_problemLog.Look(fleet.problems, now));
     }
@@ -280,7 +309,10 @@ private:
     Presence _presence;
     Subscriptions _subscriptions;
     std::shared_ptr<Gateway::Fleet> _fleet;
-    ProblemLog _problemLog{FleetMessageName};
+    const std::string _logName =
+        _config.Name == GatewayConfig().Name ? "gateway: " : "gateway " + _config.Name + ": ";
+    ProblemLog _problemLog{FleetMessageNameOf(_config)};
+    bool _forwards = false;
     Duration _nextFleet{0};
     Duration _openedAt{0};
     std::unique_ptr<TransportSession> _session;
@@ -294,7 +326,7 @@ GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Tran
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
                                RabitWorkspace &workspace, RandomSource random)
-    : RabitManager("Gateway", workspace),
+    : RabitManager(config.Name, workspace),
       _config(config),
       _transport(std::move(transport)),
       _random(std::move(random)),

@@ -17,6 +17,12 @@ void RemoteQueues::Update(const PeerTable::Peer &peer)
     }
 }
 
+bool RemoteQueues::Knows(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    return _peers.count(node) > 0;
+}
+
 RemoteQueues::Answer RemoteQueues::Ask(const std::string &node, const std::string &queue,
                                        const std::string &type, std::uint64_t definition) const
 {

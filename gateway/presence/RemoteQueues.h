@@ -26,6 +26,8 @@ public:
 
     // Takes over what the node announces; nothing if it has not announced anything yet.
     void Update(const PeerTable::Peer &peer);
+    // Whether the node has announced itself.
+    bool Knows(const std::string &node) const;
     Answer Ask(const std::string &node, const std::string &queue, const std::string &type,
                std::uint64_t definition) const;
     // Nodes that are there (not LOST) and accept that queue with that type, by name.

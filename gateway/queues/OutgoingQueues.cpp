@@ -20,6 +20,13 @@ void Begin(const std::shared_ptr<RabitQueueReceipt> &receipt, std::size_t messag
     }
 }
 
+// Node and queue.
+std::pair<std::string, std::string> Split(const std::string &queueName)
+{
+    const std::size_t slash = queueName.find('/');
+    return {queueName.substr(0, slash), queueName.substr(slash + 1)};
+}
+
 bool Settle(const std::shared_ptr<RabitQueueReceipt> &receipt, QueueOutcome outcome)
 {
     if (receipt)
@@ -52,9 +59,7 @@ LinkPayload OutgoingQueues::Encode(const MessageType &type, const RabitMessage &
 bool OutgoingQueues::Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
                              const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
-    const std::size_t slash = queueName.find('/');
-    const std::string node = queueName.substr(0, slash);
-    const std::string queue = queueName.substr(slash + 1);
+    const auto [node, queue] = Split(queueName);
     if (node == _ownNode)
     {
         const bool added = _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
@@ -83,6 +88,34 @@ bool OutgoingQueues::Forward(const std::string &queueName, const std::shared_ptr
     }
     Begin(receipt, 1);
     return ForwardTo(node, queue, *type, payload, receipt);
+}
+
+std::vector<std::string> OutgoingQueues::Known(const std::string &queueName,
+                                               const RabitMessage &message) const
+{
+    const auto [node, queue] = Split(queueName);
+    std::vector<std::string> known;
+    if (node == "*")
+    {
+        const MessageType *type = MessageTypeRegistry::Of(message);
+        known =
+            type == nullptr ? known : _remote.LiveNodesAccepting(queue, type->Name(), DefinitionHash(*type));
+        for (std::string &name : known)
+        {
+            name += "/" + queue;
+        }
+    }
+    else if (node == _ownNode || _remote.Knows(node))
+    {
+        known.push_back(queueName);
+    }
+    return known;
+}
+
+void OutgoingQueues::TakenElsewhere(const std::string &queueName)
+{
+    const auto [node, queue] = Split(queueName);
+    _refusals.Forgive(node, queue);
 }
 
 bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &type,

@@ -33,6 +33,9 @@ public:
     bool Handles(const std::string &queueName) const override;
     bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
                  const std::shared_ptr<RabitQueueReceipt> &receipt) override;
+    // The nodes that have announced themselves in this network; for `*` those that Forward would choose.
+    std::vector<std::string> Known(const std::string &queueName, const RabitMessage &message) const override;
+    void TakenElsewhere(const std::string &queueName) override;
 
     // All links to other nodes, with what was refused before it reached one.
     std::vector<Gateway::LinkStatus> Status() const;

@@ -62,6 +62,7 @@ TEST_F(GatewayConfigTest, ReadsEveryKey)
 {
     const GatewayConfig config = Load(R"(
 node: uav1
+name: Radio
 domain: 7
 transport: fastdds
 interfaces: [lo, 127.0.0.1]
@@ -84,6 +85,7 @@ send:
      redeliver_in_doubt: on}
 )");
     EXPECT_EQ(config.Node, "uav1");
+    EXPECT_EQ(config.Name, "Radio");
     EXPECT_EQ(config.Domain, 7);
     EXPECT_EQ(config.Interfaces, (std::vector<std::string>{"lo", "127.0.0.1"}));
     EXPECT_EQ(config.Peers, std::vector<std::string>{"10.0.0.2"});
@@ -185,6 +187,10 @@ const BadConfig BadConfigs[] = {
     {"NoNode", "domain: 1\n", "node.yaml:1: the configuration needs the key `node`"},
     {"BadNode", "domain: 1\nnode: a/b\n",
      "node.yaml:2: `a/b` is no node name; expected 1 to 64 of A-Z a-z 0-9 _ . -"},
+    {"BadName", "node: a\nname: a b\n",
+     "node.yaml:2: `a b` is no name of a gateway; expected 1 to 64 of A-Z a-z 0-9 _ . -"},
+    {"NodeCalledAsTheGateway", "node: Gateway\n",
+     "node.yaml:1: node and gateway are both called `Gateway`: messages of the two would have the same names"},
     {"WordForNumber", "node: a\ndomain: seven\n",
      "node.yaml:2: `domain` is `seven`; expected a whole number from 0 to 232"},
     {"NumberOutOfRange", "node: a\ndomain: 233\n",

@@ -67,7 +67,10 @@ struct SendRule
 struct GatewayConfig
 {
     std::string Node;  // 1 to 64 of the characters A-Z a-z 0-9 _ . -
-    int Domain = 0;    // DDS domain, 0 to 232
+    // Of this gateway in its process, like a node name: its manager is called so, and its local message is
+    // `<Name>/Fleet`. Two gateways in one workspace, for instance for a radio and for a LAN, need two.
+    std::string Name = "Gateway";
+    int Domain = 0;  // DDS domain, 0 to 232
     std::string Transport = "fastdds";
 
     // Network settings; TransportSettings says what each one means.

@@ -11,7 +11,13 @@ namespace Rabit
 {
 
 // Name of the local message (type Rabit::Gateway::Fleet) in which a gateway tells what it knows.
+// if the configuration gives it no name of its own.
 inline constexpr const char *FleetMessageName = "Gateway/Fleet";
+// Likewise, with the name that the configuration gives.
+inline std::string FleetMessageNameOf(const GatewayConfig &config)
+{
+    return config.Name + "/Fleet";
+}
 
 // Joins this process to the other nodes of its domain.
 //
@@ -31,8 +37,12 @@ inline constexpr const char *FleetMessageName = "Gateway/Fleet";
 //   lasts two seconds is logged once (RabitLog, as a warning), and once more when it is gone.
 //
 // Threads: Startup, ExecuteUnitOfWork and Shutdown run as for every manager. Mirrored messages are posted on
-// the transport's thread, so handlers registered on them run there and must be quick. One gateway serves one
-// workspace.
+// the transport's thread, so handlers registered on them run there and must be quick. 
+//
+// Several gateways may serve one workspace, for instance one on a radio and one on a LAN, if each has a name of
+// its own (GatewayConfig::Name): the second of a name throws ConfigError. A queue message goes through the one
+// that knows the node, "*/<queue>" to the nodes of all. A node that two of them know is a problem by name; the
+// gateway that was there first takes the queue messages for it.
 //
 // Errors: the constructor throws ConfigError for a configuration that cannot be used (a TransportError of the
 // backend included), and then nothing has been started. Afterwards nothing from the network throws or ends
