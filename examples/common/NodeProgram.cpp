@@ -2,6 +2,7 @@
 
 #include "BadInput.h"
 
+#include <rabit/gateway/CheckTransportSettings.h>
 #include <rabit/gateway/LoadGatewayConfig.h>
 #include <rabit/transport/TransportFactory.h>
 
@@ -40,6 +41,10 @@ Rabit::GatewayConfig LoadConfig(const NodeOptions &options)
     if (!options.Transport.empty())
         config.Transport = options.Transport;
     Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
+    if (options.Check)
+        for (const std::string &missing :
+             Rabit::CheckTransportSettings(config, *Rabit::MakeTransport(config.Transport)))
+            std::cerr << missing << " (it is waited for)\n";
     return config;
 }
 

@@ -25,6 +25,8 @@ struct NodeOptions
 
 void Describe(CLI::App &app, NodeOptions &options);
 // The gateway's configuration, with the options in place of what the file says. Throws Rabit::ConfigError.
+// With Check also for network settings that cannot work on this host; what is only missing yet is told on
+// standard error.
 Rabit::GatewayConfig LoadConfig(const NodeOptions &options);
 
 inline constexpr int ExitFailed = 1;

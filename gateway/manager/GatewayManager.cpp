@@ -11,6 +11,7 @@
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
+#include "manager/TransportSettingsOf.h"
 #include "mirrors/Subscriptions.h"
 #include "mirrors/TopicPublisher.h"
 #include "presence/OriginTable.h"
@@ -35,26 +36,6 @@ constexpr std::int64_t NanosecondsInSecond = 1000000000;
 constexpr Duration FleetPeriod = std::chrono::seconds(1);
 // Less than this is not worth a sleep of its own.
 constexpr Duration ShortestSleep = std::chrono::microseconds(200);
-
-TransportSettings SettingsOf(const GatewayConfig &config, std::uint64_t incarnation)
-{
-    TransportSettings settings;
-    settings.Node = config.Node;
-    settings.Incarnation = incarnation;
-    settings.Domain = config.Domain;
-    settings.Interfaces = config.Interfaces;
-    settings.Peers = config.Peers;
-    settings.Multicast = config.Multicast;
-    settings.MaxDatagram = config.MaxDatagram;
-    settings.SharedMemory = config.SharedMemory;
-    settings.Lease = config.Lease;
-    settings.AnnouncementPeriod =
-        std::min<std::chrono::milliseconds>(std::chrono::seconds(1), config.Lease / 3);
-    settings.BackendConfig = config.BackendConfig;
-    settings.Log = [](const std::string &line)
-    { RabitLog::Write(RabitLogLevel::Warning, "transport: " + line); };
-    return settings;
-}
 
 // Of the file that counts the lives of this node. Two gateways of one node count for themselves.
 std::string CounterName(const GatewayConfig &config)
@@ -183,14 +164,13 @@ private:
         {
             Close();
             const std::string setting = error.Setting().empty() ? "interfaces" : error.Setting();
-            const auto line = _config.Lines.find(setting);
-            throw ConfigError(_config.File, line == _config.Lines.end() ? 0 : line->second, error.what());
+            throw ConfigError(_config.File, LineOfSetting(_config, setting), error.what());
         }
     }
 
     void OpenSession()
     {
-        _session = _transport->Open(SettingsOf(_config, _incarnation),
+        _session = _transport->Open(TransportSettingsOf(_config, _incarnation),
                                     [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
         _links.Open(*_session);
@@ -212,8 +192,7 @@ private:
 
     ConfigError NameTaken() const
     {
-        const auto line = _config.Lines.find("name");
-        return {_config.File, line == _config.Lines.end() ? 0 : line->second,
+        return {_config.File, LineOfSetting(_config, "name"),
                 "there is a gateway `" + _config.Name +
                     "` in this workspace already; each needs a `name` of its own"};
     }

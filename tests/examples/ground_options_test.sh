@@ -49,6 +49,26 @@ refused_area altitude_m 10001 '-500 to 10000' 47.3977 8.5456 400 600 10001
 refused $'--command-period: it must be from 0.1 to 86400, not nan\nRun with --help for more information.' \
     --command-period nan
 
+# refused_setting LINE SETTING: a network setting that cannot work, on either backend.
+refused_setting() {
+    local transport
+    printf 'node: ground\n%s\n' "$2" >"$work/net.yaml"
+    for transport in fastdds cyclonedds; do
+        timeout 60 "$ground" --config "$work/net.yaml" --check --transport "$transport" >"$work/out" 2>"$work/err"
+        status=$?
+        [ "$status" -eq 2 ] || fail "$2 on $transport: exit code $status"
+        grep -qE "^$work/net.yaml:2: $1" "$work/err" || fail "$2 on $transport: no line '$1'"
+    done
+}
+refused_setting '.*10\.0\.0\.1:port' 'peers: ["10.0.0.1:port"]'
+refused_setting '.*/nowhere/vendor\.xml' 'backend_config: /nowhere/vendor.xml'
+refused_setting '.*wlan 0' 'interfaces: ["wlan 0"]'
+
+# What is not there yet may come: it is said, and no error.
+printf 'node: ground\ninterfaces: [notyet0]\n' >"$work/net.yaml"
+timeout 60 "$ground" --config "$work/net.yaml" --check >"$work/out" 2>"$work/err" || fail "an absent interface is refused"
+grep -q "^$work/net.yaml:2: .*notyet0.*(it is waited for)$" "$work/err" || fail "nothing is said of an absent interface"
+
 for area in '-90 -180 10 10 -500' '90 180 20000 20000 10000'; do
     # shellcheck disable=SC2086 # five words
     ground --check --search-area $area

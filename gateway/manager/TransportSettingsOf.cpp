@@ -1,0 +1,54 @@
+#include "manager/TransportSettingsOf.h"
+
+#include <rabit/RabitLog.h>
+#include <rabit/gateway/CheckTransportSettings.h>
+#include <rabit/gateway/ConfigError.h>
+
+#include <algorithm>
+
+namespace Rabit
+{
+
+TransportSettings TransportSettingsOf(const GatewayConfig &config, std::uint64_t incarnation)
+{
+    TransportSettings settings;
+    settings.Node = config.Node;
+    settings.Incarnation = incarnation;
+    settings.Domain = config.Domain;
+    settings.Interfaces = config.Interfaces;
+    settings.Peers = config.Peers;
+    settings.Multicast = config.Multicast;
+    settings.MaxDatagram = config.MaxDatagram;
+    settings.SharedMemory = config.SharedMemory;
+    settings.Lease = config.Lease;
+    settings.AnnouncementPeriod =
+        std::min<std::chrono::milliseconds>(std::chrono::seconds(1), config.Lease / 3);
+    settings.BackendConfig = config.BackendConfig;
+    settings.Log = [](const std::string &line)
+    { RabitLog::Write(RabitLogLevel::Warning, "transport: " + line); };
+    return settings;
+}
+
+int LineOfSetting(const GatewayConfig &config, const std::string &setting)
+{
+    const auto line = config.Lines.find(setting);
+    return line == config.Lines.end() ? 0 : line->second;
+}
+
+std::vector<std::string> CheckTransportSettings(const GatewayConfig &config, const Transport &transport)
+{
+    constexpr std::uint64_t AnyIncarnation = 1;
+    std::vector<std::string> missing;
+    for (const SettingsProblem &problem : transport.Check(TransportSettingsOf(config, AnyIncarnation)))
+    {
+        const ConfigError error(config.File, LineOfSetting(config, problem.Setting), problem.Text);
+        if (problem.Impossible)
+        {
+            throw error;
+        }
+        missing.emplace_back(error.what());
+    }
+    return missing;
+}
+
+}  // namespace Rabit
