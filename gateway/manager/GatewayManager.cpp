@@ -72,8 +72,9 @@ public:
           _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links)),
           _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),
-          _presence(config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
-                    manager.WakeUpHandler()),
+          _presence(
+              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
+              [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace),
           _fleet(std::make_shared<Gateway::Fleet>())
     {
@@ -123,6 +124,12 @@ public:
         const Duration now = Now();
         const Presence::Served served = _presence.Service(now);
         const PeerTable::Change &change = served.Change;
+        for (const std::string &node : change.Forgotten)
+        {
+            _subscriptions.Forget(node);
+            _links.Forget(node);
+            _outgoing->Forget(node);
+        }
         if (change.Offers || change.NewLife)
         {
             _subscriptions.OnOffers(_presence.Peers());
@@ -197,6 +204,18 @@ private:
                     "` in this workspace already; each needs a `name` of its own"};
     }
 
+    // Nodes that the configuration names, and those for which messages wait, are not forgotten.
+    bool IsNeeded(const std::string &node) const
+    {
+        const auto names = [&node](const std::string &name) { return name == node; };
+        return std::any_of(_config.Subscribe.begin(), _config.Subscribe.end(),
+                           [&names](const SubscribeRule &rule)
+                           { return std::any_of(rule.From.begin(), rule.From.end(), names); }) ||
+               std::any_of(_config.Send.begin(), _config.Send.end(),
+                           [&names](const SendRule &rule) { return names(rule.To); }) ||
+               _links.HasPending(node);
+    }
+
     void Attach(TopicPublisher &publisher)
     {
         if (_manager.AddPublishSubscribeMessage(publisher.Rule().Message, publisher.Local()))
@@ -243,6 +262,9 @@ private:
         }
         fleet.links = _outgoing->Status();
         fleet.inbound = _links.InboundStatus();
+        fleet.forgotten = _presence.Peers().Forgotten();
+        fleet.crowded_out =
+            _presence.Peers().CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
         fleet.malformed = _presence.Malformed() + _links.Malformed();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);

@@ -74,6 +74,27 @@ void Subscriptions::OnOffers(const PeerTable &peers)
     }
 }
 
+void Subscriptions::Forget(const std::string &node)
+{
+    for (const auto &[key, subscriber] : _subscribers)
+    {
+        if (subscriber)
+        {
+            subscriber->Forget(node);
+        }
+    }
+}
+
+std::uint64_t Subscriptions::CrowdedOut() const
+{
+    std::uint64_t sum = 0;
+    for (const auto &[key, subscriber] : _subscribers)
+    {
+        sum += subscriber ? subscriber->CrowdedOut() : 0;
+    }
+    return sum;
+}
+
 void Subscriptions::Report(Gateway::Fleet &fleet) const
 {
     for (const auto &[key, subscriber] : _subscribers)

@@ -34,6 +34,9 @@ public:
     // Opens what has become known to be needed.
     void OnOffers(const PeerTable &peers);
 
+    void Forget(const std::string &node);
+    // Samples dropped because they came from a node beyond those that are kept.
+    std::uint64_t CrowdedOut() const;
     void Report(Gateway::Fleet &fleet) const;
     const std::vector<SubscribeRule> &Rules() const { return _rules; }
     // The rule must be one of Rules().

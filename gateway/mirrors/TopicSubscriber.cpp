@@ -8,6 +8,7 @@
 
 #include "clocks/GpsTime.h"
 #include "names/NamePattern.h"
+#include "presence/PeerTable.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -17,6 +18,9 @@ namespace
 
 // Backends may round a time to a microsecond; two posts as close as that differ in content or do not matter.
 constexpr std::int64_t Rounding = 2000;
+
+// Nodes that are kept of one message; one more for programs that are no nodes.
+constexpr std::size_t MostSources = PeerTable::MaximumPeers + 1;
 
 std::uint64_t HashOf(SampleBytes bytes)
 {
@@ -54,22 +58,46 @@ int TopicSubscriber::MatchedWriters() const
     return _reader ? _reader->MatchedWriters() : 0;
 }
 
-TopicSubscriber::Source *TopicSubscriber::SourceOf(std::string_view node)
+std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_view node)
 {
     const std::lock_guard lock(_mutex);
     const auto found = _sources.find(node);
     if (found != _sources.end())
     {
-        return found->second.get();
+        return found->second;
     }
-    if (_sources.size() >= 1000 || (!node.empty() && !IsNodeName(node)))
+    if (_sources.size() >= MostSources)
     {
+        // Whoever was never heard, or has been forgotten, makes room.
+        const auto unknown =
+            std::find_if(_sources.begin(), _sources.end(),
+                         [this](const auto &source) { return !_origins.Find(source.first); });
+        if (unknown != _sources.end())
+        {
+            _sources.erase(unknown);
+        }
+    }
+    if (_sources.size() >= MostSources || (!node.empty() && !IsNodeName(node)))
+    {
+        ++_crowdedOut;
         return nullptr;
     }
-    auto source = std::make_unique<Source>();
+    auto source = std::make_shared<Source>();
     source->Counters.message = _rule.Message;
     source->Counters.node = node;
-    return _sources.emplace(node, std::move(source)).first->second.get();
+    return _sources.emplace(node, std::move(source)).first->second;
+}
+
+void TopicSubscriber::Forget(const std::string &node)
+{
+    const std::lock_guard lock(_mutex);
+    _sources.erase(node);
+}
+
+std::uint64_t TopicSubscriber::CrowdedOut() const
+{
+    const std::lock_guard lock(_mutex);
+    return _crowdedOut;
 }
 
 void TopicSubscriber::Register(Source &source)
@@ -121,8 +149,8 @@ void TopicSubscriber::OnSample(SampleBytes bytes, const SampleInfo &info)
     {
         return;
     }
-    Source *source = SourceOf(info.Node);
-    if (source == nullptr)
+    const std::shared_ptr<Source> source = SourceOf(info.Node);
+    if (!source)
     {
         return;
     }

@@ -44,6 +44,10 @@ public:
     // Samples of that node that were posted, and DDS writers that match now.
     std::uint64_t ReceivedFrom(const std::string &node) const;
     int MatchedWriters() const;
+    // The node is forgotten: so are its counters. Its local message stays, as every message does.
+    void Forget(const std::string &node);
+    // Samples dropped because they came from a node beyond those that are kept.
+    std::uint64_t CrowdedOut() const;
     // Counters for each node.
     std::vector<Gateway::TopicStatus> Status() const;
     // Why mirrored messages of that node cannot be posted; empty if they can.
@@ -64,7 +68,7 @@ private:
     };
 
     void OnSample(SampleBytes bytes, const SampleInfo &info);
-    Source *SourceOf(std::string_view node);
+    std::shared_ptr<Source> SourceOf(std::string_view node);
     void Register(Source &source);
     static bool IsOvertaken(const Source &source, const SampleInfo &info);
     bool IsRepetition(const Source &source, const SampleInfo &info, std::uint64_t hash) const;
@@ -79,7 +83,9 @@ private:
     std::unique_ptr<RabitMessage> _scratch;
 
     mutable std::mutex _mutex;  // guards the counters in _sources, and the map
-    std::map<std::string, std::unique_ptr<Source>, std::less<>> _sources;
+    // The handler holds the one that it uses, which may be forgotten meanwhile.
+    std::map<std::string, std::shared_ptr<Source>, std::less<>> _sources;
+    std::uint64_t _crowdedOut = 0;
 
     std::unique_ptr<TransportReader> _reader;
 };

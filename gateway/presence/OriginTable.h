@@ -47,6 +47,12 @@ public:
         _origins[node] = origin;
     }
 
+    void Forget(const std::string &node)
+    {
+        const std::lock_guard lock(_mutex);
+        _origins.erase(node);
+    }
+
     // Empty: the node has not been heard.
     std::optional<Origin> Find(std::string_view node) const
     {

@@ -22,8 +22,8 @@ PeerTable::Duration Nanoseconds(std::int64_t value)
 
 }  // namespace
 
-PeerTable::PeerTable(std::string ownNode, std::uint64_t ownIncarnation)
-    : _ownNode(std::move(ownNode)), _ownIncarnation(ownIncarnation)
+PeerTable::PeerTable(std::string ownNode, std::uint64_t ownIncarnation, IsNeeded isNeeded)
+    : _ownNode(std::move(ownNode)), _ownIncarnation(ownIncarnation), _isNeeded(std::move(isNeeded))
 {
 }
 
@@ -46,33 +46,49 @@ std::vector<const PeerTable::Peer *> PeerTable::Heard() const
     return heard;
 }
 
-PeerTable::Peer *PeerTable::GetOrMake(const std::string &node)
+PeerTable::Peer *PeerTable::GetOrMake(const std::string &node, bool heard, Duration now, Change &change)
 {
     const auto found = _peers.find(node);
     if (found != _peers.end())
     {
         return &found->second;
     }
-    if (_peers.size() >= MaximumPeers)
+    if (_peers.size() >= MaximumPeers && !ForgetOne(heard, change))
     {
-        auto oldest = _peers.end();
-        for (auto peer = _peers.begin(); peer != _peers.end(); ++peer)
-        {
-            const bool gone = peer->second.State == NodeState::LOST;
-            if (gone && (oldest == _peers.end() || peer->second.LastHeard < oldest->second.LastHeard))
-            {
-                oldest = peer;
-            }
-        }
-        if (oldest == _peers.end())
-        {
-            return nullptr;
-        }
-        _peers.erase(oldest);
+        ++_crowdedOut;
+        return nullptr;
     }
     Peer &made = _peers[node];
     made.Node = node;
+    made.KnownSince = now;
     return &made;
+}
+
+// Anybody can announce names; so one that was never heard makes room first, and for no such name one that
+// was.
+bool PeerTable::ForgetOne(bool forOneHeard, Change &change)
+{
+    const auto rank = [](const Peer &peer)
+    { return std::pair(peer.Heard, peer.Heard ? peer.LastHeard : peer.KnownSince); };
+    auto first = _peers.end();
+    for (auto peer = _peers.begin(); peer != _peers.end(); ++peer)
+    {
+        const bool possible = !peer->second.Heard || (forOneHeard && peer->second.State == NodeState::LOST);
+        if (possible && (first == _peers.end() || rank(peer->second) < rank(first->second)) &&
+            !(_isNeeded && _isNeeded(peer->first)))
+        {
+            first = peer;
+        }
+    }
+    if (first == _peers.end())
+    {
+        return false;
+    }
+    change.State |= first->second.Heard;
+    change.Forgotten.push_back(first->first);
+    ++_forgotten;
+    _peers.erase(first);
+    return true;
 }
 
 // A higher incarnation is a later life. A lower one is an earlier life's straggler, unless the later life has
@@ -123,7 +139,7 @@ PeerTable::Change PeerTable::OnBeat(const Gateway::Beat &beat, Duration now)
         }
         return change;
     }
-    Peer *peer = GetOrMake(beat.node);
+    Peer *peer = GetOrMake(beat.node, true, now, change);
     if (peer == nullptr)
     {
         return change;
@@ -180,14 +196,15 @@ PeerTable::Change PeerTable::OnAnnouncement(const Gateway::Announcement &announc
     {
         return change;
     }
-    Peer *peer = GetOrMake(announcement.node);
+    Peer *peer = GetOrMake(announcement.node, false, now, change);
     if (peer == nullptr || (peer->Heard && announcement.incarnation < peer->Incarnation))
     {
         return change;
     }
     if (announcement.leaving)
     {
-        return OnLeft(announcement.node, announcement.incarnation);
+        change.State |= OnLeft(announcement.node, announcement.incarnation).State;
+        return change;
     }
     change.Offers = !peer->Offers || !(*peer->Offers == announcement);
     if (change.Offers)

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -26,8 +27,9 @@ public:
     static constexpr Duration BeatPeriod = std::chrono::milliseconds(500);
     static constexpr Duration StaleAfter = std::chrono::milliseconds(1500);
     static constexpr Duration LostAfter = std::chrono::milliseconds(3500);
-    // Names come from the network; beyond this many the one LOST for longest is forgotten, or the new one
-    // ignored.
+    // Names come from the network. When another one comes one is forgotten that has never been heard, else,
+    // if the new one was heard, the one LOST for longest; never one that is live or needed. If there is none,
+    // what the new one says is dropped and counted.
     static constexpr std::size_t MaximumPeers = 1000;
 
     struct Peer
@@ -37,6 +39,7 @@ public:
         bool Heard = false;  // a beat of this life has come; until then it is shown nowhere
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
+        Duration KnownSince{0};
         Duration FirstHeard{0};
         Duration LastHeard{0};  // when its newest beat was sent, by this node's clock
         PeerClock Clock;
@@ -52,14 +55,18 @@ public:
         Duration TwinSince{0};
     };
 
-    PeerTable(std::string ownNode, std::uint64_t ownIncarnation);
+    // Whether a node must be remembered although it is gone.
+    using IsNeeded = std::function<bool(const std::string &node)>;
+
+    PeerTable(std::string ownNode, std::uint64_t ownIncarnation, IsNeeded isNeeded = {});
 
     // What an input changed, so that the gateway can react at once.
     struct Change
     {
-        bool State = false;    // a state or an incarnation: worth posting
-        bool NewLife = false;  // a node that was not known in this incarnation is UP
-        bool Offers = false;   // an announcement said something new
+        bool State = false;                  // a state or an incarnation: worth posting
+        bool NewLife = false;                // a node that was not known in this incarnation is UP
+        bool Offers = false;                 // an announcement said something new
+        std::vector<std::string> Forgotten;  // nodes that made room for another one
     };
 
     Change OnBeat(const Gateway::Beat &beat, Duration now);
@@ -74,13 +81,17 @@ public:
     const Peer *Find(const std::string &node) const;
     // Nodes that have been heard, by name.
     std::vector<const Peer *> Heard() const;
+    // Nodes forgotten, and beats and announcements dropped because no room could be made for their node.
+    std::uint64_t Forgotten() const { return _forgotten; }
+    std::uint64_t CrowdedOut() const { return _crowdedOut; }
     // Whether another live node uses this node's name.
     bool OwnNameTwice() const { return _ownTwice; }
     // At most `most` echoes, of the nodes whose turn it is.
     std::vector<Gateway::BeatEcho> NextEchoes(Duration now, std::size_t most);
 
 private:
-    Peer *GetOrMake(const std::string &node);
+    Peer *GetOrMake(const std::string &node, bool heard, Duration now, Change &change);
+    bool ForgetOne(bool forOneHeard, Change &change);
     bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now) const;
     void NoteTwin(Peer &peer, Duration now);
     static void BeginLife(Peer &peer, std::uint64_t incarnation);
@@ -89,7 +100,10 @@ private:
 
     std::string _ownNode;
     std::uint64_t _ownIncarnation;
+    const IsNeeded _isNeeded;
     std::map<std::string, Peer> _peers;
+    std::uint64_t _forgotten = 0;
+    std::uint64_t _crowdedOut = 0;
     std::string _lastEchoed;
     int _ownTwinBeats = 0;
     Duration _ownTwinSince{0};

@@ -22,7 +22,7 @@ constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
 
 Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
                    const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
-                   std::function<void()> wake)
+                   PeerTable::IsNeeded isNeeded, std::function<void()> wake)
     : _node(node),
       _incarnation(incarnation),
       _clock(clock),
@@ -30,7 +30,7 @@ Presence::Presence(const std::string &node, std::uint64_t incarnation, const Rab
       _origins(origins),
       _remote(remote),
       _wake(std::move(wake)),
-      _peers(node, incarnation),
+      _peers(node, incarnation, std::move(isNeeded)),
       _introductions(std::move(random))
 {
 }
@@ -100,6 +100,12 @@ PeerTable::Change Presence::TakeIn(const PresenceInbox::Contents &inbox, Duratio
         all.State |= change.State;
         all.NewLife |= change.NewLife;
         all.Offers |= change.Offers;
+        for (const std::string &forgotten : change.Forgotten)
+        {
+            _remote.Forget(forgotten);
+            _origins.Forget(forgotten);
+            all.Forgotten.push_back(forgotten);
+        }
         Publish(node);
     };
     for (const Gateway::Announcement &announcement : inbox.Announcements)

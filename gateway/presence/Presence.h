@@ -36,7 +36,7 @@ public:
     // object.
     Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
              const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
-             std::function<void()> wake);
+             PeerTable::IsNeeded isNeeded, std::function<void()> wake);
     ~Presence();
 
     // Starts to send and to receive. Throws TransportError.

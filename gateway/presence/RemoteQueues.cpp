@@ -23,6 +23,12 @@ bool RemoteQueues::Knows(const std::string &node) const
     return _peers.count(node) > 0;
 }
 
+void RemoteQueues::Forget(const std::string &node)
+{
+    const std::lock_guard lock(_mutex);
+    _peers.erase(node);
+}
+
 RemoteQueues::Answer RemoteQueues::Ask(const std::string &node, const std::string &queue,
                                        const std::string &type, std::uint64_t definition) const
 {

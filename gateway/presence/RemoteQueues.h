@@ -26,6 +26,7 @@ public:
 
     // Takes over what the node announces; nothing if it has not announced anything yet.
     void Update(const PeerTable::Peer &peer);
+    void Forget(const std::string &node);
     // Whether the node has announced itself.
     bool Knows(const std::string &node) const;
     Answer Ask(const std::string &node, const std::string &queue, const std::string &type,

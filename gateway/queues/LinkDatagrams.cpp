@@ -17,8 +17,19 @@ LinkDatagrams::Datagram &LinkDatagrams::Next(LinkTopic topic, std::string_view d
 
 void LinkDatagrams::Add(const LinkData &data)
 {
-    Next(LinkTopic::Data, data.Destination).Data = data;
+    Datagram &datagram = Next(LinkTopic::Data, data.Destination);
+    datagram.Queue.assign(data.Queue);
+    datagram.Data = data;
     ++_used;
+}
+
+void LinkDatagrams::BindNames()
+{
+    for (std::size_t i = 0; i < _used; ++i)
+    {
+        _datagrams[i].Data.Destination = _datagrams[i].Destination;
+        _datagrams[i].Data.Queue = _datagrams[i].Queue;
+    }
 }
 
 void LinkDatagrams::Clear()

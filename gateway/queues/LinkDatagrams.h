@@ -23,15 +23,19 @@ public:
     {
         LinkTopic Topic = LinkTopic::Data;
         std::string Destination;
-        LinkData Data;  // of topic Data: encoded when it is written, straight into the transport's memory
+        std::string Queue;  // of topic Data
+        LinkData Data;      // of topic Data: encoded when it is written, straight into the transport's memory
         DatagramBuffer Buffer;  // of the others: encoded
     };
 
-    // Keeps the payloads. The names must stay valid until the datagram is written (as LinkOutput::Send says).
+    // Keeps the payloads, and the names but for the source's and the types', which must stay valid until the
+    // datagram is written (as LinkOutput::Send says). Call BindNames before it is.
     void Add(const LinkData &data);
     // Encodes it now. What cannot be encoded is left out.
     void Add(LinkTopic topic, std::string_view destination, const MessageType &type,
              const RabitMessage &sample);
+    // Once no more are added: has the data name its destinations and queues out of this object's memory.
+    void BindNames();
     bool IsEmpty() const { return _used == 0; }
     void Clear();
     void Swap(LinkDatagrams &other) noexcept

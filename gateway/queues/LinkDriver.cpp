@@ -213,6 +213,7 @@ LinkDriver::Duration LinkDriver::Service()
     // What is sent now may tell of a new life.
     _incarnations.Save();
     const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
+    _sending.BindNames();
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
         if (_writers)
@@ -233,6 +234,27 @@ void LinkDriver::HeardOf(const std::string &node, std::uint64_t incarnation)
         TakeNews(news);
     }
     Tell(news);
+}
+
+bool LinkDriver::HasPending(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    return _links->HasPending(node);
+}
+
+void LinkDriver::Forget(const std::string &node)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        if (!_links->Forget(node))
+        {
+            return;  // something was enqueued for it at this moment
+        }
+    }
+    if (_writers)
+    {
+        _writers->Forget(node);
+    }
 }
 
 bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, const std::string &type,
@@ -332,6 +354,13 @@ std::vector<Gateway::Problem> LinkDriver::Problems() const
         problems.push_back(problem);
     }
     return problems;
+}
+
+std::uint64_t LinkDriver::CrowdedOut() const
+{
+    const std::lock_guard lock(_mutex);
+    const LinkNodeCounters counters = _links->Counters();
+    return counters.TooManyPeers + counters.TooManyLinks + counters.RefusedTooMany;
 }
 
 std::uint64_t LinkDriver::Malformed() const

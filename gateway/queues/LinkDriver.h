@@ -67,6 +67,13 @@ public:
     bool Enqueue(const std::string &node, const std::string &queue, const std::string &type,
                  const LinkPayload &payload, const Receipt &receipt);
 
+    // Whether messages for that node wait here.
+    bool HasPending(const std::string &node) const;
+    // The node is remembered no longer. Gateway's thread only.
+    void Forget(const std::string &node);
+    // What was refused or dropped because too many nodes or links are known.
+    std::uint64_t CrowdedOut() const;
+
     std::vector<Gateway::LinkStatus> OutboundStatus() const;
     std::vector<Gateway::InboundStatus> InboundStatus() const;
     std::vector<Gateway::Problem> Problems() const;

@@ -1,5 +1,7 @@
 #include "queues/LinkWriters.h"
 
+#include <algorithm>
+
 #include "wire/LinkDataCodec.h"
 #include "wire/MessageEncoder.h"
 
@@ -29,9 +31,12 @@ private:
 
 void LinkWriters::Write(const LinkDatagrams::Datagram &datagram, std::int64_t sourceTime)
 {
-    std::unique_ptr<TransportWriter> &writer = _writers[{datagram.Topic, datagram.Destination}];
+    Entry &entry = _writers[{datagram.Topic, datagram.Destination}];
+    entry.LastUse = ++_uses;
+    std::unique_ptr<TransportWriter> &writer = entry.Writer;
     if (!writer)
     {
+        MakeRoom();
         writer = _session.CreateWriter(DescribeLinkTopic(datagram.Topic), LinkTopicQos(datagram.Topic),
                                        {datagram.Destination});
     }
@@ -39,6 +44,21 @@ void LinkWriters::Write(const LinkDatagrams::Datagram &datagram, std::int64_t so
                                    ? writer->Write(LinkDataEncoder(datagram.Data), sourceTime)
                                    : writer->Write(BytesEncoder(datagram.Buffer.Bytes()), sourceTime);
     static_cast<void>(result);
+}
+
+void LinkWriters::MakeRoom()
+{
+    if (_writers.size() > MostWriters)
+    {
+        _writers.erase(std::min_element(_writers.begin(), _writers.end(),
+                                        [](const auto &a, const auto &b)
+                                        { return a.second.LastUse < b.second.LastUse; }));
+    }
+}
+
+void LinkWriters::Forget(const std::string &node)
+{
+    std::erase_if(_writers, [&node](const auto &writer) { return writer.first.second == node; });
 }
 
 }  // namespace Rabit

@@ -2,6 +2,7 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -15,7 +16,8 @@ namespace Rabit
 {
 
 // The writers for links: one for each topic and destination, in the destination's partition, so that nobody
-// else receives what is not for him; made when first used. Gateway's thread only.
+// else receives what is not for him; made when first used. When there are very many, the one that was not
+// used for longest is given up; the links repair what it had not got through. Gateway's thread only.
 class LinkWriters
 {
 public:
@@ -23,10 +25,24 @@ public:
 
     // A failure is the transport's to count; the links repair what is lost.
     void Write(const LinkDatagrams::Datagram &datagram, std::int64_t sourceTime);
+    // Gives up the writers for that node.
+    void Forget(const std::string &node);
 
 private:
+    // Three for each of the nodes that presence and links remember.
+    static constexpr std::size_t MostWriters = 3 * 1024;
+
+    struct Entry
+    {
+        std::unique_ptr<TransportWriter> Writer;
+        std::uint64_t LastUse = 0;
+    };
+
+    void MakeRoom();
+
     TransportSession &_session;
-    std::map<std::pair<LinkTopic, std::string>, std::unique_ptr<TransportWriter>> _writers;
+    std::map<std::pair<LinkTopic, std::string>, Entry> _writers;
+    std::uint64_t _uses = 0;
 };
 
 }  // namespace Rabit

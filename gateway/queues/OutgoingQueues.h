@@ -37,6 +37,9 @@ public:
     std::vector<std::string> Known(const std::string &queueName, const RabitMessage &message) const override;
     void TakenElsewhere(const std::string &queueName) override;
 
+    // The node is remembered no longer.
+    void Forget(const std::string &node) { _refusals.Forget(node); }
+
     // All links to other nodes, with what was refused before it reached one.
     std::vector<Gateway::LinkStatus> Status() const;
     std::vector<Gateway::Problem> Problems() const { return _refusals.Problems(); }

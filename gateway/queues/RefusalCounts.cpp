@@ -48,6 +48,23 @@ void RefusalCounts::Forgive(const std::string &node, const std::string &queue)
     }
 }
 
+void RefusalCounts::Forget(const std::string &node)
+{
+    const std::lock_guard lock(_mutex);
+    for (auto entry = _entries.begin(); entry != _entries.end();)
+    {
+        if (entry->first.first == node)
+        {
+            SetReason(entry->second, "");
+            entry = _entries.erase(entry);
+        }
+        else
+        {
+            ++entry;
+        }
+    }
+}
+
 void RefusalCounts::Report(std::map<LinkName, Gateway::LinkStatus> &rows) const
 {
     const std::lock_guard lock(_mutex);

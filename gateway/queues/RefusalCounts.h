@@ -28,6 +28,8 @@ public:
     // A message was accepted: whatever was wrong is over. Costs nothing while nothing is wrong.
     void Forgive(const std::string &node, const std::string &queue);
 
+    void Forget(const std::string &node);
+
     void Report(std::map<LinkName, Gateway::LinkStatus> &rows) const;
     std::vector<Gateway::Problem> Problems() const;
 

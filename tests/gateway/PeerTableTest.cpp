@@ -246,6 +246,71 @@ TEST_F(PeerTableTest, ALiveNodeWithThisNodesNameIsReportedUntilItIsGone)
     EXPECT_FALSE(table.OwnNameTwice());
 }
 
+// Fills the table with nodes that were heard; n0 first.
+class FullPeerTableTest : public PeerTableTest
+{
+protected:
+    static std::string Name(std::size_t i) { return std::string("n").append(std::to_string(i)); }
+
+    FullPeerTableTest()
+    {
+        for (std::size_t i = 0; i < PeerTable::MaximumPeers; ++i)
+        {
+            Hear(Name(i), 5, Ns(1s) + Ns(static_cast<Ns::rep>(i)));
+        }
+    }
+};
+
+TEST_F(FullPeerTableTest, ANewNodeIsDroppedAndCountedWhileAllAreLive)
+{
+    EXPECT_FALSE(Hear("late", 5, 2s).NewLife);
+    EXPECT_EQ(table.Find("late"), nullptr);
+    EXPECT_EQ(table.CrowdedOut(), 1u);
+    EXPECT_EQ(table.Forgotten(), 0u);
+}
+
+TEST_F(FullPeerTableTest, OnceAllAreLostTheOneLostForLongestMakesRoomAndIsNamed)
+{
+    const PeerTable::Change change = Hear("late", 5, 60s);
+    EXPECT_TRUE(change.NewLife);
+    EXPECT_EQ(change.Forgotten, std::vector<std::string>{"n0"});
+    EXPECT_EQ(table.Find("n0"), nullptr);
+    EXPECT_EQ(table.Forgotten(), 1u);
+}
+
+TEST_F(FullPeerTableTest, AnAnnouncementAloneDoesNotMakeANodeForgottenThatWasHeard)
+{
+    table.Advance(60s);
+    EXPECT_TRUE(table.OnAnnouncement(AnnouncementOf("stranger", 5), 60s).Forgotten.empty());
+    EXPECT_EQ(table.Find("stranger"), nullptr);
+    EXPECT_EQ(table.CrowdedOut(), 1u);
+}
+
+TEST(PeerTable, ACrowdOfNamesThatWereNeverHeardPushesOutNoneThatWas)
+{
+    PeerTable table("ground", 7);
+    table.OnBeat(BeatOf("uav1", 5, 1s), 1s);
+    table.Advance(60s);
+    for (std::size_t i = 0; i < 3 * PeerTable::MaximumPeers; ++i)
+    {
+        table.OnAnnouncement(AnnouncementOf(std::string("x").append(std::to_string(i)), 5), 60s);
+    }
+    EXPECT_NE(table.Find("uav1"), nullptr);
+    EXPECT_TRUE(table.OnBeat(BeatOf("uav2", 5, 61s), 61s).NewLife);
+    EXPECT_NE(table.Find("uav1"), nullptr);
+}
+
+TEST(PeerTable, ANodeThatIsNeededIsNotForgotten)
+{
+    PeerTable table("ground", 7, [](const std::string &node) { return node == "n0"; });
+    for (std::size_t i = 0; i < PeerTable::MaximumPeers; ++i)
+    {
+        table.OnBeat(BeatOf(std::string("n").append(std::to_string(i)), 5, 1s), 1s);
+    }
+    table.Advance(60s);
+    EXPECT_EQ(table.OnBeat(BeatOf("late", 5, 60s), 60s).Forgotten, std::vector<std::string>{"n1"});
+}
+
 TEST_F(PeerTableTest, MeasuresTheRoundTripFromAnEchoOfThisLifeAlone)
 {
     Gateway::Beat beat = BeatOf("uav1", 5, 10s);

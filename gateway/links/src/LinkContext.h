@@ -16,7 +16,8 @@ struct LinkContext
     LinkSettings Settings;
     LinkOutput &Output;
     LocalQueues &Queues;
-    // The life this node is in: s_inc of all its streams and r_inc of all its sessions.
+    // The life this node is in to peers that it meets now: s_inc of all streams to them and r_inc of all
+    // their sessions.
     std::uint64_t Incarnation = 0;
     LinkNodeCounters Counters;
     // Reused for each datagram sent, so that its vector keeps its memory.

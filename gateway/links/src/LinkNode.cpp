@@ -49,12 +49,71 @@ LinkPeer *LinkNode::FindOrAddPeer(std::string_view name, LinkTime now)
     {
         return peer;
     }
-    if (_peers.size() >= _context->Settings.MaxPeers)
+    if (_peers.size() >= _context->Settings.MaxPeers && !ForgetOne(now))
     {
         return nullptr;
     }
     auto peer = std::make_unique<LinkPeer>(*_context, std::string(name), now);
     return _peers.emplace(std::string(name), std::move(peer)).first->second.get();
+}
+
+// Whoever has no link loses nothing: it goes first. Then who has been silent for longest.
+bool LinkNode::ForgetOne(LinkTime now)
+{
+    const auto rank = [](const Peers::value_type &entry)
+    { return std::pair(entry.second->HasLinks(), entry.second->HeardAt()); };
+    auto first = _peers.end();
+    for (auto peer = _peers.begin(); peer != _peers.end(); ++peer)
+    {
+        const bool possible =
+            peer->second->MayBeForgotten() && (!peer->second->HasLinks() || peer->second->IsSilentAt(now));
+        if (possible && (first == _peers.end() || rank(*peer) < rank(*first)))
+        {
+            first = peer;
+        }
+    }
+    if (first == _peers.end())
+    {
+        return false;
+    }
+    Forget(first);
+    return true;
+}
+
+// If it comes back, this node is to it in a new life. So nothing of the forgotten streams and sessions, which
+// neither this node nor rule R3 could tell from new ones, is continued.
+void LinkNode::Forget(Peers::iterator peer)
+{
+    _context->Incarnation += peer->second->HasLinks() ? 1 : 0;
+    ++_context->Counters.Forgotten;
+    _peers.erase(peer);
+}
+
+bool LinkNode::Forget(std::string_view node)
+{
+    const auto found = _peers.find(node);
+    if (found == _peers.end())
+    {
+        return true;
+    }
+    if (!found->second->MayBeForgotten())
+    {
+        return false;
+    }
+    Forget(found);
+    return true;
+}
+
+bool LinkNode::HasPending(std::string_view node) const
+{
+    const LinkPeer *peer = FindPeer(node);
+    return peer != nullptr && !peer->MayBeForgotten();
+}
+
+std::uint64_t LinkNode::IncarnationTo(std::string_view node) const
+{
+    const LinkPeer *peer = FindPeer(node);
+    return peer == nullptr ? _context->Incarnation : peer->OwnLife();
 }
 
 bool LinkNode::IsPossiblePeer(std::string_view name) const
@@ -161,9 +220,9 @@ void LinkNode::CountMalformed()
 
 // Rules R1 and S6, and the rule for hellos: a peer that remembers a higher life of this node than its present
 // one makes it take a yet higher one. Nothing received or sent in the old one is continued.
-void LinkNode::HeardOfMyself(std::uint64_t incarnation, LinkTime now)
+void LinkNode::HeardOfMyself(std::string_view from, std::uint64_t incarnation, LinkTime now)
 {
-    if (incarnation <= _context->Incarnation)
+    if (incarnation <= IncarnationTo(from))
     {
         return;
     }
@@ -178,7 +237,7 @@ void LinkNode::HeardOfMyself(std::uint64_t incarnation, LinkTime now)
         return;
     }
     _mayRaiseAt = now + _context->Settings.RaiseGap;
-    _context->Incarnation = _incarnations.Above(incarnation);
+    _context->Incarnation = _incarnations.Above(std::max(incarnation, _context->Incarnation));
     ++_context->Counters.Raises;
     for (const auto &[name, peer] : _peers)
     {
@@ -197,7 +256,7 @@ void LinkNode::OnData(const LinkData &data, LinkTime now)
     {
         return;
     }
-    HeardOfMyself(data.ReceiverIncarnation, now);  // rule R1
+    HeardOfMyself(data.Source, data.ReceiverIncarnation, now);  // rule R1
     LinkPeer *peer = FindOrAddPeer(data.Source, now);
     if (peer == nullptr)
     {
@@ -254,7 +313,7 @@ void LinkNode::OnAck(const LinkAck &ack, LinkTime now)
     {
         sender->OnAck(ack, now);  // rule S4
     }
-    HeardOfMyself(ack.YourIncarnation, now);  // rule S6
+    HeardOfMyself(ack.Destination, ack.YourIncarnation, now);  // rule S6
 }
 
 void LinkNode::OnHello(const LinkHello &hello, LinkTime now)
@@ -268,7 +327,7 @@ void LinkNode::OnHello(const LinkHello &hello, LinkTime now)
     {
         return;
     }
-    HeardOfMyself(hello.YourIncarnation, now);
+    HeardOfMyself(hello.Source, hello.YourIncarnation, now);
     LinkPeer *peer = FindOrAddPeer(hello.Source, now);
     if (peer == nullptr)
     {

@@ -10,6 +10,7 @@ namespace Rabit
 LinkPeer::LinkPeer(LinkContext &context, std::string name, LinkTime now)
     : _context(context),
       _name(std::move(name)),
+      _ownLife(context.Incarnation),
       _heardAt(now),
       _helloAt(now),
       _helloStep(2 * context.Settings.HelloGap)
@@ -68,7 +69,7 @@ void LinkPeer::OnHello(const LinkHello &hello, LinkTime now)
         return;
     }
     TakeToken(hello.Clock, hello.Time, now);
-    if (hello.YourIncarnation != _context.Incarnation)
+    if (hello.YourIncarnation != _ownLife)
     {
         // It does not know this life of ours yet.
         HelloSoon(now);
@@ -88,6 +89,7 @@ void LinkPeer::HelloSoon(LinkTime now)
 
 void LinkPeer::OnOwnRaise(LinkTime now)
 {
+    _ownLife = _context.Incarnation;
     for (const auto &[queue, receiver] : _receivers)
     {
         receiver->DropSession();
@@ -113,13 +115,13 @@ LinkReceiver *LinkPeer::FindReceiver(std::string_view queue) const
 
 LinkSender &LinkPeer::AddSender(std::string_view queue, const LinkOptions &options)
 {
-    auto sender = std::make_unique<LinkSender>(_context, _name, std::string(queue), options);
+    auto sender = std::make_unique<LinkSender>(_context, _ownLife, _name, std::string(queue), options);
     return *_senders.emplace(std::string(queue), std::move(sender)).first->second;
 }
 
 LinkReceiver &LinkPeer::AddReceiver(std::string_view queue)
 {
-    auto receiver = std::make_unique<LinkReceiver>(_context, _name, std::string(queue));
+    auto receiver = std::make_unique<LinkReceiver>(_context, _ownLife, _name, std::string(queue));
     return *_receivers.emplace(std::string(queue), std::move(receiver)).first->second;
 }
 
@@ -139,7 +141,7 @@ bool LinkPeer::HasPending() const
 
 void LinkPeer::Run(LinkTime now)
 {
-    _silent = now - _heardAt >= _context.Settings.SilentAfter;
+    _silent = IsSilentAt(now);
     for (const auto &[queue, receiver] : _receivers)
     {
         receiver->Run(_incarnation, now);
@@ -161,7 +163,7 @@ void LinkPeer::RunHello(LinkTime now)
     LinkHello hello;
     hello.Source = _context.Settings.Node;
     hello.Destination = _name;
-    hello.Incarnation = _context.Incarnation;
+    hello.Incarnation = _ownLife;
     hello.YourIncarnation = _incarnation;
     hello.Clock = _context.Settings.Clock;
     hello.Time = now.count();
@@ -211,9 +213,10 @@ LinkTime LinkPeer::NextDue() const
 std::string LinkPeer::Describe() const
 {
     std::ostringstream out;
-    out << "peer " << _name << ": life " << _incarnation << " token " << _token.Clock << ' ' << _token.Time
-        << " of " << _token.CameAt.count() << " heard at " << _heardAt.count() << (_silent ? " silent" : "")
-        << " hello at " << _helloAt.count() << " last " << _lastHelloAt.count() << '\n';
+    out << "peer " << _name << ": own life " << _ownLife << " life " << _incarnation << " token "
+        << _token.Clock << ' ' << _token.Time << " of " << _token.CameAt.count() << " heard at "
+        << _heardAt.count() << (_silent ? " silent" : "") << " hello at " << _helloAt.count() << " last "
+        << _lastHelloAt.count() << '\n';
     for (const auto &[queue, sender] : _senders)
     {
         out << sender->Describe() << '\n';

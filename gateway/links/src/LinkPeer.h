@@ -26,6 +26,8 @@ public:
 
     LinkPeer(LinkContext &context, std::string name, LinkTime now);
 
+    // The life in which this node is to the peer.
+    std::uint64_t OwnLife() const { return _ownLife; }
     // The life that the peer is in as far as known; 0: not heard yet.
     std::uint64_t Incarnation() const { return _incarnation; }
 
@@ -39,6 +41,12 @@ public:
     void OnHello(const LinkHello &hello, LinkTime now);
     // Sends a hello as soon as HelloGap allows.
     void HelloSoon(LinkTime now);
+
+    // Whether nothing is lost with it but what can be learnt again: nothing waits for it here.
+    bool MayBeForgotten() const { return !HasPending(); }
+    bool HasLinks() const { return !_senders.empty() || !_receivers.empty(); }
+    bool IsSilentAt(LinkTime now) const { return now - _heardAt >= _context.Settings.SilentAfter; }
+    LinkTime HeardAt() const { return _heardAt; }
 
     // Rules R1 and S6: this node has taken a new incarnation.
     void OnOwnRaise(LinkTime now);
@@ -66,6 +74,7 @@ private:
 
     LinkContext &_context;
     const std::string _name;
+    std::uint64_t _ownLife;
     std::uint64_t _incarnation = 0;
     PeerToken _token;
     LinkTime _heardAt;     // when something of its present life came last; at first, when it was made

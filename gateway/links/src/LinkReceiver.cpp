@@ -16,8 +16,9 @@ constexpr std::int64_t DriftPart = 990;
 
 }  // namespace
 
-LinkReceiver::LinkReceiver(LinkContext &context, std::string source, std::string queue)
-    : _context(context), _source(std::move(source)), _queue(std::move(queue))
+LinkReceiver::LinkReceiver(LinkContext &context, const std::uint64_t &ownLife, std::string source,
+                           std::string queue)
+    : _context(context), _ownLife(ownLife), _source(std::move(source)), _queue(std::move(queue))
 {
 }
 
@@ -25,7 +26,7 @@ void LinkReceiver::OnData(const LinkData &data, LinkTime now)
 {
     // Rule R1: not for this life -> acknowledge only. (The node has already raised its incarnation if need
     // be.)
-    if (data.ReceiverIncarnation != _context.Incarnation)
+    if (data.ReceiverIncarnation != _ownLife)
     {
         ++_counters.Stale;
         AcknowledgeBy(now);
@@ -207,7 +208,7 @@ void LinkReceiver::Run(std::uint64_t peerIncarnation, LinkTime now)
     ack.Source = _source;
     ack.Destination = _context.Settings.Node;
     ack.Queue = _queue;
-    ack.ReceiverIncarnation = _context.Incarnation;
+    ack.ReceiverIncarnation = _ownLife;
     ack.SenderIncarnation = _senderIncarnation;
     ack.Cumulative = _cumulative;
     ack.Delivered = _history.Delivered();

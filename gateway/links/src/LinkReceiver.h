@@ -19,7 +19,8 @@ namespace Rabit
 class LinkReceiver
 {
 public:
-    LinkReceiver(LinkContext &context, std::string source, std::string queue);
+    // `ownLife`: the life in which this node is to the source; must outlive the object.
+    LinkReceiver(LinkContext &context, const std::uint64_t &ownLife, std::string source, std::string queue);
 
     void OnData(const LinkData &data, LinkTime now);
     // The local queue has room again.
@@ -44,6 +45,7 @@ private:
     void AcknowledgeBy(LinkTime when);
 
     LinkContext &_context;
+    const std::uint64_t &_ownLife;
     const std::string _source;
     const std::string _queue;
 

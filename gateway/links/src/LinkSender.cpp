@@ -19,9 +19,10 @@ constexpr std::size_t MessageOverhead = 32;
 
 }  // namespace
 
-LinkSender::LinkSender(LinkContext &context, std::string destination, std::string queue,
-                       const LinkOptions &options)
+LinkSender::LinkSender(LinkContext &context, const std::uint64_t &ownLife, std::string destination,
+                       std::string queue, const LinkOptions &options)
     : _context(context),
+      _ownLife(ownLife),
       _destination(std::move(destination)),
       _queue(std::move(queue)),
       _options(options),
@@ -181,7 +182,7 @@ void LinkSender::SendDatagram(const PeerView &peer, LinkTime now)
     data.Source = _context.Settings.Node;
     data.Destination = _destination;
     data.Queue = _queue;
-    data.SenderIncarnation = _context.Incarnation;
+    data.SenderIncarnation = _ownLife;
     data.ReceiverIncarnation = peer.Incarnation;
     data.Base = _base;
     data.First = _cursor;
@@ -255,14 +256,14 @@ bool LinkSender::Append(LinkData &data, std::size_t &bytes, LinkTime now)
 
 bool LinkSender::IsPossible(const LinkAck &ack) const
 {
-    return ack.SenderIncarnation != _context.Incarnation ||
+    return ack.SenderIncarnation != _ownLife ||
            (ack.Cumulative >= _base - 1 && ack.Cumulative < _outbox.NextSequence());
 }
 
 // Rule S4: everything up to `cum` leaves the outbox with the outcome that its bit says; the credit rises.
 void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
 {
-    if (ack.SenderIncarnation != _context.Incarnation || !IsPossible(ack))
+    if (ack.SenderIncarnation != _ownLife || !IsPossible(ack))
     {
         return;
     }

@@ -31,7 +31,9 @@ struct PeerView
 class LinkSender
 {
 public:
-    LinkSender(LinkContext &context, std::string destination, std::string queue, const LinkOptions &options);
+    // `ownLife`: the life in which this node is to the destination; must outlive the object.
+    LinkSender(LinkContext &context, const std::uint64_t &ownLife, std::string destination, std::string queue,
+               const LinkOptions &options);
 
     // Rule S1. `type` must live as long as this object.
     LinkRefusal Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now);
@@ -70,12 +72,13 @@ private:
     void Report(const OutboxMessage &message, LinkOutcome outcome);
 
     LinkContext &_context;
+    const std::uint64_t &_ownLife;
     const std::string _destination;
     const std::string _queue;
     const LinkOptions _options;
     LinkOutbox _outbox;
 
-    // First number of this stream. Its incarnation is always that of the node.
+    // First number of this stream. Its incarnation is always _ownLife.
     std::uint64_t _base = 1;
     // Next number to send. Below NextSequence(): it was sent before.
     std::uint64_t _cursor = 1;

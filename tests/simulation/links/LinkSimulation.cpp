@@ -251,7 +251,7 @@ void Simulation::OnFault(const Fault &fault)
     if (_trace != nullptr)
     {
         static constexpr const char *Names[] = {"weather", "cut",        "cut ends", "crash",
-                                                "start",   "clock step", "stall"};
+                                                "start",   "clock step", "stall",    "forget"};
         *_trace << Lead() << Names[static_cast<int>(fault.Kind)] << " n" << fault.A << " n" << fault.B << ' '
                 << fault.Amount << (fault.LoseStorage ? " storage lost" : "") << '\n';
     }
@@ -287,6 +287,13 @@ void Simulation::OnFault(const Fault &fault)
             break;
         case FaultKind::Stall:
             _stalledUntil[fault.A] = _world.Now + LinkTime(fault.Amount);
+            break;
+        case FaultKind::Forget:
+            if (_nodes[fault.A]->IsAlive() && fault.A != fault.B)
+            {
+                _statistics.Forgotten += _nodes[fault.A]->Forget(fault.B) ? 1 : 0;
+                Pump(fault.A);
+            }
             break;
     }
 }
@@ -411,7 +418,8 @@ void Simulation::OnDatagram(std::size_t slot)
     {
         *_trace << Lead() << "came " << Describe(packet) << '\n';
     }
-    if (_nodes[packet.From]->IsAlive() && _nodes[packet.From]->Links().Incarnation() == IncarnationOf(packet))
+    if (_nodes[packet.From]->IsAlive() &&
+        _nodes[packet.From]->Links().IncarnationTo(_plan.Nodes[packet.To].Name) == IncarnationOf(packet))
     {
         _oracle.Knows(packet.To, packet.From);
     }

@@ -27,7 +27,8 @@ struct SimStatistics
     std::uint64_t Malformed = 0;
     std::uint64_t Crashes = 0;
     std::uint64_t StoragesLost = 0;
-    std::uint64_t Raises = 0;  // incarnations taken because a peer knew a higher one
+    std::uint64_t Forgotten = 0;  // peers that a node forgot while it lived
+    std::uint64_t Raises = 0;     // incarnations taken because a peer knew a higher one
     LinkTime LongestDrain{0};
 };
 

@@ -24,6 +24,7 @@ Oracle::Oracle(const Scenario &scenario)
     : _scenario(scenario),
       _lifeOf(scenario.Nodes.size(), NoLife),
       _nodeEpoch(scenario.Nodes.size(), 0),
+      _pairEpoch(scenario.Nodes.size(), std::vector<std::uint32_t>(scenario.Nodes.size(), 0)),
       _knownEpoch(scenario.Nodes.size(), std::vector<std::uint32_t>(scenario.Nodes.size(), 0)),
       _links(scenario.Links.size()),
       _linkIndex(scenario.Nodes.size() * scenario.Nodes.size() * scenario.Queues.size(),
@@ -64,7 +65,8 @@ std::size_t Oracle::FindLink(std::size_t source, std::size_t destination, std::s
 
 std::uint32_t Oracle::EpochOf(std::size_t link) const
 {
-    return _nodeEpoch[_scenario.Links[link].Source] + _nodeEpoch[_scenario.Links[link].Destination];
+    const ScenarioLink &scenario = _scenario.Links[link];
+    return EpochTo(scenario.Source, scenario.Destination) + EpochTo(scenario.Destination, scenario.Source);
 }
 
 void Oracle::Fail(int invariant, const std::string &what)
@@ -86,6 +88,12 @@ std::size_t Oracle::StartLife(std::size_t node)
 void Oracle::NewEpoch(std::size_t node)
 {
     ++_nodeEpoch[node];
+}
+
+void Oracle::Forgets(std::size_t node, std::size_t peer)
+{
+    ++_pairEpoch[node][peer];
+    _knownEpoch[node][peer] = 0;
 }
 
 std::vector<std::uint8_t> Oracle::MakePayload(SimRandom &random) const
@@ -138,13 +146,13 @@ void Oracle::OnEnqueue(std::size_t link, std::string_view type, std::span<const 
         Fail(3, "ids do not rise by one");
     }
     _lives[life].RecordOfId.push_back(_records.size());
-    _records.push_back(
-        {.Link = link,
-         .Life = life,
-         .EnqueuedAt = senderNow,
-         .Bytes = payload.size(),
-         .Type = type,
-         .Epoch = _nodeEpoch[scenario.Source] + _knownEpoch[scenario.Source][scenario.Destination]});
+    _records.push_back({.Link = link,
+                        .Life = life,
+                        .EnqueuedAt = senderNow,
+                        .Bytes = payload.size(),
+                        .Type = type,
+                        .Epoch = EpochTo(scenario.Source, scenario.Destination) +
+                                 _knownEpoch[scenario.Source][scenario.Destination]});
     ++state.Pending;
     state.PendingBytes += payload.size();
 }

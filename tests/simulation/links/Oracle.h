@@ -44,8 +44,11 @@ public:
     // way to or from it may be in doubt.
     void NewEpoch(std::size_t node);
     void EndLife(std::size_t node) { _lifeOf[node] = NoLife; }
+    // The node has forgotten the other one: between the two it is as if it were in a new incarnation, and it
+    // does not know that of the other.
+    void Forgets(std::size_t node, std::size_t peer);
     // A node has heard of the present incarnation of another one.
-    void Knows(std::size_t node, std::size_t peer) { _knownEpoch[node][peer] = _nodeEpoch[peer]; }
+    void Knows(std::size_t node, std::size_t peer) { _knownEpoch[node][peer] = EpochTo(peer, node); }
 
     // The payload and type of the next message of a link.
     std::vector<std::uint8_t> MakePayload(SimRandom &random) const;
@@ -97,6 +100,11 @@ private:
 
     std::size_t FindLink(std::size_t source, std::size_t destination, std::string_view queue) const;
     std::size_t FindNode(std::string_view name) const;
+    // Rises with each life in which the node is to that peer.
+    std::uint32_t EpochTo(std::size_t node, std::size_t peer) const
+    {
+        return _nodeEpoch[node] + _pairEpoch[node][peer];
+    }
     std::uint32_t EpochOf(std::size_t link) const;
     std::size_t IndexOf(const Record &record) const
     {
@@ -108,6 +116,7 @@ private:
     std::vector<Life> _lives;
     std::vector<std::size_t> _lifeOf;                     // by node
     std::vector<std::uint32_t> _nodeEpoch;                // by node
+    std::vector<std::vector<std::uint32_t>> _pairEpoch;   // by node and peer: how often it forgot the peer
     std::vector<std::vector<std::uint32_t>> _knownEpoch;  // by node and peer
     std::vector<LinkState> _links;
     std::vector<std::size_t> _linkIndex;  // by source, destination and queue

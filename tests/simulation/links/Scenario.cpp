@@ -91,7 +91,7 @@ void AddFault(Scenario &scenario, SimRandom &random)
             AddCut(scenario, b, a, at, end);
         }
     }
-    else if (kind < 0.85)
+    else if (kind < 0.79)
     {
         if (scenario.Nodes[a].NeverThere)
         {
@@ -104,7 +104,11 @@ void AddFault(Scenario &scenario, SimRandom &random)
                                    .A = a,
                                    .LoseStorage = scenario.IncarnationsMayFall && random.Chance(0.5)});
     }
-    else if (kind < 0.92)
+    else if (kind < 0.88)
+    {
+        scenario.Faults.push_back({.At = at, .Kind = FaultKind::Forget, .A = a, .B = b});
+    }
+    else if (kind < 0.93)
     {
         const std::int64_t seconds = random.LogBetween(1, 1000000) * (random.Chance(0.5) ? 1 : -1);
         scenario.Faults.push_back({.At = at, .Kind = FaultKind::ClockStep, .A = a, .Amount = seconds});

@@ -65,6 +65,7 @@ enum class FaultKind
     Start,      // node A starts (again)
     ClockStep,  // node A's wall clock jumps by Amount seconds
     Stall,      // node A's queues are not emptied for Amount nanoseconds
+    Forget      // node A forgets node B, if nothing waits there for B
 };
 
 struct Fault

@@ -106,6 +106,18 @@ void SimNode::Enqueue(std::size_t link)
     _world.Oracle.OnEnqueue(link, type, payload, result.Refusal, result.Id, now);
 }
 
+bool SimNode::Forget(std::size_t node)
+{
+    const std::uint64_t before = _links->Counters().Forgotten;
+    _links->Forget(_world.Plan.Nodes[node].Name);
+    const bool forgotten = _links->Counters().Forgotten > before;
+    if (forgotten)
+    {
+        _world.Oracle.Forgets(_index, node);
+    }
+    return forgotten;
+}
+
 void SimNode::Receive(const Packet &packet)
 {
     struct Visitor

@@ -46,6 +46,8 @@ public:
     void StepWallClock(std::int64_t seconds) { _wallSeconds += seconds; }
 
     void Enqueue(std::size_t link);
+    // Forgets another node, if nothing waits for it. Returns whether there was something to forget.
+    bool Forget(std::size_t node);
     void Receive(const Packet &packet);
     // A message is taken out of a queue, and local producers may put one in. Returns whether there are more.
     bool Consume(std::size_t queue);

@@ -29,6 +29,7 @@ Rabit::Sim::SeedResult Run(std::uint64_t seed, std::ostream *trace)
              {"crashes", s.Crashes},
              {"storages lost", s.StoragesLost},
              {"incarnations raised", s.Raises},
+             {"peers forgotten", s.Forgotten},
              {"longest drain", static_cast<std::uint64_t>(s.LongestDrain.count()), Figure::Kind::Largest}}};
 }
 

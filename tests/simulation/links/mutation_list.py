@@ -171,4 +171,16 @@ MUTATIONS = [
              "if (ack.Version != 255) { return true; } return ack.Version == LinkVersion &&", "simulation"),
     Mutation("malformed hellos are taken", "LinkValidation.cpp", "return hello.Version == LinkVersion &&",
              "if (hello.Version != 255) { return true; } return hello.Version == LinkVersion &&", "simulation"),
+
+    # Forgetting
+    Mutation("Forgetting: to who comes back the node is in the same life", "LinkNode.cpp",
+             "_context->Incarnation += peer->second->HasLinks() ? 1 : 0;", "", "simulation"),
+    Mutation("Forgetting: messages that wait are forgotten", "LinkNode.cpp",
+             "if (!found->second->MayBeForgotten())", "if (false)", "simulation"),
+    Mutation("Forgetting: what one peer knows is held against the life to another", "LinkNode.cpp",
+             "if (incarnation <= IncarnationTo(from))", "if (incarnation <= _context->Incarnation)", "direct"),
+    Mutation("Forgetting: one that is live and has links is forgotten", "LinkNode.cpp",
+             "(!peer->second->HasLinks() || peer->second->IsSilentAt(now))", "true", "direct"),
+    Mutation("Forgetting: one without links is kept like one with", "LinkNode.cpp",
+             "(!peer->second->HasLinks() || peer->second->IsSilentAt(now))", "peer->second->IsSilentAt(now)", "direct"),
 ]

@@ -63,6 +63,7 @@ struct LinkNodeCounters
     std::uint64_t Raises = 0;        // incarnations taken because a peer knew a higher one (rules R1 and S6)
     std::uint64_t FalseClaims = 0;   // higher incarnations said of this node that none of its lives had
     std::uint64_t RaisesPutOff = 0;  // messages of a higher one within LinkSettings::RaiseGap, ignored
+    std::uint64_t Forgotten = 0;     // peers forgotten, with their links
     std::uint64_t PeerRestarts = 0;  // peers seen with a new incarnation
     std::uint64_t HellosSent = 0;
 };

@@ -46,8 +46,9 @@ protected:
 class LinkOutput
 {
 public:
-    // Sends to the gateway of the node data.Destination. May be kept and encoded after the call: its names
-    // are valid as long as the LinkNode, its payloads as long as their owners are held.
+    // Sends to the gateway of the node data.Destination. May be kept and encoded after the call: its source
+    // and types are valid as long as the LinkNode, its payloads as long as their owners are held; its
+    // destination and queue only until that node is forgotten, which may be soon: copy them.
     virtual void Send(const LinkData &data) = 0;
     // Sends to the gateway of the node ack.Source.
     virtual void Send(const LinkAck &ack) = 0;

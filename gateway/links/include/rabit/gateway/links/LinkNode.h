@@ -75,8 +75,15 @@ public:
     void OnRoom(std::string_view queue, LinkTime now);
 
     // A node is there (discovery found it): starts the exchange of hellos, so that the first message for it
-    // need not wait for one. Never needed for correctness. False: LinkSettings::MaxPeers are known already.
+    // need not wait for one. Never needed for correctness. False: LinkSettings::MaxPeers are known already, and none can be forgotten.
     bool AddPeer(std::string_view node, LinkTime now);
+
+    // Forgets a node and the links to and from it, unless messages for it wait here (false). What it had sent
+    // and was not told the outcome of will be in doubt there. Without this call a node is forgotten when
+    // LinkSettings::MaxPeers are known and another one comes.
+    bool Forget(std::string_view node);
+    // Whether messages for that node wait here.
+    bool HasPending(std::string_view node) const;
 
     // Does everything that is due: expiry, sending, resending, acknowledging, hellos.
     void Run(LinkTime now);
@@ -89,8 +96,12 @@ public:
     void Close();
 
     const std::string &Name() const;
-    // The life this node is in. It rises when a peer remembers a higher one (rules R1 and S6).
+    // The life this node is in to whom it meets now. It rises when a peer remembers a higher one (rules R1
+    // and S6), and when one with links is forgotten.
     std::uint64_t Incarnation() const;
+    // The life this node is in to that one: the same, or an earlier one that began before others were
+    // forgotten.
+    std::uint64_t IncarnationTo(std::string_view node) const;
     // The alarm of rule S6: incarnations had to be taken so often that another live node must have this name.
     bool NameInUseElsewhere() const;
 
@@ -115,7 +126,9 @@ private:
                                 LinkSender *&sender);
     bool IsForUs(std::string_view name);
     void CountMalformed();
-    void HeardOfMyself(std::uint64_t incarnation, LinkTime now);
+    bool ForgetOne(LinkTime now);
+    void Forget(Peers::iterator peer);
+    void HeardOfMyself(std::string_view from, std::uint64_t incarnation, LinkTime now);
 
     IncarnationSource &_incarnations;
     std::unique_ptr<LinkContext> _context;

@@ -64,7 +64,9 @@ struct LinkSettings
     LinkTime SilentAfter{std::chrono::seconds(10)};
     LinkTime SilentHelloPeriod{std::chrono::seconds(2)};
     LinkTime HelloGap{std::chrono::milliseconds(20)};
-    // Other nodes known, at most; links to one of them, and links from one of them, at most.
+    // Other nodes known, at most; links to one of them, and links from one of them, at most. When another one
+    // comes, one for which nothing waits is forgotten: one without links, or else the one that has been
+    // silent for longest.
     std::size_t MaxPeers = 1024;
     std::size_t MaxLinksPerPeer = 256;
     // Time between two new incarnations that this node takes because peers know of a higher one: each drops

@@ -28,7 +28,7 @@ enum class LinkRefusal : std::uint8_t
     TooLarge,     // its payload alone exceeds LinkOptions::CapacityBytes
     BadName,  // the destination, queue or type name is empty or longer than LinkMaxName, or the destination
               // is this node
-    TooManyPeers,  // LinkSettings::MaxPeers other nodes are known already
+    TooManyPeers,  // LinkSettings::MaxPeers other nodes are known already, and none can be forgotten
     TooManyLinks   // LinkSettings::MaxLinksPerPeer links to this destination are in use already
 };
 

@@ -1,0 +1,149 @@
+// What a node forgets of others, and that nothing promised is broken by it. Node `a` is under test, `b` is
+// played.
+#include <gmock/gmock.h>
+
+#include "NodeUnderTest.h"
+
+namespace Rabit::Test
+{
+namespace
+{
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+LinkSettings ForTwo()
+{
+    LinkSettings settings;
+    settings.MaxPeers = 2;
+    return settings;
+}
+
+StoredHello HelloOf(const std::string &node, PlayedPeer &peer)
+{
+    StoredHello hello = peer.Hello();
+    hello.Source = node;
+    return hello;
+}
+
+TEST(LinkForgetting, a_crowd_of_names_without_links_makes_room_for_each_next_one)
+{
+    NodeUnderTest a(ForTwo());
+    PlayedPeer peer;
+    for (int i = 0; i < 100; ++i)
+    {
+        a.Hear(HelloOf(std::string("n").append(std::to_string(i)), peer));
+        a.Pass(1ms);
+    }
+    EXPECT_EQ(a.Node->Counters().TooManyPeers, 0U);
+    EXPECT_EQ(a.Node->Counters().Forgotten, 98U);
+    EXPECT_NE(a.Enqueue("m"), 0U);
+}
+
+TEST(LinkForgetting, a_peer_for_which_messages_wait_is_kept)
+{
+    NodeUnderTest a(ForTwo());
+    a.Enqueue("m", "b");
+    a.Enqueue("m", "c");
+    a.Pass(1h);
+    EXPECT_FALSE(a.Node->Forget("b"));
+    EXPECT_TRUE(a.Node->HasPending("b"));
+    EXPECT_EQ(a.Node->Enqueue("d", "q", "T", {}, a.Now).Refusal, LinkRefusal::TooManyPeers);
+    EXPECT_EQ(a.SenderCounters().Pending, 1U);
+}
+
+TEST(LinkForgetting, a_live_peer_with_links_is_kept_and_a_silent_one_makes_room)
+{
+    NodeUnderTest a(ForTwo());
+    PlayedPeer b;
+    a.Configure({}, "c");
+    a.Hear(b.Data(1, {"m"}, a.Now));
+    a.Pass(9s);
+    a.Hear(b.Hello());
+    EXPECT_EQ(a.Node->Enqueue("d", "q", "T", {}, a.Now).Refusal, LinkRefusal::TooManyPeers);
+    a.Pass(2s);
+    EXPECT_EQ(a.Node->Enqueue("d", "q", "T", {}, a.Now).Refusal, LinkRefusal::None);
+    EXPECT_THAT(a.ReceiverCounters().SessionsOpened, 1U) << "b was heard 2 s ago";
+}
+
+TEST(LinkForgetting, what_was_delivered_before_is_not_delivered_again_when_the_sender_comes_back)
+{
+    NodeUnderTest a;
+    PlayedPeer b;
+    a.Hear(b.Data(1, {"m"}, a.Now));
+    ASSERT_THAT(a.TakeDelivered(), SizeIs(1));
+    a.Pass(60s);
+    ASSERT_TRUE(a.Node->Forget("b"));
+    // The acknowledgement was lost: it sends the message again, and with a fresh token.
+    a.Hear(b.Data(1, {"m"}, a.Now));
+    a.Pass(5ms);
+    EXPECT_THAT(a.TakeDelivered(), IsEmpty());
+    const std::vector<StoredAck> acks = a.TakeAcks();
+    ASSERT_FALSE(acks.empty());
+    EXPECT_GT(acks.back().Fields.ReceiverIncarnation, b.KnownLife) << "the sender must take it for a restart";
+    EXPECT_EQ(acks.back().Fields.SenderIncarnation, 0U);
+}
+
+TEST(LinkForgetting, the_sender_goes_on_once_it_knows)
+{
+    NodeUnderTest a;
+    PlayedPeer b;
+    a.Hear(b.Data(1, {"m1", "m2"}, a.Now));
+    a.Pass(60s);
+    ASSERT_TRUE(a.Node->Forget("b"));
+    a.TakeDelivered();
+    b.KnownLife = a.Node->IncarnationTo("b");
+    StoredData data = b.Data(3, {"m3"}, a.Now);
+    data.Fields.Base = 3;
+    a.Hear(data);
+    EXPECT_THAT(a.TakeDelivered(), SizeIs(1));
+}
+
+TEST(LinkForgetting, the_next_stream_to_a_forgotten_peer_outranks_the_last_one)
+{
+    NodeUnderTest a;
+    PlayedPeer b;
+    a.Hear(b.Hello());
+    a.Enqueue("m");
+    a.Pass(1ms);
+    const std::vector<StoredData> first = a.TakeDatas();
+    ASSERT_THAT(first, SizeIs(1));
+    a.Hear(b.Ack(1));
+    ASSERT_TRUE(a.Node->Forget("b"));
+    a.Hear(b.Hello());
+    a.Enqueue("n");
+    a.Pass(30ms);
+    const std::vector<StoredData> second = a.TakeDatas();
+    ASSERT_THAT(second, SizeIs(1));
+    EXPECT_GT(second[0].Fields.SenderIncarnation, first[0].Fields.SenderIncarnation);
+}
+
+TEST(LinkForgetting, other_peers_see_nothing_of_it)
+{
+    NodeUnderTest a;
+    PlayedPeer b;
+    a.Configure({}, "c");
+    a.Hear(b.Data(1, {"m1"}, a.Now));
+    ASSERT_TRUE(a.Node->Forget("c"));
+    a.Hear(b.Data(2, {"m2"}, a.Now));
+    EXPECT_THAT(a.TakeDelivered(), SizeIs(2));
+    EXPECT_EQ(a.Node->IncarnationTo("b"), NodeUnderTest::FirstLife);
+    EXPECT_GT(a.Node->IncarnationTo("c"), NodeUnderTest::FirstLife);
+}
+
+TEST(LinkForgetting, a_peer_that_remembers_more_than_this_node_told_it_still_makes_it_raise)
+{
+    NodeUnderTest a;
+    PlayedPeer b;
+    a.Hear(b.Hello());
+    a.Configure({}, "c");
+    ASSERT_TRUE(a.Node->Forget("c"));
+    ASSERT_GT(a.Node->Incarnation(), a.Node->IncarnationTo("b"));
+    b.KnownLife = a.Node->Incarnation();
+    a.Hear(b.Hello());
+    EXPECT_EQ(a.Node->Counters().Raises, 1U);
+    EXPECT_GT(a.Node->IncarnationTo("b"), b.KnownLife);
+}
+
+}  // namespace
+}  // namespace Rabit::Test
