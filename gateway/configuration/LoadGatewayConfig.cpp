@@ -105,7 +105,7 @@ void ReadSubscribe(const YamlMap &map, GatewayConfig &config)
 
 void ReadAccept(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry : map.Maps("accept", "an `accept` entry", {"queue", "types"}))
+    for (const YamlMap &entry : map.Maps("accept", "an `accept` entry", {"queue", "types", "from"}))
     {
         entry.Require("queue");
         entry.Require("types");
@@ -113,6 +113,7 @@ void ReadAccept(const YamlMap &map, GatewayConfig &config)
         rule.Line = entry.Line();
         entry.Read("queue", rule.Queue);
         entry.Read("types", rule.Types);
+        entry.Read("from", rule.From);
         config.Accept.push_back(rule);
     }
 }

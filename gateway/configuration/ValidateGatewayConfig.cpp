@@ -240,6 +240,7 @@ private:
                 CheckType(type, rule.Line);
                 CheckOnce(types, type, "types", rule.Line);
             }
+            CheckPatterns(rule.From, "from", rule.Line);
         }
     }
 

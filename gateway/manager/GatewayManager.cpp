@@ -68,12 +68,13 @@ public:
                          NanosecondsInSecond;
               },
               random),
-          _links(_config, _workspace, _incarnations, random(), manager.WakeUpHandler()),
+          _remote(config.Node),
+          _links(_config, _workspace, _incarnations, _senders, random(), manager.WakeUpHandler()),
           _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links)),
           _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),
           _presence(
-              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
+              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, _senders, random,
               [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace),
           _fleet(std::make_shared<Gateway::Fleet>())
@@ -265,7 +266,7 @@ private:
         fleet.forgotten = _presence.Peers().Forgotten();
         fleet.crowded_out =
             _presence.Peers().CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
-        fleet.malformed = _presence.Malformed() + _links.Malformed();
+        fleet.malformed = _presence.Malformed() + _links.Malformed() + _senders.Refused();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
         FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
@@ -290,7 +291,7 @@ private:
         }
         for (const auto &problems :
              {Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
-              _outgoing->Problems(), _links.Problems()})
+              _outgoing->Problems(), _links.Problems(), _senders.Problems(now)})
         {
             fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
         }
@@ -303,6 +304,7 @@ private:
     IncarnationStore _incarnations;
     OriginTable _origins;
     RemoteQueues _remote;
+    SenderCheck _senders;
     LinkDriver _links;
     const std::shared_ptr<OutgoingQueues> _outgoing;
     const std::uint64_t _incarnation;

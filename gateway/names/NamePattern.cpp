@@ -77,6 +77,13 @@ bool IsNodeName(std::string_view text)
     return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), IsNodeCharacter);
 }
 
+bool IsNodePattern(std::string_view text)
+{
+    return !text.empty() && text.size() <= 64 &&
+           std::all_of(text.begin(), text.end(),
+                       [](char c) { return IsNodeCharacter(c) || c == '*' || c == '?'; });
+}
+
 bool IsMessageName(std::string_view text)
 {
     return !text.empty() && text.size() <= 200 && text.front() != '/' && text.back() != '/' &&

@@ -17,6 +17,9 @@ bool MatchesAny(const std::vector<std::string> &patterns, std::string_view name)
 // Whether the text is a node name: 1 to 64 of A-Z a-z 0-9 _ . -
 bool IsNodeName(std::string_view text);
 
+// Whether the text is a pattern of node names.
+bool IsNodePattern(std::string_view text);
+
 // Whether the text can name a message or a queue: 1 to 200 of A-Z a-z 0-9 _ . - : / that are not empty
 // between slashes.
 bool IsMessageName(std::string_view text);

@@ -18,11 +18,13 @@ constexpr std::size_t EchoesInABeat = 8;
 // Whoever has just appeared may not be matched yet with those who send to it, and nothing of a node is posted
 // before a beat of it was heard: the first beats follow each other quickly, each step twice the one before.
 constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
+
 }  // namespace
 
 Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
-                   PeerTable::IsNeeded isNeeded, std::function<void()> wake)
+                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote,
+                   SenderCheck &senders, RandomSource random, PeerTable::IsNeeded isNeeded,
+                   std::function<void()> wake)
     : _node(node),
       _incarnation(incarnation),
       _clock(clock),
@@ -31,7 +33,8 @@ Presence::Presence(const std::string &node, std::uint64_t incarnation, const Rab
       _remote(remote),
       _wake(std::move(wake)),
       _peers(node, incarnation, std::move(isNeeded)),
-      _introductions(std::move(random))
+      _introductions(std::move(random)),
+      _inbox(senders)
 {
 }
 
@@ -58,12 +61,12 @@ void Presence::Open(TransportSession &session, Gateway::Announcement announcemen
         GatewayTopics::Describe(GatewayTopics::Beat, GatewayTopics::TypeOf<Gateway::Beat>()),
         GatewayTopics::QosOf(QosProfile::Telemetry), {},
         [this](SampleBytes bytes, const SampleInfo &info)
-        { WakeIf(info.Alive && _inbox.AddBeat(bytes, _clock.Monotonic())); });
+        { WakeIf(info.Alive && _inbox.AddBeat(bytes, info.Node, _clock.Monotonic())); });
     _announcementReader = session.CreateReader(
         GatewayTopics::Describe(GatewayTopics::Announcement, GatewayTopics::TypeOf<Gateway::Announcement>()),
         GatewayTopics::QosOf(QosProfile::State), {},
         [this](SampleBytes bytes, const SampleInfo &info)
-        { WakeIf(info.Alive && _inbox.AddAnnouncement(bytes)); });
+        { WakeIf(info.Alive && _inbox.AddAnnouncement(bytes, info.Node, _clock.Monotonic())); });
 }
 
 void Presence::Close()

@@ -17,6 +17,7 @@
 #include "presence/PeerTable.h"
 #include "presence/PresenceInbox.h"
 #include "presence/RemoteQueues.h"
+#include "presence/SenderCheck.h"
 
 namespace Rabit
 {
@@ -35,8 +36,8 @@ public:
     // `wake` makes the gateway's thread call Service soon; called on any thread. References must outlive the
     // object.
     Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-             const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
-             PeerTable::IsNeeded isNeeded, std::function<void()> wake);
+             const SourceClock &source, OriginTable &origins, RemoteQueues &remote, SenderCheck &senders,
+             RandomSource random, PeerTable::IsNeeded isNeeded, std::function<void()> wake);
     ~Presence();
 
     // Starts to send and to receive. Throws TransportError.

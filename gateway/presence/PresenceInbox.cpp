@@ -33,13 +33,17 @@ bool IsPlausible(const Gateway::Beat &beat)
 
 }  // namespace
 
-bool PresenceInbox::AddBeat(SampleBytes bytes, Duration arrival)
+bool PresenceInbox::AddBeat(SampleBytes bytes, std::string_view participant, Duration arrival)
 {
     Heard heard;
     heard.Arrival = arrival;
     const bool good = bytes.size() <= LargestBeat &&
                       GatewayTopics::TypeOf<Gateway::Beat>().Deserialize(bytes, heard.Beat) &&
                       IsPlausible(heard.Beat);
+    if (good && !_senders.MaySpeakFor(participant, heard.Beat.node, arrival))
+    {
+        return false;
+    }
     const std::lock_guard lock(_mutex);
     if (!good || !HasRoomFor(bytes.size() + sizeof(Heard)))
     {
@@ -49,12 +53,16 @@ bool PresenceInbox::AddBeat(SampleBytes bytes, Duration arrival)
     return true;
 }
 
-bool PresenceInbox::AddAnnouncement(SampleBytes bytes)
+bool PresenceInbox::AddAnnouncement(SampleBytes bytes, std::string_view participant, Duration arrival)
 {
     Gateway::Announcement announcement;
     const bool good = bytes.size() <= Announcements::LargestEncoded &&
                       GatewayTopics::TypeOf<Gateway::Announcement>().Deserialize(bytes, announcement) &&
                       Announcements::IsPlausible(announcement);
+    if (good && !_senders.MaySpeakFor(participant, announcement.node, arrival))
+    {
+        return false;
+    }
     const std::lock_guard lock(_mutex);
     if (!good || !HasRoomFor(bytes.size() + sizeof(Gateway::Announcement)))
     {

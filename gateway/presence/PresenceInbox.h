@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <string_view>
 #include <vector>
 
 #include "gateway.idl.h"
+#include "presence/SenderCheck.h"
 
 namespace Rabit
 {
@@ -41,9 +43,13 @@ public:
         std::vector<PeerEvent> Events;
     };
 
-    // These return whether there is something to take.
-    bool AddBeat(SampleBytes bytes, Duration arrival);
-    bool AddAnnouncement(SampleBytes bytes);
+    // `senders` must outlive the object.
+    explicit PresenceInbox(SenderCheck &senders) : _senders(senders) {}
+
+    // These return whether there is something to take. `participant` is who wrote the sample
+    // (SampleInfo::Node): what it says in another node's name is dropped, and counted by `senders`.
+    bool AddBeat(SampleBytes bytes, std::string_view participant, Duration arrival);
+    bool AddAnnouncement(SampleBytes bytes, std::string_view participant, Duration arrival);
     bool AddEvent(const PeerEvent &event);
 
     Contents Take();
@@ -54,6 +60,7 @@ private:
     bool HasRoomFor(std::size_t bytes);
     bool Drop();
 
+    SenderCheck &_senders;
     mutable std::mutex _mutex;
     Contents _contents;
     std::size_t _bytes = 0;

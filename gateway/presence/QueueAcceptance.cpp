@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "names/ListedNames.h"
+#include "names/NamePattern.h"
 
 namespace Rabit
 {
@@ -27,7 +28,7 @@ std::string QueuesOf(const PeerTable::Peer &peer)
 }  // namespace
 
 QueueAcceptance AcceptanceOf(const PeerTable::Peer &peer, const std::string &queue, const std::string &type,
-                             std::uint64_t definition)
+                             std::uint64_t definition, const std::string &sender)
 {
     if (!peer.Offers)
     {
@@ -37,6 +38,11 @@ QueueAcceptance AcceptanceOf(const PeerTable::Peer &peer, const std::string &que
     if (found == nullptr)
     {
         return QueueAcceptance::UnknownQueue;
+    }
+    if (std::none_of(found->from.begin(), found->from.end(),
+                     [&sender](const std::string &pattern) { return MatchesPattern(pattern, sender); }))
+    {
+        return QueueAcceptance::NotFromHere;
     }
     const auto fits = std::find_if(found->types.begin(), found->types.end(),
                                    [&type](const auto &accepted) { return accepted.type == type; });
@@ -60,6 +66,9 @@ std::string WhyNotAccepted(QueueAcceptance acceptance, const PeerTable::Peer &pe
             return "no announcement of " + peer.Node + " has arrived yet";
         case QueueAcceptance::UnknownQueue:
             return peer.Node + " accepts no queue `" + queue + "`; it accepts " + QueuesOf(peer);
+        case QueueAcceptance::NotFromHere:
+            return "queue `" + queue + "` of " + peer.Node + " accepts no messages of this node, but of " +
+                   ListedNames(FindQueue(peer, queue)->from, [](const auto &name) { return name; });
         case QueueAcceptance::WrongType:
             return "queue `" + queue + "` of " + peer.Node + " does not accept `" + type + "`; it accepts " +
                    ListedNames(FindQueue(peer, queue)->types, [](const auto &taken) { return taken.type; });

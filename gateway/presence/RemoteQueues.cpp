@@ -38,7 +38,7 @@ RemoteQueues::Answer RemoteQueues::Ask(const std::string &node, const std::strin
     {
         return {QueueAcceptance::UnknownNode, "no node `" + node + "` has announced itself"};
     }
-    const QueueAcceptance acceptance = AcceptanceOf(found->second, queue, type, definition);
+    const QueueAcceptance acceptance = AcceptanceOf(found->second, queue, type, definition, _ownNode);
     return {acceptance, WhyNotAccepted(acceptance, found->second, queue, type)};
 }
 
@@ -50,7 +50,7 @@ std::vector<std::string> RemoteQueues::LiveNodesAccepting(const std::string &que
     for (const auto &[name, peer] : _peers)
     {
         if (peer.State != Gateway::NodeState::LOST &&
-            AcceptanceOf(peer, queue, type, definition) == QueueAcceptance::Accepted)
+            AcceptanceOf(peer, queue, type, definition, _ownNode) == QueueAcceptance::Accepted)
         {
             nodes.push_back(name);
         }

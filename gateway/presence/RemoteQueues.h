@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "presence/PeerTable.h"
@@ -24,6 +25,9 @@ public:
         std::string Reason;  // for people; empty if accepted
     };
 
+    // `ownNode` is who would send.
+    explicit RemoteQueues(std::string ownNode) : _ownNode(std::move(ownNode)) {}
+
     // Takes over what the node announces; nothing if it has not announced anything yet.
     void Update(const PeerTable::Peer &peer);
     void Forget(const std::string &node);
@@ -36,6 +40,7 @@ public:
                                                 std::uint64_t definition) const;
 
 private:
+    const std::string _ownNode;
     mutable std::mutex _mutex;
     std::map<std::string, PeerTable::Peer> _peers;
 };

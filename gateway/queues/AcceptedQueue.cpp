@@ -6,6 +6,8 @@
 #include <typeinfo>
 #include <utility>
 
+#include "names/NamePattern.h"
+
 namespace Rabit
 {
 
@@ -53,6 +55,11 @@ std::string AcceptedQueue::Problem() const
         return "the local queue `" + _rule.Queue + "` does not hold std::shared_ptr<RabitMessage>";
     }
     return _queue ? "" : "there is no local queue `" + _rule.Queue + "`";
+}
+
+bool AcceptedQueue::AcceptsFrom(std::string_view node) const
+{
+    return MatchesAny(_rule.From, node);
 }
 
 AcceptedQueue::Decoded AcceptedQueue::Decode(std::string_view typeName,

@@ -42,6 +42,8 @@ public:
     // What keeps messages from being delivered; empty if nothing does.
     std::string Problem() const;
 
+    // Whether that node may put messages into it. Any thread, at any time.
+    bool AcceptsFrom(std::string_view node) const;
     // Any thread, at any time.
     Decoded Decode(std::string_view type, std::span<const std::uint8_t> payload) const;
 

@@ -52,12 +52,12 @@ AcceptedQueue::Decoded IncomingQueues::TakeOffered(const AcceptedQueue &queue, s
     return queue.Decode(type, payload);
 }
 
-LocalQueueResult IncomingQueues::Deliver(std::string_view /*source*/, std::string_view queue,
+LocalQueueResult IncomingQueues::Deliver(std::string_view source, std::string_view queue,
                                          std::string_view type, std::span<const std::uint8_t> payload,
                                          bool redelivered)
 {
     const auto found = _accepted.find(queue);
-    if (found == _accepted.end())
+    if (found == _accepted.end() || !found->second.AcceptsFrom(source))
     {
         return LocalQueueResult::Unknown;
     }

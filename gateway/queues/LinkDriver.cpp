@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "clocks/GpsTime.h"
+#include "names/NamePattern.h"
 #include "queues/LinkStatus.h"
 #include "queues/SendOptions.h"
 #include "wire/GatewayTopics.h"
@@ -43,13 +44,40 @@ QueueOutcome OutcomeOf(LinkOutcome outcome)
     return QueueOutcome::InDoubt;
 }
 
+// Who sends the datagram: an acknowledgement goes back to the source of the messages.
+std::string_view SenderOf(const LinkData &data)
+{
+    return data.Source;
+}
+std::string_view SenderOf(const LinkAck &ack)
+{
+    return ack.Destination;
+}
+std::string_view SenderOf(const LinkHello &hello)
+{
+    return hello.Source;
+}
+
+// Whether the names in it are such as a configuration can have: the answer goes to the partition that is
+// called like the sender, and `*` is everybody's.
+bool HasNames(const LinkHello &hello)
+{
+    return IsNodeName(hello.Source) && IsNodeName(hello.Destination);
+}
+template <typename View>
+bool HasNames(const View &view)
+{
+    return IsNodeName(view.Source) && IsNodeName(view.Destination) && IsMessageName(view.Queue);
+}
+
 }  // namespace
 
 LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
-                       std::uint64_t clockName, std::function<void()> wake)
+                       SenderCheck &senders, std::uint64_t clockName, std::function<void()> wake)
     : _config(config),
       _workspace(workspace),
       _incarnations(incarnations),
+      _senders(senders),
       _wake(std::move(wake)),
       _incoming(config.Accept, workspace, _wake),
       _links(std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
@@ -73,14 +101,15 @@ void LinkDriver::Open(TransportSession &session)
 {
     _writers = std::make_unique<LinkWriters>(session);
     const std::vector<std::string> own = {_config.Node};
-    const auto open = [this, &session, &own](LinkTopic topic, void (LinkDriver::*input)(SampleBytes))
+    const auto open =
+        [this, &session, &own](LinkTopic topic, void (LinkDriver::*input)(SampleBytes, const SampleInfo &))
     {
         _readers.push_back(session.CreateReader(DescribeLinkTopic(topic), LinkTopicQos(topic), own,
                                                 [this, input](SampleBytes bytes, const SampleInfo &info)
                                                 {
                                                     if (info.Alive)
                                                     {
-                                                        (this->*input)(bytes);
+                                                        (this->*input)(bytes, info);
                                                     }
                                                 }));
     };
@@ -105,7 +134,7 @@ void LinkDriver::Close()
 // Views and news are one for each thread of the transport, so that steady traffic allocates nothing for names
 // and lists.
 
-void LinkDriver::OnData(SampleBytes bytes)
+void LinkDriver::OnData(SampleBytes bytes, const SampleInfo &info)
 {
     static thread_local LinkData view;
     static thread_local IncomingQueues::DecodedMessages messages;
@@ -114,14 +143,17 @@ void LinkDriver::OnData(SampleBytes bytes)
         ++_malformed;
         return;
     }
-    _incoming.Decode(view, messages);
-    TakeIn<LinkData, &LinkNode::OnData>(view, messages);
+    if (IsFromItsSender(view, info))
+    {
+        _incoming.Decode(view, messages);
+        TakeIn<LinkData, &LinkNode::OnData>(view, messages);
+    }
     messages.clear();
     view.Items.clear();  // they point to bytes that are only borrowed
 }
 
 template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-void LinkDriver::OnSample(SampleBytes bytes)
+void LinkDriver::OnSample(SampleBytes bytes, const SampleInfo &info)
 {
     static thread_local Sample sample;
     static thread_local View view;
@@ -131,7 +163,21 @@ void LinkDriver::OnSample(SampleBytes bytes)
         return;
     }
     LinkWire::FromSample(sample, view);
-    TakeIn<View, Input>(view);
+    if (IsFromItsSender(view, info))
+    {
+        TakeIn<View, Input>(view);
+    }
+}
+
+template <typename View>
+bool LinkDriver::IsFromItsSender(const View &view, const SampleInfo &info)
+{
+    if (!HasNames(view))
+    {
+        ++_malformed;
+        return false;
+    }
+    return _senders.MaySpeakFor(info.Node, SenderOf(view), Now());
 }
 
 template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>

@@ -20,6 +20,7 @@
 
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
+#include "presence/SenderCheck.h"
 #include "queues/IncomingQueues.h"
 #include "queues/LinkDatagrams.h"
 #include "queues/LinkWriters.h"
@@ -44,7 +45,7 @@ public:
     // this node's monotonic clock from those of its other lives. `wake` makes the gateway's thread call
     // Service soon; called on any thread.
     LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
-               std::uint64_t clockName, std::function<void()> wake);
+               SenderCheck &senders, std::uint64_t clockName, std::function<void()> wake);
     ~LinkDriver();
 
     // The present life of this node.
@@ -112,9 +113,12 @@ private:
     static void Tell(const News &news);
 
     // Handlers of the transport, and what they have in common.
-    void OnData(SampleBytes bytes);
+    void OnData(SampleBytes bytes, const SampleInfo &info);
     template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-    void OnSample(SampleBytes bytes);
+    void OnSample(SampleBytes bytes, const SampleInfo &info);
+    // Whether the names in it can be names, and it is from who wrote it. If not, it is counted.
+    template <typename View>
+    bool IsFromItsSender(const View &view, const SampleInfo &info);
     template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
     void TakeIn(const View &view, std::span<const IncomingQueues::Decoded> messages = {});
     LinkTime Now() const { return _workspace.GetClock().Monotonic(); }
@@ -122,6 +126,7 @@ private:
     const GatewayConfig &_config;
     RabitWorkspace &_workspace;
     IncarnationStore &_incarnations;
+    SenderCheck &_senders;
     const std::function<void()> _wake;
 
     mutable std::mutex _mutex;

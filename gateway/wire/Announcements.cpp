@@ -41,6 +41,7 @@ bool IsPlausible(const Gateway::PublishedMessage &published)
 bool IsPlausible(const Gateway::AcceptedQueue &accepted)
 {
     return IsMessageName(accepted.queue) &&
+           std::all_of(accepted.from.begin(), accepted.from.end(), IsNodePattern) &&
            std::all_of(accepted.types.begin(), accepted.types.end(),
                        [](const Gateway::QueueType &type) { return IsType(type.type); });
 }
@@ -65,6 +66,7 @@ Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation)
     {
         Gateway::AcceptedQueue accepted;
         accepted.queue = rule.Queue;
+        accepted.from.assign(rule.From.begin(), rule.From.end());
         for (const std::string &name : rule.Types)
         {
             Gateway::QueueType type;

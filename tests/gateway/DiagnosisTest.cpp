@@ -45,6 +45,7 @@ protected:
         accepted.definition = definition;
         Gateway::AcceptedQueue entry;
         entry.queue = queue;
+        entry.from = {"gr*"};
         entry.types.push_back(accepted);
         offers.accepts.push_back(entry);
     }
@@ -202,7 +203,7 @@ TEST_F(DiagnosisTest, WhyAQueueDoesNotTakeAMessage)
     Hear();
     const PeerTable::Peer &uav1 = *peers.Find("uav1");
     const auto reason = [&uav1](const char *queue, const char *type, std::uint64_t definition)
-    { return WhyNotAccepted(AcceptanceOf(uav1, queue, type, definition), uav1, queue, type); };
+    { return WhyNotAccepted(AcceptanceOf(uav1, queue, type, definition, "ground"), uav1, queue, type); };
 
     EXPECT_EQ(reason("MissionControl", "Uav::Goto", 21), "");
     EXPECT_EQ(reason("Missions", "Uav::Goto", 21),
@@ -211,6 +212,9 @@ TEST_F(DiagnosisTest, WhyAQueueDoesNotTakeAMessage)
               "queue `MissionControl` of uav1 does not accept `Uav::Pose`; it accepts `Uav::Goto`");
     EXPECT_EQ(reason("MissionControl", "Uav::Goto", 22),
               "uav1 was built with another definition of `Uav::Goto`");
+    const QueueAcceptance elsewhere = AcceptanceOf(uav1, "MissionControl", "Uav::Goto", 21, "uav2");
+    EXPECT_EQ(WhyNotAccepted(elsewhere, uav1, "MissionControl", "Uav::Goto"),
+              "queue `MissionControl` of uav1 accepts no messages of this node, but of `gr*`");
 }
 
 }  // namespace

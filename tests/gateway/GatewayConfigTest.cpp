@@ -190,7 +190,8 @@ const BadConfig BadConfigs[] = {
     {"BadName", "node: a\nname: a b\n",
      "node.yaml:2: `a b` is no name of a gateway; expected 1 to 64 of A-Z a-z 0-9 _ . -"},
     {"NodeCalledAsTheGateway", "node: Gateway\n",
-     "node.yaml:1: node and gateway are both called `Gateway`: messages of the two would have the same names"},
+     "node.yaml:1: node and gateway are both called `Gateway`: messages of the two would have the same "
+     "names"},
     {"WordForNumber", "node: a\ndomain: seven\n",
      "node.yaml:2: `domain` is `seven`; expected a whole number from 0 to 232"},
     {"NumberOutOfRange", "node: a\ndomain: 233\n",

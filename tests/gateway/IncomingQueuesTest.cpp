@@ -91,6 +91,17 @@ TEST_F(IncomingQueuesTest, DecodesNothingOfWhatIsSkippedOrForAQueueThatIsNotAcce
     EXPECT_TRUE(messages.empty());
 }
 
+TEST_F(IncomingQueuesTest, TakesNothingOfANodeThatIsNotInFrom)
+{
+    IncomingQueues choosy({{.Queue = "Orders", .Types = {"Uav::Goto"}, .From = {"ground*"}}}, workspace,
+                          [] {});
+    choosy.Find([](const std::string &) {});
+    EXPECT_EQ(choosy.Deliver("uav1", "Orders", "Uav::Goto", payloads[0], false), LocalQueueResult::Unknown);
+    EXPECT_EQ(Take(), 0u);
+    EXPECT_EQ(choosy.Deliver("ground2", "Orders", "Uav::Goto", payloads[0], false), LocalQueueResult::Ok);
+    EXPECT_EQ(Take(), 1u);
+}
+
 TEST_F(IncomingQueuesTest, NamesEachQueueThatGotMessagesOnce)
 {
     Deliver(0);

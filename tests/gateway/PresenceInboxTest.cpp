@@ -57,49 +57,55 @@ Gateway::Announcement Publishing(std::size_t messages)
 
 TEST(PresenceInbox, TakesTheLargestAnnouncementThatANodeMayMake)
 {
-    PresenceInbox inbox;
-    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Publishing(Announcements::MostOffers))));
-    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Accepting(1, Announcements::MostTypes))));
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Publishing(Announcements::MostOffers)), "uav1", 1s));
+    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Accepting(1, Announcements::MostTypes)), "uav1", 1s));
     EXPECT_EQ(inbox.Take().Announcements.size(), 2u);
     EXPECT_EQ(inbox.Dropped(), 0u);
 }
 
 TEST(PresenceInbox, AnAnnouncementOfTooManyOffersIsDropped)
 {
-    PresenceInbox inbox;
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Publishing(Announcements::MostOffers + 1))));
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Publishing(Announcements::MostOffers + 1)), "uav1", 1s));
     EXPECT_EQ(inbox.Dropped(), 1u);
     EXPECT_TRUE(inbox.Take().Announcements.empty());
 }
 
 TEST(PresenceInbox, AnAnnouncementOfTooManyTypesInAllIsDropped)
 {
-    PresenceInbox inbox;
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(33, 32))));
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(33, 32)), "uav1", 1s));
     EXPECT_EQ(inbox.Dropped(), 1u);
 }
 
 TEST(PresenceInbox, AnAnnouncementOfAThousandQueuesOfAThousandTypesIsDropped)
 {
-    PresenceInbox inbox;
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(1000, 1000))));
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(1000, 1000)), "uav1", 1s));
     EXPECT_EQ(inbox.Dropped(), 1u);
 }
 
 TEST(PresenceInbox, AnAnnouncementWithinItsCountsButOfTooManyBytesIsDropped)
 {
-    PresenceInbox inbox;
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(1, 200, std::string(200, 'T')))));
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(1, 200, std::string(200, 'T'))), "uav1", 1s));
     EXPECT_EQ(inbox.Dropped(), 1u);
 }
 
 TEST(PresenceInbox, AnAnnouncementWithATypeNameThatIsTooLongIsDropped)
 {
-    PresenceInbox inbox;
-    EXPECT_FALSE(
-        inbox.AddAnnouncement(Encoded(Accepting(1, 1, std::string(Announcements::LongestType + 1, 'T')))));
-    EXPECT_TRUE(
-        inbox.AddAnnouncement(Encoded(Accepting(1, 1, std::string(Announcements::LongestType, 'T')))));
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_FALSE(inbox.AddAnnouncement(
+        Encoded(Accepting(1, 1, std::string(Announcements::LongestType + 1, 'T'))), "uav1", 1s));
+    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Accepting(1, 1, std::string(Announcements::LongestType, 'T'))),
+                                      "uav1", 1s));
 }
 
 TEST(PresenceInbox, ABeatWithNamesThatAreNoneIsDropped)
@@ -108,19 +114,34 @@ TEST(PresenceInbox, ABeatWithNamesThatAreNoneIsDropped)
     beat.node = "uav1";
     beat.echoes.resize(1);
     beat.echoes[0].node = "*";
-    PresenceInbox inbox;
-    EXPECT_FALSE(inbox.AddBeat(Encoded(beat), 1s));
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_FALSE(inbox.AddBeat(Encoded(beat), "uav1", 1s));
     beat.echoes[0].node = "uav2";
-    EXPECT_TRUE(inbox.AddBeat(Encoded(beat), 1s));
+    EXPECT_TRUE(inbox.AddBeat(Encoded(beat), "uav1", 1s));
     EXPECT_EQ(inbox.Dropped(), 1u);
+}
+
+TEST(PresenceInbox, WhatANodeSaysInAnothersNameIsDropped)
+{
+    Gateway::Beat beat;
+    beat.node = "uav1";
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
+    EXPECT_FALSE(inbox.AddBeat(Encoded(beat), "uav2", 1s));
+    EXPECT_FALSE(inbox.AddBeat(Encoded(beat), "", 1s));
+    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Publishing(1)), "uav2", 1s));
+    EXPECT_EQ(senders.Refused(), 3u);
+    EXPECT_TRUE(inbox.Take().Beats.empty());
 }
 
 TEST(PresenceInbox, HoldsNoMoreBytesThanItSays)
 {
-    PresenceInbox inbox;
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
     const std::vector<std::uint8_t> large = Encoded(Accepting(1, 120, std::string(200, 'T')));
     std::size_t added = 0;
-    while (inbox.AddAnnouncement(large) && added < 100'000)
+    while (inbox.AddAnnouncement(large, "uav1", 1s) && added < 100'000)
     {
         ++added;
     }
@@ -131,7 +152,8 @@ TEST(PresenceInbox, HoldsNoMoreBytesThanItSays)
 
 TEST(PresenceInbox, HasRoomAgainOnceItsContentsWereTaken)
 {
-    PresenceInbox inbox;
+    SenderCheck senders;
+    PresenceInbox inbox(senders);
     const PeerEvent event{PeerEvent::Kind::Appeared, "uav1", 5};
     while (inbox.AddEvent(event) && inbox.Dropped() == 0)
     {

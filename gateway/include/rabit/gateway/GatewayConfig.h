@@ -46,6 +46,7 @@ struct AcceptRule
 {
     std::string Queue;               // name of a local RabitMessageQueue<std::shared_ptr<RabitMessage>>
     std::vector<std::string> Types;  // IDL names, at least one
+    std::vector<std::string> From = {"*"};  // names of the nodes that may; `*` and `?` are wildcards
     int Line = 0;
 };
 
@@ -96,8 +97,9 @@ struct GatewayConfig
     std::map<std::string, int> Lines;
 };
 
-// Checks ranges, names used twice, entries that contradict each other or are never used, and that every type is linked into this process. Throws ConfigError. The
-// constructor of GatewayManager calls it; call it earlier to fail earlier.
+// Checks ranges, names used twice, entries that contradict each other or are never used, and that every type
+// is linked into this process. Throws ConfigError. The constructor of GatewayManager calls it; call it
+// earlier to fail earlier.
 void ValidateGatewayConfig(const GatewayConfig &config);
 
 // Checks that config.Transport is among the backends that this process has. Throws ConfigError: one that is

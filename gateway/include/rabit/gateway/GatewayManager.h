@@ -33,16 +33,17 @@ inline std::string FleetMessageNameOf(const GatewayConfig &config)
 //   InDoubt.
 // - `accept` queues receive messages of other nodes in order; a full queue holds the sender back, without
 //   loss.
-// - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come. A problem that
+// - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come. A problem
+// that
 //   lasts two seconds is logged once (RabitLog, as a warning), and once more when it is gone.
 //
 // Threads: Startup, ExecuteUnitOfWork and Shutdown run as for every manager. Mirrored messages are posted on
-// the transport's thread, so handlers registered on them run there and must be quick. 
+// the transport's thread, so handlers registered on them run there and must be quick.
 //
-// Several gateways may serve one workspace, for instance one on a radio and one on a LAN, if each has a name of
-// its own (GatewayConfig::Name): the second of a name throws ConfigError. A queue message goes through the one
-// that knows the node, "*/<queue>" to the nodes of all. A node that two of them know is a problem by name; the
-// gateway that was there first takes the queue messages for it.
+// Several gateways may serve one workspace, for instance one on a radio and one on a LAN, if each has a name
+// of its own (GatewayConfig::Name): the second of a name throws ConfigError. A queue message goes through the
+// one that knows the node, "*/<queue>" to the nodes of all. A node that two of them know is a problem by
+// name; the gateway that was there first takes the queue messages for it.
 //
 // Errors: the constructor throws ConfigError for a configuration that cannot be used (a TransportError of the
 // backend included), and then nothing has been started. Afterwards nothing from the network throws or ends
