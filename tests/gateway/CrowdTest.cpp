@@ -1,8 +1,7 @@
 // A node that has heard more names than it remembers.
 #include <gmock/gmock.h>
-#include <rabit/idl/MessageType.h>
-#include <rabit/idl/MessageTypeRegistry.h>
 
+#include "MessageSample.h"
 #include "SimulatedFleet.h"
 
 namespace Rabit
@@ -11,24 +10,6 @@ namespace
 {
 
 using namespace std::chrono_literals;
-
-class Encoder final : public SampleEncoder
-{
-public:
-    explicit Encoder(const RabitMessage &message)
-        : _type(*MessageTypeRegistry::Of(message)), _message(message)
-    {
-    }
-    std::size_t EncodedSize() const override { return _type.SerializedSize(_message); }
-    bool Encode(std::span<std::uint8_t> buffer) const override
-    {
-        return _type.Serialize(_message, buffer) == buffer.size();
-    }
-
-private:
-    const MessageType &_type;
-    const RabitMessage &_message;
-};
 
 // Nodes that appear for a moment, one after the other: each beats once, and says hello to uav1.
 class CrowdTest : public ::testing::Test
@@ -50,14 +31,14 @@ protected:
         beat.node = settings.Node;
         beat.incarnation = settings.Incarnation;
         beat.monotonic_ns = beat.source_ns = beat.utc_ns = 1;
-        beats->Write(Encoder(beat), 1);
+        beats->Write(MessageSample(beat), 1);
         Gateway::LinkHelloSample hello;
         hello.version = 2;
         hello.source = settings.Node;
         hello.destination = "uav1";
         hello.incarnation = settings.Incarnation;
         hello.clock = 1;
-        hellos->Write(Encoder(hello), 1);
+        hellos->Write(MessageSample(hello), 1);
         fleet.RunFor(5ms);
     }
 

@@ -181,6 +181,12 @@ TEST_P(RealNodesTest, QueuesAreCompleteAndInOrderAndTheLastPostArrivesUnderLoadB
         }))
         << "received " << first.Traffic->Received << " and " << second.Traffic->Received << ", last pose "
         << first.Traffic->LastPose << " and " << second.Traffic->LastPose;
+    for (Node *node : {&first, &second})
+    {
+        Gateway::Fleet fleet;
+        node->Workspace.ForceFetchMessage(FleetMessageName, &fleet);
+        EXPECT_EQ(fleet.malformed, 0u) << "nobody was taken for another one, nor nothing honest dropped";
+    }
 }
 
 // A manager may go at any time, also while its queue is told of a message on the transport's thread.
