@@ -195,6 +195,9 @@ TEST(DiscoveryCheck, OnlyAListOfParametersIsAnAnnouncement)
         payload[1] = encapsulation;
         EXPECT_FALSE(IsSound(PublicationsWriter, payload)) << int{encapsulation};
     }
+    Bytes payload = WriterData();
+    payload[0] = 1;
+    EXPECT_FALSE(IsSound(PublicationsWriter, payload));
 }
 
 TEST(DiscoveryCheck, TheDigestIsOfWhereAParticipantIsHeard)

@@ -278,6 +278,8 @@ TEST(RtpsGuardModes, WhereSharedMemoryIsInUseOnlyTheStructureIsChecked)
     EXPECT_TRUE(guard.Passes(Message(Heartbeat, HeartbeatBody(1, 1'000'000, 7))));
     EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
     EXPECT_TRUE(guard.Stops(Message(Data, DataBody(1, ParticipantData(Other), 0x000100c2), 5)));
+    EXPECT_TRUE(guard.Admit(Message(Data, DataBody(1, Bytes(8), 0x000300c3), 5)));
+    EXPECT_TRUE(guard.Handed.empty());
 }
 
 TEST(RtpsGuardModes, WithDdsSecurityItsSubmessagesAndTokensGetThroughAsTheyAre)

@@ -25,8 +25,9 @@ public:
     // Whether the peer was announced; if so, it is heard of at this moment.
     bool Hears(const GuidPrefix &peer, TimePoint now);
 
-    // The peer, which must be known, announced a writer. If it has too many, the one that was silent for
-    // longest is forgotten.
+    // The peer, which must be known, announced a writer or a reader; `digest` is of what it says of it. False
+    // if it said otherwise before: an endpoint stays as it is. Of too many writers the one that was silent
+    // for longest is forgotten.
     bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest);
     bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
 
