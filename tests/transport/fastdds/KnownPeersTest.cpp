@@ -71,9 +71,33 @@ TEST_F(KnownPeersTest, NumbersDoNotJump)
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 26, Now));
     EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 43, Now));
-    // What was refused moves nothing, and neither does time alone.
-    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 43, Now + 1999ms));
-    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 42, Now + 1999ms));
+    // What was refused moves nothing.
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 43, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 42, Now));
+}
+
+// What comes by multicast goes on while all samples are lost, so the peer is not silent. Two beats a second
+// are not refused until eight of them agree.
+TEST_F(KnownPeersTest, AWriterThatWasNotHeardForAWhileGoesOnWhereItIs)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
+    for (int second = 1; second <= 5; ++second)
+    {
+        EXPECT_TRUE(Peers.Hears(Sender, Now + std::chrono::seconds(second)));
+    }
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 10 + 16 + 5001, Now + 5s));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10 + 16 + 5000, Now + 5s));
+}
+
+TEST_F(KnownPeersTest, NoSilenceOfAWriterMakesAGapThatIsTooLargeToNote)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
+    for (int second = 1; second <= 3600; ++second)
+    {
+        EXPECT_TRUE(Peers.Hears(Sender, Now + std::chrono::seconds(second)));
+    }
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 10 + 16 + 50'001, Now + 1h));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10 + 16 + 50'000, Now + 1h));
 }
 
 TEST_F(KnownPeersTest, AFastWriterMayBeFartherTheLongerNothingWasHeardOfIt)

@@ -20,6 +20,13 @@ constexpr std::chrono::seconds Forgotten{60};
 constexpr std::chrono::seconds Silence{2};
 // What may be lost at once, or taken back, whatever the pace.
 constexpr std::int64_t LargestStep = 16;
+// What may have been lost of a writer that was not heard for a while, whatever its pace before: so many
+// samples a second, and so many in all. What was announced comes by multicast and goes on while all the rest
+// is lost (an address that was away, a link in one direction), so such a gap is ordinary, and who writes
+// twice a second must not be refused until enough samples agree. The vendor takes note of each number in a
+// gap: of this many it can.
+constexpr std::int64_t LostInASecond = 1000;
+constexpr std::int64_t LargestLoss = 50'000;
 // Heartbeats come every 20 ms, so it takes them 160 ms.
 constexpr int EnoughAgreeing = 8;
 
@@ -154,7 +161,8 @@ bool KnownPeers::IsPlausible(Numbers &numbers, std::int64_t number, TimePoint no
         return true;
     }
     const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Moved).count();
-    if (number - numbers.Highest <= LargestStep + 2 * numbers.Pace * elapsed / 1000)
+    const std::int64_t lost = std::min(LostInASecond * elapsed / 1000, LargestLoss);
+    if (number - numbers.Highest <= LargestStep + std::max(lost, 2 * numbers.Pace * elapsed / 1000))
     {
         return true;
     }
