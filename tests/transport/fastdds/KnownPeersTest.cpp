@@ -89,6 +89,46 @@ TEST_F(KnownPeersTest, AWriterThatWasNotHeardForAWhileGoesOnWhereItIs)
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10 + 16 + 5000, Now + 5s));
 }
 
+// Two beats a second: the time since the last one is not the time for a thousand samples. One that was forged
+// would have the honest ones passed over for as long as it takes them to get there.
+TEST_F(KnownPeersTest, AWriterThatIsHeardDoesNotJump)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
+    for (int beat = 1; beat <= 20; ++beat)
+    {
+        Now += 500ms;
+        EXPECT_TRUE(Peers.Hears(Sender, Now));
+        EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 500 + 100 * beat, Now)) << beat;
+        EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10 + beat, Now)) << beat;
+    }
+}
+
+TEST_F(KnownPeersTest, AWriterThatIsHeardBehindAForgedNumberDoesNotJumpEither)
+{
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 26, Now));
+    for (int beat = 1; beat <= 16; ++beat)
+    {
+        Now += 500ms;
+        EXPECT_TRUE(Peers.Hears(Sender, Now));
+        EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10 + beat, Now)) << beat;
+        EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 500, Now)) << beat;
+    }
+}
+
+TEST_F(KnownPeersTest, ForgedStepsDoNotMakeAFasterWriter)
+{
+    std::int64_t number = 10;
+    for (int step = 0; step < 10; ++step)
+    {
+        EXPECT_TRUE(Peers.Hears(Sender, Now));
+        EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, number, Now)) << step;
+        number += 16;
+        Now += 500ms;
+    }
+    EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, number + 10, Now));
+}
+
 TEST_F(KnownPeersTest, NoSilenceOfAWriterMakesAGapThatIsTooLargeToNote)
 {
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));

@@ -28,7 +28,7 @@ constexpr std::size_t MostKept = 4000;
     throw std::system_error(errno, std::generic_category(), what);
 }
 
-// A line of /proc/net/udp for each socket: unread bytes and lost datagrams.
+// A line of /proc/net/udp for each socket: its port, unread bytes and lost datagrams.
 template <typename Each>
 void ForEachSocket(Each each)
 {
@@ -43,8 +43,9 @@ void ForEachSocket(Each each)
         {
             all.push_back(field);
         }
-        const auto colon = all.at(4).find(':');
-        each(std::stoull(all.at(4).substr(colon + 1), nullptr, 16), std::stoull(all.back()));
+        const auto number = [&](std::size_t field)
+        { return std::stoull(all.at(field).substr(all.at(field).find(':') + 1), nullptr, 16); };
+        each(static_cast<std::uint16_t>(number(1)), number(4), std::stoull(all.back()));
     }
 }
 
@@ -167,13 +168,20 @@ void Sender::Send(const std::vector<Datagram> &datagrams, const std::vector<sock
     }
 }
 
-void Sender::WaitForReaders(std::size_t bytes)
+void Sender::WaitForReaders(const std::vector<sockaddr_in> &destinations, std::size_t bytes)
 {
     for (;;)
     {
         std::size_t most = 0;
-        ForEachSocket([&](std::uint64_t unread, std::uint64_t /*dropped*/)
-                      { most = std::max<std::size_t>(most, unread); });
+        ForEachSocket(
+            [&](std::uint16_t port, std::uint64_t unread, std::uint64_t /*dropped*/)
+            {
+                const auto isIt = [&](const sockaddr_in &each) { return ntohs(each.sin_port) == port; };
+                if (std::any_of(destinations.begin(), destinations.end(), isIt))
+                {
+                    most = std::max<std::size_t>(most, unread);
+                }
+            });
         if (most <= bytes)
         {
             return;
@@ -185,6 +193,7 @@ void Sender::WaitForReaders(std::size_t bytes)
 std::uint64_t Sender::Dropped()
 {
     std::uint64_t all = 0;
-    ForEachSocket([&](std::uint64_t /*unread*/, std::uint64_t dropped) { all += dropped; });
+    ForEachSocket([&](std::uint16_t /*port*/, std::uint64_t /*unread*/, std::uint64_t dropped)
+                  { all += dropped; });
     return all;
 }

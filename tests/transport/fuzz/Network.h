@@ -47,8 +47,8 @@ public:
     Sender &operator=(const Sender &) = delete;
 
     void Send(const std::vector<Datagram> &datagrams, const std::vector<sockaddr_in> &destinations);
-    // Waits until no socket of these ports has more than this many bytes unread.
-    void WaitForReaders(std::size_t bytes);
+    // Waits until no socket of these ports has more than this many bytes unread. Others may never be read.
+    static void WaitForReaders(const std::vector<sockaddr_in> &destinations, std::size_t bytes);
     // Datagrams that sockets of this namespace lost so far because they were full.
     static std::uint64_t Dropped();
 

@@ -93,7 +93,7 @@ int Run(const Options &options)
             SaveBurst(options.Save, burst);
         }
         sender.Send(burst, to);
-        sender.WaitForReaders(MostUnread);
+        Sender::WaitForReaders(destinations, MostUnread);
         if (sent % (Burst * 4096) == 0)
         {
             std::cout << "sent " << sent << " of " << options.Count << std::endl;

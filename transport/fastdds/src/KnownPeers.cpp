@@ -20,9 +20,9 @@ constexpr std::chrono::seconds Forgotten{60};
 constexpr std::chrono::seconds Silence{2};
 // What may be lost at once, or taken back, whatever the pace.
 constexpr std::int64_t LargestStep = 16;
-// What may have been lost of a writer that was not heard for a while, whatever its pace before: so many
-// samples a second, and so many in all. What was announced comes by multicast and goes on while all the rest
-// is lost (an address that was away, a link in one direction), so such a gap is ordinary, and who writes
+// What may have been lost of a writer that was not heard for as long as Silence, whatever its pace before: so
+// many samples a second, and so many in all. What was announced comes by multicast and goes on while all the
+// rest is lost (an address that was away, a link in one direction), so such a gap is ordinary, and who writes
 // twice a second must not be refused until enough samples agree. The vendor takes note of each number in a
 // gap: of this many it can.
 constexpr std::int64_t LostInASecond = 1000;
@@ -119,8 +119,8 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
         const auto silentLonger = [](const auto &a, const auto &b)
         {
             // The protocol's own remain.
-            return std::pair(IsBuiltin(a.first), a.second.Moved) <
-                   std::pair(IsBuiltin(b.first), b.second.Moved);
+            return std::pair(IsBuiltin(a.first), a.second.Said) <
+                   std::pair(IsBuiltin(b.first), b.second.Said);
         };
         writers.erase(std::min_element(writers.begin(), writers.end(), silentLonger));
     }
@@ -151,6 +151,8 @@ bool KnownPeers::Reaches(const GuidPrefix &peer, EntityId writer, std::int64_t n
     {
         Move(numbers, number, now);
     }
+    // Who is heard from where he was has not gone far since: an honest writer behind a forged number, too.
+    numbers.Said = now;
     return true;
 }
 
@@ -160,8 +162,9 @@ bool KnownPeers::IsPlausible(Numbers &numbers, std::int64_t number, TimePoint no
     {
         return true;
     }
-    const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Moved).count();
-    const std::int64_t lost = std::min(LostInASecond * elapsed / 1000, LargestLoss);
+    const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Said).count();
+    const std::int64_t lost =
+        now - numbers.Said >= Silence ? std::min(LostInASecond * elapsed / 1000, LargestLoss) : 0;
     if (number - numbers.Highest <= LargestStep + std::max(lost, 2 * numbers.Pace * elapsed / 1000))
     {
         return true;
@@ -179,19 +182,19 @@ void KnownPeers::Move(Numbers &numbers, std::int64_t number, TimePoint now)
     if (numbers.Highest == 0)
     {
         numbers.Pace = 0;
-        numbers.Begun = number;
+        numbers.Steps = 0;
         numbers.Began = now;
     }
+    ++numbers.Steps;
     const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Began);
     if (elapsed >= Window)
     {
         // A pause does not make a fast writer a slow one at once.
-        numbers.Pace = std::max(1000 * (number - numbers.Begun) / elapsed.count(), numbers.Pace / 2);
-        numbers.Begun = number;
+        numbers.Pace = std::max(1000 * numbers.Steps / elapsed.count(), numbers.Pace / 2);
+        numbers.Steps = 0;
         numbers.Began = now;
     }
     numbers.Highest = number;
-    numbers.Moved = now;
 }
 
 bool KnownPeers::CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const

@@ -49,10 +49,11 @@ private:
     {
         std::uint64_t Digest = 0;
         std::int64_t Highest = 0;  // 0: nothing was heard of it
-        TimePoint Moved{};
-        // Its pace: samples in a second, and what it has written in the second under way.
+        TimePoint Said{};          // when it was heard at a number that was believed, the highest or not
+        // Its pace: how often in a second it went on, and how often in the second under way. Not how far,
+        // which one forged number after the other would widen.
         std::int64_t Pace = 0;
-        std::int64_t Begun = 0;
+        std::int64_t Steps = 0;
         TimePoint Began{};
         // The last number that was not believed, and how many in a row agreed.
         std::int64_t Suspect = 0;
