@@ -156,6 +156,9 @@ TEST_P(Conformance, HandlersOfOneReaderNeverRunAtOnce)
     };
     std::jthread one(blast, std::ref(*firstWriter));
     std::jthread other(blast, std::ref(*secondWriter));
+    // Simulated time does not wait for threads that have not had a processor yet.
+    one.join();
+    other.join();
     EXPECT_TRUE(Until([&] { return count == 1000; }));
     EXPECT_EQ(overlaps, 0);
 }
