@@ -1,6 +1,7 @@
 #include "names/NamePattern.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 namespace Rabit
@@ -8,16 +9,30 @@ namespace Rabit
 namespace
 {
 
+// Names in every datagram of the links are checked, so a table.
+constexpr std::array<bool, 256> NodeCharacters = []
+{
+    std::array<bool, 256> table{};
+    for (const char c : std::string_view("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"))
+    {
+        table[static_cast<unsigned char>(c)] = true;
+    }
+    return table;
+}();
+
 bool IsNodeCharacter(char c)
 {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '.' || c == '-';
+    return NodeCharacters[static_cast<unsigned char>(c)];
 }
 
 }  // namespace
 
 bool MatchesPattern(std::string_view pattern, std::string_view name)
 {
+    if (pattern == "*")
+    {
+        return true;  // asked for every message that is sent
+    }
     std::size_t p = 0;
     std::size_t n = 0;
     std::size_t starAt = std::string_view::npos;
@@ -86,10 +101,20 @@ bool IsNodePattern(std::string_view text)
 
 bool IsMessageName(std::string_view text)
 {
-    return !text.empty() && text.size() <= 200 && text.front() != '/' && text.back() != '/' &&
-           text.find("//") == std::string_view::npos &&
-           std::all_of(text.begin(), text.end(),
-                       [](char c) { return IsNodeCharacter(c) || c == ':' || c == '/'; });
+    if (text.empty() || text.size() > 200 || text.back() == '/')
+    {
+        return false;
+    }
+    char before = '/';
+    for (const char c : text)
+    {
+        if (!IsNodeCharacter(c) && c != ':' && (c != '/' || before == '/'))
+        {
+            return false;
+        }
+        before = c;
+    }
+    return true;
 }
 
 }  // namespace Rabit

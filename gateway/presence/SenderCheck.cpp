@@ -5,12 +5,8 @@
 namespace Rabit
 {
 
-bool SenderCheck::MaySpeakFor(std::string_view participant, std::string_view named, Duration now)
+bool SenderCheck::Refuse(std::string_view participant, std::string_view named, Duration now)
 {
-    if (!participant.empty() && participant == named)
-    {
-        return true;
-    }
     const std::lock_guard lock(_mutex);
     ++_refused;
     Remember(participant, named, now);

@@ -30,7 +30,10 @@ public:
 
     // Whether a sample of that participant (SampleInfo::Node; empty: a program that is no node) may be from
     // the node that it names. If not, it is to be dropped, and is counted here. `now` is the monotonic clock.
-    bool MaySpeakFor(std::string_view participant, std::string_view named, Duration now);
+    bool MaySpeakFor(std::string_view participant, std::string_view named, Duration now)
+    {
+        return (!participant.empty() && participant == named) || Refuse(participant, named, now);
+    }
 
     // Samples that were to be dropped.
     std::uint64_t Refused() const;
@@ -39,6 +42,8 @@ public:
 private:
     using Claim = std::pair<std::string, std::string>;  // participant, and the node that it named
 
+    // Returns false.
+    bool Refuse(std::string_view participant, std::string_view named, Duration now);
     void Remember(std::string_view participant, std::string_view named, Duration now);
 
     mutable std::mutex _mutex;

@@ -58,16 +58,17 @@ std::string_view SenderOf(const LinkHello &hello)
     return hello.Source;
 }
 
-// Whether the names in it are such as a configuration can have: the answer goes to the partition that is
-// called like the sender, and `*` is everybody's.
-bool HasNames(const LinkHello &hello)
-{
-    return IsNodeName(hello.Source) && IsNodeName(hello.Destination);
-}
+// Whether the sender's name and a queue that may be new are such as a configuration can have: the answer goes
+// to the partition that is called like the sender, and `*` is everybody's. The links compare the other names
+// with those that they know.
 template <typename View>
 bool HasNames(const View &view)
 {
-    return IsNodeName(view.Source) && IsNodeName(view.Destination) && IsMessageName(view.Queue);
+    return IsNodeName(SenderOf(view));
+}
+bool HasNames(const LinkData &data)
+{
+    return IsNodeName(data.Source) && IsMessageName(data.Queue);
 }
 
 }  // namespace

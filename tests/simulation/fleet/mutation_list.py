@@ -35,8 +35,7 @@ MUTATIONS = [
              "(incarnation < peer.Incarnation && now - peer.LastHeard > StaleAfter)", "false", FLEET),
     Mutation("no beats are sent", "Presence.cpp", "if (now >= _nextBeat)", "if (false)", FLEET),
     # Queue messages
-    Mutation("anybody speaks in anybody's name", "SenderCheck.cpp", "if (!participant.empty() && participant == named)",
-             "if (true)", NODES),
+    Mutation("anybody speaks in anybody's name", "SenderCheck.cpp", "return false;", "return true;", NODES),
     Mutation("a queue takes messages of everybody", "IncomingQueues.cpp", "|| !found->second.AcceptsFrom(source)", "",
              PARTS),
     Mutation("expired is called delivered", "LinkDriver.cpp", "return QueueOutcome::Expired;",

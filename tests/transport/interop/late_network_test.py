@@ -262,10 +262,11 @@ class Case:
     def expect_recovery(self, nodes, start, back):
         self.recovered = 0.0
         for node in nodes:
-            since = back
-            if not any(text in ("peer LOST", "peer STALE") for when, text in node.lines if when >= start) and \
-                    any(text == "peer UP" for _, text in node.lines):
+            gone = [when for when, text in node.lines if text in ("peer LOST", "peer STALE") and when >= start]
+            if not gone and any(text == "peer UP" for _, text in node.lines):
                 continue  # nobody noticed
+            # Not from `back` on: a slow machine may see them together before the last command has returned.
+            since = gone[-1] if gone else start
             for line in (r"peer UP", r"(mirror|resumed) life=\d+.*"):
                 when, _ = node.wait_for(re.compile(line).fullmatch, LIMIT_S, since)
                 self.recovered = max(self.recovered, when - back)
