@@ -22,8 +22,8 @@ namespace Rabit
 
 // The local queues into which other nodes may put messages, as the receivers of the links see them.
 //
-// Messages are decoded before the links are locked, since one of megabytes would hold up everybody else for
-// as long as that takes: Decode makes them, Offer has Deliver take them from there.
+// Large messages are decoded before the links are locked, since one of megabytes would hold up everybody else
+// for as long as that takes: Decode makes them, Offer has Deliver take them from there.
 //
 // Threads: Decode on any; the rest under the lock of who drives the links.
 class IncomingQueues final : public LocalQueues

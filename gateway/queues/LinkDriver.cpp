@@ -17,6 +17,9 @@ namespace
 
 // What the encapsulation and RTPS headers take of a datagram.
 constexpr std::size_t DatagramOverhead = 100;
+// A datagram up to this size is decoded while the links are locked: a few microseconds, and less than it
+// costs to keep what was decoded before.
+constexpr std::size_t QuicklyDecoded = 4096;
 
 LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
 {
@@ -146,7 +149,10 @@ void LinkDriver::OnData(SampleBytes bytes, const SampleInfo &info)
     }
     if (IsFromItsSender(view, info))
     {
-        _incoming.Decode(view, messages);
+        if (bytes.size() > QuicklyDecoded)
+        {
+            _incoming.Decode(view, messages);
+        }
         TakeIn<LinkData, &LinkNode::OnData>(view, messages);
     }
     messages.clear();

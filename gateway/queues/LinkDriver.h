@@ -33,8 +33,8 @@ namespace Rabit
 //
 // Threads: any thread calls Enqueue; the transport's threads hand in what arrives and put it straight into
 // the local queues; only the gateway's thread, in Service, writes to the network. One mutex guards the links;
-// while it is held no message is decoded, no file is written, and no handler of a queue and nothing of the
-// transport is called, so that a slow network, disk or handler delays nobody.
+// while it is held no large message is decoded, no file is written, and no handler of a queue and nothing of
+// the transport is called, so that a slow network, disk or handler delays nobody.
 class LinkDriver final : private LinkOutput
 {
 public:
