@@ -16,7 +16,10 @@ constexpr std::size_t MostWriters = 4096;
 constexpr std::size_t MostReaders = 4096;
 // Longer than the announcement periods and leases in use.
 constexpr std::chrono::seconds Forgotten{60};
-// After so long without a word of a peer, its writers may be anywhere.
+// What a writer says first may be any number up to here: the vendor walks to it from 1 on, which takes it a
+// tenth of a second. More is believed when enough agree.
+constexpr std::int64_t LargestFirst = std::int64_t{1} << 22;
+// After so long without a word of a writer, more may have been lost of it than its pace tells.
 constexpr std::chrono::seconds Silence{2};
 // What may be lost at once, or taken back, whatever the pace.
 constexpr std::int64_t LargestStep = 16;
@@ -42,7 +45,7 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
             return false;
         }
         found->second.Digest = digest;
-        Hear(found->second, now);
+        found->second.Heard = now;
         return true;
     }
     if (_peers.size() >= MostPeers && !MakeRoom(now))
@@ -81,20 +84,8 @@ bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)
     {
         return false;
     }
-    Hear(found->second, now);
+    found->second.Heard = now;
     return true;
-}
-
-void KnownPeers::Hear(Peer &peer, TimePoint now)
-{
-    if (now - peer.Heard >= Silence)
-    {
-        for (auto &[writer, numbers] : peer.Writers)
-        {
-            numbers.Highest = 0;
-        }
-    }
-    peer.Heard = now;
 }
 
 bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest)
@@ -158,14 +149,15 @@ bool KnownPeers::Reaches(const GuidPrefix &peer, EntityId writer, std::int64_t n
 
 bool KnownPeers::IsPlausible(Numbers &numbers, std::int64_t number, TimePoint now)
 {
-    if (numbers.Highest == 0)
+    if (numbers.Highest == 0 && number <= LargestFirst)
     {
         return true;
     }
     const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Said).count();
     const std::int64_t lost =
         now - numbers.Said >= Silence ? std::min(LostInASecond * elapsed / 1000, LargestLoss) : 0;
-    if (number - numbers.Highest <= LargestStep + std::max(lost, 2 * numbers.Pace * elapsed / 1000))
+    if (numbers.Highest > 0 &&
+        number - numbers.Highest <= LargestStep + std::max(lost, 2 * numbers.Pace * elapsed / 1000))
     {
         return true;
     }

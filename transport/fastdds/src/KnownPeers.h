@@ -12,8 +12,11 @@ namespace Rabit::FastDds
 {
 
 // A writer's numbers rise in steps. One that jumped would have the vendor walk through millions of samples
-// that never were, and pass over all that come until they reach that number. Bounded: what is full takes
-// nobody new, a table of peers until somebody in it was silent for a minute. Not thread-safe.
+// that never were, and pass over all that come until they reach that number. So a jump is believed if the
+// writer's pace explains it, or the time for which it was not heard, or if several numbers in a row agree on
+// it with none in between that does not.
+// Bounded: what is full takes nobody new, a table of peers until somebody in it was silent for a minute. Not
+// thread-safe.
 class KnownPeers
 {
 public:
@@ -31,8 +34,8 @@ public:
     bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest);
     bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
 
-    // Whether a writer that was announced can be at this number. If so, it is there. The first number of a
-    // writer may be any.
+    // Whether a writer that was announced can be at this number. If so, it is there. What a writer says first
+    // may be any number up to four million.
     bool Reaches(const GuidPrefix &peer, EntityId writer, std::int64_t number, TimePoint now);
     // Whether a writer that was announced can know what became of the samples up to this number.
     bool CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const;
@@ -70,7 +73,6 @@ private:
     };
 
     bool MakeRoom(TimePoint now);
-    static void Hear(Peer &peer, TimePoint now);
     static bool IsPlausible(Numbers &numbers, std::int64_t number, TimePoint now);
     static void Move(Numbers &numbers, std::int64_t number, TimePoint now);
 

@@ -43,7 +43,7 @@ public:
 
     // Samples whose fragments are still coming take no more bytes than this together: the first fragment says how
     // large its sample is going to be, and the others may never come.
-    static constexpr std::size_t MostArriving = 4 * std::size_t{MaxSample};
+    static constexpr std::size_t MostArriving = 2 * std::size_t{MaxSample};
 
     // A buffer for at least `size` bytes, which the caller owns until it releases or adopts it. Throws
     // std::bad_alloc.
