@@ -75,6 +75,8 @@ ALLOWED = {
     "tests/bench/raw": {"CLI11"},
     "tests/bench/raw/fastdds": {"Fast DDS", "Fast-CDR"},
     "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
+    # Carries frames, whosever they are.
+    "tests/integration/radio": {"CLI11", "network"},
     "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11", "network",
                  "yaml-cpp"},
 }

@@ -1,0 +1,170 @@
+#pragma once
+
+#include "Frame.h"
+#include "NodeCounters.h"
+#include "SendQueue.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <queue>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace Rabit::Radio
+{
+
+struct MediumSettings
+{
+    std::optional<std::int64_t> BitsPerSecond;  // none: unlimited
+    std::size_t QueueBytes = 16'000;            // of each node
+    std::size_t Overhead = 0;                   // bytes that each frame takes on the air beyond its own
+    std::uint64_t Seed = 1;                     // of losses and jitter
+};
+
+// One way between two nodes.
+struct LinkSettings
+{
+    double Loss = 0;  // share of the frames, 0 to 1, independent for each receiver and each frame
+    Time Delay{0};
+    Time Jitter{0};  // up to so much more or less than the delay, evenly
+    bool Deaf = false;
+};
+
+// A frame that has come to a node at that time.
+struct Arrival
+{
+    Time At;
+    std::size_t To;
+    FramePointer What;
+};
+
+// A shared half-duplex radio channel. Each node has a bounded queue; one frame at a time is on the air, for
+// (bytes + overhead) * 8 / rate, and the nodes that have something to send take turns, a frame each. A
+// multicast or broadcast frame is on the air once and reaches all others; a unicast frame is on the air once
+// and reaches the node with its address, or nobody. What is on the air is then lost or not at each receiver,
+// and comes to it after the link's delay, in order unless reordering is switched on.
+//
+// Left out of what real radios do: collisions and back-off (turns are perfect), acknowledgements and
+// repetitions of unicast frames by the radio, a lower rate for multicast, rates that differ between links,
+// hidden nodes, interference, bursts of loss, and the back-pressure by which a full driver's queue blocks a
+// socket. An outage is silence at the receivers: senders do not notice it and go on using the air.
+//
+// Pure: no clock, thread or socket. Times are given by the caller and do not go back; one that does counts as
+// the last one. Not for several threads at once.
+class Medium
+{
+public:
+    // Throws std::invalid_argument on a rate below 1 or above MostBitsPerSecond.
+    explicit Medium(const MediumSettings &settings);
+
+    static constexpr std::int64_t MostBitsPerSecond = 10'000'000'000;
+
+    // Nodes are numbered from 0 in this order. Throws std::invalid_argument on a name or address that is
+    // there.
+    std::size_t Add(const std::string &name, const MacAddress &address);
+    std::size_t Count() const { return _nodes.size(); }
+    const std::string &NameOf(std::size_t node) const { return _nodes.at(node).Name; }
+    std::optional<std::size_t> Find(const std::string &name) const;
+
+    // A node gives a frame to its queue.
+    void Offer(Time now, std::size_t node, FramePointer frame);
+    // Appends all that has come to nodes until now, in the order of its coming.
+    void Advance(Time now, std::vector<Arrival> &arrived);
+    // When Advance has something to do, if nothing is offered until then.
+    std::optional<Time> NextEvent() const;
+    // Called with each frame at the end of its time on the air, whoever hears it. Must not call the medium.
+    void SetTap(std::function<void(Time, const Frame &)> tap) { _tap = std::move(tap); }
+
+    // Changes while it runs. A frame on the air goes on at the new rate.
+    void SetRate(Time now, std::optional<std::int64_t> bitsPerSecond);
+    void SetQueue(std::size_t node, std::size_t bytes) { _nodes.at(node).Queue.SetLimit(bytes); }
+    void SetOverhead(std::size_t bytes) { _overhead = bytes; }
+    void SetReordering(bool on) { _reordering = on; }
+    // A frame of which any part is on the air during an outage is heard by nobody.
+    void SetOutage(Time now, bool on);
+    // Holds for frames that leave the air after now.
+    void SetLink(Time now, std::size_t from, std::size_t to, const LinkSettings &settings);
+    const LinkSettings &LinkOf(std::size_t from, std::size_t to) const;
+
+    std::optional<std::int64_t> Rate() const { return _rate; }
+    bool IsOut() const { return _out; }
+    const NodeCounters &CountersOf(std::size_t node) const { return _nodes.at(node).Counters; }
+    std::size_t QueuedBytes(std::size_t node) const { return _nodes.at(node).Queue.Bytes(); }
+    // How long the first frame that waits has waited.
+    Time QueueAge(Time now, std::size_t node) const;
+    // Time for which something was on the air since the beginning or the last Reset.
+    Time Busy(Time now) const;
+    Time CountedSince() const { return _countedSince; }
+    // All counters from zero. What waits and what is on the air stays.
+    void Reset(Time now);
+
+private:
+    struct Node
+    {
+        std::string Name;
+        SendQueue Queue;
+        NodeCounters Counters;
+    };
+
+    struct Link
+    {
+        LinkSettings Settings;
+        Time Last{0};  // when the latest frame comes
+    };
+
+    struct Later
+    {
+        bool operator()(const std::pair<std::uint64_t, Arrival> &a,
+                        const std::pair<std::uint64_t, Arrival> &b) const
+        {
+            return a.second.At != b.second.At ? a.second.At > b.second.At : a.first > b.first;
+        }
+    };
+
+    struct OnAir
+    {
+        std::size_t From;
+        FramePointer What;
+        std::size_t Overhead;
+        Time Waited;
+        Time Since;  // of the last change of rate, or of its beginning
+        Time Began;
+        Time Ends;
+        std::int64_t Left;  // bits * 1e9 at Since
+        bool Spoiled;
+    };
+
+    Time Run(Time now);
+    void BeginNext(Time at);
+    void Complete();
+    void Reach(std::size_t from, std::size_t to, const OnAir &sent);
+    Time EndOf(Time since, std::int64_t left) const;
+    double Random();
+    Link &LinkAt(std::size_t from, std::size_t to) { return _links.at(from * _nodes.size() + to); }
+
+    std::optional<std::int64_t> _rate;
+    std::size_t _queueBytes;
+    std::size_t _overhead;
+    bool _reordering = false;
+    bool _out = false;
+    std::mt19937_64 _random;
+    std::vector<Node> _nodes;
+    std::vector<Link> _links;  // from * nodes + to
+    std::map<MacAddress, std::size_t> _byAddress;
+    std::function<void(Time, const Frame &)> _tap;
+    Time _now{0};
+    std::optional<OnAir> _air;
+    std::size_t _lastTurn = 0;
+    std::priority_queue<std::pair<std::uint64_t, Arrival>, std::vector<std::pair<std::uint64_t, Arrival>>,
+                        Later>
+        _coming;
+    std::uint64_t _sequence = 0;
+    Time _busy{0};
+    Time _countedSince{0};
+};
+
+}  // namespace Rabit::Radio
