@@ -135,6 +135,19 @@ TEST(AcknowledgementTranslator, CountsGoOnFromWhereAReaderBeganAnew)
     EXPECT_GT(CountAfter(translator, {.Bits = 7, .Count = 1}), begun);
 }
 
+// Cyclone DDS puts what the participants of a process have to say into one datagram.
+TEST(AcknowledgementTranslator, WhoIsSpokenForIsToldFromWhoSends)
+{
+    AcknowledgementTranslator translator;
+    const auto ofOne = CountAfter(translator, {.Sender = 1, .Base = 2, .Count = 7});
+    Bytes datagram = Header(2);
+    AppendTo(datagram, {.Base = 2, .Count = 20});
+    Append(datagram, {0x0c, 1, 20, 0, 0, 0, 0, 0, 2, 1, 1, 16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1});
+    AppendTo(datagram, {.Base = 2, .Count = 7});
+    translator.Translate(datagram);
+    EXPECT_EQ(datagram[datagram.size() - 4], ofOne) << "a repeat";
+}
+
 TEST(AcknowledgementTranslator, AReaderThatHadNothingYetOnlyRepeatsItself)
 {
     AcknowledgementTranslator translator;

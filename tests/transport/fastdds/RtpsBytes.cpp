@@ -69,6 +69,11 @@ Bytes Submessage(std::uint8_t kind, const Bytes &body, std::uint8_t flags)
     return Join({{kind, flags}, U16(static_cast<std::uint16_t>(body.size())), body});
 }
 
+Bytes Source(const GuidPrefix &sender)
+{
+    return Submessage(InfoSource, Join({Bytes(4), {2, 3, 1, 15}, Bytes(sender.begin(), sender.end())}));
+}
+
 Bytes Message(std::uint8_t kind, const Bytes &body, std::uint8_t flags)
 {
     return Join({Header(), Submessage(kind, body, flags)});

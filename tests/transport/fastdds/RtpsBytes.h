@@ -44,6 +44,8 @@ Bytes Guid(const GuidPrefix &prefix, EntityId entity);
 Bytes Header(const GuidPrefix &sender = Sender);
 // Little-endian, as everything here.
 Bytes Submessage(std::uint8_t kind, const Bytes &body, std::uint8_t flags = 1);
+// Says who says what follows.
+Bytes Source(const GuidPrefix &sender);
 // A message of one submessage.
 Bytes Message(std::uint8_t kind, const Bytes &body, std::uint8_t flags = 1);
 

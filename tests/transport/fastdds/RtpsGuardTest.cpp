@@ -126,9 +126,44 @@ TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsIsStopped)
     EXPECT_TRUE(Guard.Stops(goodbye(Guid(Other, 0x000001c1))));
 }
 
-TEST_F(RtpsGuardTest, WhoSpeaksForOthersOrOfOtherAddressesIsStopped)
+// Cyclone DDS puts what the participants of a process have to say into one datagram.
+TEST_F(RtpsGuardTest, OneDatagramMaySpeakForSeveralParticipants)
 {
-    EXPECT_TRUE(Guard.Stops(Join({Message(InfoSource, Bytes(20)), Submessage(Data, DataBody(11), 5)})));
+    const Bytes data = Submessage(Data, DataBody(11), 5);
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage(Other)));
+    EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 1, Other)));
+    EXPECT_TRUE(Guard.Passes(Join({Header(Other), data, Source(Sender), data})));
+    // Each at its own numbers: the sender was at 10, the other one is at 11 now.
+    const Bytes ahead = Submessage(Data, DataBody(27), 5);
+    EXPECT_TRUE(Guard.Stops(Join({Header(Sender), Source(Other), Submessage(Data, DataBody(28), 5)})));
+    EXPECT_TRUE(Guard.Passes(Join({Header(Sender), Source(Other), ahead})));
+}
+
+TEST_F(RtpsGuardTest, WhoIsSpokenForIsWhoTheAnnouncementIsAbout)
+{
+    const auto announced = [](const GuidPrefix &who)
+    { return Submessage(Data, DataBody(1, ParticipantData(who), 0x000100c2), 5); };
+    EXPECT_TRUE(Guard.Passes(Join({Header(Sender), announced(Sender), Source(Other), announced(Other)})));
+    EXPECT_TRUE(Guard.Stops(Join({Header(Other), Source(Sender), announced(Other)})));
+    EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 1, Other)));
+}
+
+TEST_F(RtpsGuardTest, WhoSpeaksForNobodyIsStopped)
+{
+    const Bytes data = Submessage(Data, DataBody(11), 5);
+    EXPECT_TRUE(Guard.Stops(Join({Header(), Source(GuidPrefix{}), data})));
+    Bytes version = Source(Sender);
+    version[8] = 9;
+    EXPECT_TRUE(Guard.Stops(Join({Header(), version, data})));
+    for (const std::size_t size : {16u, 24u})
+    {
+        EXPECT_TRUE(Guard.Stops(Join({Message(InfoSource, Bytes(size, 2)), data}))) << size;
+    }
+    EXPECT_TRUE(Guard.Passes(Join({Header(), Source(Sender), data})));
+}
+
+TEST_F(RtpsGuardTest, WhoSpeaksOfOtherAddressesIsStopped)
+{
     EXPECT_TRUE(Guard.Stops(Join({Message(InfoReply, Bytes(28)), Submessage(Data, DataBody(11), 5)})));
     EXPECT_TRUE(Guard.Stops(Message(SecurePrefix, Bytes(32))));
     EXPECT_TRUE(Guard.Stops(Message(0x20, Bytes(32))));
@@ -224,7 +259,7 @@ TEST_F(RtpsGuardTest, WhatIsRefusedIsBlankedAndTheRestGetsThrough)
     EXPECT_EQ(Guard.Handed, std::vector<Bytes>{Join({Message(0x01, GapBody(11, 900)), data})});
 }
 
-std::vector<Bytes> Cut(const Bytes &payload, std::uint16_t size)
+std::vector<Bytes> Cut(const Bytes &payload, std::uint16_t size, const Bytes &header = Header())
 {
     std::vector<Bytes> fragments;
     for (std::size_t at = 0; at < payload.size(); at += size)
@@ -232,14 +267,15 @@ std::vector<Bytes> Cut(const Bytes &payload, std::uint16_t size)
         const auto begin = payload.begin() + static_cast<std::ptrdiff_t>(at);
         const Bytes piece(
             begin, begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(size, payload.size() - at)));
-        fragments.push_back(Message(DataFrag, Join({{0, 0, 28, 0},
-                                                    Ids(0, 0x000003c2),
-                                                    Sequence(2),
-                                                    U32(static_cast<std::uint32_t>(at / size + 1)),
-                                                    U16(1),
-                                                    U16(size),
-                                                    U32(static_cast<std::uint32_t>(payload.size())),
-                                                    piece})));
+        fragments.push_back(
+            Join({header, Submessage(DataFrag, Join({{0, 0, 28, 0},
+                                                     Ids(0, 0x000003c2),
+                                                     Sequence(2),
+                                                     U32(static_cast<std::uint32_t>(at / size + 1)),
+                                                     U16(1),
+                                                     U16(size),
+                                                     U32(static_cast<std::uint32_t>(payload.size())),
+                                                     piece}))}));
     }
     return fragments;
 }
@@ -259,6 +295,18 @@ TEST_F(RtpsGuardTest, AnAnnouncementInFragmentsGetsThroughWhole)
                               Submessage(Data, DataBody(2, WriterData(0x00000203), 0x000003c2), 5)});
     EXPECT_EQ(Guard.Handed, std::vector<Bytes>{whole});
     EXPECT_TRUE(Guard.Passes(Message(Data, DataBody(1, Bytes(8), 0x00000203), 5)));
+}
+
+TEST_F(RtpsGuardTest, AnAnnouncementInFragmentsIsOfWhoIsSpokenFor)
+{
+    const auto fragments = Cut(WriterData(0x00000203), 64, Join({Header(Other), Source(Sender)}));
+    for (const Bytes &fragment : fragments)
+    {
+        EXPECT_TRUE(Guard.Admit(fragment));
+    }
+    const Bytes whole = Join({Message(InfoDestination, Bytes(12)),
+                              Submessage(Data, DataBody(2, WriterData(0x00000203), 0x000003c2), 5)});
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{whole});
 }
 
 TEST_F(RtpsGuardTest, AnUnsoundAnnouncementInFragmentsIsStopped)
@@ -307,6 +355,7 @@ TEST_F(RtpsGuardTest, AnyBytesAreSafeToCheck)
         Message(AckNack, AckNackBody(1, 64, 1)),
         Message(NackFrag, NackFragBody(1, 1, 64, 1)),
         Message(Gap, GapBody(3, 5, 32)),
+        Join({Header(), Source(Other), Submessage(AckNack, AckNackBody(1, 64, 1))}),
         Join({Message(InfoDestination, Bytes(12)), Submessage(Heartbeat, HeartbeatBody(1, 10, 1)),
               Submessage(Statistics, Bytes(56))})};
     const auto fragments = Cut(WriterData(), 64);

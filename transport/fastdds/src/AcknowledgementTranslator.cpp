@@ -15,6 +15,7 @@ constexpr std::size_t SubmessageHeaderSize = 4;
 constexpr std::uint8_t Pad = 0x01;
 constexpr std::uint8_t AckNack = 0x06;
 constexpr std::uint8_t InfoTimestamp = 0x09;
+constexpr std::uint8_t InfoSource = 0x0c;
 constexpr std::uint8_t NackFrag = 0x12;
 // DDS Security 1.1, 7.3.6.2
 constexpr std::uint8_t FirstSecure = 0x30;
@@ -27,8 +28,8 @@ constexpr std::size_t SequenceAt = 8;
 constexpr std::size_t AckNackBitsAt = 16;
 constexpr std::size_t NackFragBitsAt = 20;
 constexpr std::size_t CountSize = 4;
-// A count farther behind the last one is no straggler: either it or the last one was forged, and the honest ones
-// go on from the lower.
+// A count farther behind the last one is no straggler: either it or the last one was forged, and the honest
+// ones go on from the lower.
 constexpr std::uint32_t FarthestBehind = 16;
 
 std::uint32_t Read(std::span<const std::uint8_t> bytes, bool littleEndian)
@@ -70,6 +71,11 @@ void AcknowledgementTranslator::Translate(std::span<std::uint8_t> datagram)
         if (length == 0 && kind != Pad && kind != InfoTimestamp)
         {
             length = rest.size();  // 9.4.5.1.3: it extends to the end of the message
+        }
+        if (kind == InfoSource)
+        {
+            // Who says what follows; 9.4.5.9
+            std::copy_n(rest.begin() + PrefixAt, sender.size(), sender.begin());
         }
         if (kind == AckNack || kind == NackFrag)
         {

@@ -26,8 +26,8 @@ public:
     // Puts requests for all that there is into the vendor's form, and gives all acknowledgements and requests
     // for fragments in a datagram counts of our own. They rise as the sender's do; but when one of the
     // sender's readers that had acknowledged something asks for all, those of all its readers begin anew,
-    // above all that were given. A count far below the last is news as well. What DDS Security may have signed stays. The datagram must be sound
-    // (RtpsGuard.h).
+    // above all that were given. A count far below the last is news as well. What DDS Security may have
+    // signed stays. The datagram must be sound (RtpsGuard.h).
     void Translate(std::span<std::uint8_t> datagram);
 
     // To forget does no harm beyond repairs that were not needed, so this is all that is kept.

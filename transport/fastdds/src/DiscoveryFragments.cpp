@@ -65,10 +65,10 @@ DiscoveryFragments::Sample *DiscoveryFragments::Find(const GuidPrefix &sender, c
     return &_samples.back();
 }
 
-std::vector<std::uint8_t> DiscoveryFragments::Add(std::span<const std::uint8_t> datagram,
+std::vector<std::uint8_t> DiscoveryFragments::Add(std::span<const std::uint8_t> header,
                                                   const Delivery &delivery, const GuidPrefix &destination)
 {
-    const GuidPrefix sender = SenderOf(datagram);
+    const GuidPrefix sender = SenderOf(header);
     Sample *sample = Find(sender, delivery);
     if (sample == nullptr)
     {
@@ -85,7 +85,7 @@ std::vector<std::uint8_t> DiscoveryFragments::Add(std::span<const std::uint8_t> 
     {
         return {};
     }
-    std::vector<std::uint8_t> message(datagram.begin(), datagram.begin() + RtpsHeaderSize);
+    std::vector<std::uint8_t> message(header.begin(), header.begin() + RtpsHeaderSize);
     AppendHeader(message, SubmessageKind::InfoDestination, 0, destination.size());
     message.insert(message.end(), destination.begin(), destination.end());
     constexpr std::uint8_t HasData = 0x04;

@@ -19,9 +19,9 @@ namespace Rabit::FastDds
 class DiscoveryFragments
 {
 public:
-    // Takes fragments of a sample. Once they are all there, returns a message of the same sender with the
-    // whole sample, to the same destination as `datagram`; empty until then.
-    std::vector<std::uint8_t> Add(std::span<const std::uint8_t> datagram, const Delivery &delivery,
+    // Takes fragments of a sample of the sender in an RTPS header. Once they are all there, returns a message
+    // with this header and the whole sample, to that destination; empty until then.
+    std::vector<std::uint8_t> Add(std::span<const std::uint8_t> header, const Delivery &delivery,
                                   const GuidPrefix &destination);
 
 private:

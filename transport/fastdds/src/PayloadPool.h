@@ -36,13 +36,13 @@ public:
         std::uint32_t Capacity = 0;
     };
 
-    // `onRefused` is called, on the vendor's thread, when a sample arrives that is larger than MaxSample, or for
-    // which MostArriving leaves no room.
+    // `onRefused` is called, on the vendor's thread, when a sample arrives that is larger than MaxSample, or
+    // for which MostArriving leaves no room.
     explicit PayloadPool(std::function<void()> onRefused) : _onRefused(std::move(onRefused)) {}
     ~PayloadPool() override;
 
-    // Samples whose fragments are still coming take no more bytes than this together: the first fragment says how
-    // large its sample is going to be, and the others may never come.
+    // Samples whose fragments are still coming take no more bytes than this together: the first fragment says
+    // how large its sample is going to be, and the others may never come.
     static constexpr std::size_t MostArriving = 2 * std::size_t{MaxSample};
 
     // A buffer for at least `size` bytes, which the caller owns until it releases or adopts it. Throws

@@ -36,6 +36,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, TimePoint now, const Del
     }
     Passage passage;
     passage.Datagram = datagram;
+    std::copy_n(datagram.begin(), RtpsHeaderSize, passage.Header.begin());
     passage.Sender = SenderOf(datagram);
     passage.Now = now;
     std::span<const std::uint8_t> left;
@@ -112,6 +113,15 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
         case SubmessageKind::InfoTimestamp:
             return (submessage.Flags & Invalidate) != 0 || HasSize(submessage, 8) ? Verdict::Pass
                                                                                   : Verdict::Drop;
+        case SubmessageKind::InfoSource:
+            // Cyclone DDS puts what the participants of a process say into one message. In whose name
+            // somebody speaks here is no more and no less true than the name in the header.
+            if (!PutSource(submessage, passage.Header))
+            {
+                return Verdict::Drop;
+            }
+            passage.Sender = SenderOf(passage.Header);
+            return Verdict::Pass;
         case SubmessageKind::InfoDestination:
             if (!HasSize(submessage, passage.Destination.size()))
             {
@@ -131,8 +141,8 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
             return delivery ? JudgeDelivery(submessage, *delivery, passage) : Verdict::Drop;
         }
         default:
-            // Those that speak in another one's name (INFO_SRC) or redirect answers (INFO_REPLY), which
-            // nobody sends without DDS Security, are among those that are not known here.
+            // Those that redirect answers (INFO_REPLY), which neither vendor sends, are among those that are
+            // not known here.
             return IsOfVendor(submessage.Kind) && submessage.Kind != SubmessageKind::Statistics
                        ? Verdict::Ignore
                        : Verdict::Drop;
@@ -170,7 +180,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         {
             return Verdict::Pass;
         }
-        auto whole = _fragments.Add(passage.Datagram, delivery, passage.Destination);
+        auto whole = _fragments.Add(passage.Header, delivery, passage.Destination);
         if (!whole.empty())
         {
             passage.Whole.push_back(std::move(whole));

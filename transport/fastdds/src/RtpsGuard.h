@@ -4,6 +4,7 @@
 // and others have it allocate gigabytes, or walk through numbers for hours with its locks held.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -63,6 +64,8 @@ private:
     struct Passage
     {
         std::span<std::uint8_t> Datagram;
+        // As if who speaks now had sent it alone.
+        std::array<std::uint8_t, RtpsHeaderSize> Header{};
         GuidPrefix Sender{};
         GuidPrefix Destination{};
         TimePoint Now{};

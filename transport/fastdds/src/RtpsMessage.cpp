@@ -29,6 +29,19 @@ GuidPrefix SenderOf(std::span<const std::uint8_t> datagram)
     return prefix;
 }
 
+bool PutSource(const Submessage &submessage, std::span<std::uint8_t> header)
+{
+    // 9.4.5.9: four bytes that mean nothing, then version, vendor and prefix as they are in a header.
+    constexpr std::size_t Unused = 4;
+    const auto body = submessage.Body();
+    if (body.size() != RtpsHeaderSize)
+    {
+        return false;
+    }
+    std::copy(body.begin() + Unused, body.end(), header.begin() + Unused);
+    return HasRtpsHeader(header);
+}
+
 std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest)
 {
     constexpr std::uint8_t LittleEndian = 0x01;

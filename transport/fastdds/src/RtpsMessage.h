@@ -25,6 +25,7 @@ enum class SubmessageKind : std::uint8_t
     Heartbeat = 0x07,
     Gap = 0x08,
     InfoTimestamp = 0x09,
+    InfoSource = 0x0c,
     InfoDestination = 0x0e,
     NackFrag = 0x12,
     HeartbeatFrag = 0x13,
@@ -52,6 +53,10 @@ bool HasRtpsHeader(std::span<const std::uint8_t> datagram);
 
 // The name of the participant that sent the message. It must have a header.
 GuidPrefix SenderOf(std::span<const std::uint8_t> datagram);
+
+// Puts the participant that an INFO_SRC names into a header, as if it had sent what follows in a message of
+// its own. False if it names none.
+bool PutSource(const Submessage &submessage, std::span<std::uint8_t> header);
 
 // Takes the first submessage off `rest`, which must not be empty. Nothing if there is no whole one, or if its
 // length would let two parsers disagree about where the next one begins.
