@@ -82,6 +82,9 @@ class DockerField:
         self.console("cut", node)
         self._faulty.add(node)
 
+    def heal(self):
+        self.lose(0)
+
     def is_running(self, node):
         return self._engine.run("docker", "inspect", "--format", "{{.State.Running}}",
                                 f"{self._engine.mark}-{node}").strip() == "true"

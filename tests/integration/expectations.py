@@ -22,6 +22,7 @@ class Run:
     def __init__(self, ledgers, faults):
         self.lives = {node: judge.read_ledger(text) for node, text in ledgers.items()}
         self.faults = faults
+        self.air = None  # the radio's counters at the end, in a scenario with a medium
 
     def losing_since(self):
         """When packets began to be lost, in s: what was before says nothing about the loss. 0 where none are lost."""
@@ -201,7 +202,14 @@ def lives(run, wanted):
             if len(run.lives[node]) != count]
 
 
-ALL = (least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, foreign_refused, lives)
+def offered_at_most(run, wanted):
+    """Percent of what the medium can carry, that all nodes together gave to their queues, over the whole run."""
+    offered = sum(node["offered"]["bytes"] for node in run.air["nodes"].values())
+    percent = 100 * 8 * offered / run.air["seconds"] / run.air["bits_per_s"]
+    return [f"{percent:.0f} % of the medium offered, at most {wanted} % wanted"] if percent > wanted else []
+
+
+ALL = (offered_at_most, least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, foreign_refused, lives)
 
 
 def check(run, wanted):

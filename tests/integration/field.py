@@ -21,9 +21,13 @@ class Unsupported(Exception):
     """This machine does not allow what is needed."""
 
 
-def _run(*argv, text=None):
+def run(*argv, text=None):
     return subprocess.run(argv, input=text, text=True, check=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT).stdout
+
+
+def run_in(space, *argv, text=None):
+    return run("ip", "netns", "exec", space, *argv, text=text)
 
 
 def dead(name):
@@ -33,7 +37,7 @@ def dead(name):
 
 def namespaces():
     """All namespaces that any Field made."""
-    listed = _run("ip", "netns", "list")
+    listed = run("ip", "netns", "list")
     return [line.split()[0] for line in listed.splitlines() if NAME.match(line)]
 
 
@@ -91,16 +95,16 @@ class Field:
 
     def move(self, node):
         """Another address, in place of the one that it had."""
-        inside = ["ip", "-n", self._space(node), "address"]
-        _run(*inside, "del", self.address(node) + "/16", "dev", "eth0")
+        inside = ["ip", "-n", self.space(node), "address"]
+        run(*inside, "del", self.address(node) + "/16", "dev", "eth0")
         self._moves[node] = self._moves.get(node, 0) + 1
-        _run(*inside, "add", self.address(node) + "/16", "dev", "eth0")
+        run(*inside, "add", self.address(node) + "/16", "dev", "eth0")
         for other in self.nodes:
             self._write_rules(other)
 
     def start(self, node, argv, space=None):
         """Starts a program as that node, or inside another one's namespace. It dies with this process."""
-        process = harness.Process(["ip", "netns", "exec", self._space(space or node), *argv])
+        process = harness.Process(["ip", "netns", "exec", self.space(space or node), *argv])
         self.processes[node] = process
         return process
 
@@ -126,44 +130,55 @@ class Field:
         self.lose(100, [node])
         self.lose(100, None, [node])
 
+    def heal(self):
+        """Ends all loss."""
+        self.lose(0)
+
     def traffic(self, node):
         """Bytes that the node has sent and received so far."""
-        counts = [_run("ip", "netns", "exec", self._space(node), "cat", f"/sys/class/net/eth0/statistics/{name}")
+        counts = [run_in(self.space(node), "cat", f"/sys/class/net/eth0/statistics/{name}")
                   for name in ("tx_bytes", "rx_bytes")]
         return tuple(map(int, counts))
 
-    def _space(self, name):
+    def space(self, name):
         return self._prefix + name
 
     def _make_space(self, name):
         # Entered before it is made, so that it is removed also if a signal comes in between.
-        self._made.append(self._space(name))
+        self._made.append(self.space(name))
         try:
-            _run("ip", "netns", "add", self._space(name))
+            run("ip", "netns", "add", self.space(name))
         except subprocess.CalledProcessError as error:
             raise Unsupported(f"no network namespaces here: {error.stdout}") from error
 
     def _build(self):
         self.folder = tempfile.mkdtemp(prefix=self._prefix)
-        self._make_space("switch")
-        switch = ["ip", "-n", self._space("switch"), "link"]
-        _run(*switch, "add", "br0", "type", "bridge", "mcast_snooping", "0")
-        _run(*switch, "set", "br0", "up")
-        for number, node in enumerate(self.nodes):
-            self._make_space(node)
-            inside = ["ip", "-n", self._space(node)]
-            _run(*switch, "add", f"p{number}", "type", "veth", "peer", "name", "eth0", "netns", self._space(node))
-            _run(*switch, "set", f"p{number}", "master", "br0", "up")
-            _run(*inside, "address", "add", self.address(node) + "/16", "dev", "eth0")
-            _run(*inside, "link", "set", "lo", "up")
-            _run(*inside, "link", "set", "eth0", "up")
-            if self._multicast:
-                _run(*inside, "route", "add", "224.0.0.0/4", "dev", "eth0")
+        self._connect()
         try:
             for node in self.nodes:
                 self._write_rules(node)
         except subprocess.CalledProcessError as error:
             raise Unsupported(f"nftables does not work here: {error.stdout}") from error
+
+    def _connect(self):
+        """Makes each node's namespace, and in it a device eth0 that reaches all others."""
+        self._make_space("switch")
+        switch = ["ip", "-n", self.space("switch"), "link"]
+        run(*switch, "add", "br0", "type", "bridge", "mcast_snooping", "0")
+        run(*switch, "set", "br0", "up")
+        for number, node in enumerate(self.nodes):
+            self._make_space(node)
+            run(*switch, "add", f"p{number}", "type", "veth", "peer", "name", "eth0", "netns", self.space(node))
+            run(*switch, "set", f"p{number}", "master", "br0", "up")
+            self._switch_on(node)
+
+    def _switch_on(self, node):
+        inside = ["ip", "-n", self.space(node)]
+        run(*inside, "address", "add", self.address(node) + "/16", "dev", "eth0")
+        run(*inside, "link", "set", "lo", "up")
+        run(*inside, "link", "set", "eth0", "up")
+        if self._multicast:
+            run(*inside, "route", "add", "224.0.0.0/4", "dev", "eth0")
 
     # Dropped where it arrives: a drop on the way out would be told to the sender's socket.
     def _write_rules(self, node):
@@ -174,7 +189,7 @@ class Field:
                 rules.append(f"ip saddr {self.address(origin)} {share}drop")
         text = ("add table ip field\ndelete table ip field\ntable ip field {\n chain arriving {\n"
                 "  type filter hook input priority 0;\n  " + "\n  ".join(rules) + "\n }\n}\n")
-        _run("ip", "netns", "exec", self._space(node), "nft", "-f", "-", text=text)
+        run_in(self.space(node), "nft", "-f", "-", text=text)
 
     def _remove(self):
         for number in (signal.SIGINT, signal.SIGTERM):

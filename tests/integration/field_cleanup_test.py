@@ -10,9 +10,11 @@ import sys
 import time
 
 import field
+import radio_field
 
 HERE = pathlib.Path(__file__).resolve().parent
-NODES = 2
+# Scenario -> its processes, with the radio where there is one; and its namespaces, with the bridge's where there is one.
+RUNS = {"expiry": (2, 3), "radio": (4, 3)}
 
 
 def left_of(pid):
@@ -20,8 +22,8 @@ def left_of(pid):
     return [name for name in field.namespaces() + field.folders() if mark in name]
 
 
-def nodes_of(pid):
-    """Processes whose command line names the run's folder, as the nodes' does."""
+def processes_of(pid):
+    """Those whose command line names the run's folder, as the nodes' does, or its namespaces, as the radio's does."""
     mark = f"{field.PREFIX}-{pid}-".encode()
     found = []
     for entry in pathlib.Path("/proc").iterdir():
@@ -41,19 +43,20 @@ def wait_until(holds, what):
         time.sleep(0.1)
 
 
-def end_with(number, program):
+def end_with(number, program, scenario):
+    processes, spaces = RUNS[scenario]
     run = subprocess.Popen([sys.executable, HERE / "run_scenario.py", "--ledger-node", program,
-                            HERE / "scenarios/expiry"], stdout=subprocess.DEVNULL)
+                            HERE / "scenarios" / scenario], stdout=subprocess.DEVNULL)
     try:
-        wait_until(lambda: len(nodes_of(run.pid)) == NODES, "the nodes run")
-        assert len(left_of(run.pid)) == NODES + 2, left_of(run.pid)
+        wait_until(lambda: len(processes_of(run.pid)) == processes, "the nodes run")
+        assert len(left_of(run.pid)) == spaces + 1, left_of(run.pid)  # and the folder
         run.send_signal(number)
         run.wait(60)
     finally:
         if run.poll() is None:
             run.kill()
             run.wait()
-    wait_until(lambda: not nodes_of(run.pid), "the nodes end")
+    wait_until(lambda: not processes_of(run.pid), "the nodes end")
     if number == signal.SIGKILL:
         field.sweep()
     assert not left_of(run.pid), f"left behind after {number.name}: {left_of(run.pid)}"
@@ -63,11 +66,14 @@ def main():
     try:
         with field.Field(["probe"]):
             pass
+        with radio_field.RadioField(pathlib.Path(sys.argv[1]).parent / "radio", ["probe"]):
+            pass
     except field.Unsupported as reason:
         print(f"skipped: {reason}")
         sys.exit(77)
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
-        end_with(number, sys.argv[1])
+    for scenario in RUNS:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            end_with(number, sys.argv[1], scenario)
 
 
 if __name__ == "__main__":

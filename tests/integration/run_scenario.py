@@ -17,6 +17,7 @@ import time
 import expectations
 import field
 import judge
+import radio_field
 
 HERE = pathlib.Path(__file__).resolve().parent
 SKIPPED = 77
@@ -152,7 +153,22 @@ class Faults:
         self._field.cut(node)
 
     def heal(self):
-        self._field.lose(0)
+        self._field.heal()
+
+    def rate(self, kbit):
+        self._field.rate(kbit)
+
+    def delay(self, ms, jitter_ms=0):
+        self._field.delay(ms, jitter_ms)
+
+    def deaf(self, node, origin):
+        self._field.deaf(node, origin)
+
+    def hear(self, node, origin):
+        self._field.hear(node, origin)
+
+    def outage(self, switched):
+        self._field.outage(switched)
 
     def repeat(self, times, steps):
         for _ in range(times):
@@ -181,7 +197,13 @@ def run(options):
         raise field.Unsupported(f"not built: {', '.join(sorted(missing))}")
     hosts = [node for node in [*scenario["nodes"], *scenario.get("programs", {})]
              if node not in scenario.get("inside", {})]
-    with field.Field(hosts, scenario.get("multicast", True)) as ground:
+    multicast = scenario.get("multicast", True)
+    if "medium" in scenario:
+        radio = options.radio or pathlib.Path(options.ledger_node).parent / "radio"
+        ground = radio_field.RadioField(radio, hosts, scenario["medium"], multicast)
+    else:
+        ground = field.Field(hosts, multicast)
+    with ground:
         return run_in(ground, scenario, options)
 
 
@@ -197,6 +219,7 @@ def run_in(ground, scenario, options):
     wrong = fleet.wait_until_settled(scenario["limit_s"])
     seconds = time.monotonic() - began
     bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
+    air = ground.counters() if "medium" in scenario else None
     # Before the stop, which the others see as LOST.
     wrong += expectations.states(expectations.Run(fleet.ledgers(), faults.done), scenario.get("states", {}))
     wrong += fleet.stop()
@@ -207,6 +230,9 @@ def run_in(ground, scenario, options):
     for line in figures(seen):
         print(line)
     print(f"{seconds:.0f} s; bytes sent: " + ", ".join(f"{node} {count}" for node, count in bytes_sent.items()))
+    seen.air = air
+    if air:
+        print(radio_field.summary(air))
     wrong += expectations.check(seen, scenario.get("expect", {}))
     return wrong + judge.judge(ledgers[node] for node in scenario.get("judged", ledgers))
 
@@ -215,6 +241,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--ledger-node", required=True)
     parser.add_argument("--transports", default="fastdds", help="those that are built, the default one first")
+    parser.add_argument("--radio", help="the program for a scenario with a medium; default: beside the ledger node")
     parser.add_argument("--keep", help="copy the ledgers into this folder")
     parser.add_argument("scenario")
     try:

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "Frame.h"
+
+#include <string>
+
+namespace Rabit::Radio
+{
+
+// An Ethernet device in a network namespace, whose frames a program carries. It is there, up and with a
+// carrier, as long as its descriptor is open, and vanishes with the process however that ends. IPv6 is off,
+// so that a device that nobody uses says nothing.
+class TapDevice
+{
+public:
+    // `space` is a name below /run/netns, or the path of a namespace. Throws std::system_error or
+    // std::invalid_argument with what did not work.
+    TapDevice(const std::string &space, const std::string &device, const MacAddress &address);
+    ~TapDevice();
+    TapDevice(const TapDevice &) = delete;
+    TapDevice &operator=(const TapDevice &) = delete;
+
+    // Reads and writes frames, without blocking. The caller closes it.
+    int Release();
+
+private:
+    int _file = -1;
+};
+
+}  // namespace Rabit::Radio
