@@ -49,13 +49,108 @@ TEST_F(KnownPeersTest, APeerDoesNotMoveElsewhereWhileItIsHeard)
     EXPECT_FALSE(Peers.Announced(Sender, 1, Now + 121s));
 }
 
-TEST_F(KnownPeersTest, AnEndpointStaysAsItWasAnnounced)
+// A laptop in another WiFi: what else it says is heard all the time.
+TEST_F(KnownPeersTest, APeerThatMovesIsBelievedWhenItsFormerPlaceIsHeardNoMore)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        Now += 3s;
+        EXPECT_TRUE(Peers.Announced(Sender, 1, Now));
+    }
+    for (int i = 0; i < 2; ++i)
+    {
+        Now += 3s;
+        EXPECT_TRUE(Peers.Hears(Sender, Now));
+        EXPECT_FALSE(Peers.Announced(Sender, 2, Now)) << i;
+    }
+    Now += 3s;
+    EXPECT_TRUE(Peers.Announced(Sender, 2, Now));
+    Now += 3s;
+    EXPECT_TRUE(Peers.Announced(Sender, 2, Now));
+    EXPECT_FALSE(Peers.Announced(Sender, 1, Now));
+}
+
+TEST_F(KnownPeersTest, AForgedPlaceIsNotBelievedHoweverOftenItIsSaidBetweenTheTrueOnes)
+{
+    for (int i = 0; i < 10; ++i)
+    {
+        Now += 3s;
+        EXPECT_TRUE(Peers.Announced(Sender, 1, Now));
+        for (const auto later : {1s, 3s, 5s})  // one of the true ones is lost
+        {
+            for (int times = 0; times < 100; ++times)
+            {
+                ASSERT_FALSE(Peers.Announced(Sender, 2, Now + later));
+            }
+        }
+        Now += 3s;
+    }
+}
+
+TEST_F(KnownPeersTest, OnePlaceThatWasForgedIsNotBelievedForLong)
+{
+    EXPECT_TRUE(Peers.Announced(Other, 666, Now));
+    for (int i = 0; i < 2; ++i)
+    {
+        Now += 1s;
+        EXPECT_TRUE(Peers.Hears(Other, Now));
+        EXPECT_FALSE(Peers.Announced(Other, 1, Now)) << i;
+    }
+    Now += 1s;
+    EXPECT_TRUE(Peers.Announced(Other, 1, Now));
+}
+
+TEST_F(KnownPeersTest, APeerThatIsSaidToBeHereAndThereDoesNotMove)
+{
+    for (std::uint64_t place = 2; place < 100; ++place)
+    {
+        Now += 1s;
+        EXPECT_TRUE(Peers.Hears(Sender, Now));
+        EXPECT_FALSE(Peers.Announced(Sender, place, Now)) << place;
+        EXPECT_FALSE(Peers.Announced(Sender, place, Now)) << place;
+    }
+}
+
+// An announcement that was refused was not received: its writer sends it again until it is.
+TEST_F(KnownPeersTest, AnEndpointThatChangesIsBelievedWithItsThirdAnnouncementInARow)
+{
+    for (const EntityId endpoint : {0x00000203u, UserReader})
+    {
+        for (std::uint64_t digest = 7; digest < 10; ++digest)
+        {
+            for (int repeat = 1; repeat <= 2; ++repeat)
+            {
+                EXPECT_EQ(Peers.EndpointAnnounced(Sender, endpoint, digest), digest == 7) << repeat;
+            }
+            EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, digest));
+            EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, digest));
+        }
+    }
+}
+
+TEST_F(KnownPeersTest, AnEndpointDoesNotChangeWhileItIsAnnouncedAsItWas)
+{
+    for (const EntityId endpoint : {0x00000203u, UserReader})
+    {
+        for (int i = 0; i < 100; ++i)
+        {
+            EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, 7));
+            EXPECT_FALSE(Peers.EndpointAnnounced(Sender, endpoint, 8));
+            EXPECT_FALSE(Peers.EndpointAnnounced(Sender, endpoint, 8));
+        }
+    }
+}
+
+TEST_F(KnownPeersTest, AnEndpointDoesNotChangeToThisAndThat)
 {
     for (const EntityId endpoint : {0x00000203u, UserReader})
     {
         EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, 7));
-        EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, 7));
-        EXPECT_FALSE(Peers.EndpointAnnounced(Sender, endpoint, 8));
+        for (std::uint64_t digest = 8; digest < 100; ++digest)
+        {
+            EXPECT_FALSE(Peers.EndpointAnnounced(Sender, endpoint, digest));
+            EXPECT_FALSE(Peers.EndpointAnnounced(Sender, endpoint, digest));
+        }
     }
 }
 
@@ -258,6 +353,32 @@ TEST_F(KnownPeersTest, NobodyKnowsOfSamplesFarAhead)
     EXPECT_TRUE(Peers.CanKnowOf(Sender, UserWriter, 1016));
     EXPECT_FALSE(Peers.CanKnowOf(Sender, UserWriter, 1017));
     EXPECT_FALSE(Peers.CanKnowOf(Sender, 0x00000203, 1));
+}
+
+TEST_F(KnownPeersTest, AnnouncementsKeepTheirNumbersUntilThePeerMoves)
+{
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 5), 5);
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 5), 5);
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 6), 6);
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 5), 6) << "a straggler is no news";
+    EXPECT_TRUE(Peers.Announced(Sender, 2, Now + 60s));
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 1), 7);
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 1), 7);
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 2), 8);
+}
+
+TEST_F(KnownPeersTest, NumbersOfAnnouncementsDoNotFallWhenThePeerWasForgotten)
+{
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 100), 100);
+    Now += 61s;
+    for (int i = 0; i < 1024; ++i)
+    {
+        Peers.Announced(Stranger(i), 1, Now);
+    }
+    ASSERT_FALSE(Peers.Hears(Sender, Now));
+    Now += 61s;
+    EXPECT_TRUE(Peers.Announced(Sender, 1, Now));
+    EXPECT_EQ(Peers.AnnouncementOf(Sender, 1), 101);
 }
 
 TEST_F(KnownPeersTest, CountsRiseByOneWhateverThePeerCounts)

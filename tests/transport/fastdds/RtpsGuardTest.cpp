@@ -200,15 +200,56 @@ TEST_F(RtpsGuardTest, APeerThatIsHeardCannotBeSentElsewhere)
     EXPECT_TRUE(Guard.Stops(ParticipantMessage(Sender, 9999)));
 }
 
+// The vendor passes over announcements of a participant under a number that it has seen.
+TEST_F(RtpsGuardTest, APeerThatWasForgedFirstIsNewsWhenItIsBelieved)
+{
+    const auto honest = [](std::int64_t number)
+    {
+        return Join(
+            {Header(Other), Submessage(Data, DataBody(number, ParticipantData(Other, 7410), 0x000100c2), 5)});
+    };
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage(Other, 9999)));
+    for (int i = 0; i < 2; ++i)
+    {
+        Guard.Now += 1s;
+        EXPECT_TRUE(Guard.Stops(honest(1)));
+    }
+    for (int i = 0; i < 2; ++i)
+    {
+        Guard.Now += 1s;
+        EXPECT_TRUE(Guard.Admit(honest(1)));
+        EXPECT_EQ(Guard.Handed, std::vector<Bytes>{honest(2)});
+    }
+    // And so are its later ones, with the goodbye.
+    EXPECT_TRUE(Guard.Admit(honest(2)));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{honest(3)});
+    const auto goodbye = [](std::int64_t number)
+    {
+        return Join({Header(Other), Submessage(Data,
+                                               DataBody(number,
+                                                        Join({Parameter(0x0070, Guid(Other, 0x000001c1)),
+                                                              Parameter(0x0071, {0, 0, 0, 3}),
+                                                              {1, 0, 0, 0}}),
+                                                        0x000100c2),
+                                               3)});
+    };
+    EXPECT_TRUE(Guard.Admit(goodbye(3)));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{goodbye(4)});
+}
+
 // The next number of the topic of writers, and a writer that has moved to another topic: its readers here
 // would lose it for good.
-TEST_F(RtpsGuardTest, AnEndpointThatIsKnownCannotBeChanged)
+TEST_F(RtpsGuardTest, AnEndpointThatIsKnownCannotBeChangedByOneAnnouncement)
 {
     Bytes changed = WriterMessage(UserWriter, 2);
     const Bytes name = {'P', 'o', 's', 'e'};
     std::search(changed.begin(), changed.end(), name.begin(), name.end())[3] = 'f';
     EXPECT_TRUE(Guard.Stops(changed));
     EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 2)));
+    // Its owner sends it until it gets through.
+    EXPECT_TRUE(Guard.Stops(changed));
+    EXPECT_TRUE(Guard.Stops(changed));
+    EXPECT_TRUE(Guard.Passes(changed));
 }
 
 TEST_F(RtpsGuardTest, AWriterThatJumpsIsStoppedAndOneThatGoesOnIsNot)

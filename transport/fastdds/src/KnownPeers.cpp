@@ -16,6 +16,12 @@ constexpr std::size_t MostWriters = 4096;
 constexpr std::size_t MostReaders = 4096;
 // Longer than the announcement periods and leases in use.
 constexpr std::chrono::seconds Forgotten{60};
+// What is said otherwise is believed when it was said so often.
+constexpr int OftenEnough = 3;
+// In which participants announce themselves, whatever was seen of it: forged repeats would shorten it, and an
+// outage make it long.
+constexpr std::chrono::milliseconds ShortestPeriod{1000};
+constexpr std::chrono::milliseconds LongestPeriod{15'000};
 // What a writer says first may be any number up to here: the vendor walks to it from 1 on, which takes it a
 // tenth of a second. More is believed when enough agree.
 constexpr std::int64_t LargestFirst = std::int64_t{1} << 22;
@@ -40,12 +46,24 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
     const auto found = _peers.find(peer);
     if (found != _peers.end())
     {
-        if (found->second.Digest != digest && now - found->second.Heard < Forgotten)
+        Peer &known = found->second;
+        const auto since = std::chrono::duration_cast<std::chrono::milliseconds>(now - known.Placed);
+        if (IsKnown(known.Place, digest))
         {
-            return false;
+            known.Period = std::clamp(std::max(since, known.Period / 2), ShortestPeriod, LongestPeriod);
         }
-        found->second.Digest = digest;
-        found->second.Heard = now;
+        else
+        {
+            const bool repeated = IsRepeated(known.Place, digest);
+            if (now - known.Heard < Forgotten && (!repeated || since < 2 * known.Period))
+            {
+                return false;
+            }
+            known.Place = Word{digest};
+            known.HasMoved = true;
+        }
+        known.Placed = now;
+        known.Heard = now;
         return true;
     }
     if (_peers.size() >= MostPeers && !MakeRoom(now))
@@ -53,7 +71,9 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
         return false;
     }
     Peer &added = _peers[peer];
-    added.Digest = digest;
+    added.Place = Word{digest};
+    added.Placed = now;
+    added.Period = ShortestPeriod;
     added.Heard = now;
     // The protocol's own need no announcement.
     for (const EntityId writer :
@@ -62,6 +82,54 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
         added.Writers[writer];
     }
     return true;
+}
+
+bool KnownPeers::IsKnown(Word &word, std::uint64_t digest)
+{
+    if (word.Digest != digest)
+    {
+        return false;
+    }
+    word.Times = 0;
+    return true;
+}
+
+bool KnownPeers::IsRepeated(Word &word, std::uint64_t digest)
+{
+    word.Times = word.Other == digest ? word.Times + 1 : 1;
+    word.Other = digest;
+    return word.Times >= OftenEnough;
+}
+
+bool KnownPeers::Agrees(Word &word, std::uint64_t digest)
+{
+    if (IsKnown(word, digest))
+    {
+        return true;
+    }
+    const bool repeated = IsRepeated(word, digest);
+    if (repeated)
+    {
+        word = Word{digest};
+    }
+    return repeated;
+}
+
+std::int64_t KnownPeers::AnnouncementOf(const GuidPrefix &peer, std::int64_t number)
+{
+    Peer &known = _peers.at(peer);
+    if (known.Ours == 0)
+    {
+        known.Ours = std::max(number, _highestAnnouncement + 1);
+        known.Theirs = number;
+    }
+    else if (known.HasMoved || number > known.Theirs)
+    {
+        ++known.Ours;
+        known.Theirs = number;
+    }
+    known.HasMoved = false;
+    return known.Ours;
 }
 
 bool KnownPeers::MakeRoom(TimePoint now)
@@ -73,6 +141,7 @@ bool KnownPeers::MakeRoom(TimePoint now)
     {
         return false;
     }
+    _highestAnnouncement = std::max(_highestAnnouncement, oldest->second.Ours);
     _peers.erase(oldest);
     return true;
 }
@@ -97,13 +166,13 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
         {
             return true;
         }
-        return readers.try_emplace(endpoint, digest).first->second == digest;
+        return Agrees(readers.try_emplace(endpoint, Word{digest}).first->second, digest);
     }
     auto &writers = _peers.at(peer).Writers;
     const auto known = writers.find(endpoint);
     if (known != writers.end())
     {
-        return known->second.Digest == digest;
+        return Agrees(known->second.Endpoint, digest);
     }
     if (writers.size() >= MostWriters)
     {
@@ -115,7 +184,7 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
         };
         writers.erase(std::min_element(writers.begin(), writers.end(), silentLonger));
     }
-    writers[endpoint].Digest = digest;
+    writers[endpoint].Endpoint = Word{digest};
     return true;
 }
 

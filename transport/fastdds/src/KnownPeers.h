@@ -23,13 +23,21 @@ public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
     // A participant announced itself; `digest` is of where it is heard. False if that is not to be believed:
-    // it said otherwise before, or there are too many.
+    // it said otherwise before, or there are too many. A participant may move: another place is believed when
+    // it is said for the third time, with no word of the former one in between nor for twice as long as there
+    // was between two such words.
     bool Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoint now);
     // Whether the peer was announced; if so, it is heard of at this moment.
     bool Hears(const GuidPrefix &peer, TimePoint now);
 
+    // The vendor passes over announcements of a participant whose number it has seen. This gives them numbers
+    // that rise with the sender's, and when it has moved: else a place that was forged before the true one
+    // was heard would stay. The peer must be known.
+    std::int64_t AnnouncementOf(const GuidPrefix &peer, std::int64_t number);
+
     // The peer, which must be known, announced a writer or a reader; `digest` is of what it says of it. False
-    // if it said otherwise before: an endpoint stays as it is. Of too many writers the one that was silent
+    // if it said otherwise before; but it may change its mind, and then sends its announcement until it is
+    // received: that is believed with the third in a row. Of too many writers the one that was silent
     // for longest is forgotten.
     bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest);
     bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
@@ -48,9 +56,16 @@ public:
     std::size_t Size() const { return _peers.size(); }
 
 private:
-    struct Numbers
+    // What was said of something, and what was said otherwise since: how many times in a row.
+    struct Word
     {
         std::uint64_t Digest = 0;
+        std::uint64_t Other = 0;
+        int Times = 0;
+    };
+    struct Numbers
+    {
+        Word Endpoint;
         std::int64_t Highest = 0;  // 0: nothing was heard of it
         TimePoint Said{};          // when it was heard at a number that was believed, the highest or not
         // Its pace: how often in a second it went on, and how often in the second under way. Not how far,
@@ -66,18 +81,30 @@ private:
     };
     struct Peer
     {
-        std::uint64_t Digest = 0;
+        Word Place;
+        TimePoint Placed{};                  // when it was last said to be there
+        std::chrono::milliseconds Period{};  // in which that is said again
         TimePoint Heard{};
+        bool HasMoved = false;    // since its last announcement
+        std::int64_t Theirs = 0;  // the highest number of its announcements
+        std::int64_t Ours = 0;
         std::map<EntityId, Numbers> Writers;
-        std::map<EntityId, std::uint64_t> Readers;  // and their digests
+        std::map<EntityId, Word> Readers;
     };
 
     bool MakeRoom(TimePoint now);
+    // Whether this is what was said before; if not, whether it was said often enough.
+    static bool IsKnown(Word &word, std::uint64_t digest);
+    static bool IsRepeated(Word &word, std::uint64_t digest);
+    // Both; what was said often enough is known from then on.
+    static bool Agrees(Word &word, std::uint64_t digest);
     static bool IsPlausible(Numbers &numbers, std::int64_t number, TimePoint now);
     static void Move(Numbers &numbers, std::int64_t number, TimePoint now);
 
     std::map<GuidPrefix, Peer> _peers;
-    std::uint32_t _highestCount = 0;  // of all given, for writers that were forgotten
+    // Of all given, for peers and writers that were forgotten.
+    std::int64_t _highestAnnouncement = 0;
+    std::uint32_t _highestCount = 0;
 };
 
 }  // namespace Rabit::FastDds

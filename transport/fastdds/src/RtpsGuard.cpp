@@ -21,6 +21,15 @@ bool IsOfVendor(SubmessageKind kind)
     return kind >= SubmessageKind::Statistics;
 }
 
+void Write(std::span<std::uint8_t> bytes, std::uint32_t value, bool littleEndian)
+{
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+    {
+        const std::size_t shift = 8 * (littleEndian ? i : bytes.size() - 1 - i);
+        bytes[i] = static_cast<std::uint8_t>(value >> shift);
+    }
+}
+
 bool HasSize(const Submessage &submessage, std::size_t size)
 {
     return submessage.Body().size() >= size;
@@ -261,6 +270,10 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
         default:
             break;
     }
+    if (submessage.Kind == SubmessageKind::Data && delivery.Writer == ParticipantWriter)
+    {
+        ReplaceAnnouncement(submessage, delivery, passage.Sender);
+    }
     if (submessage.Kind == SubmessageKind::Heartbeat)
     {
         ReplaceCount(submessage, delivery, passage.Sender);
@@ -268,16 +281,23 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
     return Verdict::Pass;
 }
 
+void RtpsGuard::ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
+                                    const GuidPrefix &sender)
+{
+    // 9.4.5.3: behind flags, an offset and two entities; the high half comes first.
+    constexpr std::size_t NumberAt = 12;
+    const auto ours = static_cast<std::uint64_t>(_peers.AnnouncementOf(sender, delivery.First));
+    Write(submessage.Body().subspan(NumberAt, 4), static_cast<std::uint32_t>(ours >> 32),
+          submessage.LittleEndian);
+    Write(submessage.Body().subspan(NumberAt + 4, 4), static_cast<std::uint32_t>(ours),
+          submessage.LittleEndian);
+}
+
 void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender)
 {
-    auto bytes = submessage.Body().subspan(delivery.CountAt, 4);
+    const auto bytes = submessage.Body().subspan(delivery.CountAt, 4);
     const std::uint32_t theirs = RtpsReader(bytes, submessage.LittleEndian).U32();
-    const std::uint32_t ours = _peers.CountOf(sender, delivery.Writer, theirs);
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-    {
-        const std::size_t shift = 8 * (submessage.LittleEndian ? i : bytes.size() - 1 - i);
-        bytes[i] = static_cast<std::uint8_t>(ours >> shift);
-    }
+    Write(bytes, _peers.CountOf(sender, delivery.Writer, theirs), submessage.LittleEndian);
 }
 
 void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)

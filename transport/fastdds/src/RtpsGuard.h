@@ -82,6 +82,8 @@ private:
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     // Against what was said before.
     Verdict Compare(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
+    void ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
+                             const GuidPrefix &sender);
     void ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender);
 
     const Mode _mode;
