@@ -14,6 +14,10 @@ Usage: fleet.sh COMMAND
   cut NODE [in|out]           the node's network is cut: both ways, or only what comes in, or only what goes out
   loss NODE PERCENT [in|out]  that share of the node's packets is lost, at random
   heal NODE                   ends all faults of the node's network
+  radio KBIT|off              all nodes share a medium of KBIT kbit/s: what is more than that in the fleet's network is
+                              dropped, by nftables on its bridge, a multicast packet counting once. There is no queue
+                              and no delay, and a burst of 16 kB passes; a radio with queues, turns, loss and delay is
+                              in tests/integration, for processes without containers. Gone after `down`
   kill NODE                   kill -9
   start NODE                  starts it again, in the same container, with whatever address is free then
   remove NODE                 removes the container; `run` may use the name again
@@ -129,6 +133,51 @@ heal() {
     printf 'add table netdev rabit\ndelete table netdev rabit\n' | filter "$id" -f -
 }
 
+# subnets: a line "NETWORK_ID SUBNET" for the fleet's network
+subnets() {
+    docker network ls --no-trunc --quiet --filter "label=$label" | while read -r id; do
+        docker network inspect --format '{{.Id}}{{range .IPAM.Config}} {{.Subnet}}{{end}}' "$id"
+    done | awk '{for (i = 2; i <= NF; i++) if ($i ~ /\./) print $1, $i}'
+}
+
+# radio_table NETWORK_ID: names a table of its own for each network
+radio_table() {
+    echo "bridge rabit_${1:0:12}"
+}
+
+# on_bridge NFT OPTION...: nft in the network that has the engine's bridges
+on_bridge() {
+    docker run --rm --interactive --network host --label "$label" --user 0 \
+        --cap-drop ALL --cap-add NET_ADMIN --entrypoint nft "$image" "$@"
+}
+
+# set_radio KBIT|off. Counted where a packet comes in to the bridge, before it is copied to those that hear it.
+set_radio() {
+    local network subnet table
+    [ "$1" = off ] || [[ $1 =~ ^[1-9][0-9]{0,6}$ ]] || fail "KBIT is a number from 1 to 9999999, or 'off'" 2
+    while read -r network subnet; do
+        table=$(radio_table "$network")
+        {
+            printf 'add table %s\ndelete table %s\n' "$table" "$table"
+            if [ "$1" != off ]; then
+                printf 'table %s {\nchain air {\n' "$table"
+                echo "type filter hook prerouting priority -300; policy accept;"
+                echo "ip saddr $subnet limit rate over $(($1 * 125)) bytes/second burst 16000 bytes counter drop"
+                printf '}\n}\n'
+            fi
+        } | on_bridge -f -
+    done < <(subnets)
+}
+
+# radio_status: what set_radio has set, in words
+radio_status() {
+    local network subnet
+    while read -r network subnet; do
+        { on_bridge list table "$(radio_table "$network")" </dev/null 2>/dev/null || true; } | sed -n \
+            's/.*limit rate over \(.*\) burst.* counter packets \([0-9]*\) .*/RADIO        \1, \2 packets dropped/p'
+    done < <(subnets)
+}
+
 # faults CONTAINER: what set_loss has set, in words
 faults() {
     { filter "$1" list table netdev rabit </dev/null 2>/dev/null || true; } | awk '
@@ -152,10 +201,12 @@ status() {
     while read -r id node; do
         status_of "$id" "$node" </dev/null &
     done < <(containers) | sort -V # which waits for them all
+    radio_status
 }
 
 down() {
     local ids
+    ! docker image inspect "$image" >/dev/null 2>&1 || set_radio off
     ids=$(docker ps --all --quiet --filter "label=$label")
     # shellcheck disable=SC2086 # one word for each
     [ -z "$ids" ] || docker rm --force --volumes $ids >/dev/null
@@ -195,6 +246,11 @@ loss)
 heal)
     need 1 "$@"
     heal "$2"
+    ;;
+radio)
+    need 1 "$@"
+    [ -n "$(subnets)" ] || fail "the fleet '$fleet' has no network" 2
+    set_radio "$2"
     ;;
 kill)
     need 1 "$@"

@@ -59,7 +59,7 @@ class Console:
 
 
 def fly_example(engine, transports):
-    """The example's aircraft come up, on these backends in turn, and find a target; one is cut off and healed, one is killed and started
+    """The example's aircraft come up, on these backends in turn, and find a target; one is cut off and healed, all are on a radio that carries next to nothing for a while, one is killed and started
     again; all are removed."""
     fleet = Console(engine, transports)
     try:
@@ -72,6 +72,11 @@ def fly_example(engine, transports):
         fleet.wait_for_row("uav1", " UP ")
         assert "in cut out cut" in fleet("status"), fleet("status")
         fleet("heal", "uav2")
+        fleet.wait_for_row("uav2", " UP ")
+        fleet("radio", 1)
+        fleet.wait_for_row("uav2", " LOST ")
+        assert "packets dropped" in fleet("status"), fleet("status")
+        fleet("radio", "off")
         fleet.wait_for_row("uav2", " UP ")
         fleet("kill", "uav1")
         fleet.wait_for_row("uav1", " LOST ")
