@@ -58,8 +58,11 @@ void Mutator::Damage(Datagram &datagram)
         Splice(datagram);
         return;
     }
-    switch (Below(12))
+    switch (Below(13))
     {
+        case 12:
+            SpeakForAnother(datagram);
+            break;
         case 0:
         case 1:
         case 2:
@@ -278,6 +281,18 @@ void Mutator::DamageIdentity(Datagram &datagram)
         }
         at += PrefixSize;
     }
+}
+
+void Mutator::SpeakForAnother(Datagram &datagram)
+{
+    constexpr std::uint8_t InfoSource = 0x0c;
+    Datagram source = {InfoSource, 1, 20, 0, 0, 0, 0, 0};
+    source.insert(source.end(), datagram.begin() + 4, datagram.begin() + PrefixOffset);
+    const Datagram &prefix = _prefixes[Below(_prefixes.size())];
+    source.insert(source.end(), prefix.begin(), prefix.end());
+    const auto parts = PartsOf(datagram);
+    const std::size_t at = parts.empty() ? datagram.size() : parts[Below(parts.size())].Begin;
+    datagram.insert(datagram.begin() + static_cast<std::ptrdiff_t>(at), source.begin(), source.end());
 }
 
 void Mutator::DamageSize(Datagram &datagram)

@@ -40,6 +40,7 @@ private:
     void DamageNumbers(Datagram &datagram, const Part &part);
     void DamageParameters(Datagram &datagram, const Part &part);
     void DamageIdentity(Datagram &datagram);
+    void SpeakForAnother(Datagram &datagram);
     void DamageSize(Datagram &datagram);
     void Splice(Datagram &datagram);
     void Put(Datagram &datagram, std::size_t at, std::size_t size, bool littleEndian, std::uint64_t value);

@@ -3,7 +3,8 @@
 //   recording           all traffic from here on is recorded
 //   recorded N ports P  after a line came on standard input: so many datagrams are known, of so many ports
 //   sent N of M         now and then
-//   done N dropped D    all are sent; so many were lost because a socket was full
+//   done N dropped D left out L    all are sent; so many were lost because a socket was full; so many more
+//                       were not sent, because they forge content
 // Run it in a network namespace of its own: it knows no addresses but those that it hears of.
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -13,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "KnownContent.h"
 #include "Mutator.h"
 #include "Network.h"
 
@@ -27,6 +29,7 @@ struct Options
 {
     std::uint64_t Seed = 1;
     std::uint64_t Count = 100000;
+    bool KeepContent = false;
     std::string Save;
 };
 
@@ -77,6 +80,9 @@ int Run(const Options &options)
     Mutator mutator(options.Seed);
     mutator.Learn(recorded);
     std::mt19937_64 random(options.Seed);
+    KnownContent content;
+    content.Learn(recorded);
+    std::uint64_t leftOut = 0;
     Sender sender;
     const std::uint64_t lostBefore = Sender::Dropped();
     std::vector<Datagram> burst(Burst);
@@ -86,6 +92,11 @@ int Run(const Options &options)
         for (std::size_t i = 0; i < Burst; ++i)
         {
             burst[i] = mutator.Next();
+            while (options.KeepContent && !content.Covers(burst[i]))
+            {
+                ++leftOut;
+                burst[i] = mutator.Next();
+            }
             to[i] = destinations[random() % destinations.size()];
         }
         if (!options.Save.empty())
@@ -99,7 +110,8 @@ int Run(const Options &options)
             std::cout << "sent " << sent << " of " << options.Count << std::endl;
         }
     }
-    std::cout << "done " << options.Count << " dropped " << Sender::Dropped() - lostBefore << std::endl;
+    std::cout << "done " << options.Count << " dropped " << Sender::Dropped() - lostBefore << " left out "
+              << leftOut << std::endl;
     return 0;
 }
 
@@ -111,6 +123,10 @@ int main(int argc, char **argv)
     Options options;
     app.add_option("--seed", options.Seed, "Of the damage");
     app.add_option("--count", options.Count, "Datagrams to send");
+    app.add_flag(
+        "--keep-content", options.KeepContent,
+        "Damages no content of samples but that of discovery; that is, sends no copy which says what its "
+        "writer has not said");
     app.add_option("--save", options.Save,
                    "Keeps the burst sent last in this file, each datagram after its size");
     CLI11_PARSE(app, argc, argv);
