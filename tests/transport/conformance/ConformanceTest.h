@@ -42,6 +42,8 @@ protected:
 
     // That a sample with a body of that many bytes comes across whole.
     void ExpectArrivalOf(std::size_t size);
+    bool LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,
+                               TransportWriter &writer, std::uint32_t present);
 
 private:
     const std::unique_ptr<TransportHarness> _harness = GetParam().Make();

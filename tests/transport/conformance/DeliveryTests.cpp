@@ -12,7 +12,6 @@ namespace Rabit::Conformance
 
 using testing::ElementsAre;
 using testing::ElementsAreArray;
-using testing::IsEmpty;
 
 TEST_P(Conformance, ALateReaderGetsTheLastState)
 {
@@ -277,72 +276,6 @@ TEST_P(Conformance, WritersOfOneTopicDoNotPushOutEachOthersSamples)
     }
     EXPECT_THAT(a, ElementsAreArray(expected));
     EXPECT_THAT(b, ElementsAreArray(expected));
-}
-
-TEST_P(Conformance, ADisposedInstanceIsTold)
-{
-    const auto writing = Open("uav1", 5);
-    const auto reading = Open("ground");
-    SampleRecorder recorder;
-    const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
-    const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
-    ASSERT_TRUE(Matched(writer, reader));
-    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "target"), 1000), WriteResult::Ok);
-    ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
-    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, "whatever"), 2000), WriteResult::Ok);
-    ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
-    const auto disposed = recorder.All()[1];
-    EXPECT_FALSE(disposed.Alive);
-    EXPECT_THAT(disposed.Bytes, IsEmpty());
-    EXPECT_EQ(disposed.Key, HashOf(7));
-    EXPECT_EQ(disposed.Node, "uav1");
-    EXPECT_EQ(disposed.Incarnation, 5u);
-    EXPECT_LT(std::abs(disposed.SourceTime - 2000), 1000);
-    EXPECT_TRUE(recorder.All()[0].Alive);
-    EXPECT_EQ(recorder.All()[0].Key, HashOf(7));
-}
-
-TEST_P(Conformance, ALateReaderDoesNotGetADisposedInstanceAlive)
-{
-    const auto writing = Open("uav1");
-    const auto reading = Open("ground");
-    const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
-    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "gone"), 1), WriteResult::Ok);
-    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, ""), 1), WriteResult::Ok);
-    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(8, "here"), 1), WriteResult::Ok);
-    SampleRecorder recorder;
-    const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
-    ASSERT_TRUE(Until([&] { return recorder.Count() >= 1 && recorder.All().back().Key == HashOf(8); }));
-    for (const auto &received : recorder.All())
-    {
-        EXPECT_EQ(received.Alive, received.Key == HashOf(8));
-    }
-}
-
-TEST_P(Conformance, InstancesEndWithTheirLastWriter)
-{
-    const auto first = Open("uav1");
-    const auto second = Open("uav2", 3);
-    const auto reading = Open("ground");
-    SampleRecorder recorder;
-    const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
-    auto firstWriter = first->CreateWriter(KeyedTopic(), State(), {});
-    auto secondWriter = second->CreateWriter(KeyedTopic(), State(), {});
-    ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 2; }));
-    ASSERT_EQ(WriteOnceTaken(*firstWriter, MakeSample(7, "from uav1"), 1), WriteResult::Ok);
-    ASSERT_EQ(WriteOnceTaken(*secondWriter, MakeSample(7, "from uav2"), 1), WriteResult::Ok);
-    ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
-    firstWriter.reset();
-    ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 1; }));
-    EXPECT_EQ(recorder.Count(), 2u);
-    secondWriter.reset();
-    ASSERT_TRUE(Until([&] { return recorder.Count() == 3; }));
-    const auto end = recorder.All()[2];
-    EXPECT_FALSE(end.Alive);
-    EXPECT_EQ(end.Key, HashOf(7));
-    EXPECT_EQ(end.Node, "uav2");
-    EXPECT_EQ(end.Incarnation, 3u);
-    EXPECT_THAT(end.Bytes, IsEmpty());
 }
 
 // 1 MB is 800 datagrams of the default size.

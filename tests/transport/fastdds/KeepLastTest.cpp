@@ -115,6 +115,65 @@ TEST(KeepLast, TheOrderHoldsOverManySamples)
     }
 }
 
+TEST(KeepLast, AnInstanceHasEndedUpToItsEndAndNoOther)
+{
+    Kept kept(5);
+    Write(kept, 1, 1);
+    Write(kept, 2, 2);
+    Write(kept, 1, 3);
+    EXPECT_FALSE(kept.HasEnded({1}, 1));
+    Write(kept, 1, 4);
+    kept.End({1}, 4);
+    Write(kept, 1, 5);
+    Write(kept, 3, 6);
+    kept.End({3}, 6);
+    for (const std::uint64_t number : {1, 3, 4})
+    {
+        EXPECT_TRUE(kept.HasEnded({1}, number)) << number;
+    }
+    EXPECT_FALSE(kept.HasEnded({1}, 5));
+    EXPECT_FALSE(kept.HasEnded({2}, 2));
+}
+
+TEST(KeepLast, TheOldestIsFoundOnlyUpToTheNumberThatIsAskedFor)
+{
+    Kept kept(5);
+    EXPECT_EQ(kept.OldestUpTo({1}, 9), std::nullopt);
+    Write(kept, 2, 1);
+    Write(kept, 1, 3);
+    Write(kept, 1, 4);
+    EXPECT_EQ(kept.OldestUpTo({1}, 2), std::nullopt);
+    EXPECT_EQ(kept.OldestUpTo({1}, 3), 3u);
+    EXPECT_EQ(kept.OldestUpTo({1}, 9), 3u);
+    kept.Remove({1}, 3);
+    EXPECT_EQ(kept.OldestUpTo({1}, 9), 4u);
+    kept.Remove({1}, 4);
+    EXPECT_EQ(kept.OldestUpTo({1}, 9), std::nullopt);
+}
+
+TEST(KeepLast, NoKeyIsLookedAtWhileNothingHasEndedSoLate)
+{
+    Kept kept(1);
+    kept.End({1}, 1);
+    Write(kept, 2, 2);
+    Counted::Looks = 0;
+    EXPECT_FALSE(kept.HasEnded({2}, 2));
+    EXPECT_EQ(Counted::Looks, 0u);
+}
+
+TEST(KeepLast, InstancesThatHaveEndedAreForgottenWhenTheyAreMany)
+{
+    Kept kept(1);
+    for (int instance = 0; instance < 10'000; ++instance)
+    {
+        const auto number = static_cast<std::uint64_t>(instance) + 1;
+        kept.Add({instance}, number);
+        kept.End({instance}, number);
+        kept.Remove({instance}, number);
+    }
+    EXPECT_LE(kept.Instances(), 257u);
+}
+
 TEST(KeepLast, InstancesWithoutSamplesAreForgottenWhenTheyAreMany)
 {
     Kept kept(1);

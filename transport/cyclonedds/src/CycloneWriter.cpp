@@ -123,9 +123,14 @@ WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourc
     {
         MarkPadding(*sample);
     }
-    sample->SetKey(key);
+    if (_topic.KeyOf)
+    {
+        sample->SetKey(key);
+    }
     sample->Header.timestamp.v = sourceTime;
-    sample->Header.statusinfo = dispose ? StatusDisposed : 0u;
+    // Unregistered as well: the vendor keeps nothing of such an instance once its readers know, not even for
+    // late ones; and readers need not keep it for this writer.
+    sample->Header.statusinfo = dispose ? StatusDisposed | StatusUnregistered : 0u;
     const dds_return_t result = dds_forwardcdr(_writer.Get(), &sample.release()->Header);
     if (result == DDS_RETCODE_TIMEOUT)
     {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "EndpointSettings.h"
@@ -51,9 +52,9 @@ ddsi_serdata *Refuse(const ddsi_sertype *type, const char *why, OpaqueSample *sa
 ddsi_serdata *WithKey(OpaqueSample *sample, const ddsi_keyhash_t *sent)
 {
     const auto *type = Of(sample->Header.type);
-    KeyHash key{};
     if (type->KeyOf)
     {
+        KeyHash key{};
         if (sent != nullptr)
         {
             std::copy_n(sent->value, key.size(), key.begin());
@@ -62,8 +63,8 @@ ddsi_serdata *WithKey(OpaqueSample *sample, const ddsi_keyhash_t *sent)
         {
             return Refuse(sample->Header.type, "it has no readable key", sample);
         }
+        sample->SetKey(key);
     }
-    sample->SetKey(key);
     return &sample->Header;
 }
 
@@ -163,7 +164,8 @@ bool ToValue(const ddsi_serdata *, void *, void **, void *)
 ddsi_serdata *ToUntyped(const ddsi_serdata *sample)
 {
     OpaqueSample *key = NewSample(sample->type, SDK_KEY, 0);
-    key->SetKey(Of(sample)->Key);
+    key->Key = Of(sample)->Key;
+    key->Header.hash = sample->hash;
     key->Header.type = nullptr;  // it may outlive its type
     return &key->Header;
 }
@@ -267,9 +269,10 @@ OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::s
 void OpaqueSample::SetKey(const KeyHash &key)
 {
     Key = key;
-    std::uint32_t parts[4];
-    std::memcpy(parts, key.data(), sizeof parts);
-    Header.hash ^= parts[0] ^ parts[1] * 31u ^ parts[2] * 131u ^ parts[3] * 1031u;
+    // The vendor's tables look at the low bits alone, and double while these collide, without a limit: keys
+    // that differ in any bit must differ there.
+    const std::string_view bytes(reinterpret_cast<const char *>(key.data()), key.size());
+    Header.hash ^= static_cast<std::uint32_t>(std::hash<std::string_view>()(bytes));
 }
 
 ddsi_sertype *NewType(const TopicDescription &topic, std::shared_ptr<SessionLog> log)

@@ -28,7 +28,7 @@ struct OpaqueSample
     std::uint64_t Sequence = 0;  // of one that arrived
 
     std::uint8_t *Data() const { return reinterpret_cast<std::uint8_t *>(Storage.get()); }
-    // Once for each sample.
+    // At most once for each sample, and not for one of a topic without a key.
     void SetKey(const KeyHash &key);
 };
 

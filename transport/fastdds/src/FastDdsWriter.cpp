@@ -37,8 +37,7 @@ FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescr
       _topic(topic),
       _use(_core->Topics(), topic),
       _pool(std::make_shared<PayloadPool>([] {})),
-      _keepsForLateReaders(qos.Durability == Durability::TransientLocal),
-      _history(qos.Depth)
+      _history(qos.Depth, qos.Durability == Durability::TransientLocal)
 {
     auto attributes = MakeWriterAttributes(topic, qos);
     _writer = rtps::RTPSDomain::createRTPSWriter(&_core->Participant(), attributes, _pool, &_history, this);
@@ -133,7 +132,9 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
         _core->Log()->WriteTimedOut(_topic.Name);
         return WriteResult::TimedOut;
     }
-    rtps::CacheChange_t *change = _writer->new_change(dispose ? rtps::NOT_ALIVE_DISPOSED : rtps::ALIVE);
+    // Unregistered as well: readers need not keep the instance for this writer.
+    rtps::CacheChange_t *change =
+        _writer->new_change(dispose ? rtps::NOT_ALIVE_DISPOSED_UNREGISTERED : rtps::ALIVE);
     if (change == nullptr)
     {
         _pool->Release(buffer);
@@ -188,10 +189,7 @@ void FastDdsWriter::onWriterMatched(rtps::RTPSWriter *writer, rtps::MatchingInfo
 void FastDdsWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter * /*writer*/, rtps::CacheChange_t *change)
 {
     // Under the writer's mutex, and no other one of ours.
-    if (!_keepsForLateReaders)
-    {
-        _history.Drop(*change);
-    }
+    _history.ReceivedByAll(*change);
 }
 
 void FastDdsWriter::on_offered_incompatible_qos(rtps::RTPSWriter * /*writer*/,

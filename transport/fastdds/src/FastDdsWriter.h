@@ -44,7 +44,6 @@ private:
     const TopicDescription _topic;
     const TopicRegistry::Use _use;
     const std::shared_ptr<PayloadPool> _pool;
-    const bool _keepsForLateReaders;
     KeepLastHistory _history;
     mutable std::mutex _mutex;
     std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex

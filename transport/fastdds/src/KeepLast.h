@@ -1,4 +1,4 @@
-// Which samples of each instance are kept: the last ones.
+// Which samples of each instance are kept: the last ones, and none when it has ended.
 #pragma once
 
 #include <algorithm>
@@ -31,6 +31,35 @@ public:
         return found->second.Numbers[found->second.First];
     }
 
+    // The oldest sample of this instance, if its number is up to that one.
+    std::optional<std::uint64_t> OldestUpTo(const Key &instance, std::uint64_t number) const
+    {
+        const auto found = _instances.find(instance);
+        if (found == _instances.end() || found->second.Size() == 0)
+        {
+            return std::nullopt;
+        }
+        const std::uint64_t oldest = found->second.Numbers[found->second.First];
+        return oldest <= number ? std::optional(oldest) : std::nullopt;
+    }
+
+    // The instance ends with the sample of that number: nobody who comes later needs it, nor those before it.
+    void End(const Key &instance, std::uint64_t number)
+    {
+        _instances[instance].End = number;
+        _lastEnd = number;
+    }
+    // Whether its instance ended with that sample or a later one. Looks at no key unless an end is that late.
+    bool HasEnded(const Key &instance, std::uint64_t number) const
+    {
+        if (number > _lastEnd)
+        {
+            return false;
+        }
+        const auto found = _instances.find(instance);
+        return found != _instances.end() && number <= found->second.End;
+    }
+
     // Numbers rise.
     void Add(const Key &instance, std::uint64_t number) { _instances[instance].Numbers.push_back(number); }
 
@@ -61,6 +90,7 @@ private:
     {
         std::vector<std::uint64_t> Numbers;
         std::size_t First = 0;
+        std::uint64_t End = 0;  // the last number with which the instance ended
 
         std::size_t Size() const { return Numbers.size() - First; }
 
@@ -87,6 +117,7 @@ private:
     };
 
     const std::size_t _depth;
+    std::uint64_t _lastEnd = 0;  // of all instances
     std::unordered_map<Key, Samples, Hash> _instances;
 };
 

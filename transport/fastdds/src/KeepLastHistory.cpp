@@ -24,8 +24,10 @@ rtps::HistoryAttributes MakeAttributes(int depth)
 
 }  // namespace
 
-KeepLastHistory::KeepLastHistory(int depth)
-    : WriterHistory(MakeAttributes(depth)), _kept(static_cast<std::size_t>(depth))
+KeepLastHistory::KeepLastHistory(int depth, bool keepsForLateReaders)
+    : WriterHistory(MakeAttributes(depth)),
+      _keepsForLateReaders(keepsForLateReaders),
+      _kept(static_cast<std::size_t>(depth))
 {
 }
 
@@ -35,12 +37,20 @@ bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
     const rtps::InstanceHandle_t instance = change.instanceHandle;
     while (const auto oldest = _kept.PushedOut(instance))
     {
-        remove_change_nts(Find(*oldest));
-        _kept.Remove(instance, *oldest);  // even if the history had lost it: this must end
+        Drop(instance, *oldest);
     }
     // Before it is sent: with nobody to wait for, it is dropped again on the way.
     const std::uint64_t number = next_sequence_number().to64long();
     _kept.Add(instance, number);
+    if (change.kind != rtps::ALIVE)
+    {
+        while (const auto oldest = _kept.OldestUpTo(instance, _receivedByAll))
+        {
+            Drop(instance, *oldest);
+        }
+        // What some reader still misses is dropped when it has it.
+        _kept.End(instance, number);
+    }
     if (!add_change_(&change, params, deadline))
     {
         _kept.Remove(instance, number);
@@ -49,9 +59,21 @@ bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
     return true;
 }
 
-void KeepLastHistory::Drop(const Change &change)
+// Only this sample: the vendor is going through the history, from the newest to the oldest.
+void KeepLastHistory::ReceivedByAll(const Change &change)
 {
-    remove_change_nts(Find(change.sequenceNumber.to64long()));
+    const std::uint64_t number = change.sequenceNumber.to64long();
+    _receivedByAll = std::max(_receivedByAll, number);
+    if (!_keepsForLateReaders || _kept.HasEnded(change.instanceHandle, number))
+    {
+        remove_change_nts(Find(number));
+    }
+}
+
+void KeepLastHistory::Drop(const rtps::InstanceHandle_t &instance, std::uint64_t number)
+{
+    remove_change_nts(Find(number));
+    _kept.Remove(instance, number);  // even if the history had lost it: this must end
 }
 
 KeepLastHistory::iterator KeepLastHistory::remove_change_nts(const_iterator removal, bool release)

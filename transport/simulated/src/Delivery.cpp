@@ -50,10 +50,12 @@ void PutIntoHistory(WriterState &writer, SamplePtr sample)
     history.push_back(std::move(sample));
 }
 
-// A volatile writer keeps a sample for those alone that are matched and have not acknowledged it yet.
+// A volatile writer keeps a sample for those alone that are matched and have not acknowledged it yet; one
+// for late readers, a disposal and what it ended.
 void LetGo(WriterState &writer)
 {
-    if (writer.Info->Qos.Durability == Durability::TransientLocal)
+    const bool keepsForLateReaders = writer.Info->Qos.Durability == Durability::TransientLocal;
+    if (keepsForLateReaders && writer.Disposals.empty())
     {
         return;
     }
@@ -61,6 +63,17 @@ void LetGo(WriterState &writer)
     for (const auto &[id, reader] : writer.Readers)
     {
         known = std::min(known, reader.Reliable ? reader.Acknowledged : writer.LastSequence);
+    }
+    for (; !writer.Disposals.empty() && writer.Disposals.front()->Sequence <= known;
+         writer.Disposals.pop_front())
+    {
+        const SamplePtr &end = writer.Disposals.front();
+        std::erase_if(writer.History, [&](const SamplePtr &kept)
+                      { return kept->Key == end->Key && kept->Sequence <= end->Sequence; });
+    }
+    if (keepsForLateReaders)
+    {
+        return;
     }
     while (!writer.History.empty() && writer.History.front()->Sequence <= known)
     {
@@ -80,6 +93,10 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     }
     sample->Sequence = ++writer.LastSequence;
     PutIntoHistory(writer, sample);
+    if (!sample->Alive)
+    {
+        writer.Disposals.push_back(sample);
+    }
     for (auto &[id, reader] : writer.Readers)
     {
         SendSample(participant, writer, id, reader, sample);

@@ -98,6 +98,7 @@ struct WriterState
     EndpointInfoPtr Info;
     std::uint64_t LastSequence = 0;
     std::deque<SamplePtr> History;
+    std::deque<SamplePtr> Disposals;  // that some reader may not know yet
     std::map<EndpointId, ReaderProxy> Readers;
     bool HeartbeatPending = false;
 };

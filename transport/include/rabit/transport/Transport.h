@@ -143,9 +143,10 @@ struct TopicQos
     // Samples kept by the writer for repair and for late readers (for each key if the topic is keyed). A
     // volatile writer lets go of a sample before that, once all readers that are matched have acknowledged it
     // (best-effort ones: once it is sent), at the latest with the next write; so it holds what is under way,
-    // and nothing while nobody is matched. A transient-local one keeps it until another pushes it out.
-    // A reader hands each sample over as it arrives and keeps none back: samples of one writer never push out
-    // those of another, keyed topic or not.
+    // and nothing while nobody is matched. A transient-local one keeps it until another pushes it out, or its
+    // instance is disposed.
+    // A reader hands each sample over as it arrives and keeps none back, only the keys of instances that live:
+    // samples of one writer never push out those of another, keyed topic or not.
     int Depth = 1;
 };
 
@@ -224,6 +225,11 @@ public:
     // since 1970-01-01 UTC and reaches the readers unchanged (to within a microsecond).
     virtual WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
     // Says that the instance that this sample names is no more. Only for keyed topics, Failed otherwise.
+    // Reliable readers that are matched are told, after what was written before as far as Depth keeps it.
+    // Once all of them have acknowledged that, at the latest with the next write, the writer holds nothing of
+    // the instance, not even that it was there: a reader that matches later hears nothing of it, nor does one
+    // that lost nothing while the writer had lost it. The writer has unregistered the instance, too: readers
+    // need not keep it for this writer. Writing it again makes it alive again.
     virtual WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
     // Readers matched now, in other sessions.
     virtual int MatchedReaders() const = 0;

@@ -1,0 +1,236 @@
+// The life of an instance of a keyed topic: that it is disposed, what is left of it, and that it comes back.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "ConformanceTest.h"
+#include "ProcessMemory.h"
+
+namespace Rabit::Conformance
+{
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// Whether late readers hear of these keys alone, as soon as all readers before them have acknowledged: the
+// last disposal may still be on its way to one of them, and then the next late reader shows it. Writes
+// `present`.
+bool Conformance::LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,
+                                        TransportWriter &writer, std::uint32_t present)
+{
+    constexpr int Attempts = 20;
+    for (int attempt = 0; attempt < Attempts; ++attempt)
+    {
+        Net().Settle();
+        SampleRecorder recorder;
+        const auto reader = late.CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
+        const std::string last = std::to_string(attempt);
+        WriteOnceTaken(writer, MakeSample(present, last), 1);
+        if (!Until([&] { return recorder.Count() >= 1 && recorder.All().back().Text == last; }))
+        {
+            return false;
+        }
+        const auto all = recorder.All();
+        if (std::all_of(all.begin(), all.end(),
+                        [&](const Received &received)
+                        { return std::find(keys.begin(), keys.end(), received.Key) != keys.end(); }))
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+TEST_P(Conformance, ADisposedInstanceIsTold)
+{
+    const auto writing = Open("uav1", 5);
+    const auto reading = Open("ground");
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
+    ASSERT_TRUE(Matched(writer, reader));
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "target"), 1000), WriteResult::Ok);
+    ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
+    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, "whatever"), 2000), WriteResult::Ok);
+    ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
+    const auto disposed = recorder.All()[1];
+    EXPECT_FALSE(disposed.Alive);
+    EXPECT_THAT(disposed.Bytes, IsEmpty());
+    EXPECT_EQ(disposed.Key, HashOf(7));
+    EXPECT_EQ(disposed.Node, "uav1");
+    EXPECT_EQ(disposed.Incarnation, 5u);
+    EXPECT_LT(std::abs(disposed.SourceTime - 2000), 1000);
+    EXPECT_TRUE(recorder.All()[0].Alive);
+    EXPECT_EQ(recorder.All()[0].Key, HashOf(7));
+}
+
+TEST_P(Conformance, InstancesEndWithTheirLastWriter)
+{
+    const auto first = Open("uav1");
+    const auto second = Open("uav2", 3);
+    const auto reading = Open("ground");
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
+    auto firstWriter = first->CreateWriter(KeyedTopic(), State(), {});
+    auto secondWriter = second->CreateWriter(KeyedTopic(), State(), {});
+    ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 2; }));
+    ASSERT_EQ(WriteOnceTaken(*firstWriter, MakeSample(7, "from uav1"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*secondWriter, MakeSample(7, "from uav2"), 1), WriteResult::Ok);
+    ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
+    firstWriter.reset();
+    ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 1; }));
+    EXPECT_EQ(recorder.Count(), 2u);
+    secondWriter.reset();
+    ASSERT_TRUE(Until([&] { return recorder.Count() == 3; }));
+    const auto end = recorder.All()[2];
+    EXPECT_FALSE(end.Alive);
+    EXPECT_EQ(end.Key, HashOf(7));
+    EXPECT_EQ(end.Node, "uav2");
+    EXPECT_EQ(end.Incarnation, 3u);
+    EXPECT_THAT(end.Bytes, IsEmpty());
+}
+
+TEST_P(Conformance, WhatWasDisposedBeforeItCameALateReaderHearsNothingOf)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(3), {});
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "gone"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "gone too"), 1), WriteResult::Ok);
+    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, ""), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(8, "here"), 1), WriteResult::Ok);
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
+    ASSERT_TRUE(Until([&] { return recorder.Count() >= 1 && recorder.All().back().Key == HashOf(8); }));
+    EXPECT_THAT(recorder.Texts(), ElementsAre("here"));
+}
+
+TEST_P(Conformance, ADisposedInstanceLeavesNothingForALateReader)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto late = Open("late");
+    SampleRecorder early;
+    const auto earlyReader = reading->CreateReader(KeyedTopic(), State(3), {}, early.Handler());
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(3), {});
+    ASSERT_TRUE(Matched(writer, earlyReader));
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "gone"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(8, "here"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "gone too"), 1), WriteResult::Ok);
+    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, ""), 1), WriteResult::Ok);
+    ASSERT_TRUE(Until([&] { return early.Count() == 4; }));
+    EXPECT_TRUE(LateReadersHearOnlyOf({HashOf(8), HashOf(9)}, *late, *writer, 9));
+}
+
+TEST_P(Conformance, AReaderThatWasThereGetsWhatWasWrittenBeforeADisposalAndAfterIt)
+{
+    constexpr int Rounds = 50;
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(KeyedTopic(), State(4 * Rounds), {}, recorder.Handler());
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(4 * Rounds), {});
+    ASSERT_TRUE(Matched(writer, reader));
+    for (int i = 0; i < Rounds; ++i)
+    {
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, std::to_string(i)), 1), WriteResult::Ok);
+        ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, ""), 1), WriteResult::Ok);
+    }
+    ASSERT_TRUE(Until([&] { return recorder.Count() >= 2 * Rounds; }));
+    const auto all = recorder.All();
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+        EXPECT_EQ(all[i].Alive, i % 2 == 0) << i;
+        EXPECT_EQ(all[i].Text, i % 2 == 0 ? std::to_string(i / 2) : "") << i;
+    }
+}
+
+TEST_P(Conformance, AnInstanceWrittenAfterItsDisposalReachesALateReader)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto late = Open("late");
+    SampleRecorder early;
+    const auto earlyReader = reading->CreateReader(KeyedTopic(), State(2), {}, early.Handler());
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(2), {});
+    ASSERT_TRUE(Matched(writer, earlyReader));
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "before"), 1), WriteResult::Ok);
+    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(7, ""), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "again"), 1), WriteResult::Ok);
+    ASSERT_TRUE(Until([&] { return early.Count() >= 1 && early.All().back().Text == "again"; }));
+    Net().Settle();  // it acknowledges
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(7, "and again"), 1), WriteResult::Ok);
+    SampleRecorder recorder;
+    const auto reader = late->CreateReader(KeyedTopic(), State(2), {}, recorder.Handler());
+    ASSERT_TRUE(Until([&] { return recorder.Count() >= 1 && recorder.All().back().Text == "and again"; }));
+    EXPECT_THAT(recorder.Texts(), ElementsAre("again", "and again"));
+}
+
+TEST_P(Conformance, ManyKeysTakeNoMoreMemoryThanTheirSamples)
+{
+    constexpr std::uint32_t Count = 2'000;
+    constexpr double MostKept = 30;
+    if (MemoryIsNotGivenBack)
+    {
+        GTEST_SKIP() << "with AddressSanitizer, what is freed is kept for a while";
+    }
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    std::atomic<std::uint32_t> received{0};
+    const auto reader = reading->CreateReader(KeyedTopic(), State(), {},
+                                              [&](SampleBytes, const SampleInfo &) { ++received; });
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
+    ASSERT_TRUE(Matched(writer, reader));
+    const double before = MemoryInMegabytes();
+    for (std::uint32_t key = 0; key < Count; ++key)
+    {
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(key, "x"), 1), WriteResult::Ok);
+    }
+    ASSERT_TRUE(Until([&] { return received == Count; }));
+    EXPECT_LT(MemoryInMegabytes(), before + MostKept);
+}
+
+// What a publisher does whose value has another key each time.
+TEST_P(Conformance, ManyKeysWrittenAndDisposedLeaveOne)
+{
+    constexpr std::uint32_t KeysInARound = 5'000;
+    constexpr std::uint32_t Rounds = 10;
+    // Cyclone DDS's table of instances keeps 200 bytes of each; with the samples it would be 30 MB.
+    constexpr double MostKept = 15;
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto late = Open("late");
+    const std::string text(100, 'x');
+    std::atomic<std::uint32_t> received{0};
+    const auto earlyReader =
+        reading->CreateReader(KeyedTopic(), State(), {},
+                              [&](SampleBytes, const SampleInfo &info) { received += info.Alive ? 1 : 0; });
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
+    ASSERT_TRUE(Matched(writer, earlyReader));
+    std::uint32_t key = 0;
+    const auto round = [&]
+    {
+        for (std::uint32_t i = 0; i < KeysInARound; ++i, ++key)
+        {
+            ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(key + 1, text), 1), WriteResult::Ok);
+            ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(key, text), 1), WriteResult::Ok);
+            // Slowly enough that no sample is pushed out before it has arrived.
+            ASSERT_TRUE(Until([&] { return received + 100 > key; }));
+        }
+        ASSERT_TRUE(Until([&] { return received == key; }));
+        Net().Settle();  // it acknowledges
+    };
+    round();
+    const double before = MemoryInMegabytes();
+    for (std::uint32_t i = 0; i < Rounds; ++i)
+    {
+        round();
+    }
+    if (!MemoryIsNotGivenBack)
+    {
+        EXPECT_LT(MemoryInMegabytes(), before + MostKept);
+    }
+    EXPECT_TRUE(LateReadersHearOnlyOf({HashOf(key)}, *late, *writer, key));
+}
+
+}  // namespace Rabit::Conformance
