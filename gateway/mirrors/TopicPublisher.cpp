@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "wire/GatewayTopics.h"
-#include "wire/MessageEncoder.h"
 
 namespace Rabit
 {
@@ -15,8 +14,8 @@ TopicPublisher::TopicPublisher(const PublishRule &rule, const MessageType &type,
       _type(type),
       _source(source),
       _local(type.Create()),
-      _writer(session.CreateWriter(GatewayTopics::Describe(rule.Message, type),
-                                   GatewayTopics::QosOf(rule.Qos), {"", node}))
+      _writer(type, session.CreateWriter(GatewayTopics::Describe(rule.Message, type),
+                                         GatewayTopics::QosOf(rule.Qos), {"", node}))
 {
 }
 
@@ -44,9 +43,15 @@ TopicPublisher::Duration TopicPublisher::Service(Duration now)
     return std::max(DueAt(now), now);
 }
 
+TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
+{
+    const Duration value = ValueDueAt(now);
+    return _writer.OwesDisposal() ? std::min(value, _lastWrite + NextGap()) : value;
+}
+
 // What was posted, and what somebody new waits for, at once; a State's repetition in its period; nothing more
 // often than the rule allows.
-TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
+TopicPublisher::Duration TopicPublisher::ValueDueAt(Duration now) const
 {
     const bool repeats = _rule.Qos == QosProfile::State && _everWritten;
     const Duration mayWriteAt = _everWritten ? _lastWrite + NextGap() : now;
@@ -59,17 +64,22 @@ TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
 
 void TopicPublisher::Write(Duration now)
 {
-    const WriteResult result =
-        _writer->Write(MessageEncoder(_type, *_local), _source.At(_local->GetPostTime().Monotonic));
-    _written += result == WriteResult::Ok ? 1 : 0;
+    const WriteResult result = now >= ValueDueAt(now) ? WriteValue() : _writer.DisposeFormer();
     _failures += result == WriteResult::Ok ? 0 : 1;
+    _timedOut = result == WriteResult::TimedOut || _writer.OwesDisposal();
+    _lastWrite = now;
+}
+
+WriteResult TopicPublisher::WriteValue()
+{
+    const WriteResult result = _writer.Write(*_local, _source.At(_local->GetPostTime().Monotonic));
+    _written += result == WriteResult::Ok ? 1 : 0;
     // A value that the network did not take in time is tried again; one that can never be sent would only
     // fail again.
-    _timedOut = result == WriteResult::TimedOut;
-    _pending = _timedOut;
+    _pending = result == WriteResult::TimedOut;
     _everWritten = true;
     _repeatNow = false;
-    _lastWrite = now;
+    return result;
 }
 
 Gateway::PublicationStatus TopicPublisher::Status() const
@@ -78,7 +88,7 @@ Gateway::PublicationStatus TopicPublisher::Status() const
     status.message = _rule.Message;
     status.written = _written;
     status.write_failures = _failures;
-    status.readers = static_cast<std::uint32_t>(std::max(0, _writer->MatchedReaders()));
+    status.readers = static_cast<std::uint32_t>(std::max(0, _writer.MatchedReaders()));
     return status;
 }
 

@@ -11,13 +11,15 @@
 
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
+#include "mirrors/InstanceWriter.h"
 
 namespace Rabit
 {
 
 // Mirrors one local message to a topic: writes its newest value whenever it was posted, and repeats a State
 // once a second; all no more often than the rule allows. Intermediate values may be skipped, as with a
-// fetch. Used by the gateway's thread only.
+// fetch. Of a type with a key the newest value's instance alone is there: the former one is disposed. Used by
+// the gateway's thread only.
 class TopicPublisher
 {
 public:
@@ -47,7 +49,9 @@ public:
 
 private:
     void Write(Duration now);
+    WriteResult WriteValue();
     Duration DueAt(Duration now) const;
+    Duration ValueDueAt(Duration now) const;
     Duration MinimumGap() const;
     Duration NextGap() const;
 
@@ -55,10 +59,10 @@ private:
     const MessageType &_type;
     const SourceClock _source;
     std::shared_ptr<RabitMessage> _local;
-    std::unique_ptr<TransportWriter> _writer;
+    InstanceWriter _writer;
     bool _attached = false;
     bool _pending = false;   // fetched and not written yet
-    bool _timedOut = false;  // the last write
+    bool _timedOut = false;  // the last write, or the disposal after it
     bool _everWritten = false;
     bool _repeatNow = false;
     Duration _lastWrite{0};

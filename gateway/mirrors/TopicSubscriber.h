@@ -29,6 +29,10 @@ namespace Rabit
 // joiner may be handed the past; a State is repeated soon after), what is older than what was posted of that
 // life, or of a time in the future, repetitions of a State that is posted already, what does not decode, and
 // samples of programs that are not nodes. All but the repetitions are counted as dropped.
+//
+// That an instance is disposed, or has lost its writer, changes nothing. If it is the former one, the message
+// has another value by now, or will have. If it is the present one, there is nothing newer to show: a message
+// keeps its last value, and its age and its origin's state tell what that is worth.
 class TopicSubscriber
 {
 public:

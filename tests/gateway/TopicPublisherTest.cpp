@@ -6,7 +6,9 @@
 #include <rabit/RabitWorkspace.h>
 
 #include <memory>
+#include <vector>
 
+#include "keyed.idl.h"
 #include "uav.idl.h"
 
 namespace Rabit
@@ -20,18 +22,25 @@ struct Network
 {
     WriteResult Result = WriteResult::Ok;
     int Writes = 0;
+    WriteResult DisposalResult = WriteResult::Ok;
+    int Disposals = 0;
 };
 
 class Writer final : public TransportWriter
 {
 public:
     explicit Writer(Network &network) : _network(network) {}
-    WriteResult Write(const SampleEncoder &, std::int64_t) override
+    WriteResult Write(const SampleEncoder &sample, std::int64_t) override
     {
         ++_network.Writes;
-        return _network.Result;
+        std::vector<std::uint8_t> bytes(sample.EncodedSize());
+        return sample.Encode(bytes) ? _network.Result : WriteResult::Failed;
     }
-    WriteResult Dispose(const SampleEncoder &, std::int64_t) override { return WriteResult::Failed; }
+    WriteResult Dispose(const SampleEncoder &, std::int64_t) override
+    {
+        ++_network.Disposals;
+        return _network.DisposalResult;
+    }
     int MatchedReaders() const override { return 0; }
 
 private:
@@ -85,6 +94,42 @@ TEST(TopicPublisher, WhatTheNetworkDoesNotTakeIsTriedAgainAfterAGap)
     pose->PostMessage();
     publisher.Service(now + 1ms);
     EXPECT_EQ(network.Writes, 3);
+}
+
+TEST(TopicPublisher, ADisposalThatTheNetworkDoesNotTakeIsTriedAgainWithoutTheValue)
+{
+    Network network;
+    Session session(network);
+    const PublishRule rule{
+        .Message = "Contact", .Type = "GatewayTest::Contact", .Qos = QosProfile::Telemetry};
+    TopicPublisher publisher(rule, GatewayTest::Contact::IdlType(), "uav1", SourceClock(ManualClock()),
+                             session);
+    RabitWorkspace workspace;
+    auto contact = std::make_shared<GatewayTest::Contact>();
+    workspace.AddPublishSubscribeMessage("Contact", contact);
+    workspace.AddPublishSubscribeMessage("Contact", publisher.Local());
+    publisher.SetAttached();
+    std::chrono::nanoseconds now = 10s;
+    contact->PostMessage();
+    publisher.Service(now);
+    contact->number = 1;
+    contact->PostMessage();
+    network.DisposalResult = WriteResult::TimedOut;
+    now += 1s;
+    EXPECT_EQ(publisher.Service(now), now + TopicPublisher::RetryGap);
+    EXPECT_EQ(network.Writes, 2);
+    EXPECT_EQ(network.Disposals, 1);
+    publisher.Service(now + 1ms);
+    EXPECT_EQ(network.Disposals, 1);
+    now += TopicPublisher::RetryGap;
+    EXPECT_EQ(publisher.Service(now), now + TopicPublisher::RetryGap);
+    EXPECT_EQ(network.Disposals, 2);
+    EXPECT_EQ(publisher.Status().write_failures, 1u);
+    network.DisposalResult = WriteResult::Ok;
+    now += TopicPublisher::RetryGap;
+    EXPECT_EQ(publisher.Service(now), std::chrono::nanoseconds::max());
+    EXPECT_EQ(network.Disposals, 3);
+    EXPECT_EQ(network.Writes, 2);
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <rabit/RabitMessage.h>
+#include <rabit/idl/MessageType.h>
+#include <rabit/transport/Transport.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace Rabit
+{
+
+// Writes the values of one message. A message has one value, so of a type with a key one instance is there at
+// a time: when a value of another key has been written, the former instance is disposed, in that order, so
+// that no reader is without a value between. A disposal that the network does not take is owed, and comes
+// before the next value; so at most one is ever owed. One that cannot be encoded is dropped; the transport
+// logs and counts it. Not thread-safe.
+class InstanceWriter
+{
+public:
+    // The type must outlive the object.
+    InstanceWriter(const MessageType &type, std::unique_ptr<TransportWriter> writer);
+
+    // Ok if the value was written; TimedOut also if it was not tried, for want of a disposal that is owed.
+    WriteResult Write(const RabitMessage &message, std::int64_t sourceTime);
+    bool OwesDisposal() const { return !_former.empty(); }
+    // Ok if none is owed.
+    WriteResult DisposeFormer();
+    int MatchedReaders() const { return _writer->MatchedReaders(); }
+
+private:
+    using Bytes = std::vector<std::uint8_t>;
+
+    const MessageType &_type;
+    const std::unique_ptr<TransportWriter> _writer;
+    // Of a type with a key: the first sample of the instance that is there now; empty before that is written.
+    Bytes _present;
+    KeyHash _presentKey{};
+    Bytes _former;  // a sample of the instance that is to be disposed; empty: none
+    std::int64_t _formerEnd = 0;
+};
+
+}  // namespace Rabit

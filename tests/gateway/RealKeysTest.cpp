@@ -1,0 +1,174 @@
+// A published message whose key changes, over each pair of real backends, on loopback.
+#include <gmock/gmock.h>
+#include <rabit/RabitReactor.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/idl/MessageType.h>
+#include <rabit/transport/TransportFactory.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "keyed.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using GatewayTest::Contact;
+using testing::ElementsAre;
+using testing::Pair;
+
+// Only keeps a broken build from hanging.
+constexpr auto Limit = 120s;
+
+int Domain()
+{
+    return 10 + ::getpid() % 200;
+}
+
+// A node that publishes the message `Contact`.
+class PublishingNode
+{
+public:
+    explicit PublishingNode(const std::string &transport) : _reactor(_workspace)
+    {
+        GatewayConfig config;
+        config.Node = "uav1";
+        config.Domain = Domain();
+        config.Interfaces = {"127.0.0.1"};
+        config.Publish.push_back({.Message = "Contact", .Type = "GatewayTest::Contact"});
+        _workspace.AddPublishSubscribeMessage("Contact", _contact);
+        _reactor.SetHandleSignals(false);
+        _reactor.AddManager(std::make_unique<GatewayManager>(config, MakeTransport(transport), _workspace));
+        _thread = std::thread([this] { _reactor.Run(); });
+    }
+
+    ~PublishingNode()
+    {
+        _reactor.ShutdownAllManagers();
+        _thread.join();
+    }
+
+    void Post(std::uint32_t number)
+    {
+        _contact->number = number;
+        _contact->PostMessage();
+    }
+
+private:
+    RabitWorkspace _workspace;
+    RabitReactor _reactor;
+    std::shared_ptr<Contact> _contact = std::make_shared<Contact>();
+    std::thread _thread;
+};
+
+// A program that reads the topic and is no node: the instances as it sees them, alive or not.
+class PlainReader
+{
+public:
+    PlainReader(const std::string &transport, const std::string &name)
+    {
+        TransportSettings settings;
+        settings.Node = name;
+        settings.Domain = Domain();
+        settings.Interfaces = {"127.0.0.1"};
+        _session = MakeTransport(transport)->Open(settings, [](const PeerEvent &) {});
+        TopicQos qos;
+        qos.Durability = Durability::TransientLocal;
+        const auto keyOf = [](SampleBytes bytes, KeyHash &key)
+        { return Contact::IdlType().KeyHashOf(bytes, key); };
+        _reader = _session->CreateReader({"Contact", "GatewayTest::Contact", keyOf}, qos, {},
+                                         [this](SampleBytes, const SampleInfo &info) { Take(info); });
+    }
+
+    // Waits until exactly that instance is alive; returns all that were ever heard of.
+    std::map<int, bool> Until(int alive)
+    {
+        std::unique_lock lock(_mutex);
+        EXPECT_TRUE(_changed.wait_for(lock, Limit,
+                                      [&]
+                                      {
+                                          for (const auto &[number, is] : _instances)
+                                          {
+                                              if (is != (number == alive))
+                                              {
+                                                  return false;
+                                              }
+                                          }
+                                          return _instances.contains(alive);
+                                      }));
+        return _instances;
+    }
+
+private:
+    void Take(const SampleInfo &info)
+    {
+        const std::lock_guard lock(_mutex);
+        _instances[info.Key[3]] = info.Alive;
+        _changed.notify_all();
+    }
+
+    std::mutex _mutex;
+    std::condition_variable _changed;
+    std::map<int, bool> _instances;
+    std::unique_ptr<TransportSession> _session;
+    std::unique_ptr<TransportReader> _reader;
+};
+
+// The backends of the node and of its readers.
+class RealKeysTest : public ::testing::TestWithParam<std::pair<std::string, std::string>>
+{
+};
+
+TEST_P(RealKeysTest, AReaderIsToldThatTheFormerInstanceIsGoneAndALateOneHearsOfTheNewestAlone)
+{
+    PublishingNode node(GetParam().first);
+    PlainReader early(GetParam().second, "early");
+    for (const int number : {1, 2, 3})
+    {
+        node.Post(static_cast<std::uint32_t>(number));
+        early.Until(number);
+    }
+    EXPECT_THAT(early.Until(3), ElementsAre(Pair(1, false), Pair(2, false), Pair(3, true)));
+    // A reader that comes before the early one has acknowledged may hear of the one before: then another one.
+    const auto end = std::chrono::steady_clock::now() + Limit;
+    std::map<int, bool> heard;
+    for (int number = 3; heard.size() != 2 && std::chrono::steady_clock::now() < end; ++number)
+    {
+        PlainReader late(GetParam().second, std::string("late").append(std::to_string(number)));
+        late.Until(number);
+        // What is said of a former one comes before what follows.
+        node.Post(static_cast<std::uint32_t>(number + 1));
+        heard = late.Until(number + 1);
+    }
+    EXPECT_EQ(heard.size(), 2u) << "of the one that was there when it came, and of the next";
+}
+
+std::vector<std::pair<std::string, std::string>> AllPairs()
+{
+    std::vector<std::pair<std::string, std::string>> pairs;
+    for (const auto &first : AvailableTransports())
+    {
+        for (const auto &second : AvailableTransports())
+        {
+            pairs.emplace_back(first, second);
+        }
+    }
+    return pairs;
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, RealKeysTest, ::testing::ValuesIn(AllPairs()),
+                         [](const auto &backends)
+                         { return backends.param.first + "_and_" + backends.param.second; });
+
+}  // namespace
+}  // namespace Rabit
