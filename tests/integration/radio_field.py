@@ -44,7 +44,7 @@ class RadioField(field.Field):
         unknown = set(medium or {}) - set(MEDIUM)
         if unknown:
             raise ValueError(f"a medium has no {', '.join(sorted(unknown))}")
-        self._radio = radio
+        self.radio = radio
         self._medium = {**MEDIUM, **(medium or {})}
         self._air = None
 
@@ -114,7 +114,7 @@ class RadioField(field.Field):
         for node in self.nodes:
             self._make_space(node)
         medium = self._medium
-        argv = [self._radio, "--rate", round(1000 * medium["kbit"]), "--queue", medium["queue"],
+        argv = [self.radio, "--rate", round(1000 * medium["kbit"]), "--queue", medium["queue"],
                 "--overhead", medium["overhead"], "--seed", medium["seed"]]
         argv += ["--pcap", medium["pcap"]] if medium["pcap"] else []
         for node in self.nodes:

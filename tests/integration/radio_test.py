@@ -5,6 +5,7 @@ what arrives; how fast this machine is decides nothing, as long as the senders k
 Usage: radio_test.py RADIO"""
 
 import ctypes
+import json
 import os
 import socket
 import sys
@@ -12,6 +13,7 @@ import threading
 import time
 
 import field
+import harness
 import radio_field
 
 NODES = ["ground", "uav1", "uav2"]
@@ -188,6 +190,30 @@ def delay(ground, sockets):
     ground.delay(0)
 
 
+def control_socket(ground, _sockets):
+    """A second radio, told by a Unix socket: two at once, a line that is too long, and its end by SIGTERM."""
+    path = os.path.join(ground.folder, "control")
+    radio = harness.Process([ground.radio, "--node", f"only={ground.space('ground')}", "--device", "air1",
+                             "--control", path])
+    radio.wait_for(lambda text: '"ready":true' in text, LIMIT_S)
+    with socket.socket(socket.AF_UNIX) as first, socket.socket(socket.AF_UNIX) as second:
+        first.connect(path)
+        second.connect(path)
+        for one, line, answer in ((first, b"rate 5000\n", {"ok": True}),
+                                  (second, b"fly\n", {"error": "unknown command: fly"})):
+            one.sendall(line)
+            assert json.loads(one.makefile().readline()) == answer
+        second.sendall(bytes(5000))
+        try:
+            assert second.recv(100) == b"", "a line that is too long was answered"
+        except ConnectionResetError:
+            pass  # with what it has not read
+        first.sendall(b"counters\n")
+        assert json.loads(first.makefile().readline())["bits_per_s"] == 5000
+    assert radio.terminate() == 0, radio.lines
+    assert not os.path.exists(path), "the socket is left"
+
+
 def silence(ground):
     """Devices that nobody uses say nothing."""
     time.sleep(3)
@@ -204,7 +230,7 @@ def main():
             quiet(ground)
             for node in NODES:
                 drain(sockets[node])
-            for part in (rate_and_queue, multicast_once, deaf_one_way, outage, delay):
+            for part in (rate_and_queue, multicast_once, deaf_one_way, outage, delay, control_socket):
                 quiet(ground)
                 part(ground, sockets)
                 print(f"ok: {part.__name__}")

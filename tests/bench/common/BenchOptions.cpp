@@ -35,6 +35,9 @@ BenchOptions ParseOptions(int argc, char **argv, const char *description)
     app.add_flag("--in-listener", options.InListener, "Answer in the vendor's listener");
     app.add_flag("--writer-thread", options.WriterThread, "Write on a thread of its own");
     app.add_option("--transport", options.Transport);
+    app.add_option("--interface", options.Interface, "Address of the network interface");
+    app.add_option("--datagram", options.Datagram, "Largest datagram in bytes")
+        ->check(CLI::Range(1000u, 65000u));
     try
     {
         app.parse(argc, argv);

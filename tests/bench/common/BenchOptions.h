@@ -43,14 +43,14 @@ struct BenchOptions
     bool WriterThread = false;
     // A node only: which backend.
     std::string Transport = "fastdds";
+    // The address of the network interface, and the largest datagram that DDS may make of a message.
+    std::string Interface = "127.0.0.1";
+    std::size_t Datagram = 65000;
 
     std::uint64_t Last() const { return WarmUp + Count; }
     std::size_t Padding() const;
 };
 
-// What a network of one machine is set to, for all contestants alike.
-inline constexpr const char *Interface = "127.0.0.1";
-inline constexpr std::size_t LargestDatagram = 65000;
 // What Bench::Sample has beside its padding.
 inline constexpr std::size_t SampleOverhead = 20;
 

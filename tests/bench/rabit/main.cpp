@@ -42,8 +42,8 @@ Rabit::GatewayConfig ConfigOf(const BenchOptions &options)
     config.Node = isMember ? MemberNode(options.Member) : asks ? "ping" : "pong";
     config.Domain = options.Domain;
     config.Transport = options.Transport;
-    config.Interfaces = {Interface};
-    config.MaxDatagram = LargestDatagram;
+    config.Interfaces = {options.Interface};
+    config.MaxDatagram = options.Datagram;
     const std::string type = "Bench::Sample";
     if (options.How == Carriage::Queue)
     {

@@ -1,8 +1,10 @@
 #include "ControlSession.h"
 
+#include <boost/asio/error.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 
+#include <iostream>
 #include <istream>
 #include <utility>
 

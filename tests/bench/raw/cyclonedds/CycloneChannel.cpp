@@ -26,15 +26,15 @@ dds_entity_t Check(dds_entity_t result, const char *what)
 }
 
 // The settings of transport/cyclonedds/src/DomainConfig.cpp.
-std::string DomainConfig(int domain)
+std::string DomainConfig(const BenchOptions &options)
 {
-    const std::string datagram = std::to_string(LargestDatagram);
-    const std::string fragment = std::to_string(LargestDatagram - 100);
-    return "<Domain><General><Interfaces><NetworkInterface address=\"" + std::string(Interface) +
+    const std::string datagram = std::to_string(options.Datagram);
+    const std::string fragment = std::to_string(options.Datagram - 100);
+    return "<Domain><General><Interfaces><NetworkInterface address=\"" + options.Interface +
            "\" multicast=\"true\"/></Interfaces><AllowMulticast>spdp</AllowMulticast>"
            "<MaxMessageSize>" +
            datagram + "B</MaxMessageSize><FragmentSize>" + fragment +
-           "B</FragmentSize></General><Discovery><ExternalDomainId>" + std::to_string(domain) +
+           "B</FragmentSize></General><Discovery><ExternalDomainId>" + std::to_string(options.Domain) +
            "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex>"
            "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><LeaseDuration>3000ms</LeaseDuration>"
            "<SPDPInterval>1000ms</SPDPInterval></Discovery><Internal>"
@@ -52,7 +52,7 @@ public:
         : _onData(std::move(onData))
     {
         const auto id = static_cast<dds_domainid_t>(options.Domain);
-        _domain = Check(dds_create_domain(id, DomainConfig(options.Domain).c_str()), "domain");
+        _domain = Check(dds_create_domain(id, DomainConfig(options).c_str()), "domain");
         const dds_entity_t participant = Check(dds_create_participant(id, nullptr, nullptr), "participant");
         const auto topic = [participant](const std::string &name) {
             return Check(dds_create_topic(participant, &Bench_Sample_desc, name.c_str(), nullptr, nullptr),

@@ -39,15 +39,15 @@ T *Check(T *made, const char *what)
 }
 
 // The settings of transport/fastdds/src/ParticipantSettings.cpp.
-dds::DomainParticipantQos ParticipantQos()
+dds::DomainParticipantQos ParticipantQos(const BenchOptions &options)
 {
     constexpr std::uint32_t SocketBuffer = 4u << 20;
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = SocketBuffer;
     udp->receiveBufferSize = SocketBuffer;
-    udp->maxMessageSize = LargestDatagram;
+    udp->maxMessageSize = static_cast<std::uint32_t>(options.Datagram);
     udp->non_blocking_send = true;
-    udp->interfaceWhiteList = {Interface};
+    udp->interfaceWhiteList = {options.Interface};
     dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
     qos.transport().use_builtin_transports = false;
     qos.transport().user_transports.push_back(udp);
@@ -112,7 +112,7 @@ public:
     {
         auto *factory = dds::DomainParticipantFactory::get_instance();
         _participant =
-            Check(factory->create_participant(static_cast<std::uint32_t>(options.Domain), ParticipantQos()),
+            Check(factory->create_participant(static_cast<std::uint32_t>(options.Domain), ParticipantQos(options)),
                   "participant");
         _type.register_type(_participant);
         const auto topic = [this](const std::string &name) {

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""The figures of the radio's table from ledgers and counters that are made up."""
+
+import measures
+import radio_table
+import rows
+
+import expectations  # found by measures
+
+S = 1_000_000_000
+START = "{} start node={} life=1 room=50\n"
+
+
+def ledgers(**texts):
+    return expectations.Run(texts, [])
+
+
+def shown_age_grows_between_ticks_and_is_infinite_before_the_first():
+    text = START.format(0, "ground") + f"{1 * S} tick from=uav1 number=1 age_s=0.5\n"
+    ages = measures.shown_ages(ledgers(ground=text, uav1=START.format(0, "uav1")), 0.95, 2.0)
+    assert ages[-1] == float("inf") and ages[0] < 0.56 and 1.3 < ages[-2] < 1.5, ages
+
+
+def commands_that_never_come_count_as_open_and_those_of_other_times_do_not():
+    ground = START.format(0, "ground") + "".join(f"{k * S} accepted to=uav1 id={k}\n" for k in range(1, 6))
+    uav1 = START.format(0, "uav1") + f"{2 * S + S // 2} delivered from=ground life=1 id=2\n" \
+        f"{5 * S} delivered from=ground life=1 id=1\n{9 * S} delivered from=ground life=1 id=5\n"
+    delays, missing = measures.command_delays(ledgers(ground=ground, uav1=uav1), 2, 5)
+    assert (delays, missing) == ([0.5], 2), (delays, missing)
+
+
+def percentiles_are_of_the_sorted_values():
+    values = list(range(200))
+    assert [measures.percentile(values, p) for p in (50, 99)] == [100, 198]
+    assert measures.percentile([7], 99) == 7 and measures.percentile([], 99) is None
+    assert measures.percentile([1, float("inf")], 99) is None and measures.percentile([1, float("inf")], 49) == 1
+
+
+def traffic_is_what_was_offered_by_the_time_and_the_rate():
+    node = {"offered": {"bytes": 1000}, "dropped": {"bytes": 250}, "longest_wait_ms": 3}
+    figures = measures.traffic({"seconds": 2, "bits_per_s": 16_000, "utilisation": 0.5, "sent": {"bytes": 1500},
+                                "nodes": {"a": node, "b": {**node, "longest_wait_ms": 5}}})
+    assert figures == {"offered_kB_s": 1, "sent_kB_s": 0.75, "dropped_pct": 25, "used_pct": 50, "longest_wait_ms": 5,
+                       "offered_pct": 50}, figures
+
+
+def a_limit_is_missed_by_a_worse_figure_and_by_none():
+    row = rows.Row("", {}, "", {}, {"share": (">=", 95), "delay": ("<=", 5)})
+    assert radio_table.missed(row, {"share": 95, "delay": 5}) == []
+    assert len(radio_table.missed(row, {"share": 94.9, "delay": 5.1})) == 2
+    assert radio_table.missed(row, {"share": 99, "delay": None}) == ["delay never, <= 5 wanted"]
+    assert len(radio_table.missed(row, {"share": 99, "delay": float("inf")})) == 1
+
+
+def every_row_can_be_measured():
+    for row in rows.ROWS:
+        assert callable(getattr(measures, row.measure)), row.name
+        assert measures.nodes_of(row), row.name
+    assert len({row.name for row in rows.ROWS}) == len(rows.ROWS), "two rows of one name"
+
+
+def the_table_has_a_column_for_each_figure_of_a_measure():
+    results = [{"row": "r", "measure": "m", "program": "p", "figures": {"x_pct": 1.234, "y_s": None}, "missed": ["w"]}]
+    assert radio_table.table(results) == ("| what | program | x, % | y s | missed |\n|---|---|---|---|---|\n"
+                                          "| r | p | 1.23 | never | w |\n")
+
+
+def main():
+    for test in (shown_age_grows_between_ticks_and_is_infinite_before_the_first,
+                 commands_that_never_come_count_as_open_and_those_of_other_times_do_not,
+                 percentiles_are_of_the_sorted_values, traffic_is_what_was_offered_by_the_time_and_the_rate,
+                 a_limit_is_missed_by_a_worse_figure_and_by_none, every_row_can_be_measured,
+                 the_table_has_a_column_for_each_figure_of_a_measure):
+        test()
+        print(f"ok: {test.__name__}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+"""The rows of the table: on which medium which fleet has to do what, how well at least. What is measured: measures.py,
+of which each row names a function; its figures are the columns."""
+
+from dataclasses import dataclass, field
+
+PLAIN = "plain"
+RABIT = "Rabit"
+
+WIDE = {"kbit": 100_000}
+
+
+@dataclass
+class Row:
+    name: str
+    medium: dict
+    measure: str
+    options: dict
+    # figure -> (comparison, limit), of Rabit; a plain program is there to compare.
+    limits: dict = field(default_factory=dict)
+    plain: bool = False
+    long: bool = False
+
+    def kbit(self):
+        return self.medium.get("kbit", 0)
+
+
+def members(kbit, limits=None):
+    return Row(f"five members all to all, 100 B at 10 Hz, {kbit} kbit/s", {"kbit": kbit}, "all_to_all",
+               {"members": 5, "settle_s": 15, "seconds": 30}, limits or {}, plain=True)
+
+
+def idle(size):
+    return Row(f"idle, N = {size}", WIDE, "idle", {"nodes": size, "settle_s": 15, "seconds": 20},
+               {"ip_kB_s": ("<=", round(0.3 * size + 0.02 * size * (size - 1), 2))}, plain=True)
+
+
+def fleet(uavs, kbit, limits, seconds=60):
+    """A ground station that sends two commands a second to each aircraft, and aircraft that publish a pose ten times a
+    second, which all others follow."""
+    return Row(f"{uavs}+1, {kbit} kbit/s", {"kbit": kbit}, "fly",
+               {"uavs": uavs, "seconds": seconds, "a_second": 2}, limits, long=seconds > 60)
+
+
+def commands(loss, rate, p99):
+    return Row(f"{rate} commands a second, {loss} % lost", {"loss": loss}, "commands",
+               {"rate": rate, "count": min(10 * rate, 5000)}, {"p99_ms": ("<=", p99), "refused": ("<=", 0)})
+
+
+ROWS = [
+    members(10_000),
+    members(1000),
+    members(250, {"arrives_pct": (">=", 95)}),
+    fleet(4, 1000, {"all_up_s": ("<=", 10), "ticks_pct": (">=", 95), "commands_p99_ms": ("<=", 200), "stale": ("<=", 0),
+                    "offered_pct": ("<=", 50)}, 600),
+    fleet(4, 250, {"all_up_s": ("<=", 20), "lost": ("<=", 0), "commands_p99_ms": ("<=", 500),
+                   "age_p90_s": ("<=", 0.5)}, 600),
+    fleet(10, 250, {"all_up_s": ("<=", 40), "lost": ("<=", 0), "commands_p99_ms": ("<=", 1000),
+                    "age_p90_s": ("<=", 1)}),
+    Row("2+1 with bulk, 1 Mbit/s falls to 100 kbit/s for a minute", {"kbit": 1000}, "fall",
+        {"uavs": 2, "to_kbit": 100, "for_s": 60}, {"wait_ms": ("<=", 300), "used_pct": (">=", 80)}, long=True),
+    Row("4+1, outage of 60 s, 250 kbit/s", {"kbit": 250}, "outage", {"uavs": 4, "for_s": 60},
+        {"first_age_s": ("<=", 1)}, long=True),
+    *map(idle, (2, 5, 10, 20)),
+    Row("idle, N = 2, round trip 600 ms", {**WIDE, "delay_ms": 300}, "idle",
+        {"nodes": 2, "settle_s": 15, "seconds": 20}, {"ip_kB_s": ("<=", 0.64)}, plain=True),
+    Row("links alone, three messages of 200 kB, 250 kbit/s", {"kbit": 250}, "link",
+        {"payload": 200_000, "count": 3, "rate": 100, "limit_s": 120},
+        {"seconds": ("<=", 21), "delivered": (">=", 3), "sent_per_payload": ("<=", 1.15)}),
+    Row("links alone, 30 a second of 500 B, expiry 2 s, 250 kbit/s", {"kbit": 250}, "link",
+        {"payload": 500, "count": 1000, "rate": 30, "expire": 2, "limit_s": 120},
+        {"delivered": (">=", 1000), "sent_per_payload": ("<=", 1.15)}),
+    *(commands(20, rate, 150) for rate in (10, 50, 200, 500)),
+    commands(40, 50, 600),
+    Row("a start of 10 at once, wide medium", WIDE, "start", {"members": 10}, {"ip_MB": ("<=", 0.4)}, plain=True),
+    Row("a start of 10+1 at once, 10 % lost, 250 kbit/s", {"kbit": 250, "loss": 10}, "fly",
+        {"uavs": 10, "seconds": 60, "a_second": 2}, {"all_up_s": ("<=", 60)}),
+]
+
+# What nothing here can measure yet, and what it needs.
+NOT_YET = {
+    "57.6 kbit/s, `budget: 1500B/s`, 2+1, a picture of 60 kB": "a budget in the configuration of ledger_node",
+    "4+1, ten times more offered than `budget`": "a budget in the configuration of ledger_node",
+    "a round trip of 600 ms, throughput of a link": "a figure of bytes acknowledged; the row `idle ... 600 ms` is there",
+}
