@@ -22,11 +22,12 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "simulation" / "common"))
 import mutation  # noqa: E402
+from common_list import MUTATIONS as COMMON  # noqa: E402
 from transport_list import MUTATIONS as TRANSPORT  # noqa: E402
 
-MUTATIONS = [*TRANSPORT]
+MUTATIONS = [*TRANSPORT, *COMMON]
 # Only keeps a mutant that hangs from hanging the run; to hang is to be noticed.
-LIMIT_S = 300
+LIMIT_S = 120
 
 
 class Commands:
@@ -84,7 +85,7 @@ class Run:
             if flag in words:
                 words[words.index(flag) + 1] = str(target) + ".d"
         # The changed file finds its neighbours where the original has them, unless they are changed too.
-        words[words.index("-c"):words.index("-c")] = [f"-I{source.parent}", "-Wno-error"]
+        words[words.index("-c"):words.index("-c")] = ["-iquote", str(changed.parent), f"-I{source.parent}", "-Wno-error"]
         self.execute(words)
 
     def mutant(self, change, number, program):
@@ -94,11 +95,14 @@ class Run:
         source = self.source / change.file
         changed = work / source.name
         changed.write_text(mutation.apply(source.read_text(), change))
+        # As others name it: by itself, or with its folder.
+        (work / source.parent.name).mkdir(exist_ok=True)
+        (work / source.parent.name / source.name).write_text(changed.read_text())
         link = self.commands.linking(program)
         sources = [source]
         if source.suffix == ".h":
             sources = [each for each in [*self.commands.sources_of(program), *source.parent.glob("*.cpp")]
-                       if f'"{source.name}"' in each.read_text()]
+                       if re.search(rf'"({source.parent.name}/)?{source.name}"', each.read_text())]
             for each in sources:
                 (work / each.name).write_text(each.read_text())
         for each in sources:
@@ -121,8 +125,8 @@ class Run:
         program, _, tests = change.noticed_by.partition(":")
         try:
             path = self.mutant(change, number, program)
-            run = subprocess.run([str(path), f"--gtest_filter={tests or '*'}", "--gtest_brief=1"], capture_output=True,
-                                 text=True, timeout=LIMIT_S, cwd=self.build, check=False)
+            run = subprocess.run([str(path), f"--gtest_filter={tests or '*'}", "--gtest_brief=1", "--gtest_fail_fast"],
+                                 capture_output=True, text=True, timeout=LIMIT_S, cwd=self.build, check=False)
         except subprocess.TimeoutExpired:
             return True, "the tests do not end"
         except RuntimeError as error:
@@ -145,11 +149,11 @@ def main():
     arguments = parser.parse_args()
     run = Run(arguments.source.resolve(), arguments.build.resolve(), arguments.work.resolve())
     chosen = [change for change in MUTATIONS if arguments.only in f"{change.file} {change.name}"]
+    missed = 0
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        results = list(pool.map(run.judge, range(len(chosen)), chosen))
-    for change, (well, what) in zip(chosen, results):
-        print(f"{'ok  ' if well else 'FAIL'} {Path(change.file).name}: {change.name}: {what}")
-    missed = sum(not well for well, _ in results)
+        for change, (well, what) in zip(chosen, pool.map(run.judge, range(len(chosen)), chosen)):
+            print(f"{'ok  ' if well else 'FAIL'} {Path(change.file).name}: {change.name}: {what}", flush=True)
+            missed += not well
     print(f"{len(chosen) - missed} of {len(chosen)} noticed")
     sys.exit(1 if missed or not chosen else 0)
 

@@ -56,6 +56,13 @@ TEST(NetworkChoice, TakesAllButLoopbackIfNoneIsNamed)
     EXPECT_THAT(choice.Problems, IsEmpty());
 }
 
+TEST(NetworkChoice, TakesLoopbackBesideOthersForNoPeerEither)
+{
+    TransportSettings settings;
+    settings.Peers = {"ground"};
+    EXPECT_THAT(UsableOf(ChooseNetworks({Loopback(), Wired}, settings, 10)), ElementsAre("10.0.0.1"));
+}
+
 TEST(NetworkChoice, TakesLoopbackIfThereIsNothingElse)
 {
     EXPECT_THAT(UsableOf(Choose({Loopback(), WithoutCarrier(Wired)})), ElementsAre("127.0.0.1"));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <thread>
 
@@ -17,6 +18,17 @@ TEST(PeerResolver, KnowsAtOnceWhatIsKnownAtOnce)
                                 [](const std::string &) { return std::optional<std::string>("10.0.0.9"); });
     EXPECT_EQ(resolver.AddressOf("ground"), "10.0.0.9");
     EXPECT_EQ(resolver.AddressOf("another"), std::nullopt);
+}
+
+TEST(PeerResolver, WaitsForFirstAnswersThatTakeAMoment)
+{
+    const PeerResolver resolver({"ground", "uav2"},
+                                [](const std::string &) -> std::optional<std::string>
+                                {
+                                    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                                    return "10.0.0.9";
+                                });
+    EXPECT_EQ(resolver.AddressOf("uav2"), "10.0.0.9");
 }
 
 TEST(PeerResolver, LooksAgainForWhatHasNoAddress)
@@ -36,6 +48,28 @@ TEST(PeerResolver, LooksAgainForWhatHasNoAddress)
         std::this_thread::yield();
     }
     EXPECT_EQ(*asked, 3);
+}
+
+TEST(PeerResolver, LooksNoMoreForWhatHasAnAddress)
+{
+    const auto asked = std::make_shared<std::atomic<int>>(0);
+    const auto others = std::make_shared<std::atomic<int>>(0);
+    const PeerResolver resolver({"ground", "uav2"},
+                                [asked, others](const std::string &host) -> std::optional<std::string>
+                                {
+                                    if (host == "ground")
+                                    {
+                                        return "10.0.0." + std::to_string(++*asked);
+                                    }
+                                    return ++*others < 3 ? std::nullopt
+                                                         : std::optional<std::string>("10.0.0.9");
+                                });
+    while (!resolver.AddressOf("uav2"))
+    {
+        std::this_thread::yield();
+    }
+    EXPECT_EQ(resolver.AddressOf("ground"), "10.0.0.1");
+    EXPECT_EQ(*asked, 1);
 }
 
 TEST(PeerResolver, DoesNotWaitForALookupThatHangs)

@@ -193,11 +193,15 @@ protected:
     // Looks as often as it is told to, for at most a minute of the test's time.
     void Follow(RejoiningSession &session)
     {
+        constexpr int MostLooks = 1000;
         const auto end = _now + 1min;
-        for (auto again = session.Look(); again && _now < end; again = session.Look())
+        int looks = 0;
+        for (auto again = session.Look(); again && _now < end && looks < MostLooks; again = session.Look())
         {
             _now += *again;
+            ++looks;
         }
+        EXPECT_LT(looks, MostLooks);
     }
     std::vector<std::string> Entries(const RejoiningSession &session)
     {
@@ -426,6 +430,21 @@ TEST_F(RejoiningSessionTest, TriesAgainAfterAFailureAndSaysSo)
     EXPECT_THAT(Entries(*session), IsEmpty());
 }
 
+TEST_F(RejoiningSessionTest, DoesNotTryAgainAtOnceAfterAFailure)
+{
+    const auto session = Open();
+    int attempts = 0;
+    _script.InOpen = [&] { ++attempts; };
+    _script.Refuses = true;
+    _networks = {Wired, Radio};
+    for (int i = 0; i < 100 && attempts == 0; ++i)
+    {
+        _now += session->Look().value_or(0ms);
+    }
+    EXPECT_EQ(session->Look(), 1000ms);
+    EXPECT_EQ(attempts, 1);
+}
+
 TEST_F(RejoiningSessionTest, AnEndpointThatCannotBeMadeAnewClosesTheOthersUntilItCan)
 {
     const auto session = Open();
@@ -453,8 +472,10 @@ TEST_F(RejoiningSessionTest, APeerIsLookedUpAgainUntilItHasAnAddress)
     EXPECT_THAT(Entries(*session), ElementsAre("ground:7410"));
     Follow(*session);
     EXPECT_EQ(_script.Opened.size(), 1u);
+    EXPECT_EQ(session->Look(), 500ms);
     _names["ground"] = "10.0.0.9";
     Follow(*session);
+    EXPECT_EQ(session->Look(), std::nullopt);
     ASSERT_EQ(_script.Opened.size(), 2u);
     EXPECT_THAT(_script.Opened[1].Peers, ElementsAre("10.0.0.9:7410", "10.0.0.7", "10.0.0.3"));
     EXPECT_THAT(Entries(*session), IsEmpty());

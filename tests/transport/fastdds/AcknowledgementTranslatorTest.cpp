@@ -139,6 +139,7 @@ TEST(AcknowledgementTranslator, CountsGoOnFromWhereAReaderBeganAnew)
 TEST(AcknowledgementTranslator, WhoIsSpokenForIsToldFromWhoSends)
 {
     AcknowledgementTranslator translator;
+    CountAfter(translator, {.Sender = 1, .Base = 2, .Count = 6});
     const auto ofOne = CountAfter(translator, {.Sender = 1, .Base = 2, .Count = 7});
     Bytes datagram = Header(2);
     AppendTo(datagram, {.Base = 2, .Count = 20});

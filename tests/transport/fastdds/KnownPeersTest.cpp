@@ -87,6 +87,29 @@ TEST_F(KnownPeersTest, AForgedPlaceIsNotBelievedHoweverOftenItIsSaidBetweenTheTr
     }
 }
 
+TEST_F(KnownPeersTest, RepeatsOfTheTruePlaceDoNotHelpAForgedOne)
+{
+    Now += 10s;
+    EXPECT_TRUE(Peers.Announced(Sender, 1, Now));
+    EXPECT_TRUE(Peers.Announced(Sender, 1, Now + 1ms));
+    for (int times = 0; times < 100; ++times)
+    {
+        ASSERT_FALSE(Peers.Announced(Sender, 2, Now + 9s));
+    }
+}
+
+TEST_F(KnownPeersTest, APeerThatWasAwayMayMoveWithinHalfAMinute)
+{
+    Now += 59s;
+    EXPECT_TRUE(Peers.Announced(Sender, 1, Now));
+    for (int i = 0; i < 10; ++i)
+    {
+        Now += 3s;
+        EXPECT_TRUE(Peers.Hears(Sender, Now));
+        EXPECT_EQ(Peers.Announced(Sender, 2, Now), i == 9) << i;
+    }
+}
+
 TEST_F(KnownPeersTest, OnePlaceThatWasForgedIsNotBelievedForLong)
 {
     EXPECT_TRUE(Peers.Announced(Other, 666, Now));
@@ -124,6 +147,7 @@ TEST_F(KnownPeersTest, AnEndpointThatChangesIsBelievedWithItsThirdAnnouncementIn
             }
             EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, digest));
             EXPECT_TRUE(Peers.EndpointAnnounced(Sender, endpoint, digest));
+            EXPECT_FALSE(Peers.EndpointAnnounced(Sender, endpoint, digest - 1)) << "as it was";
         }
     }
 }
