@@ -1,0 +1,117 @@
+#include "air/AirBudget.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace Rabit
+{
+namespace
+{
+
+using Duration = AirBudget::Duration;
+
+// What a late driver may catch up.
+constexpr Duration CatchUp = std::chrono::milliseconds(10);
+// By which what was not scheduled holds up a pace at most.
+constexpr Duration LongestHoldUp = std::chrono::seconds(1);
+
+double Seconds(Duration time)
+{
+    return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace
+
+void AirBudget::SetRate(Mode mode, double bytesPerSecond, Duration now)
+{
+    const double before = _mode == Mode::Unlimited ? 0.0 : Pace();
+    _mode = mode;
+    _rate = std::max(bytesPerSecond, SmallestRate);
+    if (before > 0.0 && _nextAt > now)
+    {
+        const double left = static_cast<double>((_nextAt - now).count()) * before / Pace();
+        _nextAt = now + Duration(static_cast<Duration::rep>(left));
+    }
+}
+
+std::optional<double> AirBudget::Rate() const
+{
+    return IsUnlimited() ? std::nullopt : std::optional(_rate);
+}
+
+double AirBudget::Reserved() const
+{
+    return _mode == Mode::Budget ? std::min(_reserved, _rate / 2.0) : 0.0;
+}
+
+// So that a second, as SlidingSecond has it, is just filled.
+double AirBudget::Pace() const
+{
+    return _mode == Mode::Budget ? (_rate - Reserved()) / Seconds(SlidingSecond::Length) : _rate;
+}
+
+Duration AirBudget::TimeOf(std::size_t bytes) const
+{
+    return Duration(static_cast<Duration::rep>(static_cast<double>(bytes) * 1e9 / Pace()));
+}
+
+void AirBudget::Spent(std::size_t bytes, Duration now)
+{
+    if (_mode == Mode::Budget)
+    {
+        _second.Add(0, bytes, now);
+    }
+    else if (_mode == Mode::Pace)
+    {
+        _nextAt = std::max(_nextAt, std::min(std::max(_nextAt, now) + TimeOf(bytes), now + LongestHoldUp));
+    }
+}
+
+Duration AirBudget::WhenFits(std::size_t bytes, Duration now)
+{
+    if (IsUnlimited())
+    {
+        return now;
+    }
+    const Duration paced = std::max(now, _nextAt);
+    if (_mode == Mode::Pace)
+    {
+        return paced;
+    }
+    const auto fits = [this, bytes](std::uint64_t scheduled, std::uint64_t unscheduled)
+    {
+        const double others = std::max(static_cast<double>(unscheduled), Reserved());
+        return scheduled == 0 || static_cast<double>(scheduled + bytes) + others <= _rate;
+    };
+    return std::max(paced, _second.When(fits, now));
+}
+
+void AirBudget::Sent(std::size_t bytes, Duration now)
+{
+    if (IsUnlimited())
+    {
+        return;
+    }
+    _nextAt = std::max(_nextAt, now - CatchUp) + TimeOf(bytes);
+    if (_mode == Mode::Budget)
+    {
+        _second.Add(bytes, 0, now);
+    }
+}
+
+std::size_t AirBudget::LargestDatagram() const
+{
+    if (IsUnlimited())
+    {
+        return _largestDatagram;
+    }
+    double fits = (_rate - Reserved()) * Seconds(LongestDatagram);
+    if (_mode == Mode::Pace && fits > static_cast<double>(SmallestDatagram))
+    {
+        fits = std::sqrt(fits * static_cast<double>(SmallestDatagram));
+    }
+    return std::min(_largestDatagram,
+                    std::max(SmallestDatagram, static_cast<std::size_t>(std::min(fits, 1e9))));
+}
+
+}  // namespace Rabit

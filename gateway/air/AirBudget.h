@@ -1,0 +1,83 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "air/SlidingSecond.h"
+
+namespace Rabit
+{
+
+// When this node may put its next datagram on the air. Three modes:
+//
+// - unlimited: at once. Nothing is remembered, and nothing costs time.
+// - a budget: never more than so many bytes in a second, whichever second one looks at.
+// - a pace: so many bytes a second on average, for a rate that is an estimate itself (CapacityEstimate).
+//
+// With a limit datagrams are spaced by their size, so that the next one, whosever it is, never waits for a
+// burst. A driver that comes late catches up to 10 ms.
+//
+// Something always goes: a datagram that is larger than what a budget allows goes when nothing was sent for a
+// second.
+//
+// Bytes are those on the air (AirCost). Pure; `now` never goes back; not to be used by two threads at once.
+class AirBudget
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+    static constexpr std::size_t SmallestDatagram = 400;  // smaller ones are mostly headers
+    static constexpr Duration LongestDatagram = std::chrono::milliseconds(250);
+    static constexpr double SmallestRate = 100.0;  // bytes a second; less is raised to it
+
+    // largestDatagram: on the air, with its headers.
+    explicit AirBudget(std::size_t largestDatagram) : _largestDatagram(largestDatagram) {}
+
+    // At the beginning.
+    void SetUnlimited() { _mode = Mode::Unlimited; }
+    void SetBudget(double bytesPerSecond, Duration now) { SetRate(Mode::Budget, bytesPerSecond, now); }
+    void SetPace(double bytesPerSecond, Duration now) { SetRate(Mode::Pace, bytesPerSecond, now); }
+    bool IsUnlimited() const { return _mode == Mode::Unlimited; }
+    // Bytes a second; empty: unlimited.
+    std::optional<double> Rate() const;
+
+    // Keeps so much of a budget, at most half of it, free for what is not scheduled. Without effect on a
+    // pace.
+    void Reserve(double bytesPerSecond) { _reserved = bytesPerSecond; }
+    // So many bytes went without being scheduled, the vendor's discovery for instance. What a budget has
+    // reserved pays for them first.
+    void Spent(std::size_t bytes, Duration now);
+
+    bool MaySend(std::size_t bytes, Duration now) { return IsUnlimited() || WhenFits(bytes, now) <= now; }
+    // The first time, not before now, at which a datagram of this size may go if nothing else does.
+    Duration WhenFits(std::size_t bytes, Duration now);
+    // A datagram went. Also one that MaySend would not have let go.
+    void Sent(std::size_t bytes, Duration now);
+
+    // How large a datagram should be, where one has the choice, so that what is more important does not wait
+    // longer than LongestDatagram for it; SmallestDatagram at least.
+    std::size_t LargestDatagram() const;
+
+private:
+    enum class Mode
+    {
+        Unlimited,
+        Budget,
+        Pace
+    };
+
+    void SetRate(Mode mode, double bytesPerSecond, Duration now);
+    double Pace() const;
+    double Reserved() const;
+    Duration TimeOf(std::size_t bytes) const;
+
+    const std::size_t _largestDatagram;
+    Mode _mode = Mode::Unlimited;
+    double _rate = 0.0;
+    double _reserved = 0.0;
+    Duration _nextAt = Duration::min() / 2;  // the last datagram has had its time
+    SlidingSecond _second;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,232 @@
+#include "air/AirSchedule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace Rabit
+{
+namespace
+{
+
+// What presence may send in a row before others, in bytes: a quarter of a second of the budget, and no more
+// than this.
+constexpr double LargestPresenceBurst = 65536.0;
+
+}  // namespace
+
+AirSchedule::AirSchedule(std::size_t largestDatagram) : _budget(largestDatagram)
+{
+    LimitChanged();
+}
+
+void AirSchedule::SetUnlimited()
+{
+    _budget.SetUnlimited();
+    LimitChanged();
+}
+
+void AirSchedule::SetBudget(double bytesPerSecond, Duration now)
+{
+    _budget.SetBudget(bytesPerSecond, now);
+    LimitChanged();
+}
+
+void AirSchedule::SetPace(double bytesPerSecond, Duration now)
+{
+    _budget.SetPace(bytesPerSecond, now);
+    LimitChanged();
+}
+
+void AirSchedule::Reserve(double bytesPerSecond)
+{
+    _budget.Reserve(bytesPerSecond);
+}
+
+void AirSchedule::LimitChanged()
+{
+    const double rate = _budget.Rate().value_or(4.0 * LargestPresenceBurst);
+    _shares.SetPresenceBurst(static_cast<std::int64_t>(std::min(rate / 4.0, LargestPresenceBurst)));
+}
+
+const AirStream &AirSchedule::At(StreamId id) const
+{
+    if (id.Index >= _streams.size() || !_streams[id.Index].IsThere || _streams[id.Index].Life != id.Life)
+    {
+        throw std::out_of_range("AirSchedule: no such stream");
+    }
+    return _streams[id.Index];
+}
+
+AirStream &AirSchedule::At(StreamId id)
+{
+    return const_cast<AirStream &>(static_cast<const AirSchedule &>(*this).At(id));
+}
+
+StreamId AirSchedule::AddStream(TrafficClass traffic, double weight)
+{
+    if (!(weight >= SmallestWeight && weight <= LargestWeight))
+    {
+        throw std::invalid_argument("AirSchedule: a weight is from 0.01 to 100");
+    }
+    if (_free.empty())
+    {
+        _free.push_back(static_cast<std::uint32_t>(_streams.size()));
+        _streams.emplace_back();
+    }
+    const std::uint32_t index = _free.back();
+    _free.pop_back();
+    AirStream &stream = _streams[index];
+    const std::uint32_t life = stream.Life + 1;
+    stream = AirStream{};
+    stream.Index = index;
+    stream.Life = life;
+    stream.IsThere = true;
+    stream.Class = traffic;
+    stream.Weight = weight;
+    return {index, life};
+}
+
+void AirSchedule::Remove(StreamId id)
+{
+    AirStream &stream = At(id);
+    StopWaiting(stream);
+    stream.IsThere = false;
+    _free.push_back(stream.Index);
+}
+
+void AirSchedule::StopWaiting(AirStream &stream)
+{
+    if (stream.HeapPlace != AirStream::NotWaiting)
+    {
+        QueueOf(stream.Class).Remove(stream);
+    }
+    if (_kept == &stream)
+    {
+        _kept = nullptr;
+    }
+}
+
+void AirSchedule::Ready(StreamId id, std::size_t bytes)
+{
+    AirStream &stream = At(id);
+    stream.Bytes = bytes;
+    if (stream.HeapPlace == AirStream::NotWaiting)
+    {
+        QueueOf(stream.Class).Add(stream);
+    }
+}
+
+void AirSchedule::NotReady(StreamId id)
+{
+    StopWaiting(At(id));
+}
+
+ClassShares::Waiting AirSchedule::Waiting() const
+{
+    ClassShares::Waiting waiting{};
+    for (std::size_t i = 0; i < TrafficClassCount; ++i)
+    {
+        waiting[i] = !_queues[i].IsEmpty();
+    }
+    return waiting;
+}
+
+bool AirSchedule::IsAnyoneReady() const
+{
+    return std::any_of(_queues.begin(), _queues.end(),
+                       [](const FairQueue &queue) { return !queue.IsEmpty(); });
+}
+
+AirStream *AirSchedule::KeptForLong(Duration now) const
+{
+    return _kept != nullptr && now - _keptSince >= Patience ? _kept : nullptr;
+}
+
+AirStream &AirSchedule::Chosen(Duration now)
+{
+    if (AirStream *kept = KeptForLong(now))
+    {
+        return *kept;
+    }
+    return QueueOf(_shares.Next(Waiting())).First();
+}
+
+// A command that fits before the chosen one does. `when`: in: when the chosen one fits; out: when the answer
+// does.
+AirStream *AirSchedule::Passing(const AirStream &chosen, Duration now, Duration &when)
+{
+    FairQueue &commands = QueueOf(TrafficClass::Command);
+    if (chosen.Class <= TrafficClass::Command || commands.IsEmpty() || &chosen == KeptForLong(now))
+    {
+        return nullptr;
+    }
+    const Duration fits = _budget.WhenFits(commands.First().Bytes, now);
+    if (fits >= when)
+    {
+        return nullptr;
+    }
+    when = fits;
+    return &commands.First();
+}
+
+std::optional<StreamId> AirSchedule::Next(Duration now)
+{
+    if (!IsAnyoneReady())
+    {
+        return std::nullopt;
+    }
+    AirStream &chosen = Chosen(now);
+    if (_budget.IsUnlimited())
+    {
+        return StreamId{chosen.Index, chosen.Life};
+    }
+    Duration when = _budget.WhenFits(chosen.Bytes, now);
+    if (when <= now)
+    {
+        return StreamId{chosen.Index, chosen.Life};
+    }
+    // It keeps its turn from when it might have gone but for its size.
+    if (_kept == nullptr && _budget.WhenFits(0, now) <= now)
+    {
+        _kept = &chosen;
+        _keptSince = now;
+    }
+    const AirStream *passing = Passing(chosen, now, when);
+    return passing != nullptr && when <= now ? std::optional(StreamId{passing->Index, passing->Life})
+                                             : std::nullopt;
+}
+
+void AirSchedule::Sent(StreamId id, std::size_t bytes, Duration now)
+{
+    AirStream &stream = At(id);
+    StopWaiting(stream);
+    if (bytes == 0)
+    {
+        return;
+    }
+    QueueOf(stream.Class).Charge(stream, bytes);
+    _shares.Charge(stream.Class, bytes, Waiting());
+    _budget.Sent(bytes, now);
+    stream.Sent += bytes;
+    _sent[static_cast<std::size_t>(stream.Class)] += bytes;
+}
+
+AirSchedule::Duration AirSchedule::NextDue(Duration now)
+{
+    if (!IsAnyoneReady())
+    {
+        return Never;
+    }
+    const AirStream &chosen = Chosen(now);
+    Duration when = _budget.WhenFits(chosen.Bytes, now);
+    Passing(chosen, now, when);
+    return when <= now ? now : std::max(when, now + Grain);
+}
+
+std::uint64_t AirSchedule::SentBytes(StreamId id) const
+{
+    return At(id).Sent;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <rabit/gateway/TrafficClass.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace Rabit
+{
+
+// What AirSchedule and FairQueue know of a stream.
+struct AirStream
+{
+    static constexpr std::size_t NotWaiting = static_cast<std::size_t>(-1);
+
+    std::uint32_t Index = 0;
+    std::uint32_t Life = 0;
+    bool IsThere = false;
+    TrafficClass Class = TrafficClass::Bulk;
+    double Weight = 1.0;
+    std::size_t Bytes = 0;   // of its next datagram
+    std::uint64_t Sent = 0;  // bytes in all
+
+    // Of FairQueue.
+    double Tag = 0.0;                    // virtual time at which its next datagram begins
+    std::uint64_t Arrived = 0;           // order among equal tags
+    std::size_t HeapPlace = NotWaiting;  // in the queue
+};
+
+}  // namespace Rabit

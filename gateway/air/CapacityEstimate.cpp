@@ -1,0 +1,173 @@
+#include "air/CapacityEstimate.h"
+
+#include <algorithm>
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Duration = CapacityEstimate::Duration;
+
+// Where the delay is kept: half the target, so that what others send in between does not pass it.
+constexpr Duration Goal = 40ms;
+// Delays above this are a queue of this node; below, others were on the air.
+constexpr Duration Standing = 30ms;
+// In which a queue is emptied; a longer one is emptied before anything but the floor is sent.
+constexpr double EmptyIn = 0.5;
+// With longer queues buffers may be full.
+constexpr Duration ShortEnough = 300ms;
+// Two arrivals closer than this say little about a rate.
+constexpr Duration ShortestSpan = 300ms;
+// A correction's weight.
+constexpr double Gain = 0.3;
+// Rise, by second, and after a quiet time.
+constexpr double GentleRise = 0.05;
+constexpr double QuickRise = 0.5;
+constexpr Duration QuietTime = 3s;
+// A rate is used if so much of it is sent.
+constexpr double Used = 0.7;
+constexpr double Unused = 0.5;
+constexpr Duration UnusedTime = 20s;
+// Bytes a second that the rate rises by in each second in any case.
+constexpr double Fairness = 200.0;
+// Without reports.
+constexpr Duration SilentAfter = 3s;
+constexpr double FallInSilence = 0.1;
+constexpr double LeastInSilence = 0.5;
+
+double Seconds(Duration time)
+{
+    return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace
+
+// Bytes a second between two reports' datagrams; empty: they are too close.
+std::optional<double> CapacityEstimate::Carried(const DelayReports::Report &from,
+                                                const DelayReports::Report &to) const
+{
+    if (to.ArrivedAt - from.ArrivedAt < ShortestSpan)
+    {
+        return std::nullopt;
+    }
+    return _sent.Between(from.SentAt(), to.SentAt()) / Seconds(to.ArrivedAt - from.ArrivedAt);
+}
+
+// The least that some of a peer's reports tell: those before a radio's buffer was full. What did not fit into
+// it was sent and not carried.
+std::optional<double> CapacityEstimate::CarriedWhileRising(const DelayReports::Reports &said) const
+{
+    std::optional<double> least;
+    for (std::size_t to = 1; to < said.size(); ++to)
+    {
+        for (std::size_t from = 0; from < to; ++from)
+        {
+            const auto carried = Carried(said[from], said[to]);
+            if (carried && said[to].Delay > Target && said[to].Delay > said[from].Delay)
+            {
+                least = std::min(least.value_or(*carried), *carried);
+            }
+        }
+    }
+    return least;
+}
+
+void CapacityEstimate::Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now)
+{
+    _reports.Add(peer, delay, arrivedAt, now);
+    const Duration latest = _reports.Latest(now).value_or(Duration(0));
+    if (latest > Goal)
+    {
+        _quietSince = now;
+    }
+    _agreed = _reports.Agree(Target, now);
+    if (_agreed)
+    {
+        Congested(now);
+    }
+    if (!_limited)
+    {
+        return;
+    }
+    if (latest > Standing)
+    {
+        Correct(*_reports.Of(peer));
+    }
+    if (latest > Standing || _sent.Between(now - 1s, now) >= Used * _carried)
+    {
+        Rise(latest, now);
+    }
+    _carried = std::max(_carried, Floor);
+    _reportedAt = now;
+    _limited = _limited && !IsUnused(now);
+}
+
+void CapacityEstimate::Congested(Duration now)
+{
+    const double sent = _limited ? _carried : _sent.Between(now - 1s, now);
+    const auto carried =
+        _reports.MedianOf([this](const auto &said) { return CarriedWhileRising(said); }, now);
+    _carried = std::min(sent, carried.value_or(sent));
+    _limitedSince = _limited ? _limitedSince : now;
+    _limited = true;
+}
+
+void CapacityEstimate::Correct(const DelayReports::Reports &said)
+{
+    for (auto from = said.rbegin() + 1; from < said.rend() && from->Delay > Standing; ++from)
+    {
+        if (const auto carried = Carried(*from, said.back()))
+        {
+            // What is sent into a full buffer is not carried.
+            const double most = _carried * (said.back().Delay < ShortEnough ? 1.5 : 1.1);
+            _carried += Gain * (std::min(*carried, most) - _carried);
+            return;
+        }
+    }
+}
+
+// By as much for every node, so that in the end all have as much: the queue takes in proportion. And by a
+// share of the rate where there is no queue.
+void CapacityEstimate::Rise(Duration delay, Duration now)
+{
+    const double passed = std::min(Seconds(now - _reportedAt), 1.0);
+    const double share = now - _quietSince >= QuietTime ? QuickRise : GentleRise;
+    _carried += passed * (Fairness + (delay > Standing ? 0.0 : share * _carried));
+}
+
+bool CapacityEstimate::IsUnused(Duration now) const
+{
+    return now - std::max(_limitedSince, _quietSince) >= UnusedTime &&
+           _sent.Between(now - UnusedTime, now) < Unused * _carried * Seconds(UnusedTime);
+}
+
+Duration CapacityEstimate::Queue(Duration now) const
+{
+    // What was sent before the datagram that a report is about has gone when it arrives; what was sent since
+    // waits, but for what was carried since.
+    const auto queue = [this, now](const DelayReports::Reports &said)
+    {
+        const DelayReports::Report &last = said.back();
+        const double inFlight = 2.0 * _sent.Between(last.SentAt(), last.ArrivedAt) / _carried;
+        const double then = _agreed ? Seconds(last.Delay) : std::min(Seconds(last.Delay), inFlight);
+        const double since = _sent.Between(last.ArrivedAt, now) / _carried - Seconds(now - last.ArrivedAt);
+        return std::optional(std::max(then + since, 0.0));
+    };
+    return Duration(static_cast<Duration::rep>(_reports.MedianOf(queue, now).value_or(0.0) * 1e9));
+}
+
+std::optional<double> CapacityEstimate::Rate(Duration now) const
+{
+    if (!_limited)
+    {
+        return std::nullopt;
+    }
+    const Duration queue = Queue(now);
+    const double rate = _carried * (1.0 + Seconds(Goal - queue) / EmptyIn);
+    const double silence = std::max(Seconds(now - _reportedAt - SilentAfter), 0.0);
+    return std::max(rate * std::max(1.0 - FallInSilence * silence, LeastInSilence), Floor);
+}
+
+}  // namespace Rabit

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+
+#include "air/DelayReports.h"
+#include "air/SentHistory.h"
+
+namespace Rabit
+{
+
+// How many bytes a second the air carries for this node, as far as that limits it: learned from how late its
+// datagrams come to its peers, and from nothing else. Loss says nothing: a radio loses.
+//
+// - Unlimited until the peers agree on a delay above Target.
+// - Then: what was really carried while the delay rose, that is the bytes sent between two reported datagrams
+//   by the time between their arrivals, less what it takes to empty the queue.
+// - As long as there is a queue, each report corrects what is carried; the rate is below it while the delay
+// is
+//   above the goal, and a little above it while it is below.
+// - Without a queue the rate rises if it is used: gently, and after three quiet seconds by half each second.
+// - Never below Floor. Unlimited again when it was not used by half for 20 s, without delays.
+// - Without reports: what was unlimited stays so, since a node that hears nobody knows nothing of the air,
+// and
+//   to guess would cost every silent wire its speed. A rate falls after three seconds, by a tenth each second
+//   and to a half at most (reports may be missing because of the queue), and does not rise without a report.
+//
+// Taken from others: the rate is that of delivery and the queue is emptied once rather than shared (BBR,
+// Cardwell et al. 2016); a target for the delay above the least one, approached in proportion (LEDBAT, RFC
+// 6817); bytes in flight tell of the queue before the next report does, and the rise is quicker after a while
+// without congestion (SCReAM, RFC 8298); a rate that is not used does not rise (RFC 7661).
+//
+// Pure; `now` never goes back; not to be used by two threads at once.
+class CapacityEstimate
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+    using Peer = DelayReports::Peer;
+
+    static constexpr Duration Target = std::chrono::milliseconds(100);
+    static constexpr double Floor = 300.0;  // bytes a second
+
+    // A datagram of so many bytes on the air went out, scheduled or not.
+    void Sent(std::size_t bytes, Duration now) { _sent.Add(bytes, now); }
+    // A peer says that a datagram of ours came so much later than the quickest of ours that it knows. Each
+    // report is about a newer datagram than the one before. arrivedAt: when that datagram arrived there, by
+    // our clock: now, less the time for which the peer has held the report, and less by how much the report
+    // itself came later than the peer's quickest.
+    void Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now);
+
+    // Bytes a second; empty: unlimited. Changes with time, too: ask ten times a second while there is a rate.
+    std::optional<double> Rate(Duration now) const;
+    // The queue that is in front of the next datagram, as far as known.
+    Duration Queue(Duration now) const;
+
+private:
+    std::optional<double> Carried(const DelayReports::Report &from, const DelayReports::Report &to) const;
+    std::optional<double> CarriedWhileRising(const DelayReports::Reports &said) const;
+    void Congested(Duration now);
+    void Correct(const DelayReports::Reports &said);
+    void Rise(Duration delay, Duration now);
+    bool IsUnused(Duration now) const;
+
+    SentHistory _sent;
+    DelayReports _reports;
+    bool _limited = false;
+    bool _agreed = false;       // on a delay above Target
+    double _carried = 0.0;      // bytes a second
+    Duration _reportedAt{0};    // the last report
+    Duration _limitedSince{0};  //
+    Duration _quietSince{0};    // no delay above the goal since
+};
+
+}  // namespace Rabit

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace Rabit
+{
+
+// What the peers have said of how late datagrams of this node came, and what they agree on. One late
+// datagram, one peer that is busy itself, or one that lies, is no agreement: of what the peers say the lower
+// median counts.
+//
+// Bounded: the 64 peers heard last, 8 reports of each. Pure; `now` never goes back.
+class DelayReports
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+    using Peer = std::uint32_t;
+
+    static constexpr std::size_t MostPeers = 64;
+    static constexpr std::size_t MostReports = 8;
+    static constexpr Duration Fresh = std::chrono::seconds(5);
+    static constexpr Duration LongEnough = std::chrono::milliseconds(600);
+
+    struct Report
+    {
+        Duration CameAt{0};     // here
+        Duration ArrivedAt{0};  // when the datagram that it is about arrived there
+        Duration Delay{0};      // of that datagram
+
+        Duration SentAt() const { return ArrivedAt - Delay; }
+    };
+
+    // Reports of one peer, the newest last.
+    using Reports = std::vector<Report>;
+
+    void Add(Peer peer, Duration delay, Duration arrivedAt, Duration now);
+
+    // By the newest reports of those who have said something lately; empty: nobody.
+    std::optional<Duration> Latest(Duration now) const;
+    // Whether the peers agree that datagrams come later than that: more than half of them by their last two
+    // reports (of four peers and more by their last one, of one peer by its last three), or one of them by
+    // three reports over LongEnough that no report of another about something as new contradicts.
+    bool Agree(Duration later, Duration now) const;
+    // The lower median of f(reports), empty answers left out, of those who have said something lately.
+    template <typename Function>
+    auto MedianOf(const Function &f, Duration now) const -> decltype(f(std::declval<const Reports &>()));
+    // The reports of one peer, the newest last; nullptr: none.
+    const Reports *Of(Peer peer) const;
+
+private:
+    struct Entry
+    {
+        Peer Who = 0;
+        Reports Said;
+    };
+
+    static bool IsFresh(const Entry &entry, Duration now);
+    static Reports::const_iterator FirstLate(const Reports &said, Duration later);
+    bool IsContradicted(const Entry &entry, const Report &first, Duration later, Duration now) const;
+
+    std::vector<Entry> _peers;
+};
+
+template <typename Function>
+auto DelayReports::MedianOf(const Function &f, Duration now) const
+    -> decltype(f(std::declval<const Reports &>()))
+{
+    std::vector<typename decltype(f(std::declval<const Reports &>()))::value_type> values;
+    for (const Entry &entry : _peers)
+    {
+        if (IsFresh(entry, now))
+        {
+            if (const auto value = f(entry.Said))
+            {
+                values.push_back(*value);
+            }
+        }
+    }
+    if (values.empty())
+    {
+        return std::nullopt;
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace Rabit

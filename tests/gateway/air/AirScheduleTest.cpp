@@ -1,0 +1,445 @@
+#include "air/AirSchedule.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <vector>
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Duration = AirSchedule::Duration;
+
+// Streams that always have a datagram, and what each has sent.
+class AirScheduleTest : public ::testing::Test
+{
+protected:
+    StreamId Add(TrafficClass traffic, std::size_t bytes, double weight = 1.0)
+    {
+        const StreamId id = Schedule.AddStream(traffic, weight);
+        _bytes[id.Index] = bytes;
+        Schedule.Ready(id, bytes);
+        return id;
+    }
+
+    // Without a limit: so many datagrams.
+    void SendMany(int datagrams)
+    {
+        for (int i = 0; i < datagrams; ++i)
+        {
+            const auto next = Schedule.Next(0ns);
+            ASSERT_TRUE(next);
+            Send(*next, 0ns);
+        }
+    }
+
+    void Send(StreamId id, Duration now)
+    {
+        Schedule.Sent(id, _bytes.at(id.Index), now);
+        Schedule.Ready(id, _bytes.at(id.Index));
+    }
+
+    // With a limit: from one time to another.
+    void SendUntil(Duration from, Duration to)
+    {
+        for (Duration now = from; now < to; now = std::max(Schedule.NextDue(now), now + 1ns))
+        {
+            while (const auto next = Schedule.Next(now))
+            {
+                Send(*next, now);
+            }
+        }
+    }
+
+    double Share(StreamId id, StreamId other) const
+    {
+        return static_cast<double>(Schedule.SentBytes(id)) / static_cast<double>(Schedule.SentBytes(other));
+    }
+
+    AirSchedule Schedule{1428};
+
+private:
+    std::map<std::uint32_t, std::size_t> _bytes;
+};
+
+TEST_F(AirScheduleTest, WhoHasNothingIsNotAsked)
+{
+    EXPECT_FALSE(Schedule.Next(0ns));
+    EXPECT_EQ(Schedule.NextDue(0ns), AirSchedule::Never);
+    const StreamId id = Add(TrafficClass::State, 100);
+    EXPECT_EQ(Schedule.Next(0ns), id);
+    EXPECT_EQ(Schedule.NextDue(5ns), 5ns);
+    Schedule.NotReady(id);
+    EXPECT_FALSE(Schedule.Next(0ns));
+    Schedule.Ready(id, 100);
+    Schedule.Remove(id);
+    EXPECT_FALSE(Schedule.Next(0ns));
+}
+
+TEST_F(AirScheduleTest, WhoHasSentIsAskedAgainOnlyWhenItIsReady)
+{
+    const StreamId id = Add(TrafficClass::State, 100);
+    Schedule.Sent(id, 100, 0ns);
+    EXPECT_FALSE(Schedule.Next(0ns));
+    Schedule.Ready(id, 100);
+    EXPECT_EQ(Schedule.Next(0ns), id);
+    EXPECT_EQ(Schedule.SentBytes(id), 100u);
+    EXPECT_EQ(Schedule.SentBytes(TrafficClass::State), 100u);
+    EXPECT_EQ(Schedule.SentBytes(TrafficClass::Command), 0u);
+}
+
+TEST_F(AirScheduleTest, TheAnswerStaysUntilSomethingChanges)
+{
+    Add(TrafficClass::State, 100);
+    Add(TrafficClass::Bulk, 100);
+    Add(TrafficClass::Bulk, 100);
+    for (int i = 0; i < 100; ++i)
+    {
+        const auto next = Schedule.Next(0ns);
+        EXPECT_EQ(Schedule.Next(0ns), next);
+        EXPECT_EQ(Schedule.NextDue(0ns), 0ns);
+        Send(*next, 0ns);
+    }
+}
+
+TEST_F(AirScheduleTest, AStreamThatIsNotThereIsAProgrammingError)
+{
+    const StreamId id = Schedule.AddStream(TrafficClass::State);
+    Schedule.Remove(id);
+    EXPECT_THROW(Schedule.Ready(id, 1), std::out_of_range);
+    const StreamId other = Schedule.AddStream(TrafficClass::State);
+    EXPECT_NE(other, id);
+    EXPECT_THROW(Schedule.Sent(id, 1, 0ns), std::out_of_range);
+    EXPECT_THROW(Schedule.AddStream(TrafficClass::State, 0.0), std::invalid_argument);
+    EXPECT_THROW(Schedule.AddStream(TrafficClass::State, 101.0), std::invalid_argument);
+}
+
+TEST_F(AirScheduleTest, ClassesShareByTheirQuanta)
+{
+    const StreamId command = Add(TrafficClass::Command, 160);
+    const StreamId state = Add(TrafficClass::State, 300);
+    const StreamId telemetry = Add(TrafficClass::Telemetry, 190);
+    const StreamId bulk = Add(TrafficClass::Bulk, 1400);
+    SendMany(100'000);
+    EXPECT_NEAR(Share(command, bulk), 16.0, 0.1);
+    EXPECT_NEAR(Share(state, bulk), 4.0, 0.05);
+    EXPECT_NEAR(Share(telemetry, bulk), 1.5, 0.05);
+}
+
+TEST_F(AirScheduleTest, TheShareOfWhoHasNothingIsThatOfTheOthers)
+{
+    const StreamId telemetry = Add(TrafficClass::Telemetry, 190);
+    const StreamId bulk = Add(TrafficClass::Bulk, 1400);
+    SendMany(10'000);
+    EXPECT_NEAR(Share(telemetry, bulk), 1.5, 0.05);
+    Schedule.NotReady(telemetry);
+    const auto before = Schedule.SentBytes(bulk);
+    SendMany(100);
+    EXPECT_EQ(Schedule.SentBytes(bulk), before + 140'000);
+}
+
+TEST_F(AirScheduleTest, ACommandGoesNextHoweverMuchWaits)
+{
+    for (int i = 0; i < 100; ++i)
+    {
+        Add(TrafficClass::State, 300);
+        Add(TrafficClass::Telemetry, 200);
+        Add(TrafficClass::Bulk, 1400);
+    }
+    const StreamId command = Schedule.AddStream(TrafficClass::Command);
+    for (int i = 0; i < 100; ++i)
+    {
+        SendMany(30);
+        Schedule.Ready(command, 160);
+        EXPECT_EQ(Schedule.Next(0ns), command);
+        Schedule.Sent(command, 160, 0ns);
+    }
+}
+
+TEST_F(AirScheduleTest, AClassThatComesAndGoesHasNoMoreThanItsShare)
+{
+    const StreamId command = Schedule.AddStream(TrafficClass::Command);
+    const StreamId bulk = Add(TrafficClass::Bulk, 400);
+    // A command is ready whenever one has been sent, and not ready in between.
+    for (int i = 0; i < 100'000; ++i)
+    {
+        Schedule.Ready(command, 160);
+        const auto next = Schedule.Next(0ns);
+        Schedule.Sent(*next, *next == bulk ? 400 : 160, 0ns);
+        Schedule.NotReady(command);
+        Schedule.Ready(bulk, 400);
+    }
+    EXPECT_NEAR(Share(command, bulk), 16.0, 0.2);
+}
+
+TEST_F(AirScheduleTest, PresenceGoesFirst)
+{
+    Add(TrafficClass::Command, 100);
+    const StreamId presence = Schedule.AddStream(TrafficClass::Presence);
+    for (int i = 0; i < 100; ++i)
+    {
+        SendMany(10);
+        Schedule.Ready(presence, 100);
+        EXPECT_EQ(Schedule.Next(0ns), presence);
+        Schedule.Sent(presence, 100, 0ns);
+    }
+}
+
+TEST_F(AirScheduleTest, PresenceOfAThousandNamesHasAQuarter)
+{
+    Schedule.SetBudget(5000, 0ns);
+    std::vector<StreamId> presence;
+    for (int i = 0; i < 1000; ++i)
+    {
+        presence.push_back(Add(TrafficClass::Presence, 120));
+    }
+    Add(TrafficClass::Command, 160);
+    Add(TrafficClass::Bulk, 400);
+    SendUntil(0s, 100s);
+    const auto all = static_cast<double>(Schedule.SentBytes(TrafficClass::Presence) +
+                                         Schedule.SentBytes(TrafficClass::Command) +
+                                         Schedule.SentBytes(TrafficClass::Bulk));
+    EXPECT_NEAR(static_cast<double>(Schedule.SentBytes(TrafficClass::Presence)) / all, 0.25, 0.01);
+    EXPECT_GE(all, 0.85 * 100 * 5000);
+}
+
+TEST_F(AirScheduleTest, PresenceThatIsAloneIsFreeAndGoesFirstAfterwards)
+{
+    Schedule.SetBudget(5000, 0ns);
+    const StreamId presence = Add(TrafficClass::Presence, 120);
+    SendUntil(0s, 20s);
+    EXPECT_GE(Schedule.SentBytes(presence), 80'000u);
+    Add(TrafficClass::Command, 160);
+    EXPECT_EQ(Schedule.Next(25s), presence);
+}
+
+TEST_F(AirScheduleTest, StreamsOfAClassShareByWeight)
+{
+    const StreamId one = Add(TrafficClass::Telemetry, 100);
+    const StreamId three = Add(TrafficClass::Telemetry, 700, 3.0);
+    const StreamId half = Add(TrafficClass::Telemetry, 1400, 0.5);
+    SendMany(20'000);
+    EXPECT_NEAR(Share(three, one), 3.0, 0.02);
+    EXPECT_NEAR(Share(half, one), 0.5, 0.02);
+}
+
+TEST_F(AirScheduleTest, AThousandStreamsOfOneWeightTakeTurns)
+{
+    std::vector<StreamId> streams;
+    for (int i = 0; i < 1000; ++i)
+    {
+        streams.push_back(Add(TrafficClass::Telemetry, 190));
+    }
+    SendMany(10'000);
+    for (const StreamId id : streams)
+    {
+        EXPECT_EQ(Schedule.SentBytes(id), 1900u);
+    }
+}
+
+TEST_F(AirScheduleTest, WhoHadNothingForLongHasNoRightToMore)
+{
+    const StreamId often = Add(TrafficClass::State, 100);
+    const StreamId seldom = Schedule.AddStream(TrafficClass::State);
+    SendMany(1000);
+    const auto before = Schedule.SentBytes(often);
+    for (int i = 0; i < 100; ++i)
+    {
+        Schedule.Ready(seldom, 100);
+        const auto next = Schedule.Next(0ns);
+        Schedule.Sent(*next, 100, 0ns);
+        Schedule.Ready(*next, 100);
+    }
+    EXPECT_NEAR(static_cast<double>(Schedule.SentBytes(often) - before), 5000.0, 100.0);
+}
+
+TEST_F(AirScheduleTest, AStreamMayBeRemovedFromTheMiddle)
+{
+    std::vector<StreamId> streams;
+    for (int i = 0; i < 100; ++i)
+    {
+        streams.push_back(Add(TrafficClass::Telemetry, static_cast<std::size_t>(100 + i * 7 % 50)));
+    }
+    SendMany(500);
+    for (std::size_t i = 0; i < streams.size(); i += 3)
+    {
+        Schedule.Remove(streams[i]);
+    }
+    const auto before = Schedule.SentBytes(streams[1]);
+    SendMany(6700);
+    for (std::size_t i = 0; i < streams.size(); ++i)
+    {
+        if (i % 3 != 0)
+        {
+            EXPECT_NEAR(static_cast<double>(Schedule.SentBytes(streams[i])),
+                        static_cast<double>(Schedule.SentBytes(streams[1])), 300.0);
+        }
+    }
+    EXPECT_GT(Schedule.SentBytes(streams[1]), before + 10'000);
+}
+
+TEST_F(AirScheduleTest, WithABudgetTheNextOneIsDueWhenTheLastHasHadItsTime)
+{
+    Schedule.SetBudget(1500, 0ns);
+    const StreamId bulk = Add(TrafficClass::Bulk, 300);
+    EXPECT_EQ(Schedule.Next(10s), bulk);
+    Send(bulk, 10s);
+    EXPECT_FALSE(Schedule.Next(10s));
+    const Duration due = Schedule.NextDue(10s);
+    EXPECT_NEAR(std::chrono::duration<double>(due).count(), 10.2, 0.02);
+    EXPECT_FALSE(Schedule.Next(due - 2ms));
+    EXPECT_EQ(Schedule.Next(due), bulk);
+}
+
+TEST_F(AirScheduleTest, ADriverIsNotWokenMoreOftenThanOnceAMillisecond)
+{
+    Schedule.SetPace(10e6, 0ns);
+    const StreamId bulk = Add(TrafficClass::Bulk, 1400);
+    int wakes = 0;
+    for (Duration now = 1s; now < 2s; now = Schedule.NextDue(now))
+    {
+        ++wakes;
+        while (Schedule.Next(now))
+        {
+            Send(bulk, now);
+        }
+    }
+    EXPECT_LE(wakes, 1000);
+    EXPECT_NEAR(static_cast<double>(Schedule.SentBytes(bulk)), 10e6, 0.15e6);
+}
+
+TEST_F(AirScheduleTest, AClassThatHadNothingForLongHasNoMoreThanARound)
+{
+    const StreamId command = Schedule.AddStream(TrafficClass::Command);
+    const StreamId bulk = Add(TrafficClass::Bulk, 400);
+    SendMany(1000);
+    const auto before = Schedule.SentBytes(bulk);
+    for (int i = 0; i < 100; ++i)
+    {
+        Schedule.Ready(command, 160);
+        const auto next = Schedule.Next(0ns);
+        Schedule.Sent(*next, *next == bulk ? 400 : 160, 0ns);
+        Schedule.Ready(bulk, 400);
+    }
+    EXPECT_GE(Schedule.SentBytes(bulk), before + 800);
+}
+
+TEST_F(AirScheduleTest, ACommandWithoutCreditPassesWhatDoesNotFitYet)
+{
+    const StreamId state = Add(TrafficClass::State, 1200);
+    const StreamId command = Schedule.AddStream(TrafficClass::Command);
+    const StreamId telemetry = Schedule.AddStream(TrafficClass::Telemetry);
+    Schedule.Sent(command, 1700, 0ns);
+    Schedule.SetBudget(1500, 1s);
+    Schedule.Sent(telemetry, 400, 10s);
+    Schedule.Ready(command, 160);
+    EXPECT_EQ(Schedule.Next(10400ms), command);
+    Schedule.NotReady(command);
+    EXPECT_FALSE(Schedule.Next(10400ms));
+    EXPECT_EQ(Schedule.Next(11100ms), state);
+}
+
+TEST_F(AirScheduleTest, ACommandPassesWhatDoesNotFitYet)
+{
+    Schedule.SetBudget(1500, 0ns);
+    const StreamId state = Add(TrafficClass::State, 1200);
+    const StreamId command = Schedule.AddStream(TrafficClass::Command);
+    Send(state, 10s);
+    EXPECT_FALSE(Schedule.Next(10900ms));
+    Schedule.Ready(command, 160);
+    EXPECT_EQ(Schedule.Next(10900ms), command);
+}
+
+TEST_F(AirScheduleTest, WhatIsLargeIsNotPassedForEver)
+{
+    Schedule.SetBudget(1500, 0ns);
+    const StreamId state = Add(TrafficClass::State, 1300);
+    Add(TrafficClass::Command, 160);
+    SendUntil(0s, 60s);
+    EXPECT_GE(Schedule.SentBytes(state), 4u * 1300);
+}
+
+TEST_F(AirScheduleTest, NextDueIsWhenNextAnswers)
+{
+    Schedule.SetBudget(2500, 0ns);
+    Schedule.Reserve(200);
+    Add(TrafficClass::Presence, 120);
+    Add(TrafficClass::Command, 160);
+    Add(TrafficClass::State, 900);
+    Add(TrafficClass::Bulk, 600);
+    Duration now = 0s;
+    for (int i = 0; i < 2000; ++i)
+    {
+        while (const auto next = Schedule.Next(now))
+        {
+            Send(*next, now);
+        }
+        const Duration due = Schedule.NextDue(now);
+        ASSERT_GT(due, now);
+        ASSERT_TRUE(Schedule.Next(due) || Schedule.NextDue(due) > due);
+        now = due;
+    }
+    EXPECT_GE(now, 100s);
+}
+
+TEST_F(AirScheduleTest, WithTenTimesTheBudgetOfferedACommandWaitsForOneDatagramAndItsShare)
+{
+    constexpr double Rate = 5000.0;
+    Schedule.SetBudget(Rate, 0ns);
+    for (int i = 0; i < 20; ++i)
+    {
+        Add(TrafficClass::Telemetry, 190);
+        Add(TrafficClass::State, 400);
+        Add(TrafficClass::Bulk, Schedule.Budget().LargestDatagram());
+    }
+    const StreamId beat = Schedule.AddStream(TrafficClass::Presence);
+    const StreamId command = Schedule.AddStream(TrafficClass::Command);
+    std::vector<Duration> waits;
+    Duration ready = Duration::max();
+    Duration readyAt = 1s;
+    for (Duration now = 0s; now < 300s; now += 1ms)
+    {
+        if (now % 500ms == 0ns)
+        {
+            Schedule.Ready(beat, 120);
+        }
+        if (now >= readyAt && ready == Duration::max())
+        {
+            ready = now;
+            readyAt = now + 137ms + now % 211ms;
+            Schedule.Ready(command, 160);
+        }
+        while (const auto next = Schedule.Next(now))
+        {
+            if (*next == beat)
+            {
+                Schedule.Sent(beat, 120, now);
+            }
+            else if (*next == command)
+            {
+                Schedule.Sent(command, 160, now);
+                waits.push_back(now - ready);
+                ready = Duration::max();
+            }
+            else
+            {
+                Send(*next, now);
+            }
+        }
+    }
+    std::sort(waits.begin(), waits.end());
+    ASSERT_GT(waits.size(), 800u);
+    // A beat under way, and what the largest datagram takes.
+    const auto datagram =
+        std::chrono::duration<double>(static_cast<double>(Schedule.Budget().LargestDatagram()) / Rate);
+    EXPECT_LE(waits[waits.size() * 99 / 100], 2 * datagram);
+    EXPECT_LE(waits[waits.size() / 2], datagram);
+}
+
+}  // namespace
+}  // namespace Rabit

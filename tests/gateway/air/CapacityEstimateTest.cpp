@@ -1,0 +1,251 @@
+#include "air/CapacityEstimate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Duration = CapacityEstimate::Duration;
+
+double Seconds(Duration time)
+{
+    return std::chrono::duration<double>(time).count();
+}
+
+// A node that offers so much, in front of a buffer of 16 kB that carries so much; two peers report twice a
+// second.
+class CapacityEstimateTest : public ::testing::Test
+{
+protected:
+    double Offered = 100e3;  // bytes a second
+    double Carries = 10e3;
+    std::function<bool(Duration)> Reports = [](Duration) { return true; };
+
+    void RunUntil(Duration end)
+    {
+        for (; _now < end; _now += 10ms)
+        {
+            const double rate = std::min(Offered, Estimate.Rate(_now).value_or(1e12));
+            _owed += rate * 0.01;
+            const auto bytes = static_cast<std::size_t>(_owed);
+            _owed -= static_cast<double>(bytes);
+            if (bytes > 0)
+            {
+                Estimate.Sent(bytes, _now);
+            }
+            Backlog = std::min(Backlog + static_cast<double>(bytes), 16384.0);
+            Carried += std::min(Backlog, Carries * 0.01);
+            Backlog = std::max(Backlog - Carries * 0.01, 0.0);
+            // The delay of what arrives now: how long ago was it sent, when that much was in front of it.
+            _delay = Backlog > 0.0 ? std::min(_delay + 10ms, Duration(std::llround(Backlog / Carries * 1e9)))
+                                   : 0ns;
+            for (CapacityEstimate::Peer peer = 0; peer < 2; ++peer)
+            {
+                if (_now % 500ms == peer * 250ms && Reports(_now))
+                {
+                    Estimate.Reported(peer, _delay, _now, _now);
+                }
+            }
+            LongestQueue = std::max(LongestQueue, Backlog / Carries);
+        }
+    }
+
+    double Rate() const { return Estimate.Rate(_now).value_or(-1.0); }
+
+    CapacityEstimate Estimate;
+    double Backlog = 0.0;
+    double Carried = 0.0;
+    double LongestQueue = 0.0;  // seconds
+
+private:
+    Duration _now{0};
+    Duration _delay{0};
+    double _owed = 0.0;
+};
+
+TEST_F(CapacityEstimateTest, IsUnlimitedWithoutReportsHoweverMuchIsSent)
+{
+    Reports = [](Duration) { return false; };
+    RunUntil(60s);
+    EXPECT_FALSE(Estimate.Rate(60s));
+}
+
+TEST_F(CapacityEstimateTest, IsUnlimitedWhileNothingIsLate)
+{
+    Carries = 1e6;
+    RunUntil(60s);
+    EXPECT_FALSE(Estimate.Rate(60s));
+}
+
+TEST_F(CapacityEstimateTest, OneLateDatagramIsNoCongestion)
+{
+    Carries = 1e6;
+    RunUntil(10s);
+    Estimate.Reported(0, 800ms, 10s, 10s);
+    Estimate.Reported(1, 750ms, 10s, 10s);
+    EXPECT_FALSE(Estimate.Rate(10s));
+    RunUntil(20s);
+    EXPECT_FALSE(Estimate.Rate(20s));
+}
+
+TEST_F(CapacityEstimateTest, WhatRisesIsLimitedToWhatWasCarried)
+{
+    Offered = 30e3;
+    Duration now = 0ns;
+    while (!Estimate.Rate(now) && now < 10s)
+    {
+        now += 10ms;
+        RunUntil(now);
+    }
+    double highest = 0.0;
+    for (const Duration end = now + 10s; now < end; now += 10ms)
+    {
+        RunUntil(now);
+        highest = std::max(highest, Rate());
+    }
+    EXPECT_GE(highest, 0.5 * Carries);
+    EXPECT_LE(highest, 1.6 * Carries);
+}
+
+TEST_F(CapacityEstimateTest, FindsWhatTheRadioCarriesAndKeepsTheQueueShort)
+{
+    RunUntil(30s);
+    const double before = Carried;
+    LongestQueue = 0.0;
+    RunUntil(90s);
+    EXPECT_GE(Carried - before, 0.9 * 60 * Carries);
+    EXPECT_LE(LongestQueue, 0.3);
+}
+
+TEST_F(CapacityEstimateTest, FallsWhileTheDelayIsAboveTheGoalAndRisesBelow)
+{
+    RunUntil(30s);
+    const double before = Rate();
+    Estimate.Reported(0, 200ms, 30s, 30s);
+    Estimate.Reported(1, 200ms, 30s, 30s);
+    const double late = Rate();
+    EXPECT_LT(late, 0.8 * before);
+    Estimate.Reported(0, 0ms, 30001ms, 30001ms);
+    Estimate.Reported(1, 0ms, 30001ms, 30001ms);
+    EXPECT_GT(Rate(), late);
+}
+
+TEST_F(CapacityEstimateTest, ALongQueueIsEmptiedBeforeMoreThanTheFloorIsSent)
+{
+    RunUntil(30s);
+    for (int i = 0; i < 3; ++i)
+    {
+        Estimate.Reported(0, 1500ms, 30s + i * 1ms, 30s + i * 1ms);
+        Estimate.Reported(1, 1500ms, 30s + i * 1ms, 30s + i * 1ms);
+    }
+    EXPECT_EQ(Estimate.Rate(30002ms), CapacityEstimate::Floor);
+    EXPECT_EQ(Estimate.Rate(31000ms), CapacityEstimate::Floor);
+    EXPECT_GT(Estimate.Rate(31900ms), CapacityEstimate::Floor);
+}
+
+TEST_F(CapacityEstimateTest, FollowsARadioThatFallsToATenth)
+{
+    Carries = 60e3;
+    RunUntil(40s);
+    Carries = 6e3;
+    RunUntil(47s);
+    LongestQueue = 0.0;
+    const double before = Carried;
+    RunUntil(80s);
+    EXPECT_LE(LongestQueue, 0.4);
+    EXPECT_GE(Carried - before, 0.7 * 33 * Carries);
+}
+
+TEST_F(CapacityEstimateTest, RisesGentlyAndAfterAQuietTimeQuickly)
+{
+    RunUntil(40s);
+    const double before = Rate();
+    Carries = 1e6;
+    RunUntil(42s);
+    const double gently = Rate();
+    EXPECT_LE(gently, 1.35 * before);
+    RunUntil(50s);
+    EXPECT_GE(Rate(), 4.0 * before);
+}
+
+TEST_F(CapacityEstimateTest, ARateThatIsNotUsedDoesNotRise)
+{
+    RunUntil(40s);
+    Offered = 6000.0;
+    RunUntil(42s);
+    const double before = Rate();
+    RunUntil(55s);
+    EXPECT_LE(Rate(), 1.1 * before);
+}
+
+TEST_F(CapacityEstimateTest, IsUnlimitedAgainWhenItWasNotUsedForLong)
+{
+    RunUntil(40s);
+    Offered = 2000.0;
+    RunUntil(55s);
+    EXPECT_TRUE(Estimate.Rate(55s));
+    RunUntil(65s);
+    EXPECT_FALSE(Estimate.Rate(65s));
+}
+
+TEST_F(CapacityEstimateTest, ALimitThatIsUsedStays)
+{
+    RunUntil(300s);
+    EXPECT_TRUE(Estimate.Rate(300s));
+}
+
+TEST_F(CapacityEstimateTest, NeverGoesBelowTheFloor)
+{
+    Carries = 50.0;
+    RunUntil(120s);
+    EXPECT_GE(Rate(), CapacityEstimate::Floor);
+}
+
+TEST_F(CapacityEstimateTest, FallsCautiouslyWithoutReportsAndNotBelowHalf)
+{
+    RunUntil(40s);
+    const double before = Rate();
+    Reports = [](Duration) { return false; };
+    RunUntil(43s);
+    EXPECT_GE(Rate(), 0.9 * before);
+    RunUntil(47s);
+    EXPECT_LE(Rate(), 0.8 * before);
+    RunUntil(300s);
+    EXPECT_GE(Rate(), 0.45 * before);
+    EXPECT_LE(Rate(), 0.6 * before);
+}
+
+TEST_F(CapacityEstimateTest, HoldsWithAFifthOfTheReportsLost)
+{
+    int count = 0;
+    Reports = [&count](Duration) { return ++count % 5 != 0; };
+    RunUntil(30s);
+    const double before = Carried;
+    LongestQueue = 0.0;
+    RunUntil(90s);
+    EXPECT_GE(Carried - before, 0.85 * 60 * Carries);
+    EXPECT_LE(LongestQueue, 0.35);
+}
+
+TEST_F(CapacityEstimateTest, TheQueueIsWhatWasSentSinceAReportAndNotCarried)
+{
+    RunUntil(40s);
+    Estimate.Reported(0, 100ms, 40s, 40s);
+    Estimate.Reported(1, 100ms, 40s, 40s);
+    const double carried = 10e3;
+    const double before = Seconds(Estimate.Queue(40s));
+    EXPECT_NEAR(Seconds(Estimate.Queue(40050ms)), std::max(before - 0.05, 0.0), 0.001);
+    Estimate.Sent(1000, 40050ms);
+    Estimate.Sent(1, 40060ms);
+    EXPECT_NEAR(Seconds(Estimate.Queue(40060ms)), before - 0.06 + 1000 / carried, 0.04);
+}
+
+}  // namespace
+}  // namespace Rabit
