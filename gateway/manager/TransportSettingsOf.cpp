@@ -22,7 +22,7 @@ TransportSettings TransportSettingsOf(const GatewayConfig &config, std::uint64_t
     settings.SharedMemory = config.SharedMemory;
     settings.Lease = config.Lease;
     settings.AnnouncementPeriod =
-        std::min<std::chrono::milliseconds>(std::chrono::seconds(1), config.Lease / 3);
+        std::min(TransportSettings().AnnouncementPeriod, config.Lease / 3);
     settings.BackendConfig = config.BackendConfig;
     settings.Log = [](const std::string &line)
     { RabitLog::Write(RabitLogLevel::Warning, "transport: " + line); };

@@ -34,6 +34,7 @@ GatewayConfig FleetNode::MakeConfig() const
     const MachinePlan &plan = _world.Plan.Machines[_index];
     GatewayConfig config;
     config.Node = plan.Name;
+    config.Lease = _world.Plan.Lease;
     config.StateDir = plan.KeepsCounter ? _stateDirectory.string() : "";
     config.Publish.push_back({.Message = "Track", .Type = "Rabit::Sim::Track", .Qos = QosProfile::Telemetry});
     config.Publish.push_back({.Message = "Mode", .Type = "Rabit::Sim::Mode"});

@@ -109,6 +109,7 @@ FleetPlan::FleetPlan(std::uint64_t seed)
 {
     SimRandom random(seed * 0x2545f4914f6cdd1dULL + 7);
     IncarnationsMayFall = random.Chance(0.5);
+    Lease = random.Chance(0.5) ? GatewayConfig().Lease : std::chrono::milliseconds(3000);
     const double size = random.Unit();
     const std::size_t count = size < 0.5   ? 2
                               : size < 0.8 ? 3

@@ -81,6 +81,8 @@ struct FleetPlan
     // Whether a life may begin with a lower incarnation than the one before: storage is lost or there is
     // none, and the wall clocks step.
     bool IncarnationsMayFall = false;
+    // Of all nodes: the usual one, or one that most cuts outlast.
+    std::chrono::milliseconds Lease{};
 
     explicit FleetPlan(std::uint64_t seed);
 };

@@ -34,6 +34,7 @@ public:
     bool Stops(const Bytes &datagram) { return !Admit(datagram) && Handed.empty(); }
 
     void Sending(const Bytes &datagram) { _guard.Sending(datagram); }
+    bool TakeReplyDue() { return _guard.TakeReplyDue(); }
 
     std::vector<Bytes> Handed;
     RtpsGuard::TimePoint Now{1h};
@@ -55,6 +56,28 @@ protected:
 
     Gate Guard;
 };
+
+TEST_F(RtpsGuardTest, WhoAnnouncesItselfAgainBeforeItHasSaidAnythingToUsIsAnswered)
+{
+    Guard.Sending(Join({Header(Other), Submessage(Data, DataBody(1), 5)}));
+    EXPECT_FALSE(Guard.TakeReplyDue());
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage()));
+    EXPECT_TRUE(Guard.TakeReplyDue());
+    EXPECT_FALSE(Guard.TakeReplyDue());
+    // To somebody else.
+    Guard.Now += 1s;
+    const GuidPrefix third = {1, 15, 9};
+    Guard.Admit(Join({Header(), Submessage(InfoDestination, Bytes(third.begin(), third.end())),
+                      Submessage(Data, DataBody(11), 5)}));
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage()));
+    EXPECT_TRUE(Guard.TakeReplyDue());
+    // To us.
+    Guard.Now += 1s;
+    Guard.Admit(Join({Header(), Submessage(InfoDestination, Bytes(Other.begin(), Other.end())),
+                      Submessage(Data, DataBody(12), 5)}));
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage()));
+    EXPECT_FALSE(Guard.TakeReplyDue());
+}
 
 TEST_F(RtpsGuardTest, OtherProtocolsAreStopped)
 {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "common/HostNetworks.h"
+#include "common/MulticastUse.h"
 #include "common/PeerAddress.h"
 
 namespace Rabit::Cyclone
@@ -101,9 +102,11 @@ std::string MakeDomainConfig(const TransportSettings &settings)
     {
         AddInterfaces(settings, xml);
     }
-    // Multicast finds peers; samples go to each reader, because radios send multicast slowly and without
-    // repair.
-    xml << "<AllowMulticast>" << (settings.Multicast ? "spdp" : "false") << "</AllowMulticast>"
+    xml << "<AllowMulticast>"
+        << (IsMulticastForData(settings) ? "true"
+            : settings.Multicast         ? "spdp"
+                                         : "false")
+        << "</AllowMulticast>"
         << "<DontRoute>" << (IsRoutingNeeded(settings) ? "false" : "true") << "</DontRoute>"
         << "<MaxMessageSize>" << settings.MaxDatagram << "B</MaxMessageSize>"
         << "<FragmentSize>" << settings.MaxDatagram - HeaderRoom

@@ -1,7 +1,8 @@
-// UDP as the vendor does it, with three differences: datagrams of up to 64 kB are received whatever size we
+// UDP as the vendor does it, with four differences: datagrams of up to 64 kB are received whatever size we
 // send, so that nodes with different settings understand each other; what the vendor's parser must not see is
-// kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h); and
-// the vendor's statistics are not sent.
+// kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h);
+// multicast groups that peers name are not sent to where multicast may not pass; and the vendor's statistics
+// are not sent.
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -19,19 +20,29 @@ namespace Rabit::FastDds
 class GuardedUdpDescriptor final : public eprosima::fastdds::rtps::ChainingTransportDescriptor
 {
 public:
-    // Sends datagrams of at most `maxDatagram` bytes; calls `onDropped`, on the receiving thread, for each
-    // one of which it keeps something back that an honest peer does not send.
+    struct Settings
+    {
+        std::uint32_t MaxDatagram = 0;  // bytes; larger ones are not sent
+        RtpsGuard::Mode Mode = RtpsGuard::Mode::Full;
+        // Multicast groups of peers are sent to at this port only; 0: at all.
+        std::uint32_t GroupPort = 0;
+        // Called, on the receiving thread, for each datagram of which something is kept back that an honest
+        // peer does not send.
+        std::function<void()> OnDropped;
+        // Called, on the receiving thread, when the participant is to announce itself to somebody who has not
+        // heard it.
+        std::function<void()> Announce;
+    };
+
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,
-                         std::uint32_t maxDatagram, RtpsGuard::Mode mode, std::function<void()> onDropped);
+                         Settings settings);
 
     eprosima::fastdds::rtps::TransportInterface *create_transport() const override;
     std::uint32_t max_message_size() const override { return maxMessageSize; }
-    RtpsGuard::Mode Mode() const { return _mode; }
-    const std::function<void()> &OnDropped() const { return _onDropped; }
+    const Settings &Chosen() const { return _settings; }
 
 private:
-    const RtpsGuard::Mode _mode;
-    const std::function<void()> _onDropped;
+    const Settings _settings;
 };
 
 }  // namespace Rabit::FastDds

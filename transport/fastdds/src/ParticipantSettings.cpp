@@ -11,8 +11,10 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "GuardedUdp.h"
+#include "common/MulticastUse.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerAddress.h"
 #include "common/SettingsCheck.h"
@@ -33,8 +35,8 @@ namespace
 constexpr std::uint32_t SocketBuffer = 4u << 20;
 // A peer without a port is looked for at the ports of this many participants of its host.
 constexpr std::uint32_t ParticipantsPerPeer = 16;
-// RTPS 2.3, 9.6.1.4.1
-constexpr const char *DiscoveryMulticastAddress = "239.255.0.1";
+// OMG DDSI-RTPS 2.3, 9.6.1.4.1: the group of discovery, and by default of samples.
+constexpr const char *MulticastAddress = "239.255.0.1";
 
 eprosima::fastrtps::Duration_t ToDuration(std::chrono::milliseconds time)
 {
@@ -61,6 +63,12 @@ rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
     return profile.rtps;
 }
 
+std::uint32_t DiscoveryGroupPort(const TransportSettings &settings,
+                                 const rtps::RTPSParticipantAttributes &attributes)
+{
+    return attributes.port.getMulticastPort(static_cast<std::uint32_t>(settings.Domain));
+}
+
 RtpsGuard::Mode GuardMode(const TransportSettings &settings,
                           const rtps::RTPSParticipantAttributes &attributes)
 {
@@ -83,7 +91,7 @@ void LimitPeers(rtps::RTPSParticipantAttributes &attributes)
 }
 
 void AddTransports(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                   rtps::RTPSParticipantAttributes &attributes)
+                   std::function<void()> announce, rtps::RTPSParticipantAttributes &attributes)
 {
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = SocketBuffer;
@@ -94,19 +102,42 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     udp->interfaceWhiteList = settings.Interfaces;
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
-    attributes.userTransports.push_back(std::make_shared<GuardedUdpDescriptor>(
-        udp, static_cast<std::uint32_t>(settings.MaxDatagram), GuardMode(settings, attributes),
-        [log] { log->MalformedDatagram(); }));
+    GuardedUdpDescriptor::Settings guarded;
+    guarded.MaxDatagram = static_cast<std::uint32_t>(settings.MaxDatagram);
+    guarded.Mode = GuardMode(settings, attributes);
+    guarded.GroupPort = IsMulticastForData(settings) ? 0 : DiscoveryGroupPort(settings, attributes);
+    guarded.OnDropped = [log] { log->MalformedDatagram(); };
+    guarded.Announce = std::move(announce);
+    attributes.userTransports.push_back(std::make_shared<GuardedUdpDescriptor>(udp, std::move(guarded)));
     if (settings.SharedMemory)
     {
         attributes.userTransports.push_back(std::make_shared<SharedMemTransportDescriptor>());
     }
 }
 
+// Where both sides have multicast, one datagram carries a sample to all of its readers, and discovery to all
+// participants. Where peers are listed it may not pass, and each one gets his own.
+void AddMulticast(const TransportSettings &settings, rtps::RTPSParticipantAttributes &attributes)
+{
+    attributes.builtin.avoid_builtin_multicast = !IsMulticastForData(settings);
+    if (!IsMulticastForData(settings))
+    {
+        return;
+    }
+    const rtps::PortParameters &ports = attributes.port;
+    rtps::Locator_t group;
+    rtps::IPLocator::setIPv4(group, MulticastAddress);
+    group.port =
+        ports.portBase + ports.domainIDGain * static_cast<std::uint32_t>(settings.Domain) + ports.offsetd2;
+    attributes.defaultMulticastLocatorList.push_back(group);
+    // With a list of one kind the vendor makes none of the other. Any address: its own ones, at the usual
+    // port.
+    attributes.defaultUnicastLocatorList.push_back(rtps::Locator_t());
+}
+
 void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes &attributes)
 {
     auto &builtin = attributes.builtin;
-    builtin.avoid_builtin_multicast = true;
     if (!settings.Multicast)
     {
         // An own unicast locator, of any address and the well-known port, keeps the vendor from adding the
@@ -131,8 +162,8 @@ void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes
         // A list of peers replaces the default one, which is the multicast group. Its port is given, because
         // without it the vendor would take the group for a host and send to the ports of its participants.
         rtps::Locator_t group;
-        rtps::IPLocator::setIPv4(group, DiscoveryMulticastAddress);
-        group.port = attributes.port.getMulticastPort(static_cast<std::uint32_t>(settings.Domain));
+        rtps::IPLocator::setIPv4(group, MulticastAddress);
+        group.port = DiscoveryGroupPort(settings, attributes);
         builtin.initialPeersList.push_back(group);
     }
 }
@@ -140,7 +171,8 @@ void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes
 }  // namespace
 
 rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings,
-                                                          const std::shared_ptr<SessionLog> &log)
+                                                          const std::shared_ptr<SessionLog> &log,
+                                                          std::function<void()> announce)
 {
     CheckSettings(settings);
     rtps::RTPSParticipantAttributes attributes;
@@ -151,17 +183,20 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     attributes.setName(settings.Node.c_str());
     const std::string userData = MakeUserData(settings.Incarnation);
     attributes.userData.assign(userData.begin(), userData.end());
+    // Nobody here is asked whether single writers live: participants have leases, and nodes beat.
+    attributes.builtin.use_WriterLivelinessProtocol = false;
     auto &discovery = attributes.builtin.discovery_config;
     discovery.leaseDuration = ToDuration(settings.Lease);
     discovery.leaseDuration_announcementperiod = ToDuration(settings.AnnouncementPeriod);
     discovery.initial_announcements.count = 5;
     discovery.initial_announcements.period =
-        ToDuration(std::min(std::chrono::milliseconds(100), settings.AnnouncementPeriod));
+        ToDuration(std::min(std::chrono::milliseconds(250), settings.AnnouncementPeriod));
     LimitPeers(attributes);
     if (attributes.userTransports.empty())
     {
-        AddTransports(settings, log, attributes);
+        AddTransports(settings, log, std::move(announce), attributes);
     }
+    AddMulticast(settings, attributes);
     AddPeers(settings, attributes);
     return attributes;
 }

@@ -4,6 +4,7 @@
 #include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
 #include <rabit/transport/Transport.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -13,9 +14,12 @@ namespace Rabit::FastDds
 {
 
 // Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws
-// TransportError for settings that cannot be honoured. The log hears of datagrams that are dropped.
+// TransportError for settings that cannot be honoured. The log hears of datagrams that are dropped;
+// `announce` is called on threads of the network, as soon as there is a participant, when it is to announce
+// itself once more.
 eprosima::fastrtps::rtps::RTPSParticipantAttributes MakeParticipantAttributes(
-    const TransportSettings &settings, const std::shared_ptr<SessionLog> &log);
+    const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
+    std::function<void()> announce);
 
 // Whether a profiles file, if there is one, defines transports. Throws TransportError if it is not accepted.
 bool HasOwnTransports(const std::string &profilesFile);

@@ -137,6 +137,10 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
                 return Verdict::Drop;
             }
             std::copy_n(submessage.Body().begin(), passage.Destination.size(), passage.Destination.begin());
+            if (passage.Destination == _own)
+            {
+                _replies.OnAddressed(passage.Sender);
+            }
             return Verdict::Pass;
         case SubmessageKind::Data:
         case SubmessageKind::DataFrag:
@@ -205,6 +209,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     }
     if (delivery.HasKeyPayload || delivery.Payload.empty())
     {
+        if (delivery.Writer == ParticipantWriter)
+        {
+            _replies.OnGone(passage.Sender);
+        }
         return Verdict::Pass;
     }
     const auto announcement =
@@ -217,6 +225,11 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         !_peers.Announced(passage.Sender, announcement->Digest, passage.Now))
     {
         return Verdict::Refuse;
+    }
+    if (delivery.Alive && delivery.Writer == ParticipantWriter && passage.Sender != _own &&
+        _replies.OnAnnouncement(passage.Sender, passage.Now))
+    {
+        _replyDue = true;
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&
@@ -304,6 +317,10 @@ void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)
 {
     const std::lock_guard lock(_mutex);
     _sent.Sent(datagram);
+    if (HasRtpsHeader(datagram))
+    {
+        _own = SenderOf(datagram);
+    }
 }
 
 }  // namespace Rabit::FastDds

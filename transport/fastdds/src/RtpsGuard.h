@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "AcknowledgementTranslator.h"
+#include "AnnouncementReplies.h"
 #include "DeliveryCheck.h"
 #include "DiscoveryFragments.h"
 #include "KnownPeers.h"
@@ -50,6 +52,9 @@ public:
 
     // Takes note of what we send.
     void Sending(std::span<const std::uint8_t> datagram);
+
+    // Whether somebody of whom a datagram was admitted waits for our announcement. Says so once.
+    bool TakeReplyDue() { return _replyDue.exchange(false); }
 
 private:
     enum class Verdict
@@ -92,6 +97,9 @@ private:
     SentFragments _sent;                          // guarded by _mutex
     DiscoveryFragments _fragments;                // guarded by _mutex
     AcknowledgementTranslator _acknowledgements;  // guarded by _mutex
+    AnnouncementReplies _replies;                 // guarded by _mutex
+    GuidPrefix _own{};                            // once we have sent; guarded by _mutex
+    std::atomic<bool> _replyDue{false};
 };
 
 }  // namespace Rabit::FastDds

@@ -46,9 +46,10 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
     : _log(std::make_shared<SessionLog>(settings)),
       _topics(_log),
       _peerGate(_log, "peer events"),
+      _announceGate(_log, "announcements"),
       _onPeer(std::move(onPeer))
 {
-    auto attributes = MakeParticipantAttributes(settings, _log);
+    auto attributes = MakeParticipantAttributes(settings, _log, [this] { Announce(); });
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
@@ -60,7 +61,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
         throw TransportError("Fast DDS cannot join domain " + std::to_string(settings.Domain) +
                              ": no free port, or no usable network interface");
     }
-    _participant->enable();
+    _participant.load()->enable();
 }
 
 SessionCore::~SessionCore()
@@ -72,12 +73,13 @@ SessionCore::~SessionCore()
 void SessionCore::Close()
 {
     _closed = true;
+    _announceGate.Close();
     _peerGate.Close();
 }
 
 bool SessionCore::IsOwn(const GuidPrefix &prefix) const
 {
-    return prefix == _participant->getGuid().guidPrefix;
+    return prefix == _participant.load()->getGuid().guidPrefix;
 }
 
 std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const GuidPrefix &prefix) const
@@ -120,6 +122,18 @@ void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/
             PeerGone(info.info.m_guid.guidPrefix, PeerEvent::Kind::Lost);
             break;
     }
+}
+
+void SessionCore::Announce()
+{
+    _announceGate.Run(
+        [this]
+        {
+            if (rtps::RTPSParticipant *const participant = _participant; participant != nullptr)
+            {
+                participant->announceRTPSParticipantState();
+            }
+        });
 }
 
 void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)

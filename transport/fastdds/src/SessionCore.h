@@ -58,12 +58,15 @@ private:
                            eprosima::fastrtps::rtps::WriterDiscoveryInfo &&info) override;
     // The name, or "" where IdentityOf gives nullptr.
     std::string NodeOf(const GuidPrefix &prefix) const;
+    // On a thread of the network, before and while the participant lives.
+    void Announce();
     void PeerAppeared(const eprosima::fastrtps::rtps::ParticipantProxyData &peer);
     void PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how);
 
     const std::shared_ptr<SessionLog> _log;
     TopicRegistry _topics;
     HandlerGate _peerGate;
+    HandlerGate _announceGate;
     const PeerHandler _onPeer;
     std::atomic<bool> _closed{false};
     mutable std::mutex _mutex;
@@ -72,7 +75,7 @@ private:
     std::map<GuidPrefix, PeerPlace> _places;  // of those; guarded by _mutex
     std::deque<GuidPrefix> _departed;         // the last that said goodbye; guarded by _mutex
     const ParticipantNumber _number;
-    eprosima::fastrtps::rtps::RTPSParticipant *_participant = nullptr;
+    std::atomic<eprosima::fastrtps::rtps::RTPSParticipant *> _participant = nullptr;
 };
 
 }  // namespace Rabit::FastDds

@@ -80,7 +80,7 @@ struct GatewayConfig
     bool Multicast = true;
     std::size_t MaxDatagram = 1400;
     bool SharedMemory = false;
-    std::chrono::milliseconds Lease{3000};
+    std::chrono::milliseconds Lease{30000};
     std::string BackendConfig;
 
     // Folder of the incarnation counter; empty: none, the wall clock numbers the lives of this node.

@@ -86,7 +86,8 @@ struct TransportSettings
     // Addresses of peers for unicast discovery, `host` or `host:port`; empty: discovery by multicast alone. A host
     // may be a name; one that has no address yet is looked up again and again.
     std::vector<std::string> Peers;
-    // Whether multicast may be used for discovery and data.
+    // Whether multicast may be used, for discovery and for samples with more than one reader. Where Peers are listed
+    // it is for discovery alone: it may not pass to all of them.
     bool Multicast = true;
     // The range of MaxDatagram.
     static constexpr std::size_t SmallestDatagram = 1000;
@@ -97,9 +98,12 @@ struct TransportSettings
     std::size_t MaxDatagram = 1400;
     // Use shared memory between processes of one host. Off by default: a killed process leaves files behind.
     bool SharedMemory = false;
-    // A peer that says nothing for this long is lost; it announces itself every AnnouncementPeriod.
-    std::chrono::milliseconds Lease{3000};
-    std::chrono::milliseconds AnnouncementPeriod{1000};
+    // A peer that says nothing for this long is lost; it announces itself every AnnouncementPeriod, more often at
+    // first, and to who has not heard it. The period is how long those who were out of reach of each other for longer
+    // than the lease may take to find each other again, and what a node costs that has nothing to say: some 400 bytes
+    // each time.
+    std::chrono::milliseconds Lease{30000};
+    std::chrono::milliseconds AnnouncementPeriod{10000};
     // A vendor's own configuration file, for the expert; empty: none.
     std::string BackendConfig;
     // Takes the session's log lines (handlers that threw, writes that failed, types that differ ...), without

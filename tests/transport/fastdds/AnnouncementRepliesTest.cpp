@@ -1,0 +1,91 @@
+// Who announces itself and has not heard us is answered again.
+#include "AnnouncementReplies.h"
+
+#include <gtest/gtest.h>
+
+#include "RtpsBytes.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using namespace std::chrono_literals;
+using Rabit::FastDds::AnnouncementReplies;
+
+class AnnouncementRepliesTest : public testing::Test
+{
+protected:
+    AnnouncementReplies Replies;
+    AnnouncementReplies::TimePoint Now{1h};
+};
+
+TEST_F(AnnouncementRepliesTest, TheFirstAnnouncementIsAnsweredByTheVendor)
+{
+    EXPECT_FALSE(Replies.OnAnnouncement(Sender, Now));
+}
+
+TEST_F(AnnouncementRepliesTest, WhoGoesOnAnnouncingAndSaysNothingToUsIsAnswered)
+{
+    Replies.OnAnnouncement(Sender, Now);
+    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 250ms));
+    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 500ms));
+}
+
+TEST_F(AnnouncementRepliesTest, WhoSaysSomethingToUsHasHeardUs)
+{
+    Replies.OnAnnouncement(Sender, Now);
+    Replies.OnAddressed(Sender);
+    EXPECT_FALSE(Replies.OnAnnouncement(Sender, Now + 10s));
+}
+
+TEST_F(AnnouncementRepliesTest, OneAnnouncementAnswersAllWhoWait)
+{
+    Replies.OnAnnouncement(Sender, Now);
+    Replies.OnAnnouncement(Other, Now);
+    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 250ms));
+    EXPECT_FALSE(Replies.OnAnnouncement(Other, Now + 349ms));
+    EXPECT_TRUE(Replies.OnAnnouncement(Other, Now + 350ms));
+}
+
+TEST_F(AnnouncementRepliesTest, WhoHasNothingToSayIsNotAnsweredForEver)
+{
+    Replies.OnAnnouncement(Sender, Now);
+    int replies = 0;
+    for (int i = 1; i < 100; ++i)
+    {
+        replies += Replies.OnAnnouncement(Sender, Now + i * 1s) ? 1 : 0;
+    }
+    EXPECT_EQ(replies, AnnouncementReplies::MostForOne);
+}
+
+TEST_F(AnnouncementRepliesTest, WhoWasSilentForLongMayHaveForgottenUs)
+{
+    Replies.OnAnnouncement(Sender, Now);
+    Replies.OnAddressed(Sender);
+    EXPECT_FALSE(Replies.OnAnnouncement(Sender, Now + 14999ms));
+    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 29999ms));
+}
+
+TEST_F(AnnouncementRepliesTest, WhoWasGoneIsNew)
+{
+    Replies.OnAnnouncement(Sender, Now);
+    Replies.OnAddressed(Sender);
+    Replies.OnGone(Sender);
+    EXPECT_FALSE(Replies.OnAnnouncement(Sender, Now + 1s));
+    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 2s));
+}
+
+TEST_F(AnnouncementRepliesTest, StrangersWithoutEndDoNotFillTheMemory)
+{
+    Rabit::FastDds::GuidPrefix stranger = Other;
+    for (std::size_t i = 0; i < AnnouncementReplies::MostPeers; ++i)
+    {
+        stranger[0] = static_cast<std::uint8_t>(i);
+        stranger[1] = static_cast<std::uint8_t>(i >> 8);
+        Replies.OnAnnouncement(stranger, Now);
+    }
+    Replies.OnAnnouncement(Sender, Now);
+    EXPECT_FALSE(Replies.OnAnnouncement(Sender, Now + 1s));
+}
+
+}  // namespace
