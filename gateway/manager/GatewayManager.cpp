@@ -69,7 +69,7 @@ public:
               },
               random),
           _remote(config.Node),
-          _links(_config, _workspace, _incarnations, _senders, random(), manager.WakeUpHandler()),
+          _links(_config, _workspace, _incarnations, random(), manager.WakeUpHandler()),
           _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links)),
           _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),

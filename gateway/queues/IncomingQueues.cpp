@@ -7,7 +7,8 @@ namespace Rabit
 {
 
 IncomingQueues::IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorkspace &workspace,
-                               const std::function<void()> &wake)
+                               const std::function<void()> &wake, std::size_t quicklyDecoded)
+    : _quicklyDecoded(quicklyDecoded)
 {
     for (const AcceptRule &rule : rules)
     {
@@ -15,46 +16,20 @@ IncomingQueues::IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorksp
     }
 }
 
-void IncomingQueues::Decode(const LinkData &data, DecodedMessages &messages) const
+IncomingQueues::Decoded IncomingQueues::Decode(const Undecoded &message) const
 {
-    const auto queue = _accepted.find(data.Queue);
-    if (queue == _accepted.end())
+    Decoded decoded{.Source = message.Source, .Queue = message.Queue, .Size = message.Size, .What = {}};
+    const auto queue = _accepted.find(message.Queue);
+    if (queue != _accepted.end())
     {
-        return;
+        decoded.What = queue->second.Decode(message.Type, message.Owner->View().first(message.Size));
     }
-    for (const LinkItem &item : data.Items)
-    {
-        if ((item.Flags & LinkFlagSkip) == 0)
-        {
-            messages.push_back({item.Payload.data(), queue->second.Decode(item.Type, item.Payload)});
-        }
-    }
-}
-
-void IncomingQueues::Offer(std::span<const Decoded> messages)
-{
-    _offered = messages;
-}
-
-// The links consume messages in the order of the datagram, and may leave out some.
-AcceptedQueue::Decoded IncomingQueues::TakeOffered(const AcceptedQueue &queue, std::string_view type,
-                                                   std::span<const std::uint8_t> payload)
-{
-    while (!_offered.empty())
-    {
-        const Decoded &next = _offered.front();
-        _offered = _offered.subspan(1);
-        if (next.Payload == payload.data())
-        {
-            return next.What;
-        }
-    }
-    return queue.Decode(type, payload);
+    return decoded;
 }
 
 LocalQueueResult IncomingQueues::Deliver(std::string_view source, std::string_view queue,
                                          std::string_view type, std::span<const std::uint8_t> payload,
-                                         bool redelivered)
+                                         const LinkPayload &owner, bool redelivered)
 {
     const auto found = _accepted.find(queue);
     if (found == _accepted.end() || !found->second.AcceptsFrom(source))
@@ -62,7 +37,22 @@ LocalQueueResult IncomingQueues::Deliver(std::string_view source, std::string_vi
         return LocalQueueResult::Unknown;
     }
     AcceptedQueue &accepted = found->second;
-    const LocalQueueResult result = accepted.Deliver(TakeOffered(accepted, type, payload), redelivered);
+    LocalQueueResult result = LocalQueueResult::Full;
+    if (_offered != nullptr && _offered->Source == source && _offered->Queue == queue &&
+        _offered->Size == payload.size())
+    {
+        result = accepted.Deliver(std::exchange(_offered, nullptr)->What, redelivered);
+    }
+    else if (payload.size() <= _quicklyDecoded)
+    {
+        result = accepted.Deliver(accepted.Decode(type, payload), redelivered);
+    }
+    else if (accepted.Room() > 0)
+    {
+        _undecoded.push_back({std::string(source), std::string(queue), std::string(type),
+                              owner ? owner : LinkBytes::CopyOf(payload), payload.size()});
+        return LocalQueueResult::Later;
+    }
     if (result == LocalQueueResult::Ok &&
         std::find(_delivered.begin(), _delivered.end(), accepted.Local()) == _delivered.end())
     {

@@ -22,8 +22,9 @@ namespace Rabit
 
 // The local queues into which other nodes may put messages, as the receivers of the links see them.
 //
-// Large messages are decoded before the links are locked, since one of megabytes would hold up everybody else
-// for as long as that takes: Decode makes them, Offer has Deliver take them from there.
+// Large messages are decoded while the links are not locked, since one of megabytes would hold up everybody
+// else for as long as that takes: Deliver puts them off (LocalQueueResult::Later), TakeUndecoded gives them
+// out, Decode makes messages of them, and Offer has Deliver take these when the links ask again.
 //
 // Threads: Decode on any; the rest under the lock of who drives the links.
 class IncomingQueues final : public LocalQueues
@@ -31,22 +32,35 @@ class IncomingQueues final : public LocalQueues
 public:
     using Queue = AcceptedQueue::Queue;
 
-    // A message of a datagram, found again by where its payload lies.
+    // A payload up to this size is decoded while the links are locked: a few microseconds, and less than it
+    // costs to put it off.
+    static constexpr std::size_t QuicklyDecoded = 4096;
+
+    // A message that was put off.
+    struct Undecoded
+    {
+        std::string Source, Queue, Type;
+        LinkPayload Owner;
+        std::size_t Size = 0;  // the first bytes of Owner are the payload
+    };
     struct Decoded
     {
-        const std::uint8_t *Payload = nullptr;
+        std::string_view Source, Queue;  // of the Undecoded
+        std::size_t Size = 0;
         AcceptedQueue::Decoded What;
     };
-    using DecodedMessages = std::vector<Decoded>;
 
     // `wake` is called when there is room in a queue that had none: on the thread of who took a message.
     IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorkspace &workspace,
-                   const std::function<void()> &wake);
+                   const std::function<void()> &wake, std::size_t quicklyDecoded = QuicklyDecoded);
 
-    // Appends the datagram's messages. Those for a queue that is not accepted are left out.
-    void Decode(const LinkData &data, DecodedMessages &messages) const;
-    // What Deliver is called for until Offer({}) is among these. In the order of the datagram.
-    void Offer(std::span<const Decoded> messages);
+    // Makes a message of what was put off, or says why there is none. Any thread.
+    Decoded Decode(const Undecoded &message) const;
+    // What Deliver may take in place of decoding, until Offer(nullptr).
+    void Offer(const Decoded *message) { _offered = message; }
+    // What was put off since the last call; into the empty list.
+    void TakeUndecoded(std::vector<Undecoded> &messages) { messages.swap(_undecoded); }
+    bool AnyUndecoded() const { return !_undecoded.empty(); }
 
     // Looks all queues up, and calls `changed` with the name of each that has come, gone, or has room again.
     void Find(const std::function<void(const std::string &queue)> &changed);
@@ -57,18 +71,18 @@ public:
 
     // LocalQueues
     LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                             std::span<const std::uint8_t> payload, bool redelivered) override;
+                             std::span<const std::uint8_t> payload, const LinkPayload &owner,
+                             bool redelivered) override;
     std::size_t Room(std::string_view queue) const override;
 
     // What keeps messages from being delivered, by queue.
     std::vector<Gateway::Problem> Problems() const;
 
 private:
-    AcceptedQueue::Decoded TakeOffered(const AcceptedQueue &queue, std::string_view type,
-                                       std::span<const std::uint8_t> payload);
-
+    const std::size_t _quicklyDecoded;
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;  // the names: unchanged after construction
-    std::span<const Decoded> _offered;
+    const Decoded *_offered = nullptr;
+    std::vector<Undecoded> _undecoded;
     std::vector<std::shared_ptr<Queue>> _delivered;
 };
 

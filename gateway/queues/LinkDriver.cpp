@@ -1,33 +1,32 @@
 #include "queues/LinkDriver.h"
 
+#include <rabit/gateway/links/LinkFrameCodec.h>
+
 #include <algorithm>
 
 #include "clocks/GpsTime.h"
 #include "names/NamePattern.h"
 #include "queues/LinkStatus.h"
 #include "queues/SendOptions.h"
-#include "wire/GatewayTopics.h"
-#include "wire/LinkDataCodec.h"
-#include "wire/LinkWire.h"
+#include "wire/LinkSampleCodec.h"
+#include "wire/LinkTopics.h"
 
 namespace Rabit
 {
 namespace
 {
 
-// What the encapsulation and RTPS headers take of a datagram.
-constexpr std::size_t DatagramOverhead = 100;
-// A datagram up to this size is decoded while the links are locked: a few microseconds, and less than it
-// costs to keep what was decoded before.
-constexpr std::size_t QuicklyDecoded = 4096;
+// What a datagram has beside a frame of the links: RTPS headers 72, encapsulation and length 8, and up to 3
+// bytes of padding.
+constexpr std::size_t DatagramOverhead = 83;
 
 LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
 {
     LinkSettings settings;
     settings.Node = config.Node;
     settings.Clock = std::max<std::uint64_t>(clockName, 1);  // 0 is no name
-    settings.MaxDatagram =
-        config.MaxDatagram > 2 * DatagramOverhead ? config.MaxDatagram - DatagramOverhead : DatagramOverhead;
+    settings.MaxDatagram = std::max(config.MaxDatagram, 3 * DatagramOverhead) - DatagramOverhead;
+    settings.LargestMessage = LargestSample;
     return settings;
 }
 
@@ -47,41 +46,13 @@ QueueOutcome OutcomeOf(LinkOutcome outcome)
     return QueueOutcome::InDoubt;
 }
 
-// Who sends the datagram: an acknowledgement goes back to the source of the messages.
-std::string_view SenderOf(const LinkData &data)
-{
-    return data.Source;
-}
-std::string_view SenderOf(const LinkAck &ack)
-{
-    return ack.Destination;
-}
-std::string_view SenderOf(const LinkHello &hello)
-{
-    return hello.Source;
-}
-
-// Whether the sender's name and a queue that may be new are such as a configuration can have: the answer goes
-// to the partition that is called like the sender, and `*` is everybody's. The links compare the other names
-// with those that they know.
-template <typename View>
-bool HasNames(const View &view)
-{
-    return IsNodeName(SenderOf(view));
-}
-bool HasNames(const LinkData &data)
-{
-    return IsNodeName(data.Source) && IsMessageName(data.Queue);
-}
-
 }  // namespace
 
 LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
-                       SenderCheck &senders, std::uint64_t clockName, std::function<void()> wake)
+                       std::uint64_t clockName, std::function<void()> wake)
     : _config(config),
       _workspace(workspace),
       _incarnations(incarnations),
-      _senders(senders),
       _wake(std::move(wake)),
       _incoming(config.Accept, workspace, _wake),
       _links(std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
@@ -104,27 +75,19 @@ std::uint64_t LinkDriver::Incarnation() const
 void LinkDriver::Open(TransportSession &session)
 {
     _writers = std::make_unique<LinkWriters>(session);
-    const std::vector<std::string> own = {_config.Node};
-    const auto open =
-        [this, &session, &own](LinkTopic topic, void (LinkDriver::*input)(SampleBytes, const SampleInfo &))
-    {
-        _readers.push_back(session.CreateReader(DescribeLinkTopic(topic), LinkTopicQos(topic), own,
-                                                [this, input](SampleBytes bytes, const SampleInfo &info)
-                                                {
-                                                    if (info.Alive)
-                                                    {
-                                                        (this->*input)(bytes, info);
-                                                    }
-                                                }));
-    };
-    open(LinkTopic::Data, &LinkDriver::OnData);
-    open(LinkTopic::Ack, &LinkDriver::OnSample<Gateway::LinkAckSample, LinkAck, &LinkNode::OnAck>);
-    open(LinkTopic::Hello, &LinkDriver::OnSample<Gateway::LinkHelloSample, LinkHello, &LinkNode::OnHello>);
+    _reader = session.CreateReader(DescribeLinkTopic(), LinkTopicQos(), {_config.Node},
+                                   [this](SampleBytes bytes, const SampleInfo &info)
+                                   {
+                                       if (info.Alive)
+                                       {
+                                           OnFrame(bytes, info);
+                                       }
+                                   });
 }
 
 void LinkDriver::Close()
 {
-    _readers.clear();
+    _reader.reset();
     _writers.reset();
     News news;
     {
@@ -135,76 +98,71 @@ void LinkDriver::Close()
     Tell(news);
 }
 
-// Views and news are one for each thread of the transport, so that steady traffic allocates nothing for names
-// and lists.
-
-void LinkDriver::OnData(SampleBytes bytes, const SampleInfo &info)
+// Frame and news are one for each thread of the transport, so that steady traffic allocates nothing for names
+// and lists. The sender is who wrote the sample, as DDS says: a node cannot speak in another's name. A name
+// that no configuration can have is nobody's: the answer goes to the partition of that name, and `*` is
+// everybody's.
+void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
 {
-    static thread_local LinkData view;
-    static thread_local IncomingQueues::DecodedMessages messages;
-    if (!LinkDataCodec::Decode(bytes, view))
+    static thread_local LinkFrame frame;
+    std::span<const std::uint8_t> encoded;
+    if (!IsNodeName(info.Node) || !OpenLinkSample(bytes, encoded) || encoded.empty())
     {
         ++_malformed;
         return;
     }
-    if (IsFromItsSender(view, info))
+    if (encoded[0] != LinkVersion)
     {
-        if (bytes.size() > QuicklyDecoded)
-        {
-            _incoming.Decode(view, messages);
-        }
-        TakeIn<LinkData, &LinkNode::OnData>(view, messages);
+        const std::lock_guard lock(_mutex);
+        _versions.Heard(info.Node, encoded[0], Now());
+        return;
     }
-    messages.clear();
-    view.Items.clear();  // they point to bytes that are only borrowed
-}
-
-template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-void LinkDriver::OnSample(SampleBytes bytes, const SampleInfo &info)
-{
-    static thread_local Sample sample;
-    static thread_local View view;
-    if (!GatewayTopics::TypeOf<Sample>().Deserialize(bytes, sample))
+    if (!LinkFrameCodec::Decode(encoded, frame) ||
+        (frame.HasData && !frame.Data.Queue.empty() && !IsMessageName(frame.Data.Queue)))
     {
         ++_malformed;
         return;
     }
-    LinkWire::FromSample(sample, view);
-    if (IsFromItsSender(view, info))
-    {
-        TakeIn<View, Input>(view);
-    }
-}
-
-template <typename View>
-bool LinkDriver::IsFromItsSender(const View &view, const SampleInfo &info)
-{
-    if (!HasNames(view))
-    {
-        ++_malformed;
-        return false;
-    }
-    return _senders.MaySpeakFor(info.Node, SenderOf(view), Now());
-}
-
-template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-void LinkDriver::TakeIn(const View &view, std::span<const IncomingQueues::Decoded> messages)
-{
+    frame.Source = info.Node;
     News &news = OwnNews();
     bool sooner = false;
     {
         const std::lock_guard lock(_mutex);
-        _incoming.Offer(messages);
-        (_links.get()->*Input)(view, Now());
-        _incoming.Offer({});
+        _links->OnFrame(frame, Now());
         sooner = ServeBy(_outbox.IsEmpty() ? _links->NextDue() : LinkTime(0));
         TakeNews(news);
     }
     Tell(news);
+    DecodeLarge(news);
     news.Clear();
     if (sooner)
     {
         _wake();
+    }
+    frame.Data.Items.clear();  // they point to bytes that are only borrowed
+}
+
+void LinkDriver::DecodeLarge(News &news)
+{
+    while (!news.Large.empty())
+    {
+        const std::vector<IncomingQueues::Undecoded> large = std::exchange(news.Large, {});
+        news.Clear();
+        for (const IncomingQueues::Undecoded &message : large)
+        {
+            const IncomingQueues::Decoded decoded = _incoming.Decode(message);
+            const std::lock_guard lock(_mutex);
+            _incoming.Offer(&decoded);
+            _links->Retry(message.Source, message.Queue, Now());
+            _incoming.Offer(nullptr);
+            ServeBy(LinkTime(0));
+        }
+        {
+            const std::lock_guard lock(_mutex);
+            TakeNews(news);
+        }
+        _wake();
+        Tell(news);
     }
 }
 
@@ -224,6 +182,10 @@ void LinkDriver::TakeNews(News &news)
     if (!_settled.empty())
     {
         news.Settled.swap(_settled);
+    }
+    if (_incoming.AnyUndecoded())
+    {
+        _incoming.TakeUndecoded(news.Large);
     }
 }
 
@@ -262,6 +224,7 @@ LinkDriver::Duration LinkDriver::Service()
         TakeNews(news);
     }
     Tell(news);
+    DecodeLarge(news);
     news.Clear();
     // What is sent now may tell of a new life.
     _incarnations.Save();
@@ -341,24 +304,9 @@ bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, cons
     return enqueued.Accepted();
 }
 
-void LinkDriver::Send(const LinkData &data)
+void LinkDriver::Send(const LinkFrame &frame)
 {
-    _outbox.Add(data);
-}
-
-void LinkDriver::Send(const LinkAck &ack)
-{
-    static thread_local Gateway::LinkAckSample sample;
-    LinkWire::ToSample(ack, sample);
-    _outbox.Add(LinkTopic::Ack, ack.Source, GatewayTopics::TypeOf<Gateway::LinkAckSample>(), sample);
-}
-
-void LinkDriver::Send(const LinkHello &hello)
-{
-    static thread_local Gateway::LinkHelloSample sample;
-    LinkWire::ToSample(hello, sample);
-    _outbox.Add(LinkTopic::Hello, hello.Destination, GatewayTopics::TypeOf<Gateway::LinkHelloSample>(),
-                sample);
+    _outbox.Add(frame);
 }
 
 void LinkDriver::OnOutcome(std::uint64_t id, std::string_view /*destination*/, std::string_view /*queue*/,
@@ -390,6 +338,10 @@ std::vector<Gateway::Problem> LinkDriver::Problems() const
     const std::string storeError = _incarnations.Error();
     const std::lock_guard lock(_mutex);
     std::vector<Gateway::Problem> problems = _incoming.Problems();
+    for (Gateway::Problem &problem : _versions.Problems(Now()))
+    {
+        problems.push_back(std::move(problem));
+    }
     if (!storeError.empty())
     {
         Gateway::Problem problem;

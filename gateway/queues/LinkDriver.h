@@ -20,9 +20,9 @@
 
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
-#include "presence/SenderCheck.h"
 #include "queues/IncomingQueues.h"
 #include "queues/LinkDatagrams.h"
+#include "queues/LinkVersions.h"
 #include "queues/LinkWriters.h"
 
 namespace Rabit
@@ -45,7 +45,7 @@ public:
     // this node's monotonic clock from those of its other lives. `wake` makes the gateway's thread call
     // Service soon; called on any thread.
     LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
-               SenderCheck &senders, std::uint64_t clockName, std::function<void()> wake);
+               std::uint64_t clockName, std::function<void()> wake);
     ~LinkDriver();
 
     // The present life of this node.
@@ -82,9 +82,7 @@ public:
 
 private:
     // LinkOutput; called by LinkNode with the mutex held.
-    void Send(const LinkData &data) override;
-    void Send(const LinkAck &ack) override;
-    void Send(const LinkHello &hello) override;
+    void Send(const LinkFrame &frame) override;
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
 
@@ -93,11 +91,13 @@ private:
     {
         std::vector<std::shared_ptr<IncomingQueues::Queue>> Delivered;  // queues with new messages
         std::vector<std::pair<Receipt, QueueOutcome>> Settled;          // receipts with an outcome
+        std::vector<IncomingQueues::Undecoded> Large;                   // messages to be decoded first
 
         void Clear()
         {
             Delivered.clear();
             Settled.clear();
+            Large.clear();
         }
     };
 
@@ -112,21 +112,15 @@ private:
     // Without the mutex.
     static void Tell(const News &news);
 
-    // Handlers of the transport, and what they have in common.
-    void OnData(SampleBytes bytes, const SampleInfo &info);
-    template <typename Sample, typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-    void OnSample(SampleBytes bytes, const SampleInfo &info);
-    // Whether the names in it can be names, and it is from who wrote it. If not, it is counted.
-    template <typename View>
-    bool IsFromItsSender(const View &view, const SampleInfo &info);
-    template <typename View, void (LinkNode::*Input)(const View &, LinkTime)>
-    void TakeIn(const View &view, std::span<const IncomingQueues::Decoded> messages = {});
+    // Handler of the transport.
+    void OnFrame(SampleBytes bytes, const SampleInfo &info);
+    // Without the mutex: decodes large messages that came, and has the links deliver them.
+    void DecodeLarge(News &news);
     LinkTime Now() const { return _workspace.GetClock().Monotonic(); }
 
     const GatewayConfig &_config;
     RabitWorkspace &_workspace;
     IncarnationStore &_incarnations;
-    SenderCheck &_senders;
     const std::function<void()> _wake;
 
     mutable std::mutex _mutex;
@@ -137,11 +131,12 @@ private:
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
 
+    LinkVersions _versions;
     std::atomic<std::uint64_t> _malformed{0};
 
     LinkDatagrams _sending;  // gateway's thread only
     std::unique_ptr<LinkWriters> _writers;
-    std::vector<std::unique_ptr<TransportReader>> _readers;
+    std::unique_ptr<TransportReader> _reader;
 };
 
 }  // namespace Rabit

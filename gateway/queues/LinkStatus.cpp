@@ -20,7 +20,7 @@ std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links)
             row.undeliverable = counters.RefusedThere;
             row.refused_full =
                 counters.RefusedFullByCount + counters.RefusedFullByBytes + counters.RefusedTooLarge;
-            row.resent = counters.MessagesResent;
+            row.resent = counters.PartsResent;
         });
     return status;
 }

@@ -2,47 +2,23 @@
 
 #include <algorithm>
 
-#include "wire/LinkDataCodec.h"
-#include "wire/MessageEncoder.h"
+#include "wire/LinkSampleCodec.h"
+#include "wire/LinkTopics.h"
 
 namespace Rabit
 {
-namespace
-{
-
-// Lets the transport encode a LinkData straight into its own buffer.
-class LinkDataEncoder final : public SampleEncoder
-{
-public:
-    explicit LinkDataEncoder(const LinkData &data) : _data(data), _size(LinkDataCodec::EncodedSize(data)) {}
-
-    std::size_t EncodedSize() const override { return _size; }
-    bool Encode(std::span<std::uint8_t> buffer) const override
-    {
-        return LinkDataCodec::Encode(_data, buffer);
-    }
-
-private:
-    const LinkData &_data;
-    const std::size_t _size;
-};
-
-}  // namespace
 
 void LinkWriters::Write(const LinkDatagrams::Datagram &datagram, std::int64_t sourceTime)
 {
-    Entry &entry = _writers[{datagram.Topic, datagram.Destination}];
+    Entry &entry = _writers[datagram.Destination];
     entry.LastUse = ++_uses;
     std::unique_ptr<TransportWriter> &writer = entry.Writer;
     if (!writer)
     {
         MakeRoom();
-        writer = _session.CreateWriter(DescribeLinkTopic(datagram.Topic), LinkTopicQos(datagram.Topic),
-                                       {datagram.Destination});
+        writer = _session.CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {datagram.Destination});
     }
-    const WriteResult result = datagram.Topic == LinkTopic::Data
-                                   ? writer->Write(LinkDataEncoder(datagram.Data), sourceTime)
-                                   : writer->Write(BytesEncoder(datagram.Buffer.Bytes()), sourceTime);
+    const WriteResult result = writer->Write(LinkSampleEncoder(datagram.Frame), sourceTime);
     static_cast<void>(result);
 }
 
@@ -58,7 +34,7 @@ void LinkWriters::MakeRoom()
 
 void LinkWriters::Forget(const std::string &node)
 {
-    std::erase_if(_writers, [&node](const auto &writer) { return writer.first.second == node; });
+    _writers.erase(node);
 }
 
 }  // namespace Rabit

@@ -7,15 +7,13 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "queues/LinkDatagrams.h"
-#include "wire/LinkTopics.h"
 
 namespace Rabit
 {
 
-// The writers for links: one for each topic and destination, in the destination's partition, so that nobody
+// The writers for links: one for each destination, in the destination's partition, so that nobody
 // else receives what is not for him; made when first used. When there are very many, the one that was not
 // used for longest is given up; the links repair what it had not got through. Gateway's thread only.
 class LinkWriters
@@ -25,12 +23,12 @@ public:
 
     // A failure is the transport's to count; the links repair what is lost.
     void Write(const LinkDatagrams::Datagram &datagram, std::int64_t sourceTime);
-    // Gives up the writers for that node.
+    // Gives up the writer for that node.
     void Forget(const std::string &node);
 
 private:
-    // Three for each of the nodes that presence and links remember.
-    static constexpr std::size_t MostWriters = 3 * 1024;
+    // One for each of the nodes that presence and links remember.
+    static constexpr std::size_t MostWriters = 1024;
 
     struct Entry
     {
@@ -41,7 +39,7 @@ private:
     void MakeRoom();
 
     TransportSession &_session;
-    std::map<std::pair<LinkTopic, std::string>, Entry> _writers;
+    std::map<std::string, Entry> _writers;
     std::uint64_t _uses = 0;
 };
 

@@ -12,9 +12,7 @@ namespace Rabit::GatewayTopics
 // The topics that gateways use among themselves. Messages cannot take these names: they contain a slash.
 inline constexpr const char *Announcement = "rabit/Announcement";
 inline constexpr const char *Beat = "rabit/Beat";
-inline constexpr const char *LinkData = "rabit/LinkData";
-inline constexpr const char *LinkAck = "rabit/LinkAck";
-inline constexpr const char *LinkHello = "rabit/LinkHello";
+inline constexpr const char *Link = "rabit/Link";
 
 // The type of a message. Throws std::logic_error if it was not made from IDL.
 const MessageType &TypeOf(const RabitMessage &message);

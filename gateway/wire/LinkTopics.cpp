@@ -6,31 +6,20 @@
 namespace Rabit
 {
 
-TopicDescription DescribeLinkTopic(LinkTopic topic)
+TopicDescription DescribeLinkTopic()
 {
-    switch (topic)
-    {
-        case LinkTopic::Data:
-            return GatewayTopics::Describe(GatewayTopics::LinkData,
-                                           GatewayTopics::TypeOf<Gateway::LinkDataSample>());
-        case LinkTopic::Ack:
-            return GatewayTopics::Describe(GatewayTopics::LinkAck,
-                                           GatewayTopics::TypeOf<Gateway::LinkAckSample>());
-        case LinkTopic::Hello:
-            break;
-    }
-    return GatewayTopics::Describe(GatewayTopics::LinkHello,
-                                   GatewayTopics::TypeOf<Gateway::LinkHelloSample>());
+    return GatewayTopics::Describe(GatewayTopics::Link, GatewayTopics::TypeOf<Gateway::LinkSample>());
 }
 
-// The links do not rely on DDS's reliability, but its repair is the quicker one. A hello is soon followed by
-// the next.
-TopicQos LinkTopicQos(LinkTopic topic)
+// The links repair what is lost, one part at a time and at the pace of the path; DDS's repair in order would
+// hold up what follows, and its heartbeats and acknowledgements would be a multiple of the data on a thin
+// radio.
+TopicQos LinkTopicQos()
 {
     TopicQos qos;
-    qos.Reliability = topic == LinkTopic::Hello ? Reliability::BestEffort : Reliability::Reliable;
+    qos.Reliability = Reliability::BestEffort;
     qos.Durability = Durability::Volatile;
-    qos.Depth = topic == LinkTopic::Data ? 256 : topic == LinkTopic::Ack ? 16 : 1;
+    qos.Depth = 64;
     return qos;
 }
 

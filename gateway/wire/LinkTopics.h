@@ -5,16 +5,8 @@
 namespace Rabit
 {
 
-// The topics of the queue links.
-enum class LinkTopic
-{
-    Data,
-    Ack,
-    Hello
-};
-
-// The topic with its type, and its DDS settings.
-TopicDescription DescribeLinkTopic(LinkTopic topic);
-TopicQos LinkTopicQos(LinkTopic topic);
+// The topic of the queue links with its type, and its DDS settings.
+TopicDescription DescribeLinkTopic();
+TopicQos LinkTopicQos();
 
 }  // namespace Rabit

@@ -1,5 +1,7 @@
 // A node that has heard more names than it remembers.
 #include <gmock/gmock.h>
+#include <rabit/gateway/links/LinkCheck.h>
+#include <rabit/gateway/links/LinkFrameCodec.h>
 
 #include "MessageSample.h"
 #include "SimulatedFleet.h"
@@ -25,20 +27,21 @@ protected:
         qos.Reliability = Reliability::BestEffort;
         const auto beats = session->CreateWriter({"rabit/Beat", "Rabit::Gateway::Beat", {}}, qos, {});
         const auto hellos =
-            session->CreateWriter({"rabit/LinkHello", "Rabit::Gateway::LinkHelloSample", {}}, qos, {"uav1"});
+            session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {"uav1"});
         fleet.RunFor(20ms);
         Gateway::Beat beat;
         beat.node = settings.Node;
         beat.incarnation = settings.Incarnation;
         beat.monotonic_ns = beat.source_ns = beat.utc_ns = 1;
         beats->Write(MessageSample(beat), 1);
-        Gateway::LinkHelloSample hello;
-        hello.version = 2;
-        hello.source = settings.Node;
-        hello.destination = "uav1";
-        hello.incarnation = settings.Incarnation;
-        hello.clock = 1;
-        hellos->Write(MessageSample(hello), 1);
+        LinkFrame hello;
+        hello.Check = LinkCheck::OfName("uav1");
+        hello.SenderLife = settings.Incarnation;
+        hello.Clock = 1;
+        Gateway::LinkSample sample;
+        sample.frame.resize(LinkFrameCodec::EncodedSize(hello));
+        LinkFrameCodec::Encode(hello, sample.frame);
+        hellos->Write(MessageSample(sample), 1);
         fleet.RunFor(5ms);
     }
 

@@ -1,5 +1,7 @@
 // Samples of the gateways' topics in another node's name: whole nodes on the simulated network.
 #include <gmock/gmock.h>
+#include <rabit/gateway/links/LinkCheck.h>
+#include <rabit/gateway/links/LinkFrameCodec.h>
 
 #include "MessageSample.h"
 #include "SimulatedFleet.h"
@@ -76,29 +78,58 @@ TEST_F(ImpostorTest, AGoodbyeInAnothersNameIsNotBelieved)
     EXPECT_EQ(uav.StateOf("ground"), "UP");
 }
 
-TEST_F(ImpostorTest, AHelloInAnothersNameDropsNoSession)
+// Frames of the links name no sender: it is who DDS says wrote them.
+class StrangeLinkTest : public ::testing::Test
 {
-    Gateway::LinkHelloSample hello;
-    hello.version = 2;
-    hello.source = "ground";
-    hello.destination = "uav1";
-    hello.incarnation = ground.Fleet().incarnation + (1ULL << 32);
-    hello.your_incarnation = uav.Fleet().incarnation + (1ULL << 32);
-    hello.clock = 1;
-    Write("rabit/LinkHello", hello, "uav1", Reliability::BestEffort);
-    EXPECT_THAT(uav.Problems(), HasSubstr(Complaint));
-}
+protected:
+    StrangeLinkTest() : uav(fleet.Add(AircraftConfig("uav1"))) { fleet.RunFor(2s); }
 
-TEST_F(ImpostorTest, ADatagramFromEverybodyIsAnsweredToNobody)
+    void Write(const std::string &node, const std::vector<std::uint8_t> &frame)
+    {
+        TransportSettings settings;
+        settings.Node = node;
+        settings.Incarnation = 7;
+        const auto session = SimulatedTransport(fleet.Network).Open(settings, [](const PeerEvent &) {});
+        TopicQos qos;
+        qos.Reliability = Reliability::BestEffort;
+        const auto writer =
+            session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {"uav1"});
+        fleet.RunFor(1s);
+        Gateway::LinkSample sample;
+        sample.frame = frame;
+        EXPECT_EQ(writer->Write(MessageSample(sample), 0), WriteResult::Ok);
+        fleet.RunFor(1s);
+    }
+
+    SimulatedFleet fleet;
+    SimulatedNode &uav;
+};
+
+TEST_F(StrangeLinkTest, AFrameOfANodeWithAnImpossibleNameIsNotTakenIn)
 {
     const std::uint64_t before = uav.Fleet().malformed;
-    Gateway::LinkHelloSample hello;
-    hello.version = 2;
-    hello.source = "*";
-    hello.destination = "uav1";
-    hello.incarnation = 1ULL << 32;
-    hello.clock = 1;
-    Write("rabit/LinkHello", hello, "uav1", Reliability::BestEffort);
+    LinkFrame hello;
+    hello.Check = LinkCheck::OfName("uav1");
+    hello.SenderLife = 1ULL << 32;
+    hello.Clock = 1;
+    hello.Ask = true;
+    std::vector<std::uint8_t> bytes(LinkFrameCodec::EncodedSize(hello));
+    LinkFrameCodec::Encode(hello, bytes);
+    Write("*", bytes);
+    EXPECT_GT(uav.Fleet().malformed, before);
+}
+
+TEST_F(StrangeLinkTest, ANodeThatSpeaksAnotherVersionOfTheLinksIsNamed)
+{
+    Write("uav7", {LinkVersion + 4, 1, 2, 3});
+    EXPECT_THAT(uav.Problems(), HasSubstr("node uav7"));
+    EXPECT_THAT(uav.Problems(), HasSubstr("speaks version 7 of the queue links, this one version 3"));
+}
+
+TEST_F(StrangeLinkTest, BytesThatAreNoFrameAreCounted)
+{
+    const std::uint64_t before = uav.Fleet().malformed;
+    Write("uav7", {LinkVersion, 0xff});
     EXPECT_EQ(uav.Fleet().malformed, before + 1);
 }
 

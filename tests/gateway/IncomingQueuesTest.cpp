@@ -33,18 +33,13 @@ protected:
         {
             payloads.push_back(GotoBytes(id));
         }
-        data.Queue = "Orders";
-        for (const auto &payload : payloads)
-        {
-            data.Items.push_back({.Type = "Uav::Goto", .Payload = payload});
-        }
     }
 
     static std::vector<AcceptRule> Rules() { return {{.Queue = "Orders", .Types = {"Uav::Goto"}}}; }
 
     LocalQueueResult Deliver(std::size_t item)
     {
-        return incoming.Deliver("uav1", "Orders", "Uav::Goto", payloads[item], false);
+        return incoming.Deliver("uav1", "Orders", "Uav::Goto", payloads[item], nullptr, false);
     }
 
     std::uint32_t Take()
@@ -57,38 +52,86 @@ protected:
     std::shared_ptr<IncomingQueues::Queue> local = std::make_shared<IncomingQueues::Queue>(10, "Orders");
     IncomingQueues incoming;
     std::vector<std::vector<std::uint8_t>> payloads;
-    LinkData data;
 };
 
-TEST_F(IncomingQueuesTest, DeliversTheMessageThatWasDecodedFromThePayload)
+// All messages are large.
+class LargeMessagesTest : public IncomingQueuesTest
 {
-    IncomingQueues::DecodedMessages messages;
-    incoming.Decode(data, messages);
-    ASSERT_EQ(messages.size(), 3u);
-    incoming.Offer(messages);
-    // The first two were consumed before, so the links pass over them.
-    EXPECT_EQ(Deliver(2), LocalQueueResult::Ok);
-    EXPECT_EQ(Take(), 3u);
-    EXPECT_EQ(messages[2].What.Message.use_count(), 1);
+protected:
+    LargeMessagesTest()
+        : large(
+              Rules(), workspace, [] {}, 0)
+    {
+        large.Find([](const std::string &) {});
+    }
+
+    LocalQueueResult Deliver(std::size_t item)
+    {
+        return large.Deliver("uav1", "Orders", "Uav::Goto", payloads[item], nullptr, false);
+    }
+    std::vector<IncomingQueues::Undecoded> PutOff()
+    {
+        std::vector<IncomingQueues::Undecoded> messages;
+        large.TakeUndecoded(messages);
+        return messages;
+    }
+
+    IncomingQueues large;
+};
+
+TEST_F(LargeMessagesTest, AreDeliveredOnceTheyAreDecoded)
+{
+    EXPECT_EQ(Deliver(0), LocalQueueResult::Later);
+    EXPECT_EQ(Take(), 0u);
+    const auto messages = PutOff();
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_FALSE(large.AnyUndecoded());
+    const IncomingQueues::Decoded decoded = large.Decode(messages[0]);
+    large.Offer(&decoded);
+    EXPECT_EQ(Deliver(0), LocalQueueResult::Ok);
+    large.Offer(nullptr);
+    EXPECT_EQ(Take(), 1u);
+    EXPECT_EQ(decoded.What.Message.use_count(), 1);
 }
 
-TEST_F(IncomingQueuesTest, DecodesWhatWasNotOffered)
+TEST_F(LargeMessagesTest, AreTakenOnceOnly)
 {
-    incoming.Offer({});
-    EXPECT_EQ(Deliver(1), LocalQueueResult::Ok);
-    EXPECT_EQ(Take(), 2u);
+    Deliver(0);
+    const auto messages = PutOff();
+    const IncomingQueues::Decoded decoded = large.Decode(messages.at(0));
+    large.Offer(&decoded);
+    EXPECT_EQ(Deliver(0), LocalQueueResult::Ok);
+    EXPECT_EQ(Deliver(1), LocalQueueResult::Later) << "the next one is another message";
 }
 
-TEST_F(IncomingQueuesTest, DecodesNothingOfWhatIsSkippedOrForAQueueThatIsNotAccepted)
+TEST_F(LargeMessagesTest, AreNotTakenForThoseOfAnotherNode)
 {
-    data.Items[1].Flags = LinkFlagSkip;
-    IncomingQueues::DecodedMessages messages;
-    incoming.Decode(data, messages);
-    EXPECT_EQ(messages.size(), 2u);
-    messages.clear();
-    data.Queue = "Others";
-    incoming.Decode(data, messages);
-    EXPECT_TRUE(messages.empty());
+    Deliver(0);
+    const auto messages = PutOff();
+    const IncomingQueues::Decoded decoded = large.Decode(messages.at(0));
+    large.Offer(&decoded);
+    EXPECT_EQ(large.Deliver("uav2", "Orders", "Uav::Goto", payloads[1], nullptr, false),
+              LocalQueueResult::Later);
+}
+
+TEST_F(LargeMessagesTest, AreNotDecodedForAFullQueue)
+{
+    for (int i = 0; i < 10; ++i)
+    {
+        incoming.Deliver("uav1", "Orders", "Uav::Goto", payloads[0], nullptr, false);
+    }
+    EXPECT_EQ(Deliver(0), LocalQueueResult::Full);
+    EXPECT_FALSE(large.AnyUndecoded());
+}
+
+TEST_F(LargeMessagesTest, ThatDoNotDecodeAreRefused)
+{
+    payloads[0].resize(5);
+    EXPECT_EQ(Deliver(0), LocalQueueResult::Later);
+    const auto messages = PutOff();
+    const IncomingQueues::Decoded decoded = large.Decode(messages.at(0));
+    large.Offer(&decoded);
+    EXPECT_EQ(Deliver(0), LocalQueueResult::Undecodable);
 }
 
 TEST_F(IncomingQueuesTest, TakesNothingOfANodeThatIsNotInFrom)
@@ -96,9 +139,11 @@ TEST_F(IncomingQueuesTest, TakesNothingOfANodeThatIsNotInFrom)
     IncomingQueues choosy({{.Queue = "Orders", .Types = {"Uav::Goto"}, .From = {"ground*"}}}, workspace,
                           [] {});
     choosy.Find([](const std::string &) {});
-    EXPECT_EQ(choosy.Deliver("uav1", "Orders", "Uav::Goto", payloads[0], false), LocalQueueResult::Unknown);
+    EXPECT_EQ(choosy.Deliver("uav1", "Orders", "Uav::Goto", payloads[0], nullptr, false),
+              LocalQueueResult::Unknown);
     EXPECT_EQ(Take(), 0u);
-    EXPECT_EQ(choosy.Deliver("ground2", "Orders", "Uav::Goto", payloads[0], false), LocalQueueResult::Ok);
+    EXPECT_EQ(choosy.Deliver("ground2", "Orders", "Uav::Goto", payloads[0], nullptr, false),
+              LocalQueueResult::Ok);
     EXPECT_EQ(Take(), 1u);
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include "AssemblyMemory.h"
+
 #include <rabit/gateway/links/LinkCounters.h>
 #include <rabit/gateway/links/LinkHost.h>
 #include <rabit/gateway/links/LinkMessages.h>
 #include <rabit/gateway/links/LinkOptions.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace Rabit
@@ -13,15 +16,22 @@ namespace Rabit
 // What all links of one node share. Owned by the LinkNode, which outlives them.
 struct LinkContext
 {
-    LinkSettings Settings;
+    LinkContext(LinkSettings settings, LinkOutput &output, LocalQueues &queues, std::uint64_t incarnation);
+
+    const LinkSettings Settings;
     LinkOutput &Output;
     LocalQueues &Queues;
+    // The name of this process's clock in frames.
+    const std::uint32_t Clock;
     // The life this node is in to peers that it meets now: s_inc of all streams to them and r_inc of all
     // their sessions.
     std::uint64_t Incarnation = 0;
     LinkNodeCounters Counters;
-    // Reused for each datagram sent, so that its vector keeps its memory.
-    LinkData Datagram;
+    // Reused for each frame sent, so that its vectors keep their memory.
+    LinkFrame Frame;
+    // Bytes of parts that wait for earlier ones, on all links.
+    std::size_t ReorderBytes = 0;
+    Rabit::AssemblyMemory AssemblyMemory;
 };
 
 }  // namespace Rabit

@@ -1,23 +1,22 @@
 #include <rabit/gateway/links/LinkNode.h>
 
+#include <rabit/gateway/links/LinkCheck.h>
 #include "LinkContext.h"
 #include "LinkPeer.h"
 #include "LinkValidation.h"
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 namespace Rabit
 {
 
-LinkNode::LinkNode(LinkSettings settings, LinkOutput &output, LocalQueues &queues,
+LinkNode::LinkNode(const LinkSettings &settings, LinkOutput &output, LocalQueues &queues,
                    IncarnationSource &incarnations)
     : _incarnations(incarnations)
 {
     RequireValid(settings);
-    _context = std::make_unique<LinkContext>(
-        LinkContext{std::move(settings), output, queues, incarnations.Above(0), {}, {}});
+    _context = std::make_unique<LinkContext>(settings, output, queues, incarnations.Above(0));
 }
 
 LinkNode::~LinkNode() = default;
@@ -66,7 +65,7 @@ bool LinkNode::ForgetOne(LinkTime now)
     for (auto peer = _peers.begin(); peer != _peers.end(); ++peer)
     {
         const bool possible =
-            peer->second->MayBeForgotten() && (!peer->second->HasLinks() || peer->second->IsSilentAt(now));
+            peer->second->MayBeForgotten() && (!peer->second->HasLinks() || peer->second->IsUnheardAt(now));
         if (possible && (first == _peers.end() || rank(*peer) < rank(*first)))
         {
             first = peer;
@@ -119,17 +118,6 @@ std::uint64_t LinkNode::IncarnationTo(std::string_view node) const
 bool LinkNode::IsPossiblePeer(std::string_view name) const
 {
     return IsPossibleName(name) && name != _context->Settings.Node;
-}
-
-bool LinkNode::AddPeer(std::string_view node, LinkTime now)
-{
-    LinkPeer *peer = IsPossiblePeer(node) ? FindOrAddPeer(node, now) : nullptr;
-    if (peer == nullptr)
-    {
-        return false;
-    }
-    peer->HelloSoon(now);
-    return true;
 }
 
 LinkRefusal LinkNode::FindOrAddSender(std::string_view destination, std::string_view queue,
@@ -203,21 +191,6 @@ LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view qu
     return {.Refusal = LinkRefusal::None, .Id = _nextId++, .Due = peer->NextDue()};
 }
 
-bool LinkNode::IsForUs(std::string_view name)
-{
-    if (name == _context->Settings.Node)
-    {
-        return true;
-    }
-    ++_context->Counters.NotForUs;
-    return false;
-}
-
-void LinkNode::CountMalformed()
-{
-    ++_context->Counters.Malformed;
-}
-
 // Rules R1 and S6, and the rule for hellos: a peer that remembers a higher life of this node than its present
 // one makes it take a yet higher one. Nothing received or sent in the old one is continued.
 void LinkNode::HeardOfMyself(std::string_view from, std::uint64_t incarnation, LinkTime now)
@@ -245,96 +218,62 @@ void LinkNode::HeardOfMyself(std::string_view from, std::uint64_t incarnation, L
     }
 }
 
-void LinkNode::OnData(const LinkData &data, LinkTime now)
+// Whether the frame can be what it says it is, and is for this node. Changes nothing but the frame and
+// counters.
+bool LinkNode::Accepts(LinkFrame &frame, LinkTime now)
 {
-    if (!IsWellFormed(data))
+    if (!IsWellFormed(frame) || frame.Source == _context->Settings.Node)
     {
-        CountMalformed();
-        return;
+        ++_context->Counters.Malformed;
+        return false;
     }
-    if (!IsForUs(data.Destination))
+    const LinkPeer *peer = FindPeer(frame.Source);
+    if (frame.Short)
     {
-        return;
-    }
-    HeardOfMyself(data.Source, data.ReceiverIncarnation, now);  // rule R1
-    LinkPeer *peer = FindOrAddPeer(data.Source, now);
-    if (peer == nullptr)
-    {
-        ++_context->Counters.TooManyPeers;
-        return;
-    }
-    peer->HeardOf(data.SenderIncarnation, now);
-    LinkReceiver *receiver = peer->FindReceiver(data.Queue);
-    if (receiver == nullptr)
-    {
-        if (peer->AllReceivers().size() >= _context->Settings.MaxLinksPerPeer)
+        if (peer == nullptr || !peer->Expand(frame, now))
         {
-            ++_context->Counters.TooManyLinks;
-            return;
+            OnUnknownShort(frame, now);
+            return false;
         }
-        receiver = &peer->AddReceiver(data.Queue);
     }
-    receiver->OnData(data, now);
+    else if (frame.Check != LinkCheck::OfName(_context->Settings.Node))
+    {
+        ++_context->Counters.NotForUs;
+        return false;
+    }
+    if (peer != nullptr && !peer->AreAcksPossible(frame))
+    {
+        ++_context->Counters.Malformed;
+        return false;
+    }
+    return true;
 }
 
-void LinkNode::OnAck(const LinkAck &ack, LinkTime now)
+// Its sender takes this node for one that knows it. A hello, which is long, sets that right.
+void LinkNode::OnUnknownShort(const LinkFrame &frame, LinkTime now)
 {
-    if (!IsWellFormed(ack))
+    ++_context->Counters.UnknownShort;
+    LinkPeer *peer = FindOrAddPeer(frame.Source, now);
+    if (peer != nullptr)
     {
-        CountMalformed();
+        peer->HelloSoon(now);
+    }
+}
+
+void LinkNode::OnFrame(LinkFrame &frame, LinkTime now)
+{
+    if (!Accepts(frame, now))
+    {
         return;
     }
-    if (!IsForUs(ack.Source))
-    {
-        return;
-    }
-    LinkPeer *peer = FindOrAddPeer(ack.Destination, now);
+    HeardOfMyself(frame.Source, frame.ReceiverLife, now);  // rules R1 and S6
+    LinkPeer *peer = FindOrAddPeer(frame.Source, now);
     if (peer == nullptr)
     {
         ++_context->Counters.TooManyPeers;
         return;
     }
-    LinkSender *sender = peer->FindSender(ack.Queue);
-    if (sender != nullptr && ack.ReceiverIncarnation == peer->Incarnation() && !sender->IsPossible(ack))
-    {
-        CountMalformed();
-        return;
-    }
-    const bool present = peer->HeardOf(ack.ReceiverIncarnation, now);  // rule S5
-    if (present)
-    {
-        peer->TakeToken(ack.Clock, ack.Time, now);
-    }
-    if (sender == nullptr)
-    {
-        ++_context->Counters.NoSuchLink;
-    }
-    else if (present)
-    {
-        sender->OnAck(ack, now);  // rule S4
-    }
-    HeardOfMyself(ack.Destination, ack.YourIncarnation, now);  // rule S6
-}
-
-void LinkNode::OnHello(const LinkHello &hello, LinkTime now)
-{
-    if (!IsWellFormed(hello))
-    {
-        CountMalformed();
-        return;
-    }
-    if (!IsForUs(hello.Destination))
-    {
-        return;
-    }
-    HeardOfMyself(hello.Source, hello.YourIncarnation, now);
-    LinkPeer *peer = FindOrAddPeer(hello.Source, now);
-    if (peer == nullptr)
-    {
-        ++_context->Counters.TooManyPeers;
-        return;
-    }
-    peer->OnHello(hello, now);
+    peer->OnFrame(frame, now);
 }
 
 void LinkNode::HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now)
@@ -355,6 +294,16 @@ void LinkNode::OnRoom(std::string_view queue, LinkTime now)
         {
             receiver->OnRoom(now);
         }
+    }
+}
+
+void LinkNode::Retry(std::string_view source, std::string_view queue, LinkTime now)
+{
+    const LinkPeer *peer = FindPeer(source);
+    LinkReceiver *receiver = peer == nullptr ? nullptr : peer->FindReceiver(queue);
+    if (receiver != nullptr)
+    {
+        receiver->Retry(now);
     }
 }
 
@@ -385,46 +334,6 @@ void LinkNode::Close()
             sender->Close();
         }
     }
-}
-
-LinkNodeCounters LinkNode::Counters() const
-{
-    return _context->Counters;
-}
-
-void LinkNode::VisitSenders(
-    const std::function<void(std::string_view, std::string_view, const LinkSenderCounters &)> &visit) const
-{
-    for (const auto &[name, peer] : _peers)
-    {
-        for (const auto &[queue, sender] : peer->AllSenders())
-        {
-            visit(name, queue, sender->Counters());
-        }
-    }
-}
-
-void LinkNode::VisitReceivers(
-    const std::function<void(std::string_view, std::string_view, const LinkReceiverCounters &)> &visit) const
-{
-    for (const auto &[name, peer] : _peers)
-    {
-        for (const auto &[queue, receiver] : peer->AllReceivers())
-        {
-            visit(name, queue, receiver->Counters());
-        }
-    }
-}
-
-std::string LinkNode::Describe() const
-{
-    std::ostringstream out;
-    out << "node " << Name() << ": life " << Incarnation() << " next id " << _nextId << '\n';
-    for (const auto &[name, peer] : _peers)
-    {
-        out << peer->Describe();
-    }
-    return out.str();
 }
 
 }  // namespace Rabit

@@ -28,10 +28,29 @@ void LinkOutbox::Add(OutboxMessage message)
     _waiting.PushBack(std::move(message));
 }
 
-void LinkOutbox::NumberFirstWaiting()
+std::uint64_t LinkOutbox::Cut(std::size_t bytes)
 {
-    _sent.PushBack(_waiting.PopFront());
-    ++_nextSequence;
+    if (!IsInPart())
+    {
+        _sent.PushBack(_waiting.PopFront());
+        _sent[_sent.Size() - 1].First = _nextSequence;
+        ++_nextMessage;
+    }
+    OutboxMessage &message = _sent[_sent.Size() - 1];
+    _parts.PushBack({.Message = _nextMessage - 1, .Offset = message.Cut, .Length = bytes});
+    message.Cut += bytes;
+    message.IsWhole = message.MayArrive = message.Cut == message.Bytes;
+    message.End = ++_nextSequence;
+    return _nextSequence - 1;
+}
+
+std::uint64_t LinkOutbox::CutSkip()
+{
+    OutboxMessage &message = _sent[_sent.Size() - 1];
+    _parts.PushBack({.Message = _nextMessage - 1, .Offset = message.Cut});
+    message.IsWhole = true;
+    message.End = ++_nextSequence;
+    return _nextSequence - 1;
 }
 
 OutboxMessage LinkOutbox::TakeSent()
@@ -48,7 +67,12 @@ OutboxMessage LinkOutbox::TakeWaiting()
 
 void LinkOutbox::ReturnLastSent()
 {
-    _waiting.PushFront(_sent.PopBack());
+    OutboxMessage message = _sent.PopBack();
+    --_nextMessage;
+    message.First = message.End = 0;
+    message.Cut = 0;
+    message.IsWhole = message.IsSkipped = message.MayArrive = false;
+    _waiting.PushFront(std::move(message));
 }
 
 }  // namespace Rabit

@@ -7,6 +7,7 @@
 #include <rabit/gateway/links/LinkPayload.h>
 #include <rabit/gateway/links/LinkTime.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -19,16 +20,38 @@ struct OutboxMessage
     std::uint64_t Id = 0;
     LinkTime ExpiresAt = LinkNever;
     const std::string *Type = nullptr;  // owned by the LinkNode
-    LinkPayload Payload;                // given up when the message has expired
-    std::size_t Bytes = 0;              // of the payload; counted until the outcome is known
-    bool Redelivered = false;           // was sent to an earlier life of the receiver
-    LinkTime SentAt{0};                 // for the last time, as LinkData::SentAt says
+    std::uint32_t TypeNumber = 0;
+    LinkPayload Payload;       // given up when the message has expired
+    std::size_t Bytes = 0;     // of the payload; counted until the outcome is known
+    bool Redelivered = false;  // was sent to an earlier life of the receiver
+
+    // What of it was sent: nothing while End is 0.
+    std::uint64_t First = 0;  // number of its first part
+    std::uint64_t End = 0;    // that after its last one so far
+    std::size_t Cut = 0;      // bytes in these
+    bool IsWhole = false;     // the last of them ends it: with its last bytes, or as SKIP
+    bool IsSkipped = false;   // it expired after something of it was sent
+    bool MayArrive = false;   // its last bytes were sent
 };
 
-// The messages of one link that wait for their outcome, oldest first: those that were sent and have sequence
-// numbers, then those that were never sent and have none yet. A number is given when a message is first sent.
-// So a message that expires before that leaves at once, and a stream that starts anew has nothing to
-// renumber.
+// A part that was sent, by its number.
+struct SentPart
+{
+    std::uint64_t Message = 0;  // LinkOutbox::Message
+    std::size_t Offset = 0;
+    std::size_t Length = 0;
+    LinkTime SentAt{0};    // for the last time, in whole microseconds
+    std::size_t Cost = 0;  // what it adds to what is under way; 0: it is not under way
+    bool IsHeld = false;   // the receiver has it, and waits for others
+    bool IsLost = false;   // to be sent again
+    bool IsNamed = false;  // the type's name went with it
+    bool IsAgain = false;  // was sent more than once
+};
+
+// The messages of one link that wait for their outcome, oldest first: those of which parts were sent, then
+// those of which none was. Parts are cut and numbered when they are first sent. So a message that expires
+// before that leaves at once, a stream that starts anew has nothing to renumber, and only the newest of the
+// sent ones can be there in part.
 class LinkOutbox
 {
 public:
@@ -44,31 +67,49 @@ public:
     LinkRefusal Check(std::size_t bytes) const;
     void Add(OutboxMessage message);
 
-    // The sequence number that the next message sent for the first time will get, and that of the oldest one
-    // sent.
+    // The number that the next part will get, and that of the oldest one that is not acknowledged.
     std::uint64_t NextSequence() const { return _nextSequence; }
-    std::uint64_t FirstSequence() const { return _nextSequence - _sent.Size(); }
+    std::uint64_t FirstSequence() const { return _nextSequence - _parts.Size(); }
+    SentPart &Part(std::uint64_t sequence) { return _parts[sequence - FirstSequence()]; }
+    const SentPart &Part(std::uint64_t sequence) const { return _parts[sequence - FirstSequence()]; }
 
-    // A message that was sent, by its number: FirstSequence() to NextSequence() - 1.
-    OutboxMessage &Sent(std::uint64_t sequence) { return _sent[sequence - FirstSequence()]; }
-    const OutboxMessage &Sent(std::uint64_t sequence) const { return _sent[sequence - FirstSequence()]; }
+    // Sent messages are counted through: FirstMessage() to NextMessage() - 1.
+    std::uint64_t FirstMessage() const { return _nextMessage - _sent.Size(); }
+    std::uint64_t NextMessage() const { return _nextMessage; }
+    OutboxMessage &Message(std::uint64_t number) { return _sent[number - FirstMessage()]; }
+    const OutboxMessage &Message(std::uint64_t number) const { return _sent[number - FirstMessage()]; }
+    OutboxMessage &MessageOf(const SentPart &part) { return Message(part.Message); }
+    const OutboxMessage &MessageOf(const SentPart &part) const { return Message(part.Message); }
+
+    // Whether the newest sent message is there in part: it goes on before another one begins.
+    bool IsInPart() const { return !_sent.Empty() && !_sent[_sent.Size() - 1].IsWhole; }
+    // Whether there is anything to cut the next part from, and what.
+    bool HasMore() const { return IsInPart() || HasWaiting(); }
+    const OutboxMessage &Next() const { return IsInPart() ? _sent[_sent.Size() - 1] : _waiting.Front(); }
+    // The number of Next() among the sent messages, now or once a part of it is cut.
+    std::uint64_t NextIs() const { return IsInPart() ? _nextMessage - 1 : _nextMessage; }
+    // Cuts the next part of Next(): so many bytes. Returns its number.
+    std::uint64_t Cut(std::size_t bytes);
+    // The newest sent message, which is there in part, ends with one more part, a SKIP.
+    std::uint64_t CutSkip();
+
     // The oldest that was never sent. There must be one.
     const OutboxMessage &FirstWaiting() const { return _waiting.Front(); }
-    // Gives the oldest message that was never sent its number. There must be one.
-    void NumberFirstWaiting();
-
-    // Takes out the oldest sent message / the oldest never sent. There must be one.
+    // Takes out the oldest part / sent message / message never sent. There must be one.
+    SentPart TakePart() { return _parts.PopFront(); }
     OutboxMessage TakeSent();
     OutboxMessage TakeWaiting();
-    // Makes the newest sent message the oldest waiting one again. There must be one.
+    // The newest sent message waits again as if nothing of it had been sent. There must be one, and no parts.
     void ReturnLastSent();
 
 private:
     const LinkOptions &_options;
     RingBuffer<OutboxMessage> _sent;
     RingBuffer<OutboxMessage> _waiting;
+    RingBuffer<SentPart> _parts;
     std::size_t _bytes = 0;
     std::uint64_t _nextSequence = 1;
+    std::uint64_t _nextMessage = 1;
 };
 
 }  // namespace Rabit

@@ -1,5 +1,7 @@
 #include "LinkPeer.h"
 
+#include <rabit/gateway/links/LinkCheck.h>
+
 #include <algorithm>
 #include <sstream>
 #include <utility>
@@ -7,14 +9,57 @@
 namespace Rabit
 {
 
+namespace
+{
+
+// Numbers whose queues are asked for at once.
+constexpr std::size_t MostUnknownLinks = 8;
+constexpr std::int64_t Microsecond = 1000;
+
+}  // namespace
+
 LinkPeer::LinkPeer(LinkContext &context, std::string name, LinkTime now)
     : _context(context),
       _name(std::move(name)),
       _ownLife(context.Incarnation),
       _heardAt(now),
-      _helloAt(now),
-      _helloStep(2 * context.Settings.HelloGap)
+      _helloStep(2 * context.Settings.HelloGap),
+      _path(context.Settings)
 {
+}
+
+bool LinkPeer::Expand(LinkFrame &frame, LinkTime now) const
+{
+    if (!_token.Known() || frame.Check != LinkCheck::OfShort(_context.Settings.Node, _incarnation, _ownLife,
+                                                             _token.Clock, _context.Clock))
+    {
+        return false;
+    }
+    frame.SenderLife = _incarnation;
+    frame.ReceiverLife = _ownLife;
+    frame.Clock = _token.Clock;
+    frame.Echo.Clock = _context.Clock;
+    // The peer's clock reads about this now; ours has passed the echoed reading.
+    const std::int64_t expected = (_token.Time + (now - _token.CameAt).count()) / Microsecond;
+    const auto behind = static_cast<std::int32_t>(static_cast<std::uint32_t>(expected) -
+                                                  static_cast<std::uint32_t>(frame.Time / Microsecond));
+    frame.Time = (expected - behind) * Microsecond;
+    const std::int64_t mine = now.count() / Microsecond;
+    const auto passed =
+        static_cast<std::uint32_t>(mine) - static_cast<std::uint32_t>(frame.Echo.Time / Microsecond);
+    frame.Echo.Time = (mine - static_cast<std::int64_t>(passed)) * Microsecond;
+    return frame.Time >= 0 && frame.Echo.Time >= 0;
+}
+
+bool LinkPeer::AreAcksPossible(const LinkFrame &frame) const
+{
+    if (frame.SenderLife != _incarnation || frame.ReceiverLife != _ownLife)
+    {
+        return true;
+    }
+    return std::all_of(frame.Acks.begin(), frame.Acks.end(),
+                       [this](const LinkAck &ack)
+                       { return ack.Link > _byNumber.size() || _byNumber[ack.Link - 1]->IsPossible(ack); });
 }
 
 bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
@@ -29,8 +74,9 @@ bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
         const bool restarted = _incarnation != 0;
         _incarnation = incarnation;
         _token = {};
-        // The new life does not know us, and we have no token of it.
-        HelloSoon(now);
+        _knowsMe = false;
+        _receiverOf.clear();
+        _unknownLinks.clear();
         if (restarted)
         {
             ++_context.Counters.PeerRestarts;
@@ -39,6 +85,10 @@ bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
                 sender->Restart();
             }
         }
+        if (HasPending())
+        {
+            HelloSoon(now);
+        }
     }
     HeardNow(now);
     return true;
@@ -46,38 +96,133 @@ bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
 
 void LinkPeer::HeardNow(LinkTime now)
 {
+    // After an outage nothing that was known of the path need be so.
+    if (_unansweredSince != LinkNever &&
+        now - _unansweredSince > std::max(_context.Settings.MaxResend, 2 * _path.ProbeTimeout()))
+    {
+        _path.Restart();
+        for (const auto &[queue, sender] : _senders)
+        {
+            sender->OnPeerHeard(now);
+        }
+    }
     _heardAt = now;
-    if (_silent)
-    {
-        _silent = false;
-        HelloSoon(now);
-    }
+    _unansweredSince = LinkNever;
+    _silent = false;
 }
 
-void LinkPeer::TakeToken(std::uint64_t clock, std::int64_t time, LinkTime now)
+bool LinkPeer::TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now)
 {
-    if (clock != _token.Clock || time > _token.Time)
+    if (clock == _token.Clock && time <= _token.Time)
     {
-        _token = {.Clock = clock, .Time = time, .CameAt = now};
+        return false;
     }
+    _token = {.Clock = clock, .Time = time, .CameAt = now};
+    return true;
 }
 
-void LinkPeer::OnHello(const LinkHello &hello, LinkTime now)
+void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
 {
-    if (!HeardOf(hello.Incarnation, now))
+    if (!HeardOf(frame.SenderLife, now))  // rules S5 and R2
     {
+        ++_context.Counters.Stale;
         return;
     }
-    TakeToken(hello.Clock, hello.Time, now);
-    if (hello.YourIncarnation != _ownLife)
+    const bool isNewest = TakeToken(frame.Clock, frame.Time, now);
+    if (frame.ReceiverLife != _ownLife)
     {
-        // It does not know this life of ours yet.
+        // Rule R1: it does not know this life of ours yet.
+        _context.Counters.Stale += frame.IsHello() ? 0 : 1;
+        _knowsMe = false;
+        HelloSoon(now);
+        return;
+    }
+    _knowsMe = frame.Echo.Clock == _context.Clock || (_knowsMe && frame.Echo.Clock == 0);
+    if (frame.Ask && !frame.HasData)
+    {
         HelloSoon(now);
     }
-    for (const auto &[queue, sender] : _senders)
+    if (isNewest)
     {
-        sender->OnPeerHeard(now);
+        Measure(frame, now);
     }
+    OnAcks(frame, now);
+    if (frame.HasData)
+    {
+        OnData(frame, now);
+    }
+}
+
+void LinkPeer::Measure(const LinkFrame &frame, LinkTime now)
+{
+    const LinkTime roundTrip = now - LinkTime(frame.Echo.Time) - LinkTime(frame.Echo.HeldFor);
+    // What was held for long says more about the two clocks than about the path.
+    if (frame.Echo.Clock == _context.Clock && frame.Echo.Time <= now.count() && roundTrip >= LinkTime(0) &&
+        frame.Echo.HeldFor <= LinkTime(std::chrono::seconds(1)).count())
+    {
+        _path.Measured(roundTrip, LinkTime(frame.Echo.Time), now);
+    }
+}
+
+void LinkPeer::OnAcks(const LinkFrame &frame, LinkTime now)
+{
+    const bool echoed = frame.Echo.Clock == _context.Clock && frame.Echo.Time <= now.count();
+    for (const LinkAck &ack : frame.Acks)
+    {
+        if (ack.Link > _byNumber.size())
+        {
+            ++_context.Counters.NoSuchLink;
+            continue;
+        }
+        _byNumber[ack.Link - 1]->OnAck(ack, frame.Time, echoed ? LinkTime(frame.Echo.Time) : LinkTime(0),
+                                       now);
+    }
+}
+
+void LinkPeer::OnData(const LinkFrame &frame, LinkTime now)
+{
+    LinkReceiver *receiver = ReceiverOf(frame.Data);
+    if (receiver != nullptr)
+    {
+        receiver->OnData(frame, _path.AckDelay(), now);
+    }
+}
+
+LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
+{
+    if (data.Queue.empty())
+    {
+        const auto known = _receiverOf.find(data.Link);
+        if (known != _receiverOf.end())
+        {
+            return known->second;
+        }
+        if (_unknownLinks.size() < MostUnknownLinks &&
+            std::find(_unknownLinks.begin(), _unknownLinks.end(), data.Link) == _unknownLinks.end())
+        {
+            _unknownLinks.push_back(data.Link);
+        }
+        return nullptr;
+    }
+    LinkReceiver *receiver = FindReceiver(data.Queue);
+    if (receiver == nullptr)
+    {
+        if (_receivers.size() >= _context.Settings.MaxLinksPerPeer)
+        {
+            ++_context.Counters.TooManyLinks;
+            return nullptr;
+        }
+        std::string queue(data.Queue);
+        receiver = _receivers.emplace(queue, std::make_unique<LinkReceiver>(_context, _name, queue))
+                       .first->second.get();
+    }
+    // Who gives one queue many numbers must not fill the memory with them.
+    if (_receiverOf.size() >= 4 * _context.Settings.MaxLinksPerPeer)
+    {
+        _receiverOf.clear();
+    }
+    _receiverOf[data.Link] = receiver;
+    return receiver;
 }
 
 void LinkPeer::HelloSoon(LinkTime now)
@@ -90,6 +235,9 @@ void LinkPeer::HelloSoon(LinkTime now)
 void LinkPeer::OnOwnRaise(LinkTime now)
 {
     _ownLife = _context.Incarnation;
+    _knowsMe = false;
+    _receiverOf.clear();
+    _unknownLinks.clear();
     for (const auto &[queue, receiver] : _receivers)
     {
         receiver->DropSession();
@@ -115,108 +263,37 @@ LinkReceiver *LinkPeer::FindReceiver(std::string_view queue) const
 
 LinkSender &LinkPeer::AddSender(std::string_view queue, const LinkOptions &options)
 {
-    auto sender = std::make_unique<LinkSender>(_context, _ownLife, _name, std::string(queue), options);
+    const auto number = static_cast<std::uint32_t>(_byNumber.size() + 1);
+    auto sender =
+        std::make_unique<LinkSender>(_context, _path, _ownLife, number, _name, std::string(queue), options);
+    _byNumber.push_back(sender.get());
     return *_senders.emplace(std::string(queue), std::move(sender)).first->second;
-}
-
-LinkReceiver &LinkPeer::AddReceiver(std::string_view queue)
-{
-    auto receiver = std::make_unique<LinkReceiver>(_context, _ownLife, _name, std::string(queue));
-    return *_receivers.emplace(std::string(queue), std::move(receiver)).first->second;
-}
-
-void LinkPeer::OnEnqueued(LinkTime now)
-{
-    if (_silent && _helloAt == LinkNever)
-    {
-        HelloSoon(now);
-    }
 }
 
 bool LinkPeer::HasPending() const
 {
-    return std::any_of(_senders.begin(), _senders.end(),
-                       [](const auto &entry) { return entry.second->HasPending(); });
+    return std::any_of(_byNumber.begin(), _byNumber.end(),
+                       [](const LinkSender *sender) { return sender->HasPending(); });
 }
 
-void LinkPeer::Run(LinkTime now)
+void LinkPeer::OnEnqueued(LinkTime now)
 {
-    _silent = IsSilentAt(now);
-    for (const auto &[queue, receiver] : _receivers)
+    if (!IsOpen() && _helloAt == LinkNever)
     {
-        receiver->Run(_incarnation, now);
+        HelloSoon(now);
     }
-    const PeerView view = View();
-    for (const auto &[queue, sender] : _senders)
-    {
-        sender->Run(view, now);
-    }
-    RunHello(now);
-}
-
-void LinkPeer::RunHello(LinkTime now)
-{
-    if (now < _helloAt)
-    {
-        return;
-    }
-    LinkHello hello;
-    hello.Source = _context.Settings.Node;
-    hello.Destination = _name;
-    hello.Incarnation = _ownLife;
-    hello.YourIncarnation = _incarnation;
-    hello.Clock = _context.Settings.Clock;
-    hello.Time = now.count();
-    _lastHelloAt = now;
-    if (!_silent)
-    {
-        _helloAt = now + NextHelloStep();
-    }
-    else
-    {
-        _helloAt = HasPending() ? now + _context.Settings.SilentHelloPeriod : LinkNever;
-    }
-    ++_context.Counters.HellosSent;
-    _context.Output.Send(hello);
-}
-
-// The first hello often comes before the network has matched the two nodes, and is lost.
-LinkTime LinkPeer::NextHelloStep()
-{
-    const LinkTime period = _context.Settings.HelloPeriod;
-    const LinkTime first = 2 * _context.Settings.HelloGap;
-    if (_token.Clock != 0 || !HasPending())
-    {
-        _helloStep = first;
-        return period;
-    }
-    const LinkTime step = std::min(std::max(_helloStep, first), period);
-    _helloStep = 2 * step;
-    return step;
-}
-
-LinkTime LinkPeer::NextDue() const
-{
-    LinkTime due = _helloAt;
-    const PeerView view = View();
-    for (const auto &[queue, sender] : _senders)
-    {
-        due = std::min(due, sender->NextDue(view));
-    }
-    for (const auto &[queue, receiver] : _receivers)
-    {
-        due = std::min(due, receiver->NextDue());
-    }
-    return due;
 }
 
 std::string LinkPeer::Describe() const
 {
     std::ostringstream out;
     out << "peer " << _name << ": own life " << _ownLife << " life " << _incarnation << " token "
-        << _token.Clock << ' ' << _token.Time << " of " << _token.CameAt.count() << " heard at "
-        << _heardAt.count() << (_silent ? " silent" : "") << " hello at " << _helloAt.count() << " last "
-        << _lastHelloAt.count() << '\n';
+        << _token.Clock << ' ' << _token.Time << " of " << _token.CameAt.count()
+        << (_knowsMe ? " knows me" : "") << " heard at " << _heardAt.count() << " unanswered since "
+        << _unansweredSince.count() << (_silent ? " silent" : "") << " hello at " << _helloAt.count()
+        << " last " << _lastHelloAt.count() << " window " << _path.Window() << " in flight "
+        << _path.InFlight() << " round trip " << _path.Times().Smoothed().count() << " numbers "
+        << _receiverOf.size() << '\n';
     for (const auto &[queue, sender] : _senders)
     {
         out << sender->Describe() << '\n';

@@ -3,6 +3,7 @@
 #include "LinkContext.h"
 #include "LinkReceiver.h"
 #include "LinkSender.h"
+#include "PathControl.h"
 #include "PeerToken.h"
 
 #include <rabit/gateway/links/LinkTime.h>
@@ -12,12 +13,13 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace Rabit
 {
 
-// One other node: its life, its token, the hellos to it, and the links to and from it. A node's life and
-// clock are the same for all its links, so what one link learns of them holds for all.
+// One other node: its life, its token, the path to it, hellos and acknowledgements, and the links to and from
+// it. A node's life and clock are the same for all its links, so what one link learns of them holds for all.
 class LinkPeer
 {
 public:
@@ -31,21 +33,25 @@ public:
     // The life that the peer is in as far as known; 0: not heard yet.
     std::uint64_t Incarnation() const { return _incarnation; }
 
-    // The peer says, or a message of its shows, that it is in this life. Rule S5: a higher one than known is
+    // Fills in what a short frame of the peer leaves out. False: it is not for this node, not of the peer's
+    // present life, or not for that of this node.
+    bool Expand(LinkFrame &frame, LinkTime now) const;
+    // Whether all acknowledgements in a frame of the present lives can be.
+    bool AreAcksPossible(const LinkFrame &frame) const;
+    // A frame has come. Rules S4, S5, R1 and R2, and what follows for the links.
+    void OnFrame(const LinkFrame &frame, LinkTime now);
+
+    // The peer says, or something else heard, that it is in this life. Rule S5: a higher one than known is
     // a restart, all streams to it start anew; a lower one is old, or the peer has lost its storage and must
     // be told by a hello. Returns whether it is the life known now.
     bool HeardOf(std::uint64_t incarnation, LinkTime now);
-    // A reading of the peer's clock came, from its present life. Rule S4: the newest becomes the token.
-    void TakeToken(std::uint64_t clock, std::int64_t time, LinkTime now);
-    // A hello has come.
-    void OnHello(const LinkHello &hello, LinkTime now);
     // Sends a hello as soon as HelloGap allows.
     void HelloSoon(LinkTime now);
 
     // Whether nothing is lost with it but what can be learnt again: nothing waits for it here.
     bool MayBeForgotten() const { return !HasPending(); }
     bool HasLinks() const { return !_senders.empty() || !_receivers.empty(); }
-    bool IsSilentAt(LinkTime now) const { return now - _heardAt >= _context.Settings.SilentAfter; }
+    bool IsUnheardAt(LinkTime now) const { return now - _heardAt >= _context.Settings.SilentAfter; }
     LinkTime HeardAt() const { return _heardAt; }
 
     // Rules R1 and S6: this node has taken a new incarnation.
@@ -55,21 +61,49 @@ public:
     LinkReceiver *FindReceiver(std::string_view queue) const;
     // Makes a link. There must be none for that queue.
     LinkSender &AddSender(std::string_view queue, const LinkOptions &options);
-    LinkReceiver &AddReceiver(std::string_view queue);
     const Senders &AllSenders() const { return _senders; }
     const Receivers &AllReceivers() const { return _receivers; }
+    const PathControl &Path() const { return _path; }
 
-    // A message was enqueued for the peer: a silent one is called.
+    // A message was enqueued for the peer: one that has given no token, or is silent, is asked.
     void OnEnqueued(LinkTime now);
+
+    // Everything that is due, except sending.
+    void Advance(LinkTime now);
+    // Advances, and sends all that may be sent now.
     void Run(LinkTime now);
+    // Acknowledgements and hellos that are due: their bytes, about; 0: none. And sends them.
+    std::size_t UrgentBytes(LinkTime now) const;
+    bool SendUrgent(LinkTime now);
+    // The next datagram of one link: its bytes, about; 0: it has none now. And sends it, of at most so many
+    // bytes.
+    std::size_t DataBytes(const LinkSender &sender, LinkTime now) const;
+    bool SendData(LinkSender &sender, std::size_t most, LinkTime now);
     LinkTime NextDue() const;
     std::string Describe() const;
 
 private:
-    PeerView View() const { return {_name, _incarnation, _token, _silent}; }
-    bool HasPending() const;
+    // The receiver of the data; null: the number means nothing yet, or there are too many.
+    LinkReceiver *ReceiverOf(const LinkData &data);
+    void OnData(const LinkFrame &frame, LinkTime now);
+    void OnAcks(const LinkFrame &frame, LinkTime now);
+    void Measure(const LinkFrame &frame, LinkTime now);
+    // Whether it is newer than the one that was known.
+    bool TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now);
     void HeardNow(LinkTime now);
-    void RunHello(LinkTime now);
+
+    bool HasPending() const;
+    bool IsOpen() const { return _token.Known() && !_silent; }
+    bool IsSilentAt(LinkTime now) const
+    {
+        return _unansweredSince != LinkNever && now - _unansweredSince >= _context.Settings.SilentAfter;
+    }
+    // When an acknowledgement or a hello is due.
+    LinkTime UrgentDue() const;
+    LinkFrame &BeginFrame(bool mayBeShort, LinkTime now);
+    void AddAcks(LinkFrame &frame);
+    void Send(const LinkFrame &frame, bool asks, LinkTime now);
+    void SendHello(LinkTime now);
     LinkTime NextHelloStep();
 
     LinkContext &_context;
@@ -77,13 +111,20 @@ private:
     std::uint64_t _ownLife;
     std::uint64_t _incarnation = 0;
     PeerToken _token;
-    LinkTime _heardAt;     // when something of its present life came last; at first, when it was made
-    bool _silent = false;  // not heard for SilentAfter
-    LinkTime _helloAt;
+    bool _knowsMe = false;  // the peer has this node's life and clock
+    LinkTime _heardAt;      // when something of its present life came last; at first, when it was made
+    LinkTime _unansweredSince = LinkNever;  // since when something that was sent wants an answer
+    bool _silent = false;                   // for SilentAfter
+    LinkTime _helloAt = LinkNever;
     LinkTime _helloStep;                // until the hello after the next, while a token is wanted
     LinkTime _lastHelloAt = LinkNever;  // LinkNever: none was sent
+    PathControl _path;
     Senders _senders;
+    std::vector<LinkSender *> _byNumber;  // number 1 is at index 0
+    std::size_t _nextTurn = 0;            // whose turn it is to send, by number
     Receivers _receivers;
+    std::map<std::uint32_t, LinkReceiver *> _receiverOf;  // by the peer's numbers
+    std::vector<std::uint32_t> _unknownLinks;             // numbers that the peer must say the queues of
 };
 
 }  // namespace Rabit

@@ -16,181 +16,232 @@ constexpr std::int64_t DriftPart = 990;
 
 }  // namespace
 
-LinkReceiver::LinkReceiver(LinkContext &context, const std::uint64_t &ownLife, std::string source,
-                           std::string queue)
-    : _context(context), _ownLife(ownLife), _source(std::move(source)), _queue(std::move(queue))
+LinkReceiver::LinkReceiver(LinkContext &context, std::string source, std::string queue)
+    : _context(context),
+      _source(std::move(source)),
+      _queue(std::move(queue)),
+      _kept(context.Settings.ReorderBytes, context.Settings.ReorderBytesOfNode, context.ReorderBytes),
+      _assembly(context.AssemblyMemory)
 {
 }
 
-void LinkReceiver::OnData(const LinkData &data, LinkTime now)
+void LinkReceiver::OnData(const LinkFrame &frame, LinkTime ackDelay, LinkTime now)
 {
-    // Rule R1: not for this life -> acknowledge only. (The node has already raised its incarnation if need
-    // be.)
-    if (data.ReceiverIncarnation != _ownLife)
+    _link = frame.Data.Link;
+    // Rule R3: a new stream is opened only if this frame is younger than the session it replaces.
+    if (frame.SenderLife != _senderLife)
     {
-        ++_counters.Stale;
-        AcknowledgeBy(now);
-        return;
-    }
-    // Rule R2: from an older life of the sender -> acknowledge only.
-    if (HasSession() && data.SenderIncarnation < _senderIncarnation)
-    {
-        ++_counters.Stale;
-        AcknowledgeBy(now);
-        return;
-    }
-    // Rule R3: a new stream is opened only if this datagram is younger than the session it replaces.
-    if (data.SenderIncarnation != _senderIncarnation)
-    {
-        if (!MayOpen(data, now))
+        if (!MayOpen(frame, now))
         {
             ++_counters.Stale;
             AcknowledgeBy(now);
             return;
         }
-        Open(data, now);
+        Open(frame, now);
     }
-    if (data.SentAt > _latestSentAt)
+    _oldest = std::max(_oldest, std::min(frame.Data.Oldest, _cumulative + 1));
+    for (const LinkItem &item : frame.Data.Items)
     {
-        _latestSentAt = data.SentAt;
-        _latestCameAt = now;
+        OnItem(frame, item, now + ackDelay, now);
     }
-    std::uint64_t sequence = data.First;
-    for (const LinkItem &item : data.Items)
+    if (frame.Ask || _unacknowledged >= _context.Settings.AckEvery ||
+        _unacknowledgedBytes >= _context.Settings.AckEveryBytes)
     {
-        // Rule R4: seen before, or one before it is missing -> acknowledge only.
-        if (sequence != _cumulative + 1)
-        {
-            ++_counters.Duplicates;
-            AcknowledgeBy(now + _context.Settings.AckDelay);
-        }
-        else if (!Consume(data, item, now))
-        {
-            break;
-        }
-        ++sequence;
+        AcknowledgeBy(now);
     }
 }
 
-bool LinkReceiver::MayOpen(const LinkData &data, LinkTime now) const
+bool LinkReceiver::MayOpen(const LinkFrame &frame, LinkTime now) const
 {
-    return data.Echo.Clock == _context.Settings.Clock && data.Echo.Time <= now.count() &&
-           (!HasSession() || data.Echo.Time > _openedAt.count());
+    return frame.Echo.Clock == _context.Clock && frame.Echo.Time <= now.count() &&
+           (!HasSession() || frame.Echo.Time > _openedAt.count());
 }
 
-void LinkReceiver::Open(const LinkData &data, LinkTime now)
+void LinkReceiver::Open(const LinkFrame &frame, LinkTime now)
 {
-    _senderIncarnation = data.SenderIncarnation;
-    _cumulative = data.Base - 1;
-    _history.Clear();
+    DropSession();
+    _senderLife = frame.SenderLife;
+    _cumulative = frame.Data.Oldest - 1;
+    _oldest = frame.Data.Oldest;
     _openedAt = now;
-    _latestSentAt = 0;
-    _unacknowledged = 0;
-    _unacknowledgedBytes = 0;
-    _heldBack = false;
     ++_counters.SessionsOpened;
     // The sender knows no credit yet and waits for it.
     AcknowledgeBy(now);
 }
 
-// Rules R5 to R8 for the message after the last one consumed. False: it was not consumed, nor can be those
-// after it.
-bool LinkReceiver::Consume(const LinkData &data, const LinkItem &item, LinkTime now)
+void LinkReceiver::DropSession()
 {
-    AcknowledgeBy(now + _context.Settings.AckDelay);
-    _unacknowledgedBytes += item.Payload.size();
-    if ((item.Flags & LinkFlagSkip) != 0)
-    {
-        ++_counters.Skipped;
-        Advance(OutcomeHistory::Entry::Skipped);
-        return true;
-    }
-    if (!IsInTime(item, data.Echo, now))
-    {
-        // The sender gets a fresh token with the acknowledgement, and sends the message again with less time
-        // left, or as SKIP: so a loose bound on the transit never makes a message expire that has time left.
-        ++_counters.HeldBackLate;
-        AcknowledgeBy(now);
-        return false;
-    }
-    const bool redelivered = (item.Flags & LinkFlagRedelivered) != 0;
-    switch (_context.Queues.Deliver(_source, _queue, item.Type, item.Payload, redelivered))
-    {
-        case LocalQueueResult::Full:
-            // Rule R7: acknowledge, no credit, do not advance. OnRoom makes room known.
-            ++_counters.HeldBackFull;
-            _heldBack = true;
-            AcknowledgeBy(now);
-            return false;
-        case LocalQueueResult::Ok:
-            // Rule R8.
-            ++_counters.Delivered;
-            Advance(OutcomeHistory::Entry::Delivered);
-            break;
-        case LocalQueueResult::Unknown:
-            ++_counters.RefusedUnknown;
-            Advance(OutcomeHistory::Entry::Refused);
-            break;
-        case LocalQueueResult::WrongType:
-            ++_counters.RefusedWrongType;
-            Advance(OutcomeHistory::Entry::Refused);
-            break;
-        case LocalQueueResult::Undecodable:
-            ++_counters.RefusedUndecodable;
-            Advance(OutcomeHistory::Entry::Refused);
-            break;
-    }
-    if (_unacknowledged >= _context.Settings.AckEvery ||
-        _unacknowledgedBytes >= _context.Settings.AckEveryBytes)
-    {
-        AcknowledgeBy(now);
-    }
-    return true;
+    _senderLife = 0;
+    _cumulative = 0;
+    _oldest = 0;
+    _history.Clear();
+    _openedAt = LinkTime(0);
+    _types.clear();
+    _kept.Clear();
+    _assembly.Drop();
+    _unacknowledged = 0;
+    _unacknowledgedBytes = 0;
+    _heldBack = false;
+    _noMemory = false;
 }
 
-// Rules R5 and R6: the datagram was made after the echoed reading of our clock plus the time that the sender
-// held it; so its transit took at most what has passed since.
-bool LinkReceiver::IsInTime(const LinkItem &item, const LinkEcho &echo, LinkTime now) const
+void LinkReceiver::OnItem(const LinkFrame &frame, const LinkItem &item, LinkTime soon, LinkTime now)
 {
-    if (item.TtlLeft == LinkNoExpiry)
+    AcknowledgeBy(soon);
+    // Rule R4: seen before -> acknowledge only.
+    if (item.Through <= _cumulative)
     {
-        return true;
+        ++_counters.Duplicates;
+        AcknowledgeBy(now + _context.Settings.AckDelay);
+        return;
     }
-    if (echo.Clock != _context.Settings.Clock || echo.Time > now.count())
+    if (item.Through > _cumulative + LinkWindowParts)
     {
-        return false;
+        ++_counters.NotKept;
+        return;
+    }
+    const ReceivedPart part{.Sequence = item.Sequence,
+                            .Through = item.Through,
+                            .Flags = item.Flags,
+                            .AliveUntil = AliveUntil(item, frame.Echo, now),
+                            .Type = TypeOf(item),
+                            .Size = item.Size,
+                            .Payload = item.Payload};
+    if (part.Sequence > _cumulative + 1)
+    {
+        if (part.AliveUntil > now)
+        {
+            Keep(part);
+        }
+        // The sender soon hears of the gap.
+        AcknowledgeBy(now + _context.Settings.AckDelay);
+        return;
+    }
+    ++_unacknowledged;
+    _unacknowledgedBytes += part.Payload.size();
+    switch (Consume(part, now))
+    {
+        case Result::Consumed:
+            ConsumeKept(now);
+            break;
+        case Result::NotNow:
+            Keep(part);
+            break;
+        case Result::Late:
+            break;
+    }
+}
+
+// Rules R5 and R6: the frame was made after the echoed reading of our clock plus the time that the sender
+// held it; so its transit took at most what has passed since.
+LinkTime LinkReceiver::AliveUntil(const LinkItem &item, const LinkEcho &echo, LinkTime now) const
+{
+    if ((item.Flags & LinkFlagSkip) != 0 || (item.Flags & LinkFlagLast) == 0 || item.TtlLeft == LinkNoExpiry)
+    {
+        return LinkNever;
+    }
+    if (echo.Clock != _context.Clock || echo.Time > now.count())
+    {
+        return LinkTime(0);
     }
     const std::int64_t passed = now.count() - echo.Time;
     const std::int64_t transit = std::max<std::int64_t>(passed - echo.HeldFor, 0) + passed / DriftPart;
-    return item.TtlLeft > transit;
+    const std::int64_t left = item.TtlLeft - transit;
+    return now + LinkTime(left - left / DriftPart);
 }
 
-void LinkReceiver::Advance(OutcomeHistory::Entry entry)
+// Rule R4: the sender says a type's name until it knows that the number is known here.
+std::string_view LinkReceiver::TypeOf(const LinkItem &item)
 {
-    ++_cumulative;
-    _history.Push(entry);
-    ++_unacknowledged;
+    if ((item.Flags & LinkFlagFirst) == 0 || item.TypeNumber >= LinkMaxTypes)
+    {
+        return item.Type;
+    }
+    if (!item.Type.empty())
+    {
+        std::string &name = _types[item.TypeNumber];
+        if (name != item.Type)
+        {
+            name.assign(item.Type);
+        }
+        return name;
+    }
+    const auto found = _types.find(item.TypeNumber);
+    return found == _types.end() ? std::string_view() : found->second;
+}
+
+void LinkReceiver::Keep(const ReceivedPart &part)
+{
+    if (!_noMemory && _kept.Keep(part))
+    {
+        ++_counters.Kept;
+    }
+    else
+    {
+        ++_counters.NotKept;
+    }
+}
+
+void LinkReceiver::ConsumeKept(LinkTime now)
+{
+    for (_kept.DropThrough(_cumulative); !_kept.Empty(); _kept.DropThrough(_cumulative))
+    {
+        const ReceivedPart part = _kept.First();
+        if (part.Sequence > _cumulative + 1)
+        {
+            return;
+        }
+        const Result result = Consume(part, now);
+        if (result == Result::NotNow)
+        {
+            return;
+        }
+        if (result == Result::Late)
+        {
+            _kept.DropFirst();
+            return;
+        }
+    }
+}
+
+void LinkReceiver::Advance(const ReceivedPart &part, OutcomeHistory::Entry entry)
+{
+    for (; _cumulative < part.Through; ++_cumulative)
+    {
+        _history.Set(_cumulative + 1, entry);
+    }
     _heldBack = false;
 }
 
 void LinkReceiver::OnRoom(LinkTime now)
 {
+    if (HasSession() && (_heldBack || !_kept.Empty()))
+    {
+        _roomCame = true;
+    }
     if (HasSession() && _heldBack)
     {
         AcknowledgeBy(now + _context.Settings.AckDelay);
     }
 }
 
-void LinkReceiver::DropSession()
+void LinkReceiver::Retry(LinkTime now)
 {
-    _senderIncarnation = 0;
-    _cumulative = 0;
-    _history.Clear();
-    _openedAt = LinkTime(0);
-    _latestSentAt = 0;
-    _unacknowledged = 0;
-    _unacknowledgedBytes = 0;
-    _heldBack = false;
+    const std::uint64_t before = _cumulative;
+    ConsumeKept(now);
+    if (_cumulative != before)
+    {
+        AcknowledgeBy(now + _context.Settings.AckDelay);
+    }
+}
+
+void LinkReceiver::Advance(LinkTime now)
+{
+    if (_roomCame)
+    {
+        _roomCame = false;
+        Retry(now);
+    }
 }
 
 void LinkReceiver::AcknowledgeBy(LinkTime when)
@@ -198,48 +249,49 @@ void LinkReceiver::AcknowledgeBy(LinkTime when)
     _ackAt = std::min(_ackAt, when);
 }
 
-void LinkReceiver::Run(std::uint64_t peerIncarnation, LinkTime now)
+void LinkReceiver::Acknowledge(LinkAck &ack, std::uint64_t sourceLife)
 {
-    if (now < _ackAt)
+    ack = {};
+    ack.Link = _link;
+    ack.Open = HasSession() && _senderLife == sourceLife;
+    if (ack.Open)
     {
-        return;
+        ack.Cumulative = _cumulative;
+        ack.Oldest =
+            std::max(_oldest, _cumulative + 1 - std::min<std::uint64_t>(_cumulative, LinkWindowParts));
+        ack.Delivered = _history.Delivered();
+        ack.Refused = _history.Refused();
+        if (!_kept.Empty())
+        {
+            ack.Held = _kept.HeldAfter(_cumulative);
+        }
+        ack.Credit =
+            _noMemory ? 0 : static_cast<std::uint32_t>(std::min(_context.Queues.Room(_queue), LinkMaxWindow));
+        _heldBack = ack.Credit == 0;
     }
-    LinkAck ack;
-    ack.Source = _source;
-    ack.Destination = _context.Settings.Node;
-    ack.Queue = _queue;
-    ack.ReceiverIncarnation = _ownLife;
-    ack.SenderIncarnation = _senderIncarnation;
-    ack.Cumulative = _cumulative;
-    ack.Delivered = _history.Delivered();
-    ack.Refused = _history.Refused();
-    ack.Credit = static_cast<std::uint32_t>(std::min(_context.Queues.Room(_queue), LinkOutcomeBits));
-    ack.Clock = _context.Settings.Clock;
-    ack.Time = now.count();
-    ack.YourIncarnation = peerIncarnation;
-    ack.EchoSentAt = _latestSentAt;
-    ack.EchoHeldFor = _latestSentAt == 0 ? 0 : (now - _latestCameAt).count();
-    _heldBack = ack.Credit == 0;
     _ackAt = LinkNever;
     _unacknowledged = 0;
     _unacknowledgedBytes = 0;
     ++_counters.AcksSent;
-    _context.Output.Send(ack);
 }
 
 LinkReceiverCounters LinkReceiver::Counters() const
 {
     LinkReceiverCounters counters = _counters;
     counters.HeldBack = HasSession() && _heldBack;
+    counters.KeptBytes = _kept.Bytes();
+    counters.AssemblyBytes = _assembly.Size();
     return counters;
 }
 
 std::string LinkReceiver::Describe() const
 {
     std::ostringstream out;
-    out << "from " << _source << '/' << _queue << ": session " << _senderIncarnation << " cum " << _cumulative
-        << " opened at " << _openedAt.count() << " ack at " << _ackAt.count() << " unacknowledged "
-        << _unacknowledged << (_heldBack ? " held back" : "") << " delivered " << std::hex;
+    out << "from " << _source << '/' << _queue << ": link " << _link << " session " << _senderLife << " cum "
+        << _cumulative << " oldest " << _oldest << " opened at " << _openedAt.count() << " ack at "
+        << _ackAt.count() << " unacknowledged " << _unacknowledged << (_heldBack ? " held back" : "")
+        << " kept " << _kept.Bytes() << " assembly " << _assembly.Size() << " types " << _types.size()
+        << " delivered " << std::hex;
     for (const std::uint64_t word : _history.Delivered())
     {
         out << word << ' ';

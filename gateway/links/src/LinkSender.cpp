@@ -1,7 +1,5 @@
 #include "LinkSender.h"
 
-#include "OutcomeHistory.h"
-
 #include <algorithm>
 #include <sstream>
 #include <utility>
@@ -12,24 +10,22 @@ namespace Rabit
 namespace
 {
 
-// What a LinkData takes on the wire beside its names, and a message beside its type and payload: numbers,
-// flags, lengths and alignment, rounded up.
-constexpr std::size_t DatagramOverhead = 96;
-constexpr std::size_t MessageOverhead = 32;
+// Something new is sent along with what was sent in vain so often; after that there is no path.
+constexpr int ProbesWithNew = 3;
 
 }  // namespace
 
-LinkSender::LinkSender(LinkContext &context, const std::uint64_t &ownLife, std::string destination,
-                       std::string queue, const LinkOptions &options)
+LinkSender::LinkSender(LinkContext &context, PathControl &path, const std::uint64_t &ownLife,
+                       std::uint32_t number, std::string destination, std::string queue,
+                       const LinkOptions &options)
     : _context(context),
+      _path(path),
       _ownLife(ownLife),
+      _number(number),
       _destination(std::move(destination)),
       _queue(std::move(queue)),
       _options(options),
-      _outbox(_options),
-      _window(_options, context.Settings.ShortRoundTrip),
-      _allowed(_options.Window),
-      _timer(context.Settings)
+      _outbox(_options)
 {
 }
 
@@ -55,317 +51,255 @@ LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkP
     }
     if (_outbox.Empty())
     {
-        _resendAt = std::max(now, _lastSentAt + _timer.Timeout());
+        _probeAt = std::max(now, _lastSentAt + _path.ProbeTimeout());
+    }
+    else if (_doublings > 0 && _doublings <= ProbesWithNew && now >= _lastSentAt + _path.ProbeTimeout())
+    {
+        _probe = true;  // something new need not wait for a timer that has backed off
     }
     const LinkTime expiresAt = _options.Expire > LinkTime(0) ? now + _options.Expire : LinkNever;
-    _outbox.Add(
-        {.Id = id, .ExpiresAt = expiresAt, .Type = &type, .Payload = std::move(payload), .Bytes = bytes});
+    _outbox.Add({.Id = id,
+                 .ExpiresAt = expiresAt,
+                 .Type = &type,
+                 .TypeNumber = _types.NumberOf(type),
+                 .Payload = std::move(payload),
+                 .Bytes = bytes});
     ++_counters.Accepted;
     return LinkRefusal::None;
 }
 
-// Rule S2: without a token nothing is sent; else the window of unacknowledged messages from the front.
-void LinkSender::Run(const PeerView &peer, LinkTime now)
+void LinkSender::Advance(bool open, LinkTime now)
 {
     ExpireWaiting(now);
-    if (_outbox.Empty() || !peer.Token.Known() || peer.Silent)
+    ExpireSent(now);
+    if (_outbox.Empty() || !open)
     {
         return;
     }
-    if (now >= _resendAt)
+    if (now >= _lostAt)
     {
-        OnResendTimer(now);
+        FindLost(_lastEcho, now);
     }
-    while (MaySendNext())
+    if (now >= _probeAt)
     {
-        SendDatagram(peer, now);
+        OnProbeTimer();
     }
 }
 
-LinkTime LinkSender::NextDue(const PeerView &peer) const
+// A message that expires before anything of it was sent needs no word from the receiver. All messages of a
+// link live equally long, so the oldest is the first to expire.
+void LinkSender::ExpireWaiting(LinkTime now)
+{
+    while (_outbox.HasWaiting() && now >= _outbox.FirstWaiting().ExpiresAt)
+    {
+        ReportExpired(_outbox.TakeWaiting());
+    }
+}
+
+// Rule S3: nothing more of a message that expires half sent is sent, but that it is to be skipped.
+void LinkSender::ExpireSent(LinkTime now)
+{
+    if (!_outbox.IsInPart() || now < _outbox.Next().ExpiresAt)
+    {
+        return;
+    }
+    SentPart &end = _outbox.Part(_outbox.CutSkip());
+    OutboxMessage &message = _outbox.MessageOf(end);
+    message.IsSkipped = true;
+    message.Payload.reset();
+    end.IsLost = true;
+    ++_lost;
+}
+
+// Nothing was acknowledged for a round trip and more: ask again with one datagram (the tail loss probe of RFC
+// 8985), later and later. What is lost will show when it is answered: a path that has only become slow must
+// not get everything once more.
+void LinkSender::OnProbeTimer()
+{
+    _probe = true;
+    _probeAt = LinkNever;  // until the probe is sent
+    if (_outbox.SentCount() == 0)
+    {
+        return;
+    }
+    if (IsTurnedAway())
+    {
+        ++_stalls;
+    }
+    else
+    {
+        ++_doublings;
+        ++_counters.Timeouts;
+    }
+}
+
+bool LinkSender::IsTurnedAway() const
+{
+    const std::uint64_t first = _outbox.FirstSequence();
+    return _outbox.SentCount() > 0 && (_outbox.FirstMessage() >= _creditLimit ||
+                                       (first < _outbox.NextSequence() && _outbox.Part(first).IsHeld));
+}
+
+void LinkSender::ArmProbe(LinkTime now)
+{
+    if (_outbox.Empty())
+    {
+        _probeAt = LinkNever;
+        return;
+    }
+    const LinkTime plain = _path.ProbeTimeout(_doublings);
+    // A queue that is full makes room known: then asking is for the case that this got lost.
+    const LinkTime slow = std::min<LinkTime>(plain * (1LL << std::min(_stalls, 8)),
+                                             std::max(plain, _context.Settings.MaxResend));
+    _probeAt = now + (IsTurnedAway() ? slow : plain);
+}
+
+bool LinkSender::HasCredit(std::uint64_t message) const
+{
+    return message < _creditLimit || (_probe && message == _outbox.FirstMessage());
+}
+
+bool LinkSender::HasLost() const
+{
+    if (_lost == 0)
+    {
+        return false;
+    }
+    std::uint64_t sequence = _outbox.FirstSequence();
+    while (!_outbox.Part(sequence).IsLost)
+    {
+        ++sequence;
+    }
+    return HasCredit(_outbox.Part(sequence).Message);
+}
+
+bool LinkSender::MayCut() const
+{
+    return _outbox.HasMore() && _outbox.NextSequence() - _outbox.FirstSequence() < LinkWindowParts - 1 &&
+           (_outbox.IsInPart() || _outbox.SentCount() < _options.Window) && HasCredit(_outbox.NextIs());
+}
+
+// When a datagram may go out: at once, when the path is paced so, or never.
+LinkTime LinkSender::ReadyAt() const
 {
     if (_outbox.Empty())
     {
         return LinkNever;
     }
-    const LinkTime expiry = _outbox.HasWaiting() ? _outbox.FirstWaiting().ExpiresAt : LinkNever;
-    if (!peer.Token.Known() || peer.Silent)
+    if (_probe)
     {
-        return expiry;
+        return LinkTime(0);
     }
-    return MaySendNext() ? LinkTime(0) : std::min(expiry, _resendAt);
+    if (_doublings >= 2 || !(HasLost() || MayCut()))
+    {
+        return LinkNever;
+    }
+    // A floor: one datagram of each link may always be under way.
+    if (_inFlight == 0)
+    {
+        return LinkTime(0);
+    }
+    return _path.HasRoom() ? _path.PacedUntil() : LinkNever;
 }
 
-// A message that expires before it was ever sent needs no word from the receiver. All messages of a link live
-// equally long, so the oldest is the first to expire.
-void LinkSender::ExpireWaiting(LinkTime now)
+LinkTime LinkSender::NextDue(bool open) const
 {
-    while (_outbox.HasWaiting() && now >= _outbox.FirstWaiting().ExpiresAt)
+    if (_outbox.Empty())
     {
-        const OutboxMessage message = _outbox.TakeWaiting();
-        Report(message, message.Redelivered ? LinkOutcome::InDoubt : LinkOutcome::Expired);
+        return LinkNever;
     }
-}
-
-// Nothing was acknowledged for a round trip and more. Start again at the front with one datagram, and let the
-// acknowledgements open the window again; wait longer each time.
-void LinkSender::OnResendTimer(LinkTime now)
-{
-    _probe = true;
-    _resendAt = now;
-    if (_outbox.SentCount() == 0)
+    LinkTime due = _outbox.HasMore() ? _outbox.Next().ExpiresAt : LinkNever;
+    if (open)
     {
-        return;
+        due = std::min({due, ReadyAt(), _probeAt, _lostAt});
     }
-    GoBackToFront();
-    if (_creditLimit >= _cursor)
-    {
-        // With no credit it is the receiver that is slow, not the path that loses.
-        _allowed = FrontDatagram();
-        _window.Restore();
-        ++_counters.Timeouts;
-    }
-    _timer.BackOff();
-}
-
-void LinkSender::GoBackToFront()
-{
-    _cursor = _outbox.FirstSequence();
-    _bytesInFlight = 0;
-}
-
-// How many messages like the first one fit into one datagram: what goes out after the resend timer, old or
-// new.
-std::size_t LinkSender::FrontDatagram() const
-{
-    const OutboxMessage &front = _outbox.Sent(_outbox.FirstSequence());
-    const std::size_t size = MessageOverhead + front.Bytes + front.Type->size();
-    return std::clamp<std::size_t>(_context.Settings.MaxDatagram / size, 1, LinkMaxItems);
-}
-
-bool LinkSender::MaySendNext() const
-{
-    if (_cursor == _outbox.NextSequence() && !_outbox.HasWaiting())
-    {
-        return false;
-    }
-    const std::size_t inFlight = static_cast<std::size_t>(_cursor - _outbox.FirstSequence());
-    if (inFlight == 0)
-    {
-        return _probe || _cursor <= _creditLimit;
-    }
-    return _cursor <= _creditLimit && inFlight < std::min(_options.Window, _allowed) &&
-           _window.Fits(_bytesInFlight, AtCursor().Bytes);
-}
-
-// The next message to send. There must be one.
-const OutboxMessage &LinkSender::AtCursor() const
-{
-    return _cursor == _outbox.NextSequence() ? _outbox.FirstWaiting() : _outbox.Sent(_cursor);
-}
-
-// When to send again what is in flight now. Large payloads get the time that a slow path needs for them; a
-// window that has grown shows that the path is not slow.
-LinkTime LinkSender::ResendTime(LinkTime now, LinkTime timeout) const
-{
-    const std::size_t front = _outbox.SentCount() > 0 ? _outbox.Sent(_outbox.FirstSequence()).Bytes : 0;
-    const std::size_t bytes = std::min(_bytesInFlight, std::max(_options.WindowBytes, front));
-    const auto transfer = std::chrono::duration<double>(static_cast<double>(bytes) /
-                                                        static_cast<double>(_context.Settings.SlowPath));
-    return now + timeout + std::chrono::duration_cast<LinkTime>(transfer);
-}
-
-void LinkSender::SendDatagram(const PeerView &peer, LinkTime now)
-{
-    LinkData &data = _context.Datagram;
-    data.Version = LinkVersion;
-    data.Source = _context.Settings.Node;
-    data.Destination = _destination;
-    data.Queue = _queue;
-    data.SenderIncarnation = _ownLife;
-    data.ReceiverIncarnation = peer.Incarnation;
-    data.Base = _base;
-    data.First = _cursor;
-    data.Echo = {
-        .Clock = peer.Token.Clock, .Time = peer.Token.Time, .HeldFor = (now - peer.Token.CameAt).count()};
-    data.SentAt = now.count();
-    data.Items.clear();
-
-    const bool fromTheFront = _cursor == _outbox.FirstSequence();
-    if (_outbox.SentCount() == 0 && now > _lastSentAt + _timer.PlainTimeout())
-    {
-        _window.Restore();
-    }
-    std::size_t bytes = DatagramOverhead + data.Source.size() + data.Destination.size() + data.Queue.size();
-    while (data.Items.size() < LinkMaxItems && MaySendNext() && Append(data, bytes, now))
-    {
-    }
-    if (fromTheFront)
-    {
-        _resendAt = ResendTime(now, _timer.Timeout());
-    }
-    _lastSentAt = now;
-    ++_counters.DatagramsSent;
-    _context.Output.Send(data);
-    // The payloads are the outbox's: keep none of them.
-    data.Items.clear();
-}
-
-// Adds the message at the cursor, unless it makes the datagram too large. The first one always goes.
-bool LinkSender::Append(LinkData &data, std::size_t &bytes, LinkTime now)
-{
-    const bool expired = now >= AtCursor().ExpiresAt;
-    const std::size_t size = MessageOverhead + (expired ? 0 : AtCursor().Bytes + AtCursor().Type->size());
-    if (!data.Items.empty() && bytes + size > _context.Settings.MaxDatagram)
-    {
-        return false;
-    }
-    const bool first = _cursor == _outbox.NextSequence();
-    if (first)
-    {
-        _outbox.NumberFirstWaiting();
-    }
-    OutboxMessage &message = _outbox.Sent(_cursor);
-    // Rule S3: a message whose expiry has passed keeps its number and is sent as SKIP, without payload.
-    LinkItem &item = data.Items.emplace_back();
-    item.Flags = message.Redelivered ? LinkFlagRedelivered : std::uint8_t{0};
-    if (expired)
-    {
-        message.Payload.reset();
-        item.Flags = static_cast<std::uint8_t>(item.Flags | LinkFlagSkip);
-        item.TtlLeft = 0;
-    }
-    else
-    {
-        item.TtlLeft = message.ExpiresAt == LinkNever ? LinkNoExpiry : (message.ExpiresAt - now).count();
-        item.Type = *message.Type;
-        if (message.Payload)
-        {
-            item.Payload = message.Payload->View();
-            item.Owner = message.Payload;
-        }
-    }
-    ++_counters.MessagesSent;
-    _counters.MessagesResent += first ? 0 : 1;
-    bytes += size;
-    _bytesInFlight += message.Bytes;
-    ++_cursor;
-    _probe = false;
-    return true;
-}
-
-bool LinkSender::IsPossible(const LinkAck &ack) const
-{
-    return ack.SenderIncarnation != _ownLife ||
-           (ack.Cumulative >= _base - 1 && ack.Cumulative < _outbox.NextSequence());
-}
-
-// Rule S4: everything up to `cum` leaves the outbox with the outcome that its bit says; the credit rises.
-void LinkSender::OnAck(const LinkAck &ack, LinkTime now)
-{
-    if (ack.SenderIncarnation != _ownLife || !IsPossible(ack))
-    {
-        return;
-    }
-    if (ack.EchoSentAt > _echoedSentAt && ack.EchoSentAt + ack.EchoHeldFor <= now.count())
-    {
-        _echoedSentAt = ack.EchoSentAt;
-        const LinkTime roundTrip = now - LinkTime(ack.EchoSentAt + ack.EchoHeldFor);
-        _timer.Measured(roundTrip);
-        _window.Measured(roundTrip);
-    }
-    const std::uint64_t first = _outbox.FirstSequence();
-    if (ack.Cumulative >= first)
-    {
-        const std::size_t inFlight = _bytesInFlight;
-        for (std::uint64_t sequence = first; sequence <= ack.Cumulative; ++sequence)
-        {
-            const OutboxMessage message = _outbox.TakeSent();
-            const std::uint64_t age = ack.Cumulative - sequence;
-            if (sequence < _cursor)
-            {
-                _bytesInFlight -= message.Bytes;
-            }
-            if (OutcomeHistory::Test(ack.Delivered, age))
-            {
-                Report(message, LinkOutcome::Delivered);
-            }
-            else if (message.Redelivered)
-            {
-                Report(message, LinkOutcome::InDoubt);
-            }
-            else
-            {
-                const bool refused = OutcomeHistory::Test(ack.Refused, age);
-                Report(message, refused ? LinkOutcome::RefusedThere : LinkOutcome::Expired);
-            }
-        }
-        _window.Acknowledged(inFlight - _bytesInFlight, inFlight);
-        _cursor = std::max(_cursor, ack.Cumulative + 1);
-        _allowed = std::min(_options.Window, _allowed + static_cast<std::size_t>(ack.Cumulative + 1 - first));
-        _resendAt = ResendTime(now, _timer.Timeout());
-    }
-    if (ack.Time < _creditTime)
-    {
-        return;  // a newer one came before it
-    }
-    _creditTime = ack.Time;
-    _creditLimit = ack.Cumulative + std::min<std::uint64_t>(ack.Credit, LinkOutcomeBits);
-    if (_creditLimit < _outbox.FirstSequence())
-    {
-        // The receiver has turned away what is on its way: it is sent again when there is credit.
-        GoBackToFront();
-    }
+    return due;
 }
 
 void LinkSender::OnPeerHeard(LinkTime now)
 {
-    if (_timer.Timeout() >= _context.Settings.HelloPeriod)
+    if (_doublings > 0 && !IsTurnedAway())
     {
-        _resendAt = std::min(_resendAt, std::max(now, ResendTime(_lastSentAt, _timer.PlainTimeout())));
+        _probeAt = std::min(_probeAt, std::max(now, _lastSentAt + _path.ProbeTimeout()));
     }
 }
 
-// Rule S5: what was sent but not acknowledged is in doubt, or is sent again as redelivered; what was never
-// sent continues after it. The credit is forgotten.
+// Rule S5: what was sent as a whole but not acknowledged is in doubt, or is sent again as redelivered; what
+// was sent in part or not at all continues after it, from its beginning. The credit is forgotten.
 void LinkSender::Restart()
 {
-    while (_outbox.SentCount() > 0)
+    for (std::uint64_t left = _outbox.NextSequence() - _outbox.FirstSequence(); left > 0; --left)
     {
-        if (_options.RedeliverInDoubt)
-        {
-            _outbox.Sent(_outbox.NextSequence() - 1).Redelivered = true;
-            _outbox.ReturnLastSent();
-        }
-        else
+        SentPart part = _outbox.TakePart();
+        LeavePath(part);
+    }
+    while (_outbox.SentCount() > 0 && !_options.RedeliverInDoubt)
+    {
+        const OutboxMessage &oldest = _outbox.Message(_outbox.FirstMessage());
+        if (oldest.MayArrive)
         {
             Report(_outbox.TakeSent(), LinkOutcome::InDoubt);
         }
+        else if (oldest.IsSkipped)
+        {
+            ReportExpired(_outbox.TakeSent());
+        }
+        else
+        {
+            _outbox.ReturnLastSent();  // only the newest one can be there in part
+        }
+    }
+    while (_outbox.SentCount() > 0)
+    {
+        OutboxMessage &newest = _outbox.Message(_outbox.NextMessage() - 1);
+        newest.Redelivered = newest.Redelivered || newest.MayArrive;
+        _outbox.ReturnLastSent();
     }
     _base = _outbox.NextSequence();
-    _cursor = _base;
-    _bytesInFlight = 0;
-    _window.Restore();
-    _allowed = _options.Window;
+    _types.ForgetKnown();
+    _isKnown = false;
+    _lost = 0;
+    _held = 0;
     _creditLimit = 0;
-    _creditTime = 0;
+    _ackTime = 0;
     _probe = true;
-    _timer.Restore();
+    _doublings = 0;
+    _stalls = 0;
+    _probeAt = LinkNever;
+    _lostAt = LinkNever;
     ++_counters.Restarts;
 }
 
 void LinkSender::Close()
 {
+    for (std::uint64_t left = _outbox.NextSequence() - _outbox.FirstSequence(); left > 0; --left)
+    {
+        SentPart part = _outbox.TakePart();
+        LeavePath(part);
+    }
     while (_outbox.SentCount() > 0)
     {
-        Report(_outbox.TakeSent(), LinkOutcome::InDoubt);
+        const OutboxMessage message = _outbox.TakeSent();
+        if (message.MayArrive)
+        {
+            Report(message, LinkOutcome::InDoubt);
+        }
+        else
+        {
+            ReportExpired(message);
+        }
     }
     while (_outbox.HasWaiting())
     {
-        const OutboxMessage message = _outbox.TakeWaiting();
-        Report(message, message.Redelivered ? LinkOutcome::InDoubt : LinkOutcome::Expired);
+        ReportExpired(_outbox.TakeWaiting());
     }
-    _cursor = _outbox.NextSequence();
+    _lost = 0;
+    _held = 0;
+}
+
+void LinkSender::ReportExpired(const OutboxMessage &message)
+{
+    Report(message, message.Redelivered ? LinkOutcome::InDoubt : LinkOutcome::Expired);
 }
 
 void LinkSender::Report(const OutboxMessage &message, LinkOutcome outcome)
@@ -394,19 +328,21 @@ LinkSenderCounters LinkSender::Counters() const
     counters.Pending = _outbox.Count();
     counters.PendingBytes = _outbox.Bytes();
     counters.Unacknowledged = _outbox.SentCount();
-    counters.RoundTrip = _timer.RoundTrip();
+    counters.UnacknowledgedParts = static_cast<std::size_t>(_outbox.NextSequence() - _outbox.FirstSequence());
+    counters.RoundTrip = _path.Times().Smoothed();
     return counters;
 }
 
 std::string LinkSender::Describe() const
 {
     std::ostringstream out;
-    out << "to " << _destination << '/' << _queue << ": base " << _base << " first "
-        << _outbox.FirstSequence() << " cursor " << _cursor << " next " << _outbox.NextSequence()
-        << " pending " << _outbox.Count() << " bytes " << _outbox.Bytes() << " in flight " << _bytesInFlight
-        << " of " << _window.Bytes() << " allowed " << _allowed << " credit to " << _creditLimit << " of "
-        << _creditTime << (_probe ? " probe" : "") << " resend at " << _resendAt.count() << " timeout "
-        << _timer.Timeout().count() << " echoed " << _echoedSentAt;
+    out << "to " << _destination << '/' << _queue << ": link " << _number << (_isKnown ? " known" : "")
+        << " base " << _base << " first " << _outbox.FirstSequence() << " next " << _outbox.NextSequence()
+        << " messages " << _outbox.FirstMessage() << " to " << _outbox.NextMessage() << " pending "
+        << _outbox.Count() << " bytes " << _outbox.Bytes() << " in flight " << _inFlight << " lost " << _lost
+        << " held " << _held << " credit to " << _creditLimit << " of " << _ackTime
+        << (_probe ? " probe" : "") << " probe at " << _probeAt.count() << " doublings " << _doublings
+        << " lost at " << _lostAt.count() << " echo " << _lastEcho.count();
     return out.str();
 }
 

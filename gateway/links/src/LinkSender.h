@@ -1,10 +1,9 @@
 #pragma once
 
-#include "ByteWindow.h"
 #include "LinkContext.h"
 #include "LinkOutbox.h"
-#include "PeerToken.h"
-#include "ResendTimer.h"
+#include "PathControl.h"
+#include "TypeNumbers.h"
 
 #include <rabit/gateway/links/LinkCounters.h>
 #include <rabit/gateway/links/LinkMessages.h>
@@ -18,36 +17,41 @@
 namespace Rabit
 {
 
-// What a sender needs to know of its peer to send to it.
-struct PeerView
-{
-    const std::string &Name;
-    std::uint64_t Incarnation = 0;  // r_inc: the life that the peer is in, as far as known
-    PeerToken Token;
-    bool Silent = false;  // not heard for long: nothing but hellos is sent to it
-};
-
 // The sending half of one link: rules S1 to S5 of the protocol, for one queue of one other node.
 class LinkSender
 {
 public:
-    // `ownLife`: the life in which this node is to the destination; must outlive the object.
-    LinkSender(LinkContext &context, const std::uint64_t &ownLife, std::string destination, std::string queue,
-               const LinkOptions &options);
+    // `path` and `ownLife`, the life in which this node is to the destination, must outlive the object.
+    // `number` is this link's among those to the destination.
+    LinkSender(LinkContext &context, PathControl &path, const std::uint64_t &ownLife, std::uint32_t number,
+               std::string destination, std::string queue, const LinkOptions &options);
 
     // Rule S1. `type` must live as long as this object.
     LinkRefusal Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now);
-    // Rules S2 and S3: expires, sends and resends what is due.
-    void Run(const PeerView &peer, LinkTime now);
-    // When Run has something to do; see LinkNode::NextDue.
-    LinkTime NextDue(const PeerView &peer) const;
+
+    // Rule S3 and the timers: everything that is due except sending. `open`: the peer has given a token and
+    // is not silent.
+    void Advance(bool open, LinkTime now);
+    // Whether a datagram may go out now, if the peer is open.
+    bool IsReady(LinkTime now) const;
+    // Bytes of parts that the next datagram would carry, about and at most what one can.
+    std::size_t NextBytes() const;
+    // Rule S2: puts the next datagram's parts into the frame, whose header is complete, such that it is not
+    // larger than `most` unless a single small part makes it so. False: there is nothing to send.
+    bool Fill(LinkFrame &frame, std::size_t most, LinkTime now);
+    // Whether there is more to send as soon as the path lets it.
+    bool HasMore() const { return HasLost() || MayCut(); }
+    // Whether there is more that may go only after an acknowledgement, whatever the path.
+    bool WaitsForAck() const { return _outbox.HasMore() && !MayCut(); }
+    // When Advance or sending is due; see LinkNode::NextDue.
+    LinkTime NextDue(bool open) const;
 
     // Whether the acknowledgement can be one of this stream: a number never sent cannot be acknowledged.
     bool IsPossible(const LinkAck &ack) const;
-    // Rule S4, for an acknowledgement of the peer's present life.
-    void OnAck(const LinkAck &ack, LinkTime now);
-    // A hello has come from the peer: there is a path, so what waits for the resend timer need not wait
-    // longer.
+    // Rule S4, for an acknowledgement of the present lives. `time`: the receiver's clock when it was sent.
+    // `echo`: when the newest frame was sent that the receiver had then; 0: unknown.
+    void OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, LinkTime now);
+    // Something came from the peer after a silence: what waits for the probe timer need not wait longer.
     void OnPeerHeard(LinkTime now);
     // Rules S5 and S6: the receiver, or this node, is in a new life. The stream starts anew.
     void Restart();
@@ -55,48 +59,69 @@ public:
     void Close();
 
     bool HasPending() const { return !_outbox.Empty(); }
+    std::uint32_t Number() const { return _number; }
     const std::string &Queue() const { return _queue; }
     LinkSenderCounters Counters() const;
     std::string Describe() const;
 
 private:
+    struct Filling;  // a datagram that is being filled
+
     void ExpireWaiting(LinkTime now);
-    void OnResendTimer(LinkTime now);
-    bool MaySendNext() const;
-    const OutboxMessage &AtCursor() const;
-    std::size_t FrontDatagram() const;
-    void GoBackToFront();
-    LinkTime ResendTime(LinkTime now, LinkTime timeout) const;
-    void SendDatagram(const PeerView &peer, LinkTime now);
-    bool Append(LinkData &data, std::size_t &bytes, LinkTime now);
+    void ExpireSent(LinkTime now);
+    void OnProbeTimer();
+    LinkTime ReadyAt() const;
+    // Whether there is credit for this sent message, or the first as a probe.
+    bool HasCredit(std::uint64_t message) const;
+    bool HasLost() const;
+    bool MayCut() const;
+
+    void FillAgain(Filling &filling);
+    bool FillNew(Filling &filling);
+    bool Again(Filling &filling, std::uint64_t &sequence);
+    void Describe(const SentPart &part, const OutboxMessage &message, std::uint64_t sequence, LinkItem &item,
+                  LinkTime now) const;
+    void OnPartSent(Filling &filling, SentPart &part, std::size_t bytes);
+
+    void TakeUpTo(const LinkAck &ack, LinkTime now);
+    void TakeHeld(const LinkAck &ack, LinkTime now);
+    void FindLost(LinkTime echo, LinkTime now);
+    void OnArrived(SentPart &part, LinkTime now);
+    void SetLost(SentPart &part, bool onTheWay);
+    void LeavePath(SentPart &part);
+    void ArmProbe(LinkTime now);
+    // The receiver has no room, for the first message or for what it has already.
+    bool IsTurnedAway() const;
     void Report(const OutboxMessage &message, LinkOutcome outcome);
+    void ReportExpired(const OutboxMessage &message);
 
     LinkContext &_context;
+    PathControl &_path;
     const std::uint64_t &_ownLife;
+    const std::uint32_t _number;
     const std::string _destination;
     const std::string _queue;
     const LinkOptions _options;
     LinkOutbox _outbox;
+    TypeNumbers _types;
+    bool _isKnown = false;  // the receiver knows which queue the number means
 
-    // First number of this stream. Its incarnation is always _ownLife.
-    std::uint64_t _base = 1;
-    // Next number to send. Below NextSequence(): it was sent before.
-    std::uint64_t _cursor = 1;
-    // Bytes of the messages from the first unacknowledged one up to the cursor.
-    std::size_t _bytesInFlight = 0;
-    ByteWindow _window;
-    // Messages that may be in flight: the window, or fewer after a timeout until acknowledgements come again.
-    std::size_t _allowed;
-    // Highest number that the receiver has given credit for, and when (by its clock) it did.
+    std::uint64_t _base = 1;  // first number of this stream; its incarnation is always _ownLife
+    std::size_t _inFlight = 0;
+    std::size_t _lost = 0;  // parts that are to be sent again
+    std::size_t _held = 0;  // parts that the receiver has, beyond a gap
+    // The first sent message that there is no credit for, and the receiver's clock when it said so.
     std::uint64_t _creditLimit = 0;
-    std::int64_t _creditTime = 0;
-    // The first message may be sent although there is no credit for it.
-    bool _probe = true;
+    std::int64_t _ackTime = 0;
 
-    ResendTimer _timer;
-    LinkTime _resendAt{0};
+    // One datagram may go out although there is no credit or no room on the path.
+    bool _probe = true;
+    int _doublings = 0;  // probes since anything was heard of this stream
+    int _stalls = 0;     // the same since anything was acknowledged, while the receiver is what holds it up
+    LinkTime _probeAt = LinkNever;
+    LinkTime _lostAt = LinkNever;  // when what was overtaken counts as lost
+    LinkTime _lastEcho{0};
     LinkTime _lastSentAt{0};
-    std::int64_t _echoedSentAt = 0;  // of the latest datagram whose round trip was measured
 
     LinkSenderCounters _counters;
 };

@@ -11,12 +11,7 @@ namespace Rabit
 namespace
 {
 
-constexpr std::uint8_t KnownFlags = LinkFlagSkip | LinkFlagRedelivered;
-
-bool AreNames(std::string_view source, std::string_view destination)
-{
-    return IsPossibleName(source) && IsPossibleName(destination) && source != destination;
-}
+constexpr std::uint8_t KnownFlags = LinkFlagSkip | LinkFlagRedelivered | LinkFlagFirst | LinkFlagLast;
 
 bool IsNoneOrPossible(std::uint64_t incarnation)
 {
@@ -25,15 +20,50 @@ bool IsNoneOrPossible(std::uint64_t incarnation)
 
 bool IsWellFormed(const LinkItem &item)
 {
-    if ((item.Flags & ~KnownFlags) != 0 || item.TtlLeft < LinkNoExpiry)
+    if ((item.Flags & ~KnownFlags) != 0 || item.TtlLeft < LinkNoExpiry || item.Sequence == 0)
     {
         return false;
     }
+    const bool first = (item.Flags & LinkFlagFirst) != 0;
     if ((item.Flags & LinkFlagSkip) != 0)
     {
-        return item.Type.empty() && item.Payload.empty();
+        return item.Through >= item.Sequence && item.Through - item.Sequence < LinkWindowParts &&
+               item.Type.empty() && item.Payload.empty();
     }
-    return IsPossibleName(item.Type);
+    const bool named = item.Type.size() <= LinkMaxName && item.TypeNumber <= LinkMaxTypes &&
+                       (item.TypeNumber < LinkMaxTypes || !item.Type.empty());
+    return item.Through == item.Sequence && (first ? named : item.Type.empty());
+}
+
+bool IsWellFormed(const LinkData &data)
+{
+    if (data.Link == 0 || data.Queue.size() > LinkMaxName || data.Oldest == 0 || data.Items.empty() ||
+        data.Items.size() > LinkMaxItems)
+    {
+        return false;
+    }
+    std::uint64_t before = data.Oldest - 1;
+    for (const LinkItem &item : data.Items)
+    {
+        // All within a window from the oldest.
+        if (!IsWellFormed(item) || item.Sequence <= before || item.Through - data.Oldest >= LinkWindowParts)
+        {
+            return false;
+        }
+        before = item.Through;
+    }
+    return before < std::numeric_limits<std::uint64_t>::max() - LinkWindowParts;
+}
+
+bool IsWellFormed(const LinkAck &ack)
+{
+    if (ack.Link == 0 || !ack.Open)
+    {
+        return ack.Link != 0 && ack.Cumulative == 0;
+    }
+    return ack.Oldest >= 1 && ack.Oldest <= ack.Cumulative + 1 &&
+           ack.Cumulative + 1 - ack.Oldest <= LinkWindowParts &&
+           ack.Cumulative < std::numeric_limits<std::uint64_t>::max() - LinkWindowParts;
 }
 
 void Require(bool condition, const char *what)
@@ -62,38 +92,29 @@ bool IsPossibleIncarnation(std::uint64_t incarnation)
     return incarnation != 0 && (incarnation >> 32) != std::numeric_limits<std::uint32_t>::max();
 }
 
-bool IsWellFormed(const LinkData &data)
+bool IsWellFormed(const LinkFrame &frame)
 {
-    return data.Version == LinkVersion && AreNames(data.Source, data.Destination) &&
-           IsPossibleName(data.Queue) && IsPossibleIncarnation(data.SenderIncarnation) &&
-           IsPossibleIncarnation(data.ReceiverIncarnation) && data.Base >= 1 && data.First >= data.Base &&
-           data.First <= std::numeric_limits<std::uint64_t>::max() - LinkMaxItems && data.Echo.Clock != 0 &&
-           data.Echo.Time >= 0 && data.Echo.HeldFor >= 0 && data.SentAt >= 0 && !data.Items.empty() &&
-           data.Items.size() <= LinkMaxItems &&
-           std::all_of(data.Items.begin(), data.Items.end(),
-                       [](const LinkItem &item) { return IsWellFormed(item); });
-}
-
-bool IsWellFormed(const LinkAck &ack)
-{
-    return ack.Version == LinkVersion && AreNames(ack.Source, ack.Destination) && IsPossibleName(ack.Queue) &&
-           IsPossibleIncarnation(ack.ReceiverIncarnation) && IsNoneOrPossible(ack.SenderIncarnation) &&
-           (ack.SenderIncarnation != 0 || ack.Cumulative == 0) && ack.Clock != 0 && ack.Time >= 0 &&
-           IsNoneOrPossible(ack.YourIncarnation) && IsPossibleTime(ack.EchoSentAt) &&
-           IsPossibleTime(ack.EchoHeldFor);
-}
-
-bool IsWellFormed(const LinkHello &hello)
-{
-    return hello.Version == LinkVersion && AreNames(hello.Source, hello.Destination) &&
-           IsPossibleIncarnation(hello.Incarnation) && IsNoneOrPossible(hello.YourIncarnation) &&
-           hello.Clock != 0 && hello.Time >= 0;
+    if (frame.Version != LinkVersion || !IsPossibleName(frame.Source) || !IsPossibleTime(frame.Time) ||
+        !IsPossibleTime(frame.Echo.Time) || !IsPossibleTime(frame.Echo.HeldFor) ||
+        frame.Acks.size() > LinkMaxAcks)
+    {
+        return false;
+    }
+    if (!frame.Short && (!IsPossibleIncarnation(frame.SenderLife) || !IsNoneOrPossible(frame.ReceiverLife) ||
+                         frame.Clock == 0 || (!frame.IsHello() && frame.ReceiverLife == 0)))
+    {
+        return false;
+    }
+    return (!frame.HasData || IsWellFormed(frame.Data)) &&
+           std::all_of(frame.Acks.begin(), frame.Acks.end(),
+                       [](const LinkAck &ack) { return IsWellFormed(ack); });
 }
 
 void RequireValid(const LinkSettings &settings)
 {
     Require(IsPossibleName(settings.Node), "Node must have 1 to 255 bytes");
     Require(settings.Clock != 0, "Clock must not be 0");
+    Require(settings.MaxDatagram >= 100, "MaxDatagram must be at least 100");
     Require(settings.AckDelay >= LinkTime(0), "AckDelay must not be negative");
     Require(settings.AckEvery >= 1, "AckEvery must be at least 1");
     Require(settings.AckEveryBytes >= 1, "AckEveryBytes must be at least 1");
@@ -101,8 +122,8 @@ void RequireValid(const LinkSettings &settings)
     Require(settings.MinResend <= settings.FirstResend && settings.FirstResend <= settings.MaxResend,
             "MinResend <= FirstResend <= MaxResend must hold");
     Require(settings.MaxResend <= std::chrono::hours(1), "MaxResend must be at most an hour");
-    Require(settings.SlowPath >= 1, "SlowPath must be at least 1");
-    Require(settings.ShortRoundTrip >= LinkTime(0), "ShortRoundTrip must not be negative");
+    Require(settings.QueueingTarget > LinkTime(0), "QueueingTarget must be positive");
+    Require(settings.PathMemory > LinkTime(0), "PathMemory must be positive");
     Require(settings.HelloPeriod > LinkTime(0), "HelloPeriod must be positive");
     Require(settings.HelloPeriod <= settings.SilentHelloPeriod, "HelloPeriod <= SilentHelloPeriod must hold");
     Require(settings.HelloGap >= LinkTime(0), "HelloGap must not be negative");
@@ -115,7 +136,7 @@ void RequireValid(const LinkSettings &settings)
 void RequireValid(const LinkOptions &options)
 {
     Require(options.Capacity >= 1, "Capacity must be at least 1");
-    Require(options.Window >= 1 && options.Window <= LinkOutcomeBits, "Window must be 1 to LinkOutcomeBits");
+    Require(options.Window >= 1 && options.Window <= LinkMaxWindow, "Window must be 1 to LinkMaxWindow");
     Require(options.Expire >= LinkTime(0) && options.Expire <= std::chrono::hours(24 * 365),
             "Expire must be 0 to a year");
 }

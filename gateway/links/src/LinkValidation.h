@@ -12,9 +12,7 @@ bool IsPossibleName(std::string_view name);
 // Not 0, and such that a higher one exists.
 bool IsPossibleIncarnation(std::uint64_t incarnation);
 
-bool IsWellFormed(const LinkData &data);
-bool IsWellFormed(const LinkAck &ack);
-bool IsWellFormed(const LinkHello &hello);
+bool IsWellFormed(const LinkFrame &frame);
 
 // Throw std::invalid_argument, naming the field, if a value is out of its range.
 void RequireValid(const LinkSettings &settings);

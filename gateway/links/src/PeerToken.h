@@ -8,10 +8,10 @@ namespace Rabit
 {
 
 // The token: the newest reading of a peer's clock that came, and when it came by our own clock. Its echo
-// proves to the peer that a datagram is younger than Time, and bounds how long the datagram was on its way.
+// proves to the peer that a frame is younger than Time, and bounds how long the frame was on its way.
 struct PeerToken
 {
-    std::uint64_t Clock = 0;  // 0: none has come yet
+    std::uint32_t Clock = 0;  // 0: none has come yet
     std::int64_t Time = 0;
     LinkTime CameAt{0};
 

@@ -1,8 +1,10 @@
 // In the steady state a link allocates nothing for a message. A program of its own, because it replaces
 // operator new.
 #include <gtest/gtest.h>
+#include <rabit/gateway/links/LinkFrameCodec.h>
 #include <rabit/gateway/links/LinkNode.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 
@@ -51,12 +53,19 @@ public:
         settings.Clock = clock;
         Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
     }
-    void Send(const LinkData &data) override { Other->Node->OnData(data, *Now); }
-    void Send(const LinkAck &ack) override { Other->Node->OnAck(ack, *Now); }
-    void Send(const LinkHello &hello) override { Other->Node->OnHello(hello, *Now); }
+    void Send(const LinkFrame &frame) override
+    {
+        // As through the codec, but in memory that is used again.
+        _bytes.resize(std::max(_bytes.size(), LinkFrameCodec::EncodedSize(frame)));
+        const std::span<std::uint8_t> bytes = std::span(_bytes).first(LinkFrameCodec::EncodedSize(frame));
+        LinkFrameCodec::Encode(frame, bytes);
+        ASSERT_TRUE(LinkFrameCodec::Decode(bytes, _frame));
+        _frame.Source = Node->Name();
+        Other->Node->OnFrame(_frame, *Now);
+    }
     void OnOutcome(std::uint64_t, std::string_view, std::string_view, LinkOutcome) override { ++Outcomes; }
     LocalQueueResult Deliver(std::string_view, std::string_view, std::string_view,
-                             std::span<const std::uint8_t>, bool) override
+                             std::span<const std::uint8_t>, const LinkPayload &, bool) override
     {
         return LocalQueueResult::Ok;
     }
@@ -67,6 +76,10 @@ public:
     Wired *Other = nullptr;
     const LinkTime *Now = nullptr;
     std::size_t Outcomes = 0;
+
+private:
+    std::vector<std::uint8_t> _bytes;
+    LinkFrame _frame;
 };
 
 TEST(LinkAllocation, a_message_in_the_steady_state_costs_none)

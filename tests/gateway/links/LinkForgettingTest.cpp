@@ -19,9 +19,9 @@ LinkSettings ForTwo()
     return settings;
 }
 
-StoredHello HelloOf(const std::string &node, PlayedPeer &peer)
+StoredFrame HelloOf(const std::string &node, PlayedPeer &peer)
 {
-    StoredHello hello = peer.Hello();
+    StoredFrame hello = peer.Hello();
     hello.Source = node;
     return hello;
 }
@@ -78,10 +78,9 @@ TEST(LinkForgetting, what_was_delivered_before_is_not_delivered_again_when_the_s
     a.Hear(b.Data(1, {"m"}, a.Now));
     a.Pass(5ms);
     EXPECT_THAT(a.TakeDelivered(), IsEmpty());
-    const std::vector<StoredAck> acks = a.TakeAcks();
-    ASSERT_FALSE(acks.empty());
-    EXPECT_GT(acks.back().Fields.ReceiverIncarnation, b.KnownLife) << "the sender must take it for a restart";
-    EXPECT_EQ(acks.back().Fields.SenderIncarnation, 0U);
+    const std::vector<StoredFrame> hellos = a.TakeHellos();
+    ASSERT_FALSE(hellos.empty());
+    EXPECT_GT(hellos.back().Fields.SenderLife, b.KnownLife) << "the sender must take it for a restart";
 }
 
 TEST(LinkForgetting, the_sender_goes_on_once_it_knows)
@@ -93,8 +92,8 @@ TEST(LinkForgetting, the_sender_goes_on_once_it_knows)
     ASSERT_TRUE(a.Node->Forget("b"));
     a.TakeDelivered();
     b.KnownLife = a.Node->IncarnationTo("b");
-    StoredData data = b.Data(3, {"m3"}, a.Now);
-    data.Fields.Base = 3;
+    StoredFrame data = b.Data(3, {"m3"}, a.Now);
+    data.Fields.Data.Oldest = 3;
     a.Hear(data);
     EXPECT_THAT(a.TakeDelivered(), SizeIs(1));
 }
@@ -106,16 +105,16 @@ TEST(LinkForgetting, the_next_stream_to_a_forgotten_peer_outranks_the_last_one)
     a.Hear(b.Hello());
     a.Enqueue("m");
     a.Pass(1ms);
-    const std::vector<StoredData> first = a.TakeDatas();
+    const std::vector<StoredFrame> first = a.TakeDatas();
     ASSERT_THAT(first, SizeIs(1));
     a.Hear(b.Ack(1));
     ASSERT_TRUE(a.Node->Forget("b"));
     a.Hear(b.Hello());
     a.Enqueue("n");
     a.Pass(30ms);
-    const std::vector<StoredData> second = a.TakeDatas();
+    const std::vector<StoredFrame> second = a.TakeDatas();
     ASSERT_THAT(second, SizeIs(1));
-    EXPECT_GT(second[0].Fields.SenderIncarnation, first[0].Fields.SenderIncarnation);
+    EXPECT_GT(second[0].Fields.SenderLife, first[0].Fields.SenderLife);
 }
 
 TEST(LinkForgetting, other_peers_see_nothing_of_it)

@@ -1,8 +1,8 @@
 // The small parts that the rules are made of.
-#include "ByteWindow.h"
+#include "AssemblyMemory.h"
 #include "OutcomeHistory.h"
-#include "ResendTimer.h"
 #include "RingBuffer.h"
+#include "RoundTrip.h"
 
 #include <rabit/gateway/links/LinkOutcome.h>
 
@@ -67,132 +67,55 @@ TEST(RingBuffer, keeps_nothing_of_what_was_taken_out)
     EXPECT_EQ(value.use_count(), 1);
 }
 
-TEST(OutcomeHistory, remembers_the_last_256_and_no_more)
+TEST(OutcomeHistory, remembers_the_last_1024_and_no_more)
 {
     OutcomeHistory history;
-    history.Push(OutcomeHistory::Entry::Refused);
-    for (int i = 0; i < 254; ++i)
+    history.Set(1, OutcomeHistory::Entry::Refused);
+    for (std::uint64_t i = 2; i <= 1024; ++i)
     {
-        history.Push(i % 3 == 0 ? OutcomeHistory::Entry::Delivered : OutcomeHistory::Entry::Skipped);
+        history.Set(i, i % 3 == 0 ? OutcomeHistory::Entry::Delivered : OutcomeHistory::Entry::Skipped);
     }
-    EXPECT_TRUE(OutcomeHistory::Test(history.Refused(), 254));
-    EXPECT_TRUE(OutcomeHistory::Test(history.Delivered(), 253));
-    EXPECT_FALSE(OutcomeHistory::Test(history.Delivered(), 252));
-    EXPECT_TRUE(OutcomeHistory::Test(history.Delivered(), 253 - 64 * 3));
-    history.Push(OutcomeHistory::Entry::Delivered);
-    EXPECT_TRUE(OutcomeHistory::Test(history.Refused(), 255));
-    history.Push(OutcomeHistory::Entry::Delivered);
-    EXPECT_FALSE(OutcomeHistory::Test(history.Refused(), 255));
-    EXPECT_FALSE(OutcomeHistory::Test(history.Refused(), 256));
+    EXPECT_TRUE(OutcomeHistory::Test(history.Refused(), 1));
+    EXPECT_TRUE(OutcomeHistory::Test(history.Delivered(), 999));
+    EXPECT_FALSE(OutcomeHistory::Test(history.Delivered(), 1000));
+    history.Set(1025, OutcomeHistory::Entry::Delivered);
+    EXPECT_TRUE(OutcomeHistory::Test(history.Delivered(), 1025));
+    EXPECT_FALSE(OutcomeHistory::Test(history.Refused(), 1025)) << "nothing of what had that place";
     history.Clear();
     EXPECT_EQ(history.Delivered(), LinkBitmap{});
 }
 
 // The figures of RFC 6298, section 2, worked out by hand.
-TEST(ResendTimer, follows_rfc_6298)
+TEST(RoundTrip, follows_rfc_6298)
 {
-    ResendTimer timer{LinkSettings()};
-    EXPECT_EQ(timer.Timeout(), 200ms) << "before the first measurement";
-    timer.Measured(100ms);
-    EXPECT_EQ(timer.RoundTrip(), 100ms);
-    EXPECT_EQ(timer.Timeout(), 300ms) << "SRTT + 4 * R/2";
-    timer.Measured(180ms);
-    EXPECT_EQ(timer.RoundTrip(), 110ms) << "7/8 * 100 + 1/8 * 180";
-    EXPECT_EQ(timer.Timeout(), 110ms + 4 * 57500us) << "RTTVAR = 3/4 * 50 + 1/4 * 80";
+    RoundTrip times;
+    EXPECT_FALSE(times.IsKnown());
+    times.Measured(100ms);
+    EXPECT_EQ(times.Smoothed(), 100ms);
+    EXPECT_EQ(times.Variation(), 50ms) << "R/2";
+    times.Measured(180ms);
+    EXPECT_EQ(times.Smoothed(), 110ms) << "7/8 * 100 + 1/8 * 180";
+    EXPECT_EQ(times.Variation(), 57500us) << "3/4 * 50 + 1/4 * 80";
+    EXPECT_EQ(times.Latest(), 180ms);
 }
 
-TEST(ResendTimer, doubles_up_to_the_bound_and_is_restored)
+TEST(AssemblyMemory, lets_one_go_beyond_the_limit_and_another_one_when_that_stands_still)
 {
-    ResendTimer timer{LinkSettings()};
-    timer.Measured(50ms);
-    for (const LinkTime expected : {150ms, 300ms, 600ms, 1000ms, 1000ms})
-    {
-        EXPECT_EQ(timer.Timeout(), expected);
-        timer.BackOff();
-    }
-    EXPECT_EQ(timer.PlainTimeout(), 150ms);
-    timer.Restore();
-    EXPECT_EQ(timer.Timeout(), 150ms);
-    timer.BackOff();
-    timer.Measured(50ms);
-    EXPECT_EQ(timer.Timeout(), 50ms + 4 * 18750us) << "a measurement ends the back-off";
-}
-
-TEST(ResendTimer, stays_within_its_bounds)
-{
-    ResendTimer fast{LinkSettings()};
-    for (int i = 0; i < 100; ++i)
-    {
-        fast.Measured(100us);
-    }
-    EXPECT_EQ(fast.Timeout(), 20ms);
-    ResendTimer slow{LinkSettings()};
-    slow.Measured(30s);
-    EXPECT_EQ(slow.Timeout(), 1s);
-    for (int i = 0; i < 1000; ++i)
-    {
-        slow.BackOff();
-    }
-    EXPECT_EQ(slow.Timeout(), 1s);
-    ResendTimer zero{LinkSettings()};
-    zero.Measured(0ns);
-    EXPECT_EQ(zero.Timeout(), 20ms);
-}
-
-LinkOptions Windows(std::size_t smallest, std::size_t largest)
-{
-    LinkOptions options;
-    options.WindowBytes = smallest;
-    options.LargestWindowBytes = largest;
-    return options;
-}
-
-TEST(ByteWindow, doubles_with_each_short_round_trip_that_fills_it_up_to_the_largest)
-{
-    ByteWindow window(Windows(100, 350), 10ms);
-    for (const std::size_t expected : {200U, 350U, 350U})
-    {
-        const std::size_t inFlight = window.Bytes();
-        window.Measured(10ms);
-        window.Acknowledged(inFlight, inFlight);
-        EXPECT_EQ(window.Bytes(), expected);
-    }
-    EXPECT_TRUE(window.Fits(300, 50));
-    EXPECT_FALSE(window.Fits(300, 51));
-}
-
-TEST(ByteWindow, does_not_grow_before_a_round_trip_was_measured)
-{
-    ByteWindow window(Windows(100, 1000), 10ms);
-    window.Acknowledged(100, 100);
-    EXPECT_EQ(window.Bytes(), 100U);
-}
-
-TEST(ByteWindow, does_not_grow_while_less_than_half_of_it_is_used)
-{
-    ByteWindow window(Windows(100, 1000), 10ms);
-    window.Measured(1ms);
-    window.Acknowledged(49, 49);
-    EXPECT_EQ(window.Bytes(), 100U);
-}
-
-TEST(ByteWindow, is_as_at_the_beginning_after_a_long_round_trip)
-{
-    ByteWindow window(Windows(100, 1000), 10ms);
-    window.Measured(1ms);
-    window.Acknowledged(100, 100);
-    window.Measured(10ms + 1ns);
-    EXPECT_EQ(window.Bytes(), 100U);
-    window.Acknowledged(100, 100);
-    EXPECT_EQ(window.Bytes(), 100U);
-}
-
-TEST(ByteWindow, is_never_smaller_than_the_smallest)
-{
-    ByteWindow window(Windows(100, 0), 10ms);
-    window.Measured(1ms);
-    window.Acknowledged(100, 100);
-    EXPECT_EQ(window.Bytes(), 100U);
+    AssemblyMemory memory(100);
+    const int a = 0;
+    const int b = 0;
+    EXPECT_TRUE(memory.Take(&a, 60, 0s));
+    EXPECT_TRUE(memory.Take(&b, 40, 0s));
+    EXPECT_TRUE(memory.Take(&a, 1, 0s));
+    EXPECT_FALSE(memory.Take(&b, 1, 0s));
+    EXPECT_TRUE(memory.Take(&a, 50, 9s));
+    EXPECT_FALSE(memory.Take(&b, 1, 18s)) << "a went on 9 s ago";
+    EXPECT_TRUE(memory.Take(&b, 1, 19s));
+    EXPECT_FALSE(memory.Take(&a, 1, 19s));
+    memory.Give(&b, 41);
+    EXPECT_TRUE(memory.Take(&a, 1, 19s));
+    memory.Give(&a, 112);
+    EXPECT_EQ(memory.Used(), 0U);
 }
 
 TEST(LinkOutcome, has_words_for_logs)

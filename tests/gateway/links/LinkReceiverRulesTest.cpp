@@ -30,9 +30,9 @@ protected:
         a.Pass(0ms);
         const auto acks = a.TakeAcks();
         EXPECT_THAT(acks, SizeIs(1));
-        return acks.empty() ? LinkAck() : acks[0].Fields;
+        return acks.empty() ? LinkAck() : acks[0].Ack();
     }
-    StoredData Data(std::uint64_t first, const std::vector<std::string> &texts)
+    StoredFrame Data(std::uint64_t first, const std::vector<std::string> &texts)
     {
         return b.Data(first, texts, a.Now);
     }
@@ -51,32 +51,37 @@ protected:
 
 // Rule R1
 
-TEST_F(LinkReceiverRules, R1_data_for_another_life_is_acknowledged_only)
+TEST_F(LinkReceiverRules, R1_data_for_another_life_is_answered_with_a_hello_only)
 {
-    StoredData data = Data(1, {"1"});
-    data.Fields.ReceiverIncarnation -= 1;
+    StoredFrame data = Data(1, {"1"});
+    data.Fields.ReceiverLife -= 1;
     a.Hear(data);
-    const LinkAck ack = Acknowledgement();
+    a.Pass(0ms);
     EXPECT_THAT(Texts(), IsEmpty());
-    EXPECT_EQ(ack.ReceiverIncarnation, NodeUnderTest::FirstLife);
-    EXPECT_EQ(ack.SenderIncarnation, 0U);
-    EXPECT_EQ(ack.Cumulative, 0U);
-    EXPECT_EQ(ack.Clock, NodeUnderTest::MyClock);
-    EXPECT_EQ(ack.Time, a.Now.count());
-    EXPECT_EQ(ack.YourIncarnation, b.Life);
+    EXPECT_THAT(a.TakeAcks(), IsEmpty());
+    const auto hellos = a.TakeHellos();
+    ASSERT_THAT(hellos, SizeIs(1));
+    EXPECT_EQ(hellos[0].Fields.SenderLife, NodeUnderTest::FirstLife);
+    EXPECT_EQ(hellos[0].Fields.ReceiverLife, b.Life);
+    EXPECT_EQ(hellos[0].Fields.Clock, PlayedPeer::ClockOfA);
+    EXPECT_EQ(hellos[0].Fields.Time, a.Now.count());
+    EXPECT_FALSE(hellos[0].Fields.Short);
+    EXPECT_EQ(a.Node->Counters().Stale, 1U);
 }
 
 TEST_F(LinkReceiverRules, R1_data_for_a_higher_life_makes_me_take_a_yet_higher_one_and_drop_the_sessions)
 {
     OpenSession();
-    StoredData data = Data(2, {"2"});
-    data.Fields.ReceiverIncarnation += 3ULL << 32;
+    StoredFrame data = Data(2, {"2"});
+    data.Fields.ReceiverLife += 3ULL << 32;
     a.Hear(data);
     EXPECT_THAT(Texts(), IsEmpty());
-    EXPECT_GT(a.Node->Incarnation(), data.Fields.ReceiverIncarnation);
-    const LinkAck ack = Acknowledgement();
-    EXPECT_EQ(ack.ReceiverIncarnation, a.Node->Incarnation());
-    EXPECT_EQ(ack.SenderIncarnation, 0U);
+    EXPECT_GT(a.Node->Incarnation(), data.Fields.ReceiverLife);
+    a.Pass(0ms);
+    EXPECT_EQ(a.TakeHellos().at(0).Fields.SenderLife, a.Node->Incarnation());
+    b.KnownLife = a.Node->Incarnation();
+    a.Hear(Data(2, {"2"}));
+    EXPECT_THAT(Texts(), IsEmpty()) << "the session is gone, and 1 has to come first";
 }
 
 TEST_F(LinkReceiverRules, hello_with_a_higher_life_of_mine_makes_me_take_a_yet_higher_one)
@@ -87,47 +92,49 @@ TEST_F(LinkReceiverRules, hello_with_a_higher_life_of_mine_makes_me_take_a_yet_h
     EXPECT_GT(a.Node->Incarnation(), b.KnownLife);
     b.KnownLife = a.Node->Incarnation();
     a.Hear(Data(2, {"2"}));
-    EXPECT_THAT(Texts(), IsEmpty()) << "the session is gone: this would be a gap";
+    EXPECT_THAT(Texts(), IsEmpty()) << "the session is gone: 1 has to come first";
 }
 
 // Rule R2
 
-TEST_F(LinkReceiverRules, R2_data_of_an_older_life_of_the_sender_is_acknowledged_only)
+TEST_F(LinkReceiverRules, R2_data_of_an_older_life_of_the_sender_is_answered_with_a_hello_only)
 {
     OpenSession();
-    StoredData data = Data(2, {"2"});
-    data.Fields.SenderIncarnation -= 1;
+    a.TakeHellos();
+    StoredFrame data = Data(2, {"2"});
+    data.Fields.SenderLife -= 1;
     a.Hear(data);
+    a.Pass(0ms);
     EXPECT_THAT(Texts(), IsEmpty());
-    EXPECT_EQ(Acknowledgement().YourIncarnation, b.Life);
-    EXPECT_EQ(a.ReceiverCounters().Stale, 1U);
+    EXPECT_EQ(a.TakeHellos().at(0).Fields.ReceiverLife, b.Life);
+    EXPECT_EQ(a.Node->Counters().Stale, 1U);
 }
 
 // Rule R3
 
-TEST_F(LinkReceiverRules, R3_opens_a_session_at_the_base_of_the_stream)
+TEST_F(LinkReceiverRules, R3_opens_a_session_at_the_oldest_number_under_way)
 {
-    StoredData data = Data(41, {"41"});
-    data.Fields.Base = 41;
+    StoredFrame data = Data(41, {"41"});
+    data.Fields.Data.Oldest = 41;
     a.Hear(data);
     EXPECT_THAT(Texts(), ElementsAre("41"));
     const LinkAck ack = Acknowledgement();
-    EXPECT_EQ(ack.SenderIncarnation, b.Life);
+    EXPECT_TRUE(ack.Open);
     EXPECT_EQ(ack.Cumulative, 41U);
 }
 
 TEST_F(LinkReceiverRules, R3_opens_no_session_without_an_echo_of_my_clock)
 {
-    StoredData data = Data(1, {"1"});
-    data.Fields.Echo.Clock = NodeUnderTest::MyClock + 1;
+    StoredFrame data = Data(1, {"1"});
+    data.Fields.Echo.Clock += 1;
     a.Hear(data);
     EXPECT_THAT(Texts(), IsEmpty());
-    EXPECT_EQ(Acknowledgement().SenderIncarnation, 0U);
+    EXPECT_FALSE(Acknowledgement().Open);
 }
 
 TEST_F(LinkReceiverRules, R3_opens_no_session_with_an_echo_from_the_future)
 {
-    StoredData data = Data(1, {"1"});
+    StoredFrame data = Data(1, {"1"});
     data.Fields.Echo.Time = (a.Now + 1ns).count();
     a.Hear(data);
     EXPECT_THAT(Texts(), IsEmpty());
@@ -135,16 +142,17 @@ TEST_F(LinkReceiverRules, R3_opens_no_session_with_an_echo_from_the_future)
 
 TEST_F(LinkReceiverRules, R3_a_late_datagram_of_another_life_does_not_replace_a_session_younger_than_it)
 {
-    StoredData straggler = Data(1, {"old"});
-    straggler.Fields.SenderIncarnation += 1;  // a higher life, whose storage was lost afterwards
+    StoredFrame straggler = Data(1, {"old"});
+    straggler.Fields.SenderLife += 1;  // a higher life, whose storage was lost afterwards
     a.Now += 1s;
     OpenSession();
     a.Now += 90s;
     a.Hear(straggler);
     EXPECT_THAT(Texts(), IsEmpty());
-    StoredData atOpening = straggler;
+    StoredFrame atOpening = straggler;
     atOpening.Fields.Echo.Time = (a.Now - 90s - 10ms).count();
     a.Hear(atOpening);
+    EXPECT_FALSE(Acknowledgement().Open) << "there is none with that life";
     EXPECT_THAT(Texts(), IsEmpty()) << "a reading of the very moment of opening proves nothing";
 }
 
@@ -161,8 +169,8 @@ TEST_F(LinkReceiverRules, R3_a_new_session_knows_no_outcomes_of_the_old_one)
 {
     OpenSession();
     b.Life += 1;
-    StoredData data = Data(1, {""});
-    data.Items[0] = {LinkFlagSkip, 0, "", {}};
+    StoredFrame data = Data(1, {""});
+    MakeSkip(data.Items[0], 1, 1);
     a.Hear(data);
     EXPECT_EQ(Acknowledgement().Delivered, LinkBitmap{});
 }
@@ -181,8 +189,8 @@ TEST_F(LinkReceiverRules, hello_of_a_peer_that_does_not_know_this_life_is_answer
     a.Pass(0ms);
     const auto hellos = a.TakeHellos();
     ASSERT_THAT(hellos, SizeIs(1));
-    EXPECT_EQ(hellos[0].Fields.Incarnation, NodeUnderTest::FirstLife);
-    EXPECT_EQ(hellos[0].Fields.YourIncarnation, b.Life);
+    EXPECT_EQ(hellos[0].Fields.SenderLife, NodeUnderTest::FirstLife);
+    EXPECT_EQ(hellos[0].Fields.ReceiverLife, b.Life);
 }
 
 // Rule R4
@@ -197,13 +205,201 @@ TEST_F(LinkReceiverRules, R4_a_repeated_message_is_acknowledged_only)
     EXPECT_EQ(a.ReceiverCounters().Duplicates, 1U);
 }
 
-TEST_F(LinkReceiverRules, R4_a_message_after_a_gap_is_acknowledged_only)
+TEST_F(LinkReceiverRules, R4_what_comes_after_a_gap_is_held_and_delivered_when_the_gap_is_filled)
 {
     OpenSession();
-    a.Hear(Data(3, {"3"}));
+    a.Hear(Data(3, {"3", "4"}));
     EXPECT_THAT(Texts(), IsEmpty());
     a.Pass(2ms);
-    EXPECT_EQ(a.TakeAcks().at(0).Fields.Cumulative, 1U);
+    const auto acks = a.TakeAcks();
+    ASSERT_THAT(acks, SizeIs(1));
+    EXPECT_EQ(acks[0].Ack().Cumulative, 1U);
+    EXPECT_EQ(acks[0].Ack().Held[0], 0b110U);
+    a.Hear(Data(2, {"2"}));
+    EXPECT_THAT(Texts(), ElementsAre("2", "3", "4"));
+}
+
+TEST_F(LinkReceiverRules, R4_what_is_held_is_bounded_in_bytes)
+{
+    LinkSettings settings;
+    settings.ReorderBytes = 1000;
+    NodeUnderTest node(settings);
+    node.Hear(b.Data(1, {"1"}, node.Now));
+    node.Hear(b.Data(3, {std::string(600, '3'), std::string(600, '4')}, node.Now));
+    node.Pass(2ms);
+    EXPECT_EQ(node.TakeAcks().back().Ack().Held[0], 0b10U) << "the second did not fit";
+    EXPECT_EQ(node.ReceiverCounters().NotKept, 1U);
+    node.Hear(b.Data(2, {"2"}, node.Now));
+    EXPECT_THAT(node.TakeDelivered(), SizeIs(3));
+    EXPECT_EQ(node.ReceiverCounters().KeptBytes, 0U);
+}
+
+TEST_F(LinkReceiverRules, R4_what_is_held_on_all_links_is_bounded_in_bytes)
+{
+    LinkSettings settings;
+    settings.ReorderBytesOfNode = 1000;
+    NodeUnderTest node(settings);
+    for (std::uint32_t link = 1; link <= 3; ++link)
+    {
+        StoredFrame data = b.Data(2, {std::string(600, '2')}, node.Now);
+        data.Queue = "q" + std::to_string(link);
+        data.Fields.Data.Link = link;
+        node.Hear(data);
+    }
+    EXPECT_EQ(node.ReceiverCounters("b", "q1").Kept, 1U);
+    EXPECT_EQ(node.ReceiverCounters("b", "q2").NotKept, 1U);
+    EXPECT_EQ(node.ReceiverCounters("b", "q3").NotKept, 1U);
+}
+
+TEST_F(LinkReceiverRules, R4_what_was_held_is_as_old_as_it_is_when_it_is_delivered)
+{
+    OpenSession();
+    StoredFrame data = Data(3, {"3"});
+    data.Items[0].Fields.TtlLeft = LinkTime(100ms).count();
+    a.Hear(data);
+    a.Now += 100ms;
+    a.Hear(Data(2, {"2"}));
+    EXPECT_THAT(Texts(), ElementsAre("2"));
+    const LinkAck ack = Acknowledgement();
+    EXPECT_EQ(ack.Cumulative, 2U);
+    EXPECT_EQ(ack.Held, LinkBitmap{}) << "it must be sent again, with what is left of its life";
+    EXPECT_EQ(a.ReceiverCounters().HeldBackLate, 1U);
+}
+
+TEST_F(LinkReceiverRules, R4_what_was_held_for_less_than_its_life_is_delivered)
+{
+    OpenSession();
+    StoredFrame data = Data(3, {"3"});
+    data.Items[0].Fields.TtlLeft = LinkTime(100ms).count();
+    a.Hear(data);
+    a.Now += 99ms;
+    a.Hear(Data(2, {"2"}));
+    EXPECT_THAT(Texts(), ElementsAre("2", "3"));
+}
+
+TEST_F(LinkReceiverRules, R4_the_parts_of_a_large_message_are_put_together)
+{
+    OpenSession();
+    a.Hear(b.Parts(2, {"abc", "def", "g"}, a.Now));
+    EXPECT_THAT(a.TakeDelivered(), ElementsAre(DeliveredMessage{"b", "q", "T", "abcdefg"}));
+    EXPECT_EQ(a.ReceiverCounters().Delivered, 2U);
+}
+
+TEST_F(LinkReceiverRules, R4_the_parts_of_a_large_message_are_put_together_in_their_order)
+{
+    OpenSession();
+    StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
+    StoredFrame last = parts;
+    last.Items = {parts.Items[2]};
+    a.Hear(last);
+    parts.Items.pop_back();
+    a.Hear(parts);
+    EXPECT_THAT(Texts(), ElementsAre("abcdefg"));
+}
+
+TEST_F(LinkReceiverRules, R4_a_large_message_of_another_size_than_was_said_is_refused)
+{
+    OpenSession();
+    StoredFrame longer = b.Parts(2, {"abc", "def"}, a.Now);
+    longer.Items[0].Fields.Size = 5;
+    a.Hear(longer);
+    StoredFrame shorter = b.Parts(4, {"abc", "def"}, a.Now);
+    shorter.Items[0].Fields.Size = 7;
+    a.Hear(shorter);
+    a.Hear(Data(6, {"6"}));
+    EXPECT_THAT(Texts(), ElementsAre("6"));
+    EXPECT_EQ(a.ReceiverCounters().RefusedUndecodable, 2U);
+}
+
+TEST_F(LinkReceiverRules, R4_a_message_larger_than_the_largest_is_refused_and_takes_no_memory)
+{
+    LinkSettings settings;
+    settings.LargestMessage = 5;
+    NodeUnderTest node(settings);
+    StoredFrame parts = b.Parts(1, {"abc", "def"}, node.Now);
+    StoredFrame first = parts;
+    first.Items.pop_back();
+    node.Hear(first);
+    EXPECT_EQ(node.ReceiverCounters().AssemblyBytes, 0U);
+    node.Hear(parts);
+    node.Pass(2ms);
+    EXPECT_EQ(node.TakeAcks().back().Ack().Refused[0], 0b100U);
+    EXPECT_THAT(node.TakeDelivered(), IsEmpty());
+}
+
+TEST_F(LinkReceiverRules, R4_memory_is_taken_as_bytes_arrive_not_as_they_are_announced)
+{
+    OpenSession();
+    StoredFrame parts = b.Parts(2, {"abc", "d"}, a.Now);
+    parts.Items.pop_back();
+    parts.Items[0].Fields.Size = 60 << 20;
+    a.Hear(parts);
+    EXPECT_EQ(a.ReceiverCounters().AssemblyBytes, 3U);
+}
+
+TEST_F(LinkReceiverRules,
+       R4_the_beginnings_of_large_messages_are_bounded_and_do_not_block_each_other_for_ever)
+{
+    LinkSettings settings;
+    settings.AssemblyBytesOfNode = 10;
+    NodeUnderTest node(settings);
+    const auto parts = [&](std::uint32_t link)
+    {
+        StoredFrame frame = b.Parts(1, {"abcdef", "ghijkl"}, node.Now);
+        frame.Queue = "q" + std::to_string(link);
+        frame.Fields.Data.Link = link;
+        return frame;
+    };
+    for (std::uint32_t link = 1; link <= 3; ++link)
+    {
+        StoredFrame first = parts(link);
+        first.Items.pop_back();
+        node.Hear(first);
+    }
+    EXPECT_EQ(node.ReceiverCounters("b", "q2").HeldBackMemory, 1U) << "12 bytes each: the first went beyond";
+    EXPECT_EQ(node.ReceiverCounters("b", "q3").HeldBackMemory, 1U);
+    node.Pass(2ms);
+    EXPECT_EQ(node.TakeAcks().back().Fields.Acks.back().Credit, 0U);
+    node.Hear(parts(2));
+    EXPECT_THAT(node.TakeDelivered(), IsEmpty());
+    node.Hear(parts(1));
+    node.Hear(parts(2));
+    node.Hear(parts(3));
+    EXPECT_THAT(node.TakeDelivered(), SizeIs(3));
+}
+
+TEST_F(LinkReceiverRules, R4_types_are_known_by_the_numbers_that_were_said_with_their_names)
+{
+    OpenSession();
+    StoredFrame named = Data(2, {"2"});
+    named.Items[0].Type = "Other";
+    named.Items[0].Fields.TypeNumber = 1;
+    a.Hear(named);
+    StoredFrame numbered = Data(3, {"3"});
+    numbered.Items[0].Type.clear();
+    numbered.Items[0].Fields.TypeNumber = 1;
+    a.Hear(numbered);
+    EXPECT_EQ(a.TakeDelivered().back().Type, "Other");
+    numbered.Items[0].Fields.TypeNumber = 2;
+    numbered.Items[0].Fields.Sequence = numbered.Items[0].Fields.Through = 4;
+    a.Hear(numbered);
+    EXPECT_THAT(a.TakeDelivered(), IsEmpty());
+    EXPECT_EQ(a.ReceiverCounters().RefusedWrongType, 1U) << "a number that means nothing";
+}
+
+TEST_F(LinkReceiverRules, R4_a_link_whose_number_means_nothing_is_asked_for_its_queue)
+{
+    a.Hear(b.Hello());
+    StoredFrame data = Data(1, {"1"});
+    data.Queue.clear();
+    data.Fields.Data.Link = 9;
+    a.Hear(data);
+    const LinkAck ack = Acknowledgement();
+    EXPECT_EQ(ack.Link, 9U);
+    EXPECT_FALSE(ack.Open);
+    data.Queue = "q";
+    a.Hear(data);
+    EXPECT_THAT(Texts(), ElementsAre("1"));
 }
 
 TEST_F(LinkReceiverRules, R4_new_messages_behind_repeated_ones_in_a_datagram_are_delivered)
@@ -218,14 +414,14 @@ TEST_F(LinkReceiverRules, R4_new_messages_behind_repeated_ones_in_a_datagram_are
 TEST_F(LinkReceiverRules, R5_a_message_with_an_expiry_needs_an_echo_of_my_clock)
 {
     OpenSession();
-    StoredData data = Data(2, {"2"});
+    StoredFrame data = Data(2, {"2"});
     data.Fields.Echo.Clock += 1;
-    data.Items[0].TtlLeft = LinkTime(1h).count();
+    data.Items[0].Fields.TtlLeft = LinkTime(1h).count();
     a.Hear(data);
     EXPECT_THAT(Texts(), IsEmpty());
     EXPECT_EQ(Acknowledgement().Cumulative, 1U);
     EXPECT_EQ(a.ReceiverCounters().HeldBackLate, 1U);
-    data.Items[0].TtlLeft = LinkNoExpiry;
+    data.Items[0].Fields.TtlLeft = LinkNoExpiry;
     a.Hear(data);
     EXPECT_THAT(Texts(), ElementsAre("2")) << "one without an expiry does not";
 }
@@ -235,23 +431,25 @@ TEST_F(LinkReceiverRules, R5_a_message_with_an_expiry_needs_an_echo_of_my_clock)
 TEST_F(LinkReceiverRules, R6_a_message_that_may_have_expired_on_the_way_is_not_delivered)
 {
     OpenSession();
-    StoredData data = Data(2, {"2"});
+    StoredFrame data = Data(2, {"2"});
     data.Fields.Echo.HeldFor = LinkTime(30ms).count();
-    data.Items[0].TtlLeft = LinkTime(70ms).count();
+    data.Items[0].Fields.TtlLeft = LinkTime(70ms).count();
     a.Now += 100ms;  // 70 ms of them in transit
     a.Hear(data);
     EXPECT_THAT(Texts(), IsEmpty());
-    const LinkAck ack = Acknowledgement();
-    EXPECT_EQ(ack.Cumulative, 1U) << "the sender says when it has expired";
-    EXPECT_EQ(ack.Time, a.Now.count()) << "a fresh token";
+    a.Pass(0ms);
+    const auto acks = a.TakeAcks();
+    ASSERT_THAT(acks, SizeIs(1));
+    EXPECT_EQ(acks[0].Ack().Cumulative, 1U) << "the sender says when it has expired";
+    EXPECT_EQ(acks[0].Fields.Time, a.Now.count()) << "a fresh token";
 }
 
 TEST_F(LinkReceiverRules, R6_a_message_with_time_left_is_delivered)
 {
     OpenSession();
-    StoredData data = Data(2, {"2"});
+    StoredFrame data = Data(2, {"2"});
     data.Fields.Echo.HeldFor = LinkTime(30ms).count();
-    data.Items[0].TtlLeft = LinkTime(71ms).count();
+    data.Items[0].Fields.TtlLeft = LinkTime(71ms).count();
     a.Now += 100ms;
     a.Hear(data);
     EXPECT_THAT(Texts(), ElementsAre("2"));
@@ -260,9 +458,9 @@ TEST_F(LinkReceiverRules, R6_a_message_with_time_left_is_delivered)
 TEST_F(LinkReceiverRules, R6_allows_for_the_drift_of_the_two_clocks)
 {
     OpenSession();
-    StoredData data = Data(2, {"2"});
+    StoredFrame data = Data(2, {"2"});
     data.Fields.Echo.HeldFor = LinkTime(100s).count();
-    data.Items[0].TtlLeft = LinkTime(100ms).count();
+    data.Items[0].Fields.TtlLeft = LinkTime(100ms).count();
     a.Now += 100s;  // none of it in transit, as it seems; but 100 s held may have been 100.1 s
     a.Hear(data);
     EXPECT_THAT(Texts(), IsEmpty());
@@ -271,16 +469,36 @@ TEST_F(LinkReceiverRules, R6_allows_for_the_drift_of_the_two_clocks)
 TEST_F(LinkReceiverRules, R6_a_skip_is_consumed_and_not_delivered)
 {
     OpenSession();
-    StoredData data = Data(2, {"2", "3"});
-    data.Items[0] = {LinkFlagSkip, 0, "", {}};
+    StoredFrame data = Data(2, {"2", "3"});
+    MakeSkip(data.Items[0], 2, 2);
     a.Hear(data);
     EXPECT_THAT(Texts(), ElementsAre("3"));
     a.Pass(2ms);
     const auto acks = a.TakeAcks();
     ASSERT_THAT(acks, SizeIs(1));
-    EXPECT_EQ(acks[0].Fields.Cumulative, 3U);
-    EXPECT_EQ(acks[0].Fields.Delivered[0], 0b101U);
-    EXPECT_EQ(acks[0].Fields.Refused[0], 0U);
+    EXPECT_EQ(acks[0].Ack().Cumulative, 3U);
+    EXPECT_EQ(acks[0].Ack().Delivered[0], 0b1010U);
+    EXPECT_EQ(acks[0].Ack().Refused[0], 0U);
+}
+
+TEST_F(LinkReceiverRules, R6_a_skip_of_several_parts_drops_what_was_there_of_the_message)
+{
+    OpenSession();
+    StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
+    StoredFrame last = parts;
+    last.Items = {parts.Items[2]};
+    parts.Items.resize(1);
+    a.Hear(parts);
+    a.Hear(last);
+    StoredFrame skip = Data(2, {"", "5"});
+    MakeSkip(skip.Items[0], 2, 4);
+    skip.Items[1].Fields.Sequence = skip.Items[1].Fields.Through = 5;
+    a.Hear(skip);
+    EXPECT_THAT(Texts(), ElementsAre("5"));
+    a.Pass(2ms);
+    EXPECT_EQ(a.TakeAcks().back().Ack().Cumulative, 5U);
+    EXPECT_EQ(a.ReceiverCounters().AssemblyBytes, 0U);
+    EXPECT_EQ(a.ReceiverCounters().KeptBytes, 0U);
 }
 
 // Rule R7
@@ -294,6 +512,7 @@ TEST_F(LinkReceiverRules, R7_a_full_queue_holds_the_stream_back_and_gives_no_cre
     const LinkAck ack = Acknowledgement();
     EXPECT_EQ(ack.Cumulative, 1U);
     EXPECT_EQ(ack.Credit, 0U);
+    EXPECT_EQ(ack.Held[0], 0b11U) << "it need not be sent again";
     EXPECT_TRUE(a.ReceiverCounters().HeldBack);
     EXPECT_EQ(a.ReceiverCounters().HeldBackFull, 1U) << "what comes behind is not even tried";
 }
@@ -305,6 +524,7 @@ TEST_F(LinkReceiverRules, R7_room_is_made_known)
     a.RoomLeft = 0;
     a.Hear(Data(2, {"2"}));
     Acknowledgement();
+    a.Answer = LocalQueueResult::Ok;
     a.RoomLeft = 4;
     a.Node->OnRoom("other", a.Now);
     a.Pass(100ms);
@@ -313,10 +533,48 @@ TEST_F(LinkReceiverRules, R7_room_is_made_known)
     a.Pass(2ms);
     const auto acks = a.TakeAcks();
     ASSERT_THAT(acks, SizeIs(1));
-    EXPECT_EQ(acks[0].Fields.Credit, 4U);
+    EXPECT_EQ(acks[0].Ack().Credit, 4U);
     a.Node->OnRoom("q", a.Now);
     a.Pass(100ms);
     EXPECT_THAT(a.TakeAcks(), IsEmpty()) << "once is enough";
+}
+
+TEST_F(LinkReceiverRules, R7_what_waited_for_room_is_delivered_when_there_is_room)
+{
+    OpenSession();
+    a.Answer = LocalQueueResult::Full;
+    a.RoomLeft = 0;
+    a.Hear(Data(2, {"2", "3"}));
+    Acknowledgement();
+    a.Answer = LocalQueueResult::Ok;
+    a.RoomLeft = 4;
+    a.Node->OnRoom("q", a.Now);
+    EXPECT_LE(a.Node->NextDue(), a.Now);
+    a.Pass(0ms);
+    EXPECT_THAT(Texts(), ElementsAre("2", "3"));
+}
+
+TEST_F(LinkReceiverRules, R7_what_waited_for_room_is_tried_again_when_the_sender_asks)
+{
+    OpenSession();
+    a.Answer = LocalQueueResult::Full;
+    a.Hear(Data(2, {"2"}));
+    a.Answer = LocalQueueResult::Ok;
+    a.Hear(Data(2, {"2"}));
+    EXPECT_THAT(Texts(), ElementsAre("2"));
+}
+
+TEST_F(LinkReceiverRules, R7_what_is_to_come_later_is_asked_for_by_retry)
+{
+    OpenSession();
+    a.Answer = LocalQueueResult::Later;
+    a.Hear(b.Parts(2, {"ab", "c"}, a.Now));
+    EXPECT_THAT(Texts(), IsEmpty());
+    a.Answer = LocalQueueResult::Ok;
+    a.Node->Retry("b", "q", a.Now);
+    EXPECT_THAT(Texts(), ElementsAre("abc"));
+    a.Node->Retry("b", "q", a.Now);
+    EXPECT_THAT(Texts(), IsEmpty());
 }
 
 // Rule R8
@@ -332,8 +590,8 @@ TEST_F(LinkReceiverRules, R8_delivers_in_order_with_source_queue_and_type)
 
 TEST_F(LinkReceiverRules, R8_passes_on_the_redelivered_mark)
 {
-    StoredData data = Data(1, {"1"});
-    data.Items[0].Flags = LinkFlagRedelivered;
+    StoredFrame data = Data(1, {"1"});
+    data.Items[0].Fields.Flags |= LinkFlagRedelivered;
     a.Hear(data);
     EXPECT_THAT(a.TakeDelivered(), ElementsAre(DeliveredMessage{"b", "q", "T", "1", true}));
 }
@@ -348,9 +606,9 @@ TEST_F(LinkReceiverRules, R8_combines_acknowledgements_for_two_milliseconds)
     a.Pass(1ms);
     const auto acks = a.TakeAcks();
     ASSERT_THAT(acks, SizeIs(1));
-    EXPECT_EQ(acks[0].Fields.Cumulative, 3U);
-    EXPECT_EQ(acks[0].Fields.Delivered[0], 0b111U);
-    EXPECT_EQ(acks[0].Fields.Credit, 256U) << "room for 1000, told up to the largest window";
+    EXPECT_EQ(acks[0].Ack().Cumulative, 3U);
+    EXPECT_EQ(acks[0].Ack().Delivered[0], 0b1110U);
+    EXPECT_EQ(acks[0].Ack().Credit, 256U) << "room for 1000, told up to the largest window";
 }
 
 TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_sixteen_messages)
@@ -358,6 +616,27 @@ TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_sixteen_messages)
     OpenSession();
     a.Hear(Data(2, std::vector<std::string>(16, "m")));
     EXPECT_EQ(Acknowledgement().Cumulative, 17U);
+}
+
+TEST_F(LinkReceiverRules, R8_acknowledges_at_once_when_the_sender_asks)
+{
+    OpenSession();
+    StoredFrame data = Data(2, {"2"});
+    data.Fields.Ask = true;
+    a.Hear(data);
+    EXPECT_EQ(Acknowledgement().Cumulative, 2U);
+}
+
+TEST_F(LinkReceiverRules, R8_an_acknowledgement_goes_with_data_that_goes_anyway)
+{
+    a.Hear(Data(1, {"1"}));
+    a.Enqueue("mine");
+    a.Pass(0ms);
+    const auto datas = a.TakeDatas();
+    ASSERT_THAT(datas, SizeIs(1));
+    EXPECT_THAT(datas[0].Fields.Acks, SizeIs(1));
+    a.Pass(100ms);
+    EXPECT_THAT(a.TakeAcks(), SizeIs(1)) << "that one";
 }
 
 TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_half_of_a_window_in_bytes)
@@ -385,9 +664,9 @@ TEST_F(LinkReceiverRules, undeliverable_messages_are_consumed_and_the_sender_lea
     a.Pass(2ms);
     const auto acks = a.TakeAcks();
     ASSERT_THAT(acks, SizeIs(1));
-    EXPECT_EQ(acks[0].Fields.Cumulative, 5U);
-    EXPECT_EQ(acks[0].Fields.Delivered[0], 0b10001U);
-    EXPECT_EQ(acks[0].Fields.Refused[0], 0b01110U);
+    EXPECT_EQ(acks[0].Ack().Cumulative, 5U);
+    EXPECT_EQ(acks[0].Ack().Delivered[0], 0b100010U);
+    EXPECT_EQ(acks[0].Ack().Refused[0], 0b011100U);
     EXPECT_EQ(a.ReceiverCounters().RefusedUnknown, 1U);
     EXPECT_EQ(a.ReceiverCounters().RefusedWrongType, 1U);
     EXPECT_EQ(a.ReceiverCounters().RefusedUndecodable, 1U);

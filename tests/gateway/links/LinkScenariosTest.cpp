@@ -5,7 +5,6 @@
 #include <map>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "NodeUnderTest.h"
@@ -31,19 +30,17 @@ public:
             settings.Clock = ++network._clocks;
             Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
         }
-        void Send(const LinkData &data) override
+        void Send(const LinkFrame &frame) override
         {
-            Net.Carry(data.Destination, StoredData(data));
-            ++DatasSent;
+            DatasSent += frame.HasData ? 1 : 0;
+            Net.Carry(frame);
         }
-        void Send(const LinkAck &ack) override { Net.Carry(ack.Source, StoredAck(ack)); }
-        void Send(const LinkHello &hello) override { Net.Carry(hello.Destination, StoredHello(hello)); }
         void OnOutcome(std::uint64_t, std::string_view, std::string_view, LinkOutcome outcome) override
         {
             Outcomes.push_back(outcome);
         }
         LocalQueueResult Deliver(std::string_view, std::string_view, std::string_view,
-                                 std::span<const std::uint8_t> payload, bool) override
+                                 std::span<const std::uint8_t> payload, const LinkPayload &, bool) override
         {
             Delivered.emplace_back(Net.Now, std::string(payload.begin(), payload.end()));
             return LocalQueueResult::Ok;
@@ -85,7 +82,7 @@ public:
             Now = next;
             while (!_onTheWay.empty() && _onTheWay.begin()->first.first <= Now)
             {
-                const Letter letter = std::move(_onTheWay.begin()->second);
+                const StoredFrame letter = std::move(_onTheWay.begin()->second);
                 _onTheWay.erase(_onTheWay.begin());
                 Hand(letter);
             }
@@ -103,45 +100,27 @@ public:
     std::function<bool()> Loses = [] { return false; };
 
 private:
-    struct Letter
-    {
-        std::string To;
-        std::variant<StoredData, StoredAck, StoredHello> Message;
-    };
-
-    template <typename Message>
-    void Carry(std::string_view to, Message message)
+    void Carry(const LinkFrame &frame)
     {
         if (!Loses())
         {
-            _onTheWay.emplace(std::pair(Now + Delay, ++_order), Letter{std::string(to), std::move(message)});
+            _onTheWay.emplace(std::pair(Now + Delay, ++_order), StoredFrame(frame));
         }
     }
-    void Hand(const Letter &letter)
+    void Hand(const StoredFrame &frame)
     {
         for (const auto &member : _members)
         {
-            if (member->Node->Name() != letter.To)
+            if (member->Node->Name() == frame.Destination)
             {
-                continue;
-            }
-            if (const auto *data = std::get_if<StoredData>(&letter.Message))
-            {
-                member->Node->OnData(data->View(), Now);
-            }
-            else if (const auto *ack = std::get_if<StoredAck>(&letter.Message))
-            {
-                member->Node->OnAck(ack->View(), Now);
-            }
-            else
-            {
-                member->Node->OnHello(std::get<StoredHello>(letter.Message).View(), Now);
+                LinkFrame view = frame.View();
+                member->Node->OnFrame(view, Now);
             }
         }
     }
 
     std::vector<std::unique_ptr<Member>> _members;
-    std::map<std::pair<LinkTime, int>, Letter> _onTheWay;
+    std::map<std::pair<LinkTime, int>, StoredFrame> _onTheWay;
     int _order = 0;
     std::uint64_t _clocks = 0;
 };
@@ -234,7 +213,7 @@ TEST(LinkScenarios, a_hundred_seconds_without_a_path_lose_nothing_and_send_littl
         network.Live(111ms);
     }
     EXPECT_LE(a.DatasSent - before, 128 + 20)
-        << "the window once, then a probe a second until the peer is silent";
+        << "what is new once, then a probe a second until the peer is silent";
     network.Loses = [] { return false; };
     network.Live(5s);
     ASSERT_THAT(b.Delivered, SizeIs(901));

@@ -3,6 +3,7 @@
 
 #include "StoredMessages.h"
 
+#include <rabit/gateway/links/LinkCheck.h>
 #include <rabit/gateway/links/LinkNode.h>
 
 #include <deque>
@@ -69,9 +70,11 @@ public:
     {
         Node->Configure(to, queue, options, Now);
     }
-    void Hear(const StoredData &data) { Node->OnData(data.View(), Now); }
-    void Hear(const StoredAck &ack) { Node->OnAck(ack.View(), Now); }
-    void Hear(const StoredHello &hello) { Node->OnHello(hello.View(), Now); }
+    void Hear(const StoredFrame &frame)
+    {
+        LinkFrame view = frame.View();
+        Node->OnFrame(view, Now);
+    }
 
     LinkSenderCounters SenderCounters(std::string_view to = "b", std::string_view queue = "q") const
     {
@@ -101,9 +104,9 @@ public:
     }
 
     // All that was sent / delivered / reported since the last call.
-    std::vector<StoredData> TakeDatas() { return std::exchange(_datas, {}); }
-    std::vector<StoredAck> TakeAcks() { return std::exchange(_acks, {}); }
-    std::vector<StoredHello> TakeHellos() { return std::exchange(_hellos, {}); }
+    std::vector<StoredFrame> TakeDatas() { return std::exchange(_datas, {}); }
+    std::vector<StoredFrame> TakeAcks() { return std::exchange(_acks, {}); }
+    std::vector<StoredFrame> TakeHellos() { return std::exchange(_hellos, {}); }
     std::vector<DeliveredMessage> TakeDelivered() { return std::exchange(_delivered, {}); }
     std::vector<std::pair<std::uint64_t, LinkOutcome>> TakeOutcomes() { return std::exchange(_outcomes, {}); }
 
@@ -113,15 +116,29 @@ public:
     LocalQueueResult Answer = LocalQueueResult::Ok;
     std::size_t RoomLeft = 1000;
 
-    void Send(const LinkData &data) override { _datas.emplace_back(data); }
-    void Send(const LinkAck &ack) override { _acks.emplace_back(ack); }
-    void Send(const LinkHello &hello) override { _hellos.emplace_back(hello); }
+    // One with data and acknowledgements is among both.
+    void Send(const LinkFrame &frame) override
+    {
+        if (frame.HasData)
+        {
+            _datas.emplace_back(frame);
+        }
+        if (!frame.Acks.empty())
+        {
+            _acks.emplace_back(frame);
+        }
+        if (frame.IsHello())
+        {
+            _hellos.emplace_back(frame);
+        }
+    }
     void OnOutcome(std::uint64_t id, std::string_view, std::string_view, LinkOutcome outcome) override
     {
         _outcomes.emplace_back(id, outcome);
     }
     LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                             std::span<const std::uint8_t> payload, bool redelivered) override
+                             std::span<const std::uint8_t> payload, const LinkPayload &,
+                             bool redelivered) override
     {
         if (Answer == LocalQueueResult::Ok)
         {
@@ -139,82 +156,120 @@ public:
 
 private:
     std::uint64_t _life;
-    std::vector<StoredData> _datas;
-    std::vector<StoredAck> _acks;
-    std::vector<StoredHello> _hellos;
+    std::vector<StoredFrame> _datas;
+    std::vector<StoredFrame> _acks;
+    std::vector<StoredFrame> _hellos;
     std::vector<DeliveredMessage> _delivered;
     std::vector<std::pair<std::uint64_t, LinkOutcome>> _outcomes;
 };
 
-// Node "b", played by hand: makes the messages that it would send to node "a".
+// Node "b", played by hand: makes the frames that it would send to node "a".
 struct PlayedPeer
 {
-    static constexpr std::uint64_t Clock = 2002;
+    static constexpr std::uint32_t Clock = 2002;
+    // What a calls its own clock.
+    static constexpr std::uint32_t ClockOfA = static_cast<std::uint32_t>(NodeUnderTest::MyClock);
 
     std::uint64_t Life = 7ULL << 32;
     std::uint64_t KnownLife = NodeUnderTest::FirstLife;
-    std::int64_t Time = 1'000'000'000;  // its clock; rises with each message
+    std::int64_t Time = 1'000'000'000;  // its clock; rises by a microsecond with each frame
 
-    StoredHello Hello()
+    // One that asks nothing and echoes nothing.
+    StoredFrame Hello()
     {
-        StoredHello hello;
-        hello.Source.assign(1, 'b');
-        hello.Destination.assign(1, 'a');
-        hello.Fields.Incarnation = Life;
-        hello.Fields.YourIncarnation = KnownLife;
-        hello.Fields.Clock = Clock;
-        hello.Fields.Time = ++Time;
-        return hello;
+        StoredFrame frame;
+        frame.Source.assign(1, 'b');
+        frame.Destination.assign(1, 'a');
+        frame.Fields.Check = LinkCheck::OfName("a");
+        frame.Fields.SenderLife = Life;
+        frame.Fields.ReceiverLife = KnownLife;
+        frame.Fields.Clock = Clock;
+        frame.Fields.Time = Time += 1000;
+        return frame;
     }
-    // All messages up to `cumulative` were delivered, except those in `skipped` and `refused` (by number).
-    StoredAck Ack(std::uint64_t cumulative, std::uint32_t credit = 100,
-                  const std::vector<std::uint64_t> &skipped = {},
-                  const std::vector<std::uint64_t> &refused = {})
+    // All parts up to `cumulative` were delivered, except those in `skipped` and `refused` (by number).
+    StoredFrame Ack(std::uint64_t cumulative, std::uint32_t credit = 100,
+                    const std::vector<std::uint64_t> &skipped = {},
+                    const std::vector<std::uint64_t> &refused = {})
     {
-        StoredAck ack;
-        ack.Source.assign(1, 'a');
-        ack.Destination.assign(1, 'b');
-        ack.Queue.assign(1, 'q');
-        ack.Fields.ReceiverIncarnation = Life;
-        ack.Fields.SenderIncarnation = KnownLife;
-        ack.Fields.Cumulative = cumulative;
-        ack.Fields.Delivered.fill(~0ULL);
-        const auto flip = [&](LinkBitmap &bits, std::uint64_t sequence)
-        { bits[(cumulative - sequence) / 64] ^= 1ULL << ((cumulative - sequence) % 64); };
+        StoredFrame frame = Hello();
+        LinkAck &ack = frame.Fields.Acks.emplace_back();
+        ack.Link = 1;
+        ack.Open = true;
+        ack.Cumulative = cumulative;
+        ack.Oldest = 1;
+        ack.Delivered.fill(~0ULL);
+        const auto flip = [](LinkBitmap &bits, std::uint64_t sequence)
+        { bits[sequence / 64 % bits.size()] ^= 1ULL << (sequence % 64); };
         for (const std::uint64_t sequence : skipped)
         {
-            flip(ack.Fields.Delivered, sequence);
+            flip(ack.Delivered, sequence);
         }
         for (const std::uint64_t sequence : refused)
         {
-            flip(ack.Fields.Delivered, sequence);
-            flip(ack.Fields.Refused, sequence);
+            flip(ack.Delivered, sequence);
+            flip(ack.Refused, sequence);
         }
-        ack.Fields.Credit = credit;
-        ack.Fields.Clock = Clock;
-        ack.Fields.Time = ++Time;
-        ack.Fields.YourIncarnation = KnownLife;
-        return ack;
+        ack.Credit = credit;
+        return frame;
     }
-    // Messages for queue "q" of node "a", numbered from `first`. The echo says that the token of now was
-    // received at this moment.
-    StoredData Data(std::uint64_t first, const std::vector<std::string> &texts, LinkTime now) const
+    // The same, and these are here beyond a gap.
+    StoredFrame AckWith(std::uint64_t cumulative, const std::vector<std::uint64_t> &held)
     {
-        StoredData data;
-        data.Source.assign(1, 'b');
-        data.Destination.assign(1, 'a');
-        data.Queue.assign(1, 'q');
-        data.Fields.SenderIncarnation = Life;
-        data.Fields.ReceiverIncarnation = KnownLife;
-        data.Fields.Base = 1;
-        data.Fields.First = first;
-        data.Fields.Echo = {NodeUnderTest::MyClock, now.count(), 0};
+        StoredFrame frame = Ack(cumulative);
+        for (const std::uint64_t sequence : held)
+        {
+            const std::uint64_t bit = sequence - cumulative - 1;
+            frame.Ack().Held[bit / 64] |= 1ULL << (bit % 64);
+        }
+        return frame;
+    }
+    // Small messages for queue "q" of node "a", numbered from `first`. The echo says that the token of now
+    // was received at this moment.
+    StoredFrame Data(std::uint64_t first, const std::vector<std::string> &texts, LinkTime now)
+    {
+        StoredFrame frame = Hello();
+        frame.Fields.HasData = true;
+        frame.Queue.assign(1, 'q');
+        frame.Fields.Data.Link = 1;
+        frame.Fields.Data.Oldest = 1;
+        frame.Fields.Echo = {ClockOfA, now.count(), 0};
         for (const std::string &text : texts)
         {
-            data.Items.push_back({0, LinkNoExpiry, "T", {text.begin(), text.end()}});
+            StoredItem &item = frame.Items.emplace_back();
+            item.Fields.Sequence = item.Fields.Through = first++;
+            item.Fields.Flags = LinkFlagFirst | LinkFlagLast;
+            item.Type = "T";
+            item.Payload.assign(text.begin(), text.end());
         }
-        return data;
+        return frame;
+    }
+    // One message in so many parts of these texts.
+    StoredFrame Parts(std::uint64_t first, const std::vector<std::string> &texts, LinkTime now)
+    {
+        StoredFrame frame = Data(first, texts, now);
+        std::size_t size = 0;
+        for (StoredItem &item : frame.Items)
+        {
+            size += item.Payload.size();
+            item.Fields.Flags = 0;
+            item.Type.clear();
+        }
+        frame.Items.front().Fields.Flags = LinkFlagFirst;
+        frame.Items.front().Fields.Size = size;
+        frame.Items.front().Type = "T";
+        frame.Items.back().Fields.Flags |= LinkFlagLast;
+        return frame;
     }
 };
+
+// Makes the item a SKIP of these numbers.
+inline void MakeSkip(StoredItem &item, std::uint64_t first, std::uint64_t through)
+{
+    item = {};
+    item.Fields.Flags = LinkFlagSkip;
+    item.Fields.Sequence = first;
+    item.Fields.Through = through;
+}
 
 }  // namespace Rabit::Test

@@ -1,4 +1,4 @@
-// Link messages that own what they hold, for tests that keep datagrams.
+// Link frames that own what they hold, for tests that keep them.
 #pragma once
 
 #include <rabit/gateway/links/LinkMessages.h>
@@ -12,83 +12,51 @@ namespace Rabit::Test
 
 struct StoredItem
 {
-    std::uint8_t Flags = 0;
-    std::int64_t TtlLeft = LinkNoExpiry;
+    LinkItem Fields;  // everything but the type and the payload
     std::string Type;
     std::vector<std::uint8_t> Payload;
+
+    std::string Text() const { return {Payload.begin(), Payload.end()}; }
 };
 
-struct StoredData
+struct StoredFrame
 {
     std::string Source, Destination, Queue;
-    LinkData Fields;  // everything but names and items
+    LinkFrame Fields;  // everything but names and items
     std::vector<StoredItem> Items;
 
-    StoredData() = default;
-    explicit StoredData(const LinkData &data)
-        : Source(data.Source), Destination(data.Destination), Queue(data.Queue), Fields(data)
+    StoredFrame() = default;
+    explicit StoredFrame(const LinkFrame &frame)
+        : Source(frame.Source), Destination(frame.Destination), Queue(frame.Data.Queue), Fields(frame)
     {
-        Fields.Items.clear();
-        for (const LinkItem &item : data.Items)
+        Fields.Data.Items.clear();
+        for (const LinkItem &item : frame.Data.Items)
         {
-            Items.push_back({item.Flags, item.TtlLeft, std::string(item.Type),
-                             std::vector<std::uint8_t>(item.Payload.begin(), item.Payload.end())});
+            StoredItem &stored = Items.emplace_back();
+            stored.Fields = item;
+            stored.Fields.Owner = nullptr;
+            stored.Type.assign(item.Type);
+            stored.Payload.assign(item.Payload.begin(), item.Payload.end());
         }
     }
+
+    LinkAck &Ack() { return Fields.Acks.at(0); }
+    const LinkAck &Ack() const { return Fields.Acks.at(0); }
 
     // Valid as long as this object is unchanged.
-    LinkData View() const
+    LinkFrame View() const
     {
-        LinkData data = Fields;
-        data.Source = Source;
-        data.Destination = Destination;
-        data.Queue = Queue;
-        for (const StoredItem &item : Items)
+        LinkFrame frame = Fields;
+        frame.Source = Source;
+        frame.Destination = Destination;
+        frame.Data.Queue = Queue;
+        for (const StoredItem &stored : Items)
         {
-            data.Items.push_back({item.Flags, item.TtlLeft, item.Type, item.Payload, nullptr});
+            LinkItem &item = frame.Data.Items.emplace_back(stored.Fields);
+            item.Type = stored.Type;
+            item.Payload = stored.Payload;
         }
-        return data;
-    }
-};
-
-struct StoredAck
-{
-    std::string Source, Destination, Queue;
-    LinkAck Fields;
-
-    StoredAck() = default;
-    explicit StoredAck(const LinkAck &ack)
-        : Source(ack.Source), Destination(ack.Destination), Queue(ack.Queue), Fields(ack)
-    {
-    }
-
-    LinkAck View() const
-    {
-        LinkAck ack = Fields;
-        ack.Source = Source;
-        ack.Destination = Destination;
-        ack.Queue = Queue;
-        return ack;
-    }
-};
-
-struct StoredHello
-{
-    std::string Source, Destination;
-    LinkHello Fields;
-
-    StoredHello() = default;
-    explicit StoredHello(const LinkHello &hello)
-        : Source(hello.Source), Destination(hello.Destination), Fields(hello)
-    {
-    }
-
-    LinkHello View() const
-    {
-        LinkHello hello = Fields;
-        hello.Source = Source;
-        hello.Destination = Destination;
-        return hello;
+        return frame;
     }
 };
 

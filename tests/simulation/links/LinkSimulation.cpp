@@ -153,7 +153,10 @@ SimResult Simulation::Run()
         }
         if (_statistics.Events > MostEvents)
         {
-            _oracle.Fail(10, "a node asks to be run without end");
+            _oracle.Fail(10, "a node asks to be run without end: " +
+                                 (event.Kind == EventKind::Wake && _nodes[event.A]->IsAlive()
+                                      ? _nodes[event.A]->Links().Describe()
+                                      : std::string()));
         }
         if (_calm && !_drained && IsDrained())
         {
@@ -419,7 +422,7 @@ void Simulation::OnDatagram(std::size_t slot)
         *_trace << Lead() << "came " << Describe(packet) << '\n';
     }
     if (_nodes[packet.From]->IsAlive() &&
-        _nodes[packet.From]->Links().IncarnationTo(_plan.Nodes[packet.To].Name) == IncarnationOf(packet))
+        _nodes[packet.From]->Links().IncarnationTo(_plan.Nodes[packet.To].Name) == packet.SenderLife)
     {
         _oracle.Knows(packet.To, packet.From);
     }
@@ -428,9 +431,8 @@ void Simulation::OnDatagram(std::size_t slot)
     if (_random.Chance(_plan.MalformedPart))
     {
         ++_statistics.Malformed;
-        Spoil(packet, _random);
         const std::string before = node.Links().Describe();
-        node.Receive(packet);
+        node.ReceiveSpoiled(packet);
         if (node.Links().Describe() != before)
         {
             _oracle.Fail(9, "malformed input changed the state: " + Describe(packet));

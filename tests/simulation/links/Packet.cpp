@@ -1,5 +1,7 @@
 #include "Packet.h"
 
+#include <rabit/gateway/links/LinkFrameCodec.h>
+
 #include <limits>
 #include <sstream>
 
@@ -11,54 +13,34 @@ namespace
 
 constexpr std::uint64_t Impossible = std::numeric_limits<std::uint64_t>::max();
 
-void SpoilMessage(Test::StoredHello &hello, SimRandom &random)
+void SpoilAck(LinkAck &ack, SimRandom &random)
 {
     switch (random.Between(0, 3))
     {
         case 0:
-            hello.Fields.Version = 0;
+            ack.Link = 0;
             break;
         case 1:
-            hello.Fields.Incarnation = random.Chance(0.5) ? 0 : Impossible;
+            ack.Cumulative = Impossible;
             break;
         case 2:
-            hello.Fields.YourIncarnation = Impossible;
+            ack.Open = false;
+            ack.Cumulative = 1;
             break;
         default:
-            hello.Source.clear();
+            ack.Open = true;
+            ack.Oldest = ack.Cumulative + 2;
             break;
     }
 }
 
-void SpoilMessage(Test::StoredAck &ack, SimRandom &random)
+void SpoilData(LinkData &data, SimRandom &random)
 {
-    switch (random.Between(0, 4))
-    {
-        case 0:
-            ack.Fields.Version = 77;
-            break;
-        case 1:
-            ack.Fields.ReceiverIncarnation = random.Chance(0.5) ? 0 : Impossible;
-            break;
-        case 2:
-            ack.Fields.SenderIncarnation = Impossible;
-            break;
-        case 3:
-            ack.Fields.SenderIncarnation = 0;
-            ack.Fields.Cumulative = 1;
-            break;
-        default:
-            ack.Fields.Time = -5;
-            break;
-    }
-}
-
-void SpoilMessage(Test::StoredData &data, SimRandom &random)
-{
+    static const std::string longName(300, 't');
     switch (random.Between(0, 7))
     {
         case 0:
-            data.Fields.Version = 3;
+            data.Link = 0;
             break;
         case 1:
             data.Items.clear();
@@ -70,68 +52,98 @@ void SpoilMessage(Test::StoredData &data, SimRandom &random)
             data.Items.back().TtlLeft = -7;
             break;
         case 4:
-            data.Fields.Base = data.Fields.First + 1;
+            data.Oldest = data.Items.front().Sequence + 1;
             break;
         case 5:
-            data.Fields.First = Impossible;
+            data.Items.back().Sequence = data.Items.back().Through = Impossible;
             break;
         case 6:
-            data.Fields.ReceiverIncarnation = Impossible;
+            data.Items.push_back(data.Items.front());
             break;
         default:
-            data.Items.back().Type.assign(300, 't');
+            data.Items.back().Type = longName;
             break;
     }
 }
 
-void Write(std::ostream &out, const Test::StoredHello &hello)
+void SpoilHead(LinkFrame &frame, SimRandom &random)
 {
-    out << "HELLO inc " << std::hex << hello.Fields.Incarnation << " your " << hello.Fields.YourIncarnation
-        << std::dec << " r_time " << hello.Fields.Time;
-}
-
-void Write(std::ostream &out, const Test::StoredAck &ack)
-{
-    const LinkAck &k = ack.Fields;
-    out << "ACK " << ack.Queue << std::hex << " r_inc " << k.ReceiverIncarnation << " s_inc "
-        << k.SenderIncarnation << " your " << k.YourIncarnation << " bits " << k.Delivered[0] << '/'
-        << k.Refused[0] << std::dec << " cum " << k.Cumulative << " credit " << k.Credit << " r_time "
-        << k.Time;
-}
-
-void Write(std::ostream &out, const Test::StoredData &data)
-{
-    const LinkData &d = data.Fields;
-    out << "DATA " << data.Queue << std::hex << " s_inc " << d.SenderIncarnation << " r_inc "
-        << d.ReceiverIncarnation << std::dec << " base " << d.Base << " first " << d.First << " count "
-        << data.Items.size() << " flags " << int{data.Items.empty() ? std::uint8_t{0} : data.Items[0].Flags}
-        << " ttl " << (data.Items.empty() ? 0 : data.Items[0].TtlLeft) << " echo " << d.Echo.Time << " held "
-        << d.Echo.HeldFor;
+    switch (random.Between(0, 4))
+    {
+        case 0:
+            frame.Version = LinkVersion + 1;
+            break;
+        case 1:
+            frame.Time = -5;
+            break;
+        case 2:
+            frame.Echo.HeldFor = std::numeric_limits<std::int64_t>::max();
+            break;
+        case 3:
+            frame.Source = {};
+            break;
+        default:
+            frame.Short = false;
+            frame.SenderLife = random.Chance(0.5) ? 0 : Impossible;
+            break;
+    }
 }
 
 }  // namespace
 
-void Spoil(Packet &packet, SimRandom &random)
+void Spoil(LinkFrame &frame, SimRandom &random)
 {
-    std::visit([&](auto &message) { SpoilMessage(message, random); }, packet.Message);
-}
-
-std::uint64_t IncarnationOf(const Packet &packet)
-{
-    struct Visitor
+    const double kind = random.Unit();
+    if (frame.HasData && kind < 0.6)
     {
-        std::uint64_t operator()(const Test::StoredHello &hello) const { return hello.Fields.Incarnation; }
-        std::uint64_t operator()(const Test::StoredAck &ack) const { return ack.Fields.ReceiverIncarnation; }
-        std::uint64_t operator()(const Test::StoredData &data) const { return data.Fields.SenderIncarnation; }
-    };
-    return std::visit(Visitor{}, packet.Message);
+        SpoilData(frame.Data, random);
+    }
+    else if (!frame.Acks.empty() && kind < 0.8)
+    {
+        SpoilAck(frame.Acks.back(), random);
+    }
+    else
+    {
+        SpoilHead(frame, random);
+    }
 }
 
 std::string Describe(const Packet &packet)
 {
     std::ostringstream out;
-    out << 'n' << packet.From << " -> n" << packet.To << ' ';
-    std::visit([&](const auto &message) { Write(out, message); }, packet.Message);
+    out << 'n' << packet.From << " -> n" << packet.To << ' ' << packet.Bytes.size() << " B";
+    LinkFrame frame;
+    if (!LinkFrameCodec::Decode(packet.Bytes, frame))
+    {
+        out << " no frame";
+        return out.str();
+    }
+    if (!frame.Short)
+    {
+        out << std::hex << " s_inc " << frame.SenderLife << " r_inc " << frame.ReceiverLife << std::dec;
+    }
+    out << (frame.Ask ? " asks" : "") << " time " << frame.Time / 1000 << " echo " << frame.Echo.Time / 1000
+        << " held " << frame.Echo.HeldFor / 1000;
+    for (const LinkAck &ack : frame.Acks)
+    {
+        out << " ACK " << ack.Link << (ack.Open ? "" : " closed") << " cum " << ack.Cumulative << " from "
+            << ack.Oldest << " held " << std::hex << ack.Held[0] << std::dec << " credit " << ack.Credit;
+    }
+    if (frame.HasData)
+    {
+        out << " DATA " << frame.Data.Link << '/' << frame.Data.Queue << " oldest " << frame.Data.Oldest;
+        for (const LinkItem &item : frame.Data.Items)
+        {
+            out << ' ' << item.Sequence;
+            if (item.Through != item.Sequence)
+            {
+                out << '-' << item.Through;
+            }
+            out << ((item.Flags & LinkFlagSkip) != 0 ? "s" : "")
+                << ((item.Flags & LinkFlagFirst) != 0 ? "f" : "")
+                << ((item.Flags & LinkFlagLast) != 0 ? "l" : "") << '(' << item.Payload.size() << ')';
+        }
+    }
     return out.str();
 }
 

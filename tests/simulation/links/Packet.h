@@ -1,28 +1,27 @@
 #pragma once
 
 #include <SimRandom.h>
-#include "StoredMessages.h"
+#include <rabit/gateway/links/LinkMessages.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
-#include <variant>
+#include <vector>
 
 namespace Rabit::Sim
 {
 
-// A datagram on its way.
+// A datagram on its way, as bytes.
 struct Packet
 {
     std::size_t From = 0;
     std::size_t To = 0;
-    std::variant<Test::StoredHello, Test::StoredAck, Test::StoredData> Message;
+    std::uint64_t SenderLife = 0;  // the incarnation that its sender was in
+    std::vector<std::uint8_t> Bytes;
 };
 
-// Makes the message malformed in one of the ways that the receiver must notice.
-void Spoil(Packet &packet, SimRandom &random);
-
-// The incarnation that the message shows its sender to be in.
-std::uint64_t IncarnationOf(const Packet &packet);
+// Makes the frame malformed in one of the ways that the receiver must notice.
+void Spoil(LinkFrame &frame, SimRandom &random);
 
 // For traces, in one line.
 std::string Describe(const Packet &packet);

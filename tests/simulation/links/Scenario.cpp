@@ -57,8 +57,6 @@ LinkOptions DrawOptions(SimRandom &random)
         random.Chance(0.7) ? 1000000 : static_cast<std::size_t>(random.Between(100, 5000));
     options.Expire = random.Chance(0.5) ? 0ms : random.LogBetween(20ms, 60s);
     options.Window = static_cast<std::size_t>(random.LogBetween(1, 256));
-    options.WindowBytes = static_cast<std::size_t>(random.LogBetween(100, 100000));
-    options.LargestWindowBytes = options.WindowBytes * static_cast<std::size_t>(random.LogBetween(1, 100));
     options.RedeliverInDoubt = random.Chance(0.3);
     return options;
 }

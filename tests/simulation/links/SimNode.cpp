@@ -1,5 +1,7 @@
 #include "SimNode.h"
 
+#include <rabit/gateway/links/LinkFrameCodec.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -50,13 +52,6 @@ void SimNode::Start(bool storageLost)
     settings.Node = _world.Plan.Nodes[_index].Name;
     settings.Clock = _world.Random.Next() | 1;
     _links = std::make_unique<LinkNode>(settings, *this, *this, *this);
-    if (_world.Random.Chance(0.3))
-    {
-        for (const ScenarioNode &node : _world.Plan.Nodes)
-        {
-            _links->AddPeer(node.Name, LocalNow());
-        }
-    }
 }
 
 void SimNode::Crash()
@@ -120,15 +115,23 @@ bool SimNode::Forget(std::size_t node)
 
 void SimNode::Receive(const Packet &packet)
 {
-    struct Visitor
+    LinkFrame frame;
+    if (!LinkFrameCodec::Decode(packet.Bytes, frame))
     {
-        LinkNode &Node;
-        LinkTime Now;
-        void operator()(const Test::StoredHello &hello) const { Node.OnHello(hello.View(), Now); }
-        void operator()(const Test::StoredAck &ack) const { Node.OnAck(ack.View(), Now); }
-        void operator()(const Test::StoredData &data) const { Node.OnData(data.View(), Now); }
-    };
-    std::visit(Visitor{*_links, LocalNow()}, packet.Message);
+        _world.Oracle.Fail(9, "a frame that a node sent cannot be decoded");
+        return;
+    }
+    frame.Source = _world.Plan.Nodes[packet.From].Name;
+    _links->OnFrame(frame, LocalNow());
+}
+
+void SimNode::ReceiveSpoiled(const Packet &packet)
+{
+    LinkFrame frame;
+    LinkFrameCodec::Decode(packet.Bytes, frame);
+    frame.Source = _world.Plan.Nodes[packet.From].Name;
+    Spoil(frame, _world.Random);
+    _links->OnFrame(frame, LocalNow());
 }
 
 bool SimNode::Consume(std::size_t queue)
@@ -166,19 +169,13 @@ void SimNode::Check()
     }
 }
 
-void SimNode::Send(const LinkData &data)
+void SimNode::Send(const LinkFrame &frame)
 {
-    _world.Transmit({_index, NodeOf(data.Destination), Test::StoredData(data)});
-}
-
-void SimNode::Send(const LinkAck &ack)
-{
-    _world.Transmit({_index, NodeOf(ack.Source), Test::StoredAck(ack)});
-}
-
-void SimNode::Send(const LinkHello &hello)
-{
-    _world.Transmit({_index, NodeOf(hello.Destination), Test::StoredHello(hello)});
+    Packet packet{
+        .From = _index, .To = NodeOf(frame.Destination), .SenderLife = frame.SenderLife, .Bytes = {}};
+    packet.Bytes.resize(LinkFrameCodec::EncodedSize(frame));
+    LinkFrameCodec::Encode(frame, packet.Bytes);
+    _world.Transmit(std::move(packet));
 }
 
 void SimNode::OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
@@ -188,7 +185,8 @@ void SimNode::OnOutcome(std::uint64_t id, std::string_view destination, std::str
 }
 
 LocalQueueResult SimNode::Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                                  std::span<const std::uint8_t> payload, bool redelivered)
+                                  std::span<const std::uint8_t> payload, const LinkPayload & /*owner*/,
+                                  bool redelivered)
 {
     Record *record = _world.Oracle.Find(_index, source, queue, type, payload);
     if (record == nullptr)

@@ -49,6 +49,8 @@ public:
     // Forgets another node, if nothing waits for it. Returns whether there was something to forget.
     bool Forget(std::size_t node);
     void Receive(const Packet &packet);
+    // Receives it once more, malformed.
+    void ReceiveSpoiled(const Packet &packet);
     // A message is taken out of a queue, and local producers may put one in. Returns whether there are more.
     bool Consume(std::size_t queue);
     // From now on no pop event is lost, the room is told rightly, and there are no local producers.
@@ -57,13 +59,12 @@ public:
     // Checks what can be checked of this node alone, after an event.
     void Check();
 
-    void Send(const LinkData &data) override;
-    void Send(const LinkAck &ack) override;
-    void Send(const LinkHello &hello) override;
+    void Send(const LinkFrame &frame) override;
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
     LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                             std::span<const std::uint8_t> payload, bool redelivered) override;
+                             std::span<const std::uint8_t> payload, const LinkPayload &owner,
+                             bool redelivered) override;
     std::size_t Room(std::string_view queue) const override;
     std::uint64_t Above(std::uint64_t floor) override;
 

@@ -20,16 +20,17 @@ struct LinkSenderCounters
     std::uint64_t Expired = 0;
     std::uint64_t InDoubt = 0;
     std::uint64_t RefusedThere = 0;
-    std::uint64_t MessagesSent = 0;  // in datagrams, resent ones included
-    std::uint64_t MessagesResent = 0;
+    std::uint64_t PartsSent = 0;  // in datagrams, resent ones included
+    std::uint64_t PartsResent = 0;
     std::uint64_t DatagramsSent = 0;
-    std::uint64_t Timeouts = 0;  // times the resend timer ran out with something unacknowledged
+    std::uint64_t Timeouts = 0;  // times the probe timer ran out with something unacknowledged
     std::uint64_t Restarts = 0;  // times the stream was started anew (receiver's or own new incarnation)
     // Present state.
     std::size_t Pending = 0;         // messages without an outcome
     std::size_t PendingBytes = 0;    // bytes of their payloads
-    std::size_t Unacknowledged = 0;  // of them, sent at least once
-    LinkTime RoundTrip{0};           // smoothed (RFC 6298 SRTT); 0: not measured yet
+    std::size_t Unacknowledged = 0;  // of them, sent at least once, as a whole or in part
+    std::size_t UnacknowledgedParts = 0;
+    LinkTime RoundTrip{0};  // of the path to the node, smoothed (RFC 6298 SRTT); 0: not measured yet
 };
 
 // One link from another node, seen from the receiver. The counters only rise.
@@ -42,18 +43,26 @@ struct LinkReceiverCounters
     std::uint64_t RefusedUndecodable = 0;  // consumed, LocalQueueResult::Undecodable
     std::uint64_t HeldBackFull = 0;        // not consumed: the local queue was full (rule R7)
     std::uint64_t HeldBackLate = 0;        // not consumed: too late by the echoed clock (rules R5 and R6)
-    std::uint64_t Duplicates = 0;          // messages consumed before, or not yet due (rule R4)
-    std::uint64_t Stale = 0;               // datagrams for or from another life (rules R1 to R3)
+    std::uint64_t HeldBackMemory = 0;      // not consumed: no memory for a piece of a large message
+    std::uint64_t Duplicates = 0;          // parts consumed before (rule R4)
+    std::uint64_t Kept = 0;                // parts that came before an earlier one, or wait for room
+    std::uint64_t NotKept = 0;             // the same, but there was no memory for them
+    std::uint64_t Stale = 0;               // frames that must not open a session (rule R3)
     std::uint64_t SessionsOpened = 0;
     std::uint64_t AcksSent = 0;
     // Present state.
-    bool HeldBack = false;  // the local queue was full: the stream waits for room
+    bool HeldBack = false;          // the local queue was full: the stream waits for room
+    std::size_t KeptBytes = 0;      // of parts that wait
+    std::size_t AssemblyBytes = 0;  // of a large message that is coming in
 };
 
 // What concerns the node and no single link. The counters only rise.
 struct LinkNodeCounters
 {
     std::uint64_t Malformed = 0;       // datagrams dropped because a field was impossible
+    std::uint64_t OtherVersion = 0;    // datagrams dropped because they speak another version of the links
+    std::uint64_t Stale = 0;           // datagrams for or from another life (rules R1 and R2)
+    std::uint64_t UnknownShort = 0;    // short frames whose check means nothing here
     std::uint64_t NotForUs = 0;        // datagrams dropped because another node was addressed
     std::uint64_t TooManyPeers = 0;    // datagrams dropped because of LinkSettings::MaxPeers
     std::uint64_t TooManyLinks = 0;    // datagrams dropped because of LinkSettings::MaxLinksPerPeer

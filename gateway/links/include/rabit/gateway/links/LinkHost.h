@@ -17,6 +17,7 @@ enum class LocalQueueResult : std::uint8_t
     Ok,    // it is in the queue
     Full,  // not now: the sender holds it (and all behind it) back until there is room. Also the right answer
            // for a queue that is accepted but does not exist yet
+    Later,       // the same, but who drives the links is about to ask again, by LinkNode::Retry
     Unknown,     // this node accepts no such queue
     WrongType,   // the queue does not accept this type, or the type is not known here
     Undecodable  // the payload is not a message of its type
@@ -27,12 +28,14 @@ enum class LocalQueueResult : std::uint8_t
 class LocalQueues
 {
 public:
-    // Puts one message into a local queue, or says why not. Names and payload are borrowed for the call. Full
-    // holds the link back; Unknown, WrongType and Undecodable consume the message for good, and the sender
-    // learns of it as LinkOutcome::RefusedThere. `redelivered`: an earlier life of this node may have put it
-    // into the queue already (only from links with LinkOptions::RedeliverInDoubt).
+    // Puts one message into a local queue, or says why not. Names and payload are borrowed for the call;
+    // `owner` is whose bytes the payload are the first of, null if nobody's who can be held. Full holds the
+    // link back; Unknown, WrongType and Undecodable consume the message for good, and the sender learns of it
+    // as LinkOutcome::RefusedThere. `redelivered`: an earlier life of this node may have put it into the
+    // queue already (only from links with LinkOptions::RedeliverInDoubt).
     virtual LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                                     std::span<const std::uint8_t> payload, bool redelivered) = 0;
+                                     std::span<const std::uint8_t> payload, const LinkPayload &owner,
+                                     bool redelivered) = 0;
     // Messages that the queue would take now; a hint for the sender's window, not a promise. For a queue that
     // this node does not accept: anything above 0, so that the messages come and are refused.
     virtual std::size_t Room(std::string_view queue) const = 0;
@@ -46,14 +49,10 @@ protected:
 class LinkOutput
 {
 public:
-    // Sends to the gateway of the node data.Destination. May be kept and encoded after the call: its source
+    // Sends to the gateway of the node frame.Destination. May be kept and encoded after the call: its source
     // and types are valid as long as the LinkNode, its payloads as long as their owners are held; its
     // destination and queue only until that node is forgotten, which may be soon: copy them.
-    virtual void Send(const LinkData &data) = 0;
-    // Sends to the gateway of the node ack.Source.
-    virtual void Send(const LinkAck &ack) = 0;
-    // Sends to the gateway of the node hello.Destination.
-    virtual void Send(const LinkHello &hello) = 0;
+    virtual void Send(const LinkFrame &frame) = 0;
     // The outcome of an accepted message is known.
     virtual void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                            LinkOutcome outcome) = 0;

@@ -23,6 +23,25 @@ class LinkPeer;
 class LinkSender;
 struct LinkContext;
 
+// Something that wants to send to another node: a link, or what keeps the links alive.
+struct LinkStream
+{
+    std::string_view Destination;
+    std::string_view Queue;  // empty: acknowledgements and hellos, which go before everything else
+    std::size_t Bytes = 0;   // of its next datagram as on the air, about; never 0
+};
+
+// What is known of the path to another node.
+struct LinkPathState
+{
+    LinkTime RoundTrip{0};      // smoothed; 0: not measured yet
+    LinkTime QueueingDelay{0};  // of it, what waits in buffers on the way, in the last round trip
+    std::size_t Window = 0;     // bytes that may be under way, as on the air
+    std::size_t InFlight = 0;   // bytes that are
+    double DeliveryRate = 0;    // bytes per second that arrived when the window was last full; 0: not known
+    double LossRate = 0;        // 0 to 1
+};
+
 // All queue links of one node: the state machine that a gateway drives. Messages enqueued here reach a queue
 // of another node exactly once and in order as long as both live, whatever the network does in between; each
 // gets one outcome. gateway/links/README.md has the protocol.
@@ -43,7 +62,8 @@ class LinkNode
 {
 public:
     // Takes its first incarnation from the source. Throws std::invalid_argument if a setting is out of range.
-    LinkNode(LinkSettings settings, LinkOutput &output, LocalQueues &queues, IncarnationSource &incarnations);
+    LinkNode(const LinkSettings &settings, LinkOutput &output, LocalQueues &queues,
+             IncarnationSource &incarnations);
     ~LinkNode();
     LinkNode(const LinkNode &) = delete;
     LinkNode &operator=(const LinkNode &) = delete;
@@ -62,21 +82,18 @@ public:
     LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
                          LinkPayload payload, LinkTime now);
 
-    // A datagram has come from a peer's gateway. What is malformed or meant for another node is dropped and
-    // counted and changes nothing else.
-    void OnData(const LinkData &data, LinkTime now);
-    void OnAck(const LinkAck &ack, LinkTime now);
-    void OnHello(const LinkHello &hello, LinkTime now);
+    // A frame has come from a peer's gateway, frame.Source. What is malformed or meant for another node is
+    // dropped and counted and changes nothing else. The frame is changed: what a short one leaves out is
+    // filled in.
+    void OnFrame(LinkFrame &frame, LinkTime now);
     // Something else than the links has heard that a node is in that life: as a HELLO that says it. Does
     // nothing if the links know of it, or do not know the node.
     void HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now);
 
     // A message was taken out of this local queue, or the queue has come into being.
     void OnRoom(std::string_view queue, LinkTime now);
-
-    // A node is there (discovery found it): starts the exchange of hellos, so that the first message for it
-    // need not wait for one. Never needed for correctness. False: LinkSettings::MaxPeers are known already, and none can be forgotten.
-    bool AddPeer(std::string_view node, LinkTime now);
+    // Asks the local queue once more for what it would take Later.
+    void Retry(std::string_view source, std::string_view queue, LinkTime now);
 
     // Forgets a node and the links to and from it, unless messages for it wait here (false). What it had sent
     // and was not told the outcome of will be in doubt there. Without this call a node is forgotten when
@@ -89,6 +106,14 @@ public:
     void Run(LinkTime now);
     // When Run has something to do: now or earlier if at once, LinkNever if nothing until the next input.
     LinkTime NextDue() const;
+
+    // In place of Run, for a scheduler that decides what goes out next: Advance does everything that is due
+    // except sending; VisitStreams tells what could be sent now; SendOne sends one datagram of one of these.
+    void Advance(LinkTime now);
+    void VisitStreams(LinkTime now, const std::function<void(const LinkStream &)> &visit) const;
+    // Of at most so many bytes as on the air, unless a single small message is larger; acknowledgements and
+    // hellos are always sent. Returns whether anything was sent. LinkOutput::Send is called at most once.
+    bool SendOne(std::string_view destination, std::string_view queue, std::size_t most, LinkTime now);
 
     // Ends all links to other nodes in an orderly way: what was never sent is reported as Expired (it will
     // never be delivered), what was sent and not acknowledged as InDoubt. The object must not be used
@@ -111,6 +136,8 @@ public:
                                                const LinkSenderCounters &)> &visit) const;
     void VisitReceivers(const std::function<void(std::string_view source, std::string_view queue,
                                                  const LinkReceiverCounters &)> &visit) const;
+    // The same for the path to each node that there is a link to.
+    void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
     // The whole state except the counters as text, one line per peer and link: for logs, and for tests that
     // state did not change.
     std::string Describe() const;
@@ -124,8 +151,8 @@ private:
     LinkRefusal FindOrAddSender(std::string_view destination, std::string_view queue,
                                 const LinkOptions &options, LinkTime now, LinkPeer *&peer,
                                 LinkSender *&sender);
-    bool IsForUs(std::string_view name);
-    void CountMalformed();
+    bool Accepts(LinkFrame &frame, LinkTime now);
+    void OnUnknownShort(const LinkFrame &frame, LinkTime now);
     bool ForgetOne(LinkTime now);
     void Forget(Peers::iterator peer);
     void HeardOfMyself(std::string_view from, std::uint64_t incarnation, LinkTime now);

@@ -18,48 +18,58 @@ struct LinkOptions
     std::size_t CapacityBytes = 16 * 1024 * 1024;
     // A message is not delivered later than this after it was enqueued; 0: messages do not expire.
     LinkTime Expire{0};
-    // Messages sent and not acknowledged, at most; 1 to LinkOutcomeBits.
+    // Messages sent, in whole or in part, and not acknowledged, at most; 1 to LinkMaxWindow. How many bytes
+    // may be under way is decided by the path (PathControl), and common to all links to a node.
     std::size_t Window = 128;
-    // Bytes of their payloads together, at most; a single larger message is sent alone. The second holds
-    // while the window is used to the full and the round trip is not above LinkSettings::ShortRoundTrip; a
-    // value below the first means the first.
-    std::size_t WindowBytes = 256 * 1024;
-    std::size_t LargestWindowBytes = 4 * 1024 * 1024;
     // What to do with messages that were sent and not acknowledged when the receiver restarted. False: they
     // are in doubt. True: they are sent again, marked as redelivered, so that the queue gets each at least
     // once.
     bool RedeliverInDoubt = false;
 };
 
-// What is common to all links of a node. The defaults suit a radio link of 10 to 500 ms round trip.
+// What is common to all links of a node. The defaults suit anything from a wire to a thin radio.
 struct LinkSettings
 {
     // Name of this node, 1 to LinkMaxName bytes.
     std::string Node;
     // A random number, not 0, drawn when the process starts: the name of its monotonic clock.
     std::uint64_t Clock = 0;
-    // Bytes up to which messages that wait anyway share a LinkData, the names and numbers included. A message
-    // that is larger by itself goes alone.
-    std::size_t MaxDatagram = 1300;
-    // An acknowledgement waits this long for more to acknowledge, unless AckEvery messages or AckEveryBytes
-    // of payload were consumed: few large messages fill the sender's window, which then waits for it.
+    // Bytes of an encoded frame (LinkFrameCodec) at most, but for names longer than that leaves room for.
+    // What is larger is cut into parts.
+    std::size_t MaxDatagram = 1312;
+    // What a frame costs on the air beside its own bytes: IPv4 20, UDP 8, RTPS 72,
+    // encapsulation and length 8, one more for padding.
+    std::size_t AirOverhead = 109;
+    // An acknowledgement waits for more to acknowledge: this long, or five quarters of the round trip, but
+    // not longer than LongestAckDelay, unless the sender asks, or AckEvery parts or AckEveryBytes of payload
+    // have come.
     LinkTime AckDelay{std::chrono::milliseconds(2)};
+    LinkTime LongestAckDelay{std::chrono::milliseconds(250)};
     std::size_t AckEvery = 16;
     std::size_t AckEveryBytes = 128 * 1024;
-    // Bounds of the resend timer, and its value before the first measurement (RFC 6298, with bounds for our
-    // links).
-    LinkTime MinResend{std::chrono::milliseconds(20)};
+    // The probe timer: at least this, its value before the first measurement, and how far backing off takes
+    // it.
+    LinkTime MinResend{std::chrono::milliseconds(5)};
     LinkTime FirstResend{std::chrono::milliseconds(200)};
     LinkTime MaxResend{std::chrono::seconds(1)};
-    // Bytes per second that the slowest path is assumed to carry: what is on its way is sent again only after
-    // the time that it needs at this rate, on top of the resend timer.
-    std::size_t SlowPath = 512 * 1024;
-    // A round trip up to this shows that nothing queues up on the way, so that more may be in flight.
-    LinkTime ShortRoundTrip{std::chrono::milliseconds(10)};
-    // A LinkHello goes to each peer at this period. A peer that was not heard for SilentAfter is silent: it
-    // gets no messages, and hellos only while messages wait for it, at SilentHelloPeriod. Hellos to one peer
-    // do not follow each other faster than HelloGap. While messages wait for the first token of a peer, the
-    // first hellos come sooner, at twice HelloGap and each step twice the one before.
+    // Delay that a link may cause by what it has under way, beside the time that one datagram takes.
+    LinkTime QueueingTarget{std::chrono::milliseconds(60)};
+    // Bytes under way to one node at most, however short the round trip.
+    std::size_t LargestWindow = 4 * 1024 * 1024;
+    // The shortest round trip is measured anew when it was not seen for so long.
+    LinkTime PathMemory{std::chrono::seconds(30)};
+    // Bytes of parts that wait for earlier ones: of one link, and of all links of the node.
+    std::size_t ReorderBytes = 1024 * 1024;
+    std::size_t ReorderBytesOfNode = 16 * 1024 * 1024;
+    // Bytes of a message in several parts at most, a larger one is refused; and of the beginnings of such
+    // messages of all links, one of them not counted.
+    std::size_t LargestMessage = 64 * 1024 * 1024;
+    std::size_t AssemblyBytesOfNode = 64 * 1024 * 1024;
+    // While messages wait for a peer's token, it is asked by hellos: at once, after twice HelloGap, then
+    // after twice as long each time, up to HelloPeriod. A peer from which nothing came for SilentAfter
+    // although something was asked of it is silent: it gets no messages, and is asked at SilentHelloPeriod
+    // while messages wait. Hellos to one peer do not follow each other faster than HelloGap. While nothing
+    // waits nothing is said.
     LinkTime HelloPeriod{std::chrono::milliseconds(500)};
     LinkTime SilentAfter{std::chrono::seconds(10)};
     LinkTime SilentHelloPeriod{std::chrono::seconds(2)};

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <rabit/gateway/links/LinkMessages.h>
+
+#include <cstdint>
+#include <string_view>
+
+namespace Rabit
+{
+
+// What LinkFrame::Check is: 32 bits of a hash (FNV-1a, with its halves folded).
+class LinkCheck
+{
+public:
+    LinkCheck &Add(std::string_view bytes)
+    {
+        for (const char byte : bytes)
+        {
+            AddByte(static_cast<std::uint8_t>(byte));
+        }
+        return *this;
+    }
+    LinkCheck &Add(std::uint64_t number)
+    {
+        for (int i = 0; i < 8; ++i)
+        {
+            AddByte(static_cast<std::uint8_t>(number >> (8 * i)));
+        }
+        return *this;
+    }
+    std::uint32_t Value() const { return static_cast<std::uint32_t>(_hash ^ (_hash >> 32)); }
+
+    // Of a long frame.
+    static std::uint32_t OfName(std::string_view destination) { return LinkCheck().Add(destination).Value(); }
+    // Of a short one: of all that it leaves out.
+    static std::uint32_t OfShort(std::string_view destination, std::uint64_t senderLife,
+                                 std::uint64_t receiverLife, std::uint32_t clock, std::uint32_t echoClock)
+    {
+        return LinkCheck()
+            .Add(destination)
+            .Add(senderLife)
+            .Add(receiverLife)
+            .Add(clock)
+            .Add(echoClock)
+            .Value();
+    }
+
+private:
+    void AddByte(std::uint8_t byte) { _hash = (_hash ^ byte) * 0x100000001b3ULL; }
+
+    std::uint64_t _hash = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,272 @@
+// Rule S2: what goes into a datagram.
+#include "LinkSender.h"
+
+#include <rabit/gateway/links/LinkFrameCodec.h>
+
+#include <algorithm>
+
+namespace Rabit
+{
+
+namespace
+{
+
+// A rest of a datagram smaller than this takes no piece of a message.
+constexpr std::size_t SmallestPiece = 200;
+// Where more than this part is lost, small parts without an acknowledgement go along once more with what is
+// sent anyway, as far as these bytes of each and this part of the datagram.
+constexpr double LossThatCalls = 0.02;
+constexpr std::size_t SmallPart = 256;
+constexpr std::size_t PartOfDatagram = 4;
+// The payload's length may take one byte more than that of an empty one, twice.
+constexpr std::size_t LengthBytes = 2;
+
+}  // namespace
+
+struct LinkSender::Filling
+{
+    LinkFrame &Frame;
+    std::size_t Most;
+    LinkTime Now;
+    LinkTime SentAt;
+    std::size_t Head = 0;   // bytes before the parts
+    std::size_t Used = 0;   // bytes of the parts
+    std::size_t Along = 0;  // of these, what goes along once more
+
+    LinkData &Data() { return Frame.Data; }
+    bool IsFull() const { return Frame.Data.Items.size() >= LinkMaxItems; }
+    bool Fits(std::size_t bytes) const
+    {
+        return !IsFull() && (Frame.Data.Items.empty() || Head + Used + bytes <= Most);
+    }
+    std::size_t Room() const { return Most > Head + Used ? Most - Head - Used : 0; }
+};
+
+bool LinkSender::IsReady(LinkTime now) const
+{
+    return ReadyAt() <= now;
+}
+
+std::size_t LinkSender::NextBytes() const
+{
+    const std::size_t most = _context.Settings.MaxDatagram;
+    std::size_t bytes = 0;
+    if (_lost > 0 || _probe)
+    {
+        for (std::uint64_t sequence = _outbox.FirstSequence();
+             sequence < _outbox.NextSequence() && bytes < most; ++sequence)
+        {
+            const SentPart &part = _outbox.Part(sequence);
+            bytes += part.IsLost || (_probe && !part.IsHeld) ? part.Length + LengthBytes : 0;
+        }
+    }
+    if (bytes < most && MayCut())
+    {
+        bytes += _outbox.Next().Bytes - _outbox.Next().Cut;
+    }
+    return std::clamp<std::size_t>(bytes, 1, most);
+}
+
+bool LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
+{
+    ExpireWaiting(now);
+    ExpireSent(now);
+    LinkData &data = frame.Data;
+    data.Link = _number;
+    data.Queue = _isKnown ? std::string_view() : std::string_view(_queue);
+    data.Oldest = _outbox.FirstSequence();
+    data.Items.clear();
+    Filling filling{.Frame = frame, .Most = most, .Now = now, .SentAt = LinkTime(now.count() / 1000 * 1000)};
+    filling.Head =
+        LinkFrameCodec::HeaderSize(frame) + LinkFrameCodec::DataSize(data) + (frame.Acks.empty() ? 0 : 1);
+    for (const LinkAck &ack : frame.Acks)
+    {
+        filling.Head += LinkFrameCodec::AckSize(ack);
+    }
+    FillAgain(filling);
+    while (FillNew(filling))
+    {
+    }
+    if (data.Items.empty())
+    {
+        if (_probe && _outbox.FirstSequence() < _outbox.NextSequence())
+        {
+            // The receiver has everything: it is asked to take it.
+            std::uint64_t first = _outbox.FirstSequence();
+            _outbox.Part(first).IsHeld = false;
+            --_held;
+            Again(filling, first);
+        }
+        else
+        {
+            _probe = false;
+            return false;
+        }
+    }
+    _probe = false;
+    _lastSentAt = now;
+    ++_counters.DatagramsSent;
+    ArmProbe(now);
+    frame.HasData = true;
+    return true;
+}
+
+// What was lost, all of it that is not acknowledged if this is a probe, and what goes along once more.
+void LinkSender::FillAgain(Filling &filling)
+{
+    const bool along = _path.LossRate() > LossThatCalls && !_probe;
+    if (_lost == 0 && !_probe && !along)
+    {
+        return;
+    }
+    const LinkTime half = _path.Times().Smoothed() / 2;
+    for (std::uint64_t sequence = _outbox.FirstSequence(); sequence < _outbox.NextSequence();)
+    {
+        const SentPart &part = _outbox.Part(sequence);
+        if (!HasCredit(part.Message))
+        {
+            return;
+        }
+        const bool extra = along && !part.IsLost && part.Cost > 0 && part.Length <= SmallPart &&
+                           part.SentAt + half <= filling.Now &&
+                           filling.Along + part.Length <= filling.Most / PartOfDatagram;
+        if (part.IsHeld || !(part.IsLost || _probe || extra))
+        {
+            ++sequence;
+            continue;
+        }
+        filling.Along += extra ? part.Length : 0;
+        if (!Again(filling, sequence))
+        {
+            return;
+        }
+    }
+}
+
+// Adds a part that was sent before, and moves on to the next. False: there is no room for it.
+bool LinkSender::Again(Filling &filling, std::uint64_t &sequence)
+{
+    SentPart &part = _outbox.Part(sequence);
+    OutboxMessage &message = _outbox.MessageOf(part);
+    if (!message.IsSkipped && filling.Now >= message.ExpiresAt)
+    {
+        message.IsSkipped = true;
+        message.Payload.reset();
+    }
+    LinkItem item;
+    Describe(part, message, sequence, item, filling.Now);
+    const std::size_t bytes = LinkFrameCodec::ItemSize(item) + item.Payload.size();
+    if (!filling.Fits(bytes))
+    {
+        return false;
+    }
+    // Rule S3: a message whose expiry has passed keeps its numbers, which are sent as one SKIP.
+    for (; sequence < item.Through; ++sequence)
+    {
+        SentPart &covered = _outbox.Part(sequence + 1);
+        LeavePath(covered);
+        covered.SentAt = filling.SentAt;
+        _lost -= covered.IsLost ? 1 : 0;
+        covered.IsLost = false;
+    }
+    ++sequence;
+    part.IsAgain = true;
+    part.IsNamed = part.IsNamed || !item.Type.empty();
+    filling.Data().Items.push_back(std::move(item));
+    OnPartSent(filling, part, bytes);
+    ++_counters.PartsResent;
+    return true;
+}
+
+void LinkSender::Describe(const SentPart &part, const OutboxMessage &message, std::uint64_t sequence,
+                          LinkItem &item, LinkTime now) const
+{
+    item.Sequence = sequence;
+    item.Through = sequence;
+    item.Flags = message.Redelivered ? LinkFlagRedelivered : std::uint8_t{0};
+    if (message.IsSkipped)
+    {
+        item.Flags = static_cast<std::uint8_t>(item.Flags | LinkFlagSkip);
+        item.Through = message.End - 1;
+        return;
+    }
+    if (part.Offset == 0)
+    {
+        item.Flags = static_cast<std::uint8_t>(item.Flags | LinkFlagFirst);
+        item.TypeNumber = message.TypeNumber;
+        item.Type = _types.IsKnown(message.TypeNumber) ? std::string_view() : std::string_view(*message.Type);
+        item.Size = message.Bytes;
+    }
+    if (part.Offset + part.Length == message.Bytes)
+    {
+        item.Flags = static_cast<std::uint8_t>(item.Flags | LinkFlagLast);
+        item.TtlLeft = message.ExpiresAt == LinkNever ? LinkNoExpiry : (message.ExpiresAt - now).count();
+    }
+    if (message.Payload)
+    {
+        item.Payload = message.Payload->View().subspan(part.Offset, part.Length);
+        item.Owner = message.Payload;
+    }
+}
+
+// Adds what fits of the next message: all that is left of it, or a piece. False: nothing more fits or may be
+// sent.
+bool LinkSender::FillNew(Filling &filling)
+{
+    if (!MayCut() || filling.IsFull())
+    {
+        return false;
+    }
+    const OutboxMessage &next = _outbox.Next();
+    const std::size_t left = next.Bytes - next.Cut;
+    LinkItem item;
+    Describe({.Offset = next.Cut, .Length = left}, next, _outbox.NextSequence(), item, filling.Now);
+    std::size_t head = LinkFrameCodec::ItemSize(item) + LengthBytes;
+    std::size_t length = left;
+    if (filling.Head + filling.Used + head + left > filling.Most)
+    {
+        // What a datagram of its own has room for waits for that; what does not is cut.
+        const bool empty = filling.Data().Items.empty();
+        const std::size_t room = filling.Room() > head ? filling.Room() - head : 0;
+        if (!empty && (room < SmallestPiece || (next.Cut == 0 && left <= filling.Most / 2)))
+        {
+            return false;
+        }
+        length = std::min(left, std::max(room, SmallestPiece));
+        Describe({.Offset = next.Cut, .Length = length}, next, _outbox.NextSequence(), item, filling.Now);
+        if (length < left)
+        {
+            item.Flags = static_cast<std::uint8_t>(item.Flags & ~LinkFlagLast);
+            item.TtlLeft = LinkNoExpiry;
+        }
+    }
+    SentPart &part = _outbox.Part(_outbox.Cut(length));
+    part.IsNamed = !item.Type.empty();
+    head = LinkFrameCodec::ItemSize(item);
+    filling.Data().Items.push_back(std::move(item));
+    OnPartSent(filling, part, head + length);
+    return true;
+}
+
+void LinkSender::OnPartSent(Filling &filling, SentPart &part, std::size_t bytes)
+{
+    LeavePath(part);
+    _lost -= part.IsLost ? 1 : 0;
+    part.IsLost = false;
+    part.SentAt = filling.SentAt;
+    const bool first = filling.Data().Items.size() == 1;
+    part.Cost = bytes + (first ? filling.Head + _context.Settings.AirOverhead : 0);
+    filling.Used += bytes;
+    _inFlight += part.Cost;
+    _path.Sent(part.Cost, filling.Now);
+    ++_counters.PartsSent;
+}
+
+void LinkSender::LeavePath(SentPart &part)
+{
+    _path.Forget(part.Cost);
+    _inFlight -= part.Cost;
+    part.Cost = 0;
+}
+
+}  // namespace Rabit

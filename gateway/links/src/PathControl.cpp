@@ -1,0 +1,247 @@
+#include "PathControl.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace Rabit
+{
+
+namespace
+{
+
+using namespace std::chrono_literals;
+using Seconds = std::chrono::duration<double>;
+
+// Round trips up to this are those of wires. There nothing is paced: timers are too coarse.
+constexpr LinkTime ShortRoundTrip = 10ms;
+constexpr LinkTime PacedFrom = 5ms;
+// What is lost on a short path reduces its window to this many datagrams at least.
+constexpr std::size_t LeastOnWire = 8;
+// How long the shortest round trip may take to be measured.
+constexpr LinkTime LongestDrain = 2s;
+// An acknowledgement is asked for after so many datagrams, or this part of the window if that is more.
+constexpr std::size_t DatagramsToAsk = 3;
+constexpr std::size_t PartToAsk = 4;
+constexpr LinkTime LongestDatagramTime = 250ms;
+// The probe timer doubles so many times at first: where much is lost, waiting longer does not help. After so
+// many probes in vain there is no path, and it goes on doubling.
+constexpr int FirstDoublings = 3;
+constexpr int ProbesInVain = 8;
+// A round trip that was once very long is no reason to wait for the next ones that long.
+constexpr LinkTime LongestProbe = 3s;
+
+std::size_t Scaled(std::size_t bytes, double factor)
+{
+    return static_cast<std::size_t>(static_cast<double>(bytes) * factor);
+}
+
+}  // namespace
+
+PathControl::PathControl(const LinkSettings &settings) : _settings(settings), _window(FirstWindow()) {}
+
+// While the shortest round trip is measured there is one datagram at a time.
+std::size_t PathControl::Window() const
+{
+    return _draining ? 1 : _window;
+}
+
+bool PathControl::TakeAsk(LinkTime now)
+{
+    const bool asked = _askedAt > _echoed;
+    if (_sinceAsked < std::max(DatagramsToAsk * Datagram(), Window() / PartToAsk) && (HasRoom() || asked))
+    {
+        return false;
+    }
+    _sinceAsked = 0;
+    _askedAt = LinkTime(now.count() / 1000 * 1000);  // as precise as its echo
+    return true;
+}
+
+bool PathControl::IsShort() const
+{
+    return _shortest > LinkTime(0) && _shortest <= ShortRoundTrip && _times.Smoothed() <= 2 * ShortRoundTrip;
+}
+
+void PathControl::Sent(std::size_t bytes, LinkTime now)
+{
+    _inFlight += bytes;
+    _sinceAsked += bytes;
+    _wasFull = _wasFull || _inFlight + Datagram() >= Window();
+    if (_times.Smoothed() < PacedFrom || _draining)
+    {
+        return;
+    }
+    // A quarter faster than the window would go by itself, so that it is the window that limits.
+    const double rate = (_slowStart ? 2.0 : 1.25) * static_cast<double>(_window) /
+                        std::chrono::duration_cast<Seconds>(_times.Smoothed()).count();
+    const auto timeOf = [rate](std::size_t size)
+    { return std::chrono::duration_cast<LinkTime>(Seconds(static_cast<double>(size) / rate)); };
+    _pacedUntil = std::max(_pacedUntil, now - timeOf(Datagram())) + timeOf(bytes);
+}
+
+void PathControl::Acknowledged(std::size_t bytes, LinkTime now)
+{
+    _inFlight -= bytes;
+    _roundAcknowledged += bytes;
+    _lossRate -= _lossRate * WeightOf(bytes);
+    if (_draining && _drainedAt == LinkNever && _inFlight == 0)
+    {
+        _drainedAt = now;
+    }
+}
+
+void PathControl::Lost(std::size_t bytes)
+{
+    _inFlight -= bytes;
+    _roundLost += bytes;
+    _lossRate += (1 - _lossRate) * WeightOf(bytes);
+}
+
+// Of so many bytes in an average over some tens of datagrams.
+double PathControl::WeightOf(std::size_t bytes) const
+{
+    const double datagrams = static_cast<double>(bytes) / static_cast<double>(Datagram());
+    return datagrams / (32 + datagrams);
+}
+
+void PathControl::Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now)
+{
+    _times.Measured(roundTrip);
+    _echoed = std::max(_echoed, sentAt);
+    if (_shortest == LinkTime(0) || roundTrip <= _shortest + _shortest / 16)
+    {
+        _shortest = _shortest == LinkTime(0) ? std::max(roundTrip, LinkTime(1))
+                                             : std::clamp(roundTrip, LinkTime(1), _shortest);
+        _shortestAt = now;
+        _draining = false;
+    }
+    else if (_draining &&
+             ((_drainedAt != LinkNever && sentAt >= _drainedAt) || now - _drainStart > LongestDrain))
+    {
+        _shortest = std::min(roundTrip, _roundShortest);
+        _shortestAt = now;
+        _draining = false;
+    }
+    _roundShortest = std::min(_roundShortest, roundTrip);
+    if (sentAt >= _roundStart)
+    {
+        EndRound(now);
+    }
+}
+
+void PathControl::EndRound(LinkTime now)
+{
+    RememberShortest(_roundShortest, now);
+    _queueingDelay = std::max(_roundShortest - _shortest, LinkTime(0));
+    const Seconds duration = now - _roundStart;
+    if (_roundStart > LinkTime(0) && duration.count() > 0 && _wasFull)
+    {
+        // The last few rounds count: the newest most, the best of them if it is falling.
+        const double rate = static_cast<double>(_roundAcknowledged) / duration.count();
+        _rate = std::max(rate, _rate * 0.75);
+    }
+    if (!_draining)
+    {
+        Decide(_roundShortest);
+    }
+    _roundStart = now;
+    _roundShortest = LinkNever;
+    _roundAcknowledged = 0;
+    _roundLost = 0;
+    _wasFull = _inFlight + Datagram() >= Window();
+}
+
+// Without a full window nothing of ours waits anywhere, and what was measured is what the path takes.
+void PathControl::RememberShortest(LinkTime roundTrip, LinkTime now)
+{
+    if (_draining || now - _shortestAt < _settings.PathMemory)
+    {
+        return;
+    }
+    if (!_wasFull)
+    {
+        _shortest = roundTrip;
+        _shortestAt = now;
+        return;
+    }
+    _draining = true;
+    _drainStart = now;
+    _drainedAt = _inFlight == 0 ? now : LinkNever;
+}
+
+LinkTime PathControl::Target() const
+{
+    const double datagramTime = _rate > 0 ? static_cast<double>(Datagram()) / _rate : 0;
+    const LinkTime one =
+        std::min(std::chrono::duration_cast<LinkTime>(Seconds(datagramTime)), LongestDatagramTime);
+    const double patience = std::max(0.3, 1 - 2 * _lossRate);
+    return one + std::chrono::duration_cast<LinkTime>(patience * Seconds(_settings.QueueingTarget));
+}
+
+void PathControl::Decide(LinkTime roundTrip)
+{
+    const LinkTime target = Target();
+    const std::size_t all = _roundAcknowledged + _roundLost;
+    if (_queueingDelay > target)
+    {
+        const double factor = Seconds(_shortest + target * 3 / 4) / Seconds(roundTrip);
+        _window = Scaled(_window, std::clamp(factor, 0.3, 1.0));
+        _slowStart = false;
+    }
+    else if (_roundLost > 0 && IsShort() && _window > LeastOnWire * Datagram())
+    {
+        _window = std::max(Scaled(_window, 0.7), LeastOnWire * Datagram());
+        _slowStart = false;
+    }
+    else if (_roundLost * 5 > all * 4 && all >= 4 * Datagram())
+    {
+        _window = Scaled(_window, 0.7);
+        _slowStart = false;
+    }
+    else if (_wasFull)
+    {
+        if (_slowStart && _queueingDelay > target / 2)
+        {
+            _slowStart = false;
+        }
+        const bool empty = _queueingDelay <= target / 4;
+        const double factor = std::min(Seconds(_shortest + target) / Seconds(roundTrip), 1.25);
+        const std::size_t more = _slowStart ? _roundAcknowledged
+                                 : empty    ? _window / 4
+                                            : Scaled(_window, std::max(factor, 1.0) - 1) / 2;
+        _window += std::max<std::size_t>(more, 1);
+    }
+    _window = std::clamp(_window, Datagram(), std::max(_settings.LargestWindow, FirstWindow()));
+}
+
+void PathControl::Restart()
+{
+    _window = std::min(_window, FirstWindow());
+    _slowStart = true;
+    _draining = false;
+    _pacedUntil = LinkTime(0);
+    _rate = 0;
+}
+
+LinkTime PathControl::AckDelay() const
+{
+    return std::clamp(_times.Smoothed() * 5 / 4, _settings.AckDelay,
+                      std::max(_settings.AckDelay, _settings.LongestAckDelay));
+}
+
+LinkTime PathControl::ReorderingTime() const
+{
+    return std::clamp(2 * _times.Variation(), std::min(_shortest / 4, _times.Smoothed()), _times.Smoothed());
+}
+
+LinkTime PathControl::ProbeTimeout(int doublings) const
+{
+    const LinkTime known = std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay(), LongestProbe);
+    const LinkTime plain = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
+    const LinkTime longest = std::max(plain, _settings.MaxResend);
+    const int shift = doublings < ProbesInVain ? std::min(doublings, FirstDoublings)
+                                               : std::min(FirstDoublings + 1 + doublings - ProbesInVain, 10);
+    return std::min<LinkTime>(plain * (1LL << shift), longest);
+}
+
+}  // namespace Rabit

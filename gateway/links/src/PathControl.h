@@ -1,0 +1,104 @@
+#pragma once
+
+#include "RoundTrip.h"
+
+#include <rabit/gateway/links/LinkOptions.h>
+#include <rabit/gateway/links/LinkTime.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace Rabit
+{
+
+// How much may be under way to one node, and how fast it may be sent. All links to the node share it.
+//
+// Delay that rises is congestion: what is under way beyond what the path itself holds waits in a buffer, and
+// the window is brought to where the wait is a target (FAST TCP: window x (shortest round trip + target) /
+// round trip, once in each round trip; the target is that of LEDBAT, RFC 6817, plus the time that one
+// datagram takes). Below the target the window grows, twofold in slow start. The shortest round trip is
+// measured anew now and then, with next to nothing under way (BBR's PROBE_RTT). Loss alone is not congestion,
+// a radio loses: it shortens the target, since a buffer that overflows before the target is reached loses as
+// well. Where the round trip is that of a wire, what is lost has overflowed a socket's buffer, and the window
+// shrinks by a third, down to what a radio needs.
+//
+// Bytes are as on the air, all headers included.
+class PathControl
+{
+public:
+    explicit PathControl(const LinkSettings &settings);
+
+    // So many bytes went out / arrived / were found to be lost / are not waited for any more.
+    void Sent(std::size_t bytes, LinkTime now);
+    void Acknowledged(std::size_t bytes, LinkTime now);
+    void Lost(std::size_t bytes);
+    void Forget(std::size_t bytes) { _inFlight -= bytes; }
+    // A frame sent at that time was answered.
+    void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
+    // Nothing came back for long: what was known of the path may be wrong.
+    void Restart();
+
+    // Whether the window has room for another datagram, or the larger part of one.
+    bool HasRoom() const { return _inFlight == 0 || _inFlight + Datagram() / 2 < Window(); }
+    // More is to follow what was sent last: whether that must ask for an acknowledgement at once, so that the
+    // sender need not wait for one. If so it counts as asked.
+    bool TakeAsk(LinkTime now);
+    // Not before this should it be sent.
+    LinkTime PacedUntil() const { return _pacedUntil; }
+
+    std::size_t InFlight() const { return _inFlight; }
+    std::size_t Window() const;
+    const RoundTrip &Times() const { return _times; }
+    LinkTime Shortest() const { return _shortest; }  // 0: not measured yet
+    LinkTime QueueingDelay() const { return _queueingDelay; }
+    // Part of what was sent that got lost lately, 0 to 1.
+    double LossRate() const { return _lossRate; }
+    // Bytes per second that arrived in the last round trip with a full window; 0: not known.
+    double DeliveryRate() const { return _rate; }
+    // How long an acknowledgement may wait for others.
+    LinkTime AckDelay() const;
+    // How long to wait for an answer before asking again, and the same after so many times in vain.
+    LinkTime ProbeTimeout(int doublings = 0) const;
+    // How much later than others of its time a frame may come and not count as lost.
+    LinkTime ReorderingTime() const;
+    // A round trip that only a wire has.
+    bool IsShort() const;
+
+private:
+    std::size_t Datagram() const { return _settings.MaxDatagram + _settings.AirOverhead; }
+    std::size_t FirstWindow() const { return 4 * Datagram(); }
+    LinkTime Target() const;
+    double WeightOf(std::size_t bytes) const;
+    void EndRound(LinkTime now);
+    void Decide(LinkTime roundTrip);
+    void RememberShortest(LinkTime roundTrip, LinkTime now);
+
+    const LinkSettings &_settings;
+    RoundTrip _times;
+    std::size_t _inFlight = 0;
+    std::size_t _window;
+    bool _slowStart = true;
+    LinkTime _pacedUntil{0};
+    std::size_t _sinceAsked = 0;
+    LinkTime _askedAt{0};
+    LinkTime _echoed{0};  // when the newest frame was sent that is known to have arrived
+
+    LinkTime _shortest{0};
+    LinkTime _shortestAt{0};
+    LinkTime _queueingDelay{0};
+    bool _draining = false;
+    LinkTime _drainStart{0};
+    LinkTime _drainedAt = LinkNever;
+
+    // The present round: it ends with the first answer to what was sent after the last decision.
+    LinkTime _roundStart{0};
+    LinkTime _roundShortest = LinkNever;
+    std::size_t _roundAcknowledged = 0;
+    std::size_t _roundLost = 0;
+    bool _wasFull = false;  // the window was used up in this round
+
+    double _rate = 0;
+    double _lossRate = 0;
+};
+
+}  // namespace Rabit

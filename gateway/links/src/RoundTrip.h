@@ -1,0 +1,27 @@
+#pragma once
+
+#include <rabit/gateway/links/LinkTime.h>
+
+namespace Rabit
+{
+
+// The smoothed round trip of a path and its variation, as RFC 6298 has them. Every frame carries the time of
+// the newest one that came the other way (RFC 7323), so that each gives a measurement, also of what was sent
+// twice.
+class RoundTrip
+{
+public:
+    void Measured(LinkTime roundTrip);
+
+    bool IsKnown() const { return _smoothed > LinkTime(0); }
+    LinkTime Latest() const { return _latest; }
+    LinkTime Smoothed() const { return _smoothed; }    // SRTT; 0 before the first measurement
+    LinkTime Variation() const { return _variation; }  // RTTVAR
+
+private:
+    LinkTime _latest{0};
+    LinkTime _smoothed{0};
+    LinkTime _variation{0};
+};
+
+}  // namespace Rabit

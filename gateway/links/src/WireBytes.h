@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+
+namespace Rabit
+{
+
+// Bytes of a number written in groups of seven bits.
+inline std::size_t VarintSize(std::uint64_t value)
+{
+    std::size_t size = 1;
+    for (; value >= 0x80; value >>= 7)
+    {
+        ++size;
+    }
+    return size;
+}
+
+// Writes little-endian into memory that is large enough: who uses it has counted before.
+class WireWriter
+{
+public:
+    explicit WireWriter(std::span<std::uint8_t> bytes) : _at(bytes.data()) {}
+
+    void Byte(std::uint8_t value) { *_at++ = value; }
+    void Varint(std::uint64_t value)
+    {
+        for (; value >= 0x80; value >>= 7)
+        {
+            Byte(static_cast<std::uint8_t>(value | 0x80));
+        }
+        Byte(static_cast<std::uint8_t>(value));
+    }
+    template <typename Number>
+    void Fixed(Number value)
+    {
+        for (std::size_t i = 0; i < sizeof(Number); ++i)
+        {
+            Byte(static_cast<std::uint8_t>(value >> (8 * i)));
+        }
+    }
+    void Bytes(const void *data, std::size_t size)
+    {
+        if (size > 0)
+        {
+            std::memcpy(_at, data, size);
+            _at += size;
+        }
+    }
+    // At most 255 bytes.
+    void Name(std::string_view name)
+    {
+        Byte(static_cast<std::uint8_t>(name.size()));
+        Bytes(name.data(), name.size());
+    }
+
+private:
+    std::uint8_t *_at;
+};
+
+// Reads what a WireWriter wrote, or anybody else: never beyond the end. Once something was missing or
+// impossible, IsGood is false and all further values are zero or empty.
+class WireReader
+{
+public:
+    explicit WireReader(std::span<const std::uint8_t> bytes) : _left(bytes) {}
+
+    bool IsGood() const { return _good; }
+    void Fail() { _good = false; }
+    std::size_t Left() const { return _left.size(); }
+
+    std::uint8_t Byte()
+    {
+        const std::span<const std::uint8_t> byte = Bytes(1);
+        return byte.empty() ? std::uint8_t{0} : byte[0];
+    }
+    std::uint64_t Varint()
+    {
+        std::uint64_t value = 0;
+        for (unsigned shift = 0; shift < 64; shift += 7)
+        {
+            const std::uint8_t byte = Byte();
+            value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
+            if ((byte & 0x80) == 0)
+            {
+                // The tenth byte has room for a single bit.
+                _good = _good && (shift < 63 || byte <= 1);
+                return _good ? value : 0;
+            }
+        }
+        _good = false;
+        return 0;
+    }
+    // A number that must not be above `most`.
+    std::uint64_t Varint(std::uint64_t most)
+    {
+        const std::uint64_t value = Varint();
+        _good = _good && value <= most;
+        return _good ? value : 0;
+    }
+    template <typename Number>
+    Number Fixed()
+    {
+        const std::span<const std::uint8_t> bytes = Bytes(sizeof(Number));
+        Number value = 0;
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+        {
+            value = static_cast<Number>(value | (static_cast<Number>(bytes[i]) << (8 * i)));
+        }
+        return value;
+    }
+    std::span<const std::uint8_t> Bytes(std::size_t size)
+    {
+        if (!_good || size > _left.size())
+        {
+            _good = false;
+            return {};
+        }
+        const std::span<const std::uint8_t> bytes = _left.first(size);
+        _left = _left.subspan(size);
+        return bytes;
+    }
+    std::string_view Name()
+    {
+        const std::span<const std::uint8_t> bytes = Bytes(Byte());
+        return {reinterpret_cast<const char *>(bytes.data()), bytes.size()};
+    }
+
+private:
+    std::span<const std::uint8_t> _left;
+    bool _good = true;
+};
+
+}  // namespace Rabit

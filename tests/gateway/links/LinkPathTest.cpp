@@ -1,0 +1,209 @@
+// How much may be under way: the rules of PathControl, one by one.
+#include <gtest/gtest.h>
+
+#include "PathControl.h"
+
+namespace Rabit::Test
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+class PathTest : public ::testing::Test
+{
+protected:
+    static constexpr std::size_t One = 1421;  // a datagram, as on the air
+
+    // Fills the window, and has all of it acknowledged after that round trip.
+    void Round(LinkTime roundTrip)
+    {
+        const LinkTime sentAt = now;
+        std::size_t sent = 0;
+        while (path.HasRoom())
+        {
+            path.Sent(One, now);
+            sent += One;
+        }
+        now += roundTrip;
+        path.Acknowledged(sent, now);
+        path.Measured(roundTrip, sentAt, now);
+    }
+
+    LinkSettings settings;
+    PathControl path{settings};
+    LinkTime now{1s};
+};
+
+TEST_F(PathTest, begins_with_four_datagrams)
+{
+    EXPECT_EQ(path.Window(), 4 * One);
+}
+
+TEST_F(PathTest, doubles_in_each_round_trip_while_nothing_waits_on_the_way)
+{
+    for (const std::size_t datagrams : {4U, 8U, 16U, 32U})
+    {
+        EXPECT_GE(path.Window(), datagrams * One);
+        EXPECT_LT(path.Window(), (datagrams + 1) * One);
+        Round(100ms);
+    }
+}
+
+TEST_F(PathTest, does_not_grow_while_it_is_not_used)
+{
+    for (int i = 0; i < 10; ++i)
+    {
+        path.Sent(One, now);
+        now += 10ms;
+        path.Acknowledged(One, now);
+        path.Measured(10ms, now - 10ms, now);
+    }
+    EXPECT_EQ(path.Window(), 4 * One);
+}
+
+TEST_F(PathTest, grows_to_the_largest_window_on_a_wire_and_not_beyond)
+{
+    for (int i = 0; i < 40; ++i)
+    {
+        Round(200us);
+    }
+    EXPECT_EQ(path.Window(), settings.LargestWindow);
+    EXPECT_LE(path.PacedUntil(), now) << "and nothing is paced";
+}
+
+TEST_F(PathTest, shrinks_when_the_delay_rises_above_the_target)
+{
+    for (int i = 0; i < 4; ++i)
+    {
+        Round(20ms);
+    }
+    const std::size_t before = path.Window();
+    Round(400ms);
+    Round(400ms);
+    EXPECT_LT(path.Window(), before / 2);
+}
+
+TEST_F(PathTest, is_never_less_than_a_datagram)
+{
+    Round(20ms);
+    for (int i = 0; i < 50; ++i)
+    {
+        Round(3s);
+    }
+    EXPECT_GE(path.Window(), One);
+    EXPECT_TRUE(path.HasRoom());
+}
+
+TEST_F(PathTest, loss_alone_does_not_shrink_it_on_a_radio)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        Round(100ms);
+    }
+    const std::size_t before = path.Window();
+    for (int i = 0; i < 20; ++i)
+    {
+        path.Sent(One, now);
+        path.Lost(One);
+        Round(100ms);
+    }
+    EXPECT_GE(path.Window(), before);
+    EXPECT_GT(path.LossRate(), 0.0);
+}
+
+TEST_F(PathTest, loss_shrinks_it_on_a_wire_down_to_what_a_radio_needs)
+{
+    for (int i = 0; i < 10; ++i)
+    {
+        Round(200us);
+    }
+    const std::size_t before = path.Window();
+    path.Sent(One, now);
+    path.Lost(One);
+    Round(200us);
+    EXPECT_LT(path.Window(), before * 3 / 4);
+    for (int i = 0; i < 100; ++i)
+    {
+        path.Sent(One, now);
+        path.Lost(One);
+        Round(200us);
+    }
+    EXPECT_GE(path.Window(), 8 * One);
+}
+
+TEST_F(PathTest, begins_anew_after_an_outage)
+{
+    for (int i = 0; i < 6; ++i)
+    {
+        Round(100ms);
+    }
+    path.Restart();
+    EXPECT_EQ(path.Window(), 4 * One);
+    EXPECT_LE(path.PacedUntil(), now);
+}
+
+TEST_F(PathTest, measures_the_shortest_round_trip_anew_with_one_datagram_under_way)
+{
+    Round(20ms);
+    bool oneAtATime = false;
+    while (now < 1s + settings.PathMemory + 2s)
+    {
+        Round(50ms);
+        path.Sent(One, now);
+        oneAtATime = oneAtATime || !path.HasRoom();
+        path.Forget(One);
+    }
+    EXPECT_TRUE(oneAtATime);
+    EXPECT_EQ(path.Shortest(), 50ms);
+    EXPECT_GT(path.Window(), 2 * One) << "and goes on as before";
+}
+
+TEST_F(PathTest, spreads_a_window_over_the_round_trip)
+{
+    Round(200ms);
+    path.Sent(One, now);
+    path.Sent(One, now);
+    path.Sent(One, now);
+    EXPECT_GT(path.PacedUntil(), now + 5ms);
+    EXPECT_LT(path.PacedUntil(), now + 100ms);
+}
+
+TEST_F(PathTest, the_probe_timer_follows_the_round_trip_within_its_bounds)
+{
+    EXPECT_EQ(path.ProbeTimeout(), settings.FirstResend);
+    path.Measured(100ms, now, now);
+    EXPECT_EQ(path.ProbeTimeout(), 100ms + 4 * 50ms + 125ms);
+    EXPECT_EQ(path.ProbeTimeout(1), 2 * 425ms);
+    EXPECT_EQ(path.ProbeTimeout(9), 1s);
+    PathControl fast(settings);
+    for (int i = 0; i < 100; ++i)
+    {
+        fast.Measured(100us, now, now);
+    }
+    EXPECT_EQ(fast.ProbeTimeout(), settings.MinResend);
+    PathControl slow(settings);
+    slow.Measured(90s, now, now);
+    EXPECT_EQ(slow.ProbeTimeout(), 3s) << "one straggler is no reason to fall silent";
+}
+
+TEST_F(PathTest, asks_for_an_acknowledgement_in_time_and_not_for_each_datagram)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        Round(100ms);
+    }
+    int asked = 0;
+    int sent = 0;
+    while (path.HasRoom())
+    {
+        path.Sent(One, now);
+        ++sent;
+        asked += path.TakeAsk(now) ? 1 : 0;
+    }
+    EXPECT_GE(asked, 3);
+    EXPECT_LE(asked, sent / 3);
+}
+
+}  // namespace
+}  // namespace Rabit::Test

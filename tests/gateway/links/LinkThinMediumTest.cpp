@@ -1,0 +1,220 @@
+// What the links reach on thin and lossy media, in virtual time: exact, and the same each time.
+#include <gtest/gtest.h>
+
+#include "ThinMedium.h"
+
+namespace Rabit::Test
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+double Seconds(LinkTime time)
+{
+    return std::chrono::duration<double>(time).count();
+}
+
+// Keeps the link filled for that long.
+void Feed(ThinMedium &medium, LinkTime time)
+{
+    for (const LinkTime end = medium.Now + time; medium.Now < end;)
+    {
+        while (medium.A.Enqueue("beta", "q", 100000))
+        {
+        }
+        medium.Live(std::min<LinkTime>(500ms, end - medium.Now));
+    }
+}
+
+TEST(ThinMedium, three_pictures_at_250_kbit_take_what_the_medium_takes)
+{
+    ThinMedium medium;
+    medium.BitsPerSecond = 250e3;
+    const LinkTime start = medium.Now;
+    for (int i = 0; i < 3; ++i)
+    {
+        ASSERT_TRUE(medium.A.Enqueue("beta", "q", 200000));
+    }
+    while (medium.B.DeliveredBytes < 600000 && medium.Step(start + 60s))
+    {
+    }
+    ASSERT_EQ(medium.B.DeliveredBytes, 600000U);
+    EXPECT_LE(static_cast<double>(medium.BytesSent), 1.15 * 600000)
+        << "all headers and acknowledgements included";
+    const double possible = static_cast<double>(medium.BytesSent) * 8 / 250e3;
+    EXPECT_LE(Seconds(medium.Now - start), possible * 1.02) << "the medium is used up";
+    EXPECT_LE(medium.LongestWait, 300ms);
+}
+
+TEST(ThinMedium, thirty_messages_of_500_bytes_a_second_arrive_within_two_seconds_at_250_kbit)
+{
+    ThinMedium medium;
+    medium.BitsPerSecond = 250e3;
+    LinkOptions options;
+    options.Expire = 2s;
+    medium.A.Node->Configure("beta", "q", options, medium.Now);
+    for (int i = 0; i < 1000; ++i)
+    {
+        medium.A.Enqueue("beta", "q", 500);
+        medium.Live(33333us);
+    }
+    medium.Live(3s);
+    EXPECT_EQ(medium.A.Outcomes[static_cast<std::size_t>(LinkOutcome::Delivered)], 1000U);
+    EXPECT_LE(medium.B.Percentile("q", 0.99), 100ms);
+}
+
+struct Loss
+{
+    double Part;
+    int PerSecond;
+    LinkTime P99;
+};
+
+class LossTest : public ::testing::TestWithParam<Loss>
+{
+};
+
+TEST_P(LossTest, commands_are_delivered_soon)
+{
+    ThinMedium medium;
+    medium.Loss = GetParam().Part;
+    medium.Delay = 1ms;
+    int refused = 0;
+    for (int i = 0; i < 20 * GetParam().PerSecond; ++i)
+    {
+        refused += medium.A.Enqueue("beta", "q", 32) ? 0 : 1;
+        medium.Live(LinkTime(1s) / GetParam().PerSecond);
+    }
+    medium.Live(10s);
+    EXPECT_EQ(refused, 0);
+    EXPECT_EQ(medium.B.Delays["q"].size(), static_cast<std::size_t>(20 * GetParam().PerSecond));
+    EXPECT_LE(medium.B.Percentile("q", 0.99), GetParam().P99);
+}
+
+INSTANTIATE_TEST_SUITE_P(ThinMedium, LossTest,
+                         ::testing::Values(Loss{0.05, 50, 50ms}, Loss{0.2, 10, 150ms}, Loss{0.2, 50, 150ms},
+                                           Loss{0.2, 200, 150ms}, Loss{0.2, 500, 150ms},
+                                           Loss{0.4, 50, 600ms}));
+
+TEST(ThinMedium, a_satellites_round_trip_leaves_most_of_the_medium_usable)
+{
+    for (const double rate : {250e3, 1e6})
+    {
+        ThinMedium medium;
+        medium.BitsPerSecond = rate;
+        medium.Delay = 300ms;
+        Feed(medium, 20s);
+        medium.BytesCarried = 0;
+        Feed(medium, 120s);
+        EXPECT_GE(static_cast<double>(medium.BytesCarried) * 8, 0.7 * rate * 120) << rate;
+    }
+}
+
+TEST(ThinMedium, an_idle_pair_says_nothing_whatever_the_round_trip)
+{
+    for (const LinkTime delay : {LinkTime(5ms), LinkTime(300ms)})
+    {
+        ThinMedium medium;
+        medium.Delay = delay;
+        medium.A.Enqueue("beta", "q", 32);
+        medium.B.Enqueue("alpha", "q", 32);
+        medium.Live(10s);
+        const std::size_t before = medium.Datagrams;
+        medium.Live(1h);
+        EXPECT_EQ(medium.Datagrams, before);
+    }
+}
+
+TEST(ThinMedium, a_medium_that_becomes_ten_times_slower_and_returns_is_followed)
+{
+    ThinMedium medium;
+    medium.BitsPerSecond = 1e6;
+    medium.QueueBytes = 64 * 1024;
+    Feed(medium, 30s);
+    medium.BitsPerSecond = 1e5;
+    Feed(medium, 5s);
+    medium.LongestWait = 0s;
+    Feed(medium, 5s);
+    EXPECT_LT(medium.LongestWait, 300ms) << "five seconds after the fall";
+    Feed(medium, 50s);
+    medium.BitsPerSecond = 1e6;
+    Feed(medium, 15s);
+    medium.BytesCarried = 0;
+    Feed(medium, 10s);
+    EXPECT_GE(static_cast<double>(medium.BytesCarried) * 8, 0.8 * 1e6 * 10);
+}
+
+TEST(ThinMedium, a_command_waits_for_no_picture_on_another_link)
+{
+    ThinMedium medium;
+    medium.BitsPerSecond = 250e3;
+    for (int i = 0; i < 300; ++i)
+    {
+        while (medium.A.Enqueue("beta", "pictures", 200000))
+        {
+        }
+        medium.A.Enqueue("beta", "commands", 32);
+        medium.Live(100ms);
+    }
+    EXPECT_LE(medium.B.Percentile("commands", 0.99), 250ms);
+}
+
+TEST(ThinMedium, nothing_that_expired_in_an_outage_is_sent_after_it)
+{
+    ThinMedium medium;
+    medium.BitsPerSecond = 250e3;
+    LinkOptions options;
+    options.Expire = 2s;
+    medium.A.Node->Configure("beta", "q", options, medium.Now);
+    medium.A.Enqueue("beta", "q", 500);
+    medium.Live(1s);
+    medium.Cut = true;
+    for (int i = 0; i < 200; ++i)
+    {
+        medium.A.Enqueue("beta", "q", 5000);
+        medium.Live(300ms);
+    }
+    medium.Cut = false;
+    const std::size_t before = medium.BytesSent;
+    medium.Live(10s);
+    const auto delivered = medium.A.Outcomes[static_cast<std::size_t>(LinkOutcome::Delivered)];
+    EXPECT_LE(delivered, 8U) << "what was less than two seconds old when the path came back, and the first";
+    EXPECT_LE(medium.BytesSent - before, 60000U);
+    EXPECT_LE(medium.B.Percentile("q", 1), 2s);
+}
+
+// In place of Run: one datagram at a time, as a scheduler asks for them.
+TEST(ThinMedium, streams_give_one_datagram_at_a_time_and_acknowledgements_first)
+{
+    ThinMedium medium;
+    medium.A.Enqueue("beta", "q", 32);
+    medium.Live(1s);
+    medium.A.Enqueue("beta", "q", 3000);
+    medium.A.Enqueue("beta", "other", 32);
+    const auto ready = [&medium]
+    {
+        medium.A.Node->Advance(medium.Now);
+        std::vector<std::string> queues;
+        medium.A.Node->VisitStreams(medium.Now,
+                                    [&queues](const LinkStream &stream)
+                                    {
+                                        queues.emplace_back(stream.Queue);
+                                        EXPECT_GT(stream.Bytes, 0U);
+                                        EXPECT_LE(stream.Bytes, 1500U);
+                                    });
+        return queues;
+    };
+    EXPECT_EQ(ready(), (std::vector<std::string>{"other", "q"}));
+    const std::size_t before = medium.Datagrams;
+    EXPECT_TRUE(medium.A.Node->SendOne("beta", "q", 600, medium.Now));
+    EXPECT_EQ(medium.Datagrams, before + 1);
+    EXPECT_TRUE(medium.A.Node->SendOne("beta", "other", 1500, medium.Now));
+    EXPECT_EQ(ready(), (std::vector<std::string>{"q"}));
+    EXPECT_FALSE(medium.A.Node->SendOne("beta", "other", 1500, medium.Now));
+    EXPECT_FALSE(medium.A.Node->SendOne("beta", "", 1500, medium.Now)) << "nothing to acknowledge";
+    EXPECT_FALSE(medium.A.Node->SendOne("nobody", "q", 1500, medium.Now));
+}
+
+}  // namespace
+}  // namespace Rabit::Test
