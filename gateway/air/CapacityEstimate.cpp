@@ -10,7 +10,7 @@ namespace
 using namespace std::chrono_literals;
 using Duration = CapacityEstimate::Duration;
 
-// Where the delay is kept: half the target, so that what others send in between does not pass it.
+// Where the delay is kept: below the target, so that what others send in between does not pass that.
 constexpr Duration Goal = 40ms;
 // Delays above this are a queue of this node; below, others were on the air.
 constexpr Duration Standing = 30ms;
