@@ -19,33 +19,9 @@ public:
     explicit AssemblyMemory(std::size_t limit) : _limit(limit) {}
 
     // `who` wants so many bytes more. Whether it gets them.
-    bool Take(const void *who, std::size_t bytes, LinkTime now)
-    {
-        if (_used + bytes > _limit && _favoured != who && _favoured != nullptr &&
-            now - _favouredAt < Patience)
-        {
-            return false;
-        }
-        if (_used + bytes > _limit)
-        {
-            _favoured = who;
-        }
-        if (_favoured == who)
-        {
-            _favouredAt = now;
-        }
-        _used += bytes;
-        return true;
-    }
+    bool Take(const void *who, std::size_t bytes, LinkTime now);
     // `who` has no message any more, and gives so many bytes back.
-    void Give(const void *who, std::size_t bytes)
-    {
-        _used -= bytes;
-        if (_favoured == who)
-        {
-            _favoured = nullptr;
-        }
-    }
+    void Give(const void *who, std::size_t bytes);
     std::size_t Used() const { return _used; }
 
 private:

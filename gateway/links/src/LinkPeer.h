@@ -93,7 +93,7 @@ private:
     void HeardNow(LinkTime now);
 
     bool HasPending() const;
-    bool IsOpen() const { return _token.Known() && !_silent; }
+    bool IsOpen() const;
     bool IsSilentAt(LinkTime now) const
     {
         return _unansweredSince != LinkNever && now - _unansweredSince >= _context.Settings.SilentAfter;

@@ -23,6 +23,12 @@ constexpr std::size_t AboutAnAck = 40;
 
 }  // namespace
 
+// Rule S2: messages go to who has given a token, and answers.
+bool LinkPeer::IsOpen() const
+{
+    return _token.Known() && !_silent;
+}
+
 void LinkPeer::Advance(LinkTime now)
 {
     const bool wasSilent = _silent;

@@ -11,7 +11,7 @@ namespace
 {
 
 // Something new is sent along with what was sent in vain so often; after that there is no path.
-constexpr int ProbesWithNew = 3;
+constexpr int ProbesWithNew = 40;
 
 }  // namespace
 
@@ -140,7 +140,7 @@ bool LinkSender::IsTurnedAway() const
                                        (first < _outbox.NextSequence() && _outbox.Part(first).IsHeld));
 }
 
-void LinkSender::ArmProbe(LinkTime now)
+void LinkSender::ArmProbe(bool turnedAway, LinkTime now)
 {
     if (_outbox.Empty())
     {
@@ -151,7 +151,7 @@ void LinkSender::ArmProbe(LinkTime now)
     // A queue that is full makes room known: then asking is for the case that this got lost.
     const LinkTime slow = std::min<LinkTime>(plain * (1LL << std::min(_stalls, 8)),
                                              std::max(plain, _context.Settings.MaxResend));
-    _probeAt = now + (IsTurnedAway() ? slow : plain);
+    _probeAt = now + (turnedAway ? slow : plain);
 }
 
 bool LinkSender::HasCredit(std::uint64_t message) const

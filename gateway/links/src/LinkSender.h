@@ -89,7 +89,7 @@ private:
     void OnArrived(SentPart &part, LinkTime now);
     void SetLost(SentPart &part, bool onTheWay);
     void LeavePath(SentPart &part);
-    void ArmProbe(LinkTime now);
+    void ArmProbe(bool turnedAway, LinkTime now);
     // The receiver has no room, for the first message or for what it has already.
     bool IsTurnedAway() const;
     void Report(const OutboxMessage &message, LinkOutcome outcome);

@@ -71,7 +71,7 @@ void LinkSender::OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, Lin
     _stalls = progress || !turnedAway ? 0 : _stalls;
     if (progress || (_doublings == 0 && !turnedAway))
     {
-        ArmProbe(now);
+        ArmProbe(turnedAway, now);
     }
 }
 

@@ -83,6 +83,7 @@ bool LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
     {
         filling.Head += LinkFrameCodec::AckSize(ack);
     }
+    const bool turnedAway = IsTurnedAway();
     FillAgain(filling);
     while (FillNew(filling))
     {
@@ -106,7 +107,7 @@ bool LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
     _probe = false;
     _lastSentAt = now;
     ++_counters.DatagramsSent;
-    ArmProbe(now);
+    ArmProbe(turnedAway, now);
     frame.HasData = true;
     return true;
 }

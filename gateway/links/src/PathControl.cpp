@@ -26,7 +26,7 @@ constexpr LinkTime LongestDatagramTime = 250ms;
 // The probe timer doubles so many times at first: where much is lost, waiting longer does not help. After so
 // many probes in vain there is no path, and it goes on doubling.
 constexpr int FirstDoublings = 3;
-constexpr int ProbesInVain = 8;
+constexpr int ProbesInVain = 40;
 // A round trip that was once very long is no reason to wait for the next ones that long.
 constexpr LinkTime LongestProbe = 3s;
 
@@ -43,6 +43,11 @@ PathControl::PathControl(const LinkSettings &settings) : _settings(settings), _w
 std::size_t PathControl::Window() const
 {
     return _draining ? 1 : _window;
+}
+
+bool PathControl::HasRoom() const
+{
+    return _inFlight == 0 || _inFlight + Datagram() / 2 < Window();
 }
 
 bool PathControl::TakeAsk(LinkTime now)

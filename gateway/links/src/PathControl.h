@@ -39,7 +39,7 @@ public:
     void Restart();
 
     // Whether the window has room for another datagram, or the larger part of one.
-    bool HasRoom() const { return _inFlight == 0 || _inFlight + Datagram() / 2 < Window(); }
+    bool HasRoom() const;
     // More is to follow what was sent last: whether that must ask for an acknowledgement at once, so that the
     // sender need not wait for one. If so it counts as asked.
     bool TakeAsk(LinkTime now);

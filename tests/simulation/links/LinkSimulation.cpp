@@ -6,6 +6,7 @@
 #include "SimNode.h"
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 #include <queue>
 #include <utility>
@@ -22,12 +23,17 @@ using namespace std::chrono_literals;
 // All that is accepted must have its outcome this long after the faults have stopped (invariant 11).
 constexpr LinkTime DrainTime = 60s;
 constexpr LinkTime LongestStraggle = 90s;
+// What a part costs beside its payload when it goes alone: two datagrams' headers, the frame's and the
+// acknowledgement's. And the frame's head alone, at most.
+constexpr double BytesOfAPart = 350;
+constexpr std::size_t BytesOfAHead = 100;
 // A run has some thousands of events; one with more than this has a node that asks to be run without end.
 constexpr std::uint64_t MostEvents = 1'000'000;
 
 enum class EventKind
 {
     Datagram,
+    Air,  // the medium has carried the frame that was its turn
     Wake,
     Fault,
     Burst,
@@ -68,6 +74,15 @@ private:
     void OnCalm();
     void StartNode(std::size_t node, bool storageLost);
     void Transmit(Packet packet);
+    void BeginOnAir();
+    void OnAir();
+    // The network beyond the medium: loss, delay, duplicates.
+    void Carry(Packet packet);
+    std::size_t CostOf(const Packet &packet) const
+    {
+        return packet.Bytes.size() + _plan.Settings.AirOverhead;
+    }
+    void CheckBytes();
     void Put(Packet packet, LinkTime at);
     // Runs the node if something is due, and sees to it that it is woken when something will be.
     void Pump(std::size_t node);
@@ -88,6 +103,10 @@ private:
     std::uint64_t _order = 0;
     std::vector<Packet> _packets;
     std::vector<std::size_t> _freeSlots;
+    std::deque<Packet> _air;           // waits for the medium, or is on it
+    std::vector<std::size_t> _queued;  // bytes of these, by node
+    std::int64_t _rate;
+    LinkTime _drainOnAir{0};  // the time that a thin medium needs for what waits when the faults stop
     LinkTime _lastDatagramAt{0};
     LinkTime _lastOutcomeAt{0};
     bool _calm = false;
@@ -109,6 +128,8 @@ Simulation::Simulation(std::uint64_t seed, std::ostream *trace)
       _wakeAt(_plan.Nodes.size(), LinkNever),
       _stalledUntil(_plan.Nodes.size(), LinkTime(0)),
       _consuming(_plan.Nodes.size() * _plan.Queues.size(), false),
+      _queued(_plan.Nodes.size(), 0),
+      _rate(_plan.Medium.BitsPerSecond),
       _trace(trace)
 {
     for (const Weather &weather : _plan.Start)
@@ -163,7 +184,7 @@ SimResult Simulation::Run()
             _drained = true;
             _statistics.LongestDrain = std::max(_lastOutcomeAt - _plan.CalmAt, LinkTime(0));
         }
-        if (_calm && !_drained && _world.Now > _plan.CalmAt + DrainTime)
+        if (_calm && !_drained && _world.Now > _plan.CalmAt + DrainTime + _drainOnAir)
         {
             std::vector<bool> alive;
             for (const auto &node : _nodes)
@@ -186,11 +207,51 @@ SimResult Simulation::Run()
     _statistics.InDoubt = _oracle.OutcomesOf(LinkOutcome::InDoubt);
     _statistics.RefusedThere = _oracle.OutcomesOf(LinkOutcome::RefusedThere);
     _statistics.DeliveredAgain = _oracle.RedeliveredTwice();
+    _statistics.ThinMedia = _plan.Medium.BitsPerSecond > 0 ? 1 : 0;
+    _statistics.LargeDelivered = _oracle.LargeDelivered();
+    _statistics.PayloadDelivered = _oracle.DeliveredBytes();
     for (const auto &node : _nodes)
     {
         _statistics.Raises += node->IsAlive() ? node->Links().Counters().Raises : 0;
+        if (node->IsAlive())
+        {
+            node->Links().VisitReceivers(
+                [this](std::string_view, std::string_view, const LinkReceiverCounters &counters)
+                { _statistics.PartsHeld += counters.Kept; });
+        }
     }
+    CheckBytes();
     return {_oracle.Failure(), _statistics};
+}
+
+// Invariant 15. Each byte accepted is sent so often as the worst loss of the run asks for, in both
+// directions, and once more for what nodes forget in crashes; acknowledgements and headers are counted with
+// each message; and a link that hears nothing asks now and then.
+void Simulation::CheckBytes()
+{
+    double worst = 0;
+    for (const Weather &weather : _plan.Start)
+    {
+        worst = std::max(worst, weather.Loss);
+    }
+    for (const Fault &fault : _plan.Faults)
+    {
+        worst = std::max(worst, fault.Kind == FaultKind::Weather ? fault.Weather.Loss : 0);
+    }
+    const double sends = 1 / ((1 - worst) * (1 - worst));
+    const double parts = static_cast<double>(_oracle.AcceptedBytes()) /
+                         static_cast<double>(_plan.Settings.MaxDatagram - BytesOfAHead);
+    const double messages = static_cast<double>(_oracle.AcceptedBytes()) +
+                            BytesOfAPart * (static_cast<double>(_oracle.Accepted()) + parts);
+    const double asking =
+        static_cast<double>(_plan.Links.size()) * std::chrono::duration<double>(_world.Now).count() *
+        (static_cast<double>(_plan.Settings.MaxDatagram + _plan.Settings.AirOverhead) + BytesOfAPart);
+    const double bound = 2 * (sends * messages + asking);
+    if (static_cast<double>(_statistics.BytesSent) > bound)
+    {
+        _oracle.Fail(15, std::to_string(_statistics.BytesSent) + " bytes were sent where " +
+                             std::to_string(static_cast<std::uint64_t>(bound)) + " are enough");
+    }
 }
 
 std::string Simulation::Lead() const
@@ -209,6 +270,9 @@ void Simulation::Handle(const Event &event)
     {
         case EventKind::Datagram:
             OnDatagram(event.A);
+            break;
+        case EventKind::Air:
+            OnAir();
             break;
         case EventKind::Wake:
             if (event.At == _wakeAt[event.A])
@@ -253,8 +317,8 @@ void Simulation::OnFault(const Fault &fault)
     Path &path = _paths[fault.A * _plan.Nodes.size() + fault.B];
     if (_trace != nullptr)
     {
-        static constexpr const char *Names[] = {"weather", "cut",        "cut ends", "crash",
-                                                "start",   "clock step", "stall",    "forget"};
+        static constexpr const char *Names[] = {"weather",    "cut",   "cut ends", "crash", "start",
+                                                "clock step", "stall", "forget",   "rate"};
         *_trace << Lead() << Names[static_cast<int>(fault.Kind)] << " n" << fault.A << " n" << fault.B << ' '
                 << fault.Amount << (fault.LoseStorage ? " storage lost" : "") << '\n';
     }
@@ -291,6 +355,10 @@ void Simulation::OnFault(const Fault &fault)
         case FaultKind::Stall:
             _stalledUntil[fault.A] = _world.Now + LinkTime(fault.Amount);
             break;
+        case FaultKind::Rate:
+            _rate = fault.Amount;
+            ++_statistics.RateChanges;
+            break;
         case FaultKind::Forget:
             if (_nodes[fault.A]->IsAlive() && fault.A != fault.B)
             {
@@ -317,6 +385,12 @@ void Simulation::OnCalm()
     {
         path.Weather = {.Delay = std::min<LinkTime>(path.Weather.Delay, 40ms)};
         path.Cuts = 0;
+    }
+    if (_rate > 0)
+    {
+        // Three times, and all with their headers and acknowledgements.
+        const std::size_t bytes = _oracle.PendingBytes() + 400 * _oracle.PendingCount();
+        _drainOnAir = LinkTime(static_cast<std::int64_t>(3 * 8 * bytes) * 1'000'000'000 / _rate);
     }
     for (std::size_t i = 0; i < _nodes.size(); ++i)
     {
@@ -363,6 +437,46 @@ void Simulation::ScheduleConsume(std::size_t node, std::size_t queue)
 void Simulation::Transmit(Packet packet)
 {
     ++_statistics.Datagrams;
+    const std::size_t cost = CostOf(packet);
+    _statistics.BytesSent += cost;
+    if (_rate == 0)
+    {
+        Carry(std::move(packet));
+        return;
+    }
+    if (_queued[packet.From] + cost > _plan.Medium.QueueBytes)
+    {
+        ++_statistics.Overflows;
+        return;
+    }
+    _queued[packet.From] += cost;
+    _air.push_back(std::move(packet));
+    if (_air.size() == 1)
+    {
+        BeginOnAir();
+    }
+}
+
+void Simulation::BeginOnAir()
+{
+    const auto bits = static_cast<std::int64_t>(8 * CostOf(_air.front()));
+    Schedule(_world.Now + LinkTime(bits * 1'000'000'000 / _rate), EventKind::Air, 0);
+}
+
+void Simulation::OnAir()
+{
+    Packet packet = std::move(_air.front());
+    _air.pop_front();
+    _queued[packet.From] -= CostOf(packet);
+    if (!_air.empty())
+    {
+        BeginOnAir();
+    }
+    Carry(std::move(packet));
+}
+
+void Simulation::Carry(Packet packet)
+{
     const Path &path = _paths[packet.From * _plan.Nodes.size() + packet.To];
     const bool lost = path.Cuts > 0 || _random.Chance(path.Weather.Loss);
     if (_trace != nullptr)

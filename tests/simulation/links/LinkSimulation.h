@@ -25,6 +25,13 @@ struct SimStatistics
     std::uint64_t Duplicated = 0;
     std::uint64_t Straggling = 0;
     std::uint64_t Malformed = 0;
+    std::uint64_t ThinMedia = 0;       // runs over a medium with a rate
+    std::uint64_t RateChanges = 0;     // of such a medium
+    std::uint64_t Overflows = 0;       // datagrams that a node's queue had no room for
+    std::uint64_t LargeDelivered = 0;  // messages that came in several parts
+    std::uint64_t PartsHeld = 0;       // parts that a receiver held beyond a gap or for want of room
+    std::uint64_t BytesSent = 0;
+    std::uint64_t PayloadDelivered = 0;
     std::uint64_t Crashes = 0;
     std::uint64_t StoragesLost = 0;
     std::uint64_t Forgotten = 0;  // peers that a node forgot while it lived

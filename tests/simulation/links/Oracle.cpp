@@ -99,7 +99,10 @@ void Oracle::Forgets(std::size_t node, std::size_t peer)
 std::vector<std::uint8_t> Oracle::MakePayload(SimRandom &random) const
 {
     const std::uint64_t number = _records.size();
-    const std::int64_t more = random.Chance(0.95) ? random.Between(0, 40) : random.Between(0, 3000);
+    const double kind = random.Unit();
+    const std::int64_t more = kind < 0.95    ? random.Between(0, 40)
+                              : kind < 0.998 ? random.Between(0, 3000)
+                                             : random.Between(0, 30000);
     std::vector<std::uint8_t> payload(HeaderBytes + static_cast<std::size_t>(more));
     std::memcpy(payload.data(), &number, HeaderBytes);
     for (std::size_t i = HeaderBytes; i < payload.size(); ++i)
@@ -155,6 +158,7 @@ void Oracle::OnEnqueue(std::size_t link, std::string_view type, std::span<const 
                                  _knownEpoch[scenario.Source][scenario.Destination]});
     ++state.Pending;
     state.PendingBytes += payload.size();
+    _acceptedBytes += payload.size();
 }
 
 Record *Oracle::Find(std::size_t receiver, std::string_view source, std::string_view queue,
@@ -238,6 +242,8 @@ void Oracle::OnDelivered(const Record &constRecord, bool redelivered, LinkTime s
                     std::to_string((senderNow - record.EnqueuedAt - link.Options.Expire).count()) +
                     " ns after its expiry");
     }
+    _deliveredBytes += record.Bytes;
+    _largeDelivered += record.Bytes > _scenario.Settings.MaxDatagram ? 1 : 0;
     record.Delivered = true;
     state.NextToDeliver = std::max(state.NextToDeliver, number + 1);
 }
@@ -333,6 +339,26 @@ void Oracle::CheckSender(std::size_t node, std::string_view destination, std::st
     {
         Fail(6, "the window is above its limit");
     }
+}
+
+std::size_t Oracle::PendingBytes() const
+{
+    std::size_t bytes = 0;
+    for (const LinkState &state : _links)
+    {
+        bytes += state.PendingBytes;
+    }
+    return bytes;
+}
+
+std::size_t Oracle::PendingCount() const
+{
+    std::size_t count = 0;
+    for (const LinkState &state : _links)
+    {
+        count += state.Pending;
+    }
+    return count;
 }
 
 std::size_t Oracle::Undrained(const std::vector<bool> &alive) const

@@ -79,6 +79,13 @@ public:
     }
     std::uint64_t RedeliveredTwice() const { return _redeliveredTwice; }
     std::uint64_t Refused() const { return _refused; }
+    std::uint64_t AcceptedBytes() const { return _acceptedBytes; }
+    std::uint64_t DeliveredBytes() const { return _deliveredBytes; }
+    // Messages larger than a datagram.
+    std::uint64_t LargeDelivered() const { return _largeDelivered; }
+    // Without an outcome, of live processes.
+    std::size_t PendingBytes() const;
+    std::size_t PendingCount() const;
 
 private:
     static constexpr std::size_t NoLife = static_cast<std::size_t>(-1);
@@ -123,6 +130,9 @@ private:
     std::uint64_t _outcomes[4] = {};
     std::uint64_t _redeliveredTwice = 0;
     std::uint64_t _refused = 0;
+    std::uint64_t _acceptedBytes = 0;
+    std::uint64_t _deliveredBytes = 0;
+    std::uint64_t _largeDelivered = 0;
     std::string _failure;
 };
 

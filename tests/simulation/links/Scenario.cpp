@@ -22,6 +22,12 @@ Weather DrawWeather(SimRandom &random)
     return weather;
 }
 
+std::int64_t DrawRate(SimRandom &random)
+{
+    static constexpr std::int64_t Rates[] = {57'600, 100'000, 250'000, 1'000'000};
+    return Rates[random.Index(std::size(Rates))];
+}
+
 ScenarioNode DrawNode(SimRandom &random, std::size_t index, bool mayBeAbsent, bool clockAlone)
 {
     ScenarioNode node;
@@ -166,6 +172,17 @@ Scenario::Scenario(std::uint64_t seed)
         const auto link = random.Index(Links.size());
         const int count = random.Chance(0.8) ? 1 : static_cast<int>(random.LogBetween(2, 100));
         Bursts.push_back({random.Between(0ms, CalmAt + 1s), link, count});
+    }
+
+    if (random.Chance(0.5))
+    {
+        Medium.BitsPerSecond = DrawRate(random);
+        Medium.QueueBytes = static_cast<std::size_t>(random.LogBetween(6'000, 64'000));
+        for (std::int64_t changes = random.Between(0, 3); changes > 0; --changes)
+        {
+            Faults.push_back(
+                {.At = random.Between(0ms, CalmAt), .Kind = FaultKind::Rate, .Amount = DrawRate(random)});
+        }
     }
 
     Settings.MaxDatagram = static_cast<std::size_t>(random.LogBetween(200, 5000));

@@ -21,6 +21,14 @@ struct Weather
     LinkTime Jitter{0};  // the delay varies by up to this much, which reorders
 };
 
+// What all nodes share, one frame at a time; in front of it each node has a queue that drops what does not
+// fit.
+struct Medium
+{
+    std::int64_t BitsPerSecond = 0;  // 0: no limit
+    std::size_t QueueBytes = 0;      // of each node, as on the air
+};
+
 // How a node comes by its incarnations.
 enum class IncarnationMode
 {
@@ -65,7 +73,8 @@ enum class FaultKind
     Start,      // node A starts (again)
     ClockStep,  // node A's wall clock jumps by Amount seconds
     Stall,      // node A's queues are not emptied for Amount nanoseconds
-    Forget      // node A forgets node B, if nothing waits there for B
+    Forget,     // node A forgets node B, if nothing waits there for B
+    Rate        // the medium carries Amount bits a second from now on
 };
 
 struct Fault
@@ -95,6 +104,7 @@ struct Scenario
     std::vector<ScenarioLink> Links;
     std::vector<Fault> Faults;
     std::vector<Burst> Bursts;
+    Sim::Medium Medium;
     std::vector<Weather> Start;  // from node i to node j at index i * Nodes.size() + j
     LinkTime CalmAt{0};          // the faults stop here
     LinkSettings Settings;
