@@ -6,8 +6,13 @@
 
 #include <chrono>
 #include <functional>
-#include <set>
+#include <map>
 #include <utility>
+#include <vector>
+
+#include "AnnouncementPace.h"
+#include "OutgoingMessage.h"
+#include "RequestPace.h"
 
 namespace Rabit::FastDds
 {
@@ -21,42 +26,35 @@ using eprosima::fastdds::rtps::TransportReceiverInterface;
 namespace
 {
 
-// Tells of each destination as it is looked at.
-class UsedLocators final : public rtps::LocatorsIterator
+class ListIterator final : public rtps::LocatorsIterator
 {
 public:
-    UsedLocators(rtps::LocatorsIterator &inner, const std::function<void(const rtps::Locator_t &)> &use)
-        : _inner(inner), _use(use)
-    {
-    }
+    explicit ListIterator(std::vector<rtps::Locator_t>::const_iterator at) : _at(at) {}
 
     rtps::LocatorsIterator &operator++() override
     {
-        ++_inner;
+        ++_at;
         return *this;
     }
     bool operator==(const rtps::LocatorsIterator &other) const override
     {
-        return _inner == static_cast<const UsedLocators &>(other)._inner;
+        return _at == static_cast<const ListIterator &>(other)._at;
     }
     bool operator!=(const rtps::LocatorsIterator &other) const override { return !(*this == other); }
-    const rtps::Locator_t &operator*() const override
-    {
-        const rtps::Locator_t &locator = *_inner;
-        _use(locator);
-        return locator;
-    }
+    const rtps::Locator_t &operator*() const override { return *_at; }
 
 private:
-    rtps::LocatorsIterator &_inner;
-    const std::function<void(const rtps::Locator_t &)> &_use;
+    std::vector<rtps::Locator_t>::const_iterator _at;
 };
 
 class GuardedUdp final : public ChainingTransport
 {
 public:
     explicit GuardedUdp(const GuardedUdpDescriptor &descriptor)
-        : ChainingTransport(descriptor), _descriptor(descriptor), _guard(descriptor.Chosen().Mode)
+        : ChainingTransport(descriptor),
+          _descriptor(descriptor),
+          _guard(descriptor.Chosen().Mode),
+          _announcements(descriptor.Chosen().AnnouncementPeriod)
     {
     }
 
@@ -76,10 +74,33 @@ public:
     {
         const auto left = static_cast<std::uint32_t>(SizeWithoutStatistics({buffer, size}));
         _guard.Sending({buffer, left});
-        const std::function<void(const rtps::Locator_t &)> use = [this](const rtps::Locator_t &destination)
-        { Use(destination); };
-        UsedLocators first(*begin, use);
-        UsedLocators last(*end, use);
+        const OutgoingMessage message = ReadOutgoing({buffer, left});
+        const auto now = std::chrono::steady_clock::now();
+        const std::uint32_t socket = NumberOf(sender);
+        if (message.Request && !_requests.MayGo(socket, *message.Request, now))
+        {
+            return true;
+        }
+        _chosen.clear();
+        for (; *begin != *end; ++*begin)
+        {
+            const rtps::Locator_t &destination = **begin;
+            const std::uint64_t number = std::uint64_t{socket} << 32 | NumberOf(destination);
+            if (!message.Announcement ||
+                _announcements.MayGo(number, *message.Announcement, _guard.AnnouncementsHeard(), now))
+            {
+                _chosen.push_back(destination);
+            }
+        }
+        if (message.Announcement)
+        {
+            if (const auto due = _announcements.Due())
+            {
+                _descriptor.Chosen().AnnounceAt(*due);
+            }
+        }
+        ListIterator first(_chosen.cbegin());
+        ListIterator last(_chosen.cend());
         return sender->send(buffer, left, &first, &last, timeout);
     }
 
@@ -105,18 +126,30 @@ private:
     // The vendor's sockets know those destinations alone that a writer means to use when it matches, and end
     // the process at an assertion when it then uses another one: the reader's own address, where several
     // share a group.
-    void Use(const rtps::Locator_t &destination)
+    std::uint32_t NumberOf(const rtps::Locator_t &destination)
     {
-        if (_destinations.insert(destination).second)
+        const auto number = static_cast<std::uint32_t>(_destinations.size());
+        const auto [found, isNew] = _destinations.emplace(destination, number);
+        if (isNew)
         {
             // Makes no sockets: there are some, one of them is about to send.
             low_level_transport_->OpenOutputChannel(_noSockets, destination);
         }
+        return found->second;
+    }
+    std::uint32_t NumberOf(const rtps::SenderResource *sender)
+    {
+        return _senders.emplace(sender, static_cast<std::uint32_t>(_senders.size())).first->second;
     }
 
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
-    std::set<rtps::Locator_t> _destinations;
+    // What follows is used under the lock with which the vendor calls send.
+    AnnouncementPace _announcements;
+    RequestPace _requests;
+    std::map<rtps::Locator_t, std::uint32_t> _destinations;
+    std::map<const rtps::SenderResource *, std::uint32_t> _senders;
+    std::vector<rtps::Locator_t> _chosen;
     eprosima::fastdds::rtps::SendResourceList _noSockets;
 };
 

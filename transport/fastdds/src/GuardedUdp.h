@@ -1,13 +1,14 @@
-// UDP as the vendor does it, with four differences: datagrams of up to 64 kB are received whatever size we
+// UDP as the vendor does it, with five differences: datagrams of up to 64 kB are received whatever size we
 // send, so that nodes with different settings understand each other; what the vendor's parser must not see is
 // kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h);
-// multicast groups that peers name are not sent to where multicast may not pass; and the vendor's statistics
-// are not sent.
+// multicast groups that peers name are not sent to where multicast may not pass; the vendor's statistics are
+// not sent; and what it repeats in haste goes at a measured pace (AnnouncementPace.h, RequestPace.h).
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -32,6 +33,10 @@ public:
         // Called, on the receiving thread, when the participant is to announce itself to somebody who has not
         // heard it.
         std::function<void()> Announce;
+        // How often the vendor has it announce itself. Besides, it is to do so at the time with which
+        // AnnounceAt was called last, on any thread with the vendor's locks held.
+        std::chrono::milliseconds AnnouncementPeriod{0};
+        std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

@@ -91,7 +91,7 @@ void LimitPeers(rtps::RTPSParticipantAttributes &attributes)
 }
 
 void AddTransports(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                   std::function<void()> announce, rtps::RTPSParticipantAttributes &attributes)
+                   AnnounceCalls announce, rtps::RTPSParticipantAttributes &attributes)
 {
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = SocketBuffer;
@@ -107,7 +107,11 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.Mode = GuardMode(settings, attributes);
     guarded.GroupPort = IsMulticastForData(settings) ? 0 : DiscoveryGroupPort(settings, attributes);
     guarded.OnDropped = [log] { log->MalformedDatagram(); };
-    guarded.Announce = std::move(announce);
+    guarded.Announce = std::move(announce.Now);
+    guarded.AnnounceAt = std::move(announce.At);
+    guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
+    // GuardedUdp asks for the first announcements after the very first, at growing distances.
+    attributes.builtin.discovery_config.initial_announcements.count = 0;
     attributes.userTransports.push_back(std::make_shared<GuardedUdpDescriptor>(udp, std::move(guarded)));
     if (settings.SharedMemory)
     {
@@ -172,7 +176,7 @@ void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes
 
 rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings,
                                                           const std::shared_ptr<SessionLog> &log,
-                                                          std::function<void()> announce)
+                                                          AnnounceCalls announce)
 {
     CheckSettings(settings);
     rtps::RTPSParticipantAttributes attributes;

@@ -226,10 +226,13 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return Verdict::Refuse;
     }
-    if (delivery.Alive && delivery.Writer == ParticipantWriter && passage.Sender != _own &&
-        _replies.OnAnnouncement(passage.Sender, passage.Now))
+    if (delivery.Alive && delivery.Writer == ParticipantWriter && passage.Sender != _own)
     {
-        _replyDue = true;
+        ++_announcementsHeard;
+        if (_replies.OnAnnouncement(passage.Sender, passage.Now))
+        {
+            _replyDue = true;
+        }
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&

@@ -56,6 +56,9 @@ public:
     // Whether somebody of whom a datagram was admitted waits for our announcement. Says so once.
     bool TakeReplyDue() { return _replyDue.exchange(false); }
 
+    // How many announcements of other participants were admitted.
+    std::uint64_t AnnouncementsHeard() const { return _announcementsHeard; }
+
 private:
     enum class Verdict
     {
@@ -100,6 +103,7 @@ private:
     AnnouncementReplies _replies;                 // guarded by _mutex
     GuidPrefix _own{};                            // once we have sent; guarded by _mutex
     std::atomic<bool> _replyDue{false};
+    std::atomic<std::uint64_t> _announcementsHeard{0};
 };
 
 }  // namespace Rabit::FastDds

@@ -49,7 +49,9 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
       _announceGate(_log, "announcements"),
       _onPeer(std::move(onPeer))
 {
-    auto attributes = MakeParticipantAttributes(settings, _log, [this] { Announce(); });
+    auto attributes = MakeParticipantAttributes(
+        settings, _log,
+        {.Now = [this] { Announce(); }, .At = [this](auto time) { _announceTimer.At(time); }});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
@@ -61,12 +63,14 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
         throw TransportError("Fast DDS cannot join domain " + std::to_string(settings.Domain) +
                              ": no free port, or no usable network interface");
     }
+    _announceTimer.Start(*_participant, [this] { Announce(); });
     _participant.load()->enable();
 }
 
 SessionCore::~SessionCore()
 {
     Close();
+    _announceTimer.Stop();
     rtps::RTPSDomain::removeRTPSParticipant(_participant);
 }
 

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <vector>
 
+#include "AnnouncementTimer.h"
 #include "ParticipantNumber.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
@@ -75,6 +76,7 @@ private:
     std::map<GuidPrefix, PeerPlace> _places;  // of those; guarded by _mutex
     std::deque<GuidPrefix> _departed;         // the last that said goodbye; guarded by _mutex
     const ParticipantNumber _number;
+    AnnouncementTimer _announceTimer;
     std::atomic<eprosima::fastrtps::rtps::RTPSParticipant *> _participant = nullptr;
 };
 

@@ -1,0 +1,152 @@
+// When the announcements of our own participant go.
+#include "AnnouncementPace.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace
+{
+
+using namespace std::chrono_literals;
+using Rabit::FastDds::AnnouncementPace;
+
+class AnnouncementPaceTest : public testing::Test
+{
+protected:
+    bool Send(std::chrono::milliseconds at, AnnouncementPace::Destination destination = 1)
+    {
+        return Pace.MayGo(destination, Content, Heard, Start + at);
+    }
+    // Sends whenever it is due, up to then; the times at which it went, those asked for in between included.
+    std::vector<std::chrono::milliseconds> RunTo(std::chrono::milliseconds end)
+    {
+        std::vector<std::chrono::milliseconds> sent;
+        while (const auto due = Pace.Due())
+        {
+            const auto at = std::chrono::duration_cast<std::chrono::milliseconds>(*due - Start);
+            if (at > end)
+            {
+                break;
+            }
+            EXPECT_TRUE(Send(at));
+            sent.push_back(at);
+        }
+        return sent;
+    }
+    std::optional<std::chrono::milliseconds> Due() const
+    {
+        const auto due = Pace.Due();
+        return due ? std::optional(std::chrono::duration_cast<std::chrono::milliseconds>(*due - Start))
+                   : std::nullopt;
+    }
+    // All that it says by itself is said.
+    void Settle()
+    {
+        Send(-60s);
+        RunTo(-1s);
+        ASSERT_EQ(Due(), std::nullopt);
+    }
+
+    AnnouncementPace Pace{10s};
+    AnnouncementPace::TimePoint Start{1h};
+    std::uint64_t Content = 7;
+    std::uint64_t Heard = 0;
+};
+
+TEST_F(AnnouncementPaceTest, ItAsksForTheFirstFewAtGrowingDistances)
+{
+    EXPECT_TRUE(Send(0ms));
+    EXPECT_EQ(RunTo(60s), (std::vector<std::chrono::milliseconds>{200ms, 600ms, 1400ms, 3000ms, 6200ms}));
+}
+
+TEST_F(AnnouncementPaceTest, WhatTheVendorRepeatsAtOnceIsNotSentAndNotOwed)
+{
+    Settle();
+    ++Heard;
+    EXPECT_TRUE(Send(0ms));
+    EXPECT_FALSE(Send(0ms));
+    EXPECT_FALSE(Send(1ms));
+    EXPECT_EQ(Due(), std::nullopt);
+}
+
+TEST_F(AnnouncementPaceTest, EachDestinationGetsItsOwn)
+{
+    Settle();
+    EXPECT_TRUE(Send(0ms, 1));
+    EXPECT_TRUE(Send(0ms, 2));
+    EXPECT_FALSE(Send(1ms, 1));
+    EXPECT_TRUE(Send(2ms, 3)) << "one that came in the meantime";
+}
+
+TEST_F(AnnouncementPaceTest, WhoCameSinceIsAnsweredLaterNotNever)
+{
+    Settle();
+    ++Heard;
+    EXPECT_TRUE(Send(0ms));
+    ++Heard;
+    EXPECT_FALSE(Send(10ms));
+    EXPECT_EQ(Due(), 200ms);
+    EXPECT_FALSE(Send(199ms));
+    EXPECT_TRUE(Send(200ms));
+    EXPECT_EQ(Due(), std::nullopt);
+}
+
+TEST_F(AnnouncementPaceTest, AnswersInARowFollowEachOtherAtGrowingDistances)
+{
+    Settle();
+    std::vector<int> sent;
+    for (int at = 0; at < 4000; at += 10)
+    {
+        ++Heard;
+        if (Send(std::chrono::milliseconds(at)))
+        {
+            sent.push_back(at);
+        }
+    }
+    EXPECT_EQ(sent, (std::vector{0, 200, 600, 1400, 2200, 3000, 3800}));
+}
+
+TEST_F(AnnouncementPaceTest, AfterARestANewcomerIsAnsweredSoonAgain)
+{
+    Settle();
+    for (int at = 0; at < 2000; at += 10)
+    {
+        ++Heard;
+        Send(std::chrono::milliseconds(at));
+    }
+    EXPECT_TRUE(Send(10s));
+    ++Heard;
+    EXPECT_FALSE(Send(10s + 1ms));
+    EXPECT_EQ(Due(), 10s + 200ms);
+}
+
+TEST_F(AnnouncementPaceTest, WhatIsNewGoesAtOnce)
+{
+    Settle();
+    EXPECT_TRUE(Send(0ms));
+    ++Content;
+    EXPECT_TRUE(Send(1ms));
+    EXPECT_FALSE(Send(2ms));
+}
+
+TEST_F(AnnouncementPaceTest, TheVendorsOwnPeriodIsNeverHeldUp)
+{
+    AnnouncementPace often(100ms);
+    for (int at = 0; at < 20000; at += 50)
+    {
+        EXPECT_TRUE(often.MayGo(1, Content, ++Heard, Start + std::chrono::milliseconds(at)));
+    }
+}
+
+TEST_F(AnnouncementPaceTest, DestinationsWithoutEndDoNotFillTheMemory)
+{
+    Settle();
+    for (AnnouncementPace::Destination other = 0; other < AnnouncementPace::MostDestinations; ++other)
+    {
+        EXPECT_TRUE(Send(0ms, other));
+    }
+    EXPECT_TRUE(Send(0ms, 0)) << "forgotten, so that it got one more";
+}
+
+}  // namespace

@@ -1,0 +1,82 @@
+// What a datagram of our own is.
+#include "OutgoingMessage.h"
+
+#include <gtest/gtest.h>
+
+#include "DeliveryCheck.h"
+#include "RtpsBytes.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using Rabit::FastDds::FirstRequest;
+using Rabit::FastDds::OutgoingMessage;
+using Rabit::FastDds::ParticipantWriter;
+using Rabit::FastDds::ReadOutgoing;
+
+constexpr std::uint8_t HasData = 5;  // and little-endian
+
+Bytes To(const GuidPrefix &peer)
+{
+    return Submessage(InfoDestination, Bytes(peer.begin(), peer.end()));
+}
+
+TEST(OutgoingMessage, AnAnnouncementIsOneAndEqualOnesAreTold)
+{
+    const auto first = ReadOutgoing(ParticipantMessage(Sender, 7410)).Announcement;
+    EXPECT_TRUE(first.has_value());
+    EXPECT_EQ(ReadOutgoing(ParticipantMessage(Sender, 7410)).Announcement, first);
+    EXPECT_NE(ReadOutgoing(ParticipantMessage(Sender, 7412)).Announcement, first);
+    EXPECT_FALSE(ReadOutgoing(ParticipantMessage()).HasSamples);
+}
+
+TEST(OutgoingMessage, AGoodbyeIsNoAnnouncement)
+{
+    constexpr std::uint8_t WithInlineQosAndKey = 1 | 2 | 8;
+    const Bytes goodbye = Message(Data, DataBody(1, Bytes(40), ParticipantWriter), WithInlineQosAndKey);
+    EXPECT_FALSE(ReadOutgoing(goodbye).Announcement.has_value());
+}
+
+TEST(OutgoingMessage, AnAnnouncementBesidesSomethingElseIsNotHeldWithIt)
+{
+    const Bytes both = Join({ParticipantMessage(), Submessage(Heartbeat, HeartbeatBody(1, 2, 3))});
+    EXPECT_FALSE(ReadOutgoing(both).Announcement.has_value());
+}
+
+TEST(OutgoingMessage, ARequestOfAReaderThatHasNothingIsTheFirst)
+{
+    const Bytes request = Join({Header(), To(Other), Submessage(AckNack, AckNackBody(0, 0, 1))});
+    EXPECT_EQ(ReadOutgoing(request).Request, (FirstRequest{Other, UserReader, UserWriter}));
+}
+
+TEST(OutgoingMessage, ARequestForSomethingOrAnAcknowledgementIsNot)
+{
+    const Bytes missing = Join({Header(), To(Other), Submessage(AckNack, AckNackBody(1, 3, 1))});
+    const Bytes more = Join({Header(), To(Other), Submessage(AckNack, AckNackBody(4, 0, 1))});
+    const Bytes acknowledged = Join({Header(), To(Other), Submessage(AckNack, AckNackBody(0, 0, 1), 1 | 2)});
+    for (const Bytes &message : {missing, more, acknowledged})
+    {
+        EXPECT_FALSE(ReadOutgoing(message).Request.has_value());
+    }
+}
+
+TEST(OutgoingMessage, TwoRequestsInOneAreNotHeldAsOne)
+{
+    const Bytes both = Join({Header(), To(Other), Submessage(AckNack, AckNackBody(0, 0, 1)),
+                             Submessage(AckNack, AckNackBody(0, 0, 1))});
+    EXPECT_FALSE(ReadOutgoing(both).Request.has_value());
+}
+
+TEST(OutgoingMessage, SamplesAndTheirRepairAreToldFromDiscovery)
+{
+    constexpr Rabit::FastDds::EntityId Publications = Rabit::FastDds::PublicationsWriter;
+    EXPECT_TRUE(ReadOutgoing(Message(Data, DataBody(1), HasData)).HasSamples);
+    EXPECT_TRUE(ReadOutgoing(Message(Heartbeat, HeartbeatBody(1, 2, 3))).HasSamples);
+    EXPECT_TRUE(ReadOutgoing(Message(AckNack, AckNackBody(4, 0, 1))).HasSamples);
+    EXPECT_TRUE(ReadOutgoing(Message(Gap, GapBody(1, 2))).HasSamples);
+    EXPECT_FALSE(ReadOutgoing(WriterMessage()).HasSamples);
+    EXPECT_FALSE(ReadOutgoing(Message(Heartbeat, HeartbeatBody(1, 2, 3, Publications))).HasSamples);
+}
+
+}  // namespace

@@ -1,0 +1,64 @@
+#include "AnnouncementPace.h"
+
+#include <algorithm>
+
+namespace Rabit::FastDds
+{
+
+AnnouncementPace::AnnouncementPace(std::chrono::milliseconds period)
+    : _longest(std::min<std::chrono::steady_clock::duration>(LongestGap, period / 2))
+{
+}
+
+void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoint now)
+{
+    const auto first = std::min<std::chrono::steady_clock::duration>(FirstGap, _longest);
+    if (!_begun)
+    {
+        _initialGap = first;
+        _nextInitial = now + first;
+    }
+    else if (_initial > 0 && now >= _nextInitial)
+    {
+        --_initial;
+        _initialGap *= 2;
+        _nextInitial = now + _initialGap;
+    }
+    _gap = !_begun || now - *_begun >= Rest ? first : std::min(2 * _gap, _longest);
+    _begun = now;
+    _content = content;
+    _heard = heard;
+    _owed = false;
+    _told.clear();
+}
+
+bool AnnouncementPace::MayGo(Destination destination, std::uint64_t content, std::uint64_t heard,
+                             TimePoint now)
+{
+    if (!_begun || content != _content || now - *_begun >= _gap || _told.size() >= MostDestinations)
+    {
+        Begin(content, heard, now);
+    }
+    if (_told.insert(destination).second)
+    {
+        return true;
+    }
+    _owed = _owed || heard != _heard;
+    return false;
+}
+
+std::optional<AnnouncementPace::TimePoint> AnnouncementPace::Due() const
+{
+    std::optional<TimePoint> due;
+    if (_begun && _owed)
+    {
+        due = *_begun + _gap;
+    }
+    if (_begun && _initial > 0 && (!due || _nextInitial < *due))
+    {
+        due = std::max(_nextInitial, *_begun + _gap);
+    }
+    return due;
+}
+
+}  // namespace Rabit::FastDds

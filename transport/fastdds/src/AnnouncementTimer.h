@@ -1,0 +1,33 @@
+#pragma once
+
+#include <fastdds/rtps/participant/RTPSParticipant.h>
+#include <fastdds/rtps/resources/TimedEvent.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+
+namespace Rabit::FastDds
+{
+
+// Has the participant announce itself at a time of our choice, on the thread on which the vendor does so by
+// itself. Thread-safe.
+class AnnouncementTimer
+{
+public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    // From now on At is heeded, until Stop returns; both before the participant is removed.
+    void Start(const eprosima::fastrtps::rtps::RTPSParticipant &participant, std::function<void()> announce);
+    void Stop();
+
+    // In the place of the time that was set before. Does not block, so the vendor's locks may be held.
+    void At(TimePoint time);
+
+private:
+    std::mutex _mutex;
+    std::unique_ptr<eprosima::fastrtps::rtps::TimedEvent> _event;  // guarded by _mutex
+};
+
+}  // namespace Rabit::FastDds

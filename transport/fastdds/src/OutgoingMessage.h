@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "RtpsMessage.h"
+
+namespace Rabit::FastDds
+{
+
+// A reader that asks a writer for the first time, and again until the writer answers: it has nothing yet, and
+// knows of nothing that it lacks.
+struct FirstRequest
+{
+    GuidPrefix Peer{};
+    EntityId Reader = 0;
+    EntityId Writer = 0;
+    auto operator<=>(const FirstRequest &) const = default;
+};
+
+// What a datagram of our own is, as far as that decides when it goes and how it is counted.
+struct OutgoingMessage
+{
+    // Something in it is of other than builtin endpoints: samples, or what their repair needs.
+    bool HasSamples = false;
+    // Says that our participant is there, and nothing else; a number that tells one content from another. Not
+    // set for a goodbye.
+    std::optional<std::uint64_t> Announcement;
+    // Set if there is nothing else in it.
+    std::optional<FirstRequest> Request;
+};
+
+// `datagram` comes from the vendor's writers and is trusted to be sound.
+OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram);
+
+}  // namespace Rabit::FastDds
