@@ -11,8 +11,8 @@
 namespace Rabit
 {
 
-// Decides when this node speaks up for those who have just come, with beats that follow each other quickly,
-// its announcement and its States: a newcomer must not wait for the next period, and a crowd of newcomers, or
+// Decides when this node speaks up for those who have just come, with beats that follow each other quickly
+// and its States: a newcomer must not wait for the next period, and a crowd of newcomers, or
 // one that comes again and again, must not make a whole fleet shout. Whom nobody speaks up for has what it
 // needs a period later.
 //
@@ -48,7 +48,7 @@ public:
     void Ask(const std::string &node, Reason reason, std::size_t others, Duration now);
     // When this node speaks up next; empty: for nobody.
     std::optional<Duration> Due() const;
-    // Whether it is time for the first beat and the announcement. Says so once.
+    // Whether it is time for the first beat. Says so once.
     bool TakeBeats(Duration now);
     // Whether it is time to repeat the States. Says so once.
     bool TakeStates(Duration now);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "wire/Announcements.h"
+
 namespace Rabit
 {
 namespace
@@ -108,6 +110,8 @@ void PeerTable::BeginLife(Peer &peer, std::uint64_t incarnation)
     peer.Incarnation = incarnation;
     peer.Clock = PeerClock();
     peer.LastBeatMonotonic = Duration(0);
+    peer.LastEchoed.reset();
+    peer.LacksOffersSince.reset();
     peer.Heard = false;
 }
 
@@ -166,6 +170,7 @@ PeerTable::Change PeerTable::OnBeat(const Gateway::Beat &beat, Duration now)
         {.Monotonic = monotonic, .Source = Nanoseconds(beat.source_ns), .Wall = Nanoseconds(beat.utc_ns)},
         now);
     MeasureRoundTrip(*peer, beat, now);
+    CompareOffers(*peer, beat.offers, now);
     peer->LastBeatMonotonic = monotonic;
     peer->LastBeatArrival = now;
     // A beat that was held up on the way tells of the past.
@@ -211,8 +216,21 @@ PeerTable::Change PeerTable::OnAnnouncement(const Gateway::Announcement &announc
     {
         peer->Offers = announcement;
         peer->OffersSince = now;
+        peer->OffersDigest = Announcements::DigestOf(announcement);
     }
     return change;
+}
+
+void PeerTable::CompareOffers(Peer &peer, std::uint32_t digest, Duration now)
+{
+    if (peer.Offers && peer.OffersDigest == digest)
+    {
+        peer.LacksOffersSince.reset();
+    }
+    else if (!peer.LacksOffersSince)
+    {
+        peer.LacksOffersSince = now;
+    }
 }
 
 PeerTable::Change PeerTable::OnLeft(const std::string &node, std::uint64_t incarnation)
@@ -282,6 +300,27 @@ std::optional<PeerTable::Duration> PeerTable::NextChange() const
     return next;
 }
 
+std::vector<std::string> PeerTable::NextWanted(Duration now, std::size_t most)
+{
+    std::vector<std::string> wanted;
+    auto next = _peers.upper_bound(_lastWanted);
+    for (std::size_t looked = 0; looked < _peers.size() && wanted.size() < most; ++looked, ++next)
+    {
+        if (next == _peers.end())
+        {
+            next = _peers.begin();
+        }
+        const Peer &peer = next->second;
+        if (peer.State != NodeState::LOST && peer.LacksOffersSince &&
+            now - *peer.LacksOffersSince >= AskAfter)
+        {
+            wanted.push_back(peer.Node);
+            _lastWanted = peer.Node;
+        }
+    }
+    return wanted;
+}
+
 std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t most)
 {
     std::vector<Gateway::BeatEcho> echoes;
@@ -292,8 +331,9 @@ std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t m
         {
             next = _peers.begin();
         }
-        const Peer &peer = next->second;
-        if (peer.Heard && peer.State != NodeState::LOST)
+        Peer &peer = next->second;
+        if (peer.Heard && peer.State != NodeState::LOST &&
+            (!peer.LastEchoed || now - *peer.LastEchoed >= EchoPeriod))
         {
             Gateway::BeatEcho echo;
             echo.node = peer.Node;
@@ -301,6 +341,7 @@ std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t m
             echo.monotonic_ns = peer.LastBeatMonotonic.count();
             echo.held_ns = (now - peer.LastBeatArrival).count();
             echoes.push_back(std::move(echo));
+            peer.LastEchoed = now;
             _lastEchoed = peer.Node;
         }
     }

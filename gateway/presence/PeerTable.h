@@ -27,6 +27,10 @@ public:
     static constexpr Duration BeatPeriod = std::chrono::milliseconds(500);
     static constexpr Duration StaleAfter = std::chrono::milliseconds(1500);
     static constexpr Duration LostAfter = std::chrono::milliseconds(3500);
+    // Who lacks an announcement asks for it after this time: it may be on its way.
+    static constexpr Duration AskAfter = std::chrono::milliseconds(300);
+    // A node's beat goes back to it so often. The round trip of one that has just come is measured at once.
+    static constexpr Duration EchoPeriod = std::chrono::seconds(4);
     // Names come from the network. When another one comes one is forgotten that has never been heard, else,
     // if the new one was heard, the one LOST for longest; never one that is live or needed. If there is none,
     // what the new one says is dropped and counted.
@@ -45,11 +49,14 @@ public:
         PeerClock Clock;
         std::optional<Gateway::Announcement> Offers;
         Duration OffersSince{0};
-        bool Twice = false;  // another live node has the same name
+        std::uint32_t OffersDigest = 0;            // of Offers
+        std::optional<Duration> LacksOffersSince;  // its beats say that Offers is not what it offers
+        bool Twice = false;                        // another live node has the same name
 
         // What its next echo says.
         Duration LastBeatMonotonic{0};
         Duration LastBeatArrival{0};
+        std::optional<Duration> LastEchoed;
         // Beats of another incarnation since the last check for twins.
         int TwinBeats = 0;
         Duration TwinSince{0};
@@ -86,6 +93,8 @@ public:
     std::uint64_t CrowdedOut() const { return _crowdedOut; }
     // Whether another live node uses this node's name.
     bool OwnNameTwice() const { return _ownTwice; }
+    // At most `most` nodes whose announcement is to be asked for, in turns.
+    std::vector<std::string> NextWanted(Duration now, std::size_t most);
     // At most `most` echoes, of the nodes whose turn it is.
     std::vector<Gateway::BeatEcho> NextEchoes(Duration now, std::size_t most);
 
@@ -95,6 +104,7 @@ private:
     bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now) const;
     void NoteTwin(Peer &peer, Duration now);
     static void BeginLife(Peer &peer, std::uint64_t incarnation);
+    static void CompareOffers(Peer &peer, std::uint32_t digest, Duration now);
     static bool SetState(Peer &peer, Gateway::NodeState state, const std::string &reason);
     void MeasureRoundTrip(Peer &peer, const Gateway::Beat &beat, Duration now) const;
 
@@ -105,6 +115,7 @@ private:
     std::uint64_t _forgotten = 0;
     std::uint64_t _crowdedOut = 0;
     std::string _lastEchoed;
+    std::string _lastWanted;
     int _ownTwinBeats = 0;
     Duration _ownTwinSince{0};
     bool _ownTwice = false;

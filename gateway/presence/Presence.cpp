@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "clocks/GpsTime.h"
+#include "wire/Announcements.h"
 #include "wire/GatewayTopics.h"
 #include "wire/MessageEncoder.h"
 
@@ -12,9 +13,11 @@ namespace Rabit
 namespace
 {
 
-constexpr Presence::Duration AnnouncementPeriod = std::chrono::seconds(1);
-// One beat goes to everybody; with more nodes than this they take turns to be echoed.
-constexpr std::size_t EchoesInABeat = 8;
+// However many ask for the announcement, it goes to all of them, and not more often than this.
+constexpr Presence::Duration AnnouncementGap = std::chrono::milliseconds(500);
+// One beat goes to everybody; with more nodes than this they take turns to be echoed, and to be asked.
+constexpr std::size_t EchoesInABeat = 2;
+constexpr std::size_t WantsInABeat = 4;
 // Whoever has just appeared may not be matched yet with those who send to it, and nothing of a node is posted
 // before a beat of it was heard: the first beats follow each other quickly, each step twice the one before.
 constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
@@ -48,6 +51,7 @@ Presence::~Presence()
 void Presence::Open(TransportSession &session, Gateway::Announcement announcement)
 {
     _announcement = std::move(announcement);
+    _announcementDigest = Announcements::DigestOf(_announcement);
     _nextBeat = _nextAnnouncement = Duration(0);
     const auto open = [&session](const char *topic, const MessageType &type, QosProfile profile, auto &writer)
     {
@@ -119,6 +123,11 @@ PeerTable::Change Presence::TakeIn(const PresenceInbox::Contents &inbox, Duratio
     {
         const PeerTable::Change change = _peers.OnBeat(heard.Beat, heard.Arrival);
         note(change, heard.Beat.node);
+        if (std::find(heard.Beat.wants.begin(), heard.Beat.wants.end(), _node) != heard.Beat.wants.end())
+        {
+            _nextAnnouncement =
+                std::min(_nextAnnouncement, std::max(now, _lastAnnouncement + AnnouncementGap));
+        }
         if (change.NewLife)
         {
             _introductions.Ask(heard.Beat.node, Introductions::Reason::Heard, OthersThan(heard.Beat.node),
@@ -200,7 +209,7 @@ Presence::Served Presence::Service(Duration now)
 
 void Presence::Introduce()
 {
-    _nextBeat = _nextAnnouncement = Duration(0);
+    _nextBeat = Duration(0);
     _beatStep = FirstBeatStep;
 }
 
@@ -219,6 +228,8 @@ void Presence::SendBeat(Duration now)
     beat.monotonic_ns = time.Monotonic.count();
     beat.source_ns = _source.At(time.Monotonic);
     beat.utc_ns = utc;
+    beat.offers = _announcementDigest;
+    beat.wants = _peers.NextWanted(time.Monotonic, WantsInABeat);
     beat.echoes = _peers.NextEchoes(time.Monotonic, EchoesInABeat);
     static_cast<void>(_beatWriter->Write(MessageEncoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat), utc));
     _nextBeat = now + _beatStep;
@@ -232,9 +243,10 @@ void Presence::SendAnnouncement(Duration now)
         return;
     }
     const std::int64_t utc = GpsTime::ToUtcNanoseconds(_clock.GpsTimeSeconds());
-    static_cast<void>(_announcementWriter->Write(
-        MessageEncoder(GatewayTopics::TypeOf<Gateway::Announcement>(), _announcement), utc));
-    _nextAnnouncement = now + AnnouncementPeriod;
+    const WriteResult result = _announcementWriter->Write(
+        MessageEncoder(GatewayTopics::TypeOf<Gateway::Announcement>(), _announcement), utc);
+    _lastAnnouncement = now;
+    _nextAnnouncement = result == WriteResult::Ok ? Duration::max() : now + AnnouncementGap;
 }
 
 Presence::Duration Presence::NextDue() const

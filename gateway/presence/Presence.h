@@ -85,7 +85,10 @@ private:
     Gateway::Announcement _announcement;
     Duration _nextBeat{0};
     Duration _beatStep = PeerTable::BeatPeriod;  // from one beat to the next
+    // Said once, and again when somebody asks for it; the network may not take it the first time.
     Duration _nextAnnouncement{0};
+    Duration _lastAnnouncement{0};
+    std::uint32_t _announcementDigest = 0;
 
     PresenceInbox _inbox;
 

@@ -23,7 +23,10 @@ bool IsPlausible(std::int64_t nanoseconds)
 bool IsPlausible(const Gateway::Beat &beat)
 {
     return IsNodeName(beat.node) && IsPlausible(beat.monotonic_ns) && IsPlausible(beat.source_ns) &&
-           IsPlausible(beat.utc_ns) && beat.echoes.size() <= PresenceInbox::MostEchoes &&
+           IsPlausible(beat.utc_ns) && beat.wants.size() <= PresenceInbox::MostEchoes &&
+           std::all_of(beat.wants.begin(), beat.wants.end(),
+                       [](const std::string &node) { return IsNodeName(node); }) &&
+           beat.echoes.size() <= PresenceInbox::MostEchoes &&
            std::all_of(beat.echoes.begin(), beat.echoes.end(),
                        [](const Gateway::BeatEcho &echo) {
                            return IsNodeName(echo.node) && IsPlausible(echo.monotonic_ns) &&

@@ -23,7 +23,7 @@ class PresenceInbox
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // Bytes of a beat as it is on the wire, and echoes in it.
+    // Bytes of a beat as it is on the wire; echoes in it, and nodes that it asks for.
     static constexpr std::size_t LargestBeat = 8 * 1024;
     static constexpr std::size_t MostEchoes = 64;
     // What the inbox holds at most, samples counted as they are on the wire plus the size of an entry. More

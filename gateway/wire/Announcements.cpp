@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <vector>
 
 #include "names/NamePattern.h"
 #include "names/TypeDefinition.h"
@@ -77,6 +78,20 @@ Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation)
         announcement.accepts.push_back(accepted);
     }
     return announcement;
+}
+
+// FNV-1a (Fowler, Noll and Vo) of what is sent, with the two halves of 64 bits folded into one.
+std::uint32_t DigestOf(const Gateway::Announcement &announcement)
+{
+    const MessageType &type = GatewayTopics::TypeOf<Gateway::Announcement>();
+    std::vector<std::uint8_t> bytes(type.SerializedSize(announcement));
+    type.Serialize(announcement, bytes);
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const std::uint8_t byte : bytes)
+    {
+        hash = (hash ^ byte) * 0x100000001b3;
+    }
+    return static_cast<std::uint32_t>(hash ^ (hash >> 32));
 }
 
 std::string WhyTooLarge(const Gateway::Announcement &announcement)

@@ -25,6 +25,10 @@ inline constexpr std::size_t LongestType = 255;
 // What a node with that configuration says of itself. Its types must be known in this process.
 Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation);
 
+// Tells two announcements apart. Beats carry it, so that whoever lacks the present one notices, and asks for
+// it.
+std::uint32_t DigestOf(const Gateway::Announcement &announcement);
+
 // Why others would not take the announcement, in words; empty if they would.
 std::string WhyTooLarge(const Gateway::Announcement &announcement);
 

@@ -1,6 +1,8 @@
 #include "presence/PeerTable.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "wire/Announcements.h"
 
 namespace Rabit
 {
@@ -9,6 +11,8 @@ namespace
 
 using namespace std::chrono_literals;
 using Gateway::NodeState;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 using Ns = std::chrono::nanoseconds;
 
 // The peers' monotonic clocks are this far from ours.
@@ -347,8 +351,77 @@ TEST_F(PeerTableTest, EchoesTakeTurnsWhenThereAreMoreNodesThanRoom)
         return names;
     };
     EXPECT_EQ(namesOf(table.NextEchoes(1s, 2)), "ab");
-    EXPECT_EQ(namesOf(table.NextEchoes(1s, 2)), "ca");
-    EXPECT_EQ(namesOf(table.NextEchoes(1s, 8)), "bca");
+    EXPECT_EQ(namesOf(table.NextEchoes(1500ms, 2)), "c");
+    EXPECT_EQ(namesOf(table.NextEchoes(4999ms, 8)), "");
+    // Those that are due again.
+    for (const char *node : {"a", "b", "c"})
+    {
+        Hear(node, 1, 5s);
+    }
+    EXPECT_EQ(namesOf(table.NextEchoes(5s, 8)), "ab");
+    EXPECT_EQ(namesOf(table.NextEchoes(5500ms, 8)), "c");
+}
+
+TEST_F(PeerTableTest, ANewLifeIsEchoedAtOnce)
+{
+    Hear("uav1", 5, 1s);
+    EXPECT_EQ(table.NextEchoes(1s, 2).size(), 1u);
+    Hear("uav1", 6, 2s);
+    EXPECT_EQ(table.NextEchoes(2s, 2).size(), 1u);
+}
+
+class OffersTest : public PeerTableTest
+{
+protected:
+    void HearOffering(const std::string &node, std::uint32_t offers, Ns at)
+    {
+        Gateway::Beat beat = BeatOf(node, 5, at);
+        beat.offers = offers;
+        table.Advance(at);
+        table.OnBeat(beat, at);
+    }
+
+    const Gateway::Announcement announcement = AnnouncementOf("uav1", 5);
+    const std::uint32_t digest = Announcements::DigestOf(announcement);
+};
+
+TEST_F(OffersTest, WhoLacksAnAnnouncementAsksForItAfterAWhile)
+{
+    HearOffering("uav1", digest, 1s);
+    EXPECT_THAT(table.NextWanted(1299ms, 4), IsEmpty());
+    HearOffering("uav1", digest, 1300ms);
+    EXPECT_THAT(table.NextWanted(1300ms, 4), ElementsAre("uav1"));
+    // Until it has come.
+    EXPECT_THAT(table.NextWanted(1800ms, 4), ElementsAre("uav1"));
+    table.OnAnnouncement(announcement, 1900ms);
+    HearOffering("uav1", digest, 2s);
+    EXPECT_THAT(table.NextWanted(2300ms, 4), IsEmpty());
+}
+
+TEST_F(OffersTest, WhoHasAnotherAnnouncementThanThePresentOneAsks)
+{
+    Gateway::Announcement former = announcement;
+    former.publishes.emplace_back();
+    table.OnAnnouncement(former, 1s);
+    HearOffering("uav1", digest, 1s);
+    EXPECT_THAT(table.NextWanted(1300ms, 4), ElementsAre("uav1"));
+}
+
+TEST_F(OffersTest, NobodyAsksOneThatIsLost)
+{
+    HearOffering("uav1", digest, 1s);
+    table.Advance(5s);
+    EXPECT_THAT(table.NextWanted(5s, 4), IsEmpty());
+}
+
+TEST_F(OffersTest, ThoseWhoAreAskedTakeTurns)
+{
+    for (const char *node : {"a", "b", "c"})
+    {
+        HearOffering(node, digest, 1s);
+    }
+    EXPECT_THAT(table.NextWanted(1500ms, 2), ElementsAre("a", "b"));
+    EXPECT_THAT(table.NextWanted(1500ms, 2), ElementsAre("c", "a"));
 }
 
 TEST_F(PeerTableTest, NamesFromTheNetworkCannotFillTheMemory)

@@ -1,9 +1,13 @@
 // When a gateway tells the others that it is there.
+#include <gmock/gmock.h>
+#include <rabit/idl/MessageType.h>
+#include <rabit/idl/MessageTypeRegistry.h>
 #include <rabit/simulated/SimulatedTransport.h>
 
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -194,6 +198,85 @@ TEST(Presence, AStateIsNotRepeatedMoreOftenThanItsRateAllows)
     {
         EXPECT_GE(listener.Heard()[i].second - listener.Heard()[i - 1].second, 3999ms);
     }
+}
+
+class Encoder final : public SampleEncoder
+{
+public:
+    explicit Encoder(const RabitMessage &message)
+        : _message(message), _type(*MessageTypeRegistry::Of(message))
+    {
+    }
+
+    std::size_t EncodedSize() const override { return _type.SerializedSize(_message); }
+    bool Encode(std::span<std::uint8_t> buffer) const override
+    {
+        return _type.Serialize(_message, buffer) == buffer.size();
+    }
+
+private:
+    const RabitMessage &_message;
+    const MessageType &_type;
+};
+
+class AnnouncementTest : public ::testing::Test
+{
+protected:
+    AnnouncementTest()
+    {
+        fleet.Add(Node("uav1"));
+        fleet.RunFor(5s);
+        TransportSettings settings;
+        settings.Node = "asker";
+        settings.Incarnation = 1;
+        session = SimulatedTransport(fleet.Network).Open(settings, [](const PeerEvent &) {});
+        TopicQos qos;
+        qos.Reliability = Reliability::BestEffort;
+        beats = session->CreateWriter({"rabit/Beat", "Rabit::Gateway::Beat", {}}, qos, {});
+        fleet.RunFor(5s);
+    }
+
+    void Ask()
+    {
+        Gateway::Beat beat;
+        beat.node = "asker";
+        beat.incarnation = 1;
+        beat.monotonic_ns = beat.source_ns = beat.utc_ns = fleet.Network.Now().count();
+        beat.wants.emplace_back("uav1");
+        beats->Write(Encoder(beat), beat.utc_ns);
+    }
+
+    SimulatedFleet fleet;
+    std::unique_ptr<TransportSession> session;
+    std::unique_ptr<TransportWriter> beats;
+};
+
+TEST_F(AnnouncementTest, IsSaidOnce)
+{
+    const Listener listener(fleet.Network, "rabit/Announcement", "Rabit::Gateway::Announcement");
+    fleet.RunFor(60s);
+    EXPECT_THAT(listener.Heard(), testing::IsEmpty());
+}
+
+TEST_F(AnnouncementTest, IsSaidAgainToWhoAsks)
+{
+    const Listener listener(fleet.Network, "rabit/Announcement", "Rabit::Gateway::Announcement");
+    fleet.RunFor(1s);
+    Ask();
+    fleet.RunFor(100ms);
+    EXPECT_EQ(listener.Heard().size(), 1u);
+}
+
+TEST_F(AnnouncementTest, IsNotSaidOftenHoweverOftenItIsAskedFor)
+{
+    const Listener listener(fleet.Network, "rabit/Announcement", "Rabit::Gateway::Announcement");
+    fleet.RunFor(1s);
+    for (int i = 0; i < 1000; ++i)
+    {
+        Ask();
+        fleet.RunFor(10ms);
+    }
+    EXPECT_THAT(listener.Heard().size(), testing::AllOf(testing::Ge(19u), testing::Le(21u)));
 }
 
 }  // namespace

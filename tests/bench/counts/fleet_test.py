@@ -9,10 +9,10 @@ import subprocess
 import sys
 
 SIZES = [2, 5, 10, 20, 40, 100]
-# Two beats and one announcement a second.
-MOST_WRITES_PER_S = 3.05
-# A beat echoes up to eight others; names here have up to six letters.
-MOST_BYTES_PER_S = 950
+# Two beats a second: announcements are said once.
+MOST_WRITES_PER_S = 2.05
+# A beat echoes up to two others; names here have up to six letters.
+MOST_BYTES_PER_S = 300
 
 
 def main():
