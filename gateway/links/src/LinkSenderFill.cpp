@@ -234,12 +234,8 @@ bool LinkSender::FillNew(Filling &filling)
             return false;
         }
         length = std::min(left, std::max(room, SmallestPiece));
+        item = {};
         Describe({.Offset = next.Cut, .Length = length}, next, _outbox.NextSequence(), item, filling.Now);
-        if (length < left)
-        {
-            item.Flags = static_cast<std::uint8_t>(item.Flags & ~LinkFlagLast);
-            item.TtlLeft = LinkNoExpiry;
-        }
     }
     SentPart &part = _outbox.Part(_outbox.Cut(length));
     part.IsNamed = !item.Type.empty();

@@ -501,6 +501,33 @@ TEST_F(LinkReceiverRules, R6_a_skip_of_several_parts_drops_what_was_there_of_the
     EXPECT_EQ(a.ReceiverCounters().KeptBytes, 0U);
 }
 
+TEST_F(LinkReceiverRules, R6_a_skip_gives_the_memory_of_the_message_back)
+{
+    OpenSession();
+    StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
+    parts.Items.pop_back();
+    a.Hear(parts);
+    ASSERT_EQ(a.ReceiverCounters().AssemblyBytes, 6U);
+    StoredFrame skip = Data(4, {""});
+    MakeSkip(skip.Items[0], 4, 4);
+    a.Hear(skip);
+    EXPECT_EQ(a.ReceiverCounters().AssemblyBytes, 0U);
+}
+
+TEST_F(LinkReceiverRules, R3_a_session_that_is_dropped_gives_its_memory_back)
+{
+    OpenSession();
+    StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
+    parts.Items.pop_back();
+    a.Hear(parts);
+    a.Hear(Data(6, {"6"}));
+    ASSERT_GT(a.ReceiverCounters().KeptBytes, 0U);
+    b.KnownLife += 5;
+    a.Hear(b.Hello());
+    EXPECT_EQ(a.ReceiverCounters().AssemblyBytes, 0U);
+    EXPECT_EQ(a.ReceiverCounters().KeptBytes, 0U);
+}
+
 // Rule R7
 
 TEST_F(LinkReceiverRules, R7_a_full_queue_holds_the_stream_back_and_gives_no_credit)

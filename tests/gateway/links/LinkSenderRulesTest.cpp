@@ -267,6 +267,36 @@ TEST_F(LinkSenderRules, S2_what_was_overtaken_is_lost_after_the_time_for_reorder
     EXPECT_THAT(SentTexts(), IsEmpty()) << "a round trip of 20 ms varies by as much, so far as is known";
     a.Live(2ms);
     EXPECT_THAT(SentTexts(), ElementsAre("2"));
+    a.Now += 45ms;
+    ack.Fields.Time = b.Time += 1000;
+    a.Hear(ack);
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), IsEmpty()) << "nothing sent after it is known to have arrived";
+}
+
+TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_parts_unacknowledged)
+{
+    LinkSettings settings;
+    settings.MaxDatagram = 300;
+    NodeUnderTest sender(settings);
+    sender.Hear(b.Hello());
+    sender.Enqueue("1");
+    sender.Pass(0ms);
+    sender.Hear(b.Ack(1));
+    sender.Enqueue(std::string(1000000, 'x'));
+    std::size_t most = 0;
+    for (int i = 0; i < 500; ++i)
+    {
+        sender.Pass(1ms);
+        most = std::max(most, sender.SenderCounters().UnacknowledgedParts);
+        std::vector<std::uint64_t> held;
+        for (std::uint64_t part = 3; part < 2 + sender.SenderCounters().UnacknowledgedParts; ++part)
+        {
+            held.push_back(part);
+        }
+        sender.Hear(b.AckWith(1, held));
+    }
+    EXPECT_EQ(most, LinkWindowParts - 1);
 }
 
 TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_unacknowledged)
