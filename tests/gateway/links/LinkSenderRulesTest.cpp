@@ -269,6 +269,7 @@ TEST_F(LinkSenderRules, S2_what_was_overtaken_is_lost_after_the_time_for_reorder
     EXPECT_THAT(SentTexts(), ElementsAre("2"));
     a.Now += 45ms;
     ack.Fields.Time = b.Time += 1000;
+    ack.Fields.Echo.HeldFor = (a.Now - first - 1ms - 20ms).count();
     a.Hear(ack);
     a.Pass(0ms);
     EXPECT_THAT(SentTexts(), IsEmpty()) << "nothing sent after it is known to have arrived";
