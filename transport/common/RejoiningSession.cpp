@@ -32,6 +32,10 @@ TransportCounters Sum(TransportCounters a, const TransportCounters &b)
     a.InconsistentTypes += b.InconsistentTypes;
     a.MalformedSamples += b.MalformedSamples;
     a.MalformedDatagrams += b.MalformedDatagrams;
+    a.DiscoveryDatagrams += b.DiscoveryDatagrams;
+    a.DiscoveryBytes += b.DiscoveryBytes;
+    a.SampleDatagrams += b.SampleDatagrams;
+    a.SampleBytes += b.SampleBytes;
     return a;
 }
 

@@ -47,6 +47,12 @@ public:
         return use.Allowed() && _inner != nullptr ? _inner->MatchedReaders() : 0;
     }
 
+    int Destinations() const override
+    {
+        const UseGate::Use use(_shared->Gate);
+        return use.Allowed() && _inner != nullptr ? _inner->Destinations() : 0;
+    }
+
 private:
     void Open(TransportSession &session) override
     {

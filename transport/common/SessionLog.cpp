@@ -105,6 +105,10 @@ TransportCounters SessionLog::Read() const
     counters.InconsistentTypes = _inconsistentTypes;
     counters.MalformedSamples = _malformedSamples;
     counters.MalformedDatagrams = _malformedDatagrams;
+    counters.DiscoveryDatagrams = _discovery.Datagrams;
+    counters.DiscoveryBytes = _discovery.Bytes;
+    counters.SampleDatagrams = _samples.Datagrams;
+    counters.SampleBytes = _samples.Bytes;
     return counters;
 }
 

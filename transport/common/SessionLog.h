@@ -28,6 +28,17 @@ public:
     void MalformedDatagram() noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
 
+    // Counts what was given to sockets; `bytes` are those of all these datagrams, without headers of IP and
+    // UDP.
+    void SentDiscovery(std::uint64_t datagrams, std::uint64_t bytes) noexcept
+    {
+        _discovery.Add(datagrams, bytes);
+    }
+    void SentSamples(std::uint64_t datagrams, std::uint64_t bytes) noexcept
+    {
+        _samples.Add(datagrams, bytes);
+    }
+
     // Logs one line, without counting.
     void Line(const std::string &line) noexcept;
 
@@ -36,6 +47,18 @@ public:
 private:
     template <typename MakeLine>
     void Count(std::atomic<std::uint64_t> &counter, MakeLine &&makeLine) noexcept;
+
+    struct Sent
+    {
+        void Add(std::uint64_t datagrams, std::uint64_t bytes) noexcept
+        {
+            constexpr std::uint64_t Headers = 20 + 8;  // IPv4, UDP
+            Datagrams.fetch_add(datagrams, std::memory_order_relaxed);
+            Bytes.fetch_add(bytes + Headers * datagrams, std::memory_order_relaxed);
+        }
+        std::atomic<std::uint64_t> Datagrams{0};
+        std::atomic<std::uint64_t> Bytes{0};
+    };
 
     const std::string _node;
     const std::function<void(const std::string &)> _sink;
@@ -47,6 +70,8 @@ private:
     std::atomic<std::uint64_t> _inconsistentTypes{0};
     std::atomic<std::uint64_t> _malformedSamples{0};
     std::atomic<std::uint64_t> _malformedDatagrams{0};
+    Sent _discovery;
+    Sent _samples;
 };
 
 }  // namespace Rabit

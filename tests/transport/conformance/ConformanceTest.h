@@ -42,6 +42,9 @@ protected:
 
     // That a sample with a body of that many bytes comes across whole.
     void ExpectArrivalOf(std::size_t size);
+    // That writing to two readers elsewhere takes so many datagrams each time, of the size that they must
+    // have.
+    void ExpectCostOfWriting(bool multicast, int destinations);
     bool LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,
                                TransportWriter &writer, std::uint32_t present);
 

@@ -57,7 +57,8 @@ protected:
 TEST_F(AnnouncementPaceTest, ItAsksForTheFirstFewAtGrowingDistances)
 {
     EXPECT_TRUE(Send(0ms));
-    EXPECT_EQ(RunTo(60s), (std::vector<std::chrono::milliseconds>{200ms, 600ms, 1400ms, 3000ms, 6200ms}));
+    EXPECT_EQ(RunTo(60s),
+              (std::vector<std::chrono::milliseconds>{100ms, 300ms, 700ms, 1500ms, 3100ms, 6300ms}));
 }
 
 TEST_F(AnnouncementPaceTest, WhatTheVendorRepeatsAtOnceIsNotSentAndNotOwed)
@@ -86,9 +87,9 @@ TEST_F(AnnouncementPaceTest, WhoCameSinceIsAnsweredLaterNotNever)
     EXPECT_TRUE(Send(0ms));
     ++Heard;
     EXPECT_FALSE(Send(10ms));
-    EXPECT_EQ(Due(), 200ms);
-    EXPECT_FALSE(Send(199ms));
-    EXPECT_TRUE(Send(200ms));
+    EXPECT_EQ(Due(), 100ms);
+    EXPECT_FALSE(Send(99ms));
+    EXPECT_TRUE(Send(100ms));
     EXPECT_EQ(Due(), std::nullopt);
 }
 
@@ -104,7 +105,7 @@ TEST_F(AnnouncementPaceTest, AnswersInARowFollowEachOtherAtGrowingDistances)
             sent.push_back(at);
         }
     }
-    EXPECT_EQ(sent, (std::vector{0, 200, 600, 1400, 2200, 3000, 3800}));
+    EXPECT_EQ(sent, (std::vector{0, 100, 300, 700, 1500, 2300, 3100, 3900}));
 }
 
 TEST_F(AnnouncementPaceTest, AfterARestANewcomerIsAnsweredSoonAgain)
@@ -118,7 +119,7 @@ TEST_F(AnnouncementPaceTest, AfterARestANewcomerIsAnsweredSoonAgain)
     EXPECT_TRUE(Send(10s));
     ++Heard;
     EXPECT_FALSE(Send(10s + 1ms));
-    EXPECT_EQ(Due(), 10s + 200ms);
+    EXPECT_EQ(Due(), 10s + 100ms);
 }
 
 TEST_F(AnnouncementPaceTest, WhatIsNewGoesAtOnce)

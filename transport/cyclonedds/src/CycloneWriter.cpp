@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "EndpointSettings.h"
+#include "Guid.h"
 #include "OpaqueType.h"
+#include "VendorTraffic.h"
 
 namespace Rabit::Cyclone
 {
@@ -82,6 +84,17 @@ int CycloneWriter::MatchedReaders() const
     dds_publication_matched_status_t status{};
     dds_get_publication_matched_status(_writer.Get(), &status);
     return static_cast<int>(status.current_count);
+}
+
+int CycloneWriter::Destinations() const
+{
+    dds_guid_t guid;
+    if (MatchedReaders() == 0 || dds_get_guid(_writer.Get(), &guid) != DDS_RETCODE_OK)
+    {
+        return 0;
+    }
+    const ddsi_guid_t known = ToVendorGuid(ToWriterId(guid));
+    return RabitCycloneDestinations(_type, &known);
 }
 
 WriteResult CycloneWriter::Fail(const char *why, WriteResult result)

@@ -24,6 +24,7 @@ public:
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override;
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override;
     int MatchedReaders() const override;
+    int Destinations() const override;
 
 private:
     WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed);

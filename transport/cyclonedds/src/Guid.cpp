@@ -26,6 +26,19 @@ WriterId ToWriterId(const dds_guid_t &guid)
     return id;
 }
 
+ddsi_guid_t ToVendorGuid(const WriterId &id)
+{
+    std::uint32_t parts[4];
+    std::memcpy(parts, id.data(), sizeof parts);
+    ddsi_guid_t guid;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        guid.prefix.u[i] = ntohl(parts[i]);
+    }
+    guid.entityid.u = ntohl(parts[3]);
+    return guid;
+}
+
 Prefix PrefixOf(const WriterId &id)
 {
     Prefix prefix;

@@ -16,6 +16,7 @@ using Prefix = std::array<std::uint8_t, 12>;
 
 WriterId ToWriterId(const ddsi_guid_t &guid);
 WriterId ToWriterId(const dds_guid_t &guid);
+ddsi_guid_t ToVendorGuid(const WriterId &id);
 Prefix PrefixOf(const WriterId &id);
 // The participant's own GUID.
 ddsi_guid_t ParticipantOf(const Prefix &prefix);

@@ -6,6 +6,8 @@
 
 #include "DomainConfig.h"
 #include "VendorLog.h"
+#include "VendorTraffic.h"
+#include "common/RtpsTraffic.h"
 
 namespace Rabit::Cyclone
 {
@@ -49,9 +51,16 @@ private:
     }
 };
 
+void CountSent(void *log, const unsigned char *head, std::size_t headSize, std::size_t size)
+{
+    auto *const counters = static_cast<SessionLog *>(log);
+    IsOfSamples({head, headSize}) ? counters->SentSamples(1, size) : counters->SentDiscovery(1, size);
+}
+
 }  // namespace
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log)
+    : _log(log)
 {
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
@@ -82,11 +91,17 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
         log->Line("Cyclone DDS: " + said);
     }
     _entity = Entity(entity, "");
+    _watch = RabitCycloneWatch(&CountSent, _log.get());
+    if (_watch == nullptr)
+    {
+        log->Line("Cyclone DDS does not show what it sends: it is not counted");
+    }
 }
 
 VendorDomain::~VendorDomain()
 {
     _entity.Reset();
+    RabitCycloneUnwatch(_watch);
     VendorLog::Leave(_id);
     Numbers::Give(_id);
 }

@@ -25,6 +25,8 @@ public:
 
 private:
     dds_domainid_t _id = 0;
+    void *_watch = nullptr;  // of what it sends
+    const std::shared_ptr<SessionLog> _log;
     Entity _entity;
 };
 

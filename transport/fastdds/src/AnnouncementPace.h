@@ -23,11 +23,11 @@ public:
     using Destination = std::uint64_t;
 
     // The distance of the first two rounds, and the greatest. After a rest the distances begin anew.
-    static constexpr std::chrono::milliseconds FirstGap{200};
+    static constexpr std::chrono::milliseconds FirstGap{100};
     static constexpr std::chrono::milliseconds LongestGap{800};
     static constexpr std::chrono::milliseconds Rest{3200};
-    // Rounds that it asks for after the first one, at distances that double: 0.2, 0.4 ... 3.2 s.
-    static constexpr int InitialRounds = 5;
+    // Rounds that it asks for after the first one, at distances that double: 0.1, 0.2 ... 3.2 s.
+    static constexpr int InitialRounds = 6;
     static constexpr std::size_t MostDestinations = 4096;
 
     // The vendor announces us once a period by itself: no distance is longer than half of it.

@@ -164,6 +164,19 @@ int FastDdsWriter::MatchedReaders() const
     return static_cast<int>(_matched.size());
 }
 
+int FastDdsWriter::Destinations() const
+{
+    int participants = 0;
+    const rtps::GUID_t *last = nullptr;
+    const std::lock_guard lock(_mutex);
+    for (const rtps::GUID_t &reader : _matched)  // those of a participant follow each other
+    {
+        participants += last == nullptr || last->guidPrefix != reader.guidPrefix ? 1 : 0;
+        last = &reader;
+    }
+    return _core->HasMulticast() ? std::min(participants, 1) : participants;
+}
+
 void FastDdsWriter::onWriterMatched(rtps::RTPSWriter *writer, rtps::MatchingInfo &info)
 {
     if (_core->IsOwn(info.remoteEndpointGuid.guidPrefix))

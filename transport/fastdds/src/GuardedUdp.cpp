@@ -4,6 +4,7 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -99,6 +100,13 @@ public:
                 _descriptor.Chosen().AnnounceAt(*due);
             }
         }
+        const auto leaves = [&](const rtps::Locator_t &destination) {
+            return _descriptor.Chosen().SocketsSendAll ||
+                   rtps::IPLocator::isMulticast(destination) == (socket != 0);
+        };
+        const auto datagrams =
+            static_cast<std::size_t>(std::count_if(_chosen.begin(), _chosen.end(), leaves));
+        _descriptor.Chosen().OnSent(message.HasSamples, datagrams, datagrams * left);
         ListIterator first(_chosen.cbegin());
         ListIterator last(_chosen.cend());
         return sender->send(buffer, left, &first, &last, timeout);

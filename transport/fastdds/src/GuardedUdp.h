@@ -27,9 +27,16 @@ public:
         RtpsGuard::Mode Mode = RtpsGuard::Mode::Full;
         // Multicast groups of peers are sent to at this port only; 0: at all.
         std::uint32_t GroupPort = 0;
+        // Interfaces are named, and the vendor has one socket for each, which sends all. Else its first
+        // socket sends to single addresses, and to groups inside the host; all others, one for each network,
+        // to groups.
+        bool SocketsSendAll = false;
         // Called, on the receiving thread, for each datagram of which something is kept back that an honest
         // peer does not send.
         std::function<void()> OnDropped;
+        // Called, on any thread, for each time that a datagram is given to a socket, with what has to be
+        // counted.
+        std::function<void(bool samples, std::size_t datagrams, std::size_t bytes)> OnSent;
         // Called, on the receiving thread, when the participant is to announce itself to somebody who has not
         // heard it.
         std::function<void()> Announce;

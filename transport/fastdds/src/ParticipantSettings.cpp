@@ -106,6 +106,9 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.MaxDatagram = static_cast<std::uint32_t>(settings.MaxDatagram);
     guarded.Mode = GuardMode(settings, attributes);
     guarded.GroupPort = IsMulticastForData(settings) ? 0 : DiscoveryGroupPort(settings, attributes);
+    guarded.SocketsSendAll = !settings.Interfaces.empty();
+    guarded.OnSent = [log](bool samples, std::size_t datagrams, std::size_t bytes)
+    { samples ? log->SentSamples(datagrams, bytes) : log->SentDiscovery(datagrams, bytes); };
     guarded.OnDropped = [log] { log->MalformedDatagram(); };
     guarded.Announce = std::move(announce.Now);
     guarded.AnnounceAt = std::move(announce.At);

@@ -12,6 +12,7 @@
 
 #include "EndpointSettings.h"
 #include "ParticipantSettings.h"
+#include "common/MulticastUse.h"
 
 namespace Rabit::FastDds
 {
@@ -47,7 +48,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
       _topics(_log),
       _peerGate(_log, "peer events"),
       _announceGate(_log, "announcements"),
-      _onPeer(std::move(onPeer))
+      _onPeer(std::move(onPeer)),
+      _multicast(IsMulticastForData(settings))
 {
     auto attributes = MakeParticipantAttributes(
         settings, _log,

@@ -48,6 +48,8 @@ public:
     // Where the Rabit nodes are that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _log; }
+    // Whether samples go by multicast where several want them.
+    bool HasMulticast() const { return _multicast; }
     TopicRegistry &Topics() { return _topics; }
 
 private:
@@ -69,6 +71,7 @@ private:
     HandlerGate _peerGate;
     HandlerGate _announceGate;
     const PeerHandler _onPeer;
+    const bool _multicast;
     std::atomic<bool> _closed{false};
     mutable std::mutex _mutex;
     std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>

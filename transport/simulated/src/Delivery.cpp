@@ -97,6 +97,7 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     {
         writer.Disposals.push_back(sample);
     }
+    CountSample(participant, *sample, CountDestinations(participant, writer));
     for (auto &[id, reader] : writer.Readers)
     {
         SendSample(participant, writer, id, reader, sample);
@@ -110,6 +111,12 @@ int NetworkCore::MatchedReaders(const WriterState &writer) const
 {
     const std::lock_guard lock(_mutex);
     return static_cast<int>(writer.Readers.size());
+}
+
+int NetworkCore::Destinations(const ParticipantState &participant, const WriterState &writer) const
+{
+    const std::lock_guard lock(_mutex);
+    return static_cast<int>(CountDestinations(participant, writer));
 }
 
 int NetworkCore::MatchedWriters(const ReaderState &reader) const
@@ -209,6 +216,7 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
         if (sequence > reader.Acknowledged && sample != writer.History.end() &&
             (*sample)->Sequence == sequence)
         {
+            CountSample(me, **sample, 1);
             SendSample(me, writer, found->first, reader, *sample, _timings.ResponseDelay);
         }
     }

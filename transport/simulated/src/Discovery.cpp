@@ -285,6 +285,7 @@ void NetworkCore::MatchReader(const ParticipantPtr &me, WriterState &writer, con
         proxy->second.Acknowledged = 0;
         for (const auto &sample : writer.History)
         {
+            CountSample(*me, *sample, 1);
             SendSample(*me, writer, remote.Id, proxy->second, sample);
         }
         KeepHeartbeat(writer);

@@ -196,6 +196,7 @@ void NetworkCore::Send(const ParticipantState &from, ParticipantId to, Datagram 
 {
     const auto target = _participants.find(to);
     ++_traffic.Sent;
+    CountOther(from, datagram);
     if (target == _participants.end())
     {
         ++_traffic.Lost;

@@ -55,6 +55,7 @@ public:
     // Gives the sample its sequence number and sends it. False if the session is gone.
     bool Write(ParticipantState &participant, WriterState &writer, const std::shared_ptr<Sample> &sample);
     int MatchedReaders(const WriterState &writer) const;
+    int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
 
 private:
@@ -103,6 +104,11 @@ private:
     void MatchWriter(const ParticipantPtr &me, const Peer &peer, ReaderState &reader,
                      const EndpointInfo &remote);
     void UnmatchWriter(const ReaderPtr &reader, std::map<EndpointId, WriterProxy>::iterator proxy);
+
+    // Traffic.cpp: counts what is sent, by the sizes that it has with RTPS.
+    static std::uint64_t CountDestinations(const ParticipantState &me, const WriterState &writer);
+    static void CountSample(const ParticipantState &me, const Sample &sample, std::uint64_t destinations);
+    static void CountOther(const ParticipantState &me, const Datagram &datagram);
 
     // Delivery.cpp
     void SendSample(const ParticipantState &me, const WriterState &writer, const EndpointId &to,

@@ -43,6 +43,7 @@ public:
     }
 
     int MatchedReaders() const override { return _core->MatchedReaders(*_state); }
+    int Destinations() const override { return _core->Destinations(*_participant, *_state); }
 
 private:
     WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed)

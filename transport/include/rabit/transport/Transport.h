@@ -19,18 +19,18 @@
 //   A session may be opened before there is a network. A real backend follows the host's networks by itself.
 //   One that vanishes and returns as it was needs nothing: peers are Lost and appear again. When a usable one
 //   comes that the session was not opened with, or another address, the backend joins the network anew, and
-//   logs it: all peers are Lost and appear again, readers get transient-local history once more, writers start
-//   with an empty history, a new WriterId and new numbers. It also does so without a network that is gone
-//   if a peer may go on to send there, or for loopback if no other is left. It does it seldom: for an interface
-//   that comes and goes later and later, and never twice in a second.
-//   Meanwhile, and as long as there is no usable network, writes end TimedOut at once and nothing is matched.
-//   Who makes or destroys a writer or reader meanwhile waits for it to end, milliseconds to tenths of a second.
-//   Usable is a network whose interface is up and has a carrier and an IPv4 address. Where no interface is
-//   named, it must also be capable of multicast, unless multicast is off or there are peers to look for; loopback
-//   counts only when it is named or nothing else is there. What the settings name and is not there is
-//   waited for, and NetworkProblems says so.
-//   Processes that were stopped, or that heard nothing, for longer than the lease come together again as
-//   well, whichever side had lost the other: what is Lost here appears again, and endpoints match again.
+//   logs it: all peers are Lost and appear again, readers get transient-local history once more, writers
+//   start with an empty history, a new WriterId and new numbers. It also does so without a network that is
+//   gone if a peer may go on to send there, or for loopback if no other is left. It does it seldom: for an
+//   interface that comes and goes later and later, and never twice in a second. Meanwhile, and as long as
+//   there is no usable network, writes end TimedOut at once and nothing is matched. Who makes or destroys a
+//   writer or reader meanwhile waits for it to end, milliseconds to tenths of a second. Usable is a network
+//   whose interface is up and has a carrier and an IPv4 address. Where no interface is named, it must also be
+//   capable of multicast, unless multicast is off or there are peers to look for; loopback counts only when
+//   it is named or nothing else is there. What the settings name and is not there is waited for, and
+//   NetworkProblems says so. Processes that were stopped, or that heard nothing, for longer than the lease
+//   come together again as well, whichever side had lost the other: what is Lost here appears again, and
+//   endpoints match again.
 //
 // Errors
 //   Opening something with impossible settings throws TransportError with one clear line. What can fail in
@@ -80,14 +80,14 @@ struct TransportSettings
     std::uint64_t Incarnation = 0;
     // DDS domain, 0 to 232.
     int Domain = 0;
-    // Network interfaces to use, by name or address; empty: all that are usable. One that is not there is waited
-    // for.
+    // Network interfaces to use, by name or address; empty: all that are usable. One that is not there is
+    // waited for.
     std::vector<std::string> Interfaces;
-    // Addresses of peers for unicast discovery, `host` or `host:port`; empty: discovery by multicast alone. A host
-    // may be a name; one that has no address yet is looked up again and again.
+    // Addresses of peers for unicast discovery, `host` or `host:port`; empty: discovery by multicast alone. A
+    // host may be a name; one that has no address yet is looked up again and again.
     std::vector<std::string> Peers;
-    // Whether multicast may be used, for discovery and for samples with more than one reader. Where Peers are listed
-    // it is for discovery alone: it may not pass to all of them.
+    // Whether multicast may be used, for discovery and for samples with more than one reader. Where Peers are
+    // listed it is for discovery alone: it may not pass to all of them.
     bool Multicast = true;
     // The range of MaxDatagram.
     static constexpr std::size_t SmallestDatagram = 1000;
@@ -98,10 +98,10 @@ struct TransportSettings
     std::size_t MaxDatagram = 1400;
     // Use shared memory between processes of one host. Off by default: a killed process leaves files behind.
     bool SharedMemory = false;
-    // A peer that says nothing for this long is lost; it announces itself every AnnouncementPeriod, more often at
-    // first, and to who has not heard it. The period is how long those who were out of reach of each other for longer
-    // than the lease may take to find each other again, and what a node costs that has nothing to say: some 400 bytes
-    // each time.
+    // A peer that says nothing for this long is lost; it announces itself every AnnouncementPeriod, more
+    // often at first, and to who has not heard it. The period is how long those who were out of reach of each
+    // other for longer than the lease may take to find each other again, and what a node costs that has
+    // nothing to say: some 400 bytes each time.
     std::chrono::milliseconds Lease{30000};
     std::chrono::milliseconds AnnouncementPeriod{10000};
     // A vendor's own configuration file, for the expert; empty: none.
@@ -149,8 +149,8 @@ struct TopicQos
     // (best-effort ones: once it is sent), at the latest with the next write; so it holds what is under way,
     // and nothing while nobody is matched. A transient-local one keeps it until another pushes it out, or its
     // instance is disposed.
-    // A reader hands each sample over as it arrives and keeps none back, only the keys of instances that live:
-    // samples of one writer never push out those of another, keyed topic or not.
+    // A reader hands each sample over as it arrives and keeps none back, only the keys of instances that
+    // live: samples of one writer never push out those of another, keyed topic or not.
     int Depth = 1;
 };
 
@@ -237,6 +237,11 @@ public:
     virtual WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
     // Readers matched now, in other sessions.
     virtual int MatchedReaders() const = 0;
+    // How many datagrams a write of a sample that fits into one causes now, without its repair: 0 without
+    // readers, 1 where multicast carries it to all of them, else one for each session with readers. With
+    // Cyclone DDS as the vendor has it; the others go by the own settings, so a reader whose side is without
+    // multicast is one more in truth.
+    virtual int Destinations() const { return MatchedReaders(); }
 };
 
 // Receives samples of one topic until it is destroyed.
@@ -269,16 +274,27 @@ using PeerHandler = std::function<void(const PeerEvent &)>;
 // Things that went wrong below the cut since the session was opened. They only rise.
 struct TransportCounters
 {
-    std::uint64_t WriteTimeouts = 0;       // writes that ended TimedOut
-    std::uint64_t WriteFailures = 0;       // writes that ended Failed or TooLarge
-    std::uint64_t HandlerExceptions = 0;   // handlers that threw
-    std::uint64_t IncompatibleQos = 0;     // endpoints of our topics that did not match for their QoS
-    std::uint64_t SamplesLost = 0;         // samples that a reader knows it has missed
-    std::uint64_t InconsistentTypes = 0;   // endpoints of our topics elsewhere that have another type name
-    std::uint64_t MalformedSamples = 0;    // samples dropped: too short, too large, or without a readable key
-    // Datagrams dropped, in whole or in part, because they are not of the backend's protocol or say what their
-    // sender cannot honestly say.
+    std::uint64_t WriteTimeouts = 0;      // writes that ended TimedOut
+    std::uint64_t WriteFailures = 0;      // writes that ended Failed or TooLarge
+    std::uint64_t HandlerExceptions = 0;  // handlers that threw
+    std::uint64_t IncompatibleQos = 0;    // endpoints of our topics that did not match for their QoS
+    std::uint64_t SamplesLost = 0;        // samples that a reader knows it has missed
+    std::uint64_t InconsistentTypes = 0;  // endpoints of our topics elsewhere that have another type name
+    std::uint64_t MalformedSamples = 0;   // samples dropped: too short, too large, or without a readable key
+    // Datagrams dropped, in whole or in part, because they are not of the backend's protocol or say what
+    // their sender cannot honestly say.
     std::uint64_t MalformedDatagrams = 0;
+
+    // What the session has sent since it was opened, as it is on the air: datagrams, and their bytes with the
+    // headers of IPv4 and UDP (28 for each). One for each destination; a multicast one once for each network.
+    // Counted where datagrams are given to the sockets, so repetitions, heartbeats and acknowledgements are
+    // in it; exact but for what IP adds to datagrams that it must cut. Shared memory is not counted, nor is
+    // anything with a Fast DDS profiles file that has own transports. The simulated network counts what it
+    // sends by the sizes of RTPS.
+    std::uint64_t DiscoveryDatagrams = 0;  // of participants and endpoints, and their repair
+    std::uint64_t DiscoveryBytes = 0;
+    std::uint64_t SampleDatagrams = 0;  // of topics, and their repair
+    std::uint64_t SampleBytes = 0;
 };
 
 // One participant in the network.
@@ -310,10 +326,10 @@ public:
 // A backend.
 //
 // What its discovery has to carry, so that nodes know each other, those over other DDS backends included
-// (transport/common/ParticipantIdentity.h): with each participant its node name, as the participant's name, and
-// its incarnation, in the participant's user data; with each endpoint, the participant that it belongs to, the
-// names of topic and type, QoS and partitions. A participant with other user data is no Rabit node: its samples
-// are handed over without a node name, and it makes no PeerEvent. Two sessions may have one name.
+// (transport/common/ParticipantIdentity.h): with each participant its node name, as the participant's name,
+// and its incarnation, in the participant's user data; with each endpoint, the participant that it belongs
+// to, the names of topic and type, QoS and partitions. A participant with other user data is no Rabit node:
+// its samples are handed over without a node name, and it makes no PeerEvent. Two sessions may have one name.
 class Transport
 {
 public:
