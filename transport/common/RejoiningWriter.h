@@ -36,6 +36,12 @@ public:
         const UseGate::Use use(_shared->Gate);
         return use.Allowed() && _inner != nullptr ? _inner->Write(sample, sourceTime) : NotJoined();
     }
+    WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
+                        std::int64_t sourceTime) override
+    {
+        const UseGate::Use use(_shared->Gate);
+        return use.Allowed() && _inner != nullptr ? _inner->WriteTo(node, sample, sourceTime) : NotJoined();
+    }
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override
     {
         const UseGate::Use use(_shared->Gate);

@@ -45,6 +45,9 @@ protected:
     // That writing to two readers elsewhere takes so many datagrams each time, of the size that they must
     // have.
     void ExpectCostOfWriting(bool multicast, int destinations);
+    // That a sample written to one node reaches its reader alone, in one datagram.
+    void ExpectThatOneNodeCanBeWrittenTo(bool multicast);
+    SessionPtr OpenWith(const std::string &node, bool multicast);
     bool LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,
                                TransportWriter &writer, std::uint32_t present);
 

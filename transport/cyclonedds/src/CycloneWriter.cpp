@@ -1,7 +1,9 @@
 #include "CycloneWriter.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "EndpointSettings.h"
 #include "Guid.h"
@@ -45,6 +47,7 @@ CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescr
                              const TopicQos &qos, const std::vector<std::string> &partitions)
     : _core(std::move(core)),
       _topic(topic),
+      _qos(qos),
       _use(_core->Topics(), topic),
       _entityTopic(MakeTopic(*_core, topic, _type))
 {
@@ -67,6 +70,29 @@ CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescr
 
 WriteResult CycloneWriter::Write(const SampleEncoder &sample, std::int64_t sourceTime)
 {
+    return Send(sample, sourceTime, false);
+}
+
+WriteResult CycloneWriter::WriteTo(const std::string &node, const SampleEncoder &sample,
+                                   std::int64_t sourceTime)
+{
+    if (_qos.Reliability != Reliability::BestEffort || _topic.KeyOf)
+    {
+        return Fail("only best-effort writers of topics without a key write to one node");
+    }
+    // Whatever the vendor sends on this thread until the end of the scope.
+    class Direction
+    {
+    public:
+        Direction(const ddsi_sertype *type, const std::vector<ddsi_guid_t> &participants)
+        {
+            RabitCycloneWriteTo(type, participants.data(), participants.size());
+        }
+        ~Direction() { RabitCycloneWriteToAll(); }
+        Direction(const Direction &) = delete;
+        Direction &operator=(const Direction &) = delete;
+    };
+    const Direction direction(_type, _core->ParticipantsOf(node));
     return Send(sample, sourceTime, false);
 }
 

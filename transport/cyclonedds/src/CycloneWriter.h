@@ -22,6 +22,8 @@ public:
                   const std::vector<std::string> &partitions);
 
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
+                        std::int64_t sourceTime) override;
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override;
     int MatchedReaders() const override;
     int Destinations() const override;
@@ -32,6 +34,7 @@ private:
 
     const std::shared_ptr<SessionCore> _core;
     const TopicDescription _topic;
+    const TopicQos _qos;
     const TopicRegistry::Use _use;
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;

@@ -124,6 +124,20 @@ std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const WriterI
     return gone == _gone.end() ? nullptr : gone->second.Who;
 }
 
+std::vector<ddsi_guid_t> SessionCore::ParticipantsOf(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<ddsi_guid_t> participants;
+    for (const auto &[prefix, identity] : _peers)
+    {
+        if (identity->Node == node)
+        {
+            participants.push_back(ParticipantOf(prefix));
+        }
+    }
+    return participants;
+}
+
 std::vector<PeerPlace> SessionCore::PeerPlaces() const
 {
     const std::lock_guard lock(_mutex);

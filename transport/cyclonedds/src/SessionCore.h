@@ -43,6 +43,8 @@ public:
     dds_entity_t Participant() const { return _participant.Get(); }
     // Who a writer's participant is or was; nullptr if it is not a Rabit node, or unknown.
     std::shared_ptr<const ParticipantIdentity> IdentityOf(const WriterId &writer) const;
+    // Those of a node's sessions.
+    std::vector<ddsi_guid_t> ParticipantsOf(const std::string &node) const;
     // Where the Rabit nodes are that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _log; }

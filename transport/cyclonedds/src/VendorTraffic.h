@@ -20,6 +20,11 @@ extern "C"
     void *RabitCycloneWatch(RabitCycloneSent sent, void *argument);
     void RabitCycloneUnwatch(void *watch);
 
+    /* What this thread writes, until RabitCycloneWriteToAll, goes to these participants alone, at their own
+       addresses. Of more than four addresses that they have the rest is left out. */
+    void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *participants, size_t count);
+    void RabitCycloneWriteToAll(void);
+
     /* To how many addresses the vendor sends what this writer of a topic of that type writes. 0 if it does
      * not exist. */
     int RabitCycloneDestinations(const struct ddsi_sertype *type, const ddsi_guid_t *writer);

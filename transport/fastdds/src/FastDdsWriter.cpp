@@ -34,6 +34,7 @@ void MarkPadding(std::uint8_t *data, std::uint32_t size)
 FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
                              const TopicQos &qos, const std::vector<std::string> &partitions)
     : _core(std::move(core)),
+      _qos(qos),
       _topic(topic),
       _use(_core->Topics(), topic),
       _pool(std::make_shared<PayloadPool>([] {})),
@@ -63,6 +64,17 @@ WriteResult FastDdsWriter::Write(const SampleEncoder &sample, std::int64_t sourc
     return Send(sample, sourceTime, false);
 }
 
+WriteResult FastDdsWriter::WriteTo(const std::string &node, const SampleEncoder &sample,
+                                   std::int64_t sourceTime)
+{
+    if (_qos.Reliability != Reliability::BestEffort || _topic.KeyOf)
+    {
+        return Fail("only best-effort writers of topics without a key write to one node");
+    }
+    const Targets targets = _core->PrefixesOf(node);
+    return Send(sample, sourceTime, false, &targets);
+}
+
 WriteResult FastDdsWriter::Dispose(const SampleEncoder &sample, std::int64_t sourceTime)
 {
     if (!_topic.KeyOf)
@@ -78,7 +90,8 @@ WriteResult FastDdsWriter::Fail(const char *why, WriteResult result)
     return result;
 }
 
-WriteResult FastDdsWriter::Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose)
+WriteResult FastDdsWriter::Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose,
+                                const Targets *to)
 {
     if (_core->IsClosed())
     {
@@ -118,11 +131,11 @@ WriteResult FastDdsWriter::Send(const SampleEncoder &sample, std::int64_t source
         return Fail("the encoded sample has no readable key");
     }
     MarkPadding(buffer.Data, size32);
-    return SendEncoded(buffer, size32, key, sourceTime, dispose);
+    return SendEncoded(buffer, size32, key, sourceTime, dispose, to);
 }
 
 WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t size, const KeyHash &key,
-                                       std::int64_t sourceTime, bool dispose)
+                                       std::int64_t sourceTime, bool dispose, const Targets *to)
 {
     const auto deadline = std::chrono::steady_clock::now() + LongestWait;
     const std::unique_lock lock(_writer->getMutex(), deadline);
@@ -150,12 +163,26 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
     }
     rtps::WriteParams params;
     params.source_timestamp().from_ns(sourceTime);
-    if (!_history.Add(*change, params, deadline))
+    _targets = to;
+    if (to != nullptr && _writer->reader_data_filter() == nullptr)
+    {
+        _writer->reader_data_filter(this);
+    }
+    const bool added = _history.Add(*change, params, deadline);
+    _targets = nullptr;
+    if (!added)
     {
         _writer->release_change(change);
         return Fail("Fast DDS refused it");
     }
     return WriteResult::Ok;
+}
+
+// The vendor asks on the thread that writes, with its lock held, as a sample goes out; there are no
+// repetitions.
+bool FastDdsWriter::is_relevant(const rtps::CacheChange_t & /*change*/, const rtps::GUID_t &reader) const
+{
+    return _targets == nullptr || _targets->contains(reader.guidPrefix);
 }
 
 int FastDdsWriter::MatchedReaders() const

@@ -4,6 +4,7 @@
 #include <fastdds/rtps/common/MatchingInfo.h>
 #include <fastdds/rtps/writer/WriterListener.h>
 #include <rabit/transport/Transport.h>
+#include <fastdds/rtps/interfaces/IReaderDataFilter.hpp>
 
 #include <memory>
 #include <mutex>
@@ -16,7 +17,9 @@
 namespace Rabit::FastDds
 {
 
-class FastDdsWriter final : public TransportWriter, private eprosima::fastrtps::rtps::WriterListener
+class FastDdsWriter final : public TransportWriter,
+                            private eprosima::fastrtps::rtps::WriterListener,
+                            private eprosima::fastdds::rtps::IReaderDataFilter
 {
 public:
     FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic, const TopicQos &qos,
@@ -24,14 +27,19 @@ public:
     ~FastDdsWriter() override;
 
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
+                        std::int64_t sourceTime) override;
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override;
     int MatchedReaders() const override;
     int Destinations() const override;
 
 private:
-    WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose);
+    using Targets = std::set<eprosima::fastrtps::rtps::GuidPrefix_t>;
+    // To the participants `to`, if there are any named.
+    WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose,
+                     const Targets *to = nullptr);
     WriteResult SendEncoded(PayloadPool::Buffer buffer, std::uint32_t size, const KeyHash &key,
-                            std::int64_t sourceTime, bool dispose);
+                            std::int64_t sourceTime, bool dispose, const Targets *to);
     WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed);
 
     void onWriterMatched(eprosima::fastrtps::rtps::RTPSWriter *writer,
@@ -41,13 +49,19 @@ private:
     void on_offered_incompatible_qos(eprosima::fastrtps::rtps::RTPSWriter *writer,
                                      eprosima::fastdds::dds::PolicyMask qos) override;
 
+    // Whether the reader is to get what is being written.
+    bool is_relevant(const eprosima::fastrtps::rtps::CacheChange_t &change,
+                     const eprosima::fastrtps::rtps::GUID_t &reader) const override;
+
     const std::shared_ptr<SessionCore> _core;
+    const TopicQos _qos;
     const TopicDescription _topic;
     const TopicRegistry::Use _use;
     const std::shared_ptr<PayloadPool> _pool;
     KeepLastHistory _history;
     mutable std::mutex _mutex;
     std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex
+    const Targets *_targets = nullptr;  // while it writes to them; guarded by the vendor's lock
     eprosima::fastrtps::rtps::RTPSWriter *_writer = nullptr;
 };
 

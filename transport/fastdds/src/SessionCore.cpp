@@ -95,6 +95,20 @@ std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const GuidPre
     return found == _peers.end() ? nullptr : found->second;
 }
 
+std::set<SessionCore::GuidPrefix> SessionCore::PrefixesOf(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    std::set<GuidPrefix> prefixes;
+    for (const auto &[prefix, identity] : _peers)
+    {
+        if (identity->Node == node)
+        {
+            prefixes.insert(prefix);
+        }
+    }
+    return prefixes;
+}
+
 std::vector<PeerPlace> SessionCore::PeerPlaces() const
 {
     const std::lock_guard lock(_mutex);

@@ -10,6 +10,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "AnnouncementTimer.h"
@@ -45,6 +47,8 @@ public:
     bool IsOwn(const GuidPrefix &prefix) const;
     // Who a participant is; nullptr if it is not a Rabit node, or unknown.
     std::shared_ptr<const ParticipantIdentity> IdentityOf(const GuidPrefix &prefix) const;
+    // Those of a node's sessions.
+    std::set<GuidPrefix> PrefixesOf(const std::string &node) const;
     // Where the Rabit nodes are that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _log; }

@@ -1,5 +1,6 @@
 // How samples get from writers to readers: the shape of RTPS 2.3, 8.4, without its encoding.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "NetworkCore.h"
@@ -84,7 +85,7 @@ void LetGo(WriterState &writer)
 }  // namespace
 
 bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
-                        const std::shared_ptr<Sample> &sample)
+                        const std::shared_ptr<Sample> &sample, const std::string *node)
 {
     const std::lock_guard lock(_mutex);
     if (participant.Gone)
@@ -97,9 +98,25 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     {
         writer.Disposals.push_back(sample);
     }
-    CountSample(participant, *sample, CountDestinations(participant, writer));
+    if (node == nullptr)
+    {
+        CountSample(participant, *sample, CountDestinations(participant, writer));
+    }
+    std::set<ParticipantId> told;
     for (auto &[id, reader] : writer.Readers)
     {
+        if (node != nullptr)
+        {
+            const auto peer = participant.Peers.find(id.Participant);
+            if (peer == participant.Peers.end() || peer->second.Who->Node != *node)
+            {
+                continue;
+            }
+            if (told.insert(id.Participant).second)
+            {
+                CountSample(participant, *sample, 1);
+            }
+        }
         SendSample(participant, writer, id, reader, sample);
     }
     LetGo(writer);

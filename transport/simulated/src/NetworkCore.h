@@ -53,7 +53,9 @@ public:
     void RemoveWriter(ParticipantState &participant, const WriterState &writer);
     void RemoveReader(ParticipantState &participant, const ReaderState &reader);
     // Gives the sample its sequence number and sends it. False if the session is gone.
-    bool Write(ParticipantState &participant, WriterState &writer, const std::shared_ptr<Sample> &sample);
+    // To that node's readers alone, if one is named.
+    bool Write(ParticipantState &participant, WriterState &writer, const std::shared_ptr<Sample> &sample,
+               const std::string *node = nullptr);
     int MatchedReaders(const WriterState &writer) const;
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;

@@ -22,6 +22,7 @@ public:
         : _core(std::move(core)),
           _participant(std::move(participant)),
           _topic(topic),
+          _bestEffort(qos.Reliability == Reliability::BestEffort),
           _use(_participant->Topics, topic),
           _state(_core->AddWriter(_participant, topic, qos, partitions))
     {
@@ -31,6 +32,16 @@ public:
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override
     {
         return Send(sample, sourceTime, true);
+    }
+
+    WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
+                        std::int64_t sourceTime) override
+    {
+        if (_bestEffort && !_topic.KeyOf)
+        {
+            return Send(sample, sourceTime, true, &node);
+        }
+        return Fail("only best-effort writers of topics without a key write to one node");
     }
 
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override
@@ -52,7 +63,8 @@ private:
         return result;
     }
 
-    WriteResult Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool alive)
+    WriteResult Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool alive,
+                     const std::string *node = nullptr)
     {
         const std::size_t size = encoder.EncodedSize();
         if (size > MaxSample)
@@ -82,7 +94,7 @@ private:
             sample->Bytes.clear();
             sample->Datagrams = 1;
         }
-        if (!_core->Write(*_participant, *_state, sample))
+        if (!_core->Write(*_participant, *_state, sample, node))
         {
             return Fail("the session is closed");
         }
@@ -92,6 +104,7 @@ private:
     const std::shared_ptr<NetworkCore> _core;
     const ParticipantPtr _participant;
     const TopicDescription _topic;
+    const bool _bestEffort;
     const TopicRegistry::Use _use;
     const WriterPtr _state;
 };

@@ -228,6 +228,15 @@ public:
     // Encodes and sends one sample; may wait for the network for at most 100 ms. sourceTime is in nanoseconds
     // since 1970-01-01 UTC and reaches the readers unchanged (to within a microsecond).
     virtual WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
+    // As Write, but the sample reaches the matched readers of that node alone, by unicast: one datagram for
+    // each session of the node. For best-effort writers of topics without a key only, else Failed. For the
+    // other readers it is a sample lost: its number is missing, and their SamplesLost may count it. Ok as
+    // well if the node has no reader that is matched; then nothing is sent.
+    virtual WriteResult WriteTo(const std::string & /*node*/, const SampleEncoder & /*sample*/,
+                                std::int64_t /*sourceTime*/)
+    {
+        return WriteResult::Failed;
+    }
     // Says that the instance that this sample names is no more. Only for keyed topics, Failed otherwise.
     // Reliable readers that are matched are told, after what was written before as far as Depth keeps it.
     // Once all of them have acknowledged that, at the latest with the next write, the writer holds nothing of
