@@ -172,7 +172,7 @@ TEST_P(Conformance, ManyKeysTakeNoMoreMemoryThanTheirSamples)
     constexpr double MostKept = 30;
     if (MemoryIsNotGivenBack)
     {
-        GTEST_SKIP() << "with AddressSanitizer, what is freed is kept for a while";
+        GTEST_SKIP() << "with a sanitizer, memory is not what it would be";
     }
     const auto writing = Open("uav1");
     const auto reading = Open("ground");

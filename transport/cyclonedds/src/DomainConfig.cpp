@@ -1,6 +1,7 @@
 #include "DomainConfig.h"
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <sstream>
 
@@ -19,6 +20,9 @@ constexpr int MostParticipants = 100;
 // A peer without a port is looked for at the ports of this many participants of its host, as with Fast DDS.
 // Left to the vendor it would be MostParticipants, each with every announcement.
 constexpr int ParticipantsPerPeer = 16;
+// The vendor announces a participant once as it comes, and then at its period: whoever missed the first,
+// because a network was only just coming, waits for the second.
+constexpr std::chrono::milliseconds LongestPeriod{4000};
 // What the vendor's headers may take of a datagram beside a fragment of a sample.
 constexpr std::size_t HeaderRoom = 100;
 
@@ -117,7 +121,8 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         << "<ParticipantIndex>auto</ParticipantIndex>"
         << "<MaxAutoParticipantIndex>" << MostParticipants << "</MaxAutoParticipantIndex>"
         << "<LeaseDuration>" << settings.Lease.count() << "ms</LeaseDuration>"
-        << "<SPDPInterval>" << settings.AnnouncementPeriod.count() << "ms</SPDPInterval>";
+        << "<SPDPInterval>" << std::min(settings.AnnouncementPeriod, LongestPeriod).count()
+        << "ms</SPDPInterval>";
     AddPeers(settings, xml);
     // The defaults would make repair, and the end of a replay, as late as 100 ms and more.
     xml << "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash>"

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -68,11 +69,13 @@ public:
                low_level_transport_->transform_remote_locator(remote, result);
     }
 
-    // The vendor calls it with a lock held that it holds for OpenOutputChannel, too.
+    // The vendor calls it with a lock held that it holds for OpenOutputChannel, too. Ours costs little beside
+    // it, and relies on nothing.
     bool send(rtps::SenderResource *sender, const rtps::octet *buffer, std::uint32_t size,
               rtps::LocatorsIterator *begin, rtps::LocatorsIterator *end,
               const std::chrono::steady_clock::time_point &timeout) override
     {
+        const std::lock_guard lock(_sending);
         const auto left = static_cast<std::uint32_t>(SizeWithoutStatistics({buffer, size}));
         _guard.Sending({buffer, left});
         const OutgoingMessage message = ReadOutgoing({buffer, left});
@@ -152,7 +155,7 @@ private:
 
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
-    // What follows is used under the lock with which the vendor calls send.
+    std::mutex _sending;  // guards what follows
     AnnouncementPace _announcements;
     RequestPace _requests;
     std::map<rtps::Locator_t, std::uint32_t> _destinations;
