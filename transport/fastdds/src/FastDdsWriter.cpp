@@ -182,7 +182,8 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
 // repetitions.
 bool FastDdsWriter::is_relevant(const rtps::CacheChange_t & /*change*/, const rtps::GUID_t &reader) const
 {
-    return _targets == nullptr || _targets->contains(reader.guidPrefix);
+    const Targets *const targets = _targets;
+    return targets == nullptr || targets->contains(reader.guidPrefix);
 }
 
 int FastDdsWriter::MatchedReaders() const

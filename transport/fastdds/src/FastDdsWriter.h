@@ -6,6 +6,7 @@
 #include <rabit/transport/Transport.h>
 #include <fastdds/rtps/interfaces/IReaderDataFilter.hpp>
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -61,7 +62,7 @@ private:
     KeepLastHistory _history;
     mutable std::mutex _mutex;
     std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex
-    const Targets *_targets = nullptr;  // while it writes to them; guarded by the vendor's lock
+    std::atomic<const Targets *> _targets = nullptr;  // while it writes to them, with the vendor's lock held
     eprosima::fastrtps::rtps::RTPSWriter *_writer = nullptr;
 };
 
