@@ -52,16 +52,18 @@ struct Traffic
         return total;
     }
 
-    // In any second that begins with a datagram.
+    // In any second that ends with a datagram.
     std::size_t MostInASecond() const
     {
         std::size_t most = 0;
-        for (std::size_t i = 0; i < Sent.size(); ++i)
+        std::size_t sum = 0;  // of those from `first` up to the present one
+        auto first = Sent.begin();
+        for (const auto &[at, bytes] : Sent)
         {
-            std::size_t sum = 0;
-            for (std::size_t j = i; j < Sent.size() && Sent[j].first - Sent[i].first < 1s; ++j)
+            sum += bytes;
+            for (; at - first->first >= 1s; ++first)
             {
-                sum += Sent[j].second;
+                sum -= first->second;
             }
             most = std::max(most, sum);
         }
