@@ -98,10 +98,10 @@ struct TransportSettings
     std::size_t MaxDatagram = 1400;
     // Use shared memory between processes of one host. Off by default: a killed process leaves files behind.
     bool SharedMemory = false;
-    // A peer that says nothing for this long is lost; it announces itself every AnnouncementPeriod, more
-    // often at first, and to who has not heard it. The period is how long those who were out of reach of each
-    // other for longer than the lease may take to find each other again, and what a node costs that has
-    // nothing to say: some 400 bytes each time.
+    // A peer that says nothing for this long is lost; it announces itself every AnnouncementPeriod at the
+    // latest, more often at first, and to who has not heard it. The period is how long those who were out of
+    // reach of each other for longer than the lease may take to find each other again, and what a node costs
+    // that has nothing to say: some 400 bytes each time.
     std::chrono::milliseconds Lease{30000};
     std::chrono::milliseconds AnnouncementPeriod{10000};
     // A vendor's own configuration file, for the expert; empty: none.
