@@ -6,6 +6,8 @@
 #include <mutex>
 #include <string>
 
+#include "names/Fnv1a.h"
+
 namespace Rabit
 {
 namespace
@@ -51,12 +53,7 @@ std::string Normalized(const std::string &idl)
 
 std::uint64_t ComputeHash(const MessageType &type)
 {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const char c : Normalized(type.Name() + "\n" + type.IdlText()))
-    {
-        hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-    }
-    return hash;
+    return Fnv1a(Normalized(type.Name() + "\n" + type.IdlText()));
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace Rabit
 {
 
 // Decides when this node speaks up for those who have just come, with beats that follow each other quickly
-// and its States: a newcomer must not wait for the next period, and a crowd of newcomers, or
-// one that comes again and again, must not make a whole fleet shout. Whom nobody speaks up for has what it
-// needs a period later.
+// and its States: a newcomer must not wait for the next period, and a crowd of newcomers, or one that comes
+// again and again, must not make a whole fleet shout. Whom nobody speaks up for has what it needs a period
+// later.
 //
 // A pure state machine; `now` never goes back.
 class Introductions

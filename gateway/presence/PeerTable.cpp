@@ -22,6 +22,26 @@ PeerTable::Duration Nanoseconds(std::int64_t value)
     return PeerTable::Duration(value);
 }
 
+// Offers the peers in turn, from the one after `last` on, until `most` were taken.
+template <typename Peers, typename Take>
+void TakeTurns(Peers &peers, std::string &last, std::size_t most, const Take &take)
+{
+    std::size_t taken = 0;
+    auto next = peers.upper_bound(last);
+    for (std::size_t looked = 0; looked < peers.size() && taken < most; ++looked, ++next)
+    {
+        if (next == peers.end())
+        {
+            next = peers.begin();
+        }
+        if (take(next->second))
+        {
+            last = next->first;
+            ++taken;
+        }
+    }
+}
+
 }  // namespace
 
 PeerTable::PeerTable(std::string ownNode, std::uint64_t ownIncarnation, IsNeeded isNeeded)
@@ -303,48 +323,40 @@ std::optional<PeerTable::Duration> PeerTable::NextChange() const
 std::vector<std::string> PeerTable::NextWanted(Duration now, std::size_t most)
 {
     std::vector<std::string> wanted;
-    auto next = _peers.upper_bound(_lastWanted);
-    for (std::size_t looked = 0; looked < _peers.size() && wanted.size() < most; ++looked, ++next)
-    {
-        if (next == _peers.end())
-        {
-            next = _peers.begin();
-        }
-        const Peer &peer = next->second;
-        if (peer.State != NodeState::LOST && peer.LacksOffersSince &&
-            now - *peer.LacksOffersSince >= AskAfter)
-        {
-            wanted.push_back(peer.Node);
-            _lastWanted = peer.Node;
-        }
-    }
+    TakeTurns(_peers, _lastWanted, most,
+              [&](const Peer &peer)
+              {
+                  const bool ask = peer.State != NodeState::LOST && peer.LacksOffersSince &&
+                                   now - *peer.LacksOffersSince >= AskAfter;
+                  if (ask)
+                  {
+                      wanted.push_back(peer.Node);
+                  }
+                  return ask;
+              });
     return wanted;
 }
 
 std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t most)
 {
     std::vector<Gateway::BeatEcho> echoes;
-    auto next = _peers.upper_bound(_lastEchoed);
-    for (std::size_t looked = 0; looked < _peers.size() && echoes.size() < most; ++looked, ++next)
-    {
-        if (next == _peers.end())
-        {
-            next = _peers.begin();
-        }
-        Peer &peer = next->second;
-        if (peer.Heard && peer.State != NodeState::LOST &&
-            (!peer.LastEchoed || now - *peer.LastEchoed >= EchoPeriod))
-        {
-            Gateway::BeatEcho echo;
-            echo.node = peer.Node;
-            echo.incarnation = peer.Incarnation;
-            echo.monotonic_ns = peer.LastBeatMonotonic.count();
-            echo.held_ns = (now - peer.LastBeatArrival).count();
-            echoes.push_back(std::move(echo));
-            peer.LastEchoed = now;
-            _lastEchoed = peer.Node;
-        }
-    }
+    TakeTurns(_peers, _lastEchoed, most,
+              [&](Peer &peer)
+              {
+                  if (!peer.Heard || peer.State == NodeState::LOST ||
+                      (peer.LastEchoed && now - *peer.LastEchoed < EchoPeriod))
+                  {
+                      return false;
+                  }
+                  Gateway::BeatEcho echo;
+                  echo.node = peer.Node;
+                  echo.incarnation = peer.Incarnation;
+                  echo.monotonic_ns = peer.LastBeatMonotonic.count();
+                  echo.held_ns = (now - peer.LastBeatArrival).count();
+                  echoes.push_back(std::move(echo));
+                  peer.LastEchoed = now;
+                  return true;
+              });
     return echoes;
 }
 

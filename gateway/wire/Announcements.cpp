@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "names/Fnv1a.h"
 #include "names/NamePattern.h"
 #include "names/TypeDefinition.h"
 #include "wire/GatewayTopics.h"
@@ -80,17 +81,13 @@ Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation)
     return announcement;
 }
 
-// FNV-1a (Fowler, Noll and Vo) of what is sent, with the two halves of 64 bits folded into one.
+// Of what is sent, with the halves of the hash folded into one.
 std::uint32_t DigestOf(const Gateway::Announcement &announcement)
 {
     const MessageType &type = GatewayTopics::TypeOf<Gateway::Announcement>();
     std::vector<std::uint8_t> bytes(type.SerializedSize(announcement));
     type.Serialize(announcement, bytes);
-    std::uint64_t hash = 0xcbf29ce484222325;
-    for (const std::uint8_t byte : bytes)
-    {
-        hash = (hash ^ byte) * 0x100000001b3;
-    }
+    const std::uint64_t hash = Fnv1a(bytes);
     return static_cast<std::uint32_t>(hash ^ (hash >> 32));
 }
 

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "BackendPairs.h"
 #include "keyed.idl.h"
 
 namespace Rabit
@@ -153,22 +154,7 @@ TEST_P(RealKeysTest, AReaderIsToldThatTheFormerInstanceIsGoneAndALateOneHearsOfT
     EXPECT_EQ(heard.size(), 2u) << "of the one that was there when it came, and of the next";
 }
 
-std::vector<std::pair<std::string, std::string>> AllPairs()
-{
-    std::vector<std::pair<std::string, std::string>> pairs;
-    for (const auto &first : AvailableTransports())
-    {
-        for (const auto &second : AvailableTransports())
-        {
-            pairs.emplace_back(first, second);
-        }
-    }
-    return pairs;
-}
-
-INSTANTIATE_TEST_SUITE_P(Backends, RealKeysTest, ::testing::ValuesIn(AllPairs()),
-                         [](const auto &backends)
-                         { return backends.param.first + "_and_" + backends.param.second; });
+INSTANTIATE_TEST_SUITE_P(Backends, RealKeysTest, ::testing::ValuesIn(AllBackendPairs()), NameOfPair);
 
 }  // namespace
 }  // namespace Rabit

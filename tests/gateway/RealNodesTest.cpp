@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "BackendPairs.h"
 #include "gateway.idl.h"
 #include "uav.idl.h"
 
@@ -232,22 +233,7 @@ TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
     EXPECT_TRUE(alive);
 }
 
-std::vector<std::pair<std::string, std::string>> AllPairs()
-{
-    std::vector<std::pair<std::string, std::string>> pairs;
-    for (const auto &first : AvailableTransports())
-    {
-        for (const auto &second : AvailableTransports())
-        {
-            pairs.emplace_back(first, second);
-        }
-    }
-    return pairs;
-}
-
-INSTANTIATE_TEST_SUITE_P(Backends, RealNodesTest, ::testing::ValuesIn(AllPairs()),
-                         [](const auto &backends)
-                         { return backends.param.first + "_and_" + backends.param.second; });
+INSTANTIATE_TEST_SUITE_P(Backends, RealNodesTest, ::testing::ValuesIn(AllBackendPairs()), NameOfPair);
 
 }  // namespace
 }  // namespace Rabit

@@ -2,39 +2,11 @@
 // because it replaces operator new.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
 #include <vector>
 
+#include "../AllocationCount.h"
 #include "air/AirSchedule.h"
 #include "air/CapacityEstimate.h"
-
-namespace
-{
-
-// NOLINTNEXTLINE: counted for the whole program
-std::size_t allocations = 0;
-
-}  // namespace
-
-void *operator new(std::size_t size)
-{
-    ++allocations;
-    if (void *memory = std::malloc(size))
-    {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-
-void operator delete(void *memory) noexcept
-{
-    std::free(memory);
-}
-void operator delete(void *memory, std::size_t) noexcept
-{
-    std::free(memory);
-}
 
 namespace Rabit
 {
@@ -72,7 +44,7 @@ TEST(AirAllocation, NothingIsAllocatedForADatagram)
         schedule.NotReady(streams[0]);
     };
     turn();
-    const std::size_t before = allocations;
+    const std::size_t before = AllocationsSoFar();
     for (int i = 0; i < 300; ++i)
     {
         if (i == 100)
@@ -85,7 +57,7 @@ TEST(AirAllocation, NothingIsAllocatedForADatagram)
         }
         turn();
     }
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(AllocationsSoFar(), before);
     EXPECT_GT(sent, 14'000u);
 }
 

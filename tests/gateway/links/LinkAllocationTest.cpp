@@ -5,35 +5,8 @@
 #include <rabit/gateway/links/LinkNode.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <new>
 
-namespace
-{
-
-// NOLINTNEXTLINE: counted for the whole program
-std::size_t allocations = 0;
-
-}  // namespace
-
-void *operator new(std::size_t size)
-{
-    ++allocations;
-    if (void *memory = std::malloc(size))
-    {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-
-void operator delete(void *memory) noexcept
-{
-    std::free(memory);
-}
-void operator delete(void *memory, std::size_t) noexcept
-{
-    std::free(memory);
-}
+#include "../AllocationCount.h"
 
 namespace Rabit::Test
 {
@@ -103,9 +76,9 @@ TEST(LinkAllocation, a_message_in_the_steady_state_costs_none)
         }
     };
     exchange(1000);
-    const std::size_t before = allocations;
+    const std::size_t before = AllocationsSoFar();
     exchange(10000);
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(AllocationsSoFar(), before);
     EXPECT_EQ(a.Outcomes, 22000U);
 }
 
