@@ -7,6 +7,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "air/TrafficClassWords.h"
 #include "configuration/YamlMap.h"
 
 namespace Rabit
@@ -61,13 +62,32 @@ void ReadNetwork(const YamlMap &map, GatewayConfig &config)
     map.Read("state_dir", config.StateDir);
 }
 
+void ReadRadio(const YamlMap &map, GatewayConfig &config)
+{
+    if (const auto radio = map.Map("radio", "the section `radio`", {"budget", "slowest_beat"}))
+    {
+        radio->ReadByteRate("budget", config.Radio.Budget);
+        radio->Read("slowest_beat", config.Radio.SlowestBeat);
+        for (const auto &[key, line] : radio->Lines())
+        {
+            config.Lines["radio." + key] = line;
+        }
+    }
+}
+
+std::optional<TrafficClass> ReadClass(const YamlMap &entry)
+{
+    const int choice = entry.ReadChoice("class", TrafficClassWords());
+    return choice < 0 ? std::nullopt : std::optional(ChosenClass(static_cast<std::size_t>(choice)));
+}
+
 // A profile's index in the list is its value.
 const std::vector<std::string> QosNames = {"state", "telemetry"};
 
 void ReadPublish(const YamlMap &map, GatewayConfig &config)
 {
     for (const YamlMap &entry :
-         map.Maps("publish", "a `publish` entry", {"message", "type", "qos", "max_rate"}))
+         map.Maps("publish", "a `publish` entry", {"message", "type", "qos", "max_rate", "class", "weight"}))
     {
         entry.Require("message");
         entry.Require("type");
@@ -76,6 +96,8 @@ void ReadPublish(const YamlMap &map, GatewayConfig &config)
         entry.Read("message", rule.Message);
         entry.Read("type", rule.Type);
         entry.Read("max_rate", rule.MaxRate);
+        rule.Class = ReadClass(entry);
+        entry.Read("weight", rule.Weight);
         const int qos = entry.ReadChoice("qos", QosNames);
         rule.Qos = qos < 0 ? rule.Qos : static_cast<QosProfile>(qos);
         config.Publish.push_back(rule);
@@ -120,9 +142,9 @@ void ReadAccept(const YamlMap &map, GatewayConfig &config)
 
 void ReadSend(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry :
-         map.Maps("send", "a `send` entry",
-                  {"to", "queue", "capacity", "capacity_bytes", "expire", "window", "redeliver_in_doubt"}))
+    for (const YamlMap &entry : map.Maps("send", "a `send` entry",
+                                         {"to", "queue", "capacity", "capacity_bytes", "expire", "window",
+                                          "redeliver_in_doubt", "class", "weight"}))
     {
         SendRule rule;
         rule.Line = entry.Line();
@@ -133,6 +155,8 @@ void ReadSend(const YamlMap &map, GatewayConfig &config)
         entry.Read("expire", rule.Expire);
         entry.Read("window", rule.Window, 1, 256);
         entry.Read("redeliver_in_doubt", rule.RedeliverInDoubt);
+        rule.Class = ReadClass(entry).value_or(rule.Class);
+        entry.Read("weight", rule.Weight);
         config.Send.push_back(rule);
     }
 }
@@ -142,10 +166,10 @@ void ReadSend(const YamlMap &map, GatewayConfig &config)
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride)
 {
     const YAML::Node root = Parse(file, ReadFile(file));
-    const YamlMap map(
-        file, root, "the configuration",
-        {"node", "name", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram",
-         "shared_memory", "lease", "backend_config", "state_dir", "publish", "subscribe", "accept", "send"});
+    const YamlMap map(file, root, "the configuration",
+                      {"node", "name", "domain", "transport", "interfaces", "peers", "multicast",
+                       "max_datagram", "shared_memory", "lease", "backend_config", "state_dir", "radio",
+                       "publish", "subscribe", "accept", "send"});
     GatewayConfig config;
     config.File = file;
     config.Lines = map.Lines();
@@ -160,6 +184,7 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
         map.Require("node");
     }
     ReadNetwork(map, config);
+    ReadRadio(map, config);
     ReadPublish(map, config);
     ReadSubscribe(map, config);
     ReadAccept(map, config);

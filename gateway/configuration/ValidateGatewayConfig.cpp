@@ -4,9 +4,11 @@
 #include <rabit/transport/Transport.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
+#include "air/AirSchedule.h"
 #include "names/NamePattern.h"
 #include "names/NearestWord.h"
 #include "wire/Announcements.h"
@@ -18,6 +20,7 @@ namespace
 
 // How the names of the gateways' own topics begin.
 constexpr const char *OwnTopics = "rabit/";
+constexpr double LargestBudget = 1e9;
 
 class Validator
 {
@@ -28,6 +31,7 @@ public:
     {
         CheckNode();
         CheckNetwork();
+        CheckRadio();
         CheckPublish();
         CheckSubscribe();
         CheckTopicTypes();
@@ -93,6 +97,37 @@ private:
         CheckNoneTwice(_config.Peers, "peers", LineOf("peers"));
     }
 
+    void CheckRadio() const
+    {
+        const RadioSettings &radio = _config.Radio;
+        if (radio.SlowestBeat < std::chrono::milliseconds(500) || radio.SlowestBeat > std::chrono::minutes(1))
+        {
+            Fail(LineOf("radio.slowest_beat"), "`slowest_beat` is out of range; expected 500ms to 60s");
+        }
+        const double least = SmallestBudget(radio.SlowestBeat);
+        if (radio.Budget && !(*radio.Budget >= least))
+        {
+            Fail(LineOf("radio.budget"), "the budget is too small to say that this node is there; expected " +
+                                             std::to_string(std::lround(least)) + "B/s or more");
+        }
+        if (radio.Budget && *radio.Budget > LargestBudget)
+        {
+            Fail(LineOf("radio.budget"), "the budget is out of range; expected 1000MB/s or less, or auto");
+        }
+    }
+
+    void CheckImportance(TrafficClass traffic, double weight, int line) const
+    {
+        if (traffic == TrafficClass::Presence)
+        {
+            Fail(line, "the class presence is the gateway's own; expected another one");
+        }
+        if (!(weight >= AirSchedule::SmallestWeight && weight <= AirSchedule::LargestWeight))
+        {
+            Fail(line, "`weight` is out of range; expected 0.01 to 100");
+        }
+    }
+
     void CheckNoneTwice(const std::vector<std::string> &list, const char *key, int line) const
     {
         std::set<std::string> seen;
@@ -156,6 +191,7 @@ private:
             {
                 Fail(rule.Line, "max_rate is out of range; expected 0 (no limit) to 1000000 a second");
             }
+            CheckImportance(rule.Class.value_or(TrafficClass::State), rule.Weight, rule.Line);
         }
     }
 
@@ -259,6 +295,7 @@ private:
             CheckRange(rule.Capacity, 1'000'000, "capacity", rule.Line);
             CheckRange(rule.CapacityBytes, std::size_t{1} << 40, "capacity_bytes", rule.Line);
             CheckRange(rule.Window, 256, "window", rule.Line);
+            CheckImportance(rule.Class, rule.Weight, rule.Line);
             if (rule.Expire < std::chrono::milliseconds(0) || rule.Expire > std::chrono::hours(24 * 365))
             {
                 Fail(rule.Line, "`expire` is out of range; expected 0 (never) to a year");
@@ -307,6 +344,15 @@ private:
 };
 
 }  // namespace
+
+// A beat and what DDS says of a participant on its own, in the quarter that presence has for sure.
+double SmallestBudget(std::chrono::milliseconds slowestBeat)
+{
+    constexpr double beat = 200.0;       // bytes
+    constexpr double discovery = 100.0;  // bytes a second
+    const double seconds = std::chrono::duration<double>(slowestBeat).count();
+    return 100.0 * std::ceil(4.0 * (beat / seconds + discovery / 4.0) / 100.0);
+}
 
 void ValidateGatewayConfig(const GatewayConfig &config)
 {

@@ -189,6 +189,31 @@ void YamlMap::Read(const std::string &key, std::chrono::milliseconds &value) con
     value = std::chrono::milliseconds(std::llround(milliseconds));
 }
 
+void YamlMap::ReadByteRate(const std::string &key, std::optional<double> &value) const
+{
+    const YAML::Node *node = Find(key);
+    if (node == nullptr)
+    {
+        return;
+    }
+    const std::string &text = Scalar(*node, key, "auto, or bytes a second such as 1500B/s or 5kB/s");
+    value.reset();
+    if (text == "auto")
+    {
+        return;
+    }
+    const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
+    const std::string unit = text.substr(unitAt);
+    const double factor = unit == "B/s" ? 1.0 : unit == "kB/s" ? 1e3 : unit == "MB/s" ? 1e6 : 0.0;
+    double number = 0.0;
+    if (factor == 0.0 || !ParseWhole(text.substr(0, unitAt), number) || !std::isfinite(number))
+    {
+        Fail(LineOf(*node),
+             "`" + key + "` is `" + text + "`; expected auto, or bytes a second such as 1500B/s or 5kB/s");
+    }
+    value = number * factor;
+}
+
 void YamlMap::Read(const std::string &key, std::vector<std::string> &value) const
 {
     const YAML::Node *node = Find(key);
@@ -222,6 +247,13 @@ int YamlMap::ReadChoice(const std::string &key, const std::vector<std::string> &
         Fail(LineOf(*node), "`" + key + "` is `" + text + "`" + NearestWordHint(text, choices));
     }
     return static_cast<int>(found - choices.begin());
+}
+
+std::optional<YamlMap> YamlMap::Map(const std::string &key, const std::string &what,
+                                    const std::vector<std::string> &allowedKeys) const
+{
+    const YAML::Node *node = Find(key);
+    return node == nullptr ? std::nullopt : std::optional(YamlMap(_file, *node, what, allowedKeys));
 }
 
 std::vector<YamlMap> YamlMap::Maps(const std::string &key, const std::string &what,

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,10 +37,15 @@ public:
     void Read(const std::string &key, std::size_t &value, std::size_t least, std::size_t most) const;
     // `5s`, `200ms`, `2min`; a bare number is refused because its unit would be a guess.
     void Read(const std::string &key, std::chrono::milliseconds &value) const;
+    // Bytes a second: `1500B/s`, `5kB/s`, `2MB/s` (of 1000 and 1000000 bytes), or `auto` for an empty value.
+    void ReadByteRate(const std::string &key, std::optional<double> &value) const;
     // A list of words, or one word alone.
     void Read(const std::string &key, std::vector<std::string> &value) const;
     // One of the words; returns its index, or -1 if the key is missing.
     int ReadChoice(const std::string &key, const std::vector<std::string> &choices) const;
+    // A mapping; empty if the key is missing.
+    std::optional<YamlMap> Map(const std::string &key, const std::string &what,
+                               const std::vector<std::string> &allowedKeys) const;
     // A list of mappings; empty if the key is missing.
     std::vector<YamlMap> Maps(const std::string &key, const std::string &what,
                               const std::vector<std::string> &allowedKeys) const;

@@ -73,8 +73,11 @@ shared_memory: on
 lease: 2s
 backend_config: vendor.xml
 state_dir: /var/lib/rabit
+radio:
+  budget: 1.5kB/s
+  slowest_beat: 2s
 publish:
-  - {message: Pose, type: Uav::Pose, qos: telemetry, max_rate: 10}
+  - {message: Pose, type: Uav::Pose, qos: telemetry, max_rate: 10, class: command, weight: 3}
   - {message: MissionState, type: Uav::MissionState}
 subscribe:
   - {message: Pose, type: Uav::Pose, from: ["uav*", ground], qos: telemetry}
@@ -82,7 +85,7 @@ accept:
   - {queue: MissionControl, types: [Uav::Goto, Uav::TargetReport]}
 send:
   - {to: "uav?", queue: MissionControl, capacity: 50, capacity_bytes: 100000, expire: 1500ms, window: 8,
-     redeliver_in_doubt: on}
+     redeliver_in_doubt: on, class: bulk, weight: 0.5}
 )");
     EXPECT_EQ(config.Node, "uav1");
     EXPECT_EQ(config.Name, "Radio");
@@ -95,10 +98,15 @@ send:
     EXPECT_EQ(config.Lease, 2s);
     EXPECT_EQ(config.BackendConfig, "vendor.xml");
     EXPECT_EQ(config.StateDir, "/var/lib/rabit");
+    EXPECT_EQ(config.Radio.Budget, 1500.0);
+    EXPECT_EQ(config.Radio.SlowestBeat, 2s);
     ASSERT_EQ(config.Publish.size(), 2u);
     EXPECT_EQ(config.Publish[0].Qos, QosProfile::Telemetry);
     EXPECT_EQ(config.Publish[0].MaxRate, 10.0);
+    EXPECT_EQ(config.Publish[0].Class, TrafficClass::Command);
+    EXPECT_EQ(config.Publish[0].Weight, 3.0);
     EXPECT_EQ(config.Publish[1].Qos, QosProfile::State);
+    EXPECT_EQ(config.Publish[1].Class, std::nullopt);
     ASSERT_EQ(config.Subscribe.size(), 1u);
     EXPECT_EQ(config.Subscribe[0].From, (std::vector<std::string>{"uav*", "ground"}));
     EXPECT_EQ(config.Subscribe[0].Qos, QosProfile::Telemetry);
@@ -108,6 +116,37 @@ send:
     EXPECT_EQ(config.Send[0].Expire, 1500ms);
     EXPECT_EQ(config.Send[0].Window, 8u);
     EXPECT_TRUE(config.Send[0].RedeliverInDoubt);
+    EXPECT_EQ(config.Send[0].Class, TrafficClass::Bulk);
+    EXPECT_EQ(config.Send[0].Weight, 0.5);
+}
+
+TEST_F(GatewayConfigTest, ABudgetIsInBytesASecondOrAuto)
+{
+    EXPECT_EQ(Load("node: a\nradio: {budget: 1500B/s}\n").Radio.Budget, 1500.0);
+    EXPECT_EQ(Load("node: a\nradio: {budget: 5kB/s}\n").Radio.Budget, 5000.0);
+    EXPECT_EQ(Load("node: a\nradio: {budget: 1.2MB/s}\n").Radio.Budget, 1.2e6);
+    EXPECT_EQ(Load("node: a\nradio: {budget: auto}\n").Radio.Budget, std::nullopt);
+    EXPECT_EQ(Load("node: a\n").Radio.Budget, std::nullopt);
+    EXPECT_EQ(Load("node: a\nradio: {slowest_beat: 10s}\n").Radio.SlowestBeat, 10s);
+}
+
+TEST_F(GatewayConfigTest, TheSmallestBudgetThatIsNamedIsTaken)
+{
+    EXPECT_NO_THROW(Load("node: a\nradio: {budget: 300B/s}\n"));
+    EXPECT_NO_THROW(Load("node: a\nradio: {budget: 900B/s, slowest_beat: 1s}\n"));
+    EXPECT_NO_THROW(Load("node: a\nradio: {budget: 1000MB/s}\n"));
+}
+
+TEST_F(GatewayConfigTest, NobodyTakesTheClassOfPresenceInCode)
+{
+    GatewayConfig config;
+    config.Node = "a";
+    config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose", .Class = TrafficClass::Presence});
+    EXPECT_THROW(ValidateGatewayConfig(config), ConfigError);
+    config.Publish[0].Class = TrafficClass::Bulk;
+    EXPECT_NO_THROW(ValidateGatewayConfig(config));
+    config.Send.push_back({.Class = TrafficClass::Presence});
+    EXPECT_THROW(ValidateGatewayConfig(config), ConfigError);
 }
 
 TEST_F(GatewayConfigTest, AMessageMayBePublishedAndSubscribedWithOneType)
@@ -178,7 +217,7 @@ const BadConfig BadConfigs[] = {
      "node.yaml:2: unknown key `domian` in the configuration; did you mean `domain`?"},
     {"UnknownKeyInEntry", "node: a\npublish:\n  - {message: P, type: Uav::Pose, rate: 3}\n",
      "node.yaml:3: unknown key `rate` in a `publish` entry; expected one of `message`, `type`, `qos`, "
-     "`max_rate`"},
+     "`max_rate`, `class`, `weight`"},
     {"RepeatedKey", "node: a\ndomain: 1\ndomain: 2\n",
      "node.yaml:3: key `domain` stands twice in the configuration"},
     {"NotYaml", "node: a\npublish: [\n", "node.yaml:3: not YAML: end of sequence flow not found"},
@@ -260,6 +299,30 @@ const BadConfig BadConfigs[] = {
      "node.yaml:4: this `send` entry is never used: `*/*` in line 3 fits all that `uav*/Q` fits, and the "
      "first "
      "that fits holds"},
+    {"BudgetWithoutUnit", "node: a\nradio:\n  budget: 1500\n",
+     "node.yaml:3: `budget` is `1500`; expected auto, or bytes a second such as 1500B/s or 5kB/s"},
+    {"BudgetInBits", "node: a\nradio:\n  budget: 57.6kbit/s\n",
+     "node.yaml:3: `budget` is `57.6kbit/s`; expected auto, or bytes a second such as 1500B/s or 5kB/s"},
+    {"BudgetTooSmall", "node: a\nradio:\n  slowest_beat: 5s\n  budget: 299B/s\n",
+     "node.yaml:4: the budget is too small to say that this node is there; expected 300B/s or more"},
+    {"BudgetTooSmallForItsBeats", "node: a\nradio:\n  budget: 800B/s\n  slowest_beat: 1s\n",
+     "node.yaml:3: the budget is too small to say that this node is there; expected 900B/s or more"},
+    {"BudgetTooLarge", "node: a\nradio:\n  budget: 1001MB/s\n",
+     "node.yaml:3: the budget is out of range; expected 1000MB/s or less, or auto"},
+    {"BeatsTooSlow", "node: a\nradio:\n  slowest_beat: 61s\n",
+     "node.yaml:3: `slowest_beat` is out of range; expected 500ms to 60s"},
+    {"UnknownKeyOfTheRadio", "node: a\nradio:\n  buget: 5kB/s\n",
+     "node.yaml:3: unknown key `buget` in the section `radio`; did you mean `budget`?"},
+    {"WordForRadio", "node: a\nradio: auto\n",
+     "node.yaml:2: the section `radio` must be a mapping of keys to values"},
+    {"UnknownClass", "node: a\npublish:\n  - {message: Pose, type: Uav::Pose, class: telemetri}\n",
+     "node.yaml:3: `class` is `telemetri`; did you mean `telemetry`?"},
+    {"ClassOfPresence", "node: a\nsend:\n  - {class: presence}\n",
+     "node.yaml:3: `class` is `presence`; expected one of `command`, `state`, `telemetry`, `bulk`"},
+    {"WeightTooLarge", "node: a\npublish:\n  - {message: Pose, type: Uav::Pose, weight: 101}\n",
+     "node.yaml:3: `weight` is out of range; expected 0.01 to 100"},
+    {"NoWeight", "node: a\nsend:\n  - {weight: 0}\n",
+     "node.yaml:3: `weight` is out of range; expected 0.01 to 100"},
     {"EmptyValue", "node:\n", "node.yaml:1: key `node` in the configuration has no value"},
 };
 

@@ -20,7 +20,7 @@ ROOMS = {
     "clocks": [],
     "incarnation": ["links"],
     "wire": ["names", "links"],
-    "configuration": ["names", "wire"],
+    "configuration": ["air", "names", "wire"],
     "presence": ["names", "clocks", "wire"],
     "mirrors": ["names", "clocks", "wire", "presence"],
     "queues": ["names", "clocks", "incarnation", "wire", "links", "presence"],

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/gateway/TrafficClass.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +30,10 @@ struct PublishRule
     std::string Type;                    // IDL name
     QosProfile Qos = QosProfile::State;  //
     double MaxRate = 0.0;                // samples a second at most, up to 1e6; 0: no limit
-    int Line = 0;                        // where it stands in the file, for error messages; 0: made in code
+    // How important it is where the air is thin, any but Presence; unset: State or Telemetry, as the QoS.
+    std::optional<TrafficClass> Class{};
+    double Weight = 1.0;  // among those of its class, 0.01 to 100
+    int Line = 0;         // where it stands in the file, for error messages; 0: made in code
 };
 
 // A message of other nodes that appears here as `<node>/<message>`.
@@ -61,8 +66,25 @@ struct SendRule
     std::chrono::milliseconds Expire{0};    // a message older than this is never delivered; 0: never too old
     std::size_t Window = 128;               // messages under way at once, 1 to 256
     bool RedeliverInDoubt = false;          // send again, flagged, what a restart left in doubt
+    // How important the messages are where the air is thin, any but Presence.
+    TrafficClass Class = TrafficClass::Command;
+    double Weight = 1.0;  // among those of its class, 0.01 to 100
     int Line = 0;
 };
+
+// What this node may put on the air.
+struct RadioSettings
+{
+    // Bytes a second, IP headers and all above included, in whichever second; from SmallestBudget to 1e9.
+    // Unset (`auto`): the rate follows what the air carries, and is unlimited where that does not limit it.
+    std::optional<double> Budget{};
+    // Where nothing happens a node says this often that it is there, 500 ms to 60 s. It is LOST that much
+    // later.
+    std::chrono::milliseconds SlowestBeat{5000};
+};
+
+// Below this budget a node could not even say in time that it is there; bytes a second.
+double SmallestBudget(std::chrono::milliseconds slowestBeat);
 
 // Everything a gateway is told. Fill it in code, or load it with LoadGatewayConfig.
 struct GatewayConfig
@@ -83,6 +105,8 @@ struct GatewayConfig
     std::chrono::milliseconds Lease{30000};
     std::string BackendConfig;
 
+    RadioSettings Radio;
+
     // Folder of the incarnation counter; empty: none, the wall clock numbers the lives of this node.
     std::string StateDir;
 
@@ -91,8 +115,8 @@ struct GatewayConfig
     std::vector<AcceptRule> Accept;
     std::vector<SendRule> Send;
 
-    // For error messages: the file it came from and the line of each of its top-level keys; empty: made in
-    // code.
+    // For error messages: the file it came from and the line of each of its top-level keys, and of those of
+    // the section `radio` (`radio.budget`); empty: made in code.
     std::string File;
     std::map<std::string, int> Lines;
 };
