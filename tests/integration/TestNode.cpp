@@ -22,13 +22,18 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
     app.add_option("--interface", config.Interfaces);
     app.add_option("--peer", config.Peers, "Address of another node, for unicast discovery");
     app.add_flag("!--no-multicast", config.Multicast);
+    app.add_option("--budget", config.Radio.Budget, "Bytes a second that the node may put on the air");
+    app.add_option("--slowest-beat", config.Radio.SlowestBeat, "Milliseconds");
 }
 
-void Run(const Rabit::GatewayConfig &config, std::unique_ptr<Rabit::RabitManager> manager)
+void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers)
 {
     Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
     Rabit::RabitReactor reactor;
-    reactor.AddManager(std::move(manager));
+    for (std::unique_ptr<Rabit::RabitManager> &manager : managers)
+    {
+        reactor.AddManager(std::move(manager));
+    }
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
     reactor.Run();

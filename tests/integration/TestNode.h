@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace CLI
 {
@@ -18,8 +19,8 @@ namespace TestNode
 // The options that say who the node is and on which network.
 void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config);
 
-// Runs the manager and a gateway until SIGINT or SIGTERM. Throws Rabit::ConfigError.
-void Run(const Rabit::GatewayConfig &config, std::unique_ptr<Rabit::RabitManager> manager);
+// Runs the managers and a gateway until SIGINT or SIGTERM. Throws Rabit::ConfigError.
+void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers);
 
 // Parses the arguments and runs the body. Returns the exit code: 0; 1 if the body failed; 2 if an option is
 // wrong.

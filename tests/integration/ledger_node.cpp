@@ -1,5 +1,7 @@
 // A node that writes down everything that it does and sees, one line per event, for judge.py. README.md lists
 // the lines. Each line is one write(2), so a kill loses at most the line being written.
+#include "LedgerFile.h"
+#include "PictureClerk.h"
 #include "TestNode.h"
 #include "gateway.idl.h"
 #include "ledger.idl.h"
@@ -9,11 +11,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <fcntl.h>
-#include <time.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -21,16 +18,16 @@
 #include <memory>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 namespace
 {
+using TestNode::LedgerFile;
+using TestNode::Now;
+
 constexpr const char *NotesQueue = "Notes";
 constexpr int WorkPeriodMSec = 10;
-constexpr std::int64_t TickPeriodNs = 100'000'000;
 constexpr std::int64_t CountersPeriodNs = 200'000'000;
 
 struct Options
@@ -47,42 +44,10 @@ struct Options
     double ExpireS = 0;
     double IdleS = 0;
     bool Ticks = false;
-};
-
-// CLOCK_MONOTONIC, which all network namespaces of one machine share.
-std::int64_t Now()
-{
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
-// Appends to the ledger file. One thread.
-class LedgerFile
-{
-public:
-    explicit LedgerFile(const std::string &path)
-        : _file(open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644))
-    {
-        if (_file < 0)
-            throw std::system_error(errno, std::generic_category(), path);
-        Append("\n");  // ends a line that the kill of an earlier life may have cut short
-    }
-    ~LedgerFile() { close(_file); }
-    LedgerFile(const LedgerFile &) = delete;
-    LedgerFile &operator=(const LedgerFile &) = delete;
-
-    void Line(const std::string &text) { Append(std::to_string(Now()) + ' ' + text + '\n'); }
-
-private:
-    void Append(const std::string &line)
-    {
-        const ssize_t written = write(_file, line.data(), line.size());
-        if (written != static_cast<ssize_t>(line.size()))
-            throw std::system_error(errno, std::generic_category(), "writing the ledger");
-    }
-
-    int _file;
+    std::int64_t TickPeriodNs = 100'000'000;
+    std::size_t TickPayload = 0;
+    TestNode::PictureOptions Pictures;
+    bool TakesPictures = false;
 };
 
 // Sends notes, takes notes, and follows the ticks and the fleet.
@@ -100,7 +65,10 @@ public:
         WakeUpManagerOnEnqueue(_notes);
         AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
         if (options.Ticks)
+        {
             AddPublishSubscribeMessage("Tick", _tick);
+            _tick->padding.assign(options.TickPayload, 0x5a);
+        }
         SetWakeupTimeDelayMSec(WorkPeriodMSec);
     }
 
@@ -205,7 +173,7 @@ private:
     {
         if (!_options.Ticks || Now() < _nextTick)
             return;
-        _nextTick = Now() + TickPeriodNs;
+        _nextTick = Now() + _options.TickPeriodNs;
         ++_tick->number;
         _tick->PostMessage();
     }
@@ -328,7 +296,13 @@ void Describe(CLI::App &app, Options &o)
     app.add_option("--expire", o.ExpireS, "Seconds after which a note is too old; 0: never");
     app.add_option("--queue-room", o.QueueRoom, "Notes that fit into the local queue");
     app.add_option("--idle", o.IdleS, "Seconds after the start during which no note is taken");
-    app.add_flag("--ticks", o.Ticks, "Publish a tick ten times a second and follow those of the others");
+    app.add_flag("--ticks", o.Ticks, "Publish ticks and follow those of the others");
+    app.add_option("--tick-period-ns", o.TickPeriodNs, "From one tick to the next; default a tenth of a second");
+    app.add_option("--tick-payload", o.TickPayload, "Octets of padding in each tick");
+    app.add_option("--pictures-to", o.Pictures.To, "Node to send pictures to, as bulk, once it is UP");
+    app.add_flag("--take-pictures", o.TakesPictures);
+    app.add_option("--pictures", o.Pictures.Count, "How many");
+    app.add_option("--picture-bytes", o.Pictures.Size);
 }
 
 void Run(Options &options)
@@ -345,7 +319,16 @@ void Run(Options &options)
     rule.Window = options.Window;
     rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(options.ExpireS * 1000));
     config.Send.push_back(rule);
-    TestNode::Run(config, std::make_unique<Clerk>(options));
+    options.Pictures.Node = config.Node;
+    options.Pictures.LedgerFile = options.LedgerFile;
+    std::vector<std::unique_ptr<Rabit::RabitManager>> managers;
+    managers.push_back(std::make_unique<Clerk>(options));
+    if (options.TakesPictures || !options.Pictures.To.empty())
+    {
+        TestNode::PictureClerk::Configure(config);
+        managers.push_back(std::make_unique<TestNode::PictureClerk>(options.Pictures));
+    }
+    TestNode::Run(config, std::move(managers));
 }
 }  // namespace
 

@@ -15,10 +15,17 @@ import contestants  # noqa: E402  (which finds tests/integration)
 import expectations  # noqa: E402
 import judge  # noqa: E402
 
+from figures import (command_delays, first_all_up, percentile, poses_heard, shown_ages, shown_rows,  # noqa: E402
+                     traffic, worst_second)
 from rows import PLAIN, RABIT  # noqa: E402
 
 DOMAIN = 0
+EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
 LIMIT_S = 60  # of waiting for a fleet to come together
+# Of a pose, beside its padding: headers from IP to CDR, and its number.
+OVERHEAD = 88 + 12
+# The largest datagram takes so long, at its budget.
+LARGEST_AT_A_BUDGET_S = 0.25
 # A datagram that fits a frame, as the gateway's default is.
 DATAGRAM = 1400
 
@@ -46,6 +53,25 @@ class Fleet:
         return self.ground.start(node, [self._folder / "ledger_node", "--node", node, "--ledger", self._path(node),
                                         "--state-dir", state, "--transport", self.transport, *options])
 
+    def restart_ledger(self, node, *options):
+        self.ground.kill(node)
+        self.start_ledger(node, *options)
+
+    def stop_ledgers(self):
+        """All of them; what they wrote is forgotten."""
+        for node in self.ground.nodes:
+            self.ground.kill(node)
+            self._path(node).unlink()
+
+    def start_example(self, node, config, *options):
+        """A program of examples/, named as its node or else an aircraft, with its configuration for any interface."""
+        text = (EXAMPLES / config).read_text()
+        path = pathlib.Path(self.ground.folder, node + ".yaml")
+        path.write_text("".join(line for line in text.splitlines(keepends=True) if not line.startswith("interfaces:")))
+        program = "ground" if node == "ground" else "uav"
+        return self.ground.start(node, [self._folder / program, "--config", path, "--node", node, "--domain", DOMAIN,
+                                        "--transport", self.transport, *options])
+
     def ledgers(self):
         return expectations.Run({node: self._path(node).read_text() if self._path(node).exists() else ""
                                  for node in self.ground.nodes}, [])
@@ -69,19 +95,6 @@ class Fleet:
 
     def _path(self, node):
         return pathlib.Path(self.ground.folder, node + ".ledger")
-
-
-def traffic(counters):
-    """The figures that every measure has."""
-    seconds, nodes = counters["seconds"], counters["nodes"].values()
-    offered = sum(node["offered"]["bytes"] for node in nodes)
-    dropped = sum(node["dropped"]["bytes"] for node in nodes)
-    figures = {"offered_kB_s": offered / seconds / 1000, "sent_kB_s": counters["sent"]["bytes"] / seconds / 1000,
-               "dropped_pct": 100 * dropped / max(offered, 1), "used_pct": 100 * counters["utilisation"],
-               "longest_wait_ms": max(node["longest_wait_ms"] for node in nodes)}
-    if counters["bits_per_s"]:
-        figures["offered_pct"] = 100 * 8 * offered / seconds / counters["bits_per_s"]
-    return figures
 
 
 def reports(processes):
@@ -113,12 +126,12 @@ def all_to_all(fleet, members, settle_s, seconds):
             **traffic(counters)}
 
 
-def idle(fleet, nodes, settle_s, seconds):
+def idle(fleet, nodes, settle_s, seconds, budget=None):
     """Nothing is published. Nodes accept one queue; plain programs have a writer and a reader."""
     started = {}
     if fleet.contestant == RABIT:
         for node in fleet.ground.nodes:
-            fleet.start_ledger(node)
+            fleet.start_ledger(node, *(("--budget", budget) if budget else ()))
         started = {"all_up_s": fleet.wait_until_all_up(LIMIT_S)}
     else:
         for number, node in enumerate(fleet.ground.nodes, 1):
@@ -165,44 +178,6 @@ def start_fleet(fleet, a_second, *more):
     return uavs
 
 
-def shown_ages(run, since, until, observer="ground"):
-    """Ages in s of the newest tick of each other node as the observer would show it ten times a second; infinite as
-    long as it has none."""
-    ages = []
-    for origin in run.lives:
-        if origin == observer:
-            continue
-        ticks = [(e.time * 1e-9, float(e.values["age_s"])) for e in run.events(observer, "tick") if e["from"] == origin]
-        place, moment = -1, since
-        while moment < until:
-            while place + 1 < len(ticks) and ticks[place + 1][0] <= moment:
-                place += 1
-            ages.append(moment - ticks[place][0] + ticks[place][1] if place >= 0 else float("inf"))
-            moment += 0.1
-    return sorted(ages)
-
-
-def command_delays(run, since, until, origin="ground"):
-    """Sorted delays in s of the notes of that time, and how many were not delivered by the end of the ledgers."""
-    delays, open_notes = [], 0
-    delivered = {(e["from"], life.node, e.number("id")): e.time for life in run.all_lives() for e in life.of("delivered")}
-    for event in run.events(origin, "accepted"):
-        sent = event.time * 1e-9
-        if since <= sent < until:
-            came = delivered.get((origin, event["to"], event.number("id")))
-            if came is None:
-                open_notes += 1
-            else:
-                delays.append(came * 1e-9 - sent)
-    return sorted(delays), open_notes
-
-
-def percentile(values, percent):
-    """Of sorted values; None also where that is infinite."""
-    value = values[min(len(values) * percent // 100, len(values) - 1)] if values else None
-    return None if value == float("inf") else value
-
-
 def fly(fleet, uavs, seconds, a_second):
     """Presence, commands and poses of a fleet that starts at once."""
     fleet.ground.reset()
@@ -223,6 +198,32 @@ def fly(fleet, uavs, seconds, a_second):
             "lost": sum(e["state"] == "LOST" for e in peers), "ticks_pct": 100 * sum(shares) / len(shares),
             "commands": len(delays) + missing, "commands_p99_ms": p99 and 1000 * p99, "age_p90_s": age,
             **traffic(counters)}
+
+
+def swarm(fleet, uavs, seconds):
+    """The example itself: aircraft that search, and the ground station, which says once a second what it shows."""
+    fleet.ground.reset()
+    names = [node for node in fleet.ground.nodes if node != "ground"]
+    station = fleet.start_example("ground", "ground_station/ground.yaml", "--seconds", seconds + LIMIT_S,
+                                  "--command-period", 2, *(word for node in names for word in ("--expect", node)))
+    began = time.monotonic()
+    for node in names:
+        fleet.start_example(node, "swarm/uav.yaml")
+    up, rows = None, []
+    while time.monotonic() < began + LIMIT_S + seconds and (up is None or time.monotonic() < began + up + seconds):
+        time.sleep(0.5)
+        rows = shown_rows(station.lines)
+        up = up if up is not None else first_all_up(rows, names)
+        if up is None and time.monotonic() > began + LIMIT_S:
+            break
+    counters = fleet.ground.counters()
+    os.kill(station.pid, signal.SIGINT)
+    station.exit_code(20)
+    since = [row for row in shown_rows(station.lines) if up is not None and row.time >= up]
+    ages = sorted(row.age for row in since)
+    return {"all_up_s": up, "stale": sum(row.state == "STALE" for row in since),
+            "lost": sum(row.state == "LOST" for row in since), "poses_pct": poses_heard(station.lines),
+            "age_p90_s": percentile(ages, 90), **traffic(counters)}
 
 
 def fall(fleet, uavs, to_kbit, for_s):
@@ -265,6 +266,80 @@ def outage(fleet, uavs, for_s):
             "all_seen_s": max(after for after, _ in firsts.values()) if complete else None,
             "worst_second_kB": max(n["most_ip_in_a_second"] for n in counters["nodes"].values()) / 1000,
             **traffic(counters)}
+
+
+def picture(fleet, uavs, size, limit_s, budget):
+    """A picture from an aircraft to the ground station beside poses and commands, on a budget each."""
+    more = ["--budget", budget, "--take-pictures"]
+    fleet.ground.reset()
+    start_fleet(fleet, 0.5, *more)
+    up = fleet.wait_until_all_up(LIMIT_S)
+    if up is None:
+        return {"all_up_s": None, "picture_s": None, **traffic(fleet.ground.counters())}
+    fleet.restart_ledger("uav1", "--ticks", *more, "--pictures-to", "ground", "--picture-bytes", size)
+    fleet.ground.reset()
+    since = time.monotonic()
+    came = None
+    while came is None and time.monotonic() < since + limit_s:
+        time.sleep(0.5)
+        run = fleet.ledgers()
+        came = next((e.time * 1e-9 for e in run.events("ground", "picture")), None)
+    until = time.monotonic()
+    counters = fleet.ground.counters()
+    time.sleep(5)
+    run = fleet.ledgers()
+    sent = next((e.time * 1e-9 for e in run.events("uav1", "picture_sent")), None)
+    since = max(since, sent or 0)
+    delays, missing = command_delays(run, since, until - 5)
+    p99 = percentile(delays + [float("inf")] * missing, 99)
+    return {"all_up_s": up, "picture_s": came - sent if came and sent else None,
+            "lost": sum(e["state"] == "LOST" and e.time * 1e-9 > since + 5 for life in run.all_lives() for e in life.of("peer")),
+            "commands": len(delays) + missing, "commands_p99_ms": p99 and 1000 * p99,
+            "age_max_s": percentile(shown_ages(run, since, until), 100),
+            "worst_second_B": worst_second(counters), **traffic(counters)}
+
+
+def overload(fleet, uavs, budget, times, seconds):
+    """Aircraft that offer more poses than their budgets allow, beside commands; the same fleet without poses first."""
+    def watch(*more):
+        start_fleet(fleet, 2, "--budget", budget, *more)
+        up = fleet.wait_until_all_up(LIMIT_S)
+        time.sleep(10)
+        fleet.ground.reset()
+        since = time.monotonic()
+        time.sleep(seconds)
+        counters, until = fleet.ground.counters(), time.monotonic()
+        time.sleep(5)
+        run = fleet.ledgers()
+        delays, missing = command_delays(run, since, until)
+        states = [e["state"] for life in run.all_lives() for e in life.of("peer") if e.time * 1e-9 > since]
+        return up, percentile(delays + [float("inf")] * missing, 99), states, counters
+    _, idle_p99, _, _ = watch()
+    fleet.stop_ledgers()
+    payload = 400
+    period_ns = round(1e9 * (payload + OVERHEAD) / (times * budget))
+    up, p99, states, counters = watch("--tick-payload", payload, "--tick-period-ns", period_ns)
+    bound = idle_p99 and 2 * (idle_p99 + LARGEST_AT_A_BUDGET_S)
+    return {"all_up_s": up, "stale": states.count("STALE"), "lost": states.count("LOST"),
+            "idle_p99_ms": idle_p99 and 1000 * idle_p99, "commands_p99_ms": p99 and 1000 * p99,
+            "p99_of_allowed_pct": p99 and bound and 100 * p99 / bound,
+            "worst_second_pct": 100 * worst_second(counters) / budget, **traffic(counters)}
+
+
+def throughput(fleet, payload, seconds):
+    """What a link that always has something to send delivers, of what the medium carries, from 10 s after its start."""
+    fleet.start_ledger("uav1", "--payload", payload, "--queue-room", 100_000)
+    fleet.start_ledger("ground", "--payload", payload, "--capacity", 1000, "--to", "uav1", "--count", 10_000_000,
+                       "--rate", 100_000)
+    fleet.wait_until_all_up(LIMIT_S)
+    began = time.monotonic() + 10
+    time.sleep(10)
+    fleet.ground.reset()
+    time.sleep(seconds)
+    counters, until = fleet.ground.counters(), time.monotonic()
+    delivered = sum(began <= e.time * 1e-9 < until for e in fleet.ledgers().events("uav1", "delivered"))
+    goodput = 8 * delivered * payload / (until - began)
+    return {"goodput_kbit_s": goodput / 1000, "goodput_pct": 100 * goodput / counters["bits_per_s"], **traffic(counters)}
 
 
 def send_notes(fleet, count, rate, payload, expire, limit_s, capacity):

@@ -344,7 +344,9 @@ void Run(Options &options)
     config.Publish.push_back({.Message = "Frame", .Type = "Interop::Frame"});
     config.Subscribe.push_back({.Message = "Frame", .Type = "Interop::Frame"});
     config.Accept.push_back({.Queue = Queue, .Types = {"Interop::Order"}});
-    TestNode::Run(config, std::make_unique<Exchange>(options));
+    std::vector<std::unique_ptr<Rabit::RabitManager>> managers;
+    managers.push_back(std::make_unique<Exchange>(options));
+    TestNode::Run(config, std::move(managers));
 }
 
 }  // namespace
