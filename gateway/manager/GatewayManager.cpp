@@ -142,7 +142,11 @@ public:
                 _links.HeardOf(peer->Node, peer->Incarnation);
             }
         }
-        Duration next = std::min(_presence.NextDue(), _links.Service());
+        if (now >= _presence.BeatDue())
+        {
+            _presence.SendBeat(now);
+        }
+        Duration next = std::min({_presence.NextDue(), _presence.BeatDue(), _links.Service()});
         for (TopicPublisher &publisher : _publishers)
         {
             if (served.RepeatStates)

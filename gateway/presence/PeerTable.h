@@ -51,6 +51,9 @@ public:
         Duration OffersSince{0};
         std::uint32_t OffersDigest = 0;            // of Offers
         std::optional<Duration> LacksOffersSince;  // its beats say that Offers is not what it offers
+        // Versions of its States in the order of the announcement that its beats mean, as far as they have
+        // told in this life; 0: never written, or not told yet.
+        std::vector<std::uint32_t> States;
         bool Twice = false;                        // another live node has the same name
 
         // What its next echo says.

@@ -18,9 +18,6 @@ constexpr Presence::Duration AnnouncementGap = std::chrono::milliseconds(500);
 // One beat goes to everybody; with more nodes than this they take turns to be echoed, and to be asked.
 constexpr std::size_t EchoesInABeat = 2;
 constexpr std::size_t WantsInABeat = 4;
-// Whoever has just appeared may not be matched yet with those who send to it, and nothing of a node is posted
-// before a beat of it was heard: the first beats follow each other quickly, each step twice the one before.
-constexpr Presence::Duration FirstBeatStep = std::chrono::milliseconds(20);
 
 }  // namespace
 
@@ -52,7 +49,8 @@ void Presence::Open(TransportSession &session, Gateway::Announcement announcemen
 {
     _announcement = std::move(announcement);
     _announcementDigest = Announcements::DigestOf(_announcement);
-    _nextBeat = _nextAnnouncement = Duration(0);
+    _nextAnnouncement = Duration(0);
+    _states.assign(Announcements::StatesIn(_announcement), 0);
     const auto open = [&session](const char *topic, const MessageType &type, QosProfile profile, auto &writer)
     {
         writer =
@@ -193,13 +191,9 @@ Presence::Served Presence::Service(Duration now)
     }
     if (_introductions.TakeBeats(now))
     {
-        Introduce();
+        _pace.Introduce(now);
     }
     served.RepeatStates = _introductions.TakeStates(now);
-    if (now >= _nextBeat)
-    {
-        SendBeat(now);
-    }
     if (now >= _nextAnnouncement)
     {
         SendAnnouncement(now);
@@ -207,17 +201,21 @@ Presence::Served Presence::Service(Duration now)
     return served;
 }
 
-void Presence::Introduce()
+Presence::Duration Presence::BeatDue() const
 {
-    _nextBeat = Duration(0);
-    _beatStep = FirstBeatStep;
+    return _pace.Due();
 }
 
-void Presence::SendBeat(Duration now)
+std::size_t Presence::BeatSize(Duration /*now*/) const
+{
+    return LargestBeat;
+}
+
+std::size_t Presence::SendBeat(Duration now, std::size_t /*most*/)
 {
     if (!_beatWriter)
     {
-        return;
+        return 0;
     }
     // All clocks read at one moment: the others compute one from the other.
     const PostTime time = _clock.Now();
@@ -231,9 +229,20 @@ void Presence::SendBeat(Duration now)
     beat.offers = _announcementDigest;
     beat.wants = _peers.NextWanted(time.Monotonic, WantsInABeat);
     beat.echoes = _peers.NextEchoes(time.Monotonic, EchoesInABeat);
-    static_cast<void>(_beatWriter->Write(MessageEncoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat), utc));
-    _nextBeat = now + _beatStep;
-    _beatStep = std::min(2 * _beatStep, PeerTable::BeatPeriod);
+    const MessageEncoder encoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat);
+    static_cast<void>(_beatWriter->Write(encoder, utc));
+    _pace.Sent(now);
+    return encoder.EncodedSize() - 4;
+}
+
+void Presence::SetStateVersion(std::size_t state, std::uint32_t version)
+{
+    _states.at(state) = version;
+}
+
+void Presence::WantStates(const std::string &node, const std::vector<bool> &states, Duration /*now*/)
+{
+    _wantsStates[node] = states;
 }
 
 void Presence::SendAnnouncement(Duration now)
@@ -251,7 +260,7 @@ void Presence::SendAnnouncement(Duration now)
 
 Presence::Duration Presence::NextDue() const
 {
-    Duration next = std::min(_nextBeat, _nextAnnouncement);
+    Duration next = _nextAnnouncement;
     for (const std::optional<Duration> &due : {_peers.NextChange(), _introductions.Due()})
     {
         next = due ? std::min(next, *due) : next;

@@ -7,11 +7,14 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
+#include "presence/BeatPace.h"
 #include "presence/Introductions.h"
 #include "presence/OriginTable.h"
 #include "presence/PeerTable.h"
@@ -47,17 +50,52 @@ public:
     // The transport's peer handler.
     void OnPeer(const PeerEvent &event);
 
+    // What another node says of how late this node's datagrams come to it.
+    struct DelayHeard
+    {
+        std::uint32_t Peer = 0;  // its tag (names/NodeTag.h)
+        Duration Delay{0};       // of the newest that had come, against the quickest
+        Duration ArrivedAt{0};   // when it came there, by this node's monotonic clock
+    };
+
     struct Served
     {
         PeerTable::Change Change;
         // Somebody has come that can use what this node publishes, and now is the time to repeat it.
         bool RepeatStates = false;
+        // Nodes whose beats have told of their States: PeerTable::Peer::States.
+        std::vector<std::string> StatesTold;
+        // States of this node that others have asked for, by their places (Announcements::StateIndexOf).
+        std::vector<std::size_t> StatesAsked;
+        std::vector<DelayHeard> Delays;
     };
 
-    // Takes in what has come and sends what is due.
+    // Takes in what has come. Sends nothing but the announcement.
     Served Service(Duration now);
     // When to call Service again at the latest.
     Duration NextDue() const;
+
+    // When a beat is to be sent; whoever decides what goes on the air next calls SendBeat then. All beats go
+    // this way, the quick ones too.
+    Duration BeatDue() const;
+    // What the next beat takes at most, as the bytes of its body (CDR without the encapsulation).
+    std::size_t BeatSize(Duration now) const;
+    // Sends exactly one beat, whose body takes at most so many bytes, but always what an empty one takes; the
+    // rest of what is to be said follows in the next ones. Returns the bytes that it took, 0 before Open.
+    std::size_t SendBeat(Duration now, std::size_t most = LargestBeat);
+    // Fits one datagram whatever the settings are.
+    static constexpr std::size_t LargestBeat = 900;
+    // How often this node beats when nothing is the matter (BeatPace).
+    void SetBeatPeriod(Duration period) { _pace.SetPeriod(period); }
+    Duration BeatPeriod() const { return _pace.Period(); }
+
+    // The version of a State of this node, by its place (Announcements::StateIndexOf), for the beats to tell.
+    // 0: never written.
+    void SetStateVersion(std::size_t state, std::uint32_t version);
+    // The States of that node, by their places, that are to be asked for in each beat from now on; none:
+    // nothing is. The next beat is brought forward if there is something that was not asked for before. Holds
+    // for the present life of the node.
+    void WantStates(const std::string &node, const std::vector<bool> &states, Duration now);
 
     const PeerTable &Peers() const { return _peers; }
     // Samples of the gateways' topics that made no sense, or came faster than they could be taken in.
@@ -67,9 +105,7 @@ private:
     void WakeIf(bool somethingCame);
     PeerTable::Change TakeIn(const PresenceInbox::Contents &inbox, Duration now);
     void Publish(const std::string &node);
-    void Introduce();
     std::size_t OthersThan(const std::string &node) const;
-    void SendBeat(Duration now);
     void SendAnnouncement(Duration now);
 
     const std::string _node;
@@ -83,8 +119,9 @@ private:
     PeerTable _peers;
     Introductions _introductions;
     Gateway::Announcement _announcement;
-    Duration _nextBeat{0};
-    Duration _beatStep = PeerTable::BeatPeriod;  // from one beat to the next
+    BeatPace _pace;
+    std::vector<std::uint32_t> _states;                     // versions, by place
+    std::map<std::string, std::vector<bool>> _wantsStates;  // by node
     // Said once, and again when somebody asks for it; the network may not take it the first time.
     Duration _nextAnnouncement{0};
     Duration _lastAnnouncement{0};

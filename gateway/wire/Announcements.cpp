@@ -28,6 +28,11 @@ std::size_t TypesOf(const Gateway::Announcement &announcement)
                            { return sum + accepted.types.size(); });
 }
 
+bool IsState(const Gateway::PublishedMessage &published)
+{
+    return published.qos == GatewayTopics::NameOf(QosProfile::State);
+}
+
 bool IsType(const std::string &name)
 {
     return !name.empty() && name.size() <= LongestType;
@@ -89,6 +94,26 @@ std::uint32_t DigestOf(const Gateway::Announcement &announcement)
     type.Serialize(announcement, bytes);
     const std::uint64_t hash = Fnv1a(bytes);
     return static_cast<std::uint32_t>(hash ^ (hash >> 32));
+}
+
+std::optional<std::size_t> StateIndexOf(const Gateway::Announcement &announcement, std::string_view message)
+{
+    std::size_t index = 0;
+    for (const Gateway::PublishedMessage &published : announcement.publishes)
+    {
+        if (IsState(published) && published.message == message)
+        {
+            return index;
+        }
+        index += IsState(published) ? 1 : 0;
+    }
+    return std::nullopt;
+}
+
+std::size_t StatesIn(const Gateway::Announcement &announcement)
+{
+    return static_cast<std::size_t>(
+        std::count_if(announcement.publishes.begin(), announcement.publishes.end(), IsState));
 }
 
 std::string WhyTooLarge(const Gateway::Announcement &announcement)

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "gateway.idl.h"
 
@@ -28,6 +30,12 @@ Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation)
 // Tells two announcements apart. Beats carry it, so that whoever lacks the present one notices, and asks for
 // it.
 std::uint32_t DigestOf(const Gateway::Announcement &announcement);
+
+// The place of a State of that name among the States announced, by which beats tell of it; empty: there is
+// none.
+std::optional<std::size_t> StateIndexOf(const Gateway::Announcement &announcement, std::string_view message);
+// How many there are.
+std::size_t StatesIn(const Gateway::Announcement &announcement);
 
 // Why others would not take the announcement, in words; empty if they would.
 std::string WhyTooLarge(const Gateway::Announcement &announcement);

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+namespace Rabit
+{
+
+// When this node beats: once a period, quickly when somebody has come who must not wait for the next period,
+// and earlier when there is something to ask for. Beats that were brought forward follow each other less and
+// less quickly, until nobody has brought one forward for a while: who asks without end does not make this
+// node shout.
+//
+// A pure state machine; `now` never goes back.
+class BeatPace
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    static constexpr Duration DefaultPeriod = std::chrono::milliseconds(500);
+    static constexpr Duration ShortestPeriod = std::chrono::milliseconds(100);
+    static constexpr Duration LongestPeriod = std::chrono::seconds(60);
+    // No two beats follow each other more quickly.
+    static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
+    // After so long without one the next may be brought forward as if it were the first.
+    static constexpr Duration Quiet = std::chrono::seconds(5);
+
+    Duration Period() const { return _period; }
+    // Raised or lowered to what is possible. A longer one holds from the next beat on, which is the first to
+    // tell the others of it.
+    void SetPeriod(Duration period);
+
+    // When the next beat is due if nobody has anything to ask.
+    Duration Due() const { return _due; }
+    // Before this there is none at all.
+    Duration Earliest() const { return _last ? *_last + ShortestGap : Duration(0); }
+    // Before this none is brought forward because there is something to ask for.
+    Duration EarliestToAsk() const { return _last ? *_last + _gap : Duration(0); }
+
+    // Somebody has come: the next beats follow each other quickly, each step twice the one before.
+    void Introduce(Duration now);
+    // A beat was sent.
+    void Sent(Duration now);
+
+private:
+    Duration _period = DefaultPeriod;
+    Duration _due{0};
+    Duration _step = Duration::max();  // to the beat after the next one; more than the period: the period
+    Duration _gap = ShortestGap;
+    std::optional<Duration> _last;
+    std::optional<Duration> _broughtForward;
+};
+
+}  // namespace Rabit

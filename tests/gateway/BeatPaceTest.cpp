@@ -1,0 +1,104 @@
+#include "presence/BeatPace.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Ns = std::chrono::nanoseconds;
+
+// When beats are sent in a time, by a node that sends each one when it is due.
+std::vector<Ns> BeatsOf(BeatPace &pace, Ns from, Ns to)
+{
+    std::vector<Ns> beats;
+    for (Ns now = std::max(from, pace.Due()); now < to; now = pace.Due())
+    {
+        beats.push_back(now);
+        pace.Sent(now);
+    }
+    return beats;
+}
+
+TEST(BeatPace, BeatsOnceAPeriod)
+{
+    BeatPace pace;
+    EXPECT_EQ(BeatsOf(pace, 1s, 2600ms), (std::vector<Ns>{1s, 1500ms, 2s, 2500ms}));
+}
+
+TEST(BeatPace, WhoHasComeHearsBeatsThatFollowEachOtherQuicklyAtFirst)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.Introduce(1200ms);
+    EXPECT_EQ(BeatsOf(pace, 1200ms, 3s),
+              (std::vector<Ns>{1200ms, 1250ms, 1350ms, 1550ms, 1950ms, 2450ms, 2950ms}));
+}
+
+TEST(BeatPace, NoTwoBeatsFollowEachOtherMoreQuicklyThanTheShortestGap)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.Introduce(1s);
+    EXPECT_EQ(pace.Due(), 1s + BeatPace::ShortestGap);
+}
+
+TEST(BeatPace, WhoAsksWithoutEndHasItsBeatsAtMostOnceAPeriod)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    std::vector<Ns> gaps;
+    for (Ns now = 1s; gaps.size() < 8;)
+    {
+        const Ns next = std::min(pace.EarliestToAsk(), pace.Due());
+        gaps.push_back(next - now);
+        now = next;
+        pace.Sent(now);
+    }
+    EXPECT_EQ(gaps, (std::vector<Ns>{50ms, 100ms, 200ms, 400ms, 500ms, 500ms, 500ms, 500ms}));
+}
+
+TEST(BeatPace, AfterSomeQuietABeatMayBeBroughtForwardAtOnceAgain)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    for (int i = 0; i < 4; ++i)
+    {
+        pace.Sent(pace.EarliestToAsk());
+    }
+    const auto beats = BeatsOf(pace, 1750ms, 8s);
+    EXPECT_EQ(pace.EarliestToAsk(), beats.back() + BeatPace::ShortestGap);
+}
+
+TEST(BeatPace, AShorterPeriodHoldsAtOnce)
+{
+    BeatPace pace;
+    pace.SetPeriod(10s);
+    pace.Sent(1s);
+    pace.SetPeriod(1s);
+    EXPECT_EQ(BeatsOf(pace, 1s, 4s), (std::vector<Ns>{2s, 3s}));
+}
+
+TEST(BeatPace, ALongerPeriodHoldsFromTheNextBeatOn)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.SetPeriod(5s);
+    EXPECT_EQ(BeatsOf(pace, 1s, 12s), (std::vector<Ns>{1500ms, 6500ms, 11500ms}));
+}
+
+TEST(BeatPace, APeriodThatIsImpossibleBecomesTheNearestThatIs)
+{
+    BeatPace pace;
+    pace.SetPeriod(0s);
+    EXPECT_EQ(pace.Period(), BeatPace::ShortestPeriod);
+    pace.SetPeriod(1h);
+    EXPECT_EQ(pace.Period(), BeatPace::LongestPeriod);
+}
+
+}  // namespace
+}  // namespace Rabit
