@@ -93,14 +93,18 @@ private:
     void HearAnnouncement(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
     void CheckLease(const ParticipantPtr &me, ParticipantId peer, std::uint64_t birth);
     void LosePeer(const ParticipantPtr &me, ParticipantId peer, PeerEvent::Kind how);
+    void TellPeerEvent(const ParticipantPtr &me, const Peer &peer, PeerEvent::Kind what);
+
+    // Endpoints.cpp
     void EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed);
     void SendEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
     void RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth);
     void HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
     void HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer, std::uint64_t version);
+
+    // Matching.cpp
     void EndpointAppeared(const ParticipantPtr &me, const Peer &peer, const EndpointInfo &remote);
     void EndpointGone(const ParticipantPtr &me, const EndpointId &remote);
-    void TellPeerEvent(const ParticipantPtr &me, const Peer &peer, PeerEvent::Kind what);
     bool Fits(const ParticipantPtr &me, const EndpointInfo &writer, const EndpointInfo &reader);
     void MatchReader(const ParticipantPtr &me, WriterState &writer, const EndpointInfo &remote);
     void MatchWriter(const ParticipantPtr &me, const Peer &peer, ReaderState &reader,
@@ -112,12 +116,14 @@ private:
     static void CountSample(const ParticipantState &me, const Sample &sample, std::uint64_t destinations);
     static void CountOther(const ParticipantState &me, const Datagram &datagram);
 
-    // Delivery.cpp
+    // WriterSide.cpp
     void SendSample(const ParticipantState &me, const WriterState &writer, const EndpointId &to,
                     ReaderProxy &reader, const SamplePtr &sample, Time processing = Time(0));
     void KeepHeartbeat(WriterState &writer);
     void SendHeartbeats(const ParticipantState &me, WriterState &writer);
     void HearAcknowledgement(const ParticipantState &me, WriterState &writer, const Datagram &datagram);
+
+    // ReaderSide.cpp
     void HearSample(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
     void HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram);
     void SkipTo(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,

@@ -1,4 +1,4 @@
-// How samples get from writers to readers: the shape of RTPS 2.3, 8.4, without its encoding.
+// How a writer sends and repairs: the shape of RTPS 2.3, 8.4, without its encoding.
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -10,9 +10,6 @@ namespace Rabit::Simulated
 
 namespace
 {
-
-// An RTPS acknowledgement names at most so many missing samples.
-constexpr std::size_t MostMissing = 256;
 
 auto FindInHistory(const WriterState &writer, std::uint64_t sequence)
 {
@@ -238,128 +235,6 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
         }
     }
     LetGo(writer);
-}
-
-void NetworkCore::HearSample(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram)
-{
-    const auto found = reader->Writers.find(datagram.Writer);
-    if (found == reader->Writers.end())
-    {
-        return;  // not matched, or not yet
-    }
-    WriterProxy &writer = found->second;
-    const std::uint64_t sequence = datagram.Content->Sequence;
-    if (writer.Reliable)
-    {
-        SkipTo(me, reader, found->first, writer, datagram.First);
-        if (sequence >= writer.Expected)
-        {
-            writer.Early.try_emplace(sequence, datagram.Content);
-        }
-        HandOverInOrder(reader, found->first, writer);
-        return;
-    }
-    if (writer.Started && sequence < writer.Expected)
-    {
-        return;  // came twice, or too late
-    }
-    if (writer.Started && sequence > writer.Expected)
-    {
-        me->Log->SamplesLost(sequence - writer.Expected);
-    }
-    writer.Started = true;
-    writer.Expected = sequence + 1;
-    HandOver(reader, found->first, writer, datagram.Content);
-}
-
-void NetworkCore::HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reader, const Datagram &datagram)
-{
-    const auto found = reader->Writers.find(datagram.Writer);
-    if (found == reader->Writers.end() || !found->second.Reliable)
-    {
-        return;
-    }
-    WriterProxy &writer = found->second;
-    SkipTo(me, reader, found->first, writer, datagram.First);
-    HandOverInOrder(reader, found->first, writer);
-    Datagram answer;
-    answer.What = Datagram::Kind::Acknowledgement;
-    answer.Writer = datagram.Writer;
-    answer.Reader = datagram.Reader;
-    answer.First = writer.Expected;
-    for (std::uint64_t sequence = writer.Expected;
-         sequence <= datagram.Last && answer.Sequences.size() < MostMissing; ++sequence)
-    {
-        if (!writer.Early.contains(sequence))
-        {
-            answer.Sequences.push_back(sequence);
-        }
-    }
-    Send(*me, datagram.Writer.Participant, std::move(answer), _timings.ResponseDelay);
-}
-
-// Nothing below `first` will come any more: hands over what came early of it and gives up the rest.
-void NetworkCore::SkipTo(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
-                         WriterProxy &writer, std::uint64_t first)
-{
-    if (!writer.Started)
-    {
-        writer.Started = true;
-        writer.Expected = first;
-        return;
-    }
-    if (first <= writer.Expected)
-    {
-        return;
-    }
-    std::uint64_t lost = first - writer.Expected;
-    while (!writer.Early.empty() && writer.Early.begin()->first < first)
-    {
-        const auto early = writer.Early.begin();
-        --lost;
-        HandOver(reader, from, writer, early->second);
-        writer.Early.erase(early);
-    }
-    writer.Expected = first;
-    me->Log->SamplesLost(lost);
-}
-
-void NetworkCore::HandOverInOrder(const ReaderPtr &reader, const EndpointId &from, WriterProxy &writer)
-{
-    while (!writer.Early.empty() && writer.Early.begin()->first == writer.Expected)
-    {
-        const auto next = writer.Early.begin();
-        HandOver(reader, from, writer, next->second);
-        writer.Early.erase(next);
-        ++writer.Expected;
-    }
-}
-
-void NetworkCore::HandOver(const ReaderPtr &reader, const EndpointId &from, const WriterProxy &writer,
-                           const SamplePtr &sample)
-{
-    _calls.push_back(
-        [reader, sample, id = ToWriterId(from), node = writer.Node]
-        {
-            reader->Gate.Run(
-                [&]
-                {
-                    SampleInfo info;
-                    info.Writer = id;
-                    info.Node = node->Node;
-                    info.Incarnation = node->Incarnation;
-                    info.SourceTime = sample->SourceTime;
-                    info.Sequence = sample->Sequence;
-                    info.Alive = sample->Alive;
-                    info.Key = sample->Key;
-                    if (reader->Info->Keyed)
-                    {
-                        sample->Alive ? reader->Instances.Alive(info.Key, id)
-                                      : reader->Instances.Disposed(info.Key);
-                    }
-                    reader->Handler(sample->Bytes, info);
-                });
-        });
 }
 
 }  // namespace Rabit::Simulated
