@@ -27,13 +27,15 @@ Datagram MakeAnnouncement(const ParticipantPtr &participant, ParticipantId to)
 // To everybody in the domain, known or not; and again after a while.
 void NetworkCore::Announce(const ParticipantPtr &participant)
 {
+    Letters letters;
     for (const auto &[id, other] : _participants)
     {
         if (other != participant && other->Settings.Domain == participant->Settings.Domain)
         {
-            Send(*participant, id, MakeAnnouncement(participant, id), _timings.DiscoveryDelay);
+            letters.push_back({id, MakeAnnouncement(participant, id), _timings.DiscoveryDelay});
         }
     }
+    SendTogether(*participant, std::move(letters), participant->Settings.Multicast);
     Time next = participant->Settings.AnnouncementPeriod;
     if (participant->EarlyAnnouncements > 0)
     {

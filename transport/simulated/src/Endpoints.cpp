@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "NetworkCore.h"
+#include "common/MulticastUse.h"
 
 namespace Rabit::Simulated
 {
@@ -30,28 +31,39 @@ void NetworkCore::EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, 
     std::erase_if(*endpoints, [&](const EndpointInfoPtr &endpoint) { return endpoint->Id == removed; });
     me.Endpoints = std::move(endpoints);
     ++me.Version;
+    Letters letters;
     for (auto &[id, peer] : me.Peers)
     {
-        SendEndpoints(me, id, peer);
+        letters.push_back({id, MakeEndpoints(me, id, peer)});
     }
+    SendTogether(me, std::move(letters), IsMulticastForData(me.Settings));
 }
 
 void NetworkCore::SendEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer)
 {
-    if (peer.ConfirmedVersion == me.Version)
+    if (peer.ConfirmedVersion != me.Version)
     {
-        return;
+        Send(me, to, MakeEndpoints(me, to, peer));
     }
+}
+
+// They are sent at once, and again until the peer confirms them.
+Datagram NetworkCore::MakeEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer)
+{
     Datagram datagram;
     datagram.What = Datagram::Kind::Endpoints;
     datagram.First = me.Version;
     datagram.Endpoints = me.Endpoints;
-    Send(me, to, std::move(datagram));
+    const auto isNews = [&](const EndpointInfoPtr &endpoint)
+    { return endpoint->Since > peer.ConfirmedVersion; };
+    datagram.News =
+        static_cast<std::size_t>(std::count_if(me.Endpoints->begin(), me.Endpoints->end(), isNews));
     if (!peer.RepairPending)
     {
         peer.RepairPending = true;
         Later(_timings.DiscoveryRepair, {Event::Kind::EndpointRepairTimer, me.Id, to, peer.Birth, {}});
     }
+    return datagram;
 }
 
 void NetworkCore::RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth)
@@ -113,7 +125,8 @@ WriterPtr NetworkCore::AddWriter(const ParticipantPtr &participant, const TopicD
                                                                topic.TypeName,
                                                                static_cast<bool>(topic.KeyOf),
                                                                qos,
-                                                               partitions});
+                                                               partitions,
+                                                               participant->Version + 1});
     participant->Writers.emplace(writer->Info->Id, writer);
     for (const auto &[id, peer] : participant->Peers)
     {
@@ -142,7 +155,8 @@ ReaderPtr NetworkCore::AddReader(const ParticipantPtr &participant, const TopicD
                                                     topic.TypeName,
                                                     static_cast<bool>(topic.KeyOf),
                                                     qos,
-                                                    partitions});
+                                                    partitions,
+                                                    participant->Version + 1});
     const auto reader = std::make_shared<ReaderState>(participant->Log, info, std::move(handler));
     participant->Readers.emplace(info->Id, reader);
     for (const auto &[id, peer] : participant->Peers)

@@ -30,6 +30,12 @@ std::uint32_t FaultPlan::NumberOf(const std::string &node)
     return entry->second;
 }
 
+std::optional<std::uint32_t> FaultPlan::Find(const std::string &node) const
+{
+    const auto found = _numbers.find(node);
+    return found == _numbers.end() ? std::nullopt : std::optional(found->second);
+}
+
 const SimulatedFaults &FaultPlan::Between(std::uint32_t from, std::uint32_t to)
 {
     const auto [entry, isNew] = _found.try_emplace(std::uint64_t{from} << 32 | to);

@@ -3,6 +3,7 @@
 #include <rabit/simulated/SimulatedNetwork.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -18,6 +19,8 @@ public:
     void Clear();
     // The number of a node's name; the same for the same name.
     std::uint32_t NumberOf(const std::string &node);
+    // Nothing if nobody has asked for it.
+    std::optional<std::uint32_t> Find(const std::string &node) const;
     const SimulatedFaults &Between(std::uint32_t from, std::uint32_t to);
 
 private:

@@ -91,8 +91,7 @@ void NetworkCore::MatchReader(const ParticipantPtr &me, WriterState &writer, con
         proxy->second.Acknowledged = 0;
         for (const auto &sample : writer.History)
         {
-            CountSample(*me, *sample, 1);
-            SendSample(*me, writer, remote.Id, proxy->second, sample);
+            Send(*me, remote.Id.Participant, MakeData(writer, remote.Id, proxy->second, sample));
         }
         KeepHeartbeat(writer);
     }

@@ -18,6 +18,25 @@ void NetworkCore::ClearFaults()
     _faults.Clear();
 }
 
+void NetworkCore::SetMedium(const std::string &nodes, const SimulatedMedium &medium)
+{
+    const std::lock_guard lock(_mutex);
+    _media.Set(nodes, medium);
+}
+
+SimulatedAir NetworkCore::Air(const std::string &nodes) const
+{
+    const std::lock_guard lock(_mutex);
+    return _media.AirOf(nodes);
+}
+
+SimulatedSent NetworkCore::Sent(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto number = _faults.Find(node);
+    return number ? _sent[*number] : SimulatedSent();
+}
+
 Time NetworkCore::Now() const
 {
     const std::lock_guard lock(_mutex);
@@ -75,6 +94,11 @@ ParticipantPtr NetworkCore::Join(const TransportSettings &settings, PeerHandler 
     const std::lock_guard lock(_mutex);
     participant->Id = ++_lastParticipant;
     participant->NodeNumber = _faults.NumberOf(settings.Node);
+    if (participant->NodeNumber == _sent.size())
+    {
+        _media.AddNode(settings.Node);
+        _sent.emplace_back();
+    }
     _participants.emplace(participant->Id, participant);
     Announce(participant);
     return participant;
@@ -90,15 +114,17 @@ void NetworkCore::Leave(ParticipantState &participant)
     participant.Gone = true;
     _participants.erase(participant.Id);
     // To everybody: a peer may know this participant before it is known here.
+    Letters goodbyes;
     for (const auto &[id, other] : _participants)
     {
         if (other->Settings.Domain == participant.Settings.Domain)
         {
             Datagram bye;
             bye.What = Datagram::Kind::Bye;
-            Send(participant, id, std::move(bye));
+            goodbyes.push_back({id, std::move(bye)});
         }
     }
+    SendTogether(participant, std::move(goodbyes), participant.Settings.Multicast);
 }
 
 void NetworkCore::CrashNode(const std::string &node)
@@ -115,6 +141,11 @@ void NetworkCore::CrashNode(const std::string &node)
 
 void NetworkCore::Handle(Event event)
 {
+    if (event.What == Event::Kind::Passage)
+    {
+        OnPassage(_media.ByNumber(event.At));
+        return;
+    }
     const auto found = _participants.find(event.At);
     if (found == _participants.end())
     {
@@ -140,6 +171,8 @@ void NetworkCore::Handle(Event event)
             {
                 SendHeartbeats(*at, *writer->second);
             }
+            break;
+        case Event::Kind::Passage:
             break;
     }
 }
@@ -190,46 +223,6 @@ void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Dat
             }
             return;
     }
-}
-
-void NetworkCore::Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing)
-{
-    const auto target = _participants.find(to);
-    ++_traffic.Sent;
-    CountOther(from, datagram);
-    if (target == _participants.end())
-    {
-        ++_traffic.Lost;
-        return;
-    }
-    const SimulatedFaults &faults = _faults.Between(from.NodeNumber, target->second->NodeNumber);
-    if (faults.Cut || _random.Happens(faults.Loss))
-    {
-        ++_traffic.Lost;
-        return;
-    }
-    Transmit(faults, from.Id, to, std::move(datagram), processing);
-}
-
-// Of a datagram that is not lost.
-void NetworkCore::Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to,
-                           Datagram datagram, Time processing)
-{
-    const auto delay = [&]
-    {
-        Time time = processing + faults.Delay + _random.PartOf(faults.Jitter);
-        if (_random.Happens(faults.Straggle))
-        {
-            time += _random.PartOf(faults.StraggleDelay);
-        }
-        return time;
-    };
-    if (_random.Happens(faults.Duplicate))
-    {
-        ++_traffic.Duplicated;
-        Later(delay(), {Event::Kind::Arrival, to, from, 0, datagram});
-    }
-    Later(delay(), {Event::Kind::Arrival, to, from, 0, std::move(datagram)});
 }
 
 }  // namespace Rabit::Simulated

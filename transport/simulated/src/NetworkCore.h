@@ -14,6 +14,7 @@
 
 #include "EventQueue.h"
 #include "FaultPlan.h"
+#include "MediumPlan.h"
 #include "Random.h"
 #include "World.h"
 
@@ -37,6 +38,9 @@ public:
     // For SimulatedNetwork.
     void SetFaults(const std::string &from, const std::string &to, const SimulatedFaults &faults);
     void ClearFaults();
+    void SetMedium(const std::string &nodes, const SimulatedMedium &medium);
+    SimulatedAir Air(const std::string &nodes) const;
+    SimulatedSent Sent(const std::string &node) const;
     Time Now() const;
     std::optional<Time> NextEvent() const;
     void AdvanceTo(Time time);
@@ -61,6 +65,13 @@ public:
     int MatchedWriters(const ReaderState &reader) const;
 
 private:
+    // What goes together, in packets of one size.
+    struct Cost
+    {
+        std::uint32_t Packets = 1;
+        std::uint64_t Bytes = 0;  // of each packet, on the air
+        bool IsDiscovery = false;
+    };
     struct Event
     {
         enum class Kind
@@ -69,7 +80,8 @@ private:
             AnnouncementTimer,
             LeaseTimer,
             EndpointRepairTimer,
-            HeartbeatTimer
+            HeartbeatTimer,
+            Passage  // of what is on the air of the medium number At
         };
         Kind What = Kind::Arrival;
         ParticipantId At = 0;     // where it happens
@@ -82,11 +94,21 @@ private:
     // NetworkCore.cpp
     void Handle(Event event);
     void Arrive(const ParticipantPtr &at, ParticipantId from, const Datagram &datagram);
-    void Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing = Time(0));
-    void Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to, Datagram datagram,
-                  Time processing);
     void Later(Time delay, Event event) { _events.Push(_now + delay, std::move(event)); }
     void RunCalls(std::unique_lock<std::mutex> &lock);
+
+    // Sending.cpp
+    void Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing = Time(0));
+    void SendTogether(const ParticipantState &from, Letters letters, bool multicast);
+    void SendAlone(const ParticipantState &from, Letter letter);
+    void Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to, Datagram datagram,
+                  Time processing);
+
+    // Air.cpp
+    void Offer(Medium &medium, const std::shared_ptr<Flight> &flight, const Cost &cost);
+    void AwaitPassage(const Medium &medium);
+    void OnPassage(Medium &medium);
+    void Land(Flight &flight);
 
     // Discovery.cpp
     void Announce(const ParticipantPtr &participant);
@@ -98,6 +120,7 @@ private:
     // Endpoints.cpp
     void EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed);
     void SendEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
+    Datagram MakeEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
     void RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth);
     void HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
     void HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer, std::uint64_t version);
@@ -111,14 +134,16 @@ private:
                      const EndpointInfo &remote);
     void UnmatchWriter(const ReaderPtr &reader, std::map<EndpointId, WriterProxy>::iterator proxy);
 
-    // Traffic.cpp: counts what is sent, by the sizes that it has with RTPS.
+    // Traffic.cpp: what is sent, by the sizes that it has with RTPS.
     static std::uint64_t CountDestinations(const ParticipantState &me, const WriterState &writer);
-    static void CountSample(const ParticipantState &me, const Sample &sample, std::uint64_t destinations);
-    static void CountOther(const ParticipantState &me, const Datagram &datagram);
+    static Cost CostOf(const ParticipantState &me, const Datagram &datagram);
+    void Count(const ParticipantState &me, const Cost &cost);
 
     // WriterSide.cpp
-    void SendSample(const ParticipantState &me, const WriterState &writer, const EndpointId &to,
-                    ReaderProxy &reader, const SamplePtr &sample, Time processing = Time(0));
+    static Datagram MakeData(const WriterState &writer, const EndpointId &to, const ReaderProxy &reader,
+                             const SamplePtr &sample);
+    static std::uint32_t *MissingOf(const ParticipantState &me, const Datagram &datagram);
+    static void NoteFragments(const ParticipantState &me, const Datagram &datagram, std::uint32_t lost);
     void KeepHeartbeat(WriterState &writer);
     void SendHeartbeats(const ParticipantState &me, WriterState &writer);
     void HearAcknowledgement(const ParticipantState &me, WriterState &writer, const Datagram &datagram);
@@ -140,6 +165,8 @@ private:
     Time _now{0};
     EventQueue<Event> _events;
     FaultPlan _faults;
+    MediumPlan _media;
+    std::vector<SimulatedSent> _sent;  // by number of the node
     SimulatedTraffic _traffic;
     std::map<ParticipantId, ParticipantPtr> _participants;
     ParticipantId _lastParticipant = 0;

@@ -23,6 +23,21 @@ void SimulatedNetwork::ClearFaults()
     _core->ClearFaults();
 }
 
+void SimulatedNetwork::SetMedium(const std::string &nodes, const SimulatedMedium &medium)
+{
+    _core->SetMedium(nodes, medium);
+}
+
+SimulatedAir SimulatedNetwork::Air(const std::string &nodes) const
+{
+    return _core->Air(nodes);
+}
+
+SimulatedSent SimulatedNetwork::Sent(const std::string &node) const
+{
+    return _core->Sent(node);
+}
+
 std::chrono::nanoseconds SimulatedNetwork::Now() const
 {
     return _core->Now();

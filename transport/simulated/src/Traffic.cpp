@@ -11,6 +11,7 @@ namespace Rabit::Simulated
 namespace
 {
 
+constexpr std::uint64_t Envelope = 20 + 8;  // IPv4, UDP
 constexpr std::uint64_t Header = 20;
 constexpr std::uint64_t Timestamp = 12;    // INFO_TS
 constexpr std::uint64_t Destination = 16;  // INFO_DST
@@ -34,35 +35,45 @@ std::uint64_t NetworkCore::CountDestinations(const ParticipantState &me, const W
                                            : participants.size();
 }
 
-void NetworkCore::CountSample(const ParticipantState &me, const Sample &sample, std::uint64_t destinations)
+NetworkCore::Cost NetworkCore::CostOf(const ParticipantState &me, const Datagram &datagram)
 {
-    const std::uint64_t once = sample.Datagrams * (Header + Timestamp + Data) + sample.Bytes.size();
-    me.Log->SentSamples(destinations * sample.Datagrams, destinations * once);
-}
-
-void NetworkCore::CountOther(const ParticipantState &me, const Datagram &datagram)
-{
+    const auto discovery = [&](std::uint64_t bytes)
+    {
+        const std::uint64_t packets = (bytes + me.Settings.MaxDatagram - 1) / me.Settings.MaxDatagram;
+        return Cost{static_cast<std::uint32_t>(packets), Envelope + Header + bytes / packets, true};
+    };
     switch (datagram.What)
     {
         case Datagram::Kind::Data:
-            break;  // by CountSample
+        {
+            const std::uint32_t *missing = MissingOf(me, datagram);
+            const Sample &sample = *datagram.Content;
+            return {missing != nullptr ? *missing : sample.Datagrams,
+                    Envelope + Header + Timestamp + Data +
+                        (sample.Bytes.size() + sample.Datagrams - 1) / sample.Datagrams};
+        }
         case Datagram::Kind::Heartbeat:
-            me.Log->SentSamples(1, Header + Destination + Heartbeat);
-            break;
+            return {1, Envelope + Header + Destination + Heartbeat};
         case Datagram::Kind::Acknowledgement:
-            me.Log->SentSamples(1, Header + Destination + Acknowledgement);
-            break;
+            return {1, Envelope + Header + Destination + Acknowledgement};
         case Datagram::Kind::Announce:
         case Datagram::Kind::Bye:
-            me.Log->SentDiscovery(1, Header + Timestamp + Data + Participant);
-            break;
+            return discovery(Timestamp + Data + Participant);
         case Datagram::Kind::Endpoints:
-            me.Log->SentDiscovery(1, Header + Destination + Data + Endpoint * datagram.Endpoints->size());
-            break;
+            return discovery(Destination + Data + Endpoint * datagram.News);
         case Datagram::Kind::EndpointsAck:
-            me.Log->SentDiscovery(1, Header + Destination + Acknowledgement);
-            break;
+            return discovery(Destination + Acknowledgement);
     }
+    return {};
+}
+
+void NetworkCore::Count(const ParticipantState &me, const Cost &cost)
+{
+    const std::uint64_t bytes = cost.Packets * (cost.Bytes - Envelope);
+    cost.IsDiscovery ? me.Log->SentDiscovery(cost.Packets, bytes) : me.Log->SentSamples(cost.Packets, bytes);
+    SimulatedSent &sent = _sent[me.NodeNumber];
+    sent.Datagrams += cost.Packets;
+    sent.Bytes += cost.Packets * cost.Bytes;
 }
 
 }  // namespace Rabit::Simulated

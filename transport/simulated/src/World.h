@@ -55,6 +55,7 @@ struct EndpointInfo
     bool Keyed = false;
     TopicQos Qos;
     std::vector<std::string> Partitions;
+    std::uint64_t Since = 0;  // the first version of the participant's endpoints with it
 };
 using EndpointInfoPtr = std::shared_ptr<const EndpointInfo>;
 using EndpointList = std::vector<EndpointInfoPtr>;  // by rising Id
@@ -80,8 +81,28 @@ struct Datagram
     std::uint64_t Last = 0;
     SamplePtr Content;
     std::shared_ptr<const EndpointList> Endpoints;
+    std::size_t News = 0;  // of the endpoints: how many the other side lacks, which travel
     std::vector<std::uint64_t> Sequences;
     std::shared_ptr<const ParticipantState> Sender;  // of an announcement
+};
+
+// A datagram for one reader, or for one participant, of those that may share it on the way.
+struct Letter
+{
+    ParticipantId To = 0;
+    Datagram Content;
+    std::chrono::nanoseconds Processing{0};
+};
+using Letters = std::vector<Letter>;  // those to one participant stand together
+
+// Letters that go together, in as many packets as they need. They have arrived when the last packet has.
+struct Flight
+{
+    ParticipantId From = 0;
+    std::uint32_t FromNode = 0;
+    Simulated::Letters Letters;
+    std::uint64_t Waiting = 0;                    // packets that have not passed yet
+    std::map<ParticipantId, std::uint32_t> Lost;  // packets, at whom
 };
 
 // How a writer sees a matched reader.

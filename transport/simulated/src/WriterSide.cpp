@@ -1,9 +1,9 @@
 // How a writer sends and repairs: the shape of RTPS 2.3, 8.4, without its encoding.
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "NetworkCore.h"
+#include "common/MulticastUse.h"
 
 namespace Rabit::Simulated
 {
@@ -95,27 +95,17 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     {
         writer.Disposals.push_back(sample);
     }
-    if (node == nullptr)
+    Letters letters;
+    for (const auto &[id, reader] : writer.Readers)
     {
-        CountSample(participant, *sample, CountDestinations(participant, writer));
-    }
-    std::set<ParticipantId> told;
-    for (auto &[id, reader] : writer.Readers)
-    {
-        if (node != nullptr)
+        const auto peer = participant.Peers.find(id.Participant);
+        if (node == nullptr || (peer != participant.Peers.end() && peer->second.Who->Node == *node))
         {
-            const auto peer = participant.Peers.find(id.Participant);
-            if (peer == participant.Peers.end() || peer->second.Who->Node != *node)
-            {
-                continue;
-            }
-            if (told.insert(id.Participant).second)
-            {
-                CountSample(participant, *sample, 1);
-            }
+            letters.push_back({id.Participant, MakeData(writer, id, reader, sample)});
         }
-        SendSample(participant, writer, id, reader, sample);
     }
+    SendTogether(participant, std::move(letters),
+                 node == nullptr && IsMulticastForData(participant.Settings));
     LetGo(writer);
     KeepHeartbeat(writer);
     return true;
@@ -139,8 +129,8 @@ int NetworkCore::MatchedWriters(const ReaderState &reader) const
     return static_cast<int>(reader.Writers.size());
 }
 
-void NetworkCore::SendSample(const ParticipantState &me, const WriterState &writer, const EndpointId &to,
-                             ReaderProxy &reader, const SamplePtr &sample, Time processing)
+Datagram NetworkCore::MakeData(const WriterState &writer, const EndpointId &to, const ReaderProxy &reader,
+                               const SamplePtr &sample)
 {
     Datagram datagram;
     datagram.What = Datagram::Kind::Data;
@@ -148,34 +138,38 @@ void NetworkCore::SendSample(const ParticipantState &me, const WriterState &writ
     datagram.Reader = to;
     datagram.First = FirstFor(writer, reader);
     datagram.Content = sample;
-    if (sample->Datagrams == 1)
+    return datagram;
+}
+
+// How many packets of a large sample that reader still lacks: only those are sent. nullptr if it is not one.
+std::uint32_t *NetworkCore::MissingOf(const ParticipantState &me, const Datagram &datagram)
+{
+    if (datagram.What != Datagram::Kind::Data || datagram.Content->Datagrams == 1)
     {
-        Send(me, to.Participant, std::move(datagram), processing);
-        return;
+        return nullptr;
     }
-    const auto target = _participants.find(to.Participant);
-    if (target == _participants.end())
+    const auto writer = me.Writers.find(datagram.Writer);
+    if (writer == me.Writers.end())
     {
-        return;
+        return nullptr;
     }
-    // Only the fragments that have not got through are sent; the sample is there when the last of them is.
-    const SimulatedFaults &faults = _faults.Between(me.NodeNumber, target->second->NodeNumber);
-    auto &missing = reader.Missing.try_emplace(sample->Sequence, sample->Datagrams).first->second;
-    std::uint32_t lost = 0;
-    for (std::uint32_t i = 0; i < missing; ++i)
+    const auto reader = writer->second->Readers.find(datagram.Reader);
+    const SamplePtr &sample = datagram.Content;
+    return reader == writer->second->Readers.end()
+               ? nullptr
+               : &reader->second.Missing.try_emplace(sample->Sequence, sample->Datagrams).first->second;
+}
+
+void NetworkCore::NoteFragments(const ParticipantState &me, const Datagram &datagram, std::uint32_t lost)
+{
+    if (std::uint32_t *missing = MissingOf(me, datagram))
     {
-        lost += faults.Cut || _random.Happens(faults.Loss) ? 1 : 0;
-    }
-    _traffic.Sent += missing;
-    _traffic.Lost += lost;
-    missing = lost;
-    if (lost == 0 || !reader.Reliable)
-    {
-        reader.Missing.erase(sample->Sequence);
-    }
-    if (lost == 0)
-    {
-        Transmit(faults, me.Id, to.Participant, std::move(datagram), processing);
+        *missing = std::min(*missing, lost);
+        ReaderProxy &reader = me.Writers.at(datagram.Writer)->Readers.at(datagram.Reader);
+        if (lost == 0 || !reader.Reliable)
+        {
+            reader.Missing.erase(datagram.Content->Sequence);
+        }
     }
 }
 
@@ -195,6 +189,7 @@ void NetworkCore::KeepHeartbeat(WriterState &writer)
 void NetworkCore::SendHeartbeats(const ParticipantState &me, WriterState &writer)
 {
     writer.HeartbeatPending = false;
+    Letters letters;
     for (const auto &[id, reader] : writer.Readers)
     {
         if (reader.Reliable && reader.Acknowledged < writer.LastSequence)
@@ -205,9 +200,10 @@ void NetworkCore::SendHeartbeats(const ParticipantState &me, WriterState &writer
             datagram.Reader = id;
             datagram.First = FirstFor(writer, reader);
             datagram.Last = writer.LastSequence;
-            Send(me, id.Participant, std::move(datagram));
+            letters.push_back({id.Participant, std::move(datagram)});
         }
     }
+    SendTogether(me, std::move(letters), IsMulticastForData(me.Settings));
     KeepHeartbeat(writer);
 }
 
@@ -230,8 +226,8 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
         if (sequence > reader.Acknowledged && sample != writer.History.end() &&
             (*sample)->Sequence == sequence)
         {
-            CountSample(me, **sample, 1);
-            SendSample(me, writer, found->first, reader, *sample, _timings.ResponseDelay);
+            Send(me, found->first.Participant, MakeData(writer, found->first, reader, *sample),
+                 _timings.ResponseDelay);
         }
     }
     LetGo(writer);

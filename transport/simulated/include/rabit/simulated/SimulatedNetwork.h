@@ -14,8 +14,8 @@ namespace Simulated
 class NetworkCore;
 }
 
-// What happens to the datagrams of one direction. Decided for each datagram when it is sent: those in flight
-// when the faults change keep their fate.
+// What happens to the datagrams of one direction. Decided for each datagram when it is sent, over a limited
+// medium when it has passed that: those in flight when the faults change keep their fate.
 struct SimulatedFaults
 {
     // Probability, 0 to 1, that a datagram is lost. A sample larger than TransportSettings::MaxDatagram
@@ -47,16 +47,49 @@ struct SimulatedTimings
     std::chrono::nanoseconds DiscoveryRepair = std::chrono::milliseconds(100);
 };
 
+// A half-duplex medium that nodes share, a radio: one datagram at a time is on the air, and the nodes that
+// have something to send take turns. What a node sends meanwhile waits in a queue of its own, first in first
+// out; it does so as well when its process has ended, and nobody who sends is told of it. A datagram takes
+// its size as TransportCounters counts it; one by multicast once, one by unicast once for each receiver.
+struct SimulatedMedium
+{
+    // Of all nodes together; 0: unlimited, nothing takes time or waits. What is on the air when it changes
+    // keeps the rate at which it began.
+    std::uint64_t BytesPerSecond = 0;
+    // What a node's queue holds at most. A datagram for which there is no room is dropped.
+    std::uint64_t QueueBytes = 16'000;
+};
+
+// What a medium did so far. Bytes are as on the air.
+struct SimulatedAir
+{
+    std::uint64_t Carried = 0;  // datagrams
+    std::uint64_t CarriedBytes = 0;
+    std::uint64_t Dropped = 0;  // datagrams for which the queue of their node had no room
+    std::uint64_t DroppedBytes = 0;
+    std::chrono::nanoseconds LongestWait{0};  // of a datagram in the queue
+};
+
+// What a node's sessions have sent so far, those that are gone included; on the air or dropped before it.
+struct SimulatedSent
+{
+    std::uint64_t Datagrams = 0;
+    std::uint64_t Bytes = 0;
+};
+
 // What the network did so far.
 struct SimulatedTraffic
 {
-    std::uint64_t Sent = 0;  // datagrams
-    std::uint64_t Lost = 0;  // of those sent: lost or cut off
+    std::uint64_t Sent = 0;  // datagrams, one for each receiver
+    std::uint64_t Lost = 0;  // of those sent: lost, cut off or dropped by a queue
     std::uint64_t Duplicated = 0;
     std::uint64_t Events = 0;  // steps of the simulation
 };
 
 // A network in the memory of one process, for SimulatedTransport sessions, under its own time.
+//
+// What takes the air is counted as with the real backends: samples with several readers, announcements and
+// endpoints go by multicast where the sender's settings allow it (TransportSettings::Multicast).
 //
 // Time stands still until AdvanceTo moves it. With one seed, the same calls in the same order give the same
 // deliveries in the same order. Nothing happens in between: AdvanceTo runs all handlers, on the calling
@@ -83,6 +116,14 @@ public:
     // first, and after ClearFaults, every direction has the default SimulatedFaults.
     void SetFaults(const std::string &from, const std::string &to, const SimulatedFaults &faults);
     void ClearFaults();
+
+    // Makes a medium for the nodes that fit that pattern, or changes the one made for it. Of several that a
+    // node fits, the one made last is its own. What it sends takes the air of that medium alone, wherever the
+    // receiver is; what has been sent does not move to another one. At first all is unlimited.
+    void SetMedium(const std::string &nodes, const SimulatedMedium &medium);
+    // Of the medium of that pattern; zeros if none was made.
+    SimulatedAir Air(const std::string &nodes) const;
+    SimulatedSent Sent(const std::string &node) const;
 
     // The simulated time; 0 at the start.
     std::chrono::nanoseconds Now() const;
