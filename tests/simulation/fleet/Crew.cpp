@@ -8,6 +8,15 @@
 namespace Rabit::Sim
 {
 
+namespace
+{
+
+// Bytes on the air: of a track, and of a note that is acknowledged, without its filler.
+constexpr std::uint64_t TrackOnAir = 190;
+constexpr std::uint64_t NoteOnAir = 330;
+
+}  // namespace
+
 Crew::Crew(RabitWorkspace &workspace, FleetWorld &world, const Oracles &oracles, SimRandom &random,
            std::size_t life)
     : RabitManager("Crew", workspace),
@@ -61,6 +70,11 @@ void Crew::FetchMirrors(MirrorOracle::Topic topic, std::vector<Mirror<Message>> 
         {
             _oracles.Mirrors.OnFetched(topic, _life, mirror.Node, mirror.Local->life, mirror.Local->number,
                                        mirror.Local->GetAgeSeconds());
+            if (topic == MirrorOracle::Topic::Track)
+            {
+                _oracles.Air.OnTrack(_life, mirror.Node,
+                                     _oracles.Mirrors.AgeOf(topic, _life, mirror.Local->life));
+            }
         }
     }
 }
@@ -134,6 +148,7 @@ void Crew::SendNotes()
     {
         const std::string address =
             (destination == Burst::ToAll ? std::string("*") : _world.NameOf(destination)) + "/" + Queue;
+        const std::uint64_t receivers = destination == Burst::ToAll ? _world.Plan.Machines.size() - 1 : 1;
         for (int i = 0; i < count; ++i)
         {
             const auto note = std::make_shared<Note>(_oracles.Notes.Make(_life, destination, _random));
@@ -142,6 +157,7 @@ void Crew::SendNotes()
             const bool accepted = AddMessageToQueue(address, std::static_pointer_cast<RabitMessage>(note),
                                                     _oracles.Notes.MakeReceipt(number));
             _oracles.Notes.OnSent(number, accepted, now);
+            _oracles.Air.OnWork(accepted ? (note->filler.size() + NoteOnAir) * receivers : 0);
         }
     }
 }
@@ -154,14 +170,16 @@ void Crew::ExecuteUnitOfWork()
     if (_fleet->FetchMessage())
     {
         _oracles.Presence.OnFleet(_life, *_fleet);
+        _oracles.Air.OnFleet(_life, *_fleet);
         _oracles.Notes.OnFleet(_life, *_fleet);
     }
     SendNotes();
-    if (now >= _nextTrack)
+    if (now >= _nextTrack && !_silent)
     {
         _track->life = _life;
         _track->number = _oracles.Mirrors.OnPosted(MirrorOracle::Topic::Track, _life);
         _track->PostMessage();
+        _oracles.Air.OnWork(TrackOnAir);
         _nextTrack = now + _plan.TrackPeriod;
     }
     if (std::exchange(_postMode, false))
@@ -175,7 +193,7 @@ void Crew::ExecuteUnitOfWork()
         _nextTake = now + (_hurries ? std::min<Time>(_plan.ConsumePeriod, std::chrono::milliseconds(1))
                                     : _plan.ConsumePeriod);
     }
-    Time next = _nextTrack;
+    Time next = _silent ? now + std::chrono::seconds(1) : _nextTrack;
     if (!_arrivals.empty())
     {
         next = std::min(next, std::max(_nextTake, now + (_stalledUntil - _world.Now)));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "AirOracle.h"
 #include "FleetWorld.h"
 #include "MirrorOracle.h"
 #include "NoteOracle.h"
@@ -25,6 +26,7 @@ struct Oracles
     NoteOracle &Notes;
     MirrorOracle &Mirrors;
     PresenceOracle &Presence;
+    AirOracle &Air;
     // The reading that the monotonic clock of the process of that life has now.
     std::function<Time(std::size_t life)> ClockOf;
 };
@@ -49,6 +51,8 @@ public:
     void StallUntil(Time until) { _stalledUntil = until; }
     // From now on it takes notes as they come.
     void Hurry();
+    // From now on it posts no tracks.
+    void FallSilent() { _silent = true; }
     // Tells the oracle what is in the queue: at the end of the process.
     void EmptyQueue();
     // What its gateway knows, as of the last fetch.
@@ -94,6 +98,7 @@ private:
     Time _nextTake{0};
     Time _stalledUntil{0};
     bool _hurries = false;
+    bool _silent = false;
 };
 
 }  // namespace Rabit::Sim

@@ -42,6 +42,10 @@ GatewayConfig FleetNode::MakeConfig() const
     config.Subscribe.push_back({.Message = "Mode", .Type = "Rabit::Sim::Mode"});
     config.Accept.push_back({.Queue = Crew::Queue, .Types = {"Rabit::Sim::Note"}});
     config.Send = plan.Send;
+    if (_world.Plan.Thin && _world.Plan.Thin->Budget)
+    {
+        config.Radio.Budget = static_cast<double>(*_world.Plan.Thin->Budget);
+    }
     return config;
 }
 
@@ -56,6 +60,7 @@ void FleetNode::Start(bool loseStorage)
     _world.Lives.push_back({.Node = _index});
     _oracles.Notes.OnEpoch(_index);
     _oracles.Presence.OnStarted(_index);
+    _oracles.Air.OnStarted(_index);
     _clock = {.StartedAt = _world.Now,
               .Offset = Time(_random.Between(0, 1'000'000'000'000'000)),
               .DriftPpm = _world.Plan.Machines[_index].DriftPpm};
@@ -77,6 +82,7 @@ void FleetNode::End()
     _world.Lives[_life].EndedAt = _world.Now;
     _oracles.Notes.OnEpoch(_index);
     _oracles.Presence.OnEnded(_index);
+    _oracles.Air.OnEnded(_index);
 }
 
 void FleetNode::Crash()

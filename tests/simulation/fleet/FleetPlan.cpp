@@ -108,6 +108,12 @@ void AddFault(FleetPlan &plan, SimRandom &random)
 FleetPlan::FleetPlan(std::uint64_t seed)
 {
     SimRandom random(seed * 0x2545f4914f6cdd1dULL + 7);
+    seed >= FirstThinSeed ? DrawThin(random) : DrawWide(random);
+}
+
+// Bad networks and much that happens on them, but all that is sent has room.
+void FleetPlan::DrawWide(SimRandom &random)
+{
     IncarnationsMayFall = random.Chance(0.5);
     Lease = random.Chance(0.5) ? GatewayConfig().Lease : std::chrono::milliseconds(3000);
     const double size = random.Unit();

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ enum class FaultKind
     Start,      // A starts (again)
     ClockStep,  // A's wall clock jumps by Amount seconds
     Stall,      // A takes nothing out of its queue for Amount nanoseconds
+    Rate,       // the thin medium carries Amount bytes a second from now on
+    Outage,     // nobody hears anybody
+    OutageEnd,
 };
 
 struct FaultEvent
@@ -69,6 +73,15 @@ struct ModePost
     std::size_t Node = 0;
 };
 
+// A medium that all share and that carries the fleet, and what must hold on it.
+struct ThinPlan
+{
+    std::uint64_t BytesPerSecond = 0;     // when nothing is wrong
+    std::optional<std::uint64_t> Budget;  // of each node
+    Time UpWithin{0};                     // all are UP so long after a start, or after an outage
+    Time PoseAge{0};                      // no track is older when it comes, besides the pause between two
+};
+
 // Everything about a run of the fleet that is decided beforehand. The same seed always gives the same plan.
 struct FleetPlan
 {
@@ -83,8 +96,16 @@ struct FleetPlan
     bool IncarnationsMayFall = false;
     // Of all nodes: the usual one, or one that most cuts outlast.
     std::chrono::milliseconds Lease{};
+    std::optional<ThinPlan> Thin;
+
+    // Seeds from this one on are over a thin medium.
+    static constexpr std::uint64_t FirstThinSeed = 1'000'000;
 
     explicit FleetPlan(std::uint64_t seed);
+
+private:
+    void DrawWide(SimRandom &random);
+    void DrawThin(SimRandom &random);
 };
 
 }  // namespace Rabit::Sim

@@ -1,16 +1,15 @@
 #include "FleetSimulation.h"
 
+#include "AirOracle.h"
 #include "FleetNode.h"
 #include "FleetPlan.h"
 #include "FleetWorld.h"
-
-#include <unistd.h>
+#include "Paths.h"
+#include "ScratchDirectory.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 namespace Rabit::Sim
@@ -25,28 +24,6 @@ using namespace std::chrono_literals;
 // outcome this long after the faults have stopped.
 constexpr Time DrainTime = 60s;
 constexpr std::uint64_t MostSteps = 5'000'000;
-
-// Removed with all that is in it.
-class ScratchDirectory
-{
-public:
-    explicit ScratchDirectory(std::uint64_t seed)
-        : _path(std::filesystem::temp_directory_path() /
-                ("rabit_fleet_simulation." + std::to_string(::getpid()) + "." + std::to_string(seed)))
-    {
-    }
-    ~ScratchDirectory()
-    {
-        std::error_code ignored;
-        std::filesystem::remove_all(_path, ignored);
-    }
-    ScratchDirectory(const ScratchDirectory &) = delete;
-    ScratchDirectory &operator=(const ScratchDirectory &) = delete;
-    const std::filesystem::path &Path() const { return _path; }
-
-private:
-    std::filesystem::path _path;
-};
 
 // Something of the plan that happens at a moment.
 struct PlannedEvent
@@ -70,28 +47,17 @@ public:
     SeedResult Run();
 
 private:
-    struct Path
-    {
-        SimulatedFaults Weather;
-        int Cuts = 0;
-    };
-    struct FaultCounts
-    {
-        std::uint64_t Crashes = 0;
-        std::uint64_t Leaves = 0;
-        std::uint64_t StoragesLost = 0;
-        std::uint64_t ClockSteps = 0;
-        std::uint64_t Cuts = 0;
-    };
-
     void MakeAgenda();
     Time NextStep() const;
     void StepTo(Time time);
     void RunPlanned(const PlannedEvent &event);
     void OnFault(const FaultEvent &fault);
+    void Start(std::size_t node, bool loseStorage);
+    void Look();
+    void RunUntil(Time end);
+    void BeIdle();
     void OnBurst(const Burst &burst);
     void OnCalm();
-    void ApplyPath(std::size_t from, std::size_t to);
     // Empty if all is as it should be when the faults are over, else what is not.
     std::string WhatIsMissing();
     std::string MissingBetween(std::size_t observer, std::size_t node);
@@ -104,15 +70,25 @@ private:
     MirrorOracle _mirrors;
     PresenceOracle _presence;
     SimulatedNetwork _network;
+    Paths _paths;
+    AirOracle _air;
     ScratchDirectory _scratch;
     Oracles _oracles;
     std::vector<std::unique_ptr<FleetNode>> _nodes;
     std::vector<DriftingClock> _clocks;  // by life
-    std::vector<Path> _paths;
-    std::vector<PlannedEvent> _agenda;  // by time
+    std::vector<PlannedEvent> _agenda;   // by time
     std::size_t _nextPlanned = 0;
-    std::uint64_t _steps = 0;
+    struct FaultCounts
+    {
+        std::uint64_t Crashes = 0;
+        std::uint64_t Leaves = 0;
+        std::uint64_t StoragesLost = 0;
+        std::uint64_t ClockSteps = 0;
+        std::uint64_t Rates = 0;
+        std::uint64_t Outages = 0;
+    };
     FaultCounts _faults;
+    std::uint64_t _steps = 0;
     Time _settledAt{0};
 };
 
@@ -124,26 +100,31 @@ FleetSimulation::FleetSimulation(std::uint64_t seed, std::ostream *trace)
       _mirrors(_world),
       _presence(_world),
       _network(seed),
+      _paths(_world, _network, _presence),
+      _air(_world, _network),
       _scratch(seed),
-      _oracles{
-          .Notes = _notes, .Mirrors = _mirrors, .Presence = _presence, .ClockOf = [this](std::size_t life) {
-              return _clocks[life].At(_world.Now);
-          }}
+      _oracles{.Notes = _notes,
+               .Mirrors = _mirrors,
+               .Presence = _presence,
+               .Air = _air,
+               .ClockOf = [this](std::size_t life) { return _clocks[life].At(_world.Now); }}
 {
     for (std::size_t i = 0; i < _plan.Machines.size(); ++i)
     {
         _nodes.push_back(std::make_unique<FleetNode>(_world, _oracles, _network, _random, i,
                                                      _scratch.Path() / _plan.Machines[i].Name));
     }
-    for (std::size_t from = 0; from < _nodes.size(); ++from)
+    if (_plan.Thin)
     {
-        for (std::size_t to = 0; to < _nodes.size(); ++to)
-        {
-            _paths.push_back({_plan.Start[from * _nodes.size() + to], 0});
-            ApplyPath(from, to);
-        }
+        _network.SetMedium("*", {.BytesPerSecond = _plan.Thin->BytesPerSecond});
     }
     MakeAgenda();
+}
+
+void FleetSimulation::Start(std::size_t node, bool loseStorage)
+{
+    _nodes[node]->Start(loseStorage);
+    _clocks.push_back(_nodes[node]->Clock());
 }
 
 void FleetSimulation::MakeAgenda()
@@ -161,14 +142,6 @@ void FleetSimulation::MakeAgenda()
     _agenda.push_back({_plan.CalmAt, PlannedEvent::Kind::Calm, 0});
     std::stable_sort(_agenda.begin(), _agenda.end(),
                      [](const PlannedEvent &a, const PlannedEvent &b) { return a.At < b.At; });
-}
-
-void FleetSimulation::ApplyPath(std::size_t from, std::size_t to)
-{
-    const Path &path = _paths[from * _nodes.size() + to];
-    SimulatedFaults faults = path.Weather;
-    faults.Cut = path.Cuts > 0;
-    _network.SetFaults(_world.NameOf(from), _world.NameOf(to), faults);
 }
 
 Time FleetSimulation::NextStep() const
@@ -203,6 +176,7 @@ void FleetSimulation::StepTo(Time time)
     {
         node->RunDue();
     }
+    _air.OnStep();
 }
 
 void FleetSimulation::RunPlanned(const PlannedEvent &event)
@@ -242,28 +216,22 @@ void FleetSimulation::OnBurst(const Burst &burst)
 void FleetSimulation::OnFault(const FaultEvent &fault)
 {
     FleetNode &node = *_nodes[fault.A];
-    Path &path = _paths[fault.A * _nodes.size() + fault.B];
-    static constexpr const char *Names[] = {"weather", "cut",   "cut ends",   "crash",
-                                            "leave",   "start", "clock step", "stall"};
+    static constexpr const char *Names[] = {"weather", "cut",    "cut ends",   "crash",
+                                            "leave",   "start",  "clock step", "stall",
+                                            "rate",    "outage", "outage ends"};
     _world.Say(std::string(Names[static_cast<int>(fault.Kind)]) + " " + _world.NameOf(fault.A) + " " +
                _world.NameOf(fault.B) + " " + std::to_string(fault.Amount) +
                (fault.LoseStorage ? " storage lost" : ""));
     switch (fault.Kind)
     {
         case FaultKind::Weather:
-            path.Weather = fault.Weather;
-            ApplyPath(fault.A, fault.B);
+            _paths.SetWeather(fault.A, fault.B, fault.Weather);
             break;
         case FaultKind::CutStart:
-            ++_faults.Cuts;
-            ++path.Cuts;
-            _presence.OnCut(fault.A, fault.B);
-            ApplyPath(fault.A, fault.B);
+            _paths.Cut(fault.A, fault.B);
             break;
         case FaultKind::CutEnd:
-            --path.Cuts;
-            _presence.OnCutEnd(fault.A, fault.B);
-            ApplyPath(fault.A, fault.B);
+            _paths.EndCut(fault.A, fault.B);
             break;
         case FaultKind::Crash:
         case FaultKind::Leave:
@@ -277,8 +245,7 @@ void FleetSimulation::OnFault(const FaultEvent &fault)
             if (!node.IsAlive())
             {
                 _faults.StoragesLost += fault.LoseStorage ? 1 : 0;
-                node.Start(fault.LoseStorage);
-                _clocks.push_back(node.Clock());
+                Start(fault.A, fault.LoseStorage);
             }
             break;
         case FaultKind::ClockStep:
@@ -291,6 +258,20 @@ void FleetSimulation::OnFault(const FaultEvent &fault)
                 node.Crew().StallUntil(_world.Now + Time(fault.Amount));
             }
             break;
+        case FaultKind::Rate:
+            ++_faults.Rates;
+            _network.SetMedium("*", {.BytesPerSecond = static_cast<std::uint64_t>(fault.Amount)});
+            _air.OnRate(static_cast<std::uint64_t>(fault.Amount));
+            break;
+        case FaultKind::Outage:
+            ++_faults.Outages;
+            _paths.CutAll();
+            _air.OnOutage();
+            break;
+        case FaultKind::OutageEnd:
+            _paths.EndCutOfAll();
+            _air.OnOutageEnd();
+            break;
     }
 }
 
@@ -301,8 +282,7 @@ void FleetSimulation::OnCalm()
     {
         for (std::size_t j = 0; j < _nodes.size(); ++j)
         {
-            _paths[i * _nodes.size() + j].Weather = SimulatedFaults();
-            ApplyPath(i, j);
+            _paths.SetWeather(i, j, SimulatedFaults());
         }
         if (_nodes[i]->IsAlive())
         {
@@ -310,8 +290,7 @@ void FleetSimulation::OnCalm()
         }
         else if (!_plan.Machines[i].NeverThere)
         {
-            _nodes[i]->Start(false);
-            _clocks.push_back(_nodes[i]->Clock());
+            Start(i, false);
             _nodes[i]->Crew().Hurry();
         }
     }
@@ -363,17 +342,57 @@ std::string FleetSimulation::WhatIsMissing()
     return undrained == 0 ? "" : std::to_string(undrained) + " notes have no outcome";
 }
 
+// At what managers see now.
+void FleetSimulation::Look()
+{
+    for (std::size_t i = 0; i < _nodes.size(); ++i)
+    {
+        for (std::size_t j = 0; j < _nodes.size(); ++j)
+        {
+            if (i != j && _nodes[i]->IsAlive() && _nodes[j]->IsAlive())
+            {
+                _air.OnNewestTrack(i, j,
+                                   _mirrors.AgeOf(MirrorOracle::Topic::Track, _nodes[i]->CurrentLife(),
+                                                  _nodes[j]->CurrentLife()));
+            }
+        }
+    }
+}
+
+void FleetSimulation::RunUntil(Time end)
+{
+    while (_world.Failure.empty() && _world.Now < end)
+    {
+        StepTo(std::min(NextStep(), end));
+    }
+}
+
+// Nobody has anything to say.
+void FleetSimulation::BeIdle()
+{
+    for (const auto &node : _nodes)
+    {
+        node->Crew().FallSilent();
+    }
+    RunUntil(_world.Now + 10s);
+    _air.BeginIdle();
+    RunUntil(_world.Now + 20s);
+    if (_world.Failure.empty())
+    {
+        _air.EndIdle();
+    }
+}
+
 SeedResult FleetSimulation::Run()
 {
     for (std::size_t i = 0; i < _nodes.size(); ++i)
     {
         if (!_plan.Machines[i].NeverThere)
         {
-            _nodes[i]->Start(false);
-            _clocks.push_back(_nodes[i]->Clock());
+            Start(i, false);
         }
     }
-    Time nextLook = _plan.CalmAt + 1s;
+    Time nextLook{0};
     while (_world.Failure.empty())
     {
         StepTo(NextStep());
@@ -381,7 +400,13 @@ SeedResult FleetSimulation::Run()
         {
             _world.Fail(10, "a node asks to be run without end");
         }
-        if (_world.Now < nextLook || _nextPlanned < _agenda.size())
+        if (_world.Now < nextLook)
+        {
+            continue;
+        }
+        nextLook = _world.Now + 100ms;
+        Look();
+        if (_world.Now < _plan.CalmAt + 1s || _nextPlanned < _agenda.size())
         {
             continue;
         }
@@ -394,9 +419,12 @@ SeedResult FleetSimulation::Run()
         {
             _world.Fail(11, "60 s after the faults stopped: " + missing);
         }
-        nextLook = _world.Now + 100ms;
     }
     _settledAt = _world.Now;
+    if (_plan.Thin && _world.Failure.empty())
+    {
+        BeIdle();
+    }
     for (const auto &node : _nodes)
     {
         if (node->IsAlive())
@@ -428,14 +456,16 @@ std::vector<Figure> FleetSimulation::Figures() const
             {"datagrams", traffic.Sent},
             {"datagrams lost", traffic.Lost},
             {"datagrams duplicated", traffic.Duplicated},
-            {"cuts", _faults.Cuts},
+            {"cuts", _paths.Cuts()},
             {"crashes", _faults.Crashes},
             {"orderly ends", _faults.Leaves},
             {"storages lost", _faults.StoragesLost},
             {"clock steps", _faults.ClockSteps},
             {"longest until all is well",
              static_cast<std::uint64_t>(std::max(_settledAt - _plan.CalmAt, Time(0)).count()),
-             Figure::Kind::Largest}};
+             Figure::Kind::Largest},
+            {"longest until UP over a thin medium", _air.LongestUntilUp(), Figure::Kind::Largest},
+            {"oldest track that came over a thin medium", _air.LongestTrackAge(), Figure::Kind::Largest}};
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ void NetworkCore::Count(const ParticipantState &me, const Cost &cost)
     SimulatedSent &sent = _sent[me.NodeNumber];
     sent.Datagrams += cost.Packets;
     sent.Bytes += cost.Packets * cost.Bytes;
+    sent.DiscoveryBytes += cost.IsDiscovery ? cost.Packets * cost.Bytes : 0;
 }
 
 }  // namespace Rabit::Simulated

@@ -75,6 +75,7 @@ struct SimulatedSent
 {
     std::uint64_t Datagrams = 0;
     std::uint64_t Bytes = 0;
+    std::uint64_t DiscoveryBytes = 0;  // of those: of participants and endpoints
 };
 
 // What the network did so far.

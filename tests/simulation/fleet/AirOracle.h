@@ -1,0 +1,86 @@
+#pragma once
+
+#include "FleetWorld.h"
+
+#include <rabit/simulated/SimulatedNetwork.h>
+
+#include <cstdint>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "gateway.idl.h"
+
+namespace Rabit::Sim
+{
+
+// Knows what the medium carries where the plan has a thin one, hears what is on it, and says if the fleet
+// does not hold together over it, shows old tracks, or says too much. Of other plans it checks nothing.
+class AirOracle
+{
+public:
+    AirOracle(FleetWorld &world, const SimulatedNetwork &network);
+
+    void OnStarted(std::size_t node);
+    void OnEnded(std::size_t node);
+    void OnOutage();
+    void OnOutageEnd();
+    void OnRate(std::uint64_t bytesPerSecond);
+
+    // After each step of the simulation: what is on the air.
+    void OnStep();
+    // What the gateway of a life shows now.
+    void OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet);
+    // A track of that age (true time) has come.
+    void OnTrack(std::size_t observerLife, std::size_t node, Time age);
+    // Of the newest track that an observer has of a node that is live, now and then.
+    void OnNewestTrack(std::size_t observer, std::size_t node, Time age);
+    // What was to be said so far, in bytes on the air if it were said once.
+    void OnWork(std::uint64_t bytes) { _work += bytes; }
+    // Nothing is posted or sent any more: what is said from here to the second call is said by idle nodes.
+    void BeginIdle();
+    void EndIdle();
+
+    std::uint64_t LongestTrackAge() const { return static_cast<std::uint64_t>(_longestAge.count()); }
+    std::uint64_t LongestUntilUp() const { return static_cast<std::uint64_t>(_longestUntilUp.count()); }
+
+private:
+    // What an observer has to show of a node.
+    struct Pair
+    {
+        Time Since{0};  // they can hear each other from here on
+        bool WasUp = false;
+        bool Counts = false;  // both are there, and nothing is in the way
+    };
+    // What a node has sent in the last second.
+    struct Sender
+    {
+        bool Alive = false;
+        SimulatedSent Last;
+        std::deque<std::pair<Time, std::uint64_t>> Second;  // when, bytes
+        std::uint64_t Bytes = 0;                            // of those
+    };
+
+    Pair &PairOf(std::size_t observer, std::size_t node) { return _pairs[observer * _senders.size() + node]; }
+    void Restart(std::size_t node);
+    void CheckBudget(std::size_t node);
+    std::uint64_t Total() const;
+
+    FleetWorld &_world;
+    const SimulatedNetwork &_network;
+    const std::optional<ThinPlan> &_plan;
+    std::vector<Pair> _pairs;
+    std::vector<Sender> _senders;
+    bool _outage = false;
+    std::uint64_t _rate = 0;
+    Time _rateSince{0};
+    Time _discoverySince{0};  // something made DDS find somebody
+    std::uint64_t _starts = 0;
+    std::uint64_t _work = 0;
+    std::uint64_t _sentBeforeIdle = 0;
+    Time _idleSince{0};
+    Time _longestAge{0};
+    Time _longestUntilUp{0};
+};
+
+}  // namespace Rabit::Sim
