@@ -24,9 +24,10 @@ sys.path.insert(0, str(HERE.parent / "simulation" / "common"))
 import mutation  # noqa: E402
 from air_list import MUTATIONS as AIR  # noqa: E402
 from common_list import MUTATIONS as COMMON  # noqa: E402
+from mirrors_list import MUTATIONS as MIRRORS  # noqa: E402
 from transport_list import MUTATIONS as TRANSPORT  # noqa: E402
 
-MUTATIONS = [*AIR, *TRANSPORT, *COMMON]
+MUTATIONS = [*AIR, *MIRRORS, *TRANSPORT, *COMMON]
 # Only keeps a mutant that hangs from hanging the run; to hang is to be noticed.
 LIMIT_S = 120
 

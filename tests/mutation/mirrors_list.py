@@ -1,0 +1,59 @@
+"""Rules of how States are said once and repaired, broken on purpose. See mutations.py."""
+
+from mutation import Mutation
+
+MIRRORS = "gateway/mirrors/"
+PROGRAM = "gateway_parts_test"
+
+
+def repair(name, find, replace):
+    return Mutation(name, MIRRORS + "StateRepair.cpp", find, replace, f"{PROGRAM}:StateRepairTest.*")
+
+
+def version(name, find, replace):
+    return Mutation(name, MIRRORS + "StateVersion.h", find, replace, f"{PROGRAM}:StateVersion.*")
+
+
+MUTATIONS = [
+    # When a State is asked for
+    repair("who is heard first is given time", "entry.Judged ? AskAfter : Duration(0)", "AskAfter"),
+    repair("a sample on its way is asked for", "entry.Judged ? AskAfter : Duration(0)", "Duration(0)"),
+    repair("everything is new", "entry.Judged = true;", ""),
+    repair("what is there is asked for", "return taken &&", "return false && taken &&"),
+    repair("any value will do", "*taken > entry.Stated ||", "true ||"),
+    repair("what is newer than the beat is a lack", "*taken > entry.Stated ||", ""),
+    repair("versions tell the order", "*taken > entry.Stated ||",
+           "static_cast<std::int32_t>(StateVersion::Of(*taken) - StateVersion::Of(entry.Stated)) > 0 ||"),
+    repair("a version that came again is another", "StateVersion::Of(*taken) == StateVersion::Of(entry.Stated)",
+           "*taken == entry.Stated"),
+    repair("what was never written is asked for", "if (version == StateVersion::None)", "if (false)"),
+    repair("what comes meanwhile is asked for", "if (entry.LackingDue && Has(name, node, entry))", "if (false)"),
+    repair("each beat begins the wait anew", "else if (!entry.LackingDue)", "else"),
+    repair("one that is asked for again comes as quickly", "entry.Wait = std::min(2 * entry.Wait, LongestWait);", ""),
+    repair("the wait grows without end", "std::min(2 * entry.Wait, LongestWait)", "2 * entry.Wait"),
+    repair("a lack remembers the wait of another", "entry.Wait = AskAfter;", ""),
+    repair("the round trip does not count", "std::max(entry.Wait, node.RoundTrip + AskAfter)", "entry.Wait"),
+    repair("all ask at once", "Duration(0)) + Spread(others)", "Duration(0))"),
+    repair("two ask as late as a crowd", "std::min(others, many)", "many"),
+    repair("a crowd asks as late as it likes", "std::min(others, many)", "others"),
+    # Lives
+    repair("a former life tells of the present one", "|| found->second.Incarnation != told.Incarnation", ""),
+    repair("what a former life had counts", "_takenIn(name, node.Incarnation,", "_takenIn(name, 1,"),
+    repair("who is lost is asked", "Settle(found->second, entry);", ""),
+    repair("who is forgotten is due", "_due.erase({*found->second.Due, node});", ""),
+    repair("there is no end of nodes", "|| _nodes.size() >= MostNodes", ""),
+    # What is said
+    repair("what came is asked for still", "entry.Asked = false;", ""),
+    repair("that it came is not said", "node.Changed |= entry.Asked;", ""),
+    repair("it is said again and again", "node.Changed = false;", ""),
+    repair("what is no longer wanted is asked for", "if (asked) { _changed.insert(node); }", ""),
+    repair("what one has the other has", "if (entry.Asked)", "if (entry.Asked && ask.States.empty() && node.Entries[0].Asked)"),
+    # Versions
+    version("versions change with the rounding", "(time & ~(Step - 1)) + Step / 2;\n    return Of(middle)",
+            "(time & ~(Step - 1));\n    return Of(middle)"),
+    version("a time has no version", "Of(middle) == None ? middle + Step : middle", "middle"),
+    version("what follows has the same version", "Quantised(quantised + Step)", "Quantised(quantised + 1)"),
+    version("versions that came again are the same",
+            "(sourceTime & ~(Step - 1)) == (other & ~(Step - 1))", "Of(sourceTime) == Of(other)"),
+    version("a version may be of the future", "middle > notAfter ? middle - Step : middle", "middle"),
+]
