@@ -142,7 +142,8 @@ void RejoinDecision::Follow(TimePoint now, const View &view)
     std::erase_if(_usable,
                   [&](const auto &entry)
                   {
-                      const auto &[key, seen] = entry;
+                      const auto &key = entry.first;
+                      const auto &seen = entry.second;
                       const bool stays =
                           std::any_of(view.Usable.begin(), view.Usable.end(),
                                       [&](const HostNetwork &network) { return KeyOf(network) == key; });

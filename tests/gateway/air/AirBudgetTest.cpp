@@ -26,7 +26,7 @@ struct Traffic
     {
         for (Duration now = from;;)
         {
-            const std::size_t bytes = size(Sent.size());
+            const auto bytes = static_cast<std::size_t>(size(Sent.size()));
             now = budget.WhenFits(bytes, now);
             if (now > from)
             {

@@ -21,7 +21,7 @@ using testing::SizeIs;
 class Network
 {
 public:
-    struct Member : LinkOutput, LocalQueues, IncarnationSource
+    struct Member final : LinkOutput, LocalQueues, IncarnationSource
     {
         Member(Network &network, std::string name, std::uint64_t life) : Net(network), Life(life)
         {

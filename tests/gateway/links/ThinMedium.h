@@ -22,7 +22,7 @@ class ThinMedium
 {
 public:
     // A node whose queue takes everything. The payload of a message begins with when it was enqueued.
-    struct Member : LinkOutput, LocalQueues, IncarnationSource
+    struct Member final : LinkOutput, LocalQueues, IncarnationSource
     {
         Member(ThinMedium &medium, std::string name, std::size_t index) : Medium(medium), Index(index)
         {

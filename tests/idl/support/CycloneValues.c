@@ -109,7 +109,7 @@ static Keys_ShortKey ShortKey(void)
 static Keys_BoundedTextKey BoundedTextKey(void)
 {
     Keys_BoundedTextKey value = {.value = 1.0};
-    strcpy(value.name, "eleven bytes" + 1);
+    strcpy(value.name, &"eleven bytes"[1]);
     return value;
 }
 

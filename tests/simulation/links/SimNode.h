@@ -32,7 +32,7 @@ struct SimWorld
 
 // One node: a machine with a wall clock and perhaps a counter file, on which a process with a LinkNode and
 // local queues runs and crashes.
-class SimNode : public LinkOutput, public LocalQueues, public IncarnationSource
+class SimNode final : public LinkOutput, public LocalQueues, public IncarnationSource
 {
 public:
     SimNode(SimWorld &world, std::size_t index);

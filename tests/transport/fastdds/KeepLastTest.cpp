@@ -65,7 +65,7 @@ TEST(KeepLast, WithADepthOfOneEachPushesOutTheOneBefore)
 
 TEST(KeepLast, WhatWasDroppedMakesRoomWhereverItWas)
 {
-    for (const std::uint64_t dropped : {1, 2, 3})
+    for (const std::uint64_t dropped : {1u, 2u, 3u})
     {
         Kept kept(3);
         Write(kept, 1, 1);
@@ -127,7 +127,7 @@ TEST(KeepLast, AnInstanceHasEndedUpToItsEndAndNoOther)
     Write(kept, 1, 5);
     Write(kept, 3, 6);
     kept.End({3}, 6);
-    for (const std::uint64_t number : {1, 3, 4})
+    for (const std::uint64_t number : {1u, 3u, 4u})
     {
         EXPECT_TRUE(kept.HasEnded({1}, number)) << number;
     }

@@ -122,7 +122,8 @@ bool IsRepresentations(RtpsReader value)
 
 bool IsGuidOf(const GuidPrefix &sender, std::span<const std::uint8_t> guid)
 {
-    return std::equal(sender.begin(), sender.end(), guid.begin(), guid.begin() + sender.size());
+    const std::span<const std::uint8_t> prefix = guid.first(sender.size());
+    return std::equal(sender.begin(), sender.end(), prefix.begin(), prefix.end());
 }
 
 // Which endpoint an announcement of this topic may be about.
