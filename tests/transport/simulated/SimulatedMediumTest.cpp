@@ -26,6 +26,12 @@ RawSample SampleOnAir(std::size_t bytes)
     return RawSample{std::vector<std::uint8_t>(bytes - Headers)};
 }
 
+std::string Numbered(std::string text, int number)
+{
+    text += std::to_string(number);
+    return text;
+}
+
 SimulatedFaults AtOnce()
 {
     SimulatedFaults faults;
@@ -47,7 +53,7 @@ protected:
                 return FromUav1->MatchedReaders() == 2 && FromUav2->MatchedReaders() == 2 &&
                        AtGround->MatchedWriters() == 2 && AtTower->MatchedWriters() == 2;
             }));
-        Net.Settle();
+        Net.Pass(20s);
         Start = Net.Network().Now();
     }
 
@@ -209,7 +215,7 @@ TEST_F(SimulatedMediumTest, TwoReadersOfOneSessionShareTheDatagram)
     std::vector<std::string> more;
     const auto second = Ground->CreateReader(TextTopic(), Telemetry(), {}, Log(more));
     ASSERT_TRUE(Net.Until([&] { return FromUav1->MatchedReaders() == 3 && second->MatchedWriters() == 2; }));
-    Net.Settle();
+    Net.Pass(20s);
     Start = Net.Network().Now();
     Net.Network().SetMedium("*", {.BytesPerSecond = 10'000});
     Write(*FromUav1, 1000);
@@ -333,7 +339,7 @@ TEST_F(SimulatedMediumTest, OfALargeReliableSampleOnlyTheDroppedPartsAreSentAgai
     const auto writer = Uav1->CreateWriter(TextTopic(), Stream(10), {"Large"});
     const auto reader = Ground->CreateReader(TextTopic(), Stream(10), {"Large"}, Log(Heard));
     ASSERT_TRUE(Net.Until([&] { return writer->MatchedReaders() == 1 && reader->MatchedWriters() == 1; }));
-    Net.Settle();
+    Net.Pass(20s);
     Net.Network().SetMedium("*", {.BytesPerSecond = 1'000'000, .QueueBytes = 4 * 1484});
     ASSERT_EQ(writer->Write(RawSample{std::vector<std::uint8_t>(8 * 1400 - 4)}, 1), WriteResult::Ok);
     Net.Pass(10ms);
@@ -345,6 +351,46 @@ TEST_F(SimulatedMediumTest, OfALargeReliableSampleOnlyTheDroppedPartsAreSentAgai
     EXPECT_EQ(parts, 8u);
 }
 
+TEST(SimulatedMedium, ANewEndpointIsToldToAllAtOnceAndNotTheOthersOnceMore)
+{
+    SimulatedHarness net;
+    std::vector<std::unique_ptr<TransportSession>> sessions;
+    for (const char *node : {"a", "b", "c", "d"})
+    {
+        sessions.push_back(net.Backend().Open(net.SettingsFor(node, 1), {}));
+    }
+    std::vector<std::unique_ptr<TransportWriter>> writers;
+    net.Pass(10s);
+    std::uint64_t cost = 0;
+    for (int i = 0; i < 10; ++i)
+    {
+        const std::uint64_t before = net.Network().Sent("a").DiscoveryBytes;
+        writers.push_back(sessions[0]->CreateWriter({Numbered("Topic", i), "Type", {}}, Telemetry(), {}));
+        cost = net.Network().Sent("a").DiscoveryBytes - before;
+        net.Pass(1s);
+    }
+    EXPECT_LT(cost, 400u);
+}
+
+TEST(SimulatedMedium, ALostEndpointIsAskedForAndToldAgain)
+{
+    SimulatedHarness net;
+    const auto a = net.Backend().Open(net.SettingsFor("a", 1), {});
+    const auto b = net.Backend().Open(net.SettingsFor("b", 1), {});
+    net.Pass(10s);
+    SimulatedFaults cut;
+    cut.Cut = true;
+    net.Network().SetFaults("a", "b", cut);
+    const auto writer = a->CreateWriter(TextTopic(), Telemetry(), {});
+    const auto reader = b->CreateReader(TextTopic(), Telemetry(), {}, {});
+    net.Network().ClearFaults();
+    const std::uint64_t before = net.Network().Sent("a").DiscoveryBytes;
+    net.Pass(90ms);
+    EXPECT_EQ(reader->MatchedWriters(), 0);
+    EXPECT_TRUE(net.Until([&] { return reader->MatchedWriters() == 1; }));
+    EXPECT_LT(net.Network().Sent("a").DiscoveryBytes - before, 1000u);
+}
+
 TEST(SimulatedMedium, NodesFindEachOtherOverAThinOne)
 {
     SimulatedHarness net;
@@ -354,7 +400,7 @@ TEST(SimulatedMedium, NodesFindEachOtherOverAThinOne)
     std::vector<std::unique_ptr<TransportReader>> readers;
     for (int i = 0; i < 3; ++i)
     {
-        sessions.push_back(net.Backend().Open(net.SettingsFor("uav" + std::to_string(i), 1), {}));
+        sessions.push_back(net.Backend().Open(net.SettingsFor(Numbered("uav", i), 1), {}));
         writers.push_back(sessions.back()->CreateWriter(TextTopic(), Telemetry(), {}));
         readers.push_back(sessions.back()->CreateReader(TextTopic(), Telemetry(), {}, {}));
     }

@@ -10,8 +10,6 @@ namespace Rabit::Simulated
 namespace
 {
 
-constexpr Time EarlyAnnouncementPeriod = std::chrono::milliseconds(100);
-
 Datagram MakeAnnouncement(const ParticipantPtr &participant, ParticipantId to)
 {
     const auto peer = participant->Peers.find(to);
@@ -36,13 +34,15 @@ void NetworkCore::Announce(const ParticipantPtr &participant)
         }
     }
     SendTogether(*participant, std::move(letters), participant->Settings.Multicast);
-    Time next = participant->Settings.AnnouncementPeriod;
-    if (participant->EarlyAnnouncements > 0)
-    {
-        --participant->EarlyAnnouncements;
-        next = std::min(next, EarlyAnnouncementPeriod);
-    }
-    Later(next, {Event::Kind::AnnouncementTimer, participant->Id, 0, 0, {}});
+    participant->Announcements.OnAnnounced(_now);
+    AwaitAnnouncement(*participant);
+}
+
+void NetworkCore::AwaitAnnouncement(ParticipantState &participant)
+{
+    const Time next = std::max(participant.Announcements.Next(), _now);
+    Later(next - _now,
+          {Event::Kind::AnnouncementTimer, participant.Id, 0, ++participant.AnnouncementTimer, {}});
 }
 
 void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)
@@ -56,7 +56,15 @@ void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from,
     if (!isNew)
     {
         // One side may have lost the other, and with it what it was told, while the other noticed nothing.
-        HearEndpointsAck(*me, from, peer, datagram.First);
+        if (datagram.First < peer.ConfirmedVersion)
+        {
+            HearEndpointsAck(*me, from, peer, datagram.First, true);
+        }
+        if (datagram.First == 0)
+        {
+            me->Announcements.Owe();
+            AwaitAnnouncement(*me);
+        }
         return;
     }
     peer.Birth = ++_lastBirth;
@@ -65,7 +73,8 @@ void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from,
     peer.LastHeard = _now;
     Later(peer.Lease, {Event::Kind::LeaseTimer, me->Id, from, peer.Birth, {}});
     TellPeerEvent(me, peer, PeerEvent::Kind::Appeared);
-    Send(*me, from, MakeAnnouncement(me, from), _timings.DiscoveryDelay);
+    me->Announcements.Owe();
+    AwaitAnnouncement(*me);
     SendEndpoints(*me, from, peer);
 }
 

@@ -8,19 +8,6 @@
 namespace Rabit::Simulated
 {
 
-namespace
-{
-
-Datagram MakeEndpointsAck(std::uint64_t version)
-{
-    Datagram ack;
-    ack.What = Datagram::Kind::EndpointsAck;
-    ack.First = version;
-    return ack;
-}
-
-}  // namespace
-
 void NetworkCore::EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed)
 {
     auto endpoints = std::make_shared<EndpointList>(*me.Endpoints);
@@ -47,40 +34,68 @@ void NetworkCore::SendEndpoints(const ParticipantState &me, ParticipantId to, Pe
     }
 }
 
-// They are sent at once, and again until the peer confirms them.
+// What the peer has not been sent yet.
 Datagram NetworkCore::MakeEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer)
 {
     Datagram datagram;
     datagram.What = Datagram::Kind::Endpoints;
     datagram.First = me.Version;
+    datagram.Last = peer.SentVersion;
     datagram.Endpoints = me.Endpoints;
-    const auto isNews = [&](const EndpointInfoPtr &endpoint)
-    { return endpoint->Since > peer.ConfirmedVersion; };
+    const auto isNews = [&](const EndpointInfoPtr &endpoint) { return endpoint->Since > peer.SentVersion; };
     datagram.News =
         static_cast<std::size_t>(std::count_if(me.Endpoints->begin(), me.Endpoints->end(), isNews));
+    peer.SentVersion = me.Version;
+    peer.RepairGap = _timings.DiscoveryRepair;
     if (!peer.RepairPending)
     {
         peer.RepairPending = true;
-        Later(_timings.DiscoveryRepair, {Event::Kind::EndpointRepairTimer, me.Id, to, peer.Birth, {}});
+        Later(peer.RepairGap, {Event::Kind::EndpointRepairTimer, me.Id, to, peer.Birth, {}});
     }
     return datagram;
 }
 
+// Until the peer has confirmed the endpoints.
 void NetworkCore::RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth)
 {
-    const auto peer = me.Peers.find(to);
-    if (peer != me.Peers.end() && peer->second.Birth == birth)
+    const auto found = me.Peers.find(to);
+    if (found == me.Peers.end() || found->second.Birth != birth)
     {
-        peer->second.RepairPending = false;
-        SendEndpoints(me, to, peer->second);
+        return;
+    }
+    Peer &peer = found->second;
+    peer.RepairPending = peer.ConfirmedVersion != me.Version;
+    if (peer.RepairPending)
+    {
+        Datagram query;
+        query.What = Datagram::Kind::EndpointsQuery;
+        Send(me, to, std::move(query));
+        peer.RepairGap = std::min(2 * peer.RepairGap, _timings.LongestDiscoveryRepair);
+        Later(peer.RepairGap, {Event::Kind::EndpointRepairTimer, me.Id, to, birth, {}});
     }
 }
 
 void NetworkCore::HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer,
-                                   std::uint64_t version)
+                                   std::uint64_t version, bool asked)
 {
-    peer.ConfirmedVersion = version;
-    SendEndpoints(me, from, peer);
+    if (asked)
+    {
+        // What it lacks was lost, unless it is still on its way.
+        peer.ConfirmedVersion = version;
+        peer.SentVersion = version;
+        SendEndpoints(me, from, peer);
+    }
+    peer.ConfirmedVersion = std::max(peer.ConfirmedVersion, version);
+}
+
+void NetworkCore::AnswerEndpoints(const ParticipantState &me, ParticipantId from, const Peer &peer,
+                                  bool asked)
+{
+    Datagram ack;
+    ack.What = Datagram::Kind::EndpointsAck;
+    ack.First = peer.TheirVersion;
+    ack.Last = asked ? 1 : 0;
+    Send(me, from, std::move(ack));
 }
 
 void NetworkCore::HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)
@@ -88,10 +103,10 @@ void NetworkCore::HearEndpoints(const ParticipantPtr &me, ParticipantId from, co
     const auto known = me->Peers.find(from);
     if (known == me->Peers.end())
     {
-        return;  // it says so again until this participant has discovered it and confirms
+        return;  // it asks until this participant has discovered it and answers
     }
     Peer &peer = known->second;
-    if (datagram.First > peer.TheirVersion)
+    if (datagram.First > peer.TheirVersion && datagram.Last <= peer.TheirVersion)
     {
         const auto before = std::exchange(peer.TheirEndpoints, datagram.Endpoints);
         peer.TheirVersion = datagram.First;
@@ -111,7 +126,7 @@ void NetworkCore::HearEndpoints(const ParticipantPtr &me, ParticipantId from, co
             EndpointAppeared(me, peer, *endpoint);
         }
     }
-    Send(*me, from, MakeEndpointsAck(peer.TheirVersion));
+    AnswerEndpoints(*me, from, peer, false);
 }
 
 WriterPtr NetworkCore::AddWriter(const ParticipantPtr &participant, const TopicDescription &topic,

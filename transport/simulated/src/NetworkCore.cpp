@@ -158,7 +158,10 @@ void NetworkCore::Handle(Event event)
             Arrive(at, event.Other, event.Content);
             break;
         case Event::Kind::AnnouncementTimer:
-            Announce(at);
+            if (event.Birth == at->AnnouncementTimer)
+            {
+                Announce(at);
+            }
             break;
         case Event::Kind::LeaseTimer:
             CheckLease(at, event.Other, event.Birth);
@@ -201,7 +204,13 @@ void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Dat
         case Datagram::Kind::EndpointsAck:
             if (known != at->Peers.end())
             {
-                HearEndpointsAck(*at, from, known->second, datagram.First);
+                HearEndpointsAck(*at, from, known->second, datagram.First, datagram.Last != 0);
+            }
+            return;
+        case Datagram::Kind::EndpointsQuery:
+            if (known != at->Peers.end())
+            {
+                AnswerEndpoints(*at, from, known->second, true);
             }
             return;
         case Datagram::Kind::Data:

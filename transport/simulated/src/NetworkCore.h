@@ -86,7 +86,7 @@ private:
         Kind What = Kind::Arrival;
         ParticipantId At = 0;     // where it happens
         ParticipantId Other = 0;  // the sender of what arrives, or the peer that the timer is about
-        std::uint64_t Birth = 0;  // of that peer's entry
+        std::uint64_t Birth = 0;  // of that peer's entry; the number of an announcement timer
         Datagram Content;         // of an arrival; the heartbeat timer uses its Writer
     };
     using Calls = std::vector<std::function<void()>>;
@@ -112,6 +112,7 @@ private:
 
     // Discovery.cpp
     void Announce(const ParticipantPtr &participant);
+    void AwaitAnnouncement(ParticipantState &participant);
     void HearAnnouncement(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
     void CheckLease(const ParticipantPtr &me, ParticipantId peer, std::uint64_t birth);
     void LosePeer(const ParticipantPtr &me, ParticipantId peer, PeerEvent::Kind how);
@@ -123,7 +124,9 @@ private:
     Datagram MakeEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
     void RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth);
     void HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
-    void HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer, std::uint64_t version);
+    void HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer, std::uint64_t version,
+                          bool asked);
+    void AnswerEndpoints(const ParticipantState &me, ParticipantId from, const Peer &peer, bool asked);
 
     // Matching.cpp
     void EndpointAppeared(const ParticipantPtr &me, const Peer &peer, const EndpointInfo &remote);

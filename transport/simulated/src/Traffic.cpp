@@ -61,6 +61,8 @@ NetworkCore::Cost NetworkCore::CostOf(const ParticipantState &me, const Datagram
             return discovery(Timestamp + Data + Participant);
         case Datagram::Kind::Endpoints:
             return discovery(Destination + Data + Endpoint * datagram.News);
+        case Datagram::Kind::EndpointsQuery:
+            return discovery(Destination + Heartbeat);
         case Datagram::Kind::EndpointsAck:
             return discovery(Destination + Acknowledgement);
     }

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "AnnouncementRounds.h"
 #include "common/HandlerGate.h"
 #include "common/InstanceTable.h"
 #include "common/ParticipantIdentity.h"
@@ -68,8 +69,9 @@ struct Datagram
     {
         Announce,        // I am here, and know your endpoints of version First
         Bye,             // I go
-        Endpoints,       // my endpoints, version First
-        EndpointsAck,    // I know your endpoints of version First
+        Endpoints,       // my endpoints, version First, for who knows those of version Last
+        EndpointsQuery,  // which version of my endpoints do you know?
+        EndpointsAck,    // I know your endpoints of version First; Last is 1 if asked
         Data,            // Content; nothing below First will come any more
         Heartbeat,       // I have First to Last for you
         Acknowledgement  // I have all below First, but miss Sequences
@@ -159,7 +161,9 @@ struct Peer
     std::uint64_t TheirVersion = 0;
     std::shared_ptr<const EndpointList> TheirEndpoints = std::make_shared<EndpointList>();
     std::uint64_t ConfirmedVersion = 0;  // of our endpoints, by it
+    std::uint64_t SentVersion = 0;       // of them, to it
     bool RepairPending = false;
+    std::chrono::nanoseconds RepairGap{0};
 };
 
 struct ParticipantState
@@ -168,6 +172,7 @@ struct ParticipantState
         : Settings(settings),
           Who(std::make_shared<ParticipantIdentity>(
               ParticipantIdentity{settings.Node, settings.Incarnation})),
+          Announcements(settings.AnnouncementPeriod),
           Log(std::make_shared<SessionLog>(settings)),
           Topics(Log),
           OnPeer(std::move(onPeer)),
@@ -186,7 +191,8 @@ struct ParticipantState
     std::uint32_t LastEntity = 0;
     std::uint64_t Version = 1;  // of Endpoints
     std::shared_ptr<const EndpointList> Endpoints = std::make_shared<EndpointList>();
-    int EarlyAnnouncements = 5;  // that are still to be made in quick succession
+    AnnouncementRounds Announcements;
+    std::uint64_t AnnouncementTimer = 0;  // the number of the one that counts
 
     // Not guarded by the network's mutex.
     const std::shared_ptr<SessionLog> Log;

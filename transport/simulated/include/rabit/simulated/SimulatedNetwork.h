@@ -43,8 +43,10 @@ struct SimulatedTimings
     std::chrono::nanoseconds ResponseDelay = std::chrono::milliseconds(1);
     // From the arrival of an announcement to the peer being known.
     std::chrono::nanoseconds DiscoveryDelay = std::chrono::milliseconds(5);
-    // Endpoints that a peer has not confirmed are told again this often.
+    // A peer that has not confirmed our endpoints is asked for them after this time, then at distances that
+    // double up to the longest, and told what it lacks.
     std::chrono::nanoseconds DiscoveryRepair = std::chrono::milliseconds(100);
+    std::chrono::nanoseconds LongestDiscoveryRepair = std::chrono::milliseconds(1000);
 };
 
 // A half-duplex medium that nodes share, a radio: one datagram at a time is on the air, and the nodes that
