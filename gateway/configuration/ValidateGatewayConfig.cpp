@@ -345,13 +345,13 @@ private:
 
 }  // namespace
 
-// A beat and what DDS says of a participant on its own, in the quarter that presence has for sure.
+// The beats in the quarter that presence has for sure, and what DDS says of a participant on its own.
 double SmallestBudget(std::chrono::milliseconds slowestBeat)
 {
-    constexpr double beat = 200.0;       // bytes
-    constexpr double discovery = 100.0;  // bytes a second
+    constexpr double beat = 160.0;      // bytes on the air, with some versions of States in it
+    constexpr double discovery = 20.0;  // bytes a second
     const double seconds = std::chrono::duration<double>(slowestBeat).count();
-    return 100.0 * std::ceil(4.0 * (beat / seconds + discovery / 4.0) / 100.0);
+    return 100.0 * std::ceil((4.0 * beat / seconds + discovery) / 100.0);
 }
 
 void ValidateGatewayConfig(const GatewayConfig &config)

@@ -11,6 +11,7 @@
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
+#include "manager/AirTraffic.h"
 #include "manager/TransportSettingsOf.h"
 #include "mirrors/Subscriptions.h"
 #include "mirrors/TopicPublisher.h"
@@ -115,6 +116,7 @@ public:
         _presence.Close();
         _subscriptions.Close();
         _links.Close();
+        _air.Close();
         _publishers.clear();
         _session.reset();
     }
@@ -142,19 +144,18 @@ public:
                 _links.HeardOf(peer->Node, peer->Incarnation);
             }
         }
-        if (now >= _presence.BeatDue())
+        for (const Presence::DelayHeard &delay : served.Delays)
         {
-            _presence.SendBeat(now);
+            _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt, now);
         }
-        Duration next = std::min({_presence.NextDue(), _presence.BeatDue(), _links.Service()});
-        for (TopicPublisher &publisher : _publishers)
+        if (served.RepeatStates)
         {
-            if (served.RepeatStates)
+            for (TopicPublisher &publisher : _publishers)
             {
                 publisher.Repeat();
             }
-            next = std::min(next, publisher.Service(Now()));
         }
+        const Duration next = std::min(_presence.NextDue(), _air.Serve(now));
         if (change.State || change.Offers || now >= _nextFleet)
         {
             PostFleet(now);
@@ -194,6 +195,7 @@ private:
             Attach(_publishers.back());
         }
         _presence.Open(*_session, Announcements::Of(_config, _incarnation));
+        _air.Open(*_session);
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
         if (!_forwards)
         {
@@ -272,6 +274,7 @@ private:
             _presence.Peers().CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
         fleet.malformed = _presence.Malformed() + _links.Malformed() + _senders.Refused();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
+        _air.Report(fleet, now);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
         FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
         AddProblems(now, fleet);
@@ -324,6 +327,7 @@ private:
     Duration _openedAt{0};
     std::unique_ptr<TransportSession> _session;
     std::deque<TopicPublisher> _publishers;
+    AirTraffic _air{_config, _workspace.GetClock(), _presence, _links, _publishers};
 };
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport)

@@ -5,9 +5,24 @@
 #include <rabit/gateway/ConfigError.h>
 
 #include <algorithm>
+#include <chrono>
 
 namespace Rabit
 {
+namespace
+{
+
+// With a budget. Participants' announcements are most of what a silent node would cost.
+constexpr std::chrono::milliseconds LongAnnouncementPeriod{30000};
+
+// What is configured holds.
+std::chrono::milliseconds LeaseOf(const GatewayConfig &config)
+{
+    const bool isSet = config.Lease != GatewayConfig().Lease || config.Lines.count("lease") != 0;
+    return config.Radio.Budget && !isSet ? 3 * LongAnnouncementPeriod : config.Lease;
+}
+
+}  // namespace
 
 TransportSettings TransportSettingsOf(const GatewayConfig &config, std::uint64_t incarnation)
 {
@@ -20,9 +35,10 @@ TransportSettings TransportSettingsOf(const GatewayConfig &config, std::uint64_t
     settings.Multicast = config.Multicast;
     settings.MaxDatagram = config.MaxDatagram;
     settings.SharedMemory = config.SharedMemory;
-    settings.Lease = config.Lease;
+    settings.Lease = LeaseOf(config);
     settings.AnnouncementPeriod =
-        std::min(TransportSettings().AnnouncementPeriod, config.Lease / 3);
+        std::min(config.Radio.Budget ? LongAnnouncementPeriod : TransportSettings().AnnouncementPeriod,
+                 settings.Lease / 3);
     settings.BackendConfig = config.BackendConfig;
     settings.Log = [](const std::string &line)
     { RabitLog::Write(RabitLogLevel::Warning, "transport: " + line); };

@@ -28,6 +28,7 @@ public:
     // Ok if none is owed.
     WriteResult DisposeFormer();
     int MatchedReaders() const { return _writer->MatchedReaders(); }
+    int Destinations() const { return _writer->Destinations(); }
 
 private:
     using Bytes = std::vector<std::uint8_t>;

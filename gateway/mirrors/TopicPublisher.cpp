@@ -31,16 +31,42 @@ TopicPublisher::Duration TopicPublisher::NextGap() const
 
 TopicPublisher::Duration TopicPublisher::Service(Duration now)
 {
-    if (!_attached)
-    {
-        return Duration::max();
-    }
-    _pending = (_local->FetchMessage() && _local->WasPosted()) || _pending;
+    Fetch();
     if (now >= DueAt(now))
     {
         Write(now);
     }
     return std::max(DueAt(now), now);
+}
+
+// What was posted before may be there still, and is the first value.
+void TopicPublisher::SetAttached()
+{
+    _global = _local->GetGlobalPublishSubscribeMessageRef().get();
+    const std::uint64_t posts = _global->GetNumberOfPosts();
+    _postsBefore = posts == 0 ? 0 : posts - 1;
+}
+
+void TopicPublisher::Fetch()
+{
+    if (_global == nullptr)
+    {
+        return;
+    }
+    const std::uint64_t posts = _global->GetNumberOfPosts();
+    if (_local->FetchMessage() && _local->WasPosted())
+    {
+        _offered = posts - _postsBefore;
+        _pending = true;
+    }
+}
+
+std::size_t TopicPublisher::NextBytes(const AirCost &cost) const
+{
+    const int copies = _writer.Destinations();
+    return copies <= 0 ? 1
+                       : cost.Of(_type.SerializedSize(*_local) - AirCost::Encapsulation,
+                                 {.Destinations = static_cast<std::size_t>(copies)});
 }
 
 TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
@@ -72,10 +98,12 @@ void TopicPublisher::Write(Duration now)
 
 WriteResult TopicPublisher::WriteValue()
 {
+    _taken += _pending ? 1 : 0;
     const WriteResult result = _writer.Write(*_local, _source.At(_local->GetPostTime().Monotonic));
     _written += result == WriteResult::Ok ? 1 : 0;
     // A value that the network did not take in time is tried again; one that can never be sent would only
     // fail again.
+    _taken -= _pending && result == WriteResult::TimedOut ? 1 : 0;
     _pending = result == WriteResult::TimedOut;
     _everWritten = true;
     _repeatNow = false;
@@ -87,6 +115,9 @@ Gateway::PublicationStatus TopicPublisher::Status() const
     Gateway::PublicationStatus status;
     status.message = _rule.Message;
     status.written = _written;
+    const std::uint64_t kept = _taken + (_pending ? 1 : 0);
+    status.offered = std::max(_offered, kept);
+    status.replaced = status.offered - kept;
     status.write_failures = _failures;
     status.readers = static_cast<std::uint32_t>(std::max(0, _writer.MatchedReaders()));
     return status;

@@ -6,9 +6,12 @@
 #include <rabit/transport/Transport.h>
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 
+#include "air/AirCost.h"
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
 #include "mirrors/InstanceWriter.h"
@@ -37,20 +40,32 @@ public:
     // The local copy, to be registered under the message's name; fetched by Service.
     const std::shared_ptr<RabitMessage> &Local() const { return _local; }
     // Call once it is registered; without it Service does nothing.
-    void SetAttached() { _attached = true; }
-    bool IsAttached() const { return _attached; }
+    void SetAttached();
+    bool IsAttached() const { return _global != nullptr; }
 
     // Has a State that was written be written again as soon as the rule allows: somebody new is listening.
     void Repeat() { _repeatNow = _everWritten; }
     // Fetches and writes what is due. Returns when to call again even if nothing is posted (Duration::max():
     // never).
     Duration Service(Duration now);
+
+    // In place of Service, for a scheduler that decides what goes out next. A message has one slot: a newer
+    // post replaces the one that waits, whose time of post goes with it, so that its age is true however long
+    // it waited.
+    //
+    // Takes the newest value, if there is a newer one.
+    void Fetch();
+    // When there is something to write, of what was fetched; Duration::max(): nothing.
+    Duration DueAt(Duration now) const;
+    // What it takes on the air, all its copies; at least 1.
+    std::size_t NextBytes(const AirCost &cost) const;
+    // Writes what is due, one sample.
+    void Write(Duration now);
+
     Gateway::PublicationStatus Status() const;
 
 private:
-    void Write(Duration now);
     WriteResult WriteValue();
-    Duration DueAt(Duration now) const;
     Duration ValueDueAt(Duration now) const;
     Duration MinimumGap() const;
     Duration NextGap() const;
@@ -60,12 +75,15 @@ private:
     const SourceClock _source;
     std::shared_ptr<RabitMessage> _local;
     InstanceWriter _writer;
-    bool _attached = false;
-    bool _pending = false;   // fetched and not written yet
-    bool _timedOut = false;  // the last write, or the disposal after it
+    PublishSubscribeMessage *_global = nullptr;  // once attached; lives as long as _local
+    bool _pending = false;                       // fetched and not written yet
+    bool _timedOut = false;                      // the last write, or the disposal after it
     bool _everWritten = false;
     bool _repeatNow = false;
     Duration _lastWrite{0};
+    std::uint64_t _offered = 0;  // posts, of this name, since it was attached
+    std::uint64_t _postsBefore = 0;
+    std::uint64_t _taken = 0;  // of them, values that were written or never can be
     std::uint64_t _written = 0;
     std::uint64_t _failures = 0;
 };

@@ -74,8 +74,13 @@ std::uint64_t LinkDriver::Incarnation() const
 
 void LinkDriver::Open(TransportSession &session)
 {
-    _writers = std::make_unique<LinkWriters>(session);
-    _reader = session.CreateReader(DescribeLinkTopic(), LinkTopicQos(), {_config.Node},
+    _session = &session;
+    // So that the first message need not wait until the nodes have heard of the writer.
+    if (!_config.Accept.empty() || !_config.Send.empty())
+    {
+        MakeWriter();
+    }
+    _reader = session.CreateReader(DescribeLinkTopic(), LinkTopicQos(), {},
                                    [this](SampleBytes bytes, const SampleInfo &info)
                                    {
                                        if (info.Alive)
@@ -88,7 +93,8 @@ void LinkDriver::Open(TransportSession &session)
 void LinkDriver::Close()
 {
     _reader.reset();
-    _writers.reset();
+    _writer.reset();
+    _session = nullptr;
     News news;
     {
         const std::lock_guard lock(_mutex);
@@ -226,19 +232,91 @@ LinkDriver::Duration LinkDriver::Service()
     Tell(news);
     DecodeLarge(news);
     news.Clear();
+    WriteOut();
+    return next;
+}
+
+void LinkDriver::WriteOut()
+{
+    if (_sending.IsEmpty())
+    {
+        return;
+    }
     // What is sent now may tell of a new life.
     _incarnations.Save();
     const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
     _sending.BindNames();
+    MakeWriter();
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
-        if (_writers)
+        if (_writer)
         {
-            _writers->Write(datagram, sourceTime);
+            // A failure is the transport's to count; the links repair what is lost.
+            static_cast<void>(
+                _writer->WriteTo(datagram.Destination, LinkSampleEncoder(datagram.Frame), sourceTime));
         }
     }
     _sending.Clear();
+}
+
+void LinkDriver::MakeWriter()
+{
+    if (!_writer && _session != nullptr)
+    {
+        _writer = _session->CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
+    }
+}
+
+LinkDriver::Duration LinkDriver::Advance()
+{
+    LinkTime next = LinkNever;
+    News &news = OwnNews();
+    {
+        const std::lock_guard lock(_mutex);
+        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
+        _links->Advance(Now());
+        next = _links->NextDue();
+        _nextService = LinkNever;
+        TakeNews(news);
+    }
+    Tell(news);
+    DecodeLarge(news);
+    news.Clear();
     return next;
+}
+
+void LinkDriver::VisitStreams(const std::function<void(const LinkStream &)> &visit) const
+{
+    const std::lock_guard lock(_mutex);
+    _links->VisitStreams(Now(), visit);
+}
+
+bool LinkDriver::SendOne(std::string_view destination, std::string_view queue, std::size_t most)
+{
+    bool sent = false;
+    News &news = OwnNews();
+    {
+        const std::lock_guard lock(_mutex);
+        sent = _links->SendOne(destination, queue, most, Now());
+        _sending.Swap(_outbox);
+        TakeNews(news);
+    }
+    Tell(news);
+    news.Clear();
+    WriteOut();
+    return sent;
+}
+
+void LinkDriver::WillServe(Duration at)
+{
+    const std::lock_guard lock(_mutex);
+    _nextService = std::min(_nextService, at);
+}
+
+void LinkDriver::VisitPaths(const std::function<void(std::string_view, const LinkPathState &)> &visit) const
+{
+    const std::lock_guard lock(_mutex);
+    _links->VisitPaths(visit);
 }
 
 void LinkDriver::HeardOf(const std::string &node, std::uint64_t incarnation)
@@ -260,17 +338,9 @@ bool LinkDriver::HasPending(const std::string &node) const
 
 void LinkDriver::Forget(const std::string &node)
 {
-    {
-        const std::lock_guard lock(_mutex);
-        if (!_links->Forget(node))
-        {
-            return;  // something was enqueued for it at this moment
-        }
-    }
-    if (_writers)
-    {
-        _writers->Forget(node);
-    }
+    const std::lock_guard lock(_mutex);
+    // Not if something was enqueued for it at this moment.
+    static_cast<void>(_links->Forget(node));
 }
 
 bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, const std::string &type,

@@ -23,7 +23,6 @@
 #include "queues/IncomingQueues.h"
 #include "queues/LinkDatagrams.h"
 #include "queues/LinkVersions.h"
-#include "queues/LinkWriters.h"
 
 namespace Rabit
 {
@@ -32,9 +31,9 @@ namespace Rabit
 // what they send, and tells what became of messages.
 //
 // Threads: any thread calls Enqueue; the transport's threads hand in what arrives and put it straight into
-// the local queues; only the gateway's thread, in Service, writes to the network. One mutex guards the links;
-// while it is held no large message is decoded, no file is written, and no handler of a queue and nothing of
-// the transport is called, so that a slow network, disk or handler delays nobody.
+// the local queues; only the gateway's thread, in Service or SendOne, writes to the network. One mutex guards
+// the links; while it is held no large message is decoded, no file is written, and no handler of a queue and
+// nothing of the transport is called, so that a slow network, disk or handler delays nobody.
 class LinkDriver final : private LinkOutput
 {
 public:
@@ -57,6 +56,19 @@ public:
 
     // Does what is due and writes it. Returns when to call again at the latest. Gateway's thread only.
     Duration Service();
+
+    // In place of Service, for a scheduler that decides what goes out next; gateway's thread only.
+    //
+    // Does what is due but sending. Returns when something is due next, if nothing comes before: not later
+    // than now if something could be sent. The gateway's thread is woken for whatever comes after this call
+    // and before WillServe, and after that for what is due before the time that it says.
+    Duration Advance();
+    void VisitStreams(const std::function<void(const LinkStream &)> &visit) const;
+    // Writes one datagram, made now, of at most so many bytes on the air as LinkNode::SendOne has it. Returns
+    // whether there was one.
+    bool SendOne(std::string_view destination, std::string_view queue, std::size_t most);
+    void WillServe(Duration at);
+    void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
 
     // A node is in that life. The links may learn it later, and send what is accepted meanwhile to the life
     // before, which puts it in doubt.
@@ -116,6 +128,9 @@ private:
     void OnFrame(SampleBytes bytes, const SampleInfo &info);
     // Without the mutex: decodes large messages that came, and has the links deliver them.
     void DecodeLarge(News &news);
+    void MakeWriter();
+    // Writes what the links have sent; without the mutex.
+    void WriteOut();
     LinkTime Now() const { return _workspace.GetClock().Monotonic(); }
 
     const GatewayConfig &_config;
@@ -135,7 +150,10 @@ private:
     std::atomic<std::uint64_t> _malformed{0};
 
     LinkDatagrams _sending;  // gateway's thread only
-    std::unique_ptr<LinkWriters> _writers;
+    TransportSession *_session = nullptr;
+    // One for all nodes, made when the node has a use for it: each endpoint of DDS costs all others
+    // discovery.
+    std::unique_ptr<TransportWriter> _writer;
     std::unique_ptr<TransportReader> _reader;
 };
 

@@ -21,6 +21,7 @@ std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links)
             row.refused_full =
                 counters.RefusedFullByCount + counters.RefusedFullByBytes + counters.RefusedTooLarge;
             row.resent = counters.PartsResent;
+            row.bytes = counters.BytesSent;
         });
     return status;
 }

@@ -7,14 +7,20 @@
 namespace Rabit
 {
 
-LinkOptions SendOptions(const std::vector<SendRule> &rules, std::string_view node, std::string_view queue)
+const SendRule *FindSendRule(const std::vector<SendRule> &rules, std::string_view node,
+                             std::string_view queue)
 {
-    LinkOptions options;
     const auto rule = std::find_if(
         rules.begin(), rules.end(),
         [node, queue](const SendRule &candidate)
         { return MatchesPattern(candidate.To, node) && MatchesPattern(candidate.Queue, queue); });
-    if (rule != rules.end())
+    return rule == rules.end() ? nullptr : &*rule;
+}
+
+LinkOptions SendOptions(const std::vector<SendRule> &rules, std::string_view node, std::string_view queue)
+{
+    LinkOptions options;
+    if (const SendRule *rule = FindSendRule(rules, node, queue))
     {
         options.Capacity = rule->Capacity;
         options.CapacityBytes = rule->CapacityBytes;

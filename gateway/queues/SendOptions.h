@@ -9,6 +9,9 @@
 namespace Rabit
 {
 
+// The first rule that fits; null: none.
+const SendRule *FindSendRule(const std::vector<SendRule> &rules, std::string_view node,
+                             std::string_view queue);
 // How messages to that queue of that node are kept: by the first rule that fits, or by default.
 LinkOptions SendOptions(const std::vector<SendRule> &rules, std::string_view node, std::string_view queue);
 

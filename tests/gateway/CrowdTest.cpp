@@ -27,7 +27,7 @@ protected:
         qos.Reliability = Reliability::BestEffort;
         const auto beats = session->CreateWriter({"rabit/Beat", "Rabit::Gateway::Beat", {}}, qos, {});
         const auto hellos =
-            session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {"uav1"});
+            session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {});
         fleet.RunFor(20ms);
         Gateway::Beat beat;
         beat.node = settings.Node;

@@ -132,8 +132,8 @@ TEST_F(GatewayConfigTest, ABudgetIsInBytesASecondOrAuto)
 
 TEST_F(GatewayConfigTest, TheSmallestBudgetThatIsNamedIsTaken)
 {
-    EXPECT_NO_THROW(Load("node: a\nradio: {budget: 300B/s}\n"));
-    EXPECT_NO_THROW(Load("node: a\nradio: {budget: 900B/s, slowest_beat: 1s}\n"));
+    EXPECT_NO_THROW(Load("node: a\nradio: {budget: 400B/s}\n"));
+    EXPECT_NO_THROW(Load("node: a\nradio: {budget: 700B/s, slowest_beat: 1s}\n"));
     EXPECT_NO_THROW(Load("node: a\nradio: {budget: 1000MB/s}\n"));
 }
 
@@ -303,10 +303,10 @@ const BadConfig BadConfigs[] = {
      "node.yaml:3: `budget` is `1500`; expected auto, or bytes a second such as 1500B/s or 5kB/s"},
     {"BudgetInBits", "node: a\nradio:\n  budget: 57.6kbit/s\n",
      "node.yaml:3: `budget` is `57.6kbit/s`; expected auto, or bytes a second such as 1500B/s or 5kB/s"},
-    {"BudgetTooSmall", "node: a\nradio:\n  slowest_beat: 5s\n  budget: 299B/s\n",
-     "node.yaml:4: the budget is too small to say that this node is there; expected 300B/s or more"},
-    {"BudgetTooSmallForItsBeats", "node: a\nradio:\n  budget: 800B/s\n  slowest_beat: 1s\n",
-     "node.yaml:3: the budget is too small to say that this node is there; expected 900B/s or more"},
+    {"BudgetTooSmall", "node: a\nradio:\n  slowest_beat: 5s\n  budget: 199B/s\n",
+     "node.yaml:4: the budget is too small to say that this node is there; expected 200B/s or more"},
+    {"BudgetTooSmallForItsBeats", "node: a\nradio:\n  budget: 600B/s\n  slowest_beat: 1s\n",
+     "node.yaml:3: the budget is too small to say that this node is there; expected 700B/s or more"},
     {"BudgetTooLarge", "node: a\nradio:\n  budget: 1001MB/s\n",
      "node.yaml:3: the budget is out of range; expected 1000MB/s or less, or auto"},
     {"BeatsTooSlow", "node: a\nradio:\n  slowest_beat: 61s\n",

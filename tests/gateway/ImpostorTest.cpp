@@ -93,7 +93,7 @@ protected:
         TopicQos qos;
         qos.Reliability = Reliability::BestEffort;
         const auto writer =
-            session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {"uav1"});
+            session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {});
         fleet.RunFor(1s);
         Gateway::LinkSample sample;
         sample.frame = frame;

@@ -24,6 +24,7 @@ struct Network
     int Writes = 0;
     WriteResult DisposalResult = WriteResult::Ok;
     int Disposals = 0;
+    int Readers = 0;
 };
 
 class Writer final : public TransportWriter
@@ -41,7 +42,7 @@ public:
         ++_network.Disposals;
         return _network.DisposalResult;
     }
-    int MatchedReaders() const override { return 0; }
+    int MatchedReaders() const override { return _network.Readers; }
 
 private:
     Network &_network;
@@ -130,6 +131,70 @@ TEST(TopicPublisher, ADisposalThatTheNetworkDoesNotTakeIsTriedAgainWithoutTheVal
     EXPECT_EQ(publisher.Service(now), std::chrono::nanoseconds::max());
     EXPECT_EQ(network.Disposals, 3);
     EXPECT_EQ(network.Writes, 2);
+}
+
+TEST(TopicPublisher, ANewerPostReplacesTheOneThatWaitsAndIsCounted)
+{
+    Network network;
+    Session session(network);
+    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
+    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
+    RabitWorkspace workspace;
+    auto pose = std::make_shared<Uav::Pose>();
+    workspace.AddPublishSubscribeMessage("Pose", pose);
+    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    pose->PostMessage();
+    pose->PostMessage();
+    publisher.SetAttached();  // the last post before is a value, those before it were never to be sent
+    for (pose->number = 1; pose->number <= 5; ++pose->number)
+    {
+        pose->PostMessage();
+        publisher.Fetch();
+    }
+    EXPECT_EQ(publisher.DueAt(10s), 10s);
+    EXPECT_EQ(publisher.Status().offered, 6u);
+    EXPECT_EQ(publisher.Status().replaced, 5u);
+    publisher.Write(10s);
+    EXPECT_EQ(static_cast<const Uav::Pose &>(*publisher.Local()).number, 5u);
+    EXPECT_EQ(publisher.Status().written, 1u);
+    EXPECT_EQ(publisher.Status().replaced, 5u);
+    EXPECT_EQ(publisher.DueAt(11s), std::chrono::nanoseconds::max());
+}
+
+TEST(TopicPublisher, AValueThatTheNetworkDidNotTakeIsReplacedByANewerOne)
+{
+    Network network;
+    Session session(network);
+    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
+    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
+    RabitWorkspace workspace;
+    auto pose = std::make_shared<Uav::Pose>();
+    workspace.AddPublishSubscribeMessage("Pose", pose);
+    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    publisher.SetAttached();
+    pose->PostMessage();
+    network.Result = WriteResult::TimedOut;
+    publisher.Service(10s);
+    EXPECT_EQ(publisher.Status().replaced, 0u);
+    pose->PostMessage();
+    network.Result = WriteResult::Ok;
+    publisher.Service(11s);
+    EXPECT_EQ(publisher.Status().offered, 2u);
+    EXPECT_EQ(publisher.Status().written, 1u);
+    EXPECT_EQ(publisher.Status().replaced, 1u);
+}
+
+TEST(TopicPublisher, WhatItTakesOnTheAirIsTheSampleForEachDestination)
+{
+    Network network;
+    Session session(network);
+    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
+    const TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
+    const AirCost cost(1400);
+    EXPECT_EQ(publisher.NextBytes(cost), 1u);  // nobody listens: it costs nothing
+    network.Readers = 2;
+    const std::size_t body = Uav::Pose::IdlType().SerializedSize(Uav::Pose()) - AirCost::Encapsulation;
+    EXPECT_EQ(publisher.NextBytes(cost), 2 * cost.Of(body));
 }
 
 }  // namespace

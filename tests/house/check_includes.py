@@ -22,10 +22,10 @@ ROOMS = {
     "wire": ["names", "links"],
     "configuration": ["air", "names", "wire"],
     "presence": ["names", "clocks", "wire"],
-    "mirrors": ["names", "clocks", "wire", "presence"],
+    "mirrors": ["air", "names", "clocks", "wire", "presence"],
     "queues": ["names", "clocks", "incarnation", "wire", "links", "presence"],
     "report": ["names", "presence", "mirrors", "queues"],
-    "manager": ["names", "clocks", "configuration", "incarnation", "wire", "links", "presence", "mirrors", "queues",
+    "manager": ["air", "names", "clocks", "configuration", "incarnation", "wire", "links", "presence", "mirrors", "queues",
                 "report"],
 }
 

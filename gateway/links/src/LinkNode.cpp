@@ -260,20 +260,21 @@ void LinkNode::OnUnknownShort(const LinkFrame &frame, LinkTime now)
     }
 }
 
-void LinkNode::OnFrame(LinkFrame &frame, LinkTime now)
+bool LinkNode::OnFrame(LinkFrame &frame, LinkTime now)
 {
     if (!Accepts(frame, now))
     {
-        return;
+        return false;
     }
     HeardOfMyself(frame.Source, frame.ReceiverLife, now);  // rules R1 and S6
     LinkPeer *peer = FindOrAddPeer(frame.Source, now);
     if (peer == nullptr)
     {
         ++_context->Counters.TooManyPeers;
-        return;
+        return false;
     }
     peer->OnFrame(frame, now);
+    return true;
 }
 
 void LinkNode::HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now)

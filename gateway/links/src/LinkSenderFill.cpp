@@ -107,6 +107,7 @@ bool LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
     _probe = false;
     _lastSentAt = now;
     ++_counters.DatagramsSent;
+    _counters.BytesSent += filling.Head + filling.Used + _context.Settings.AirOverhead;
     ArmProbe(turnedAway, now);
     frame.HasData = true;
     return true;

@@ -64,6 +64,21 @@ public:
 
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override
     {
+        return Send(nullptr, sample, sourceTime);
+    }
+    WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
+                        std::int64_t sourceTime) override
+    {
+        return Send(&node, sample, sourceTime);
+    }
+
+    WriteResult Dispose(const SampleEncoder &, std::int64_t) override { return WriteResult::Failed; }
+    int MatchedReaders() const override { return 1; }
+
+private:
+    // Null: to all.
+    WriteResult Send(const std::string *to, const SampleEncoder &sample, std::int64_t sourceTime)
+    {
         _buffer.resize(sample.EncodedSize());
         if (!sample.Encode(_buffer))
         {
@@ -78,7 +93,8 @@ public:
         _wire.Total.WrittenBytes += _buffer.size();
         for (const Wire::Reader *reader : _wire.Readers)
         {
-            if (reader->Owner != &_owner && reader->Topic == _topic && Match(_partitions, reader->Partitions))
+            if (reader->Owner != &_owner && (to == nullptr || reader->Owner->Node == *to) &&
+                reader->Topic == _topic && Match(_partitions, reader->Partitions))
             {
                 ++_wire.Total.Arrivals;
                 _wire.Total.ArrivedBytes += _buffer.size();
@@ -88,10 +104,6 @@ public:
         return WriteResult::Ok;
     }
 
-    WriteResult Dispose(const SampleEncoder &, std::int64_t) override { return WriteResult::Failed; }
-    int MatchedReaders() const override { return 1; }
-
-private:
     Wire &_wire;
     const Wire::Session &_owner;
     const std::string _topic;

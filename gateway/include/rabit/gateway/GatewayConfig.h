@@ -78,12 +78,13 @@ struct RadioSettings
     // Bytes a second, IP headers and all above included, in whichever second; from SmallestBudget to 1e9.
     // Unset (`auto`): the rate follows what the air carries, and is unlimited where that does not limit it.
     std::optional<double> Budget{};
-    // Where nothing happens a node says this often that it is there, 500 ms to 60 s. It is LOST that much
-    // later.
-    std::chrono::milliseconds SlowestBeat{5000};
+    // With a budget a node says that it is there as often as a twentieth of the budget allows, but every 500 ms
+    // at most and at least this often, 500 ms to 60 s. It is STALE after three times that, LOST after seven.
+    // Without a budget it does so every 500 ms.
+    std::chrono::milliseconds SlowestBeat{2000};
 };
 
-// Below this budget a node could not even say in time that it is there; bytes a second.
+// Below this budget a node could not say in time that it is there and anything else; bytes a second.
 double SmallestBudget(std::chrono::milliseconds slowestBeat);
 
 // Everything a gateway is told. Fill it in code, or load it with LoadGatewayConfig.

@@ -23,6 +23,7 @@ struct LinkSenderCounters
     std::uint64_t PartsSent = 0;  // in datagrams, resent ones included
     std::uint64_t PartsResent = 0;
     std::uint64_t DatagramsSent = 0;
+    std::uint64_t BytesSent = 0;  // in these, as on the air
     std::uint64_t Timeouts = 0;  // times the probe timer ran out with something unacknowledged
     std::uint64_t Restarts = 0;  // times the stream was started anew (receiver's or own new incarnation)
     // Present state.

@@ -83,9 +83,9 @@ public:
                          LinkPayload payload, LinkTime now);
 
     // A frame has come from a peer's gateway, frame.Source. What is malformed or meant for another node is
-    // dropped and counted and changes nothing else. The frame is changed: what a short one leaves out is
-    // filled in.
-    void OnFrame(LinkFrame &frame, LinkTime now);
+    // dropped and counted and changes nothing else: false. The frame is changed: what a short one leaves out
+    // is filled in.
+    bool OnFrame(LinkFrame &frame, LinkTime now);
     // Something else than the links has heard that a node is in that life: as a HELLO that says it. Does
     // nothing if the links know of it, or do not know the node.
     void HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now);

@@ -1,0 +1,99 @@
+#include "manager/AirReport.h"
+
+#include <algorithm>
+
+#include "manager/ImportanceOf.h"
+
+namespace Rabit
+{
+namespace
+{
+
+constexpr AirReport::Duration ShortestTime = std::chrono::milliseconds(900);
+
+double &RateOf(TrafficClass traffic, Gateway::AirStatus &air)
+{
+    switch (traffic)
+    {
+        case TrafficClass::Command:
+            return air.command;
+        case TrafficClass::State:
+            return air.state;
+        case TrafficClass::Telemetry:
+            return air.telemetry;
+        case TrafficClass::Bulk:
+            return air.bulk;
+        case TrafficClass::Presence:
+            break;
+    }
+    return air.presence;
+}
+
+}  // namespace
+
+void AirReport::Rate::Look(std::uint64_t bytes, double seconds)
+{
+    PerSecond = bytes > Bytes ? static_cast<double>(bytes - Bytes) / seconds : 0.0;
+    Bytes = bytes;
+    Seen = true;
+}
+
+void AirReport::Fill(const TransportCounters &counters, std::optional<double> capacity,
+                     const std::deque<TopicPublisher> &publishers, Gateway::Fleet &fleet, Duration now)
+{
+    if (_measuredAt == Duration(0) || now - _measuredAt >= ShortestTime)
+    {
+        const double seconds = std::chrono::duration<double>(now - _measuredAt).count();
+        Measure(counters, publishers, fleet, seconds);
+        _measuredAt = now;
+    }
+    Gateway::AirStatus &air = fleet.air;
+    air.budget = _config.Radio.Budget.value_or(0.0);
+    air.capacity = capacity.value_or(0.0);
+    air.discovery = _discovery.PerSecond;
+    air.used = _discovery.PerSecond + _samples.PerSecond;
+    double divided = 0.0;
+    for (std::size_t i = 0; i < fleet.publications.size() && i < _publications.size(); ++i)
+    {
+        const double rate = _publications[i].Sent.PerSecond;
+        fleet.publications[i].bytes_per_s = rate;
+        RateOf(ImportanceOf(_config.Publish[i]), air) += rate;
+        divided += rate;
+    }
+    for (Gateway::LinkStatus &link : fleet.links)
+    {
+        const auto known = _links.find({link.node, link.queue});
+        link.bytes_per_s = known == _links.end() ? 0.0 : known->second.PerSecond;
+        RateOf(ImportanceOf(_config.Send, link.node, link.queue).Class, air) += link.bytes_per_s;
+        divided += link.bytes_per_s;
+    }
+    air.presence = std::max(0.0, _samples.PerSecond - divided);
+}
+
+void AirReport::Measure(const TransportCounters &counters, const std::deque<TopicPublisher> &publishers,
+                        const Gateway::Fleet &fleet, double seconds)
+{
+    _discovery.Look(counters.DiscoveryBytes, seconds);
+    _samples.Look(counters.SampleBytes, seconds);
+    _publications.resize(publishers.size());
+    for (std::size_t i = 0; i < publishers.size() && i < fleet.publications.size(); ++i)
+    {
+        Publication &publication = _publications[i];
+        const std::uint64_t written = fleet.publications[i].written;
+        const std::size_t each = publishers[i].NextBytes(_cost);
+        publication.Sent.Look(
+            publication.Sent.Bytes + (written - publication.Written) * (each > 1 ? each : 0), seconds);
+        publication.Written = written;
+    }
+    for (auto &[name, rate] : _links)
+    {
+        rate.Seen = false;
+    }
+    for (const Gateway::LinkStatus &link : fleet.links)
+    {
+        _links[{link.node, link.queue}].Look(link.bytes, seconds);
+    }
+    std::erase_if(_links, [](const auto &link) { return !link.second.Seen; });
+}
+
+}  // namespace Rabit

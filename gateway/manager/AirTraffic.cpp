@@ -1,0 +1,248 @@
+#include "manager/AirTraffic.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "manager/ImportanceOf.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using Duration = AirTraffic::Duration;
+
+// Between looks at what went, and at what the air carries. What went within is taken to have gone at its end.
+constexpr Duration WatchPeriod = std::chrono::milliseconds(10);
+constexpr Duration LimitPeriod = std::chrono::milliseconds(100);
+// Links wait for their turn: when to see again whether one of them has something to do meanwhile, such as to
+// let a message expire.
+constexpr Duration LookPeriod = std::chrono::milliseconds(20);
+
+// Part of a budget that beats take.
+constexpr double BeatShare = 0.05;
+constexpr double SmallestBeat = 100.0;  // on the air
+constexpr Duration QuickestBeat = std::chrono::milliseconds(500);
+
+std::size_t LargestDatagramOf(const GatewayConfig &config)
+{
+    return config.MaxDatagram + AirCost::IpAndUdp;
+}
+
+}  // namespace
+
+AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence,
+                       LinkDriver &links, std::deque<TopicPublisher> &publishers)
+    : _config(config),
+      _clock(clock),
+      _presence(presence),
+      _links(links),
+      _publishers(publishers),
+      _cost(config.MaxDatagram),
+      _schedule(LargestDatagramOf(config)),
+      _beat(_schedule.AddStream(TrafficClass::Presence)),
+      _linkStreams(config.Send, links, _schedule),
+      _report(config, _cost)
+{
+}
+
+void AirTraffic::Open(TransportSession &session)
+{
+    _session = &session;
+    for (const TopicPublisher &publisher : _publishers)
+    {
+        _publisherStreams.push_back(
+            _schedule.AddStream(ImportanceOf(publisher.Rule()), publisher.Rule().Weight));
+    }
+    SetLimit(Now());
+}
+
+Duration AirTraffic::Serve(Duration now)
+{
+    if (now - _watchedAt >= WatchPeriod || IsLimited())
+    {
+        Watch(now);
+    }
+    if (!IsLimited())
+    {
+        return ServeUnlimited(now);
+    }
+    if (now - _limitSetAt >= LimitPeriod)
+    {
+        SetLimit(now);
+    }
+    return IsLimited() ? ServeLimited() : ServeUnlimited(now);
+}
+
+void AirTraffic::Reported(CapacityEstimate::Peer peer, Duration delay, Duration arrivedAt, Duration now)
+{
+    Watch(now);
+    _estimate.Reported(peer, delay, arrivedAt, now);
+    SetLimit(now);
+}
+
+std::size_t AirTraffic::TakeSent()
+{
+    const TransportCounters counters = _session->Counters();
+    const std::uint64_t sent = counters.DiscoveryBytes + counters.SampleBytes;
+    const std::uint64_t before = std::exchange(_sent, sent);
+    return static_cast<std::size_t>(sent - std::min(sent, before));
+}
+
+// What went since the last look, and was not paid for.
+void AirTraffic::Watch(Duration now)
+{
+    _watchedAt = now;
+    const std::size_t bytes = TakeSent();
+    if (bytes == 0)
+    {
+        return;
+    }
+    _estimate.Sent(bytes, now);
+    if (IsLimited())
+    {
+        _unscheduled.Add(bytes, now);
+        _schedule.Spent(bytes, now);
+    }
+}
+
+void AirTraffic::SetLimit(Duration now)
+{
+    _limitSetAt = now;
+    const std::optional<double> carried = _estimate.Rate(now);
+    const std::optional<double> budget = _config.Radio.Budget;
+    if (budget)
+    {
+        _schedule.Reserve(_unscheduled.Rate(now));
+        _schedule.SetBudget(std::min(*budget, carried.value_or(*budget)), now);
+        const auto period = std::chrono::duration_cast<Duration>(
+            std::chrono::duration<double>(_beatBytes / (BeatShare * *budget)));
+        _presence.SetBeatPeriod(std::clamp<Duration>(
+            period, QuickestBeat, std::max<Duration>(QuickestBeat, _config.Radio.SlowestBeat)));
+    }
+    else if (carried)
+    {
+        _schedule.SetPace(*carried, now);
+    }
+    else
+    {
+        _schedule.SetUnlimited();
+    }
+}
+
+Duration AirTraffic::ServeUnlimited(Duration now)
+{
+    if (now >= _presence.BeatDue())
+    {
+        _presence.SendBeat(now);
+    }
+    Duration next = std::min(_presence.BeatDue(), _links.Service());
+    for (TopicPublisher &publisher : _publishers)
+    {
+        next = std::min(next, publisher.Service(Now()));
+    }
+    return next;
+}
+
+void AirTraffic::LookAtBeat(Duration now)
+{
+    if (now >= _presence.BeatDue())
+    {
+        _schedule.Ready(_beat,
+                        std::min(static_cast<std::size_t>(_beatBytes), _cost.Of(_presence.BeatSize(now))));
+    }
+}
+
+void AirTraffic::LookAt(std::size_t publisher, Duration now)
+{
+    TopicPublisher &of = _publishers[publisher];
+    of.Fetch();
+    if (of.DueAt(now) <= now)
+    {
+        _schedule.Ready(_publisherStreams[publisher], of.NextBytes(_cost));
+    }
+    else
+    {
+        _schedule.NotReady(_publisherStreams[publisher]);
+    }
+}
+
+Duration AirTraffic::ServeLimited()
+{
+    const Duration linksDue = _links.Advance();
+    const Duration now = Now();
+    LookAtBeat(now);
+    for (std::size_t i = 0; i < _publishers.size(); ++i)
+    {
+        LookAt(i, now);
+    }
+    _linkStreams.Look(_schedule.Budget().LargestDatagram(), now);
+    while (const auto chosen = _schedule.Next(now))
+    {
+        Send(*chosen, now);
+    }
+    Duration next = std::min(_schedule.NextDue(now), linksDue > now ? linksDue : now + LookPeriod);
+    next = _estimate.Rate(now) ? std::min(next, now + LimitPeriod) : next;
+    next = _presence.BeatDue() > now ? std::min(next, _presence.BeatDue()) : next;
+    for (const TopicPublisher &publisher : _publishers)
+    {
+        const Duration due = publisher.DueAt(now);
+        next = due > now ? std::min(next, due) : next;
+    }
+    _links.WillServe(next);
+    return next;
+}
+
+void AirTraffic::Send(StreamId id, Duration now)
+{
+    const std::size_t most = _schedule.Budget().LargestDatagram();
+    std::size_t publisher = _publishers.size();
+    bool sent = true;
+    if (id == _beat)
+    {
+        const std::size_t body = _cost.BodyWithin(std::max(most, AirBudget::SmallestDatagram), false);
+        _presence.SendBeat(now, std::min(body, Presence::LargestBeat));
+    }
+    else if (!_linkStreams.Send(id, most, sent))
+    {
+        publisher = static_cast<std::size_t>(
+            std::find(_publisherStreams.begin(), _publisherStreams.end(), id) - _publisherStreams.begin());
+        _publishers[publisher].Fetch();
+        _publishers[publisher].Write(now);
+    }
+    const std::size_t bytes = TakeSent();
+    _estimate.Sent(bytes, now);
+    _schedule.Sent(id, bytes, now);
+    if (publisher < _publishers.size())
+    {
+        LookAt(publisher, now);
+    }
+    else if (id == _beat)
+    {
+        _beatBytes += (static_cast<double>(bytes) - _beatBytes) / 8.0;
+        _beatBytes = std::max(_beatBytes, SmallestBeat);
+        LookAtBeat(now);
+    }
+    else if (sent)
+    {
+        _linkStreams.Look(most, now);
+    }
+}
+
+void AirTraffic::Report(Gateway::Fleet &fleet, Duration now)
+{
+    _links.VisitPaths(
+        [&fleet](std::string_view node, const LinkPathState &path)
+        {
+            for (Gateway::NodeStatus &status : fleet.nodes)
+            {
+                if (status.node == node && path.DeliveryRate > 0)
+                {
+                    status.delivery_rate = path.DeliveryRate;
+                }
+            }
+        });
+    _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, fleet, now);
+}
+
+}  // namespace Rabit

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/transport/Transport.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "air/AirCost.h"
+#include "air/AirSchedule.h"
+#include "air/CapacityEstimate.h"
+#include "air/UnscheduledShare.h"
+#include "gateway.idl.h"
+#include "manager/AirReport.h"
+#include "manager/LinkStreams.h"
+#include "mirrors/TopicPublisher.h"
+#include "presence/Presence.h"
+#include "queues/LinkDriver.h"
+
+namespace Rabit
+{
+
+// Has all that a gateway puts on the air sent: in the order and at the pace of AirSchedule where something
+// limits it, at once where nothing does.
+//
+// - `radio: budget` limits, and what the peers' reports of late datagrams say that the air carries
+//   (CapacityEstimate), whichever is less.
+// - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); each link; each
+//   published message. A datagram is made when its turn has come, from what is newest then.
+// - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
+//   DDS's own, is paid for, too, and a part of a budget is kept free for it.
+// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`.
+//
+// Gateway's thread only.
+class AirTraffic
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // References must outlive the object.
+    AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
+               std::deque<TopicPublisher> &publishers);
+
+    // Once there are all publishers. The session is kept until Close.
+    void Open(TransportSession &session);
+    void Close() { _session = nullptr; }
+
+    // Sends what is due and may go now. Returns when to call again at the latest.
+    Duration Serve(Duration now);
+    // A peer said how late a datagram of this node came.
+    void Reported(CapacityEstimate::Peer peer, Duration delay, Duration arrivedAt, Duration now);
+
+    // Fills what is said of the air, of links and of publications, which are in the message already.
+    void Report(Gateway::Fleet &fleet, Duration now);
+
+private:
+    bool IsLimited() const { return !_schedule.Budget().IsUnlimited(); }
+    // Bytes that went since the last call.
+    std::size_t TakeSent();
+    void Watch(Duration now);
+    void SetLimit(Duration now);
+    Duration ServeUnlimited(Duration now);
+    Duration ServeLimited();
+    void LookAtBeat(Duration now);
+    void LookAt(std::size_t publisher, Duration now);
+    void Send(StreamId id, Duration now);
+    Duration Now() const { return _clock.Monotonic(); }
+
+    const GatewayConfig &_config;
+    const RabitClock &_clock;
+    Presence &_presence;
+    LinkDriver &_links;
+    std::deque<TopicPublisher> &_publishers;
+    const AirCost _cost;
+    TransportSession *_session = nullptr;
+
+    AirSchedule _schedule;
+    CapacityEstimate _estimate;
+    UnscheduledShare _unscheduled;
+    StreamId _beat;
+    std::vector<StreamId> _publisherStreams;
+    LinkStreams _linkStreams;
+    AirReport _report;
+
+    double _beatBytes = 150.0;  // on the air, of late ones
+    std::uint64_t _sent = 0;    // as the transport counts, when it was last asked
+    Duration _watchedAt{0};
+    Duration _limitSetAt{0};
+};
+
+}  // namespace Rabit

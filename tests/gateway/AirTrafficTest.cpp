@@ -1,0 +1,270 @@
+// What a gateway puts on the air, and in which order: whole nodes on the simulated network.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "SimulatedFleet.h"
+#include "WatchedTransport.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Duration = std::chrono::nanoseconds;
+
+constexpr double Budget = 3000;
+constexpr Duration Step = 5ms;
+
+class AirTrafficTest : public ::testing::Test
+{
+protected:
+    AirTrafficTest()
+    {
+        fleet.MakeTransport = [this](const std::string &node)
+        {
+            auto transport =
+                std::make_shared<WatchedTransport>(std::make_shared<SimulatedTransport>(fleet.Network));
+            transports[node] = transport;
+            return transport;
+        };
+    }
+
+    SimulatedNode &AddAircraft(const GatewayConfig &config)
+    {
+        SimulatedNode &node = fleet.Add(config);
+        aircraft = &node;
+        pose = node.Register<Uav::Pose>("Pose");
+        state = node.Register<Uav::MissionState>("MissionState");
+        return node;
+    }
+
+    static GatewayConfig WithBudget(GatewayConfig config, double budget = Budget)
+    {
+        config.Radio.Budget = budget;
+        return config;
+    }
+
+    // Has the aircraft post so often for so long, and calls `each` after each step.
+    void Fly(
+        Duration duration, Duration posePeriod, Duration statePeriod,
+        const std::function<void(Duration)> &each = [](Duration) {})
+    {
+        for (Duration passed = 0s; passed < duration; passed += Step)
+        {
+            if (passed % posePeriod == 0s)
+            {
+                ++pose->number;
+                pose->PostMessage();
+            }
+            if (passed % statePeriod == 0s)
+            {
+                ++state->commands;
+                state->PostMessage();
+            }
+            fleet.RunFor(Step);
+            each(passed);
+        }
+    }
+
+    bool SendReport(std::uint32_t number)
+    {
+        auto report = std::make_shared<Uav::CommandAck>();
+        report->id = number;
+        return aircraft->Workspace.AddMessageToQueue("ground/Commands", report);
+    }
+
+    std::uint64_t Bytes(const std::string &node) { return transports.at(node)->Bytes(); }
+
+    SimulatedFleet fleet;
+    std::map<std::string, std::shared_ptr<WatchedTransport>> transports;
+    SimulatedNode *aircraft = nullptr;
+    std::shared_ptr<Uav::Pose> pose;
+    std::shared_ptr<Uav::MissionState> state;
+};
+
+// What went in steps, as the transport counts it.
+class Spending
+{
+public:
+    void Add(std::uint64_t total) { _totals.push_back(total); }
+    // In whichever second.
+    std::uint64_t MostInASecond() const
+    {
+        constexpr std::size_t second = 1s / Step;
+        std::uint64_t most = 0;
+        for (std::size_t i = second; i < _totals.size(); ++i)
+        {
+            most = std::max(most, _totals[i] - _totals[i - second]);
+        }
+        return most;
+    }
+    double PerSecond() const
+    {
+        const double seconds =
+            std::chrono::duration<double>(Step).count() * static_cast<double>(_totals.size() - 1);
+        return static_cast<double>(_totals.back() - _totals.front()) / seconds;
+    }
+
+private:
+    std::vector<std::uint64_t> _totals;
+};
+
+TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetHoweverMuchIsOffered)
+{
+    AddAircraft(WithBudget(AircraftConfig("uav1")));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    ground.AddIdleManager("Commands");
+    Fly(10s, 10ms, 50ms);
+    Spending spending;
+    std::uint32_t sent = 0;
+    Fly(60s, 10ms, 50ms,
+        [&](Duration passed)
+        {
+            spending.Add(Bytes("uav1"));
+            if (passed % 50ms == 0s)
+            {
+                SendReport(++sent);
+            }
+        });
+    EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * Budget);
+    EXPECT_GE(spending.PerSecond(), 0.75 * Budget);
+    EXPECT_EQ(ground.StateOf("uav1"), "UP");
+}
+
+TEST_F(AirTrafficTest, TheNewestPostIsSentAndTheOthersAreCounted)
+{
+    AddAircraft(WithBudget(AircraftConfig("uav1")));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto seen = ground.Register<Uav::Pose>("uav1/Pose");
+    Fly(10s, 5ms, 1s);
+    seen->FetchMessage();
+    Duration oldest = 0s;
+    std::uint32_t heard = 0;
+    Fly(20s, 5ms, 1s,
+        [&](Duration)
+        {
+            if (seen->FetchMessage())
+            {
+                ++heard;
+                oldest = std::max(
+                    oldest, Duration(static_cast<std::int64_t>(1e9 * seen->GetAgeSeconds(*ground.Clock))));
+            }
+        });
+    EXPECT_GT(heard, 200u);
+    EXPECT_LT(oldest, 20ms);  // a post every 5 ms, a step of 5 ms, and the way
+    const Gateway::PublicationStatus status = aircraft->Fleet().publications.at(0);
+    EXPECT_EQ(status.message, "Pose");
+    EXPECT_NEAR(static_cast<double>(status.offered), 6000.0, 201.0);  // up to the last report
+    EXPECT_GT(status.replaced, 4000u);
+    EXPECT_LE(status.offered - status.written - status.replaced, 1u);
+}
+
+TEST_F(AirTrafficTest, CommandsDoNotWaitForTelemetry)
+{
+    AddAircraft(WithBudget(AircraftConfig("uav1")));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    IdleManager &commands = ground.AddIdleManager("Commands");
+    Fly(10s, 5ms, 50ms);
+    std::vector<Duration> waits;
+    Duration sentAt = 0s;
+    Fly(60s, 5ms, 50ms,
+        [&](Duration passed)
+        {
+            std::shared_ptr<RabitMessage> message;
+            while (commands.GetManagerMessageQueue()->GetMessage(message))
+            {
+                waits.push_back(passed - sentAt);
+            }
+            if (passed % 1s == 0s)
+            {
+                sentAt = passed;
+                ASSERT_TRUE(SendReport(1));
+            }
+        });
+    ASSERT_EQ(waits.size(), 60u);
+    // The first waits until the two have said hello, each later one for a datagram of 70 ms, its
+    // acknowledgement and a beat, and for what DDS says.
+    EXPECT_LE(*std::max_element(waits.begin(), waits.end()), 300ms);
+    std::nth_element(waits.begin(), waits.begin() + 30, waits.end());
+    EXPECT_LE(waits[30], 80ms);
+}
+
+TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
+{
+    GatewayConfig config = WithBudget(AircraftConfig("uav1"));
+    config.Publish[0].Class = TrafficClass::Telemetry;
+    config.Publish[0].Weight = 3.0;
+    config.Publish[1].Class = TrafficClass::Telemetry;
+    AddAircraft(config);
+    fleet.Add(GroundConfig());
+    Fly(60s, 5ms, 5ms);
+    const auto publications = aircraft->Fleet().publications;
+    ASSERT_EQ(publications.size(), 2u);
+    const Gateway::AirStatus air = aircraft->Fleet().air;
+    EXPECT_GT(publications[0].bytes_per_s, 0.35 * Budget);
+    EXPECT_NEAR(publications[0].bytes_per_s / publications[1].bytes_per_s, 3.0, 1.0);
+    EXPECT_NEAR(air.telemetry, publications[0].bytes_per_s + publications[1].bytes_per_s, 1.0);
+    EXPECT_EQ(air.budget, Budget);
+    EXPECT_LE(air.used, 1.05 * Budget);
+    EXPECT_NEAR(air.used, air.discovery + air.presence + air.command + air.state + air.telemetry + air.bulk,
+                1.0);
+}
+
+TEST_F(AirTrafficTest, AnIdleNodeWithABudgetCostsLessThanAHundredBytesASecond)
+{
+    AddAircraft(WithBudget(AircraftConfig("uav1"), 1500));
+    fleet.Add(WithBudget(GroundConfig(), 1500));
+    fleet.RunFor(60s);
+    const std::uint64_t before = Bytes("uav1");
+    fleet.RunFor(60s);
+    EXPECT_LE(Bytes("uav1") - before, 60u * 100u);
+}
+
+TEST_F(AirTrafficTest, ANodeThatIsNotLimitedSendsAllThatIsPosted)
+{
+    AddAircraft(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    auto seen = ground.Register<Uav::Pose>("uav1/Pose");
+    Fly(5s, 10ms, 1s);
+    std::uint32_t heard = 0;
+    Fly(10s, 10ms, 1s, [&](Duration) { heard += seen->FetchMessage() ? 1 : 0; });
+    EXPECT_GE(heard, 999u);
+    EXPECT_EQ(aircraft->Fleet().air.budget, 0.0);
+    EXPECT_EQ(aircraft->Fleet().air.capacity, 0.0);
+    EXPECT_GT(aircraft->Fleet().air.telemetry, 10000.0);
+}
+
+TEST_F(AirTrafficTest, BulkGoesInThePausesOfWhatIsMoreImportant)
+{
+    GatewayConfig config = WithBudget(AircraftConfig("uav1"));
+    config.Send.push_back({.To = "*", .Queue = "Commands", .Class = TrafficClass::Bulk});
+    AddAircraft(config);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    IdleManager &commands = ground.AddIdleManager("Commands");
+    auto seen = ground.Register<Uav::Pose>("uav1/Pose");
+    Fly(10s, 1s, 1s);
+    auto report = std::make_shared<Uav::CommandAck>();
+    report->reason = std::string(128, 'x');
+    for (int i = 0; i < 200; ++i)
+    {
+        ASSERT_TRUE(aircraft->Workspace.AddMessageToQueue("ground/Commands", report));
+    }
+    int poses = 0;
+    std::size_t arrived = 0;
+    Fly(30s, 1s, 1s,
+        [&](Duration)
+        {
+            poses += seen->FetchMessage() ? 1 : 0;
+            std::shared_ptr<RabitMessage> message;
+            arrived += commands.GetManagerMessageQueue()->GetMessage(message) ? 1 : 0;
+        });
+    EXPECT_GE(poses, 29);
+    EXPECT_EQ(arrived, 200u);
+}
+
+}  // namespace
+}  // namespace Rabit
