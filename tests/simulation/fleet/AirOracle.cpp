@@ -110,7 +110,7 @@ void AirOracle::OnStep()
     {
         if (_pairs[i].Counts && !_pairs[i].WasUp && _world.Now > _pairs[i].Since + _plan->UpWithin)
         {
-            _world.Fail(15, _world.NameOf(i / _senders.size()) + " has not shown " +
+            _world.Fail(16, _world.NameOf(i / _senders.size()) + " has not shown " +
                                 _world.NameOf(i % _senders.size()) + " as UP for " +
                                 Seconds(_plan->UpWithin));
         }
@@ -139,7 +139,7 @@ void AirOracle::CheckBudget(std::size_t node)
     }
     if (sender.Bytes * 20 > *_plan->Budget * 21)
     {
-        _world.Fail(17, _world.NameOf(node) + " has sent " + std::to_string(sender.Bytes) +
+        _world.Fail(18, _world.NameOf(node) + " has sent " + std::to_string(sender.Bytes) +
                             " bytes within a second, with a budget of " + std::to_string(*_plan->Budget));
     }
 }
@@ -162,7 +162,7 @@ void AirOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
             }
             if (status.state == Gateway::NodeState::LOST && pair.WasUp)
             {
-                _world.Fail(16, _world.NameOf(observer) + " shows " + status.node +
+                _world.Fail(17, _world.NameOf(observer) + " shows " + status.node +
                                     " as LOST, and the medium carries what it says");
             }
             if (status.state == Gateway::NodeState::UP && !pair.WasUp && _world.Now > pair.Since)
@@ -183,7 +183,7 @@ void AirOracle::OnTrack(std::size_t observerLife, std::size_t node, Time age)
     _longestAge = std::max(_longestAge, age);
     if (age > _plan->PoseAge)
     {
-        _world.Fail(18, "a track of " + _world.NameOf(node) + " that comes to " +
+        _world.Fail(19, "a track of " + _world.NameOf(node) + " that comes to " +
                             _world.NameOf(_world.Lives[observerLife].Node) + " is " + Seconds(age) + " old");
     }
 }
@@ -200,7 +200,7 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
                                       1s * (_senders.size() * TrackOnAir * ShareOfTracks) / _rate);
     if (age > _plan->PoseAge + InARow * pause)
     {
-        _world.Fail(19, "the newest track that " + _world.NameOf(observer) + " has of " +
+        _world.Fail(20, "the newest track that " + _world.NameOf(observer) + " has of " +
                             _world.NameOf(node) + " is " +
                             (age == Time::max() ? "of another life" : Seconds(age) + " old"));
     }
@@ -227,7 +227,7 @@ void AirOracle::BeginIdle()
                " of work");
     if (_sentBeforeIdle > most)
     {
-        _world.Fail(20, "the fleet has sent " + std::to_string(_sentBeforeIdle) + " bytes for " +
+        _world.Fail(21, "the fleet has sent " + std::to_string(_sentBeforeIdle) + " bytes for " +
                             std::to_string(_work) + " that were to be said; " + std::to_string(most) +
                             " would do");
     }
@@ -242,7 +242,7 @@ void AirOracle::EndIdle()
     _world.Say("idle: " + std::to_string(bytes) + " bytes a second");
     if (bytes > most)
     {
-        _world.Fail(21, std::to_string(count) + " idle nodes send " + std::to_string(bytes) +
+        _world.Fail(22, std::to_string(count) + " idle nodes send " + std::to_string(bytes) +
                             " bytes a second; expected " + std::to_string(most) + " or less");
     }
 }

@@ -309,7 +309,9 @@ std::string FleetSimulation::MissingBetween(std::size_t observer, std::size_t no
     {
         return who + ": has not the latest mode";
     }
-    if (_mirrors.AgeOf(MirrorOracle::Topic::Track, seenBy, life) > _plan.Machines[node].TrackPeriod + 100ms)
+    const Time onTheWay = _plan.Thin ? _plan.Thin->PoseAge : Time(100ms);
+    if (_mirrors.AgeOf(MirrorOracle::Topic::Track, seenBy, life) >
+        _plan.Machines[node].TrackPeriod + onTheWay)
     {
         return who + ": has no recent track";
     }

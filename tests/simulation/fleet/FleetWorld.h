@@ -32,7 +32,8 @@ struct FleetWorld
     {
         if (Failure.empty())
         {
-            Failure = "invariant " + std::to_string(invariant) + ": " + what;
+            Failure = "invariant " + std::to_string(invariant) + ": " + what + ", at " +
+                      std::to_string(static_cast<double>(Now.count()) / 1e9) + " s";
         }
     }
 

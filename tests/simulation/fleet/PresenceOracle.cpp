@@ -10,9 +10,16 @@ namespace
 
 using namespace std::chrono_literals;
 
-// What a gateway promises: after so much silence a node is no longer UP, and after so much it is LOST.
-constexpr Time StaleAfter = 1500ms;
-constexpr Time LostAfter = 3500ms;
+// What a gateway promises: after so many beats that did not come a node is no longer UP, and after so many it
+// is LOST.
+constexpr int StaleAfter = 3;
+constexpr int LostAfter = 7;
+
+// The longest that a node lets pass between two beats.
+Time LongestPause(const FleetPlan &plan)
+{
+    return plan.Thin && plan.Thin->Budget ? Time(GatewayConfig().Radio.SlowestBeat) : Time(500ms);
+}
 
 }  // namespace
 
@@ -50,6 +57,7 @@ void PresenceOracle::OnEnded(std::size_t node)
 void PresenceOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
 {
     const std::size_t observer = _world.Lives[observerLife].Node;
+    const Time pause = LongestPause(_world.Plan);
     for (const Gateway::NodeStatus &status : fleet.nodes)
     {
         _stale += status.state == Gateway::NodeState::STALE ? 1 : 0;
@@ -63,8 +71,9 @@ void PresenceOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fle
             const Path &path = _paths[node * _machines.size() + observer];
             Time silence = _machines[node].Alive ? Time(0) : _world.Now - _machines[node].EndedAt;
             silence = path.Cuts > 0 ? std::max(silence, _world.Now - path.CutAt) : silence;
-            const bool wrong = (status.state == Gateway::NodeState::UP && silence > StaleAfter + Tolerance) ||
-                               (status.state == Gateway::NodeState::STALE && silence > LostAfter + Tolerance);
+            const bool wrong =
+                (status.state == Gateway::NodeState::UP && silence > StaleAfter * pause + Tolerance) ||
+                (status.state == Gateway::NodeState::STALE && silence > LostAfter * pause + Tolerance);
             if (wrong)
             {
                 _world.Fail(14, _world.NameOf(observer) + " shows " + status.node + " as " +
