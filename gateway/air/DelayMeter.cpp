@@ -10,7 +10,7 @@ void DelayMeter::Peer::Begin(std::uint64_t incarnation, Duration offset, Duratio
     *this = Peer{};
     Incarnation = incarnation;
     Least.fill(None);
-    Least.front() = offset;
+    Least.front() = Quickest = offset;
     BucketEnd = now + Bucket;
 }
 
@@ -22,23 +22,20 @@ void DelayMeter::Peer::Turn(Duration now)
         Least.front() = None;
         BucketEnd += Bucket;
     }
-    if (now >= BucketEnd)
-    {
-        BucketEnd = now + Bucket;
-    }
-}
-
-DelayMeter::Duration DelayMeter::Peer::Quickest() const
-{
-    return *std::min_element(Least.begin(), Least.end());
+    BucketEnd = std::max(BucketEnd, now);
+    Quickest = *std::min_element(Least.begin(), Least.end());
 }
 
 DelayMeter::Peer &DelayMeter::PeerOf(std::string_view node)
 {
-    const auto found = _peers.find(node);
-    if (found != _peers.end())
+    if (_last != _peers.end() && _last->first == node)
     {
-        return found->second;
+        return _last->second;
+    }
+    _last = _peers.find(node);
+    if (_last != _peers.end())
+    {
+        return _last->second;
     }
     if (_peers.size() == MostPeers)
     {
@@ -46,14 +43,15 @@ DelayMeter::Peer &DelayMeter::PeerOf(std::string_view node)
                                       [](const auto &a, const auto &b)
                                       { return a.second.ArrivedAt < b.second.ArrivedAt; }));
     }
-    return _peers.emplace(node, Peer{}).first->second;
+    _last = _peers.emplace(node, Peer{}).first;
+    return _last->second;
 }
 
-void DelayMeter::Heard(std::string_view node, std::uint64_t incarnation, Duration sentAt, Duration arrivedAt)
+bool DelayMeter::Heard(std::string_view node, std::uint64_t incarnation, Duration sentAt, Duration arrivedAt)
 {
     if (sentAt < Duration(0) || sentAt > LatestTime)
     {
-        return;
+        return false;
     }
     Peer &peer = PeerOf(node);
     const Duration offset = arrivedAt - sentAt;
@@ -61,36 +59,32 @@ void DelayMeter::Heard(std::string_view node, std::uint64_t incarnation, Duratio
     {
         peer.Begin(incarnation, offset, arrivedAt);
     }
-    peer.Turn(arrivedAt);
-    peer.Least.front() = std::min(peer.Least.front(), offset);
+    if (arrivedAt >= peer.BucketEnd)
+    {
+        peer.Turn(arrivedAt);
+    }
+    if (offset < peer.Least.front())
+    {
+        peer.Least.front() = offset;
+        peer.Quickest = std::min(peer.Quickest, offset);
+    }
     if (sentAt < peer.SentAt)
     {
-        return;  // overtaken
+        return false;  // overtaken
     }
-    if (offset - peer.Quickest() > Longest)
+    if (offset - peer.Quickest > Longest)
     {
         peer.Begin(incarnation, offset, arrivedAt);
     }
     peer.SentAt = sentAt;
     peer.ArrivedAt = arrivedAt;
-    peer.Delay = offset - peer.Quickest();
+    peer.Delay = offset - peer.Quickest;
     peer.Told = false;
     if (peer.Delay > Late)
     {
         peer.TellUntil = arrivedAt + Echo;
     }
-}
-
-DelayMeter::Duration DelayMeter::DelayOf(std::string_view node, std::uint64_t incarnation, Duration sentAt,
-                                         Duration arrivedAt) const
-{
-    const auto found = _peers.find(node);
-    if (found == _peers.end() || found->second.Incarnation != incarnation || sentAt < Duration(0) ||
-        sentAt > LatestTime)
-    {
-        return Duration(0);
-    }
-    return std::max(arrivedAt - sentAt - found->second.Quickest(), Duration(0));
+    return arrivedAt <= peer.TellUntil;
 }
 
 const std::vector<DelayMeter::Report> &DelayMeter::Take(std::size_t most, Duration now)
@@ -117,12 +111,6 @@ const std::vector<DelayMeter::Report> &DelayMeter::Take(std::size_t most, Durati
         _reports.push_back({next->first, peer.Delay, std::max(now - peer.ArrivedAt, Duration(0))});
     }
     return _reports;
-}
-
-bool DelayMeter::HasReports(Duration now) const
-{
-    return std::any_of(_peers.begin(), _peers.end(),
-                       [now](const auto &peer) { return !peer.second.Told && now <= peer.second.TellUntil; });
 }
 
 }  // namespace Rabit

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +12,7 @@
 namespace Rabit
 {
 
-// How late the datagrams of the other nodes come, against the quickest of each: what this node tells them,
+// How late the link frames of the other nodes come, against the quickest of each: what this node tells them,
 // so that they learn how much the air carries for them (CapacityEstimate).
 //
 // Both times are of monotonic clocks, the sender's and ours: what they say is never compared but for how it
@@ -46,18 +45,13 @@ public:
     };
 
     // A datagram of that life of a node came, which it says that it sent when its monotonic clock showed
-    // `sentAt`. A time that no clock shows is dropped.
-    void Heard(std::string_view node, std::uint64_t incarnation, Duration sentAt, Duration arrivedAt);
-
-    // How late a datagram came that the node sent at that time; 0 if nothing is known of it.
-    Duration DelayOf(std::string_view node, std::uint64_t incarnation, Duration sentAt,
-                     Duration arrivedAt) const;
+    // `sentAt`. A time that no clock shows is dropped. Returns whether there is something to tell of the
+    // node.
+    bool Heard(std::string_view node, std::uint64_t incarnation, Duration sentAt, Duration arrivedAt);
 
     // What there is to tell now, of at most so many nodes, those first that have waited for longest. It
     // counts as told. The names are valid until the next call.
     const std::vector<Report> &Take(std::size_t most, Duration now);
-    // Whether Take would give anything.
-    bool HasReports(Duration now) const;
 
 private:
     static constexpr std::size_t Buckets = 5;
@@ -69,6 +63,7 @@ private:
     {
         std::uint64_t Incarnation = 0;
         std::array<Duration, Buckets> Least{};  // arrival less sending, the newest first
+        Duration Quickest = None;               // of these
         Duration BucketEnd{0};
         Duration SentAt{0};  // of the newest
         Duration ArrivedAt{0};
@@ -79,12 +74,14 @@ private:
 
         void Begin(std::uint64_t incarnation, Duration offset, Duration now);
         void Turn(Duration now);
-        Duration Quickest() const;
     };
 
     Peer &PeerOf(std::string_view node);
 
-    std::map<std::string, Peer, std::less<>> _peers;
+    using Peers = std::map<std::string, Peer, std::less<>>;
+
+    Peers _peers;
+    Peers::iterator _last = _peers.end();  // that was heard
     std::vector<Report> _reports;
 };
 

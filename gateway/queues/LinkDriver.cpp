@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "clocks/GpsTime.h"
 #include "names/NamePattern.h"
 #include "queues/LinkStatus.h"
 #include "queues/SendOptions.h"
@@ -134,7 +133,12 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
     bool sooner = false;
     {
         const std::lock_guard lock(_mutex);
-        _links->OnFrame(frame, Now());
+        const LinkTime now = Now();
+        if (_links->OnFrame(frame, now) &&
+            _delays.Heard(info.Node, info.Incarnation, LinkTime(frame.Time), now))
+        {
+            _anyDelays = true;
+        }
         sooner = ServeBy(_outbox.IsEmpty() ? _links->NextDue() : LinkTime(0));
         TakeNews(news);
     }
@@ -217,100 +221,19 @@ void LinkDriver::Tell(const News &news)
     }
 }
 
-LinkDriver::Duration LinkDriver::Service()
+void LinkDriver::TakeDelays(Duration now,
+                            const std::function<void(std::string_view, Duration, Duration)> &take)
 {
-    LinkTime next = LinkNever;
-    News &news = OwnNews();
-    {
-        const std::lock_guard lock(_mutex);
-        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
-        _links->Run(Now());
-        _sending.Swap(_outbox);
-        next = _nextService = _links->NextDue();
-        TakeNews(news);
-    }
-    Tell(news);
-    DecodeLarge(news);
-    news.Clear();
-    WriteOut();
-    return next;
-}
-
-void LinkDriver::WriteOut()
-{
-    if (_sending.IsEmpty())
+    if (!_anyDelays)
     {
         return;
     }
-    // What is sent now may tell of a new life.
-    _incarnations.Save();
-    const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
-    _sending.BindNames();
-    MakeWriter();
-    for (const LinkDatagrams::Datagram &datagram : _sending)
-    {
-        if (_writer)
-        {
-            // A failure is the transport's to count; the links repair what is lost.
-            static_cast<void>(
-                _writer->WriteTo(datagram.Destination, LinkSampleEncoder(datagram.Frame), sourceTime));
-        }
-    }
-    _sending.Clear();
-}
-
-void LinkDriver::MakeWriter()
-{
-    if (!_writer && _session != nullptr)
-    {
-        _writer = _session->CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
-    }
-}
-
-LinkDriver::Duration LinkDriver::Advance()
-{
-    LinkTime next = LinkNever;
-    News &news = OwnNews();
-    {
-        const std::lock_guard lock(_mutex);
-        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
-        _links->Advance(Now());
-        next = _links->NextDue();
-        _nextService = LinkNever;
-        TakeNews(news);
-    }
-    Tell(news);
-    DecodeLarge(news);
-    news.Clear();
-    return next;
-}
-
-void LinkDriver::VisitStreams(const std::function<void(const LinkStream &)> &visit) const
-{
     const std::lock_guard lock(_mutex);
-    _links->VisitStreams(Now(), visit);
-}
-
-bool LinkDriver::SendOne(std::string_view destination, std::string_view queue, std::size_t most)
-{
-    bool sent = false;
-    News &news = OwnNews();
+    for (const DelayMeter::Report &report : _delays.Take(DelayMeter::MostPeers, now))
     {
-        const std::lock_guard lock(_mutex);
-        sent = _links->SendOne(destination, queue, most, Now());
-        _sending.Swap(_outbox);
-        TakeNews(news);
+        take(report.Node, report.Delay, now - report.Held);
     }
-    Tell(news);
-    news.Clear();
-    WriteOut();
-    return sent;
-}
-
-void LinkDriver::WillServe(Duration at)
-{
-    const std::lock_guard lock(_mutex);
-    _nextService = std::min(_nextService, at);
+    _anyDelays = false;
 }
 
 void LinkDriver::VisitPaths(const std::function<void(std::string_view, const LinkPathState &)> &visit) const

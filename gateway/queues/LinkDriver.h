@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "air/DelayMeter.h"
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
 #include "queues/IncomingQueues.h"
@@ -68,6 +69,11 @@ public:
     // whether there was one.
     bool SendOne(std::string_view destination, std::string_view queue, std::size_t most);
     void WillServe(Duration at);
+    // How late the frames of other nodes come, where that is worth telling them (DelayMeter); one datagram is
+    // told once. The name is valid during the call.
+    void TakeDelays(
+        Duration now,
+        const std::function<void(std::string_view node, Duration delay, Duration arrivedAt)> &take);
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
 
     // A node is in that life. The links may learn it later, and send what is accepted meanwhile to the life
@@ -146,6 +152,8 @@ private:
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
 
+    DelayMeter _delays;
+    std::atomic<bool> _anyDelays{false};  // changed with the mutex held
     LinkVersions _versions;
     std::atomic<std::uint64_t> _malformed{0};
 

@@ -38,14 +38,14 @@ class SimulatedNode
 public:
     // The monotonic clock is ahead of the network's by `monotonic`; the wall clock shows `gps` at the start.
     SimulatedNode(const GatewayConfig &config, SimulatedNetwork &network, std::chrono::nanoseconds monotonic,
-                  double gps, std::shared_ptr<Transport> transport)
+                  double gps)
         : Ahead(monotonic),
           Clock(std::make_shared<ManualClock>(gps, network.Now() + monotonic)),
           Workspace(Clock),
           Reactor(Workspace)
     {
         Reactor.AddManager(std::make_unique<GatewayManager>(
-            config, std::move(transport), Workspace,
+            config, std::make_shared<SimulatedTransport>(network), Workspace,
             [engine = std::mt19937_64(static_cast<std::uint64_t>(monotonic.count()))]() mutable
             { return engine(); }));
     }
@@ -130,7 +130,7 @@ public:
     SimulatedNode &Add(const GatewayConfig &config, double gps = 1.4e9, const std::string &key = "")
     {
         _ahead += std::chrono::seconds(1000);
-        auto node = std::make_unique<SimulatedNode>(config, Network, _ahead, gps, MakeTransport(config.Node));
+        auto node = std::make_unique<SimulatedNode>(config, Network, _ahead, gps);
         SimulatedNode &added = *node;
         _nodes[key.empty() ? config.Node : key] = std::move(node);
         added.Reactor.Start();
@@ -171,9 +171,6 @@ public:
     }
 
     SimulatedNetwork Network;
-    // Of a node that is added.
-    std::function<std::shared_ptr<Transport>(const std::string &node)> MakeTransport =
-        [this](const std::string &) { return std::make_shared<SimulatedTransport>(Network); };
 
 private:
     std::chrono::nanoseconds NextDue() const

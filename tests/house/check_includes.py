@@ -23,7 +23,7 @@ ROOMS = {
     "configuration": ["air", "names", "wire"],
     "presence": ["names", "clocks", "wire"],
     "mirrors": ["air", "names", "clocks", "wire", "presence"],
-    "queues": ["names", "clocks", "incarnation", "wire", "links", "presence"],
+    "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
     "report": ["names", "presence", "mirrors", "queues"],
     "manager": ["air", "names", "clocks", "configuration", "incarnation", "wire", "links", "presence", "mirrors", "queues",
                 "report"],

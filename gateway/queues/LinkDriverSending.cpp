@@ -1,0 +1,108 @@
+// What goes out: by itself, or one datagram at a time for a scheduler.
+#include <utility>
+
+#include "clocks/GpsTime.h"
+#include "queues/LinkDriver.h"
+#include "wire/LinkSampleCodec.h"
+#include "wire/LinkTopics.h"
+
+namespace Rabit
+{
+
+LinkDriver::Duration LinkDriver::Service()
+{
+    LinkTime next = LinkNever;
+    News &news = OwnNews();
+    {
+        const std::lock_guard lock(_mutex);
+        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
+        _links->Run(Now());
+        _sending.Swap(_outbox);
+        next = _nextService = _links->NextDue();
+        TakeNews(news);
+    }
+    Tell(news);
+    DecodeLarge(news);
+    news.Clear();
+    WriteOut();
+    return next;
+}
+
+void LinkDriver::WriteOut()
+{
+    if (_sending.IsEmpty())
+    {
+        return;
+    }
+    // What is sent now may tell of a new life.
+    _incarnations.Save();
+    const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
+    _sending.BindNames();
+    MakeWriter();
+    for (const LinkDatagrams::Datagram &datagram : _sending)
+    {
+        if (_writer)
+        {
+            // A failure is the transport's to count; the links repair what is lost.
+            static_cast<void>(
+                _writer->WriteTo(datagram.Destination, LinkSampleEncoder(datagram.Frame), sourceTime));
+        }
+    }
+    _sending.Clear();
+}
+
+LinkDriver::Duration LinkDriver::Advance()
+{
+    LinkTime next = LinkNever;
+    News &news = OwnNews();
+    {
+        const std::lock_guard lock(_mutex);
+        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
+        _links->Advance(Now());
+        next = _links->NextDue();
+        _nextService = LinkNever;
+        TakeNews(news);
+    }
+    Tell(news);
+    DecodeLarge(news);
+    news.Clear();
+    return next;
+}
+
+void LinkDriver::VisitStreams(const std::function<void(const LinkStream &)> &visit) const
+{
+    const std::lock_guard lock(_mutex);
+    _links->VisitStreams(Now(), visit);
+}
+
+bool LinkDriver::SendOne(std::string_view destination, std::string_view queue, std::size_t most)
+{
+    bool sent = false;
+    News &news = OwnNews();
+    {
+        const std::lock_guard lock(_mutex);
+        sent = _links->SendOne(destination, queue, most, Now());
+        _sending.Swap(_outbox);
+        TakeNews(news);
+    }
+    Tell(news);
+    news.Clear();
+    WriteOut();
+    return sent;
+}
+
+void LinkDriver::WillServe(Duration at)
+{
+    const std::lock_guard lock(_mutex);
+    _nextService = std::min(_nextService, at);
+}
+
+void LinkDriver::MakeWriter()
+{
+    if (!_writer && _session != nullptr)
+    {
+        _writer = _session->CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
+    }
+}
+
+}  // namespace Rabit
