@@ -46,10 +46,9 @@ std::optional<PeerClock::Duration> PeerClock::MinimumFilter::Value() const
 
 void PeerClock::OnBeat(const Reading &peer, Duration arrival)
 {
-    _lastDifference = arrival - peer.Monotonic;
+    _lastDifference = arrival - peer.Source;
     _lastSource = peer.Source;
     _difference.Add(_lastDifference, arrival);
-    _monotonicToSource = peer.Source - peer.Monotonic;
     _sourceToWall = peer.Wall - peer.Source;
 }
 
@@ -61,7 +60,7 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
     }
     _roundTrip.Add(roundTrip, now);
     _lastRoundTrip = roundTrip;
-    const Duration delay = _lastDifference - _difference.Value().value_or(_lastDifference);
+    const Duration delay = LastDelay();
     if (delay > roundTrip + Tolerance)
     {
         _stoodStill += delay;
@@ -70,7 +69,7 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
     }
 }
 
-std::optional<PeerClock::Duration> PeerClock::MonotonicToLocal() const
+std::optional<PeerClock::Duration> PeerClock::SourceToLocal() const
 {
     const std::optional<Duration> difference = _difference.Value();
     if (!difference)
@@ -82,10 +81,9 @@ std::optional<PeerClock::Duration> PeerClock::MonotonicToLocal() const
 
 std::optional<PeerClock::SourceRelation> PeerClock::Source() const
 {
-    const std::optional<Duration> offset = MonotonicToLocal();
-    return offset ? std::optional(SourceRelation{.ToLocal = *offset - _monotonicToSource,
-                                                 .StoodStill = _stoodStill,
-                                                 .StoodStillUntil = _stoodStillUntil})
+    const std::optional<Duration> offset = SourceToLocal();
+    return offset ? std::optional(SourceRelation{
+                        .ToLocal = *offset, .StoodStill = _stoodStill, .StoodStillUntil = _stoodStillUntil})
                   : std::nullopt;
 }
 
@@ -95,10 +93,10 @@ std::optional<PeerClock::Duration> PeerClock::ToLocal(Duration source) const
     return relation ? std::optional(relation->At(source)) : std::nullopt;
 }
 
-std::optional<PeerClock::Duration> PeerClock::SentAt(Duration peerMonotonic) const
+std::optional<PeerClock::Duration> PeerClock::SentAt(Duration source) const
 {
-    const std::optional<Duration> offset = MonotonicToLocal();
-    return offset ? std::optional<Duration>(*offset + peerMonotonic) : std::nullopt;
+    const std::optional<Duration> offset = SourceToLocal();
+    return offset ? std::optional<Duration>(*offset + source) : std::nullopt;
 }
 
 }  // namespace Rabit

@@ -11,10 +11,10 @@ namespace Rabit
 // source clock (SourceClock), from that node's beats alone. No wall clock is used, so that none need be right
 // or keep from being set.
 //
-// A beat carries the sender's monotonic and wall clock read together. The smallest difference between arrival
-// here and the sender's monotonic clock belongs to the beat that was least delayed (the minimum filter of
-// NTP, RFC 5905, section 10); half the smallest round trip is taken as its delay. The filter forgets after 15
-// to 30 seconds, so that drift does not add up.
+// A beat carries the sender's source clock, which runs as its monotonic one does, and its wall clock, read
+// together. The smallest difference between arrival here and the sender's source clock belongs to the beat
+// that was least delayed (the minimum filter of NTP, RFC 5905, section 10); half the smallest round trip is
+// taken as its delay. The filter forgets after 15 to 30 seconds, so that drift does not add up.
 //
 // A clock that stood still (a virtual machine that was paused, a computer that was suspended) makes all later
 // differences larger, as a delay of every beat would. The two are told apart by the echo that a beat carries:
@@ -32,10 +32,9 @@ class PeerClock
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // The clocks of the sender, read at one moment, as written in a beat.
+    // The clocks of the sender, read at one moment, as said by a beat.
     struct Reading
     {
-        Duration Monotonic{0};
         Duration Source{0};
         Duration Wall{0};  // since 1970
     };
@@ -66,9 +65,11 @@ public:
     std::optional<Duration> ToLocal(Duration source) const;
     // What to add to the peer's source clock to get its wall clock, as of the last beat.
     Duration SourceToWall() const { return _sourceToWall; }
-    // When a beat with that monotonic reading was sent, by this node's monotonic clock; empty before the
-    // first beat.
-    std::optional<Duration> SentAt(Duration peerMonotonic) const;
+    // When a beat with that source time was sent, by this node's monotonic clock; empty before the first
+    // beat.
+    std::optional<Duration> SentAt(Duration source) const;
+    // How much later the last beat came than the quickest that the filter knows.
+    Duration LastDelay() const { return _lastDifference - _difference.Value().value_or(_lastDifference); }
 
 private:
     // The minimum over the last one to two periods.
@@ -86,7 +87,7 @@ private:
         Duration _periodStart{0};
     };
 
-    std::optional<Duration> MonotonicToLocal() const;
+    std::optional<Duration> SourceToLocal() const;
 
     MinimumFilter _difference;
     MinimumFilter _roundTrip;
@@ -94,7 +95,6 @@ private:
     Duration _lastSource{0};
     Duration _stoodStill{0};
     Duration _stoodStillUntil{0};
-    Duration _monotonicToSource{0};
     Duration _sourceToWall{0};
     std::optional<Duration> _lastRoundTrip;
 };

@@ -306,7 +306,7 @@ private:
     // Others would not take what is larger, and nobody would learn why.
     void CheckAnnouncement() const
     {
-        const std::string excess = Announcements::WhyTooLarge(Announcements::Of(_config, 0));
+        const std::string excess = Announcements::WhyTooLarge(Announcements::Of(_config));
         if (!excess.empty())
         {
             Fail(0, excess);

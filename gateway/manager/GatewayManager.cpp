@@ -75,7 +75,7 @@ public:
           _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),
           _presence(
-              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, _senders, random,
+              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
               [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace),
           _fleet(std::make_shared<Gateway::Fleet>())
@@ -186,6 +186,8 @@ private:
         _session = _transport->Open(TransportSettingsOf(_config, _incarnation),
                                     [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
+        // First, so that the others know of this node as early as can be.
+        _presence.Open(*_session, Announcements::Of(_config));
         _links.Open(*_session);
         _subscriptions.Open(*_session);
         for (const PublishRule &rule : _config.Publish)
@@ -194,7 +196,6 @@ private:
                                      *_session);
             Attach(_publishers.back());
         }
-        _presence.Open(*_session, Announcements::Of(_config, _incarnation));
         _air.Open(*_session);
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
         if (!_forwards)
@@ -272,7 +273,7 @@ private:
         fleet.forgotten = _presence.Peers().Forgotten();
         fleet.crowded_out =
             _presence.Peers().CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
-        fleet.malformed = _presence.Malformed() + _links.Malformed() + _senders.Refused();
+        fleet.malformed = _presence.Malformed() + _links.Malformed();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
         _air.Report(fleet, now);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
@@ -298,7 +299,7 @@ private:
         }
         for (const auto &problems :
              {Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
-              _outgoing->Problems(), _links.Problems(), _senders.Problems(now)})
+              _outgoing->Problems(), _links.Problems(), _presence.Problems(now)})
         {
             fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
         }
@@ -311,7 +312,6 @@ private:
     IncarnationStore _incarnations;
     OriginTable _origins;
     RemoteQueues _remote;
-    SenderCheck _senders;
     LinkDriver _links;
     const std::shared_ptr<OutgoingQueues> _outgoing;
     const std::uint64_t _incarnation;

@@ -3,20 +3,23 @@
 #include <algorithm>
 #include <utility>
 
+#include "presence/Spread.h"
+
 namespace Rabit
 {
 
-void Introductions::Ask(const std::string &node, Reason reason, std::size_t others, Duration now)
+bool Introductions::Ask(const std::string &node, Reason reason, std::size_t others, Duration now)
 {
     if (!MayAsk(node, reason, now))
     {
-        return;
+        return false;
     }
     _statesWanted |= reason == Reason::Heard;
     if (!_beatsAt)
     {
-        _beatsAt = std::max(now + Spread(others), _last ? *_last + Together : now);
+        _beatsAt = std::max(now + SpreadAmong(others, _random), _last ? *_last + Together : now);
     }
+    return true;
 }
 
 // What is remembered is bounded: only who was granted something, and no longer than it counts.
@@ -31,14 +34,6 @@ bool Introductions::MayAsk(const std::string &node, Reason reason, Duration now)
     _restedAt = restedAt;
     _asked[{node, reason}] = now;
     return true;
-}
-
-Introductions::Duration Introductions::Spread(std::size_t others)
-{
-    const auto most = std::min<Duration::rep>(
-        static_cast<Duration::rep>(std::min<std::size_t>(others, 1000)) * SpreadForOne.count(),
-        LongestSpread.count());
-    return Duration(static_cast<Duration::rep>(_random() % static_cast<std::uint64_t>(most + 1)));
 }
 
 std::optional<Introductions::Duration> Introductions::Due() const

@@ -29,10 +29,6 @@ public:
     static constexpr Duration RestForAll = std::chrono::seconds(1);
     // Those who come as close together as this are answered together.
     static constexpr Duration Together = std::chrono::milliseconds(10);
-    // All who were there before hear of a newcomer at the same moment. They answer at random within a time
-    // that grows with their number.
-    static constexpr Duration SpreadForOne = std::chrono::milliseconds(2);
-    static constexpr Duration LongestSpread = std::chrono::milliseconds(100);
     // States follow the first beat after this time: the other one drops what comes before it knows the beat.
     static constexpr Duration StatesAfter = std::chrono::milliseconds(20);
 
@@ -44,8 +40,9 @@ public:
 
     explicit Introductions(RandomSource random) : _random(std::move(random)) {}
 
-    // A node has come. `others`: nodes that know of it as well.
-    void Ask(const std::string &node, Reason reason, std::size_t others, Duration now);
+    // A node has come. `others`: nodes that know of it as well; all of them hear of it at the same moment
+    // (Spread.h). Returns whether this node speaks up for it.
+    bool Ask(const std::string &node, Reason reason, std::size_t others, Duration now);
     // When this node speaks up next; empty: for nobody.
     std::optional<Duration> Due() const;
     // Whether it is time for the first beat. Says so once.
@@ -55,7 +52,6 @@ public:
 
 private:
     bool MayAsk(const std::string &node, Reason reason, Duration now);
-    Duration Spread(std::size_t others);
 
     const RandomSource _random;
     std::map<std::pair<std::string, Reason>, Duration> _asked;  // within RestForOne

@@ -1,8 +1,11 @@
 #include "presence/PeerTable.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
+#include "names/NodeTag.h"
+#include "presence/TakeTurns.h"
 #include "wire/Announcements.h"
 
 namespace Rabit
@@ -17,35 +20,21 @@ using Gateway::NodeState;
 constexpr int BeatsOfATwin = 3;
 constexpr PeerTable::Duration TwinMemory = std::chrono::seconds(5);
 
-PeerTable::Duration Nanoseconds(std::int64_t value)
+std::string NotHeardFor(PeerTable::Duration silence)
 {
-    return PeerTable::Duration(value);
-}
-
-// Offers the peers in turn, from the one after `last` on, until `most` were taken.
-template <typename Peers, typename Take>
-void TakeTurns(Peers &peers, std::string &last, std::size_t most, const Take &take)
-{
-    std::size_t taken = 0;
-    auto next = peers.upper_bound(last);
-    for (std::size_t looked = 0; looked < peers.size() && taken < most; ++looked, ++next)
-    {
-        if (next == peers.end())
-        {
-            next = peers.begin();
-        }
-        if (take(next->second))
-        {
-            last = next->first;
-            ++taken;
-        }
-    }
+    char text[64];
+    std::snprintf(text, sizeof text, "not heard for %g seconds",
+                  std::chrono::duration<double>(silence).count());
+    return text;
 }
 
 }  // namespace
 
 PeerTable::PeerTable(std::string ownNode, std::uint64_t ownIncarnation, IsNeeded isNeeded)
-    : _ownNode(std::move(ownNode)), _ownIncarnation(ownIncarnation), _isNeeded(std::move(isNeeded))
+    : _ownNode(std::move(ownNode)),
+      _ownIncarnation(ownIncarnation),
+      _ownTag(NodeTagOf(_ownNode, ownIncarnation)),
+      _isNeeded(std::move(isNeeded))
 {
 }
 
@@ -58,45 +47,39 @@ const PeerTable::Peer *PeerTable::Find(const std::string &node) const
 std::vector<const PeerTable::Peer *> PeerTable::Heard() const
 {
     std::vector<const Peer *> heard;
+    heard.reserve(_peers.size());
     for (const auto &[name, peer] : _peers)
     {
-        if (peer.Heard)
-        {
-            heard.push_back(&peer);
-        }
+        heard.push_back(&peer);
     }
     return heard;
 }
 
-PeerTable::Peer *PeerTable::GetOrMake(const std::string &node, bool heard, Duration now, Change &change)
+PeerTable::Peer *PeerTable::GetOrMake(const std::string &node, Change &change)
 {
     const auto found = _peers.find(node);
     if (found != _peers.end())
     {
         return &found->second;
     }
-    if (_peers.size() >= MaximumPeers && !ForgetOne(heard, change))
+    if (_peers.size() >= MaximumPeers && !ForgetOne(change))
     {
         ++_crowdedOut;
         return nullptr;
     }
     Peer &made = _peers[node];
     made.Node = node;
-    made.KnownSince = now;
+    change.NewLife = true;
     return &made;
 }
 
-// Anybody can announce names; so one that was never heard makes room first, and for no such name one that
-// was.
-bool PeerTable::ForgetOne(bool forOneHeard, Change &change)
+bool PeerTable::ForgetOne(Change &change)
 {
-    const auto rank = [](const Peer &peer)
-    { return std::pair(peer.Heard, peer.Heard ? peer.LastHeard : peer.KnownSince); };
     auto first = _peers.end();
     for (auto peer = _peers.begin(); peer != _peers.end(); ++peer)
     {
-        const bool possible = !peer->second.Heard || (forOneHeard && peer->second.State == NodeState::LOST);
-        if (possible && (first == _peers.end() || rank(peer->second) < rank(first->second)) &&
+        if (peer->second.State == NodeState::LOST &&
+            (first == _peers.end() || peer->second.LastHeard < first->second.LastHeard) &&
             !(_isNeeded && _isNeeded(peer->first)))
         {
             first = peer;
@@ -106,33 +89,36 @@ bool PeerTable::ForgetOne(bool forOneHeard, Change &change)
     {
         return false;
     }
-    change.State |= first->second.Heard;
+    change.State = true;
     change.Forgotten.push_back(first->first);
     ++_forgotten;
+    _missing.LetGo(first->first);
     _peers.erase(first);
     return true;
 }
 
 // A higher incarnation is a later life. A lower one is an earlier life's straggler, unless the later life has
 // fallen silent: a node that lost its counter and its clock comes back with a lower number.
-bool PeerTable::IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now) const
+bool PeerTable::IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now)
 {
-    return !peer.Heard || incarnation > peer.Incarnation ||
-           (incarnation < peer.Incarnation && now - peer.LastHeard > StaleAfter);
+    return incarnation > peer.Incarnation ||
+           (incarnation < peer.Incarnation && now - peer.LastHeard > peer.StaleAfter());
 }
 
-void PeerTable::BeginLife(Peer &peer, std::uint64_t incarnation)
+void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
 {
-    if (peer.Offers && peer.Offers->incarnation != incarnation)
+    // Who restarts as it was need not be asked.
+    if (peer.OffersDigest != heard.Beat.offers)
     {
         peer.Offers.reset();
     }
-    peer.Incarnation = incarnation;
+    peer.Incarnation = heard.Incarnation;
+    peer.Tag = NodeTagOf(heard.Node, heard.Incarnation);
+    peer.FirstHeard = heard.Arrival;
     peer.Clock = PeerClock();
-    peer.LastBeatMonotonic = Duration(0);
+    peer.LastBeatSource = Duration(-1);
     peer.LastEchoed.reset();
-    peer.LacksOffersSince.reset();
-    peer.Heard = false;
+    peer.States.clear();
 }
 
 bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
@@ -140,6 +126,10 @@ bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
     const bool changed = peer.State != state || peer.Reason != reason;
     peer.State = state;
     peer.Reason = reason;
+    if (state == NodeState::LOST)
+    {
+        _missing.LetGo(peer.Node);
+    }
     return changed;
 }
 
@@ -149,115 +139,154 @@ void PeerTable::NoteTwin(Peer &peer, Duration now)
     peer.TwinSince = now;
 }
 
-PeerTable::Change PeerTable::OnBeat(const Gateway::Beat &beat, Duration now)
+PeerTable::Change PeerTable::OnOwnName(const HeardBeat &heard)
 {
     Change change;
-    if (beat.node == _ownNode)
+    if (heard.Incarnation != _ownIncarnation)
     {
-        if (beat.incarnation != _ownIncarnation)
-        {
-            _ownTwinBeats = now - _ownTwinSince > TwinMemory ? 1 : _ownTwinBeats + 1;
-            _ownTwinSince = now;
-            change.State = !_ownTwice && _ownTwinBeats >= BeatsOfATwin;
-            _ownTwice = _ownTwice || change.State;
-        }
-        return change;
+        _ownTwinBeats = heard.Arrival - _ownTwinSince > TwinMemory ? 1 : _ownTwinBeats + 1;
+        _ownTwinSince = heard.Arrival;
+        change.State = !_ownTwice && _ownTwinBeats >= BeatsOfATwin;
+        _ownTwice = _ownTwice || change.State;
     }
-    Peer *peer = GetOrMake(beat.node, true, now, change);
+    return change;
+}
+
+PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
+{
+    if (heard.Node == _ownNode)
+    {
+        return OnOwnName(heard);
+    }
+    if (heard.Beat.leaving)
+    {
+        return OnGoodbye(heard);
+    }
+    Change change;
+    Peer *peer = GetOrMake(heard.Node, change);
     if (peer == nullptr)
     {
         return change;
     }
-    if (!peer->Heard || beat.incarnation != peer->Incarnation)
+    if (change.NewLife || heard.Incarnation != peer->Incarnation)
     {
-        if (!IsNewLife(*peer, beat.incarnation, now))
+        if (!change.NewLife && !IsNewLife(*peer, heard.Incarnation, heard.Arrival))
         {
-            NoteTwin(*peer, now);
+            NoteTwin(*peer, heard.Arrival);
             change.State = !peer->Twice && peer->TwinBeats >= BeatsOfATwin;
             peer->Twice = peer->Twice || change.State;
             return change;
         }
-        BeginLife(*peer, beat.incarnation);
-        peer->FirstHeard = now;
+        BeginLife(*peer, heard);
         change.NewLife = true;
     }
-    const Duration monotonic = Nanoseconds(beat.monotonic_ns);
-    if (peer->Heard && monotonic <= peer->LastBeatMonotonic)
+    if (Duration(heard.Beat.source_ns) > peer->LastBeatSource)  // else a duplicate, or overtaken
     {
-        return change;  // a duplicate, or overtaken
+        TakeIn(*peer, heard, change);
     }
-    peer->Clock.OnBeat(
-        {.Monotonic = monotonic, .Source = Nanoseconds(beat.source_ns), .Wall = Nanoseconds(beat.utc_ns)},
-        now);
-    MeasureRoundTrip(*peer, beat, now);
-    CompareOffers(*peer, beat.offers, now);
-    peer->LastBeatMonotonic = monotonic;
-    peer->LastBeatArrival = now;
+    return change;
+}
+
+void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
+{
+    const Gateway::Beat &beat = heard.Beat;
+    const Duration source(beat.source_ns);
+    const Duration now = heard.Arrival;
+    peer.Clock.OnBeat({.Source = source, .Wall = Duration(heard.Utc)}, now);
+    MeasureRoundTrip(peer, heard);
+    peer.LastBeatSource = source;
+    peer.LastBeatArrival = now;
     // A beat that was held up on the way tells of the past.
-    peer->LastHeard = std::min(now, peer->Clock.SentAt(monotonic).value_or(now));
-    peer->Heard = true;
-    if (now - peer->LastHeard <= StaleAfter)
+    peer.LastHeard = std::min(now, peer.Clock.SentAt(source).value_or(now));
+    peer.Period =
+        std::clamp(Duration(std::chrono::milliseconds(beat.next_ms)), ShortestPeriod, LongestPeriod);
+    change.Beat = true;
+    if (now - peer.LastHeard <= peer.StaleAfter())
     {
-        change.State = SetState(*peer, NodeState::UP, "") || change.NewLife;
+        change.State |= SetState(peer, NodeState::UP, "") || change.NewLife;
     }
-    return change;
+    CompareOffers(peer, heard, change);
+    TakeStates(peer, beat);
 }
 
-void PeerTable::MeasureRoundTrip(Peer &peer, const Gateway::Beat &beat, Duration now) const
+// An echo of a beat that this node has not sent is a mistake or a lie. How long the peer says to have held it
+// can only make its own clock look wrong.
+void PeerTable::MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const
 {
-    for (const Gateway::BeatEcho &echo : beat.echoes)
+    const auto &echoes = heard.Beat.echoes;
+    const auto own =
+        std::find_if(echoes.begin(), echoes.end(), [this](const auto &echo) { return echo.node == _ownTag; });
+    const std::optional<Duration> sent = own == echoes.end() ? std::nullopt : _sent.Find(own->beat);
+    if (sent)
     {
-        if (echo.node == _ownNode && echo.incarnation == _ownIncarnation)
-        {
-            peer.Clock.OnRoundTrip(now - Nanoseconds(echo.monotonic_ns) - Nanoseconds(echo.held_ns), now);
-        }
+        peer.Clock.OnRoundTrip(heard.Arrival - *sent - std::chrono::microseconds(own->held_us),
+                               heard.Arrival);
     }
 }
 
-PeerTable::Change PeerTable::OnAnnouncement(const Gateway::Announcement &announcement, Duration now)
+void PeerTable::TakeStates(Peer &peer, const Gateway::Beat &beat)
 {
-    Change change;
-    if (announcement.node == _ownNode)
+    if (peer.BeatsOffers != beat.offers)
     {
-        return change;
+        peer.BeatsOffers = beat.offers;
+        peer.States.clear();
     }
-    Peer *peer = GetOrMake(announcement.node, false, now, change);
-    if (peer == nullptr || (peer->Heard && announcement.incarnation < peer->Incarnation))
+    if (!beat.states.empty())
     {
-        return change;
+        peer.States.resize(std::max(peer.States.size(), beat.first_state + beat.states.size()), 0);
+        std::copy(beat.states.begin(), beat.states.end(),
+                  peer.States.begin() + static_cast<std::ptrdiff_t>(beat.first_state));
     }
-    if (announcement.leaving)
-    {
-        change.State |= OnLeft(announcement.node, announcement.incarnation).State;
-        return change;
-    }
-    change.Offers = !peer->Offers || !(*peer->Offers == announcement);
-    if (change.Offers)
-    {
-        peer->Offers = announcement;
-        peer->OffersSince = now;
-        peer->OffersDigest = Announcements::DigestOf(announcement);
-    }
-    return change;
 }
 
-void PeerTable::CompareOffers(Peer &peer, std::uint32_t digest, Duration now)
+void PeerTable::CompareOffers(Peer &peer, const HeardBeat &heard, Change &change)
 {
-    if (peer.Offers && peer.OffersDigest == digest)
+    const Gateway::Beat &beat = heard.Beat;
+    if (peer.Offers && peer.OffersDigest == beat.offers)
     {
-        peer.LacksOffersSince.reset();
+        _missing.LetGo(peer.Node);
+        return;
     }
-    else if (!peer.LacksOffersSince)
+    if (peer.State == NodeState::LOST ||
+        (peer.Offers && !change.NewLife && heard.Arrival - peer.OffersSince < OffersRest))
     {
-        peer.LacksOffersSince = now;
+        return;
     }
+    _missing.Lacks(peer.Node, beat.offers, heard.Arrival);
+    const auto whole = beat.parts.empty() ? std::nullopt : _missing.Add(peer.Node, beat.parts.front());
+    if (!whole)
+    {
+        return;
+    }
+    auto announcement = Announcements::Decode(*whole);
+    if (!announcement)
+    {
+        ++_malformed;
+        return;
+    }
+    peer.Offers = std::move(announcement);
+    peer.OffersSince = heard.Arrival;
+    peer.OffersDigest = beat.offers;
+    change.Offers = true;
+    _missing.LetGo(peer.Node);
+}
+
+PeerTable::Change PeerTable::OnGoodbye(const HeardBeat &heard)
+{
+    const auto found = _peers.find(heard.Node);
+    if (found != _peers.end() && found->second.Incarnation == heard.Incarnation)
+    {
+        // What it has overtaken comes too late.
+        found->second.LastBeatSource = std::max(found->second.LastBeatSource, Duration(heard.Beat.source_ns));
+    }
+    return OnLeft(heard.Node, heard.Incarnation);
 }
 
 PeerTable::Change PeerTable::OnLeft(const std::string &node, std::uint64_t incarnation)
 {
     Change change;
     const auto found = _peers.find(node);
-    if (found != _peers.end() && found->second.Heard && found->second.Incarnation == incarnation)
+    if (found != _peers.end() && found->second.Incarnation == incarnation)
     {
         change.State = SetState(found->second, NodeState::LOST, "left");
     }
@@ -279,18 +308,14 @@ PeerTable::Change PeerTable::Advance(Duration now)
             peer.Twice = false;
             change.State = true;
         }
-        if (!peer.Heard)
-        {
-            continue;
-        }
         const Duration silence = now - peer.LastHeard;
-        if (silence > LostAfter && peer.State != NodeState::LOST)
+        if (silence > peer.LostAfter() && peer.State != NodeState::LOST)
         {
-            change.State |= SetState(peer, NodeState::LOST, "not heard for 3.5 seconds");
+            change.State |= SetState(peer, NodeState::LOST, NotHeardFor(peer.LostAfter()));
         }
-        else if (silence > StaleAfter && peer.State == NodeState::UP)
+        else if (silence > peer.StaleAfter() && peer.State == NodeState::UP)
         {
-            change.State |= SetState(peer, NodeState::STALE, "not heard for 1.5 seconds");
+            change.State |= SetState(peer, NodeState::STALE, NotHeardFor(peer.StaleAfter()));
         }
     }
     return change;
@@ -312,51 +337,47 @@ std::optional<PeerTable::Duration> PeerTable::NextChange() const
         {
             consider(peer.TwinSince + TwinMemory + after);
         }
-        if (peer.Heard && peer.State != NodeState::LOST)
+        if (peer.State != NodeState::LOST)
         {
-            consider(peer.LastHeard + (peer.State == NodeState::UP ? StaleAfter : LostAfter) + after);
+            consider(peer.LastHeard + (peer.State == NodeState::UP ? peer.StaleAfter() : peer.LostAfter()) +
+                     after);
         }
     }
     return next;
 }
 
-std::vector<std::string> PeerTable::NextWanted(Duration now, std::size_t most)
+bool PeerTable::IsEchoDue(const Peer &peer, Duration now)
 {
-    std::vector<std::string> wanted;
-    TakeTurns(_peers, _lastWanted, most,
-              [&](const Peer &peer)
-              {
-                  const bool ask = peer.State != NodeState::LOST && peer.LacksOffersSince &&
-                                   now - *peer.LacksOffersSince >= AskAfter;
-                  if (ask)
-                  {
-                      wanted.push_back(peer.Node);
-                  }
-                  return ask;
-              });
-    return wanted;
+    return peer.State != NodeState::LOST && (!peer.LastEchoed || now - *peer.LastEchoed >= EchoPeriod);
+}
+
+std::size_t PeerTable::EchoesDue(Duration now, std::size_t most) const
+{
+    const auto due = std::count_if(_peers.begin(), _peers.end(),
+                                   [now](const auto &entry) { return IsEchoDue(entry.second, now); });
+    return std::min(static_cast<std::size_t>(due), most);
 }
 
 std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t most)
 {
     std::vector<Gateway::BeatEcho> echoes;
-    TakeTurns(_peers, _lastEchoed, most,
-              [&](Peer &peer)
-              {
-                  if (!peer.Heard || peer.State == NodeState::LOST ||
-                      (peer.LastEchoed && now - *peer.LastEchoed < EchoPeriod))
-                  {
-                      return false;
-                  }
-                  Gateway::BeatEcho echo;
-                  echo.node = peer.Node;
-                  echo.incarnation = peer.Incarnation;
-                  echo.monotonic_ns = peer.LastBeatMonotonic.count();
-                  echo.held_ns = (now - peer.LastBeatArrival).count();
-                  echoes.push_back(std::move(echo));
-                  peer.LastEchoed = now;
-                  return true;
-              });
+    TakeTurns(
+        _peers, _lastEchoed, most,
+        [&](const std::string &, Peer &peer)
+        {
+            if (!IsEchoDue(peer, now))
+            {
+                return false;
+            }
+            Gateway::BeatEcho echo;
+            echo.node = peer.Tag;
+            echo.beat = static_cast<std::uint32_t>(peer.LastBeatSource.count());
+            echo.held_us = static_cast<std::uint32_t>(
+                std::chrono::duration_cast<std::chrono::microseconds>(now - peer.LastBeatArrival).count());
+            echoes.push_back(echo);
+            peer.LastEchoed = now;
+            return true;
+        });
     return echoes;
 }
 

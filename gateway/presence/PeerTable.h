@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -10,12 +11,15 @@
 
 #include "clocks/PeerClock.h"
 #include "gateway.idl.h"
+#include "presence/HeardBeat.h"
+#include "presence/MissingOffers.h"
+#include "presence/SentBeats.h"
 
 namespace Rabit
 {
 
-// What this node knows of the others: who is there, in which life, and what each one offers. Presence rests
-// on beats alone, never on announcements, which the network may replay long after their node has gone.
+// What this node knows of the others, from their beats: who is there, in which life, and what each one
+// offers.
 //
 // A pure state machine: no I/O, no threads, no clock of its own. `now` is this node's monotonic clock, and
 // never goes back. Used by the gateway's thread only.
@@ -24,40 +28,48 @@ class PeerTable
 public:
     using Duration = std::chrono::nanoseconds;
 
-    static constexpr Duration BeatPeriod = std::chrono::milliseconds(500);
-    static constexpr Duration StaleAfter = std::chrono::milliseconds(1500);
-    static constexpr Duration LostAfter = std::chrono::milliseconds(3500);
-    // Who lacks an announcement asks for it after this time: it may be on its way.
-    static constexpr Duration AskAfter = std::chrono::milliseconds(300);
+    // A node says when its next beat is due; it is STALE after so many times that, and LOST after so many.
+    static constexpr int StaleAfterBeats = 3;
+    static constexpr int LostAfterBeats = 7;
+    // What it says is raised or lowered to what a node can mean.
+    static constexpr Duration ShortestPeriod = std::chrono::milliseconds(100);
+    static constexpr Duration LongestPeriod = std::chrono::seconds(60);
     // A node's beat goes back to it so often. The round trip of one that has just come is measured at once.
     static constexpr Duration EchoPeriod = std::chrono::seconds(4);
-    // Names come from the network. When another one comes one is forgotten that has never been heard, else,
-    // if the new one was heard, the one LOST for longest; never one that is live or needed. If there is none,
-    // what the new one says is dropped and counted.
+    // Another announcement in the same life is taken so long after the one before at the earliest.
+    static constexpr Duration OffersRest = std::chrono::seconds(1);
+    // Names come from the network. When another one comes the one LOST for longest is forgotten; never one
+    // that is live or needed. If there is none, what the new one says is dropped and counted.
     static constexpr std::size_t MaximumPeers = 1000;
 
     struct Peer
     {
         std::string Node;
         std::uint64_t Incarnation = 0;
-        bool Heard = false;  // a beat of this life has come; until then it is shown nowhere
+        std::uint32_t Tag = 0;  // of node and incarnation (names/NodeTag.h)
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
-        Duration KnownSince{0};
         Duration FirstHeard{0};
         Duration LastHeard{0};  // when its newest beat was sent, by this node's clock
+        Duration Period{0};     // how long after that the next one is due at the latest
         PeerClock Clock;
+        // The newest announcement that came of it. One of an earlier life is kept if its beats mean the same.
         std::optional<Gateway::Announcement> Offers;
         Duration OffersSince{0};
-        std::uint32_t OffersDigest = 0;            // of Offers
-        std::optional<Duration> LacksOffersSince;  // its beats say that Offers is not what it offers
+        std::uint32_t OffersDigest = 0;  // of Offers
         // Versions of its States in the order of the announcement that its beats mean, as far as they have
         // told in this life; 0: never written, or not told yet.
         std::vector<std::uint32_t> States;
-        bool Twice = false;                        // another live node has the same name
+        std::uint32_t BeatsOffers = 0;  // digest of that announcement
+        bool Twice = false;             // another live node has the same name
+
+        // Whether Offers is what its beats mean, so that States tells of them.
+        bool HasPresentOffers() const { return Offers && OffersDigest == BeatsOffers; }
+        Duration StaleAfter() const { return StaleAfterBeats * Period; }
+        Duration LostAfter() const { return LostAfterBeats * Period; }
 
         // What its next echo says.
-        Duration LastBeatMonotonic{0};
+        Duration LastBeatSource{0};
         Duration LastBeatArrival{0};
         std::optional<Duration> LastEchoed;
         // Beats of another incarnation since the last check for twins.
@@ -73,14 +85,14 @@ public:
     // What an input changed, so that the gateway can react at once.
     struct Change
     {
+        bool Beat = false;                   // a new beat of a present life
         bool State = false;                  // a state or an incarnation: worth posting
         bool NewLife = false;                // a node that was not known in this incarnation is UP
         bool Offers = false;                 // an announcement said something new
         std::vector<std::string> Forgotten;  // nodes that made room for another one
     };
 
-    Change OnBeat(const Gateway::Beat &beat, Duration now);
-    Change OnAnnouncement(const Gateway::Announcement &announcement, Duration now);
+    Change OnBeat(const HeardBeat &heard);
     // The transport saw the node close its session.
     Change OnLeft(const std::string &node, std::uint64_t incarnation);
     // Lets time pass.
@@ -91,34 +103,48 @@ public:
     const Peer *Find(const std::string &node) const;
     // Nodes that have been heard, by name.
     std::vector<const Peer *> Heard() const;
-    // Nodes forgotten, and beats and announcements dropped because no room could be made for their node.
+    // Nodes forgotten, and beats dropped because no room could be made for their node.
     std::uint64_t Forgotten() const { return _forgotten; }
     std::uint64_t CrowdedOut() const { return _crowdedOut; }
     // Whether another live node uses this node's name.
     bool OwnNameTwice() const { return _ownTwice; }
-    // At most `most` nodes whose announcement is to be asked for, in turns.
-    std::vector<std::string> NextWanted(Duration now, std::size_t most);
-    // At most `most` echoes, of the nodes whose turn it is.
+    // The announcements that are lacking, to be asked for.
+    MissingOffers &Missing() { return _missing; }
+    const MissingOffers &Missing() const { return _missing; }
+    // Announcements that were whole and made no sense.
+    std::uint64_t Malformed() const { return _malformed + _missing.Wrong(); }
+    // A beat of this node was sent, which said so of the source clock.
+    void NoteSent(std::int64_t source, Duration now) { _sent.Add(source, now); }
+    // How many echoes are due, no more than `most`; and those, of the nodes whose turn it is.
+    std::size_t EchoesDue(Duration now, std::size_t most) const;
     std::vector<Gateway::BeatEcho> NextEchoes(Duration now, std::size_t most);
 
 private:
-    Peer *GetOrMake(const std::string &node, bool heard, Duration now, Change &change);
-    bool ForgetOne(bool forOneHeard, Change &change);
-    bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now) const;
+    Peer *GetOrMake(const std::string &node, Change &change);
+    bool ForgetOne(Change &change);
+    Change OnOwnName(const HeardBeat &heard);
+    Change OnGoodbye(const HeardBeat &heard);
+    static bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now);
     void NoteTwin(Peer &peer, Duration now);
-    static void BeginLife(Peer &peer, std::uint64_t incarnation);
-    static void CompareOffers(Peer &peer, std::uint32_t digest, Duration now);
-    static bool SetState(Peer &peer, Gateway::NodeState state, const std::string &reason);
-    void MeasureRoundTrip(Peer &peer, const Gateway::Beat &beat, Duration now) const;
+    static void BeginLife(Peer &peer, const HeardBeat &heard);
+    static bool IsEchoDue(const Peer &peer, Duration now);
+    void TakeIn(Peer &peer, const HeardBeat &heard, Change &change);
+    void MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const;
+    void TakeStates(Peer &peer, const Gateway::Beat &beat);
+    void CompareOffers(Peer &peer, const HeardBeat &heard, Change &change);
+    bool SetState(Peer &peer, Gateway::NodeState state, const std::string &reason);
 
-    std::string _ownNode;
-    std::uint64_t _ownIncarnation;
+    const std::string _ownNode;
+    const std::uint64_t _ownIncarnation;
+    const std::uint32_t _ownTag;
     const IsNeeded _isNeeded;
     std::map<std::string, Peer> _peers;
+    MissingOffers _missing;
+    SentBeats _sent;
     std::uint64_t _forgotten = 0;
     std::uint64_t _crowdedOut = 0;
+    std::uint64_t _malformed = 0;
     std::string _lastEchoed;
-    std::string _lastWanted;
     int _ownTwinBeats = 0;
     Duration _ownTwinSince{0};
     bool _ownTwice = false;

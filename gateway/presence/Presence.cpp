@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "clocks/GpsTime.h"
+#include "names/NodeTag.h"
 #include "wire/Announcements.h"
 #include "wire/GatewayTopics.h"
 #include "wire/MessageEncoder.h"
@@ -13,75 +14,66 @@ namespace Rabit
 namespace
 {
 
-// However many ask for the announcement, it goes to all of them, and not more often than this.
-constexpr Presence::Duration AnnouncementGap = std::chrono::milliseconds(500);
-// One beat goes to everybody; with more nodes than this they take turns to be echoed, and to be asked.
-constexpr std::size_t EchoesInABeat = 2;
-constexpr std::size_t WantsInABeat = 4;
+// A goodbye is not repaired either; the transport tells the others of the end as well.
+constexpr int Goodbyes = 3;
+constexpr std::size_t Encapsulation = 4;
+
+template <typename Items>
+void KeepOneOfEach(Items &items)
+{
+    std::sort(items.begin(), items.end());
+    items.erase(std::unique(items.begin(), items.end()), items.end());
+}
 
 }  // namespace
 
 Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote,
-                   SenderCheck &senders, RandomSource random, PeerTable::IsNeeded isNeeded,
-                   std::function<void()> wake)
+                   const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
+                   PeerTable::IsNeeded isNeeded, std::function<void()> wake)
     : _node(node),
-      _incarnation(incarnation),
+      _tag(NodeTagOf(node, incarnation)),
       _clock(clock),
       _source(source),
       _origins(origins),
       _remote(remote),
       _wake(std::move(wake)),
       _peers(node, incarnation, std::move(isNeeded)),
-      _introductions(std::move(random)),
-      _inbox(senders)
+      _introductions(random),
+      _contents(_peers, std::move(random))
 {
 }
 
 Presence::~Presence()
 {
-    // The handlers use the rest.
-    _beatReader.reset();
-    _announcementReader.reset();
+    _reader.reset();  // its handler uses the rest
 }
 
-void Presence::Open(TransportSession &session, Gateway::Announcement announcement)
+void Presence::Open(TransportSession &session, const Gateway::Announcement &announcement)
 {
-    _announcement = std::move(announcement);
-    _announcementDigest = Announcements::DigestOf(_announcement);
-    _nextAnnouncement = Duration(0);
-    _states.assign(Announcements::StatesIn(_announcement), 0);
-    const auto open = [&session](const char *topic, const MessageType &type, QosProfile profile, auto &writer)
-    {
-        writer =
-            session.CreateWriter(GatewayTopics::Describe(topic, type), GatewayTopics::QosOf(profile), {});
-    };
-    open(GatewayTopics::Beat, GatewayTopics::TypeOf<Gateway::Beat>(), QosProfile::Telemetry, _beatWriter);
-    open(GatewayTopics::Announcement, GatewayTopics::TypeOf<Gateway::Announcement>(), QosProfile::State,
-         _announcementWriter);
-    _beatReader = session.CreateReader(
-        GatewayTopics::Describe(GatewayTopics::Beat, GatewayTopics::TypeOf<Gateway::Beat>()),
-        GatewayTopics::QosOf(QosProfile::Telemetry), {},
-        [this](SampleBytes bytes, const SampleInfo &info)
-        { WakeIf(info.Alive && _inbox.AddBeat(bytes, info.Node, _clock.Monotonic())); });
-    _announcementReader = session.CreateReader(
-        GatewayTopics::Describe(GatewayTopics::Announcement, GatewayTopics::TypeOf<Gateway::Announcement>()),
-        GatewayTopics::QosOf(QosProfile::State), {},
-        [this](SampleBytes bytes, const SampleInfo &info)
-        { WakeIf(info.Alive && _inbox.AddAnnouncement(bytes, info.Node, _clock.Monotonic())); });
+    _contents.Begin(Announcements::Encode(announcement), Announcements::StatesIn(announcement));
+    const TopicDescription topic =
+        GatewayTopics::Describe(GatewayTopics::Beat, GatewayTopics::TypeOf<Gateway::Beat>());
+    const TopicQos qos = GatewayTopics::QosOf(QosProfile::Telemetry);
+    _writer = session.CreateWriter(topic, qos, {});
+    _reader = session.CreateReader(topic, qos, {},
+                                   [this](SampleBytes bytes, const SampleInfo &info) {
+                                       WakeIf(info.Alive && _inbox.AddBeat(bytes, info, _clock.Monotonic()));
+                                   });
 }
 
 void Presence::Close()
 {
-    if (_announcementWriter)
+    if (_writer)
     {
-        _announcement.leaving = true;
-        SendAnnouncement(_clock.Monotonic());
+        const PostTime time = _clock.Now();
+        Gateway::Beat goodbye = MakeBeat(time);
+        goodbye.leaving = true;
+        for (int i = 0; i < Goodbyes && Write(goodbye, time) == WriteResult::Ok; ++i)
+        {
+        }
     }
-    _beatReader.reset();
-    _announcementReader.reset();
-    _beatWriter.reset();
-    _announcementWriter.reset();
+    _reader.reset();
+    _writer.reset();
 }
 
 void Presence::OnPeer(const PeerEvent &event)
@@ -97,56 +89,138 @@ void Presence::WakeIf(bool somethingCame)
     }
 }
 
-PeerTable::Change Presence::TakeIn(const PresenceInbox::Contents &inbox, Duration now)
+Presence::Served Presence::Service(Duration now)
 {
-    PeerTable::Change all;
-    const auto note = [&all, this](const PeerTable::Change &change, const std::string &node)
+    Served served;
+    TakeIn(_inbox.Take(), now, served);
+    served.Change.State |= _peers.Advance(now).State;
+    if (served.Change.State)
     {
-        all.State |= change.State;
-        all.NewLife |= change.NewLife;
-        all.Offers |= change.Offers;
-        for (const std::string &forgotten : change.Forgotten)
+        for (const PeerTable::Peer *peer : _peers.Heard())
         {
-            _remote.Forget(forgotten);
-            _origins.Forget(forgotten);
-            all.Forgotten.push_back(forgotten);
+            _remote.Update(*peer);
         }
-        Publish(node);
-    };
-    for (const Gateway::Announcement &announcement : inbox.Announcements)
-    {
-        note(_peers.OnAnnouncement(announcement, now), announcement.node);
     }
-    for (const PresenceInbox::Heard &heard : inbox.Beats)
+    if (_introductions.TakeBeats(now))
     {
-        const PeerTable::Change change = _peers.OnBeat(heard.Beat, heard.Arrival);
-        note(change, heard.Beat.node);
-        if (std::find(heard.Beat.wants.begin(), heard.Beat.wants.end(), _node) != heard.Beat.wants.end())
-        {
-            _nextAnnouncement =
-                std::min(_nextAnnouncement, std::max(now, _lastAnnouncement + AnnouncementGap));
-        }
-        if (change.NewLife)
-        {
-            _introductions.Ask(heard.Beat.node, Introductions::Reason::Heard, OthersThan(heard.Beat.node),
-                               now);
-        }
+        _pace.Introduce(now);
+    }
+    served.RepeatStates = _introductions.TakeStates(now);
+    return served;
+}
+
+void Presence::TakeIn(const PresenceInbox::Contents &inbox, Duration now, Served &served)
+{
+    for (const HeardBeat &heard : inbox.Beats)
+    {
+        TakeIn(heard, now, served);
     }
     for (const PeerEvent &event : inbox.Events)
     {
-        if (event.What == PeerEvent::Kind::Left)
-        {
-            note(_peers.OnLeft(event.Node, event.Incarnation), event.Node);
-        }
-        // Whoever has just appeared wants to know who is here.
-        if (event.What == PeerEvent::Kind::Appeared)
-        {
-            _introductions.Ask(event.Node, Introductions::Reason::Appeared, OthersThan(event.Node), now);
-        }
+        TakeIn(event, now, served);
     }
-    return all;
+    for (const std::string &node : inbox.OtherFormats)
+    {
+        _otherFormats.Heard(node, now);
+    }
+    KeepOneOfEach(served.StatesTold);
+    KeepOneOfEach(served.StatesAsked);
 }
 
+void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
+{
+    const PeerTable::Change change = _peers.OnBeat(heard);
+    Note(change, heard.Node, served);
+    if (!change.Beat)
+    {
+        return;
+    }
+    const PeerTable::Peer &peer = *_peers.Find(heard.Node);
+    _contents.Delays().Note(peer.Tag, peer.Clock.LastDelay(), heard.Arrival);
+    TakeDelays(heard, peer, served);
+    TakeQuestions(heard.Beat, now, served);
+    if (!heard.Beat.states.empty() || change.Offers)
+    {
+        served.StatesTold.push_back(heard.Node);
+    }
+    if (change.NewLife)
+    {
+        _contents.Questions().Forget(heard.Node);
+        const std::size_t others = OthersThan(heard.Node);
+        if (_introductions.Ask(heard.Node, Introductions::Reason::Heard, others, now))
+        {
+            _contents.Answer().Asked(0, others, now);
+        }
+    }
+}
+
+void Presence::TakeQuestions(const Gateway::Beat &beat, Duration now, Served &served)
+{
+    for (const Gateway::Wanted &wanted : beat.wants)
+    {
+        if (wanted.node != _tag)
+        {
+            continue;
+        }
+        if (wanted.offers != BeatFormat::NotLacking)
+        {
+            _contents.Answer().Asked(wanted.offers, OthersThan(""), now);
+        }
+        for (std::size_t state = 0; state < 8 * wanted.states.size() && state < _contents.States(); ++state)
+        {
+            if ((wanted.states[state / 8] >> state % 8 & 1) != 0)
+            {
+                served.StatesAsked.push_back(state);
+            }
+        }
+        return;  // once is enough
+    }
+}
+
+void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, Served &served) const
+{
+    for (const Gateway::DelayReport &report : heard.Beat.delays)
+    {
+        if (report.node == _tag)
+        {
+            const Duration held = std::chrono::milliseconds(report.held_ms);
+            served.Delays.push_back({.Peer = peer.Tag,
+                                     .Delay = std::chrono::milliseconds(report.delay_ms),
+                                     .ArrivedAt = heard.Arrival - held - peer.Clock.LastDelay()});
+            return;
+        }
+    }
+}
+
+void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
+{
+    if (event.What == PeerEvent::Kind::Left)
+    {
+        Note(_peers.OnLeft(event.Node, event.Incarnation), event.Node, served);
+    }
+    // Whoever has just appeared wants to know who is here.
+    if (event.What == PeerEvent::Kind::Appeared)
+    {
+        _introductions.Ask(event.Node, Introductions::Reason::Appeared, OthersThan(event.Node), now);
+    }
+}
+
+void Presence::Note(const PeerTable::Change &change, const std::string &node, Served &served)
+{
+    served.Change.State |= change.State;
+    served.Change.NewLife |= change.NewLife;
+    served.Change.Offers |= change.Offers;
+    for (const std::string &forgotten : change.Forgotten)
+    {
+        _remote.Forget(forgotten);
+        _origins.Forget(forgotten);
+        _contents.Questions().Forget(forgotten);
+        served.Change.Forgotten.push_back(forgotten);
+    }
+    Publish(node);
+}
+
+// Live nodes beside that one and this one.
 std::size_t Presence::OthersThan(const std::string &node) const
 {
     const auto heard = _peers.Heard();
@@ -166,106 +240,75 @@ void Presence::Publish(const std::string &node)
         return;
     }
     _remote.Update(*peer);
-    const std::optional<PeerClock::SourceRelation> source = peer->Clock.Source();
-    if (peer->Heard && source)
+    if (const std::optional<PeerClock::SourceRelation> source = peer->Clock.Source())
     {
         _origins.Set(node, OriginTable::Origin{peer->Incarnation, *source, peer->Clock.SourceToWall()});
     }
 }
 
-Presence::Served Presence::Service(Duration now)
-{
-    Served served;
-    PeerTable::Change &change = served.Change;
-    change = TakeIn(_inbox.Take(), now);
-    if (_peers.Advance(now).State)
-    {
-        change.State = true;
-    }
-    if (change.State)
-    {
-        for (const PeerTable::Peer *peer : _peers.Heard())
-        {
-            _remote.Update(*peer);
-        }
-    }
-    if (_introductions.TakeBeats(now))
-    {
-        _pace.Introduce(now);
-    }
-    served.RepeatStates = _introductions.TakeStates(now);
-    if (now >= _nextAnnouncement)
-    {
-        SendAnnouncement(now);
-    }
-    return served;
-}
-
-Presence::Duration Presence::BeatDue() const
-{
-    return _pace.Due();
-}
-
-std::size_t Presence::BeatSize(Duration /*now*/) const
-{
-    return LargestBeat;
-}
-
-std::size_t Presence::SendBeat(Duration now, std::size_t /*most*/)
-{
-    if (!_beatWriter)
-    {
-        return 0;
-    }
-    // All clocks read at one moment: the others compute one from the other.
-    const PostTime time = _clock.Now();
-    const std::int64_t utc = GpsTime::ToUtcNanoseconds(time.GpsTimeSeconds);
-    Gateway::Beat beat;
-    beat.node = _node;
-    beat.incarnation = _incarnation;
-    beat.monotonic_ns = time.Monotonic.count();
-    beat.source_ns = _source.At(time.Monotonic);
-    beat.utc_ns = utc;
-    beat.offers = _announcementDigest;
-    beat.wants = _peers.NextWanted(time.Monotonic, WantsInABeat);
-    beat.echoes = _peers.NextEchoes(time.Monotonic, EchoesInABeat);
-    const MessageEncoder encoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat);
-    static_cast<void>(_beatWriter->Write(encoder, utc));
-    _pace.Sent(now);
-    return encoder.EncodedSize() - 4;
-}
-
-void Presence::SetStateVersion(std::size_t state, std::uint32_t version)
-{
-    _states.at(state) = version;
-}
-
-void Presence::WantStates(const std::string &node, const std::vector<bool> &states, Duration /*now*/)
-{
-    _wantsStates[node] = states;
-}
-
-void Presence::SendAnnouncement(Duration now)
-{
-    if (!_announcementWriter)
-    {
-        return;
-    }
-    const std::int64_t utc = GpsTime::ToUtcNanoseconds(_clock.GpsTimeSeconds());
-    const WriteResult result = _announcementWriter->Write(
-        MessageEncoder(GatewayTopics::TypeOf<Gateway::Announcement>(), _announcement), utc);
-    _lastAnnouncement = now;
-    _nextAnnouncement = result == WriteResult::Ok ? Duration::max() : now + AnnouncementGap;
-}
-
 Presence::Duration Presence::NextDue() const
 {
-    Duration next = _nextAnnouncement;
+    Duration next = Duration::max();
     for (const std::optional<Duration> &due : {_peers.NextChange(), _introductions.Due()})
     {
         next = due ? std::min(next, *due) : next;
     }
     return next;
+}
+
+Presence::Duration Presence::BeatDue() const
+{
+    Duration due = _pace.Due();
+    if (const std::optional<Duration> question = _contents.QuestionDue())
+    {
+        due = std::min(due, std::max(*question, _pace.EarliestToAsk()));
+    }
+    if (const std::optional<Duration> answer = _contents.AnswerDue())
+    {
+        due = std::min(due, std::max(*answer, _pace.Earliest()));
+    }
+    return due;
+}
+
+void Presence::NoteDelay(std::string_view node, Duration delay, Duration arrivedAt)
+{
+    if (const PeerTable::Peer *peer = _peers.Find(std::string(node)))
+    {
+        _contents.Delays().Note(peer->Tag, delay, arrivedAt);
+    }
+}
+
+// The clocks are read at one moment: the others compute one from the other.
+Gateway::Beat Presence::MakeBeat(const PostTime &time) const
+{
+    Gateway::Beat beat;
+    beat.format = BeatFormat::Present;
+    beat.next_ms = static_cast<std::uint16_t>(
+        std::chrono::duration_cast<std::chrono::milliseconds>(_pace.Period()).count());
+    beat.source_ns = _source.At(time.Monotonic);
+    beat.offers = _contents.OffersDigest();
+    return beat;
+}
+
+WriteResult Presence::Write(const Gateway::Beat &beat, const PostTime &time)
+{
+    const MessageEncoder encoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat);
+    return _writer->Write(encoder, GpsTime::ToUtcNanoseconds(time.GpsTimeSeconds));
+}
+
+std::size_t Presence::SendBeat(Duration now, std::size_t most)
+{
+    if (!_writer)
+    {
+        return 0;
+    }
+    const PostTime time = _clock.Now();
+    Gateway::Beat beat = MakeBeat(time);
+    _contents.Fill(beat, time.Monotonic, most);
+    _peers.NoteSent(beat.source_ns, time.Monotonic);
+    static_cast<void>(Write(beat, time));
+    _pace.Sent(now);
+    return GatewayTopics::TypeOf<Gateway::Beat>().SerializedSize(beat) - Encapsulation;
 }
 
 }  // namespace Rabit

@@ -7,27 +7,29 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
+#include "presence/BeatContents.h"
 #include "presence/BeatPace.h"
 #include "presence/Introductions.h"
 #include "presence/OriginTable.h"
+#include "presence/OtherFormats.h"
 #include "presence/PeerTable.h"
 #include "presence/PresenceInbox.h"
 #include "presence/RemoteQueues.h"
-#include "presence/SenderCheck.h"
+#include "wire/BeatFormat.h"
 
 namespace Rabit
 {
 
-// Makes this node known to the others and the others known to it: sends beats and the announcement, feeds
-// what comes into the PeerTable, and keeps up to date what other threads read of it (OriginTable,
-// RemoteQueues).
+// Makes this node known to the others and the others known to it: sends beats, feeds those that come into the
+// PeerTable, and keeps up to date what other threads read of it (OriginTable, RemoteQueues). All that it says
+// goes with beats: who lacks something asks for it in its own ones.
 //
 // Threads: the transport's threads only leave what has come in an inbox and wake the gateway; everything else
 // is for the gateway's thread.
@@ -39,12 +41,12 @@ public:
     // `wake` makes the gateway's thread call Service soon; called on any thread. References must outlive the
     // object.
     Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
-             const SourceClock &source, OriginTable &origins, RemoteQueues &remote, SenderCheck &senders,
-             RandomSource random, PeerTable::IsNeeded isNeeded, std::function<void()> wake);
+             const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
+             PeerTable::IsNeeded isNeeded, std::function<void()> wake);
     ~Presence();
 
     // Starts to send and to receive. Throws TransportError.
-    void Open(TransportSession &session, Gateway::Announcement announcement);
+    void Open(TransportSession &session, const Gateway::Announcement &announcement);
     // Says goodbye and stops.
     void Close();
     // The transport's peer handler.
@@ -70,7 +72,7 @@ public:
         std::vector<DelayHeard> Delays;
     };
 
-    // Takes in what has come. Sends nothing but the announcement.
+    // Takes in what has come; sends nothing.
     Served Service(Duration now);
     // When to call Service again at the latest.
     Duration NextDue() const;
@@ -79,37 +81,51 @@ public:
     // this way, the quick ones too.
     Duration BeatDue() const;
     // What the next beat takes at most, as the bytes of its body (CDR without the encapsulation).
-    std::size_t BeatSize(Duration now) const;
+    std::size_t BeatSize(Duration now) const { return _contents.Size(now); }
     // Sends exactly one beat, whose body takes at most so many bytes, but always what an empty one takes; the
-    // rest of what is to be said follows in the next ones. Returns the bytes that it took, 0 before Open.
-    std::size_t SendBeat(Duration now, std::size_t most = LargestBeat);
-    // Fits one datagram whatever the settings are.
-    static constexpr std::size_t LargestBeat = 900;
+    // rest of what is to be said follows in the next ones. Returns the bytes of its body; 0 before Open.
+    std::size_t SendBeat(Duration now, std::size_t most = BeatFormat::Largest);
+    static constexpr std::size_t LargestBeat = BeatFormat::Largest;
     // How often this node beats when nothing is the matter (BeatPace).
     void SetBeatPeriod(Duration period) { _pace.SetPeriod(period); }
     Duration BeatPeriod() const { return _pace.Period(); }
 
     // The version of a State of this node, by its place (Announcements::StateIndexOf), for the beats to tell.
-    // 0: never written.
-    void SetStateVersion(std::size_t state, std::uint32_t version);
+    // 0: never written. Only after Open.
+    void SetStateVersion(std::size_t state, std::uint32_t version)
+    {
+        _contents.SetStateVersion(state, version);
+    }
     // The States of that node, by their places, that are to be asked for in each beat from now on; none:
-    // nothing is. The next beat is brought forward if there is something that was not asked for before. Holds
-    // for the present life of the node.
-    void WantStates(const std::string &node, const std::vector<bool> &states, Duration now);
+    // nothing is. `soon`: the next beat is brought forward. Holds for the present life of the node.
+    void WantStates(const std::string &node, const std::vector<bool> &states, bool soon, Duration now)
+    {
+        _contents.Questions().Set(node, states, soon, now);
+    }
+    // A datagram of that node that is no beat came so much later than its quickest, for the beats to tell.
+    void NoteDelay(std::string_view node, Duration delay, Duration arrivedAt);
 
     const PeerTable &Peers() const { return _peers; }
     // Samples of the gateways' topics that made no sense, or came faster than they could be taken in.
-    std::uint64_t Malformed() const { return _inbox.Dropped(); }
+    std::uint64_t Malformed() const { return _inbox.Dropped() + _peers.Malformed(); }
+    // Nodes that cannot be understood.
+    std::vector<Gateway::Problem> Problems(Duration now) const { return _otherFormats.Problems(now); }
 
 private:
     void WakeIf(bool somethingCame);
-    PeerTable::Change TakeIn(const PresenceInbox::Contents &inbox, Duration now);
+    void TakeIn(const PresenceInbox::Contents &inbox, Duration now, Served &served);
+    void TakeIn(const HeardBeat &heard, Duration now, Served &served);
+    void TakeIn(const PeerEvent &event, Duration now, Served &served);
+    void TakeQuestions(const Gateway::Beat &beat, Duration now, Served &served);
+    void TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, Served &served) const;
+    void Note(const PeerTable::Change &change, const std::string &node, Served &served);
     void Publish(const std::string &node);
     std::size_t OthersThan(const std::string &node) const;
-    void SendAnnouncement(Duration now);
+    Gateway::Beat MakeBeat(const PostTime &time) const;
+    WriteResult Write(const Gateway::Beat &beat, const PostTime &time);
 
     const std::string _node;
-    const std::uint64_t _incarnation;
+    const std::uint32_t _tag;
     const RabitClock &_clock;
     const SourceClock _source;
     OriginTable &_origins;
@@ -118,21 +134,13 @@ private:
 
     PeerTable _peers;
     Introductions _introductions;
-    Gateway::Announcement _announcement;
     BeatPace _pace;
-    std::vector<std::uint32_t> _states;                     // versions, by place
-    std::map<std::string, std::vector<bool>> _wantsStates;  // by node
-    // Said once, and again when somebody asks for it; the network may not take it the first time.
-    Duration _nextAnnouncement{0};
-    Duration _lastAnnouncement{0};
-    std::uint32_t _announcementDigest = 0;
-
+    BeatContents _contents;
+    OtherFormats _otherFormats;
     PresenceInbox _inbox;
 
-    std::unique_ptr<TransportWriter> _beatWriter;
-    std::unique_ptr<TransportWriter> _announcementWriter;
-    std::unique_ptr<TransportReader> _beatReader;
-    std::unique_ptr<TransportReader> _announcementReader;
+    std::unique_ptr<TransportWriter> _writer;
+    std::unique_ptr<TransportReader> _reader;
 };
 
 }  // namespace Rabit

@@ -5,6 +5,7 @@
 
 #include "names/NamePattern.h"
 #include "wire/Announcements.h"
+#include "wire/BeatFormat.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -20,58 +21,59 @@ bool IsPlausible(std::int64_t nanoseconds)
     return nanoseconds >= 0 && nanoseconds < most;
 }
 
+bool IsPlausible(const Gateway::Wanted &wanted)
+{
+    return wanted.states.size() <= (Announcements::MostOffers + 7) / 8;
+}
+
+bool IsPlausible(const Gateway::AnnouncementPart &part)
+{
+    return part.of <= Announcements::LargestEncoded && !part.bytes.empty() &&
+           part.first + part.bytes.size() <= part.of;
+}
+
+template <typename Entries>
+bool AreFew(const Entries &entries)
+{
+    return entries.size() <= PresenceInbox::MostEntries;
+}
+
 bool IsPlausible(const Gateway::Beat &beat)
 {
-    return IsNodeName(beat.node) && IsPlausible(beat.monotonic_ns) && IsPlausible(beat.source_ns) &&
-           IsPlausible(beat.utc_ns) && beat.wants.size() <= PresenceInbox::MostEchoes &&
-           std::all_of(beat.wants.begin(), beat.wants.end(),
-                       [](const std::string &node) { return IsNodeName(node); }) &&
-           beat.echoes.size() <= PresenceInbox::MostEchoes &&
-           std::all_of(beat.echoes.begin(), beat.echoes.end(),
-                       [](const Gateway::BeatEcho &echo) {
-                           return IsNodeName(echo.node) && IsPlausible(echo.monotonic_ns) &&
-                                  IsPlausible(echo.held_ns);
-                       });
+    const auto plausible = [](const auto &entry) { return IsPlausible(entry); };
+    return IsPlausible(beat.source_ns) &&
+           beat.first_state + beat.states.size() <= Announcements::MostOffers && AreFew(beat.wants) &&
+           AreFew(beat.echoes) && AreFew(beat.delays) && beat.parts.size() <= 1 &&
+           std::all_of(beat.wants.begin(), beat.wants.end(), plausible) &&
+           std::all_of(beat.parts.begin(), beat.parts.end(), plausible);
 }
 
 }  // namespace
 
-bool PresenceInbox::AddBeat(SampleBytes bytes, std::string_view participant, Duration arrival)
+// Who wrote it is who DDS says wrote it: a program that is no node says nothing here.
+bool PresenceInbox::AddBeat(SampleBytes bytes, const SampleInfo &info, Duration arrival)
 {
-    Heard heard;
+    const bool isOurs = BeatFormat::IsPresent(bytes);
+    HeardBeat heard;
+    const bool good = IsNodeName(info.Node) &&
+                      (!isOurs || (bytes.size() <= LargestBeat && IsPlausible(info.SourceTime) &&
+                                   GatewayTopics::TypeOf<Gateway::Beat>().Deserialize(bytes, heard.Beat) &&
+                                   IsPlausible(heard.Beat)));
+    const std::lock_guard lock(_mutex);
+    if (!good || !HasRoomFor((isOurs ? bytes.size() : 0) + sizeof(HeardBeat)))
+    {
+        return Drop();
+    }
+    if (!isOurs)
+    {
+        _contents.OtherFormats.emplace_back(info.Node);
+        return true;
+    }
+    heard.Node = info.Node;
+    heard.Incarnation = info.Incarnation;
+    heard.Utc = info.SourceTime;
     heard.Arrival = arrival;
-    const bool good = bytes.size() <= LargestBeat &&
-                      GatewayTopics::TypeOf<Gateway::Beat>().Deserialize(bytes, heard.Beat) &&
-                      IsPlausible(heard.Beat);
-    if (good && !_senders.MaySpeakFor(participant, heard.Beat.node, arrival))
-    {
-        return false;
-    }
-    const std::lock_guard lock(_mutex);
-    if (!good || !HasRoomFor(bytes.size() + sizeof(Heard)))
-    {
-        return Drop();
-    }
     _contents.Beats.push_back(std::move(heard));
-    return true;
-}
-
-bool PresenceInbox::AddAnnouncement(SampleBytes bytes, std::string_view participant, Duration arrival)
-{
-    Gateway::Announcement announcement;
-    const bool good = bytes.size() <= Announcements::LargestEncoded &&
-                      GatewayTopics::TypeOf<Gateway::Announcement>().Deserialize(bytes, announcement) &&
-                      Announcements::IsPlausible(announcement);
-    if (good && !_senders.MaySpeakFor(participant, announcement.node, arrival))
-    {
-        return false;
-    }
-    const std::lock_guard lock(_mutex);
-    if (!good || !HasRoomFor(bytes.size() + sizeof(Gateway::Announcement)))
-    {
-        return Drop();
-    }
-    _contents.Announcements.push_back(std::move(announcement));
     return true;
 }
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <vector>
+#include <utility>
 
 #include "names/Fnv1a.h"
 #include "names/NamePattern.h"
@@ -55,11 +55,9 @@ bool IsPlausible(const Gateway::AcceptedQueue &accepted)
 
 }  // namespace
 
-Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation)
+Gateway::Announcement Of(const GatewayConfig &config)
 {
     Gateway::Announcement announcement;
-    announcement.node = config.Node;
-    announcement.incarnation = incarnation;
     for (const PublishRule &rule : config.Publish)
     {
         Gateway::PublishedMessage published;
@@ -86,12 +84,26 @@ Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation)
     return announcement;
 }
 
-// Of what is sent, with the halves of the hash folded into one.
-std::uint32_t DigestOf(const Gateway::Announcement &announcement)
+std::vector<std::uint8_t> Encode(const Gateway::Announcement &announcement)
 {
     const MessageType &type = GatewayTopics::TypeOf<Gateway::Announcement>();
     std::vector<std::uint8_t> bytes(type.SerializedSize(announcement));
     type.Serialize(announcement, bytes);
+    return bytes;
+}
+
+std::optional<Gateway::Announcement> Decode(std::span<const std::uint8_t> bytes)
+{
+    Gateway::Announcement announcement;
+    const bool good = bytes.size() <= LargestEncoded &&
+                      GatewayTopics::TypeOf<Gateway::Announcement>().Deserialize(bytes, announcement) &&
+                      IsPlausible(announcement);
+    return good ? std::optional(std::move(announcement)) : std::nullopt;
+}
+
+// The halves of the hash folded into one.
+std::uint32_t DigestOf(std::span<const std::uint8_t> bytes)
+{
     const std::uint64_t hash = Fnv1a(bytes);
     return static_cast<std::uint32_t>(hash ^ (hash >> 32));
 }
@@ -154,8 +166,7 @@ std::string WhyTooLarge(const Gateway::Announcement &announcement)
 
 bool IsPlausible(const Gateway::Announcement &announcement)
 {
-    return IsNodeName(announcement.node) && OffersOf(announcement) <= MostOffers &&
-           TypesOf(announcement) <= MostTypes &&
+    return OffersOf(announcement) <= MostOffers && TypesOf(announcement) <= MostTypes &&
            std::all_of(announcement.publishes.begin(), announcement.publishes.end(),
                        [](const auto &published) { return IsPlausible(published); }) &&
            std::all_of(announcement.accepts.begin(), announcement.accepts.end(),

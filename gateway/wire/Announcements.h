@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gateway.idl.h"
 
@@ -25,11 +27,16 @@ inline constexpr std::size_t MostTypes = 1024;
 inline constexpr std::size_t LongestType = 255;
 
 // What a node with that configuration says of itself. Its types must be known in this process.
-Gateway::Announcement Of(const GatewayConfig &config, std::uint64_t incarnation);
+Gateway::Announcement Of(const GatewayConfig &config);
 
-// Tells two announcements apart. Beats carry it, so that whoever lacks the present one notices, and asks for
-// it.
-std::uint32_t DigestOf(const Gateway::Announcement &announcement);
+// As it is on the wire.
+std::vector<std::uint8_t> Encode(const Gateway::Announcement &announcement);
+// Empty if the bytes are no announcement, or one that is not plausible.
+std::optional<Gateway::Announcement> Decode(std::span<const std::uint8_t> bytes);
+
+// Tells two encoded announcements apart. Beats carry it, so that whoever lacks the present one notices, and
+// asks for it.
+std::uint32_t DigestOf(std::span<const std::uint8_t> bytes);
 
 // The place of a State of that name among the States announced, by which beats tell of it; empty: there is
 // none.

@@ -10,7 +10,6 @@ namespace Rabit::GatewayTopics
 {
 
 // The topics that gateways use among themselves. Messages cannot take these names: they contain a slash.
-inline constexpr const char *Announcement = "rabit/Announcement";
 inline constexpr const char *Beat = "rabit/Beat";
 inline constexpr const char *Link = "rabit/Link";
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "BeatSamples.h"
 #include "presence/QueueAcceptance.h"
 
 namespace Rabit
@@ -11,6 +12,21 @@ namespace
 
 using namespace std::chrono_literals;
 using Ns = std::chrono::nanoseconds;
+
+// A beat of second 1 with that announcement, or with none.
+HeardBeat BeatOf(const std::string &node, const Gateway::Announcement *offers)
+{
+    HeardBeat heard;
+    heard.Node = node;
+    heard.Incarnation = 5;
+    heard.Beat = BeatAt(1s);
+    heard.Arrival = 1s;
+    if (offers != nullptr)
+    {
+        Announce(heard.Beat, *offers);
+    }
+    return heard;
+}
 
 class DiagnosisTest : public ::testing::Test
 {
@@ -23,8 +39,6 @@ protected:
         wanted.Rule = &rule;
         wanted.Definition = 11;
         wanted.ReceptionFrom = [this](const std::string &) { return reception; };
-        offers.node = "uav1";
-        offers.incarnation = 5;
     }
 
     void Offer(const std::string &message, const std::string &type, const std::string &qos,
@@ -51,19 +65,7 @@ protected:
     }
 
     // uav1 is live from second 1 on.
-    void Hear(bool withOffers = true)
-    {
-        Gateway::Beat beat;
-        beat.node = "uav1";
-        beat.incarnation = 5;
-        beat.monotonic_ns = 1;
-        beat.utc_ns = 1;
-        peers.OnBeat(beat, 1s);
-        if (withOffers)
-        {
-            peers.OnAnnouncement(offers, 1s);
-        }
-    }
+    void Hear(bool withOffers = true) { peers.OnBeat(BeatOf("uav1", withOffers ? &offers : nullptr)); }
 
     // "node: reason" of the only problem, or how many there are.
     std::string Problem(Ns now) const
@@ -101,15 +103,8 @@ TEST_F(DiagnosisTest, NothingPublishedThere)
 
 TEST_F(DiagnosisTest, FromEverybodyNobodyNeedPublishWhatSomebodyDoes)
 {
-    Gateway::Announcement camera;
-    camera.node = "uav1.vision";
-    camera.incarnation = 5;
-    Gateway::Beat beat;
-    beat.node = camera.node;
-    beat.incarnation = camera.incarnation;
-    beat.monotonic_ns = beat.utc_ns = 1;
-    peers.OnBeat(beat, 1s);
-    peers.OnAnnouncement(camera, 1s);
+    const Gateway::Announcement camera;
+    peers.OnBeat(BeatOf("uav1.vision", &camera));
     Offer("Pose", "Uav::Pose", "telemetry", 11);
     Hear();
     reception.Received = 1;

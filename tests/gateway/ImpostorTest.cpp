@@ -1,9 +1,9 @@
-// Samples of the gateways' topics in another node's name: whole nodes on the simulated network.
+// Samples of the gateways' topics that are not what they seem: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 #include <rabit/gateway/links/LinkCheck.h>
 #include <rabit/gateway/links/LinkFrameCodec.h>
 
-#include "MessageSample.h"
+#include "HandNode.h"
 #include "SimulatedFleet.h"
 #include "gateway.idl.h"
 
@@ -18,64 +18,42 @@ using ::testing::HasSubstr;
 class ImpostorTest : public ::testing::Test
 {
 protected:
-    ImpostorTest() : uav(fleet.Add(AircraftConfig("uav1"))), ground(fleet.Add(GroundConfig()))
+    ImpostorTest()
+        : uav(fleet.Add(AircraftConfig("uav1"))),
+          ground(fleet.Add(GroundConfig())),
+          impostor(fleet.Network, "uav9", 7)
     {
-        TransportSettings settings;
-        settings.Node = "uav9";
-        settings.Incarnation = 7;
-        impostor = SimulatedTransport(fleet.Network).Open(settings, [](const PeerEvent &) {});
         fleet.RunFor(2s);
-    }
-
-    // What uav9 writes to a topic of the gateways.
-    template <typename Sample>
-    void Write(const char *topic, const Sample &sample, const std::string &partition, Reliability reliability)
-    {
-        TopicQos qos;
-        qos.Reliability = reliability;
-        const auto writer =
-            impostor->CreateWriter({topic, MessageTypeRegistry::Of(sample)->Name(), {}}, qos, {partition});
-        fleet.RunFor(1s);
-        EXPECT_EQ(writer->Write(MessageSample(sample), 0), WriteResult::Ok);
-        fleet.RunFor(1s);
     }
 
     SimulatedFleet fleet;
     SimulatedNode &uav;
     SimulatedNode &ground;
-    std::unique_ptr<TransportSession> impostor;
+    HandNode impostor;
 };
 
-constexpr const char *Complaint = "node `uav9` sends in the name of `ground`; it is not listened to";
-
-TEST_F(ImpostorTest, ABeatInAnothersNameIsNotBelieved)
+TEST_F(ImpostorTest, AGoodbyeEndsWhoSaysItAlone)
 {
-    const std::uint64_t before = uav.Fleet().malformed;
-    Gateway::Beat beat;
-    beat.node = "ground";
-    beat.incarnation = ground.Fleet().incarnation + (1ULL << 32);
-    beat.monotonic_ns = beat.source_ns = beat.utc_ns = 1;
-    Write("rabit/Beat", beat, "", Reliability::BestEffort);
-    EXPECT_THAT(uav.Problems(), HasSubstr(Complaint));
-    EXPECT_EQ(uav.Fleet().malformed, before + 1);
-    ASSERT_EQ(uav.Fleet().nodes.size(), 1u);
-    EXPECT_EQ(uav.Fleet().nodes[0].incarnation, ground.Fleet().incarnation);
+    impostor.Write(impostor.Beat());
+    fleet.RunFor(100ms);
+    Gateway::Beat goodbye = impostor.Beat();
+    goodbye.leaving = true;
+    impostor.Write(goodbye);
+    fleet.RunFor(100ms);
+    EXPECT_EQ(uav.StateOf("uav9"), "LOST");
+    EXPECT_EQ(uav.StateOf("ground"), "UP");
 }
 
-TEST_F(ImpostorTest, AGoodbyeInAnothersNameIsNotBelieved)
+TEST_F(ImpostorTest, ANodeWhoseGatewayIsOfAnotherVersionIsNamed)
 {
-    Gateway::Announcement goodbye;
-    goodbye.node = "ground";
-    goodbye.incarnation = ground.Fleet().incarnation;
-    goodbye.leaving = true;
-    TopicQos qos;
-    qos.Durability = Durability::TransientLocal;
-    const auto writer =
-        impostor->CreateWriter({"rabit/Announcement", "Rabit::Gateway::Announcement", {}}, qos, {});
-    writer->Write(MessageSample(goodbye), 0);
+    Gateway::Beat beat = impostor.Beat();
+    beat.format = BeatFormat::Present + 1;
+    impostor.Write(beat);
     fleet.RunFor(1s);
-    EXPECT_THAT(uav.Problems(), HasSubstr(Complaint));
-    EXPECT_EQ(uav.StateOf("ground"), "UP");
+    EXPECT_THAT(uav.Problems(), HasSubstr("node uav9: its gateway speaks another version of presence"));
+    EXPECT_EQ(uav.StateOf("uav9"), "");
+    fleet.RunFor(11s);
+    EXPECT_THAT(uav.Problems(), testing::Not(HasSubstr("uav9")));
 }
 
 // Frames of the links name no sender: it is who DDS says wrote them.

@@ -1,6 +1,9 @@
 // Mirrored messages and presence: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 
+#include <limits>
+
+#include "HandNode.h"
 #include "SimulatedFleet.h"
 
 namespace Rabit
@@ -314,7 +317,8 @@ TEST_F(MirrorTest, APartitionIsShownAndHeals)
     EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "LOST"; }, 5s));
     fleet.RunFor(30s);
     fleet.Network.ClearFaults();
-    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "UP"; }, 5s));
+    // The transport has given them up, too, and announces itself once in 10 s.
+    EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "UP"; }, 15s));
     fleet.RunFor(3s);
     pose->PostMessage();
     EXPECT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
@@ -373,88 +377,35 @@ TEST_F(MirrorTest, ALocalMessageOfAnotherTypeIsReportedNotOverwritten)
         HasSubstr("subscribe Pose: the local message `uav1/Pose` is of another type than `Uav::Pose`"));
 }
 
-// A transport session that speaks for a node by hand.
+// A node that announces and publishes poses by hand.
 class RogueNode
 {
 public:
-    RogueNode(SimulatedNetwork &network, const std::string &node) : _node(node)
+    RogueNode(SimulatedNetwork &network, const std::string &node) : _node(network, node, 42)
     {
-        TransportSettings settings;
-        settings.Node = node;
-        settings.Incarnation = 42;
-        _session = SimulatedTransport(network).Open(settings, [](const PeerEvent &) {});
-        _beats = Writer("rabit/Beat", "Rabit::Gateway::Beat");
-        _announcements = Writer("rabit/Announcement", "Rabit::Gateway::Announcement");
-        _poses = Writer("Pose", "Uav::Pose");
+        TopicQos qos;
+        qos.Durability = Durability::TransientLocal;
+        _poses = _node.Session().CreateWriter({"Pose", "Uav::Pose", {}}, qos, {"", node});
     }
 
-    void SendBeat(std::chrono::nanoseconds now)
-    {
-        Gateway::Beat beat;
-        beat.node = _node;
-        beat.incarnation = 42;
-        beat.monotonic_ns = now.count();
-        beat.source_ns = now.count();
-        beat.utc_ns = now.count();
-        Send(*_beats, Encoded(beat));
-    }
-
-    void SendAnnouncement()
+    void SendBeat()
     {
         Gateway::Announcement announcement;
-        announcement.node = _node;
-        announcement.incarnation = 42;
-        Gateway::PublishedMessage pose;
+        Gateway::PublishedMessage &pose = announcement.publishes.emplace_back();
         pose.message = "Pose";
         pose.type = "Uav::Pose";
         pose.qos = "telemetry";
-        announcement.publishes.push_back(pose);
-        Send(*_announcements, Encoded(announcement));
+        Gateway::Beat beat = _node.Beat();
+        Announce(beat, announcement);
+        _node.Write(beat);
     }
 
-    void SendPoseBytes(const std::vector<std::uint8_t> &bytes) { Send(*_poses, bytes); }
-    void SendBeatBytes(const std::vector<std::uint8_t> &bytes) { Send(*_beats, bytes); }
-
-    static std::vector<std::uint8_t> Encoded(RabitMessage &message)
-    {
-        std::vector<std::uint8_t> bytes(65536);
-        bytes.resize(
-            static_cast<std::size_t>(message.Serialize(bytes.data(), static_cast<int>(bytes.size()))));
-        return bytes;
-    }
+    HandNode &Node() { return _node; }
+    void SendPose(const SampleEncoder &pose) { EXPECT_EQ(_poses->Write(pose, 0), WriteResult::Ok); }
+    void SendPoseBytes(const std::vector<std::uint8_t> &bytes) { SendPose(HandNode::Bytes(bytes)); }
 
 private:
-    struct Bytes final : SampleEncoder
-    {
-        explicit Bytes(const std::vector<std::uint8_t> &data) : Data(data) {}
-        std::size_t EncodedSize() const override { return Data.size(); }
-        bool Encode(std::span<std::uint8_t> buffer) const override
-        {
-            std::copy(Data.begin(), Data.end(), buffer.begin());
-            return true;
-        }
-        const std::vector<std::uint8_t> &Data;
-    };
-
-    std::unique_ptr<TransportWriter> Writer(const std::string &topic, const std::string &type)
-    {
-        TopicDescription description;
-        description.Name = topic;
-        description.TypeName = type;
-        TopicQos qos;
-        qos.Durability = Durability::TransientLocal;
-        return _session->CreateWriter(description, qos, {"", _node});
-    }
-
-    static void Send(TransportWriter &writer, const std::vector<std::uint8_t> &bytes)
-    {
-        EXPECT_EQ(writer.Write(Bytes(bytes), 0), WriteResult::Ok);
-    }
-
-    std::string _node;
-    std::unique_ptr<TransportSession> _session;
-    std::unique_ptr<TransportWriter> _beats;
-    std::unique_ptr<TransportWriter> _announcements;
+    HandNode _node;
     std::unique_ptr<TransportWriter> _poses;
 };
 
@@ -465,8 +416,7 @@ TEST_F(MirrorTest, ASampleThatDoesNotDecodeIsDroppedAndCountedByTopicAndSource)
     fleet.RunFor(1s);
     for (int i = 1; i <= 4; ++i)
     {
-        rogue.SendAnnouncement();
-        rogue.SendBeat(fleet.Network.Now());
+        rogue.SendBeat();
         fleet.RunFor(500ms);
     }
     rogue.SendPoseBytes({0, 1, 0, 0, 1, 2, 3});
@@ -489,8 +439,8 @@ TEST_F(MirrorTest, SamplesOfANodeThatIsNotHeardAreNotPosted)
     fleet.Add(aircraft);
     RogueNode rogue(fleet.Network, "uav9");
     Settle();
-    Uav::Pose pose;
-    rogue.SendPoseBytes(RogueNode::Encoded(pose));
+    const Uav::Pose pose;
+    rogue.SendPose(MessageSample(pose));
     fleet.RunFor(1s);
     EXPECT_FALSE(mirrored->FetchMessage() && mirrored->WasPosted());
     EXPECT_EQ(ground.Fleet().topics.at(0).refused, 1u);
@@ -500,17 +450,16 @@ TEST_F(MirrorTest, GarbledGatewayTrafficIsCountedAndChangesNothing)
 {
     SimulatedNode &ground = fleet.Add(GroundConfig());
     fleet.Add(AircraftConfig("uav1"));
-    RogueNode rogue(fleet.Network, "uav9");
+    HandNode rogue(fleet.Network, "uav9", 42);
     Settle();
-    Gateway::Beat beat;
-    beat.node = "uav1";
-    beat.incarnation = 1;
-    beat.monotonic_ns = std::numeric_limits<std::int64_t>::min();
-    rogue.SendBeatBytes(RogueNode::Encoded(beat));
-    beat.node = "no node name";
-    beat.monotonic_ns = 1;
-    rogue.SendBeatBytes(RogueNode::Encoded(beat));
-    rogue.SendBeatBytes({0, 1, 0, 0, 9, 9, 9, 9, 9});
+    Gateway::Beat beat = rogue.Beat();
+    beat.source_ns = std::numeric_limits<std::int64_t>::min();
+    rogue.Write(beat);
+    beat = rogue.Beat();
+    beat.first_state = 60000;
+    rogue.Write(beat);
+    const auto format = static_cast<std::uint8_t>(BeatFormat::Present & 0xff);
+    rogue.WriteBytes({0, 1, 0, 0, format, BeatFormat::Present >> 8, 9, 9, 9});
     fleet.RunFor(1500ms);
     EXPECT_EQ(ground.Fleet().malformed, 3u);
     EXPECT_EQ(ground.Fleet().nodes.size(), 1u);

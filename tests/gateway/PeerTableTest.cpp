@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "names/NodeTag.h"
 #include "wire/Announcements.h"
 
 namespace Rabit
@@ -12,28 +13,36 @@ namespace
 using namespace std::chrono_literals;
 using Gateway::NodeState;
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 using Ns = std::chrono::nanoseconds;
 
-// The peers' monotonic clocks are this far from ours.
+// The peers' source clocks are this far from our monotonic one.
 constexpr Ns ClockDistance = 1000s;
+constexpr Ns Period = 500ms;
 
-Gateway::Beat BeatOf(const std::string &node, std::uint64_t incarnation, Ns sent)
+HeardBeat BeatOf(const std::string &node, std::uint64_t incarnation, Ns sent, Ns arrival)
 {
-    Gateway::Beat beat;
-    beat.node = node;
-    beat.incarnation = incarnation;
-    beat.monotonic_ns = (sent + ClockDistance).count();
-    beat.utc_ns = (sent + 1'700'000'000s).count();
-    return beat;
+    HeardBeat heard;
+    heard.Node = node;
+    heard.Incarnation = incarnation;
+    heard.Utc = (sent + 1'700'000'000s).count();
+    heard.Beat.source_ns = (sent + ClockDistance).count();
+    heard.Beat.next_ms = static_cast<std::uint16_t>(Period / 1ms);
+    heard.Arrival = arrival;
+    return heard;
 }
 
-Gateway::Announcement AnnouncementOf(const std::string &node, std::uint64_t incarnation)
+HeardBeat BeatOf(const std::string &node, std::uint64_t incarnation, Ns sent)
 {
-    Gateway::Announcement announcement;
-    announcement.node = node;
-    announcement.incarnation = incarnation;
-    return announcement;
+    return BeatOf(node, incarnation, sent, sent);
+}
+
+// An echo, in a beat, of the beat that this node sent then.
+void Echo(HeardBeat &heard, Ns sent, std::uint64_t incarnation = 7)
+{
+    Gateway::BeatEcho echo;
+    echo.node = NodeTagOf("ground", incarnation);
+    echo.beat = static_cast<std::uint32_t>(sent.count());
+    heard.Beat.echoes.push_back(echo);
 }
 
 class PeerTableTest : public ::testing::Test
@@ -42,7 +51,7 @@ protected:
     PeerTable::Change Hear(const std::string &node, std::uint64_t incarnation, Ns at)
     {
         table.Advance(at);
-        return table.OnBeat(BeatOf(node, incarnation, at), at);
+        return table.OnBeat(BeatOf(node, incarnation, at));
     }
 
     NodeState StateOf(const std::string &node) const { return table.Find(node)->State; }
@@ -56,12 +65,6 @@ TEST_F(PeerTableTest, ANodeIsUpWithItsFirstBeat)
     EXPECT_TRUE(change.NewLife);
     EXPECT_TRUE(change.State);
     EXPECT_EQ(StateOf("uav1"), NodeState::UP);
-}
-
-TEST_F(PeerTableTest, AnAnnouncementAloneDoesNotMakeANodeLive)
-{
-    EXPECT_TRUE(table.OnAnnouncement(AnnouncementOf("uav1", 5), 1s).Offers);
-    EXPECT_TRUE(table.Heard().empty());
 }
 
 TEST_F(PeerTableTest, SilenceMakesANodeStaleAndThenLost)
@@ -103,52 +106,92 @@ TEST_F(PeerTableTest, ABeatThatWasHeldUpOnTheWayDoesNotMakeItsNodeLookLive)
     Hear("uav1", 5, 1s);
     Hear("uav1", 5, 2s);
     table.Advance(62s);
-    const PeerTable::Change change = table.OnBeat(BeatOf("uav1", 5, 3s), 62s);
+    const PeerTable::Change change = table.OnBeat(BeatOf("uav1", 5, 3s, 62s));
     EXPECT_FALSE(change.State);
     EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
 }
 
-// A beat of a peer whose monotonic clock stood still for `behind` in all, which echoes one that we sent so
-// long before it came.
-Gateway::Beat EchoingBeat(Ns sent, Ns behind, Ns arrival, Ns roundTrip)
+class EchoTest : public PeerTableTest
 {
-    Gateway::Beat beat = BeatOf("uav1", 5, sent - behind);
-    Gateway::BeatEcho echo;
-    echo.node = "ground";
-    echo.incarnation = 7;
-    echo.monotonic_ns = (arrival - roundTrip).count();
-    beat.echoes.push_back(echo);
-    return beat;
-}
+protected:
+    // Hears a beat of a peer whose clocks stood still for `behind` in all, which echoes one that this node
+    // sent so long before it came.
+    PeerTable::Change HearEchoing(Ns sent, Ns behind, Ns arrival, Ns roundTrip)
+    {
+        table.NoteSent((arrival - roundTrip).count(), arrival - roundTrip);
+        HeardBeat heard = BeatOf("uav1", 5, sent - behind, arrival);
+        Echo(heard, arrival - roundTrip);
+        return table.OnBeat(heard);
+    }
 
-TEST_F(PeerTableTest, ANodeWhoseClockStoodStillIsUpWithTheFirstBeatThatEchoesOneSentSince)
+    std::optional<Ns> RoundTrip() const { return table.Find("uav1")->Clock.RoundTrip(); }
+};
+
+TEST_F(EchoTest, ANodeWhoseClockStoodStillIsUpWithTheFirstBeatThatEchoesOneSentSince)
 {
     for (Ns sent = 1s; sent < 20s; sent += 500ms)
     {
-        table.OnBeat(EchoingBeat(sent, 0s, sent + 10ms, 20ms), sent + 10ms);
+        HearEchoing(sent, 0s, sent + 10ms, 20ms);
     }
     table.Advance(120s);
-    EXPECT_FALSE(table.OnBeat(BeatOf("uav1", 5, 20s), 120s).State) << "it may have been held up";
-    const PeerTable::Change change = table.OnBeat(EchoingBeat(120500ms, 100s, 120510ms, 20ms), 120510ms);
+    EXPECT_FALSE(table.OnBeat(BeatOf("uav1", 5, 20s, 120s)).State) << "it may have been held up";
+    const PeerTable::Change change = HearEchoing(120500ms, 100s, 120510ms, 20ms);
     EXPECT_TRUE(change.State);
     EXPECT_FALSE(change.NewLife);
     EXPECT_EQ(StateOf("uav1"), NodeState::UP);
     EXPECT_EQ(table.Find("uav1")->LastHeard, Ns(120500ms));
 }
 
-TEST_F(PeerTableTest, ABeatThatWasHeldUpWithItsEchoDoesNotMakeItsNodeLookLive)
+TEST_F(EchoTest, ABeatThatWasHeldUpWithItsEchoDoesNotMakeItsNodeLookLive)
 {
     for (Ns sent = 1s; sent < 20s; sent += 500ms)
     {
-        table.OnBeat(EchoingBeat(sent, 0s, sent + 10ms, 20ms), sent + 10ms);
+        HearEchoing(sent, 0s, sent + 10ms, 20ms);
     }
     table.Advance(120s);
     for (Ns sent = 20s; sent < 25s; sent += 500ms)
     {
-        const Ns arrival = sent + 100s;
-        EXPECT_FALSE(table.OnBeat(EchoingBeat(sent, 0s, arrival, 100s + 10ms), arrival).State);
+        EXPECT_FALSE(HearEchoing(sent, 0s, sent + 100s, 100s + 10ms).State);
     }
     EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
+}
+
+TEST_F(EchoTest, MeasuresTheRoundTrip)
+{
+    table.NoteSent(Ns(10700ms).count(), 10700ms);
+    HeardBeat heard = BeatOf("uav1", 5, 11s);
+    Echo(heard, 10700ms);
+    heard.Beat.echoes[0].held_us = 290'000;
+    table.OnBeat(heard);
+    EXPECT_EQ(RoundTrip(), Ns(10ms));
+}
+
+TEST_F(EchoTest, AnEchoOfAnEarlierLifeMeansNothing)
+{
+    table.NoteSent(Ns(9s).count(), 9s);
+    HeardBeat heard = BeatOf("uav1", 5, 10s);
+    Echo(heard, 9s, 6);
+    table.OnBeat(heard);
+    EXPECT_EQ(RoundTrip(), std::nullopt);
+}
+
+TEST_F(EchoTest, AnEchoOfABeatThatThisNodeHasNotSentMeansNothing)
+{
+    table.NoteSent(Ns(9s).count(), 9s);
+    HeardBeat heard = BeatOf("uav1", 5, 10s);
+    Echo(heard, 9s + 1ns);
+    table.OnBeat(heard);
+    EXPECT_EQ(RoundTrip(), std::nullopt);
+}
+
+TEST_F(EchoTest, AnEchoThatWasHeldForLongerThanItWasOnItsWayMeansNothing)
+{
+    table.NoteSent(Ns(9s).count(), 9s);
+    HeardBeat heard = BeatOf("uav1", 5, 10s);
+    Echo(heard, 9s);
+    heard.Beat.echoes[0].held_us = 1'000'001;
+    table.OnBeat(heard);
+    EXPECT_EQ(RoundTrip(), std::nullopt);
 }
 
 TEST_F(PeerTableTest, ADuplicateOfABeatChangesNothing)
@@ -156,26 +199,15 @@ TEST_F(PeerTableTest, ADuplicateOfABeatChangesNothing)
     Hear("uav1", 5, 1s);
     Hear("uav1", 5, 2s);
     const Ns heard = table.Find("uav1")->LastHeard;
-    table.OnBeat(BeatOf("uav1", 5, 1s), 3s);
+    table.OnBeat(BeatOf("uav1", 5, 1s, 3s));
     EXPECT_EQ(table.Find("uav1")->LastHeard, heard);
 }
 
-TEST_F(PeerTableTest, AHigherIncarnationIsANewLifeAndForgetsTheOldOffers)
+TEST_F(PeerTableTest, AHigherIncarnationIsANewLife)
 {
     Hear("uav1", 5, 1s);
-    table.OnAnnouncement(AnnouncementOf("uav1", 5), 1s);
     EXPECT_TRUE(Hear("uav1", 6, 2s).NewLife);
     EXPECT_EQ(table.Find("uav1")->Incarnation, 6u);
-    EXPECT_FALSE(table.Find("uav1")->Offers.has_value());
-}
-
-TEST_F(PeerTableTest, KeepsAnAnnouncementThatOvertookTheFirstBeatOfItsLife)
-{
-    Hear("uav1", 5, 1s);
-    table.OnAnnouncement(AnnouncementOf("uav1", 6), 2s);
-    Hear("uav1", 6, 2s);
-    ASSERT_TRUE(table.Find("uav1")->Offers.has_value());
-    EXPECT_EQ(table.Find("uav1")->Offers->incarnation, 6u);
 }
 
 TEST_F(PeerTableTest, AStragglerOfAnEarlierLifeIsIgnored)
@@ -183,7 +215,6 @@ TEST_F(PeerTableTest, AStragglerOfAnEarlierLifeIsIgnored)
     Hear("uav1", 6, 1s);
     EXPECT_FALSE(Hear("uav1", 5, 1100ms).State);
     EXPECT_EQ(table.Find("uav1")->Incarnation, 6u);
-    EXPECT_FALSE(table.OnAnnouncement(AnnouncementOf("uav1", 5), 1200ms).Offers);
 }
 
 TEST_F(PeerTableTest, ALowerIncarnationIsTakenOnceTheHigherOneHasFallenSilent)
@@ -196,20 +227,39 @@ TEST_F(PeerTableTest, ALowerIncarnationIsTakenOnceTheHigherOneHasFallenSilent)
 TEST_F(PeerTableTest, ANodeThatSaysGoodbyeIsLostAtOnce)
 {
     Hear("uav1", 5, 1s);
-    Gateway::Announcement goodbye = AnnouncementOf("uav1", 5);
-    goodbye.leaving = true;
-    EXPECT_TRUE(table.OnAnnouncement(goodbye, 1100ms).State);
+    HeardBeat goodbye = BeatOf("uav1", 5, 1100ms);
+    goodbye.Beat.leaving = true;
+    EXPECT_TRUE(table.OnBeat(goodbye).State);
     EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
     EXPECT_EQ(table.Find("uav1")->Reason, "left");
+    EXPECT_FALSE(table.OnBeat(goodbye).State);
+}
+
+TEST_F(PeerTableTest, ABeatThatItsGoodbyeHasOvertakenDoesNotBringANodeBack)
+{
+    Hear("uav1", 5, 1s);
+    HeardBeat goodbye = BeatOf("uav1", 5, 1200ms);
+    goodbye.Beat.leaving = true;
+    table.OnBeat(goodbye);
+    EXPECT_FALSE(table.OnBeat(BeatOf("uav1", 5, 1100ms, 1300ms)).State);
+    EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
+}
+
+TEST_F(PeerTableTest, TheGoodbyeOfANodeThatWasNeverHeardIsNoNews)
+{
+    HeardBeat goodbye = BeatOf("uav1", 5, 1s);
+    goodbye.Beat.leaving = true;
+    EXPECT_FALSE(table.OnBeat(goodbye).State);
+    EXPECT_EQ(table.Find("uav1"), nullptr);
 }
 
 TEST_F(PeerTableTest, TheGoodbyeOfAnEarlierLifeDoesNotEndTheNextOne)
 {
     Hear("uav1", 5, 1s);
     Hear("uav1", 6, 2s);
-    Gateway::Announcement goodbye = AnnouncementOf("uav1", 5);
-    goodbye.leaving = true;
-    EXPECT_FALSE(table.OnAnnouncement(goodbye, 2100ms).State);
+    HeardBeat goodbye = BeatOf("uav1", 5, 2100ms);
+    goodbye.Beat.leaving = true;
+    EXPECT_FALSE(table.OnBeat(goodbye).State);
     EXPECT_FALSE(table.OnLeft("uav1", 5).State);
     EXPECT_EQ(StateOf("uav1"), NodeState::UP);
 }
@@ -282,57 +332,15 @@ TEST_F(FullPeerTableTest, OnceAllAreLostTheOneLostForLongestMakesRoomAndIsNamed)
     EXPECT_EQ(table.Forgotten(), 1u);
 }
 
-TEST_F(FullPeerTableTest, AnAnnouncementAloneDoesNotMakeANodeForgottenThatWasHeard)
-{
-    table.Advance(60s);
-    EXPECT_TRUE(table.OnAnnouncement(AnnouncementOf("stranger", 5), 60s).Forgotten.empty());
-    EXPECT_EQ(table.Find("stranger"), nullptr);
-    EXPECT_EQ(table.CrowdedOut(), 1u);
-}
-
-TEST(PeerTable, ACrowdOfNamesThatWereNeverHeardPushesOutNoneThatWas)
-{
-    PeerTable table("ground", 7);
-    table.OnBeat(BeatOf("uav1", 5, 1s), 1s);
-    table.Advance(60s);
-    for (std::size_t i = 0; i < 3 * PeerTable::MaximumPeers; ++i)
-    {
-        table.OnAnnouncement(AnnouncementOf(std::string("x").append(std::to_string(i)), 5), 60s);
-    }
-    EXPECT_NE(table.Find("uav1"), nullptr);
-    EXPECT_TRUE(table.OnBeat(BeatOf("uav2", 5, 61s), 61s).NewLife);
-    EXPECT_NE(table.Find("uav1"), nullptr);
-}
-
 TEST(PeerTable, ANodeThatIsNeededIsNotForgotten)
 {
     PeerTable table("ground", 7, [](const std::string &node) { return node == "n0"; });
     for (std::size_t i = 0; i < PeerTable::MaximumPeers; ++i)
     {
-        table.OnBeat(BeatOf(std::string("n").append(std::to_string(i)), 5, 1s), 1s);
+        table.OnBeat(BeatOf(std::string("n").append(std::to_string(i)), 5, 1s));
     }
     table.Advance(60s);
-    EXPECT_EQ(table.OnBeat(BeatOf("late", 5, 60s), 60s).Forgotten, std::vector<std::string>{"n1"});
-}
-
-TEST_F(PeerTableTest, MeasuresTheRoundTripFromAnEchoOfThisLifeAlone)
-{
-    Gateway::Beat beat = BeatOf("uav1", 5, 10s);
-    Gateway::BeatEcho echo;
-    echo.node = "ground";
-    echo.incarnation = 6;
-    echo.monotonic_ns = Ns(9s).count();
-    beat.echoes.push_back(echo);
-    table.OnBeat(beat, 10s);
-    EXPECT_FALSE(table.Find("uav1")->Clock.RoundTrip().has_value());
-
-    beat = BeatOf("uav1", 5, 11s);
-    echo.incarnation = 7;
-    echo.monotonic_ns = Ns(10700ms).count();
-    echo.held_ns = Ns(290ms).count();
-    beat.echoes.push_back(echo);
-    table.OnBeat(beat, 11s);
-    EXPECT_EQ(table.Find("uav1")->Clock.RoundTrip(), Ns(10ms));
+    EXPECT_EQ(table.OnBeat(BeatOf("late", 5, 60s)).Forgotten, std::vector<std::string>{"n1"});
 }
 
 TEST_F(PeerTableTest, EchoesTakeTurnsWhenThereAreMoreNodesThanRoom)
@@ -346,7 +354,10 @@ TEST_F(PeerTableTest, EchoesTakeTurnsWhenThereAreMoreNodesThanRoom)
         std::string names;
         for (const auto &echo : echoes)
         {
-            names += echo.node;
+            for (const char *node : {"a", "b", "c"})
+            {
+                names += echo.node == NodeTagOf(node, 1) ? node : "";
+            }
         }
         return names;
     };
@@ -373,62 +384,211 @@ TEST_F(PeerTableTest, ANewLifeIsEchoedAtOnce)
 class OffersTest : public PeerTableTest
 {
 protected:
-    void HearOffering(const std::string &node, std::uint32_t offers, Ns at)
+    static Gateway::Announcement Publishing(const std::string &message)
     {
-        Gateway::Beat beat = BeatOf(node, 5, at);
-        beat.offers = offers;
-        table.Advance(at);
-        table.OnBeat(beat, at);
+        Gateway::Announcement announcement;
+        Gateway::PublishedMessage &published = announcement.publishes.emplace_back();
+        published.message = message;
+        published.type = "Uav::T";
+        published.qos = "state";
+        return announcement;
     }
 
-    const Gateway::Announcement announcement = AnnouncementOf("uav1", 5);
-    const std::uint32_t digest = Announcements::DigestOf(announcement);
+    // Hears a beat that means those offers, with all of them or without.
+    PeerTable::Change HearOffering(const Gateway::Announcement &offers, bool withThem, Ns at,
+                                   std::uint64_t incarnation = 5)
+    {
+        HeardBeat heard = BeatOf("uav1", incarnation, at);
+        SetOffers(heard, offers, withThem);
+        table.Advance(at);
+        return table.OnBeat(heard);
+    }
+
+    static void SetOffers(HeardBeat &heard, const Gateway::Announcement &offers, bool withThem)
+    {
+        const std::vector<std::uint8_t> bytes = Announcements::Encode(offers);
+        heard.Beat.offers = Announcements::DigestOf(bytes);
+        if (withThem)
+        {
+            Gateway::AnnouncementPart &part = heard.Beat.parts.emplace_back();
+            part.of = static_cast<std::uint16_t>(bytes.size());
+            part.bytes = bytes;
+        }
+    }
+
+    std::size_t Lacking(Ns now) const { return table.Missing().Due(now, 10); }
+
+    const Gateway::Announcement pose = Publishing("Pose");
+    const Gateway::Announcement other = Publishing("Other");
 };
+
+TEST_F(OffersTest, WhatIsWholeAndAsItsDigestSaysIsTaken)
+{
+    EXPECT_TRUE(HearOffering(pose, true, 1s).Offers);
+    EXPECT_EQ(table.Find("uav1")->Offers, pose);
+    EXPECT_TRUE(table.Find("uav1")->HasPresentOffers());
+    EXPECT_EQ(Lacking(10s), 0u);
+}
 
 TEST_F(OffersTest, WhoLacksAnAnnouncementAsksForItAfterAWhile)
 {
-    HearOffering("uav1", digest, 1s);
-    EXPECT_THAT(table.NextWanted(1299ms, 4), IsEmpty());
-    HearOffering("uav1", digest, 1300ms);
-    EXPECT_THAT(table.NextWanted(1300ms, 4), ElementsAre("uav1"));
-    // Until it has come.
-    EXPECT_THAT(table.NextWanted(1800ms, 4), ElementsAre("uav1"));
-    table.OnAnnouncement(announcement, 1900ms);
-    HearOffering("uav1", digest, 2s);
-    EXPECT_THAT(table.NextWanted(2300ms, 4), IsEmpty());
+    HearOffering(pose, false, 1s);
+    EXPECT_EQ(Lacking(1s + MissingOffers::AskAfter - 1ns), 0u);
+    EXPECT_EQ(Lacking(1s + MissingOffers::AskAfter), 1u);
+    HearOffering(pose, true, 1500ms);
+    EXPECT_EQ(Lacking(10s), 0u);
 }
 
-TEST_F(OffersTest, WhoHasAnotherAnnouncementThanThePresentOneAsks)
+TEST_F(OffersTest, WhoHasAnotherAnnouncementThanThePresentOneAsksAndKeepsItUntilThen)
 {
-    Gateway::Announcement former = announcement;
-    former.publishes.emplace_back();
-    table.OnAnnouncement(former, 1s);
-    HearOffering("uav1", digest, 1s);
-    EXPECT_THAT(table.NextWanted(1300ms, 4), ElementsAre("uav1"));
+    HearOffering(other, true, 1s);
+    HearOffering(pose, false, 3s);
+    EXPECT_EQ(table.Find("uav1")->Offers, other);
+    EXPECT_FALSE(table.Find("uav1")->HasPresentOffers());
+    EXPECT_EQ(Lacking(3100ms), 1u);
 }
 
 TEST_F(OffersTest, NobodyAsksOneThatIsLost)
 {
-    HearOffering("uav1", digest, 1s);
+    HearOffering(pose, false, 1s);
     table.Advance(5s);
-    EXPECT_THAT(table.NextWanted(5s, 4), IsEmpty());
+    EXPECT_EQ(Lacking(5s), 0u);
 }
 
-TEST_F(OffersTest, ThoseWhoAreAskedTakeTurns)
+TEST_F(OffersTest, ANodeThatRestartsAsItWasNeedNotBeAsked)
 {
-    for (const char *node : {"a", "b", "c"})
+    HearOffering(pose, true, 1s);
+    EXPECT_TRUE(HearOffering(pose, false, 2s, 6).NewLife);
+    EXPECT_TRUE(table.Find("uav1")->HasPresentOffers());
+    EXPECT_EQ(Lacking(10s), 0u);
+}
+
+TEST_F(OffersTest, ANodeThatRestartsWithOtherOffersHasNoneUntilTheyCome)
+{
+    HearOffering(pose, true, 1s);
+    HearOffering(other, false, 2s, 6);
+    EXPECT_EQ(table.Find("uav1")->Offers, std::nullopt);
+    EXPECT_TRUE(HearOffering(other, true, 2100ms, 6).Offers);
+}
+
+TEST_F(OffersTest, WhoOffersSomethingElseWithEachBeatIsHeededOnceInAWhile)
+{
+    int taken = 0;
+    for (int i = 0; i < 1000; ++i)
     {
-        HearOffering(node, digest, 1s);
+        const Ns at = 1s + i * 10ms;
+        taken += HearOffering(Publishing(std::string("m").append(std::to_string(i))), true, at).Offers ? 1 : 0;
     }
-    EXPECT_THAT(table.NextWanted(1500ms, 2), ElementsAre("a", "b"));
-    EXPECT_THAT(table.NextWanted(1500ms, 2), ElementsAre("c", "a"));
+    EXPECT_EQ(taken, 10);
+}
+
+TEST_F(OffersTest, AnAnnouncementThatIsNotWhatItsDigestSaysIsNotTakenAndCounted)
+{
+    HeardBeat heard = BeatOf("uav1", 5, 1s);
+    SetOffers(heard, pose, true);
+    heard.Beat.offers ^= 1;
+    EXPECT_FALSE(table.OnBeat(heard).Offers);
+    EXPECT_EQ(table.Malformed(), 1u);
+}
+
+TEST_F(OffersTest, AnAnnouncementThatIsNotPlausibleIsNotTakenAndCounted)
+{
+    Gateway::Announcement wrong = pose;
+    wrong.publishes[0].qos = "splendid";
+    EXPECT_FALSE(HearOffering(wrong, true, 1s).Offers);
+    EXPECT_EQ(table.Malformed(), 1u);
+}
+
+class PeerStatesTest : public PeerTableTest
+{
+protected:
+    void HearStates(std::uint16_t first, const std::vector<std::uint32_t> &versions, Ns at,
+                    std::uint32_t offers = 1, std::uint64_t incarnation = 5)
+    {
+        HeardBeat heard = BeatOf("uav1", incarnation, at);
+        heard.Beat.offers = offers;
+        heard.Beat.first_state = first;
+        heard.Beat.states = versions;
+        table.OnBeat(heard);
+    }
+
+    const std::vector<std::uint32_t> &States() const { return table.Find("uav1")->States; }
+};
+
+TEST_F(PeerStatesTest, AreWhatItsBeatsHaveTold)
+{
+    HearStates(0, {11, 12}, 1s);
+    HearStates(2, {13}, 2s);
+    EXPECT_THAT(States(), ElementsAre(11, 12, 13));
+    HearStates(1, {22, 23}, 3s);
+    EXPECT_THAT(States(), ElementsAre(11, 22, 23));
+}
+
+TEST_F(PeerStatesTest, AreForgottenWithTheLife)
+{
+    HearStates(0, {11, 12}, 1s);
+    HearStates(1, {22}, 2s, 1, 6);
+    EXPECT_THAT(States(), ElementsAre(0, 22));
+}
+
+TEST_F(PeerStatesTest, AreForgottenWithTheAnnouncementWhoseOrderTheyHave)
+{
+    HearStates(0, {11, 12}, 1s);
+    HearStates(1, {22}, 2s, 2);
+    EXPECT_THAT(States(), ElementsAre(0, 22));
+}
+
+class BeatPeriodTest : public PeerTableTest
+{
+protected:
+    void HearMeaning(std::uint16_t next, Ns at)
+    {
+        HeardBeat heard = BeatOf("uav1", 5, at);
+        heard.Beat.next_ms = next;
+        table.OnBeat(heard);
+    }
+
+    NodeState StateAt(Ns now)
+    {
+        table.Advance(now);
+        return StateOf("uav1");
+    }
+};
+
+TEST_F(BeatPeriodTest, ANodeIsJudgedByWhenItsNextBeatIsDue)
+{
+    HearMeaning(5000, 1s);
+    EXPECT_EQ(StateAt(16s), NodeState::UP);
+    EXPECT_EQ(StateAt(16s + 1ns), NodeState::STALE);
+    EXPECT_EQ(table.Find("uav1")->Reason, "not heard for 15 seconds");
+    EXPECT_EQ(StateAt(36s), NodeState::STALE);
+    EXPECT_EQ(StateAt(36s + 1ns), NodeState::LOST);
+    EXPECT_EQ(table.Find("uav1")->Reason, "not heard for 35 seconds");
+}
+
+TEST_F(BeatPeriodTest, WhatTheNewestBeatSaysHolds)
+{
+    HearMeaning(5000, 1s);
+    HearMeaning(500, 2s);
+    EXPECT_EQ(StateAt(3500ms), NodeState::UP);
+    EXPECT_EQ(StateAt(3501ms), NodeState::STALE);
+}
+
+TEST_F(BeatPeriodTest, ANodeThatSaysNoneOrNonsenseIsJudgedByTheNearestPossible)
+{
+    HearMeaning(0, 1s);
+    EXPECT_EQ(StateAt(1300ms), NodeState::UP);
+    EXPECT_EQ(StateAt(1301ms), NodeState::STALE);
+    HearMeaning(65535, 2s);
+    EXPECT_EQ(StateAt(182s), NodeState::UP);
+    EXPECT_EQ(StateAt(182s + 1ns), NodeState::STALE);
 }
 
 TEST_F(PeerTableTest, NamesFromTheNetworkCannotFillTheMemory)
 {
     for (std::size_t i = 0; i < 2 * PeerTable::MaximumPeers; ++i)
     {
-        Hear("node" + std::to_string(i), 1, 1s + Ns(i));
+        Hear(std::string("node").append(std::to_string(i)), 1, 1s + Ns(i));
     }
     EXPECT_EQ(table.Heard().size(), PeerTable::MaximumPeers);
     table.Advance(60s);

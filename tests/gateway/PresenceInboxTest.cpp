@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "wire/Announcements.h"
+#include "BeatSamples.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -28,8 +31,6 @@ std::vector<std::uint8_t> Encoded(const Message &message)
 Gateway::Announcement Accepting(std::size_t queues, std::size_t types, const std::string &typeName = "T")
 {
     Gateway::Announcement announcement;
-    announcement.node = "uav1";
-    announcement.incarnation = 5;
     for (std::size_t q = 0; q < queues; ++q)
     {
         Gateway::AcceptedQueue accepted;
@@ -45,8 +46,6 @@ Gateway::Announcement Accepting(std::size_t queues, std::size_t types, const std
 Gateway::Announcement Publishing(std::size_t messages)
 {
     Gateway::Announcement announcement;
-    announcement.node = "uav1";
-    announcement.incarnation = 5;
     Gateway::PublishedMessage published;
     published.message = "m";
     published.type = "T";
@@ -55,93 +54,165 @@ Gateway::Announcement Publishing(std::size_t messages)
     return announcement;
 }
 
-TEST(PresenceInbox, TakesTheLargestAnnouncementThatANodeMayMake)
+class PresenceInboxTest : public ::testing::Test
 {
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Publishing(Announcements::MostOffers)), "uav1", 1s));
-    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Accepting(1, Announcements::MostTypes)), "uav1", 1s));
-    EXPECT_EQ(inbox.Take().Announcements.size(), 2u);
-    EXPECT_EQ(inbox.Dropped(), 0u);
+protected:
+    bool Add(const std::vector<std::uint8_t> &bytes, const std::string &node = "uav1", std::int64_t utc = 1)
+    {
+        SampleInfo info;
+        info.Node = node;
+        info.Incarnation = 5;
+        info.SourceTime = utc;
+        return inbox.AddBeat(bytes, info, 1s);
+    }
+    bool Add(const Gateway::Beat &said) { return Add(Encoded(said)); }
+
+    PresenceInbox inbox;
+    Gateway::Beat beat = BeatAt(1s);
+};
+
+TEST_F(PresenceInboxTest, WhoSpeaksIsWhoDdsSaysWroteIt)
+{
+    ASSERT_TRUE(Add(Encoded(beat), "uav7", 123));
+    const auto beats = inbox.Take().Beats;
+    ASSERT_EQ(beats.size(), 1u);
+    EXPECT_EQ(beats[0].Node, "uav7");
+    EXPECT_EQ(beats[0].Incarnation, 5u);
+    EXPECT_EQ(beats[0].Utc, 123);
+    EXPECT_EQ(beats[0].Arrival, 1s);
 }
 
-TEST(PresenceInbox, AnAnnouncementOfTooManyOffersIsDropped)
+TEST_F(PresenceInboxTest, AProgramThatIsNoNodeSaysNothingHere)
 {
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Publishing(Announcements::MostOffers + 1)), "uav1", 1s));
-    EXPECT_EQ(inbox.Dropped(), 1u);
-    EXPECT_TRUE(inbox.Take().Announcements.empty());
-}
-
-TEST(PresenceInbox, AnAnnouncementOfTooManyTypesInAllIsDropped)
-{
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(33, 32)), "uav1", 1s));
-    EXPECT_EQ(inbox.Dropped(), 1u);
-}
-
-TEST(PresenceInbox, AnAnnouncementOfAThousandQueuesOfAThousandTypesIsDropped)
-{
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(1000, 1000)), "uav1", 1s));
-    EXPECT_EQ(inbox.Dropped(), 1u);
-}
-
-TEST(PresenceInbox, AnAnnouncementWithinItsCountsButOfTooManyBytesIsDropped)
-{
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Accepting(1, 200, std::string(200, 'T'))), "uav1", 1s));
-    EXPECT_EQ(inbox.Dropped(), 1u);
-}
-
-TEST(PresenceInbox, AnAnnouncementWithATypeNameThatIsTooLongIsDropped)
-{
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_FALSE(inbox.AddAnnouncement(
-        Encoded(Accepting(1, 1, std::string(Announcements::LongestType + 1, 'T'))), "uav1", 1s));
-    EXPECT_TRUE(inbox.AddAnnouncement(Encoded(Accepting(1, 1, std::string(Announcements::LongestType, 'T'))),
-                                      "uav1", 1s));
-}
-
-TEST(PresenceInbox, ABeatWithNamesThatAreNoneIsDropped)
-{
-    Gateway::Beat beat;
-    beat.node = "uav1";
-    beat.echoes.resize(1);
-    beat.echoes[0].node = "*";
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_FALSE(inbox.AddBeat(Encoded(beat), "uav1", 1s));
-    beat.echoes[0].node = "uav2";
-    EXPECT_TRUE(inbox.AddBeat(Encoded(beat), "uav1", 1s));
-    EXPECT_EQ(inbox.Dropped(), 1u);
-}
-
-TEST(PresenceInbox, WhatANodeSaysInAnothersNameIsDropped)
-{
-    Gateway::Beat beat;
-    beat.node = "uav1";
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    EXPECT_FALSE(inbox.AddBeat(Encoded(beat), "uav2", 1s));
-    EXPECT_FALSE(inbox.AddBeat(Encoded(beat), "", 1s));
-    EXPECT_FALSE(inbox.AddAnnouncement(Encoded(Publishing(1)), "uav2", 1s));
-    EXPECT_EQ(senders.Refused(), 3u);
+    EXPECT_FALSE(Add(Encoded(beat), ""));
+    EXPECT_FALSE(Add(Encoded(beat), "*"));
+    EXPECT_EQ(inbox.Dropped(), 2u);
     EXPECT_TRUE(inbox.Take().Beats.empty());
 }
 
-TEST(PresenceInbox, HoldsNoMoreBytesThanItSays)
+TEST_F(PresenceInboxTest, ClocksThatNoneShowsAreDropped)
 {
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
-    const std::vector<std::uint8_t> large = Encoded(Accepting(1, 120, std::string(200, 'T')));
+    EXPECT_FALSE(Add(Encoded(beat), "uav1", -1));
+    beat.source_ns = std::numeric_limits<std::int64_t>::max();
+    EXPECT_FALSE(Add(beat));
+    EXPECT_EQ(inbox.Dropped(), 2u);
+}
+
+TEST_F(PresenceInboxTest, TheLargestBeatThatANodeSendsIsTaken)
+{
+    beat.states.resize(512);
+    beat.wants.resize(8);
+    beat.wants[0].states.resize(64);
+    EXPECT_TRUE(Add(beat));
+    EXPECT_EQ(inbox.Dropped(), 0u);
+}
+
+TEST_F(PresenceInboxTest, MoreStatesThanANodeCanHaveAreDropped)
+{
+    beat.first_state = 500;
+    beat.states.resize(13);
+    EXPECT_FALSE(Add(beat));
+    beat.states.resize(12);
+    EXPECT_TRUE(Add(beat));
+}
+
+TEST_F(PresenceInboxTest, QuestionsForMoreStatesThanANodeCanHaveAreDropped)
+{
+    beat.wants.resize(1);
+    beat.wants[0].states.resize(65);
+    EXPECT_FALSE(Add(beat));
+}
+
+TEST_F(PresenceInboxTest, MoreEntriesThanANodeSendsAreDropped)
+{
+    beat.delays.resize(PresenceInbox::MostEntries + 1);
+    EXPECT_FALSE(Add(beat));
+}
+
+TEST_F(PresenceInboxTest, MoreThanOnePartOfAnAnnouncementIsDropped)
+{
+    beat.parts.resize(2);
+    for (Gateway::AnnouncementPart &part : beat.parts)
+    {
+        part.of = 1;
+        part.bytes = {1};
+    }
+    EXPECT_FALSE(Add(beat));
+    beat.parts.pop_back();
+    EXPECT_TRUE(Add(beat));
+}
+
+TEST_F(PresenceInboxTest, APartThatLiesOutsideTheWholeIsDropped)
+{
+    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    part.first = 10;
+    part.of = 12;
+    part.bytes = {1, 2, 3};
+    EXPECT_FALSE(Add(beat));
+    part.of = 13;
+    EXPECT_TRUE(Add(beat));
+    part.bytes.clear();
+    EXPECT_FALSE(Add(beat));
+}
+
+TEST_F(PresenceInboxTest, APartOfAnAnnouncementThatIsTooLargeIsDropped)
+{
+    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    part.of = Announcements::LargestEncoded;
+    part.bytes = {1};
+    EXPECT_TRUE(Add(beat));
+    part.of = Announcements::LargestEncoded + 1;
+    EXPECT_FALSE(Add(beat));
+}
+
+TEST_F(PresenceInboxTest, ABeatOfAnotherFormatIsNoted)
+{
+    beat.format = BeatFormat::Present + 1;
+    std::vector<std::uint8_t> bytes = Encoded(beat);
+    EXPECT_TRUE(Add(bytes, "uav7"));
+    // The first gateways' beats: the name of the node, and more than beats of today may be.
+    bytes = {0, 1, 0, 0, 5, 0, 0, 0, 'u', 'a', 'v', '8', 0};
+    bytes.resize(PresenceInbox::LargestBeat + 1, 1);
+    EXPECT_TRUE(Add(bytes, "uav8"));
+    const auto contents = inbox.Take();
+    EXPECT_TRUE(contents.Beats.empty());
+    EXPECT_EQ(contents.OtherFormats, (std::vector<std::string>{"uav7", "uav8"}));
+}
+
+TEST_F(PresenceInboxTest, ABeatOfTheOtherByteOrderIsTaken)
+{
+    const std::vector<std::uint8_t> bytes = Encoded(beat);
+    std::vector<std::uint8_t> swapped = bytes;
+    swapped[1] = 0;
+    const auto swap = [&swapped](std::size_t at, std::size_t size) {
+        std::reverse(swapped.begin() + static_cast<long>(at), swapped.begin() + static_cast<long>(at + size));
+    };
+    swap(4, 2);
+    swap(6, 2);
+    swap(12, 8);
+    EXPECT_TRUE(Add(swapped));
+    const auto beats = inbox.Take().Beats;
+    ASSERT_EQ(beats.size(), 1u);
+    EXPECT_EQ(beats[0].Beat, beat);
+}
+
+TEST_F(PresenceInboxTest, GarbageIsDropped)
+{
+    EXPECT_TRUE(Add({0, 1, 0, 0, 9, 9, 9, 9, 9})) << "it may be of another format";
+    std::vector<std::uint8_t> bytes = Encoded(beat);
+    bytes.resize(20);
+    EXPECT_FALSE(Add(bytes));
+    EXPECT_EQ(inbox.Dropped(), 1u);
+}
+
+TEST_F(PresenceInboxTest, HoldsNoMoreBytesThanItSays)
+{
+    beat.parts.resize(1);
+    beat.parts[0].of = 4000;
+    beat.parts[0].bytes.resize(4000);
+    const std::vector<std::uint8_t> large = Encoded(beat);
     std::size_t added = 0;
-    while (inbox.AddAnnouncement(large, "uav1", 1s) && added < 100'000)
+    while (Add(large) && added < 100'000)
     {
         ++added;
     }
@@ -152,8 +223,7 @@ TEST(PresenceInbox, HoldsNoMoreBytesThanItSays)
 
 TEST(PresenceInbox, HasRoomAgainOnceItsContentsWereTaken)
 {
-    SenderCheck senders;
-    PresenceInbox inbox(senders);
+    PresenceInbox inbox;
     const PeerEvent event{PeerEvent::Kind::Appeared, "uav1", 5};
     while (inbox.AddEvent(event) && inbox.Dropped() == 0)
     {
@@ -161,6 +231,39 @@ TEST(PresenceInbox, HasRoomAgainOnceItsContentsWereTaken)
     ASSERT_FALSE(inbox.AddEvent(event));
     EXPECT_GT(inbox.Take().Events.size(), 10'000u);
     EXPECT_TRUE(inbox.AddEvent(event));
+}
+
+TEST(Announcements, TheLargestThatANodeMayMakeIsTaken)
+{
+    for (const auto &announcement :
+         {Publishing(Announcements::MostOffers), Accepting(1, Announcements::MostTypes),
+          Accepting(1, 1, std::string(Announcements::LongestType, 'T'))})
+    {
+        EXPECT_EQ(Announcements::Decode(Announcements::Encode(announcement)), announcement);
+    }
+}
+
+// By the number of offers, of types in all, of queues and types, of bytes, and of bytes of a type's name.
+TEST(Announcements, WhatExceedsTheBoundsIsNotTaken)
+{
+    for (const auto &announcement : {Publishing(Announcements::MostOffers + 1), Accepting(33, 32),
+                                     Accepting(1000, 1000), Accepting(1, 200, std::string(200, 'T')),
+                                     Accepting(1, 1, std::string(Announcements::LongestType + 1, 'T'))})
+    {
+        EXPECT_EQ(Announcements::Decode(Announcements::Encode(announcement)), std::nullopt);
+    }
+}
+
+TEST(Announcements, StatesHaveTheirPlacesAmongTheStatesAlone)
+{
+    Gateway::Announcement announcement = Publishing(3);
+    announcement.publishes[0].message = "a";
+    announcement.publishes[1].qos = "telemetry";
+    announcement.publishes[2].message = "b";
+    EXPECT_EQ(Announcements::StatesIn(announcement), 2u);
+    EXPECT_EQ(Announcements::StateIndexOf(announcement, "a"), 0u);
+    EXPECT_EQ(Announcements::StateIndexOf(announcement, "b"), 1u);
+    EXPECT_EQ(Announcements::StateIndexOf(announcement, "m"), std::nullopt);
 }
 
 TEST(Announcements, AConfigurationWithinTheBoundsIsAnnouncedAsItIs)

@@ -1,0 +1,137 @@
+#include "presence/BeatContents.h"
+
+#include <algorithm>
+
+#include "wire/Announcements.h"
+#include "wire/BeatFormat.h"
+
+namespace Rabit
+{
+namespace
+{
+
+// A smaller part of an announcement is mostly headers, unless it is the last one.
+constexpr std::size_t SmallestPart = 64;
+
+// How many entries of a size fit; takes their room.
+std::size_t Fit(std::size_t most, std::size_t size, std::size_t &room)
+{
+    const std::size_t count = std::min(most, room / size);
+    room -= count * size;
+    return count;
+}
+
+}  // namespace
+
+void BeatContents::Begin(std::vector<std::uint8_t> offers, std::size_t states)
+{
+    _offers = std::move(offers);
+    _digest = Announcements::DigestOf(_offers);
+    _states.assign(states, 0);
+    _answer.Begin(_offers.size());
+}
+
+std::optional<BeatContents::Duration> BeatContents::QuestionDue() const
+{
+    const std::optional<Duration> offers = _peers.Missing().NextDue();
+    const std::optional<Duration> states = _questions.DueSince();
+    return offers && states ? std::min(offers, states) : offers ? offers : states;
+}
+
+std::size_t BeatContents::SizeOfPart(Duration now, std::size_t room) const
+{
+    if (!_answer.Due() || *_answer.Due() > now || room <= BeatFormat::PartHeader)
+    {
+        return 0;
+    }
+    const std::size_t size = std::min(_answer.Left(), room - BeatFormat::PartHeader);
+    return size < std::min(SmallestPart, _answer.Left()) ? 0 : size;
+}
+
+std::size_t BeatContents::Size(Duration now) const
+{
+    const std::size_t wants =
+        std::min(BeatFormat::MostWants,
+                 _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
+    const std::size_t size = BeatFormat::Empty + wants * BeatFormat::Wanted(_questions.Longest()) +
+                             _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
+                             _delays.Due(now, BeatFormat::MostDelays) * BeatFormat::Delay +
+                             std::min(_states.size(), BeatFormat::MostStates) * BeatFormat::State;
+    const std::size_t part = SizeOfPart(now, BeatFormat::Largest);
+    return std::min(size + (part > 0 ? BeatFormat::PartHeader + (part + 3) / 4 * 4 : 0), BeatFormat::Largest);
+}
+
+void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
+{
+    std::size_t room = std::min(most, BeatFormat::Largest);
+    room -= std::min(room, BeatFormat::Empty);
+    AddWants(beat, now, room);
+    beat.echoes = _peers.NextEchoes(now, std::min(BeatFormat::MostEchoes, room / BeatFormat::Echo));
+    room -= beat.echoes.size() * BeatFormat::Echo;
+    beat.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
+    room -= beat.delays.size() * BeatFormat::Delay;
+    AddPart(beat, now, room);
+    AddStates(beat, room);
+}
+
+void BeatContents::AddWants(Gateway::Beat &beat, Duration now, std::size_t &room)
+{
+    const std::size_t longest = BeatFormat::Wanted(_questions.Longest());
+    const std::size_t count = Fit(BeatFormat::MostWants, longest, room);
+    for (const MissingOffers::Question &question : _peers.Missing().Take(now, count))
+    {
+        Gateway::Wanted &wanted = beat.wants.emplace_back();
+        wanted.node = _peers.Find(question.Node)->Tag;
+        wanted.offers = question.From;
+    }
+    for (StateQuestions::Question &question : _questions.Take(count - beat.wants.size()))
+    {
+        const PeerTable::Peer *peer = _peers.Find(question.Node);
+        if (peer == nullptr || peer->State == Gateway::NodeState::LOST)
+        {
+            continue;
+        }
+        auto wanted = std::find_if(beat.wants.begin(), beat.wants.end(),
+                                   [peer](const auto &other) { return other.node == peer->Tag; });
+        if (wanted == beat.wants.end())
+        {
+            wanted = beat.wants.insert(beat.wants.end(), Gateway::Wanted());
+            wanted->node = peer->Tag;
+            wanted->offers = BeatFormat::NotLacking;
+        }
+        wanted->states = std::move(question.States);
+    }
+    room += (count - beat.wants.size()) * longest;
+}
+
+void BeatContents::AddPart(Gateway::Beat &beat, Duration now, std::size_t &room)
+{
+    const std::size_t size = SizeOfPart(now, room / 4 * 4);
+    if (size == 0)
+    {
+        return;
+    }
+    const auto first = _offers.begin() + static_cast<std::ptrdiff_t>(_answer.From());
+    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    part.first = static_cast<std::uint16_t>(_answer.From());
+    part.of = static_cast<std::uint16_t>(_offers.size());
+    part.bytes.assign(first, first + static_cast<std::ptrdiff_t>(size));
+    room -= BeatFormat::PartHeader + (size + 3) / 4 * 4;
+    _answer.Said(size, now);
+}
+
+void BeatContents::AddStates(Gateway::Beat &beat, std::size_t &room)
+{
+    if (_nextState >= _states.size())
+    {
+        _nextState = 0;
+    }
+    const std::size_t count =
+        Fit(std::min(BeatFormat::MostStates, _states.size() - _nextState), BeatFormat::State, room);
+    const auto first = _states.begin() + static_cast<std::ptrdiff_t>(_nextState);
+    beat.first_state = static_cast<std::uint16_t>(_nextState);
+    beat.states.assign(first, first + static_cast<std::ptrdiff_t>(count));
+    _nextState += count;
+}
+
+}  // namespace Rabit

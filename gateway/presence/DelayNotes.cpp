@@ -1,0 +1,78 @@
+#include "presence/DelayNotes.h"
+
+#include <algorithm>
+
+#include "presence/TakeTurns.h"
+
+namespace Rabit
+{
+namespace
+{
+
+std::uint16_t Milliseconds(DelayNotes::Duration duration)
+{
+    const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(duration).count();
+    return static_cast<std::uint16_t>(std::clamp<std::int64_t>(whole, 0, 0xffff));
+}
+
+}  // namespace
+
+void DelayNotes::Note(Tag node, Duration delay, Duration arrival)
+{
+    if (_notes.size() >= MostNodes && _notes.count(node) == 0)
+    {
+        std::erase_if(_notes,
+                      [arrival](const auto &note) { return arrival - note.second.Arrival > LongestHeld; });
+        if (_notes.size() >= MostNodes)
+        {
+            return;
+        }
+    }
+    Entry &entry = _notes[node];
+    if (arrival < entry.Arrival)
+    {
+        return;
+    }
+    entry.Delay = delay;
+    entry.Arrival = arrival;
+    entry.IsNew = true;
+}
+
+bool DelayNotes::IsDue(const Entry &entry, Duration now)
+{
+    const bool matters = entry.Delay >= Small || entry.Told >= Small;
+    return entry.IsNew && now - entry.Arrival <= LongestHeld &&
+           (matters || !entry.ToldAt || now - *entry.ToldAt >= SmallPeriod);
+}
+
+std::size_t DelayNotes::Due(Duration now, std::size_t most) const
+{
+    const auto due = std::count_if(_notes.begin(), _notes.end(),
+                                   [now](const auto &note) { return IsDue(note.second, now); });
+    return std::min(static_cast<std::size_t>(due), most);
+}
+
+std::vector<Gateway::DelayReport> DelayNotes::Take(Duration now, std::size_t most)
+{
+    std::vector<Gateway::DelayReport> reports;
+    TakeTurns(_notes, _last, most,
+              [&](Tag node, Entry &entry)
+              {
+                  if (!IsDue(entry, now))
+                  {
+                      return false;
+                  }
+                  Gateway::DelayReport report;
+                  report.node = node;
+                  report.delay_ms = Milliseconds(entry.Delay);
+                  report.held_ms = Milliseconds(now - entry.Arrival);
+                  reports.push_back(report);
+                  entry.IsNew = false;
+                  entry.Told = entry.Delay;
+                  entry.ToldAt = now;
+                  return true;
+              });
+    return reports;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+// How late the newest datagram of each other node came against its quickest, for this node's beats to tell
+// them. News of a delay is told at once, that there is none now and then.
+//
+// A pure state machine; `now` never goes back. Bounded.
+class DelayNotes
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+    using Tag = std::uint32_t;
+
+    static constexpr Duration Small = std::chrono::milliseconds(20);
+    static constexpr Duration SmallPeriod = std::chrono::seconds(2);
+    // Older news is none.
+    static constexpr Duration LongestHeld = std::chrono::seconds(60);
+    static constexpr std::size_t MostNodes = 1000;
+
+    // A datagram of that node came at `arrival`, by this node's monotonic clock.
+    void Note(Tag node, Duration delay, Duration arrival);
+    // How many there are to be told, no more than `most`.
+    std::size_t Due(Duration now, std::size_t most) const;
+    // What is to be told now, in turns.
+    std::vector<Gateway::DelayReport> Take(Duration now, std::size_t most);
+
+private:
+    struct Entry
+    {
+        Duration Delay{0};
+        Duration Arrival{0};
+        bool IsNew = false;
+        Duration Told{0};  // the delay told last
+        std::optional<Duration> ToldAt;
+    };
+    static bool IsDue(const Entry &entry, Duration now);
+
+    std::map<Tag, Entry> _notes;
+    Tag _last = 0;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,240 @@
+#include "presence/BeatContents.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "BeatSamples.h"
+#include "air/AirCost.h"
+#include "names/NodeTag.h"
+#include "wire/GatewayTopics.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using Ns = std::chrono::nanoseconds;
+
+std::size_t BodyOf(const Gateway::Beat &beat)
+{
+    return GatewayTopics::TypeOf<Gateway::Beat>().SerializedSize(beat) - AirCost::Encapsulation;
+}
+
+TEST(Beat, AnEmptyOneTakesLessThan140BytesOnTheAir)
+{
+    EXPECT_EQ(BodyOf(Gateway::Beat()), BeatFormat::Empty);
+    EXPECT_LT(AirCost(1400).Of(BeatFormat::Empty), 140u);
+}
+
+TEST(Beat, TheLargestFitsTheSmallestDatagramThatSettingsAllow)
+{
+    EXPECT_LE(AirCost(TransportSettings::SmallestDatagram).Of(BeatFormat::Largest),
+              TransportSettings::SmallestDatagram + AirCost::IpAndUdp);
+}
+
+class BeatContentsTest : public ::testing::Test
+{
+protected:
+    void Begin(std::size_t offers, std::size_t states)
+    {
+        contents.Begin(std::vector<std::uint8_t>(offers, 7), states);
+        for (std::size_t i = 0; i < states; ++i)
+        {
+            contents.SetStateVersion(i, static_cast<std::uint32_t>(1000 + i));
+        }
+    }
+
+    // What it announced at its beginning has been said long ago.
+    void BeginLongAgo(std::size_t offers, std::size_t states)
+    {
+        Begin(offers, states);
+        while (contents.Answer().Due())
+        {
+            contents.Answer().Said(contents.Answer().Left(), 0s);
+        }
+    }
+
+    void Hear(const std::string &node, Ns at, std::uint32_t offers = 0)
+    {
+        HeardBeat heard;
+        heard.Node = node;
+        heard.Incarnation = 5;
+        heard.Beat = BeatAt(at);
+        heard.Beat.offers = offers;
+        heard.Arrival = at;
+        peers.OnBeat(heard);
+    }
+
+    Gateway::Beat Next(Ns now, std::size_t most = BeatFormat::Largest)
+    {
+        const std::size_t said = contents.Size(now);
+        Gateway::Beat beat;
+        contents.Fill(beat, now, most);
+        EXPECT_LE(BodyOf(beat), std::max(most, BeatFormat::Empty));
+        EXPECT_LE(BodyOf(beat), said);
+        return beat;
+    }
+
+    PeerTable peers{"ground", 7};
+    BeatContents contents{peers, [] { return 0; }};
+};
+
+TEST_F(BeatContentsTest, WhoHasNothingToSayHasAnEmptyBeat)
+{
+    BeginLongAgo(100, 0);
+    EXPECT_EQ(contents.Size(10s), BeatFormat::Empty);
+    EXPECT_EQ(BodyOf(Next(10s)), BeatFormat::Empty);
+}
+
+TEST_F(BeatContentsTest, TheFirstBeatOfALifeCarriesTheAnnouncement)
+{
+    Begin(100, 0);
+    const Gateway::Beat beat = Next(1s);
+    ASSERT_THAT(beat.parts, SizeIs(1));
+    EXPECT_THAT(beat.parts[0].bytes, SizeIs(100));
+    EXPECT_THAT(Next(2s).parts, IsEmpty());
+}
+
+TEST_F(BeatContentsTest, AnAnnouncementThatDoesNotFitGoesInParts)
+{
+    Begin(2000, 0);
+    OffersCollector collector;
+    auto outcome = OffersCollector::Outcome::Incomplete;
+    int beats = 0;
+    for (Ns now = 1s; outcome == OffersCollector::Outcome::Incomplete && beats < 10; now += 50ms, ++beats)
+    {
+        const Gateway::Beat beat = Next(now);
+        ASSERT_THAT(beat.parts, SizeIs(1));
+        outcome = collector.Add(contents.OffersDigest(), beat.parts[0]);
+    }
+    EXPECT_EQ(outcome, OffersCollector::Outcome::Complete);
+    EXPECT_EQ(beats, 3);
+}
+
+TEST_F(BeatContentsTest, TheLargestAnnouncementGetsThroughBeatsOfAnySize)
+{
+    Begin(Announcements::LargestEncoded, 512);
+    OffersCollector collector;
+    auto outcome = OffersCollector::Outcome::Incomplete;
+    Ns now = 1s;
+    for (int i = 0; outcome == OffersCollector::Outcome::Incomplete && i < 1000; ++i, now += 50ms)
+    {
+        const Gateway::Beat beat = Next(now, 20 + 37 * static_cast<std::size_t>(i % 20));
+        if (!beat.parts.empty())
+        {
+            outcome = collector.Add(contents.OffersDigest(), beat.parts[0]);
+        }
+    }
+    EXPECT_EQ(outcome, OffersCollector::Outcome::Complete);
+}
+
+TEST_F(BeatContentsTest, StatesAreToldInEachBeat)
+{
+    BeginLongAgo(100, 3);
+    EXPECT_THAT(Next(1s).states, ElementsAre(1000, 1001, 1002));
+    contents.SetStateVersion(1, 5);
+    EXPECT_THAT(Next(2s).states, ElementsAre(1000, 5, 1002));
+}
+
+TEST_F(BeatContentsTest, ManyStatesAreToldInTurns)
+{
+    BeginLongAgo(100, 150);
+    std::vector<std::uint32_t> told;
+    for (Ns now = 1s; now < 4s; now += 1s)
+    {
+        const Gateway::Beat beat = Next(now);
+        EXPECT_EQ(beat.first_state, told.size());
+        EXPECT_LE(beat.states.size(), BeatFormat::MostStates);
+        told.insert(told.end(), beat.states.begin(), beat.states.end());
+    }
+    ASSERT_EQ(told.size(), 150u);
+    EXPECT_EQ(told[149], 1149u);
+    EXPECT_EQ(Next(5s).first_state, 0);
+}
+
+TEST_F(BeatContentsTest, WhatABeatHasNoRoomForFollowsInTheNextOnes)
+{
+    BeginLongAgo(100, 10);
+    EXPECT_THAT(Next(1s, BeatFormat::Empty).states, IsEmpty());
+    EXPECT_THAT(Next(2s, BeatFormat::Empty + 24).states, SizeIs(6));
+    const Gateway::Beat beat = Next(3s, BeatFormat::Empty + 24);
+    EXPECT_EQ(beat.first_state, 6);
+    EXPECT_THAT(beat.states, SizeIs(4));
+}
+
+TEST_F(BeatContentsTest, WhoLacksSomethingAsksForItByItsTag)
+{
+    BeginLongAgo(100, 0);
+    Hear("uav1", 1s, 99);
+    EXPECT_EQ(contents.QuestionDue(), Ns(1s + MissingOffers::AskAfter));
+    contents.Questions().Set("uav1", {false, true}, true, 2s);
+    const Gateway::Beat beat = Next(2s);
+    ASSERT_THAT(beat.wants, SizeIs(1));
+    EXPECT_EQ(beat.wants[0].node, NodeTagOf("uav1", 5));
+    EXPECT_EQ(beat.wants[0].offers, 0);
+    EXPECT_THAT(beat.wants[0].states, ElementsAre(2));
+}
+
+TEST_F(BeatContentsTest, WhoLacksAStateAloneDoesNotAskForTheAnnouncement)
+{
+    BeginLongAgo(100, 0);
+    Hear("uav1", 1s, 99);
+    peers.Missing().LetGo("uav1");
+    contents.Questions().Set("uav1", {true}, true, 2s);
+    EXPECT_EQ(contents.QuestionDue(), Ns(2s));
+    EXPECT_EQ(Next(2s).wants.at(0).offers, BeatFormat::NotLacking);
+}
+
+TEST_F(BeatContentsTest, NothingIsAskedOfWhoIsLostOrUnknown)
+{
+    BeginLongAgo(100, 0);
+    Hear("uav1", 1s, 99);
+    peers.Advance(60s);
+    contents.Questions().Set("uav1", {true}, true, 60s);
+    contents.Questions().Set("uav2", {true}, true, 60s);
+    EXPECT_THAT(Next(60s).wants, IsEmpty());
+}
+
+TEST_F(BeatContentsTest, ACrowdIsAskedEchoedAndToldInTurnsAndTheBeatStaysSmall)
+{
+    BeginLongAgo(5000, 512);
+    for (int i = 0; i < 100; ++i)
+    {
+        const std::string node = std::string("n").append(std::to_string(i));
+        Hear(node, 1s, 99);
+        contents.Questions().Set(node, std::vector<bool>(512, true), true, 1s);
+        contents.Delays().Note(NodeTagOf(node, 5), 500ms, 1s);
+    }
+    contents.Answer().Asked(0, 0, 1s);
+    std::set<std::uint32_t> asked;
+    std::set<std::uint32_t> echoed;
+    std::set<std::uint32_t> told;
+    for (int i = 0; i < 60; ++i)
+    {
+        const Gateway::Beat beat = Next(1500ms + i * 50ms);
+        for (const auto &wanted : beat.wants)
+        {
+            asked.insert(wanted.node);
+        }
+        for (const auto &echo : beat.echoes)
+        {
+            echoed.insert(echo.node);
+        }
+        for (const auto &report : beat.delays)
+        {
+            told.insert(report.node);
+        }
+    }
+    EXPECT_EQ(asked.size(), 100u);
+    EXPECT_EQ(echoed.size(), 100u);
+    EXPECT_EQ(told.size(), 100u);
+}
+
+}  // namespace
+}  // namespace Rabit

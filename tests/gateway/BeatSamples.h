@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "gateway.idl.h"
+#include "wire/Announcements.h"
+#include "wire/BeatFormat.h"
+
+namespace Rabit
+{
+
+// A beat of a node whose source clock shows that, and which says that its next one is due half a second
+// later.
+inline Gateway::Beat BeatAt(std::chrono::nanoseconds source)
+{
+    Gateway::Beat beat;
+    beat.format = BeatFormat::Present;
+    beat.next_ms = 500;
+    beat.source_ns = source.count();
+    return beat;
+}
+
+// Has the beat mean that announcement, and carry it whole.
+inline void Announce(Gateway::Beat &beat, const Gateway::Announcement &announcement)
+{
+    const std::vector<std::uint8_t> bytes = Announcements::Encode(announcement);
+    beat.offers = Announcements::DigestOf(bytes);
+    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    part.of = static_cast<std::uint16_t>(bytes.size());
+    part.bytes = bytes;
+}
+
+}  // namespace Rabit

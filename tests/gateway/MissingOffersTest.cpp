@@ -1,0 +1,111 @@
+#include "presence/MissingOffers.h"
+
+#include <gtest/gtest.h>
+
+#include "wire/Announcements.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Ns = std::chrono::nanoseconds;
+
+std::string Names(const std::vector<MissingOffers::Question> &questions)
+{
+    std::string names;
+    for (const auto &question : questions)
+    {
+        names += question.Node;
+    }
+    return names;
+}
+
+TEST(MissingOffers, ItMayBeOnItsWaySoNobodyIsAskedAtOnce)
+{
+    MissingOffers missing;
+    EXPECT_EQ(missing.NextDue(), std::nullopt);
+    missing.Lacks("a", 1, 10s);
+    EXPECT_EQ(missing.NextDue(), Ns(10s + MissingOffers::AskAfter));
+    EXPECT_EQ(Names(missing.Take(10s, 8)), "");
+    EXPECT_EQ(Names(missing.Take(10s + MissingOffers::AskAfter, 8)), "a");
+}
+
+TEST(MissingOffers, WhoDoesNotAnswerIsAskedMoreAndMoreSeldom)
+{
+    MissingOffers missing;
+    missing.Lacks("a", 1, 0s);
+    std::vector<Ns> gaps;
+    for (Ns last = 0s; gaps.size() < 8;)
+    {
+        const Ns next = *missing.NextDue();
+        ASSERT_EQ(missing.Take(next, 8).size(), 1u);
+        missing.Lacks("a", 1, next);
+        gaps.push_back(next - last);
+        last = next;
+    }
+    EXPECT_EQ(gaps, (std::vector<Ns>{60ms, 120ms, 240ms, 480ms, 960ms, 1920ms, 2s, 2s}));
+}
+
+TEST(MissingOffers, WhoSaysThatItOffersSomethingElseIsNotAskedMoreOftenForIt)
+{
+    MissingOffers missing;
+    int asked = 0;
+    for (int i = 0; i < 1000; ++i)
+    {
+        missing.Lacks("a", static_cast<std::uint32_t>(i), i * 10ms);
+        asked += missing.Take(i * 10ms, 8).empty() ? 0 : 1;
+    }
+    EXPECT_LE(asked, 10);
+}
+
+TEST(MissingOffers, NobodyIsAskedWhoWasLetGo)
+{
+    MissingOffers missing;
+    missing.Lacks("a", 1, 0s);
+    missing.LetGo("a");
+    EXPECT_EQ(missing.NextDue(), std::nullopt);
+}
+
+TEST(MissingOffers, ThoseWhoAreAskedTakeTurns)
+{
+    MissingOffers missing;
+    for (const char *node : {"a", "b", "c"})
+    {
+        missing.Lacks(node, 1, 0s);
+    }
+    EXPECT_EQ(missing.Due(1s, 2), 2u);
+    EXPECT_EQ(Names(missing.Take(1s, 2)), "ab");
+    EXPECT_EQ(missing.Due(1s, 2), 1u);
+    EXPECT_EQ(Names(missing.Take(1s, 2)), "c");
+    EXPECT_EQ(Names(missing.Take(1s, 2)), "");
+}
+
+TEST(MissingOffers, AsksFromTheFirstByteOnThatIsLacking)
+{
+    const std::vector<std::uint8_t> whole(200, 7);
+    MissingOffers missing;
+    missing.Lacks("a", Announcements::DigestOf(whole), 0s);
+    Gateway::AnnouncementPart part;
+    part.of = 200;
+    part.bytes.assign(120, 7);
+    EXPECT_EQ(missing.Add("a", part), std::nullopt);
+    EXPECT_EQ(missing.Take(1s, 8).at(0).From, 120);
+    part.first = 120;
+    part.bytes.assign(80, 7);
+    EXPECT_EQ(missing.Add("a", part), whole);
+}
+
+TEST(MissingOffers, PartsOfWhatIsNotLackingAreNotCollected)
+{
+    MissingOffers missing;
+    Gateway::AnnouncementPart part;
+    part.of = 1;
+    part.bytes = {7};
+    EXPECT_EQ(missing.Add("a", part), std::nullopt);
+    EXPECT_EQ(missing.Wrong(), 0u);
+}
+
+}  // namespace
+}  // namespace Rabit
