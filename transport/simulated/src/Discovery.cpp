@@ -58,7 +58,7 @@ void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from,
         // One side may have lost the other, and with it what it was told, while the other noticed nothing.
         if (datagram.First < peer.ConfirmedVersion)
         {
-            HearEndpointsAck(*me, from, peer, datagram.First, true);
+            HearEndpointsAck(*me, peer, datagram.First, true);
         }
         if (datagram.First == 0)
         {
@@ -75,7 +75,7 @@ void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from,
     TellPeerEvent(me, peer, PeerEvent::Kind::Appeared);
     me->Announcements.Owe();
     AwaitAnnouncement(*me);
-    SendEndpoints(*me, from, peer);
+    OfferEndpoints(*me);
 }
 
 void NetworkCore::TellPeerEvent(const ParticipantPtr &me, const Peer &peer, PeerEvent::Kind what)

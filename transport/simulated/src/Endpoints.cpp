@@ -26,12 +26,41 @@ void NetworkCore::EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, 
     SendTogether(me, std::move(letters), IsMulticastForData(me.Settings));
 }
 
-void NetworkCore::SendEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer)
+// Somebody lacks endpoints.
+void NetworkCore::OfferEndpoints(ParticipantState &me)
 {
-    if (peer.ConfirmedVersion != me.Version)
+    if (me.EndpointRoundOwed)
     {
-        Send(me, to, MakeEndpoints(me, to, peer));
+        return;
     }
+    if (!me.EndpointRoundAt || _now >= *me.EndpointRoundAt + me.EndpointRoundGap)
+    {
+        SendEndpoints(me);
+        return;
+    }
+    me.EndpointRoundOwed = true;
+    Later(*me.EndpointRoundAt + me.EndpointRoundGap - _now,
+          {Event::Kind::EndpointRoundTimer, me.Id, 0, 0, {}});
+}
+
+// A round, to all who lack some.
+void NetworkCore::SendEndpoints(ParticipantState &me)
+{
+    const bool isRested =
+        !me.EndpointRoundAt || _now >= *me.EndpointRoundAt + 4 * _timings.LongestEndpointRound;
+    me.EndpointRoundGap =
+        isRested ? _timings.EndpointRound : std::min(2 * me.EndpointRoundGap, _timings.LongestEndpointRound);
+    me.EndpointRoundAt = _now;
+    me.EndpointRoundOwed = false;
+    Letters letters;
+    for (auto &[id, peer] : me.Peers)
+    {
+        if (peer.SentVersion != me.Version)
+        {
+            letters.push_back({id, MakeEndpoints(me, id, peer)});
+        }
+    }
+    SendTogether(me, std::move(letters), IsMulticastForData(me.Settings));
 }
 
 // What the peer has not been sent yet.
@@ -75,15 +104,14 @@ void NetworkCore::RepairEndpoints(ParticipantState &me, ParticipantId to, std::u
     }
 }
 
-void NetworkCore::HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer,
-                                   std::uint64_t version, bool asked)
+void NetworkCore::HearEndpointsAck(ParticipantState &me, Peer &peer, std::uint64_t version, bool asked)
 {
-    if (asked)
+    if (asked && version != me.Version)
     {
         // What it lacks was lost, unless it is still on its way.
         peer.ConfirmedVersion = version;
         peer.SentVersion = version;
-        SendEndpoints(me, from, peer);
+        OfferEndpoints(me);
     }
     peer.ConfirmedVersion = std::max(peer.ConfirmedVersion, version);
 }

@@ -93,7 +93,7 @@ void NetworkCore::MatchReader(const ParticipantPtr &me, WriterState &writer, con
         {
             Send(*me, remote.Id.Participant, MakeData(writer, remote.Id, proxy->second, sample));
         }
-        KeepHeartbeat(writer);
+        AwaitHeartbeat(writer, _timings.HeartbeatPeriod);
     }
 }
 

@@ -169,8 +169,12 @@ void NetworkCore::Handle(Event event)
         case Event::Kind::EndpointRepairTimer:
             RepairEndpoints(*at, event.Other, event.Birth);
             break;
+        case Event::Kind::EndpointRoundTimer:
+            SendEndpoints(*at);
+            break;
         case Event::Kind::HeartbeatTimer:
-            if (const auto writer = at->Writers.find(event.Content.Writer); writer != at->Writers.end())
+            if (const auto writer = at->Writers.find(event.Content.Writer);
+                writer != at->Writers.end() && writer->second->HeartbeatTimer == event.Birth)
             {
                 SendHeartbeats(*at, *writer->second);
             }
@@ -204,7 +208,7 @@ void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Dat
         case Datagram::Kind::EndpointsAck:
             if (known != at->Peers.end())
             {
-                HearEndpointsAck(*at, from, known->second, datagram.First, datagram.Last != 0);
+                HearEndpointsAck(*at, known->second, datagram.First, datagram.Last != 0);
             }
             return;
         case Datagram::Kind::EndpointsQuery:

@@ -80,13 +80,14 @@ private:
             AnnouncementTimer,
             LeaseTimer,
             EndpointRepairTimer,
+            EndpointRoundTimer,
             HeartbeatTimer,
             Passage  // of what is on the air of the medium number At
         };
         Kind What = Kind::Arrival;
         ParticipantId At = 0;     // where it happens
         ParticipantId Other = 0;  // the sender of what arrives, or the peer that the timer is about
-        std::uint64_t Birth = 0;  // of that peer's entry; the number of an announcement timer
+        std::uint64_t Birth = 0;  // of that peer's entry; the number of another timer
         Datagram Content;         // of an arrival; the heartbeat timer uses its Writer
     };
     using Calls = std::vector<std::function<void()>>;
@@ -120,12 +121,12 @@ private:
 
     // Endpoints.cpp
     void EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed);
-    void SendEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
+    void OfferEndpoints(ParticipantState &me);
+    void SendEndpoints(ParticipantState &me);
     Datagram MakeEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
     void RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth);
     void HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
-    void HearEndpointsAck(const ParticipantState &me, ParticipantId from, Peer &peer, std::uint64_t version,
-                          bool asked);
+    void HearEndpointsAck(ParticipantState &me, Peer &peer, std::uint64_t version, bool asked);
     void AnswerEndpoints(const ParticipantState &me, ParticipantId from, const Peer &peer, bool asked);
 
     // Matching.cpp
@@ -147,7 +148,8 @@ private:
                              const SamplePtr &sample);
     static std::uint32_t *MissingOf(const ParticipantState &me, const Datagram &datagram);
     static void NoteFragments(const ParticipantState &me, const Datagram &datagram, std::uint32_t lost);
-    void KeepHeartbeat(WriterState &writer);
+    static bool WaitsForHeartbeat(const WriterState &writer);
+    void AwaitHeartbeat(WriterState &writer, Time delay);
     void SendHeartbeats(const ParticipantState &me, WriterState &writer);
     void HearAcknowledgement(const ParticipantState &me, WriterState &writer, const Datagram &datagram);
 

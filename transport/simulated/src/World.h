@@ -10,6 +10,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -123,7 +124,11 @@ struct WriterState
     std::deque<SamplePtr> History;
     std::deque<SamplePtr> Disposals;  // that some reader may not know yet
     std::map<EndpointId, ReaderProxy> Readers;
-    bool HeartbeatPending = false;
+    // When the next heartbeat goes, if anything waits for it; the distance to the one after it; and the
+    // number of its timer.
+    std::optional<std::chrono::nanoseconds> HeartbeatAt;
+    std::chrono::nanoseconds HeartbeatGap{0};
+    std::uint64_t HeartbeatTimer = 0;
 };
 
 // How a reader sees a matched writer.
@@ -191,6 +196,11 @@ struct ParticipantState
     std::uint32_t LastEntity = 0;
     std::uint64_t Version = 1;  // of Endpoints
     std::shared_ptr<const EndpointList> Endpoints = std::make_shared<EndpointList>();
+    // Of endpoints to who lacks them: when the last went, the distance to the next, and whether it is owed.
+    std::optional<std::chrono::nanoseconds> EndpointRoundAt;
+    std::chrono::nanoseconds EndpointRoundGap{0};
+    bool EndpointRoundOwed = false;
+
     AnnouncementRounds Announcements;
     std::uint64_t AnnouncementTimer = 0;  // the number of the one that counts
 

@@ -107,7 +107,7 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     SendTogether(participant, std::move(letters),
                  node == nullptr && IsMulticastForData(participant.Settings));
     LetGo(writer);
-    KeepHeartbeat(writer);
+    AwaitHeartbeat(writer, _timings.HeartbeatPeriod);
     return true;
 }
 
@@ -173,22 +173,34 @@ void NetworkCore::NoteFragments(const ParticipantState &me, const Datagram &data
     }
 }
 
-void NetworkCore::KeepHeartbeat(WriterState &writer)
+bool NetworkCore::WaitsForHeartbeat(const WriterState &writer)
 {
-    const auto waits = [&](const auto &entry)
-    { return entry.second.Reliable && entry.second.Acknowledged < writer.LastSequence; };
-    if (!writer.HeartbeatPending && std::any_of(writer.Readers.begin(), writer.Readers.end(), waits))
+    return std::any_of(writer.Readers.begin(), writer.Readers.end(),
+                       [&](const auto &entry)
+                       { return entry.second.Reliable && entry.second.Acknowledged < writer.LastSequence; });
+}
+
+// The next one goes after this delay, or earlier if it was to do so.
+void NetworkCore::AwaitHeartbeat(WriterState &writer, Time delay)
+{
+    if (!WaitsForHeartbeat(writer))
     {
-        writer.HeartbeatPending = true;
-        Event event{Event::Kind::HeartbeatTimer, writer.Info->Id.Participant, 0, 0, {}};
-        event.Content.Writer = writer.Info->Id;
-        Later(_timings.HeartbeatPeriod, std::move(event));
+        return;
     }
+    writer.HeartbeatGap = delay;
+    if (writer.HeartbeatAt && *writer.HeartbeatAt <= _now + delay)
+    {
+        return;
+    }
+    writer.HeartbeatAt = _now + delay;
+    Event event{Event::Kind::HeartbeatTimer, writer.Info->Id.Participant, 0, ++writer.HeartbeatTimer, {}};
+    event.Content.Writer = writer.Info->Id;
+    Later(delay, std::move(event));
 }
 
 void NetworkCore::SendHeartbeats(const ParticipantState &me, WriterState &writer)
 {
-    writer.HeartbeatPending = false;
+    writer.HeartbeatAt.reset();
     Letters letters;
     for (const auto &[id, reader] : writer.Readers)
     {
@@ -204,7 +216,7 @@ void NetworkCore::SendHeartbeats(const ParticipantState &me, WriterState &writer
         }
     }
     SendTogether(me, std::move(letters), IsMulticastForData(me.Settings));
-    KeepHeartbeat(writer);
+    AwaitHeartbeat(writer, std::min(2 * writer.HeartbeatGap, _timings.LongestHeartbeatPeriod));
 }
 
 void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &writer,
@@ -216,6 +228,7 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
         return;
     }
     ReaderProxy &reader = found->second;
+    const bool isNews = datagram.First - 1 > reader.Acknowledged || !datagram.Sequences.empty();
     reader.Acknowledged = std::max(reader.Acknowledged, datagram.First - 1);
     reader.Missing.erase(reader.Missing.begin(), reader.Missing.upper_bound(reader.Acknowledged));
     for (const std::uint64_t sequence : datagram.Sequences)
@@ -231,6 +244,10 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
         }
     }
     LetGo(writer);
+    if (isNews)
+    {
+        AwaitHeartbeat(writer, _timings.HeartbeatPeriod);
+    }
 }
 
 }  // namespace Rabit::Simulated

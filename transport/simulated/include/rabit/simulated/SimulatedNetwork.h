@@ -37,8 +37,10 @@ struct SimulatedFaults
 // The times of the simulated protocol; the defaults are those of our Fast DDS backend.
 struct SimulatedTimings
 {
-    // A reliable writer asks this often, while something is not acknowledged, what its readers miss.
+    // A reliable writer asks after this time, while something is not acknowledged, what its readers miss;
+    // then at distances that double up to the longest, and begin anew with each write and acknowledgement.
     std::chrono::nanoseconds HeartbeatPeriod = std::chrono::milliseconds(20);
+    std::chrono::nanoseconds LongestHeartbeatPeriod = std::chrono::milliseconds(1000);
     // A reader answers that, and a writer repairs, after this time.
     std::chrono::nanoseconds ResponseDelay = std::chrono::milliseconds(1);
     // From the arrival of an announcement to the peer being known.
@@ -47,6 +49,10 @@ struct SimulatedTimings
     // double up to the longest, and told what it lacks.
     std::chrono::nanoseconds DiscoveryRepair = std::chrono::milliseconds(100);
     std::chrono::nanoseconds LongestDiscoveryRepair = std::chrono::milliseconds(1000);
+    // Who lacks endpoints gets them in a round, with all others who do. Rounds follow each other at distances
+    // that double, and begin anew after a rest of four times the longest.
+    std::chrono::nanoseconds EndpointRound = std::chrono::milliseconds(200);
+    std::chrono::nanoseconds LongestEndpointRound = std::chrono::milliseconds(1600);
 };
 
 // A half-duplex medium that nodes share, a radio: one datagram at a time is on the air, and the nodes that
