@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "DeliveryCheck.h"
 #include "RtpsBytes.h"
 
@@ -77,6 +79,86 @@ TEST(OutgoingMessage, SamplesAndTheirRepairAreToldFromDiscovery)
     EXPECT_TRUE(ReadOutgoing(Message(Gap, GapBody(1, 2))).HasSamples);
     EXPECT_FALSE(ReadOutgoing(WriterMessage()).HasSamples);
     EXPECT_FALSE(ReadOutgoing(Message(Heartbeat, HeartbeatBody(1, 2, 3, Publications))).HasSamples);
+}
+
+TEST(OutgoingMessage, AHeartbeatAloneIsToldByItsWriterItsNumbersAndWhomItIsFor)
+{
+    const auto toAll = ReadOutgoing(Message(Heartbeat, HeartbeatBody(2, 5, 7))).Heartbeat;
+    ASSERT_TRUE(toAll.has_value());
+    EXPECT_EQ(toAll->Writer, UserWriter);
+    EXPECT_EQ(toAll->First, 2);
+    EXPECT_EQ(toAll->Last, 5);
+    EXPECT_EQ(toAll->Peer, GuidPrefix());
+    const Bytes toOne = Join({Header(), To(Other), Submessage(Heartbeat, HeartbeatBody(2, 5, 7))});
+    ASSERT_TRUE(ReadOutgoing(toOne).Heartbeat.has_value());
+    EXPECT_EQ(ReadOutgoing(toOne).Heartbeat->Peer, Other);
+}
+
+TEST(OutgoingMessage, AHeartbeatBesidesSomethingElseIsNotHeldWithIt)
+{
+    for (const Bytes &other : {Submessage(Data, DataBody(1), HasData), Submessage(Gap, GapBody(1, 2)),
+                               Submessage(Heartbeat, HeartbeatBody(2, 5, 7))})
+    {
+        const Bytes both = Join({Header(), other, Submessage(Heartbeat, HeartbeatBody(2, 5, 7))});
+        EXPECT_FALSE(ReadOutgoing(both).Heartbeat.has_value());
+    }
+}
+
+// What is said of an endpoint, for one reader of one peer.
+Bytes NewsFor(const GuidPrefix &peer, Rabit::FastDds::EntityId reader, std::int64_t number)
+{
+    Bytes body = DataBody(number, Bytes(40), Rabit::FastDds::PublicationsWriter);
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        body[4 + i] = static_cast<std::uint8_t>(reader >> (24 - 8 * i));
+    }
+    return Join({Header(), To(peer), Submessage(Data, body, HasData)});
+}
+
+TEST(OutgoingMessage, NewsOfEndpointsAreEqualWhomeverTheyAreFor)
+{
+    const auto first = ReadOutgoing(NewsFor(Sender, 0x000003c7, 1)).Endpoints;
+    ASSERT_TRUE(first.has_value());
+    EXPECT_EQ(first->Peer, Sender);
+    const auto second = ReadOutgoing(NewsFor(Other, 0, 1)).Endpoints;
+    ASSERT_TRUE(second.has_value());
+    EXPECT_EQ(second->Peer, Other);
+    EXPECT_EQ(second->Content, first->Content);
+    EXPECT_NE(ReadOutgoing(NewsFor(Sender, 0x000003c7, 2)).Endpoints->Content, first->Content);
+    EXPECT_FALSE(ReadOutgoing(Message(Data, DataBody(1), HasData)).Endpoints.has_value());
+    EXPECT_FALSE(ReadOutgoing(ParticipantMessage()).Endpoints.has_value());
+}
+
+TEST(OutgoingMessage, NewsForOneBecomeNewsForAll)
+{
+    const Bytes all = Rabit::FastDds::ForAll(NewsFor(Other, 0x000003c7, 1));
+    const auto news = ReadOutgoing(all).Endpoints;
+    ASSERT_TRUE(news.has_value());
+    EXPECT_EQ(news->Peer, GuidPrefix());
+    EXPECT_EQ(news->Content, ReadOutgoing(NewsFor(Other, 0x000003c7, 1)).Endpoints->Content);
+    Bytes body = DataBody(1, Bytes(40), Rabit::FastDds::PublicationsWriter);
+    std::fill_n(body.begin() + 4, 4, std::uint8_t{0});
+    EXPECT_EQ(all, Join({Header(), Submessage(Data, body, HasData)}));
+}
+
+TEST(OutgoingMessage, AcknowledgementsSayWhatTheyHaveAndWhetherTheyAsk)
+{
+    const Bytes message =
+        Join({Header(), To(Other), Submessage(AckNack, AckNackBody(4, 0, 1), 1 | 2),
+              Submessage(AckNack, AckNackBody(4, 2, 1)), Submessage(AckNack, AckNackBody(0, 0, 1))});
+    const auto found = Rabit::FastDds::ReadAcknowledgements(message);
+    ASSERT_EQ(found.size(), 3u);
+    for (const auto &said : found)
+    {
+        EXPECT_EQ(said.Peer, Sender);
+        EXPECT_EQ(said.Reader, UserReader);
+        EXPECT_EQ(said.Writer, UserWriter);
+    }
+    EXPECT_EQ(found[0].Base, 4);
+    EXPECT_FALSE(found[0].Asks);
+    EXPECT_TRUE(found[1].Asks);
+    EXPECT_EQ(found[2].Base, 0);
+    EXPECT_TRUE(found[2].Asks);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "DeliveryCheck.h"
 #include "RtpsBytes.h"
 
 namespace
@@ -41,6 +42,13 @@ protected:
 TEST_F(RequestPaceTest, RepetitionsFollowEachOtherAtDoublingDistances)
 {
     EXPECT_EQ(Ask(0, 10000, 10, First), (std::vector{0, 50, 150, 350, 750, 1550, 3150, 5150, 7150, 9150}));
+}
+
+TEST_F(RequestPaceTest, DiscoveryIsAskedOnlyIfItDoesNotSpeakByItself)
+{
+    const FirstRequest publications{Sender, 0x000003c7, Rabit::FastDds::PublicationsWriter};
+    EXPECT_EQ(Ask(0, 1000, 70, publications), (std::vector{140, 210, 350, 560, 980}));
+    EXPECT_EQ(Ask(10000, 10100, 70, publications), std::vector<int>());
 }
 
 TEST_F(RequestPaceTest, OneDoesNotHoldUpAnother)

@@ -9,11 +9,14 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "AnnouncementPace.h"
+#include "HeartbeatPace.h"
 #include "OutgoingMessage.h"
+#include "RepairPace.h"
 #include "RequestPace.h"
 
 namespace Rabit::FastDds
@@ -58,7 +61,9 @@ public:
           _guard(descriptor.Chosen().Mode),
           _announcements(descriptor.Chosen().AnnouncementPeriod)
     {
+        _descriptor.Chosen().Owed->Set([this] { SendOwed(); });
     }
+    ~GuardedUdp() override { _descriptor.Chosen().Owed->Set({}); }
 
     TransportDescriptorInterface *get_configuration() override { return &_descriptor; }
 
@@ -85,15 +90,27 @@ public:
         {
             return true;
         }
+        if (message.Endpoints && _descriptor.Chosen().IsInGroup(message.Endpoints->Peer) && !_groups.empty())
+        {
+            // The vendor gives it to each of its sockets.
+            return socket != 0 || SendToAll({buffer, left}, message.Endpoints->Content, now, timeout);
+        }
         _chosen.clear();
         for (; *begin != *end; ++*begin)
         {
             const rtps::Locator_t &destination = **begin;
             const std::uint64_t number = std::uint64_t{socket} << 32 | NumberOf(destination);
-            if (!message.Announcement ||
-                _announcements.MayGo(number, *message.Announcement, _guard.AnnouncementsHeard(), now))
+            const bool held =
+                (message.Announcement &&
+                 !_announcements.MayGo(number, *message.Announcement, _guard.AnnouncementsHeard(), now)) ||
+                (message.Heartbeat && !_heartbeats.MayGo(number, *message.Heartbeat, now));
+            if (!held)
             {
                 _chosen.push_back(destination);
+            }
+            if (message.Announcement && rtps::IPLocator::isMulticast(destination))
+            {
+                _groups.emplace(sender, destination);
             }
         }
         if (message.Announcement)
@@ -103,16 +120,7 @@ public:
                 _descriptor.Chosen().AnnounceAt(*due);
             }
         }
-        const auto leaves = [&](const rtps::Locator_t &destination) {
-            return _descriptor.Chosen().SocketsSendAll ||
-                   rtps::IPLocator::isMulticast(destination) == (socket != 0);
-        };
-        const auto datagrams =
-            static_cast<std::size_t>(std::count_if(_chosen.begin(), _chosen.end(), leaves));
-        _descriptor.Chosen().OnSent(message.HasSamples, datagrams, datagrams * left);
-        ListIterator first(_chosen.cbegin());
-        ListIterator last(_chosen.cend());
-        return sender->send(buffer, left, &first, &last, timeout);
+        return SendChosen(sender, {buffer, left}, message.HasSamples, timeout);
     }
 
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
@@ -120,7 +128,9 @@ public:
     {
         // The vendor's receive buffer, which is not used again before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
-        const auto handOn = [&](std::span<const std::uint8_t> admitted) {
+        const auto handOn = [&](std::span<const std::uint8_t> admitted)
+        {
+            NoteAcknowledgements(admitted);
             next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()), local, remote);
         };
         if (!_guard.Admit(datagram, std::chrono::steady_clock::now(), std::cref(handOn)))
@@ -134,6 +144,82 @@ public:
     }
 
 private:
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    // To _chosen, with _sending held.
+    bool SendChosen(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram, bool samples,
+                    const TimePoint &timeout)
+    {
+        const bool isFirst = NumberOf(sender) == 0;
+        const auto leaves = [&](const rtps::Locator_t &destination) {
+            return _descriptor.Chosen().SocketsSendAll ||
+                   rtps::IPLocator::isMulticast(destination) != isFirst;
+        };
+        const auto datagrams =
+            static_cast<std::size_t>(std::count_if(_chosen.begin(), _chosen.end(), leaves));
+        _descriptor.Chosen().OnSent(samples, datagrams, datagrams * datagram.size());
+        ListIterator first(_chosen.cbegin());
+        ListIterator last(_chosen.cend());
+        return sender->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), &first, &last,
+                            timeout);
+    }
+
+    // What somebody lacks of our endpoints, with _sending held.
+    bool SendToAll(std::span<const std::uint8_t> datagram, std::uint64_t content, TimePoint now,
+                   const TimePoint &timeout)
+    {
+        auto forAll = ForAll(datagram);
+        if (_repairs.MayGo(content, now))
+        {
+            return SendToGroups(forAll, timeout);
+        }
+        _owed.insert_or_assign(content, std::move(forAll));
+        _descriptor.Chosen().SendOwedAt(*_repairs.Due());
+        return true;
+    }
+    bool SendToGroups(std::span<const std::uint8_t> datagram, const TimePoint &timeout)
+    {
+        bool sent = true;
+        for (const auto &[sender, group] : _groups)
+        {
+            _chosen.assign(1, group);
+            sent = SendChosen(sender, datagram, false, timeout) && sent;
+        }
+        return sent;
+    }
+    void SendOwed()
+    {
+        constexpr std::chrono::milliseconds LongestWait{100};
+        const std::lock_guard lock(_sending);
+        const auto now = std::chrono::steady_clock::now();
+        for (const std::uint64_t content : _repairs.TakeDue(now))
+        {
+            if (const auto owed = _owed.extract(content); !owed.empty())
+            {
+                SendToGroups(owed.mapped(), now + LongestWait);
+            }
+        }
+        if (const auto due = _repairs.Due())
+        {
+            _descriptor.Chosen().SendOwedAt(*due);
+        }
+    }
+
+    void NoteAcknowledgements(std::span<const std::uint8_t> datagram)
+    {
+        const auto found = ReadAcknowledgements(datagram);
+        if (found.empty())
+        {
+            return;
+        }
+        const auto now = std::chrono::steady_clock::now();
+        const std::lock_guard lock(_sending);
+        for (const Acknowledgement &acknowledgement : found)
+        {
+            _heartbeats.OnAcknowledgement(acknowledgement, now);
+        }
+    }
+
     // The vendor's sockets know those destinations alone that a writer means to use when it matches, and end
     // the process at an assertion when it then uses another one: the reader's own address, where several
     // share a group.
@@ -158,6 +244,11 @@ private:
     std::mutex _sending;  // guards what follows
     AnnouncementPace _announcements;
     RequestPace _requests;
+    HeartbeatPace _heartbeats;
+    RepairPace _repairs;
+    std::map<std::uint64_t, std::vector<std::uint8_t>> _owed;  // content -> what goes to the groups
+    // Where announcements go to all.
+    std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _groups;
     std::map<rtps::Locator_t, std::uint32_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;

@@ -2,7 +2,8 @@
 // send, so that nodes with different settings understand each other; what the vendor's parser must not see is
 // kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h);
 // multicast groups that peers name are not sent to where multicast may not pass; the vendor's statistics are
-// not sent; and what it repeats in haste goes at a measured pace (AnnouncementPace.h, RequestPace.h).
+// not sent; and what it repeats in haste, or says to each by itself, goes at a measured pace
+// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, RepairPace.h).
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -13,6 +14,7 @@
 #include <functional>
 #include <memory>
 
+#include "DeferredCall.h"
 #include "RtpsGuard.h"
 
 namespace Rabit::FastDds
@@ -44,6 +46,13 @@ public:
         // AnnounceAt was called last, on any thread with the vendor's locks held.
         std::chrono::milliseconds AnnouncementPeriod{0};
         std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt;
+        // Whether a participant listens to the group of discovery. Called, on any thread, with the vendor's
+        // locks held.
+        std::function<bool(const GuidPrefix &)> IsInGroup;
+        // Called, on any thread with the vendor's locks held: Owed is to be run at that time, the last that
+        // was named, on a thread without locks.
+        std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
+        std::shared_ptr<DeferredCall> Owed;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

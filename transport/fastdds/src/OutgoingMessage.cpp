@@ -17,6 +17,10 @@ constexpr std::uint8_t LittleEndian = 0x01;
 constexpr std::uint8_t Final = 0x02;      // of an ACKNACK: no answer is wanted
 constexpr std::uint8_t InlineQos = 0x02;  // of a DATA: as one that disposes has
 constexpr std::uint8_t HasData = 0x04;
+// RTPS 2.3, 9.4.1 and 9.4.5
+constexpr std::size_t PrefixAt = 8;
+constexpr std::size_t ReaderInData = 4;
+constexpr std::size_t EntitySize = 4;
 
 // Of all but samples: the reader comes first.
 EntityId WriterOf(RtpsReader body)
@@ -34,6 +38,48 @@ bool Asks(RtpsReader body, std::uint8_t flags, FirstRequest &request)
     return body.IsGood() && (flags & Final) == 0 && base <= 1 && bits == 0;
 }
 
+struct Part
+{
+    SubmessageKind Kind = SubmessageKind::Pad;
+    std::uint8_t Flags = 0;
+    bool LittleEndian = false;
+    std::span<const std::uint8_t> Whole;
+    std::span<const std::uint8_t> Bytes() const { return Whole.subspan(SubmessageHeaderSize); }
+};
+
+// Calls visit(part) with each submessage.
+template <typename Visit>
+void VisitAll(std::span<const std::uint8_t> datagram, const Visit &visit)
+{
+    auto rest = datagram.subspan(std::min(RtpsHeaderSize, datagram.size()));
+    while (rest.size() >= SubmessageHeaderSize)
+    {
+        Part part{.Kind = static_cast<SubmessageKind>(rest[0]), .Flags = rest[1], .Whole = {}};
+        part.LittleEndian = (part.Flags & LittleEndian) != 0;
+        const std::size_t length = RtpsReader(rest.subspan(2, 2), part.LittleEndian).U16();
+        const bool toTheEnd =
+            length == 0 && part.Kind != SubmessageKind::Pad && part.Kind != SubmessageKind::InfoTimestamp;
+        part.Whole = toTheEnd ? rest : rest.first(std::min(SubmessageHeaderSize + length, rest.size()));
+        visit(part);
+        rest = rest.subspan(part.Whole.size());
+    }
+}
+
+GuidPrefix PrefixIn(std::span<const std::uint8_t> bytes)
+{
+    GuidPrefix prefix{};
+    if (bytes.size() >= prefix.size())
+    {
+        std::copy_n(bytes.begin(), prefix.size(), prefix.begin());
+    }
+    return prefix;
+}
+
+std::uint64_t DigestOf(std::span<const std::uint8_t> bytes)
+{
+    return std::hash<std::string_view>()({reinterpret_cast<const char *>(bytes.data()), bytes.size()});
+}
+
 }  // namespace
 
 OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
@@ -41,52 +87,53 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     OutgoingMessage message;
     int announcements = 0;
     int requests = 0;
+    int heartbeats = 0;
+    int endpoints = 0;
     int others = 0;
+    GuidPrefix peer{};
     FirstRequest request;
+    LoneHeartbeat heartbeat;
     std::uint64_t digest = 0;
-    RtpsReader rest(datagram, true);
-    rest.Skip(RtpsHeaderSize);
-    while (rest.Left() >= SubmessageHeaderSize)
+    const auto visit = [&](const Part &part)
     {
-        const auto head = rest.Bytes(2);
-        const std::uint8_t flags = head[1];
-        const bool littleEndian = (flags & LittleEndian) != 0;
-        const auto lengthBytes = rest.Bytes(2);
-        const std::size_t length = RtpsReader(lengthBytes, littleEndian).U16();
-        const auto kind = static_cast<SubmessageKind>(head[0]);
-        const bool toTheEnd =
-            length == 0 && kind != SubmessageKind::Pad && kind != SubmessageKind::InfoTimestamp;
-        const auto bytes = rest.Bytes(toTheEnd ? rest.Left() : length);
-        RtpsReader body(bytes, littleEndian);
-        switch (kind)
+        RtpsReader body(part.Bytes(), part.LittleEndian);
+        switch (part.Kind)
         {
             case SubmessageKind::Pad:
             case SubmessageKind::InfoTimestamp:
                 break;
             case SubmessageKind::InfoDestination:
-                if (bytes.size() >= request.Peer.size())
-                {
-                    std::copy_n(bytes.begin(), request.Peer.size(), request.Peer.begin());
-                }
+                peer = PrefixIn(part.Bytes());
                 break;
             case SubmessageKind::AckNack:
                 message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
-                (Asks(body, flags, request) ? requests : others) += 1;
+                (Asks(body, part.Flags, request) ? requests : others) += 1;
                 break;
             case SubmessageKind::Data:
             case SubmessageKind::DataFrag:
             {
-                body.Skip(8);  // flags, where the inline QoS is, the reader
+                body.Skip(ReaderInData + EntitySize);
                 const EntityId writer = body.Entity();
                 message.HasSamples = message.HasSamples || !IsBuiltin(writer);
-                const bool announces = kind == SubmessageKind::Data && writer == ParticipantWriter &&
-                                       (flags & HasData) != 0 && (flags & InlineQos) == 0;
-                (announces ? announcements : others) += 1;
-                digest = std::hash<std::string_view>()(
-                    {reinterpret_cast<const char *>(bytes.data()), bytes.size()});
+                const bool whole = part.Kind == SubmessageKind::Data;
+                const bool announces = whole && writer == ParticipantWriter && (part.Flags & HasData) != 0 &&
+                                       (part.Flags & InlineQos) == 0;
+                const bool tells = whole && (writer == PublicationsWriter || writer == SubscriptionsWriter);
+                (announces ? announcements : tells ? endpoints : others) += 1;
+                // Whatever reader it is for.
+                digest =
+                    31 * digest +
+                    DigestOf(part.Bytes().subspan(std::min(ReaderInData + EntitySize, part.Bytes().size())));
                 break;
             }
             case SubmessageKind::Heartbeat:
+                message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
+                body.Skip(EntitySize);  // the reader
+                heartbeat.Writer = body.Entity();
+                heartbeat.First = body.Sequence();
+                heartbeat.Last = body.Sequence();
+                ++heartbeats;
+                break;
             case SubmessageKind::HeartbeatFrag:
             case SubmessageKind::Gap:
             case SubmessageKind::NackFrag:
@@ -97,16 +144,78 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 ++others;
                 break;
         }
-    }
-    if (announcements == 1 && requests + others == 0)
+    };
+    VisitAll(datagram, visit);
+    const int all = announcements + requests + heartbeats + endpoints + others;
+    if (announcements == 1 && all == 1)
     {
         message.Announcement = digest;
     }
-    if (requests == 1 && announcements + others == 0)
+    if (requests == 1 && all == 1)
     {
+        request.Peer = peer;
         message.Request = request;
     }
+    if (heartbeats == 1 && all == 1)
+    {
+        heartbeat.Peer = peer;
+        message.Heartbeat = heartbeat;
+    }
+    if (endpoints > 0 && all == endpoints)
+    {
+        message.Endpoints = EndpointNews{.Peer = peer, .Content = digest};
+    }
     return message;
+}
+
+std::vector<std::uint8_t> ForAll(std::span<const std::uint8_t> datagram)
+{
+    std::vector<std::uint8_t> result(datagram.begin(), datagram.begin() + RtpsHeaderSize);
+    VisitAll(datagram,
+             [&](const Part &part)
+             {
+                 if (part.Kind == SubmessageKind::InfoDestination)
+                 {
+                     return;
+                 }
+                 const auto begin = static_cast<std::ptrdiff_t>(result.size());
+                 result.insert(result.end(), part.Whole.begin(), part.Whole.end());
+                 if (part.Kind == SubmessageKind::Data && part.Bytes().size() >= ReaderInData + EntitySize)
+                 {
+                     std::fill_n(result.begin() + begin + SubmessageHeaderSize + ReaderInData, EntitySize,
+                                 std::uint8_t{0});
+                 }
+             });
+    return result;
+}
+
+std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> datagram)
+{
+    std::vector<Acknowledgement> found;
+    GuidPrefix sender = PrefixIn(datagram.subspan(std::min(PrefixAt, datagram.size())));
+    VisitAll(datagram,
+             [&](const Part &part)
+             {
+                 if (part.Kind == SubmessageKind::InfoSource)
+                 {
+                     sender = PrefixIn(part.Bytes().subspan(std::min(PrefixAt, part.Bytes().size())));
+                 }
+                 if (part.Kind != SubmessageKind::AckNack)
+                 {
+                     return;
+                 }
+                 RtpsReader body(part.Bytes(), part.LittleEndian);
+                 Acknowledgement said{.Peer = sender};
+                 said.Reader = body.Entity();
+                 said.Writer = body.Entity();
+                 said.Base = body.Sequence();
+                 said.Asks = body.Bits() > 0 || (said.Base <= 1 && (part.Flags & Final) == 0);
+                 if (body.IsGood())
+                 {
+                     found.push_back(said);
+                 }
+             });
+    return found;
 }
 
 }  // namespace Rabit::FastDds

@@ -91,7 +91,7 @@ void LimitPeers(rtps::RTPSParticipantAttributes &attributes)
 }
 
 void AddTransports(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                   AnnounceCalls announce, rtps::RTPSParticipantAttributes &attributes)
+                   NetworkCalls calls, rtps::RTPSParticipantAttributes &attributes)
 {
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = SocketBuffer;
@@ -110,8 +110,11 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.OnSent = [log](bool samples, std::size_t datagrams, std::size_t bytes)
     { samples ? log->SentSamples(datagrams, bytes) : log->SentDiscovery(datagrams, bytes); };
     guarded.OnDropped = [log] { log->MalformedDatagram(); };
-    guarded.Announce = std::move(announce.Now);
-    guarded.AnnounceAt = std::move(announce.At);
+    guarded.Announce = std::move(calls.Announce);
+    guarded.AnnounceAt = std::move(calls.AnnounceAt);
+    guarded.IsInGroup = std::move(calls.IsInGroup);
+    guarded.SendOwedAt = std::move(calls.SendOwedAt);
+    guarded.Owed = std::move(calls.Owed);
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
     // GuardedUdp asks for the first announcements after the very first, at growing distances.
     attributes.builtin.discovery_config.initial_announcements.count = 0;
@@ -179,7 +182,7 @@ void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes
 
 rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings,
                                                           const std::shared_ptr<SessionLog> &log,
-                                                          AnnounceCalls announce)
+                                                          NetworkCalls calls)
 {
     CheckSettings(settings);
     rtps::RTPSParticipantAttributes attributes;
@@ -201,7 +204,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     LimitPeers(attributes);
     if (attributes.userTransports.empty())
     {
-        AddTransports(settings, log, std::move(announce), attributes);
+        AddTransports(settings, log, std::move(calls), attributes);
     }
     AddMulticast(settings, attributes);
     AddPeers(settings, attributes);

@@ -9,23 +9,31 @@
 #include <memory>
 #include <string>
 
+#include "DeferredCall.h"
+#include "RtpsMessage.h"
 #include "common/SessionLog.h"
 
 namespace Rabit::FastDds
 {
 
-// Has the participant announce itself once more. Both are called on threads of the network, as soon as there
-// is a participant; the second with the vendor's locks held, and the last time that it names counts.
-struct AnnounceCalls
+// What the participant's sockets need; called on threads of the network, as soon as there is a participant.
+// But for the first, with the vendor's locks held; of times, the last that is named counts.
+struct NetworkCalls
 {
-    std::function<void()> Now;
-    std::function<void(std::chrono::steady_clock::time_point)> At;
+    // Have the participant announce itself once more.
+    std::function<void()> Announce;
+    std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt;
+    // Whether a participant listens to the group of discovery.
+    std::function<bool(const GuidPrefix &)> IsInGroup;
+    // Has Owed run.
+    std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
+    std::shared_ptr<DeferredCall> Owed;
 };
 
 // Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws
 // TransportError for settings that cannot be honoured. The log hears of datagrams that are dropped.
 eprosima::fastrtps::rtps::RTPSParticipantAttributes MakeParticipantAttributes(
-    const TransportSettings &settings, const std::shared_ptr<SessionLog> &log, AnnounceCalls announce);
+    const TransportSettings &settings, const std::shared_ptr<SessionLog> &log, NetworkCalls calls);
 
 // Whether a profiles file, if there is one, defines transports. Throws TransportError if it is not accepted.
 bool HasOwnTransports(const std::string &profilesFile);

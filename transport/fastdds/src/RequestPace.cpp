@@ -1,6 +1,9 @@
 #include "RequestPace.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "DeliveryCheck.h"
 
 namespace Rabit::FastDds
 {
@@ -19,8 +22,10 @@ bool RequestPace::MayGo(std::uint32_t socket, const FirstRequest &request, TimeP
     }
     if (found == _asked.end() || now - found->second.Last >= Rest)
     {
-        _asked.insert_or_assign(key, Asked{.Last = now, .Next = now + FirstGap});
-        return true;
+        const bool waits = IsBuiltin(request.Writer);
+        _asked.insert_or_assign(
+            key, Asked{.Last = now, .Next = now + (waits ? Patience : FirstGap), .Waits = waits});
+        return !waits;
     }
     Asked &asked = found->second;
     asked.Last = now;
@@ -28,7 +33,7 @@ bool RequestPace::MayGo(std::uint32_t socket, const FirstRequest &request, TimeP
     {
         return false;
     }
-    asked.Gap = std::min(2 * asked.Gap, LongestGap);
+    asked.Gap = std::exchange(asked.Waits, false) ? FirstGap : std::min(2 * asked.Gap, LongestGap);
     asked.Next = now + asked.Gap;
     return true;
 }

@@ -20,6 +20,8 @@ class RequestPace
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
+    // Discovery may well be asked for what it is about to say: whoever finds us addresses us.
+    static constexpr std::chrono::milliseconds Patience{100};
     static constexpr std::chrono::milliseconds FirstGap{50};
     static constexpr std::chrono::milliseconds LongestGap{2000};
     // Who has not asked for so long asks for something new.
@@ -36,6 +38,7 @@ private:
         TimePoint Last;  // time that the vendor asked
         TimePoint Next;  // time that it may
         std::chrono::milliseconds Gap{FirstGap};
+        bool Waits = false;  // none has gone yet
     };
 
     std::map<std::pair<std::uint32_t, FirstRequest>, Asked> _asked;

@@ -25,6 +25,13 @@ namespace
 // Announcements are overtaken by milliseconds: nobody closes so many sessions in that time.
 constexpr std::size_t MostDeparted = 64;
 
+rtps::GuidPrefix_t ToVendorPrefix(const FastDds::GuidPrefix &prefix)
+{
+    rtps::GuidPrefix_t result;
+    std::copy(prefix.begin(), prefix.end(), result.value);
+    return result;
+}
+
 PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
 {
     PeerPlace place;
@@ -53,7 +60,11 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
 {
     auto attributes = MakeParticipantAttributes(
         settings, _log,
-        {.Now = [this] { Announce(); }, .At = [this](auto time) { _announceTimer.At(time); }});
+        {.Announce = [this] { Announce(); },
+         .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
+         .IsInGroup = [this](const auto &prefix) { return IsInGroup(ToVendorPrefix(prefix)); },
+         .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
+         .Owed = _owed});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
@@ -66,6 +77,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
                              ": no free port, or no usable network interface");
     }
     _announceTimer.Start(*_participant, [this] { Announce(); });
+    _owedTimer.Start(*_participant, [owed = _owed] { owed->Run(); });
     _participant.load()->enable();
 }
 
@@ -73,6 +85,7 @@ SessionCore::~SessionCore()
 {
     Close();
     _announceTimer.Stop();
+    _owedTimer.Stop();
     rtps::RTPSDomain::removeRTPSParticipant(_participant);
 }
 
@@ -129,6 +142,7 @@ std::string SessionCore::NodeOf(const GuidPrefix &prefix) const
 void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/,
                                          rtps::ParticipantDiscoveryInfo &&info)
 {
+    NotePlace(info);
     switch (info.status)
     {
         case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
@@ -142,6 +156,28 @@ void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/
             PeerGone(info.info.m_guid.guidPrefix, PeerEvent::Kind::Lost);
             break;
     }
+}
+
+void SessionCore::NotePlace(const rtps::ParticipantDiscoveryInfo &info)
+{
+    const GuidPrefix &prefix = info.info.m_guid.guidPrefix;
+    const bool isGone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+                        info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
+    const std::lock_guard lock(_mutex);
+    if (_multicast && !isGone && !info.info.metatraffic_locators.multicast.empty())
+    {
+        _inGroup.insert(prefix);
+    }
+    else
+    {
+        _inGroup.erase(prefix);
+    }
+}
+
+bool SessionCore::IsInGroup(const GuidPrefix &prefix) const
+{
+    const std::lock_guard lock(_mutex);
+    return _inGroup.contains(prefix);
 }
 
 void SessionCore::Announce()

@@ -14,8 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "AnnouncementTimer.h"
 #include "ParticipantNumber.h"
+#include "ParticipantTimer.h"
+#include "DeferredCall.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -67,6 +68,9 @@ private:
     std::string NodeOf(const GuidPrefix &prefix) const;
     // On a thread of the network, before and while the participant lives.
     void Announce();
+    // Whether that participant listens to the group of discovery.
+    bool IsInGroup(const GuidPrefix &prefix) const;
+    void NotePlace(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo &info);
     void PeerAppeared(const eprosima::fastrtps::rtps::ParticipantProxyData &peer);
     void PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how);
 
@@ -81,9 +85,12 @@ private:
     std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>
         _peers;                               // Rabit nodes; guarded by _mutex
     std::map<GuidPrefix, PeerPlace> _places;  // of those; guarded by _mutex
+    std::set<GuidPrefix> _inGroup;            // who listens to the group of discovery; guarded by _mutex
     std::deque<GuidPrefix> _departed;         // the last that said goodbye; guarded by _mutex
     const ParticipantNumber _number;
-    AnnouncementTimer _announceTimer;
+    ParticipantTimer _announceTimer;
+    const std::shared_ptr<DeferredCall> _owed = std::make_shared<DeferredCall>();
+    ParticipantTimer _owedTimer;
     std::atomic<eprosima::fastrtps::rtps::RTPSParticipant *> _participant = nullptr;
 };
 

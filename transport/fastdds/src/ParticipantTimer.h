@@ -11,15 +11,15 @@
 namespace Rabit::FastDds
 {
 
-// Has the participant announce itself at a time of our choice, on the thread on which the vendor does so by
+// Makes a call at a time of our choice, on the thread on which the vendor has its participant announce
 // itself. Thread-safe.
-class AnnouncementTimer
+class ParticipantTimer
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
     // From now on At is heeded, until Stop returns; both before the participant is removed.
-    void Start(const eprosima::fastrtps::rtps::RTPSParticipant &participant, std::function<void()> announce);
+    void Start(const eprosima::fastrtps::rtps::RTPSParticipant &participant, std::function<void()> call);
     void Stop();
 
     // In the place of the time that was set before. Does not block, so the vendor's locks may be held.

@@ -1,4 +1,4 @@
-#include "AnnouncementTimer.h"
+#include "ParticipantTimer.h"
 
 #include <algorithm>
 #include <utility>
@@ -8,14 +8,14 @@ namespace Rabit::FastDds
 
 using eprosima::fastrtps::rtps::TimedEvent;
 
-void AnnouncementTimer::Start(const eprosima::fastrtps::rtps::RTPSParticipant &participant,
-                              std::function<void()> announce)
+void ParticipantTimer::Start(const eprosima::fastrtps::rtps::RTPSParticipant &participant,
+                             std::function<void()> call)
 {
     auto event = std::make_unique<TimedEvent>(
         participant.get_resource_event(),
-        [announce = std::move(announce)]
+        [call = std::move(call)]
         {
-            announce();
+            call();
             return false;  // not again by itself
         },
         0);
@@ -23,7 +23,7 @@ void AnnouncementTimer::Start(const eprosima::fastrtps::rtps::RTPSParticipant &p
     _event = std::move(event);
 }
 
-void AnnouncementTimer::Stop()
+void ParticipantTimer::Stop()
 {
     std::unique_ptr<TimedEvent> event;
     {
@@ -33,7 +33,7 @@ void AnnouncementTimer::Stop()
     // Its end waits for the vendor's thread, which may be in At.
 }
 
-void AnnouncementTimer::At(TimePoint time)
+void ParticipantTimer::At(TimePoint time)
 {
     const std::chrono::duration<double, std::milli> left = time - TimePoint::clock::now();
     const std::lock_guard lock(_mutex);
