@@ -14,4 +14,12 @@ inline constexpr std::size_t RtpsHeadSize = 128;
 // its submessages that names a writer. `head` is its beginning.
 bool IsOfSamples(std::span<const std::uint8_t> head);
 
+// Whether a whole message announces a participant, and says nothing else. A goodbye is none.
+struct Announcing
+{
+    bool Any = false;
+    bool Alone = false;
+};
+Announcing AnnouncingOf(std::span<const std::uint8_t> message);
+
 }  // namespace Rabit

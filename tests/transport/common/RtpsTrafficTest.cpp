@@ -65,4 +65,40 @@ TEST(RtpsTraffic, WhatIsCutOffIsOfNoTopic)
     }
 }
 
+// A DATA of the writer of participants, with data or with a key alone.
+Bytes AppendParticipant(Bytes message, bool withData = true)
+{
+    const std::size_t at = message.size();
+    message = Append(message, 0x15, 40, 11, BuiltinWriter);
+    message[at + 1] = withData ? 0x05 : 0x09;
+    message[at + 4 + 9] = 0x01;
+    return message;
+}
+
+TEST(RtpsTraffic, AnAnnouncementIsFoundWhereverItIs)
+{
+    const Bytes before = Append(Append(Header, 0x0e, 12), 0x09, 8);
+    const auto alone = Rabit::AnnouncingOf(AppendParticipant(before));
+    EXPECT_TRUE(alone.Any);
+    EXPECT_TRUE(alone.Alone);
+    for (const Bytes &message : {AppendParticipant(Append(before, 0x07, 28, 7, BuiltinWriter)),
+                                 Append(AppendParticipant(before), 0x07, 28, 7, BuiltinWriter)})
+    {
+        const auto beside = Rabit::AnnouncingOf(message);
+        EXPECT_TRUE(beside.Any);
+        EXPECT_FALSE(beside.Alone);
+    }
+}
+
+TEST(RtpsTraffic, NeitherAGoodbyeNorAnythingElseIsAnAnnouncement)
+{
+    for (const Bytes &message :
+         {Header, AppendParticipant(Header, false), Append(Header, 0x15, 40, 11, BuiltinWriter)})
+    {
+        const auto announcing = Rabit::AnnouncingOf(message);
+        EXPECT_FALSE(announcing.Any);
+        EXPECT_FALSE(announcing.Alone);
+    }
+}
+
 }  // namespace

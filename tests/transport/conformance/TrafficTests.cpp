@@ -1,4 +1,8 @@
 // What writing costs on the air, and that it is counted.
+#include <algorithm>
+#include <array>
+#include <string>
+
 #include "ConformanceTest.h"
 
 namespace Rabit::Conformance
@@ -119,6 +123,148 @@ TEST_P(Conformance, AReliableOrKeyedWriterDoesNotWriteToOneNode)
     const auto keyed = session->CreateWriter(KeyedTopic(), Telemetry(), {});
     EXPECT_EQ(reliable->WriteTo("ground", MakeSample(0, "x"), 1), WriteResult::Failed);
     EXPECT_EQ(keyed->WriteTo("ground", MakeSample(0, "x"), 1), WriteResult::Failed);
+}
+
+void Conformance::ExpectNothingButSamplesForBestEffortReaders(bool multicast, int destinations)
+{
+    const auto writing = OpenWith("uav1", multicast);
+    const auto first = OpenWith("ground", multicast);
+    const auto second = OpenWith("uav2", multicast);
+    const auto writer = writing->CreateWriter(TextTopic(), State(), {});
+    SampleRecorder here;
+    SampleRecorder there;
+    const auto reader = first->CreateReader(TextTopic(), Telemetry(), {}, here.Handler());
+    const auto other = second->CreateReader(TextTopic(), Telemetry(), {}, there.Handler());
+    ASSERT_TRUE(Until(
+        [&] {
+            return writer->MatchedReaders() == 2 && reader->MatchedWriters() == 1 &&
+                   other->MatchedWriters() == 1;
+        }));
+    EXPECT_EQ(writer->Destinations(), destinations);
+    const std::uint64_t before = writing->Counters().SampleDatagrams;
+    for (std::uint64_t i = 0; i < Samples; ++i)
+    {
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "state"), 1), WriteResult::Ok);
+    }
+    EXPECT_TRUE(Until([&] { return here.Count() > 0 && there.Count() > 0; }));
+    Net().Settle();
+    EXPECT_EQ(writing->Counters().SampleDatagrams,
+              before + Samples * static_cast<std::uint64_t>(destinations));
+    EXPECT_EQ(first->Counters().SampleDatagrams, 0u);
+    EXPECT_EQ(second->Counters().SampleDatagrams, 0u);
+}
+
+TEST_P(Conformance, BestEffortReadersOfAStateCostItsSamplesAndNoHeartbeatsOrAcknowledgements)
+{
+    ExpectNothingButSamplesForBestEffortReaders(true, 1);
+}
+
+TEST_P(Conformance, SoTheyDoWhereEachGetsItsOwn)
+{
+    ExpectNothingButSamplesForBestEffortReaders(false, 2);
+}
+
+TEST_P(Conformance, NothingWaitsForAcknowledgementsOfBestEffortReaders)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto writer = writing->CreateWriter(KeyedTopic(), State(), {});
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(KeyedTopic(), Telemetry(), {}, recorder.Handler());
+    ASSERT_TRUE(Matched(writer, reader));
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(1, "gone"), 1), WriteResult::Ok);
+    ASSERT_EQ(DisposeOnceTaken(*writer, MakeSample(1, "gone"), 2), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(2, "there"), 3), WriteResult::Ok);
+    const auto late = Open("late");
+    SampleRecorder history;
+    const auto another = late->CreateReader(KeyedTopic(), State(), {}, history.Handler());
+    EXPECT_TRUE(Until([&] { return history.Count() > 0; }));
+    Net().Settle();
+    EXPECT_THAT(history.Texts(), testing::ElementsAre("there"));
+}
+
+TEST_P(Conformance, ANodeWithoutAReaderOfTheTopicIsNotWrittenTo)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto idle = Open("uav2");
+    const auto writer = writing->CreateWriter(TextTopic(), Telemetry(), {"fleet"});
+    const auto elsewhere = writing->CreateWriter(TextTopic("Other"), Telemetry(), {"fleet"});
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(TextTopic(), Telemetry(), {"fleet"}, recorder.Handler());
+    const auto other = idle->CreateReader(TextTopic("Other"), Telemetry(), {"fleet"}, recorder.Handler());
+    ASSERT_TRUE(Matched(writer, reader));
+    ASSERT_TRUE(Matched(elsewhere, other));
+    const std::uint64_t before = writing->Counters().SampleDatagrams;
+    EXPECT_EQ(writer->WriteTo("uav2", MakeSample(0, "one"), 1), WriteResult::Ok);
+    EXPECT_EQ(writing->Counters().SampleDatagrams, before);
+}
+
+TEST_P(Conformance, OneWriterWritesToManyNodesEachAloneWhileOneOfThemGoesAndReturns)
+{
+    const auto writing = Open("ground");
+    const auto writer = writing->CreateWriter(TextTopic(), Telemetry(), {"fleet"});
+    struct Node
+    {
+        SessionPtr Session;
+        SampleRecorder Heard;
+        ReaderPtr Reader;
+    };
+    std::array<Node, 4> nodes;
+    const auto nameOf = [](std::size_t i) { return "uav" + std::to_string(i); };
+    const auto join = [&](Node &node, std::size_t i, std::uint64_t incarnation)
+    {
+        node.Session = Open(nameOf(i), incarnation);
+        node.Reader = node.Session->CreateReader(TextTopic(), Telemetry(), {"fleet"}, node.Heard.Handler());
+    };
+    const auto matched = [&](int count)
+    {
+        return Until(
+            [&]
+            {
+                return writer->MatchedReaders() == count &&
+                       std::all_of(nodes.begin(), nodes.end(),
+                                   [](const Node &node)
+                                   { return !node.Reader || node.Reader->MatchedWriters() == 1; });
+            });
+    };
+    const auto reaches = [&](std::size_t i)
+    {
+        const std::uint64_t before = writing->Counters().SampleDatagrams;
+        const std::size_t heard = nodes[i].Heard.Count();
+        std::uint64_t written = 0;  // some may be lost
+        EXPECT_TRUE(Until(
+            [&]
+            {
+                written += writer->WriteTo(nameOf(i), MakeSample(0, nameOf(i)), 1) == WriteResult::Ok ? 1 : 0;
+                return nodes[i].Heard.Count() > heard;
+            }));
+        EXPECT_EQ(writing->Counters().SampleDatagrams, before + written);
+    };
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+    {
+        join(nodes[i], i, 1);
+    }
+    ASSERT_TRUE(matched(4));
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+    {
+        reaches(i);
+    }
+    nodes[2].Reader.reset();
+    nodes[2].Session.reset();
+    ASSERT_TRUE(matched(3));
+    const std::uint64_t before = writing->Counters().SampleDatagrams;
+    EXPECT_EQ(writer->WriteTo(nameOf(2), MakeSample(0, "nobody"), 1), WriteResult::Ok);
+    EXPECT_EQ(writing->Counters().SampleDatagrams, before);
+    reaches(1);
+    join(nodes[2], 2, 2);
+    ASSERT_TRUE(matched(4));
+    reaches(2);
+    reaches(3);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+    {
+        EXPECT_THAT(nodes[i].Heard.Texts(), testing::Each(nameOf(i)));
+    }
 }
 
 }  // namespace Rabit::Conformance

@@ -84,15 +84,16 @@ WriteResult CycloneWriter::WriteTo(const std::string &node, const SampleEncoder 
     class Direction
     {
     public:
-        Direction(const ddsi_sertype *type, const std::vector<ddsi_guid_t> &participants)
+        Direction(const ddsi_sertype *type, const ddsi_guid_t &writer,
+                  const std::vector<ddsi_guid_t> &participants)
         {
-            RabitCycloneWriteTo(type, participants.data(), participants.size());
+            RabitCycloneWriteTo(type, &writer, participants.data(), participants.size());
         }
         ~Direction() { RabitCycloneWriteToAll(); }
         Direction(const Direction &) = delete;
         Direction &operator=(const Direction &) = delete;
     };
-    const Direction direction(_type, _core->ParticipantsOf(node));
+    const Direction direction(_type, VendorGuid(), _core->ParticipantsOf(node));
     return Send(sample, sourceTime, false);
 }
 
@@ -114,13 +115,16 @@ int CycloneWriter::MatchedReaders() const
 
 int CycloneWriter::Destinations() const
 {
-    dds_guid_t guid;
-    if (MatchedReaders() == 0 || dds_get_guid(_writer.Get(), &guid) != DDS_RETCODE_OK)
-    {
-        return 0;
-    }
-    const ddsi_guid_t known = ToVendorGuid(ToWriterId(guid));
-    return RabitCycloneDestinations(_type, &known);
+    const ddsi_guid_t known = VendorGuid();
+    return MatchedReaders() == 0 ? 0 : RabitCycloneDestinations(_type, &known);
+}
+
+// All zero, which no writer has, if the session is closed.
+ddsi_guid_t CycloneWriter::VendorGuid() const
+{
+    dds_guid_t guid{};
+    dds_get_guid(_writer.Get(), &guid);
+    return ToVendorGuid(ToWriterId(guid));
 }
 
 WriteResult CycloneWriter::Fail(const char *why, WriteResult result)

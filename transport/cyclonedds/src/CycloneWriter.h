@@ -29,6 +29,7 @@ public:
     int Destinations() const override;
 
 private:
+    ddsi_guid_t VendorGuid() const;
     WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed);
     WriteResult Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool dispose);
 

@@ -1,7 +1,6 @@
 #include "DomainConfig.h"
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <sstream>
 
@@ -20,9 +19,6 @@ constexpr int MostParticipants = 100;
 // A peer without a port is looked for at the ports of this many participants of its host, as with Fast DDS.
 // Left to the vendor it would be MostParticipants, each with every announcement.
 constexpr int ParticipantsPerPeer = 16;
-// The vendor announces a participant once as it comes, and then at its period: whoever missed the first,
-// because a network was only just coming, waits for the second.
-constexpr std::chrono::milliseconds LongestPeriod{4000};
 // What the vendor's headers may take of a datagram beside a fragment of a sample.
 constexpr std::size_t HeaderRoom = 100;
 
@@ -121,12 +117,17 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         << "<ParticipantIndex>auto</ParticipantIndex>"
         << "<MaxAutoParticipantIndex>" << MostParticipants << "</MaxAutoParticipantIndex>"
         << "<LeaseDuration>" << settings.Lease.count() << "ms</LeaseDuration>"
-        << "<SPDPInterval>" << std::min(settings.AnnouncementPeriod, LongestPeriod).count()
-        << "ms</SPDPInterval>";
+        << "<SPDPInterval>" << settings.AnnouncementPeriod.count() << "ms</SPDPInterval>";
     AddPeers(settings, xml);
-    // The defaults would make repair, and the end of a replay, as late as 100 ms and more.
+    // A request for repair goes at once: the default would make that, and the end of a replay, as late as
+    // 100 ms and more. Who acknowledges nothing is asked less and less often. What several lack, as at a
+    // start, goes to all at once; and a reader asks a writer by itself only if that has not addressed it
+    // soon.
     xml << "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash>"
-        << "<HeartbeatInterval max=\"200ms\">20ms</HeartbeatInterval><NackDelay>1ms</NackDelay>"
+        << "<HeartbeatInterval max=\"4s\" minsched=\"100ms\">100ms</HeartbeatInterval>"
+        << "<NackDelay>1ms</NackDelay><PreEmptiveAckDelay>100ms</PreEmptiveAckDelay>"
+        << "<RetransmitMerging>always</RetransmitMerging>"
+        << "<RetransmitMergingPeriod>20ms</RetransmitMergingPeriod>"
         // The vendor ends further threads by a message to its own address, and waits for ever if that is
         // gone.
         << "<MultipleReceiveThreads>false</MultipleReceiveThreads>"

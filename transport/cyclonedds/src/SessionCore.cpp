@@ -26,6 +26,12 @@ const TransportSettings &Checked(const TransportSettings &settings)
     return settings;
 }
 
+// From a newcomer to our answer: 50 to 150 ms, as the name has it, so that not all answer at once.
+std::chrono::milliseconds AnswerGap(const TransportSettings &settings)
+{
+    return std::chrono::milliseconds(50 + std::hash<std::string>()(settings.Node) % 100);
+}
+
 Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain)
 {
     const Qos qos = MakeQos();
@@ -75,6 +81,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer)),
       _domain(settings, _log),
+      _announcements(AnswerGap(settings)),
       _participant(MakeParticipant(settings, _domain.Id()))
 {
     if (settings.SharedMemory)
@@ -99,6 +106,9 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
     watch(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, &OnParticipants);
     watch(DDS_BUILTIN_TOPIC_DCPSPUBLICATION, &OnEndpoints);
     watch(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, &OnEndpoints);
+    const ddsi_guid_t own = ParticipantOf(_own);
+    _announcements.Start({.IsUnheard = [this, own] { return _domain.IsUnheard(own); },
+                          .Announce = [this, own] { _domain.Announce(own); }});
 }
 
 SessionCore::~SessionCore()
@@ -162,6 +172,7 @@ void SessionCore::OnParticipants(dds_entity_t reader, void *self)
                                                 }
                                                 else if (info.valid_data)
                                                 {
+                                                    core._announcements.OnPeer();
                                                     core.PeerAppeared(prefix, peer.qos);
                                                 }
                                             });

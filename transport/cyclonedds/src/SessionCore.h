@@ -10,6 +10,7 @@
 #include <mutex>
 #include <vector>
 
+#include "AnnouncementThread.h"
 #include "Entity.h"
 #include "Guid.h"
 #include "VendorDomain.h"
@@ -79,6 +80,7 @@ private:
     // Tells of peers: the vendor tells us under locks of its own.
     Worker _worker;
     VendorDomain _domain;
+    AnnouncementThread _announcements;
     Entity _participant;  // the last, so that no listener runs when the others go
 };
 

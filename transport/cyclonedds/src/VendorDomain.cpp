@@ -4,9 +4,11 @@
 #include <set>
 #include <string>
 
+#include "AnnouncedEndpoints.h"
 #include "DomainConfig.h"
 #include "VendorLog.h"
 #include "VendorTraffic.h"
+#include "common/MulticastUse.h"
 #include "common/RtpsTraffic.h"
 
 namespace Rabit::Cyclone
@@ -51,16 +53,51 @@ private:
     }
 };
 
-void CountSent(void *log, const unsigned char *head, std::size_t headSize, std::size_t size)
+bool IsGroup(const DirectAnnouncements::Address &address)
 {
-    auto *const counters = static_cast<SessionLog *>(log);
-    IsOfSamples({head, headSize}) ? counters->SentSamples(1, size) : counters->SentDiscovery(1, size);
+    return (address[0] & 0xf0) == 0xe0;
 }
 
 }  // namespace
 
+bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to)
+{
+    const auto &domain = *static_cast<const VendorDomain *>(self);
+    const Announcing announcing = AnnouncingOf({datagram, size});
+    if (announcing.Any)
+    {
+        LeaveOutIdleEndpoints({datagram, size});
+    }
+    const DirectAnnouncements::Address address{to[0], to[1], to[2], to[3]};
+    return !announcing.Alone || !domain._multicast || IsGroup(address) || domain._direct.MayGo(address);
+}
+
+void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
+{
+    SessionLog &log = *static_cast<const VendorDomain *>(self)->_log;
+    IsOfSamples({head, headSize}) ? log.SentSamples(1, size) : log.SentDiscovery(1, size);
+}
+
+void VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t size,
+                              const unsigned char *from, bool direct)
+{
+    if (IsOfSamples({datagram, size}))
+    {
+        return;
+    }
+    const Announcing announcing = AnnouncingOf({datagram, size});
+    if (announcing.Alone && direct)
+    {
+        static_cast<VendorDomain *>(self)->_direct.OnAnnouncement({from[0], from[1], from[2], from[3]});
+    }
+    if (announcing.Any)
+    {
+        LeaveOutIdleEndpoints({datagram, size});
+    }
+}
+
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log)
-    : _log(log)
+    : _log(log), _multicast(IsMulticastForData(settings))
 {
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
@@ -91,11 +128,32 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
         log->Line("Cyclone DDS: " + said);
     }
     _entity = Entity(entity, "");
-    _watch = RabitCycloneWatch(&CountSent, _log.get());
+    _watch = RabitCycloneWatch({.argument = this,
+                                .isDiscovery =
+                                    [](const unsigned char *head, std::size_t size) {
+                                        return !IsOfSamples({head, size});
+                                    },
+                                .may = &MaySend,
+                                .sent = &OnSent,
+                                .received = &OnReceived});
     if (_watch == nullptr)
     {
-        log->Line("Cyclone DDS does not show what it sends: it is not counted");
+        log->Line(
+            "Cyclone DDS does not show what it sends: it is not counted, nor is it announced more often");
     }
+}
+
+void VendorDomain::Announce(const ddsi_guid_t &participant) const
+{
+    if (_watch != nullptr)
+    {
+        RabitCycloneAnnounce(_watch, &participant);
+    }
+}
+
+bool VendorDomain::IsUnheard(const ddsi_guid_t &participant) const
+{
+    return _watch != nullptr && RabitCycloneIsUnheard(_watch, &participant);
 }
 
 VendorDomain::~VendorDomain()

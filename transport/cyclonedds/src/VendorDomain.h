@@ -1,9 +1,11 @@
 #pragma once
 
+#include <dds/ddsi/ddsi_guid.h>
 #include <rabit/transport/Transport.h>
 
 #include <memory>
 
+#include "DirectAnnouncements.h"
 #include "Entity.h"
 #include "common/SessionLog.h"
 
@@ -22,11 +24,22 @@ public:
 
     // The number by which this process's vendor knows it; not that of the network.
     dds_domainid_t Id() const { return _id; }
+    // Announces a participant of it to all, now.
+    void Announce(const ddsi_guid_t &participant) const;
+    // Whether somebody whom that participant knows has not shown that it knows it.
+    bool IsUnheard(const ddsi_guid_t &participant) const;
 
 private:
+    static bool MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to);
+    static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
+    static void OnReceived(void *self, unsigned char *datagram, std::size_t size, const unsigned char *from,
+                           bool direct);
+
     dds_domainid_t _id = 0;
     void *_watch = nullptr;  // of what it sends
     const std::shared_ptr<SessionLog> _log;
+    const bool _multicast;  // reaches all, but for who announces itself to us alone
+    DirectAnnouncements _direct;
     Entity _entity;
 };
 

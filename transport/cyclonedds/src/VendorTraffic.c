@@ -5,10 +5,14 @@
 /* The next needs the one before. */
 #include <dds/ddsi/ddsi_endpoint.h>
 #include <dds/ddsi/ddsi_entity_index.h>
+#include <dds/ddsi/ddsi_entity_match.h>
+#include <dds/ddsi/ddsi_participant.h>
 #include <dds/ddsi/ddsi_proxy_participant.h>
 #include <dds/ddsi/ddsi_tran.h>
 #include <dds/ddsi/q_addrset.h>
+#include <dds/ddsi/q_rtps.h>
 #include <dds/ddsi/q_thread.h>
+#include <dds/ddsi/q_xevent.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,16 +20,18 @@
 enum
 {
     HeadSize = 128, /* RtpsHeadSize */
+    MostOfDiscovery = 4096,
+    AddressAt = 12, /* an IPv4 address is the last four of sixteen bytes */
     MostTargets = 4
 };
 
-/* A domain whose sockets write through WriteAndTell. */
+/* A domain whose sockets write through WriteAndTell and read through ReadAndTell. */
 struct Watch
 {
-    const struct ddsi_domaingv *domain;
+    struct ddsi_domaingv *domain;
     ddsi_tran_write_fn_t write;
-    RabitCycloneSent sent;
-    void *argument;
+    ddsi_tran_read_fn_t read;
+    struct RabitCycloneCalls calls;
     struct Watch *next;
 };
 
@@ -44,7 +50,7 @@ static _Thread_local struct Targets targets;
 
 static struct Watch Find(const struct ddsi_domaingv *domain)
 {
-    struct Watch found = {NULL, NULL, NULL, NULL, NULL};
+    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL}, NULL};
     pthread_rwlock_rdlock(&lock);
     for (const struct Watch *watch = first; watch != NULL; watch = watch->next)
     {
@@ -58,6 +64,48 @@ static struct Watch Find(const struct ddsi_domaingv *domain)
     return found;
 }
 
+/* Up to so many bytes of what is to be written; how many. */
+static size_t Gather(unsigned char *buffer, size_t size, size_t parts, const ddsrt_iovec_t *part)
+{
+    size_t filled = 0;
+    for (size_t i = 0; i < parts && filled < size; ++i)
+    {
+        const size_t left = size - filled;
+        const size_t taken = part[i].iov_len < left ? part[i].iov_len : left;
+        memcpy(buffer + filled, part[i].iov_base, taken);
+        filled += taken;
+    }
+    return filled;
+}
+
+static size_t SizeOf(size_t parts, const ddsrt_iovec_t *part)
+{
+    size_t size = 0;
+    for (size_t i = 0; i < parts; ++i)
+    {
+        size += part[i].iov_len;
+    }
+    return size;
+}
+
+static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connection,
+                              const ddsi_locator_t *destination, size_t parts, const ddsrt_iovec_t *part,
+                              uint32_t flags)
+{
+    unsigned char datagram[MostOfDiscovery];
+    const size_t size = SizeOf(parts, part);
+    if (size > sizeof datagram)
+    {
+        return watch->write(connection, destination, parts, part, flags);
+    }
+    const ddsrt_iovec_t whole = {datagram, Gather(datagram, sizeof datagram, parts, part)};
+    if (!watch->calls.may(watch->calls.argument, datagram, size, destination->address + AddressAt))
+    {
+        return 0;
+    }
+    return watch->write(connection, destination, 1, &whole, flags);
+}
+
 static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *destination, size_t parts,
                         const ddsrt_iovec_t *part, uint32_t flags)
 {
@@ -67,27 +115,23 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
     {
         return -1;
     }
-    const ssize_t size = watch.write(connection, destination, parts, part, flags);
+    unsigned char head[HeadSize];
+    const size_t filled = Gather(head, sizeof head, parts, part);
+    const ssize_t size = watch.calls.isDiscovery(head, filled)
+                             ? WriteDiscovery(&watch, connection, destination, parts, part, flags)
+                             : watch.write(connection, destination, parts, part, flags);
     if (size > 0)
     {
-        unsigned char head[HeadSize];
-        size_t filled = 0;
-        for (size_t i = 0; i < parts && filled < sizeof head; ++i)
-        {
-            const size_t left = sizeof head - filled;
-            const size_t taken = part[i].iov_len < left ? part[i].iov_len : left;
-            memcpy(head + filled, part[i].iov_base, taken);
-            filled += taken;
-        }
-        watch.sent(watch.argument, head, filled, (size_t)size);
+        watch.calls.sent(watch.calls.argument, head, filled, (size_t)size);
     }
-    return size;
+    /* What was left out is as good as sent. */
+    return size == 0 ? (ssize_t)SizeOf(parts, part) : size;
 }
 
 static bool IsGroup(const ddsi_locator_t *locator)
 {
-    /* An IPv4 address is the last four of sixteen bytes; the first of a multicast one is 224 to 239. */
-    return (locator->address[12] & 0xf0) == 0xe0;
+    /* The first byte of a multicast address is 224 to 239. */
+    return (locator->address[AddressAt] & 0xf0) == 0xe0;
 }
 
 static bool IsSame(const ddsi_locator_t *one, const ddsi_locator_t *other)
@@ -105,11 +149,7 @@ static ssize_t WriteAndTell(ddsi_tran_conn_t connection, const ddsi_locator_t *d
     {
         return WriteOne(connection, destination, parts, part, flags);
     }
-    ssize_t size = 0;
-    for (size_t i = 0; i < parts; ++i)
-    {
-        size += (ssize_t)part[i].iov_len;
-    }
+    const ssize_t size = (ssize_t)SizeOf(parts, part);
     const bool isGroup = IsGroup(destination);
     for (size_t i = 0; i < targets.count; ++i)
     {
@@ -136,7 +176,27 @@ static void AddTarget(const ddsi_xlocator_t *locator, void *argument)
     }
 }
 
-void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *participants, size_t count)
+static bool HasPrefixOf(const ddsi_guid_t *one, const ddsi_guid_t *other)
+{
+    return memcmp(&one->prefix, &other->prefix, sizeof one->prefix) == 0;
+}
+
+/* Whether a participant has a reader of the writer, whose lock is held. */
+static bool HasReader(const struct ddsi_writer *writer, const ddsi_guid_t *participant)
+{
+    bool found = false;
+    ddsrt_avl_iter_t at;
+    for (const struct ddsi_wr_prd_match *match =
+             ddsrt_avl_iter_first(&ddsi_wr_readers_treedef, &writer->readers, &at);
+         match != NULL && !found; match = ddsrt_avl_iter_next(&at))
+    {
+        found = HasPrefixOf(&match->prd_guid, participant);
+    }
+    return found;
+}
+
+void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *writer,
+                         const ddsi_guid_t *participants, size_t count)
 {
     struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&type->gv);
     targets.chosen = true;
@@ -146,13 +206,17 @@ void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *par
         return;
     }
     thread_state_awake(lookup_thread_state(), domain);
-    for (size_t i = 0; i < count; ++i)
+    struct ddsi_writer *known = entidx_lookup_writer_guid(domain->entity_index, writer);
+    for (size_t i = 0; i < count && known != NULL; ++i)
     {
-        const struct ddsi_proxy_participant *known =
-            entidx_lookup_proxy_participant_guid(domain->entity_index, &participants[i]);
-        if (known != NULL)
+        ddsrt_mutex_lock(&known->e.lock);
+        const bool hasReader = HasReader(known, &participants[i]);
+        ddsrt_mutex_unlock(&known->e.lock);
+        const struct ddsi_proxy_participant *reading =
+            hasReader ? entidx_lookup_proxy_participant_guid(domain->entity_index, &participants[i]) : NULL;
+        if (reading != NULL)
         {
-            addrset_forall(known->as_default, AddTarget, NULL);
+            addrset_forall(reading->as_default, AddTarget, NULL);
         }
     }
     thread_state_asleep(lookup_thread_state());
@@ -163,7 +227,24 @@ void RabitCycloneWriteToAll(void)
     targets.chosen = false;
 }
 
-void *RabitCycloneWatch(RabitCycloneSent sent, void *argument)
+static ssize_t ReadAndTell(ddsi_tran_conn_t connection, unsigned char *buffer, size_t size,
+                           bool allowSpurious, ddsi_locator_t *source)
+{
+    const struct Watch watch = Find(connection->m_base.gv);
+    if (watch.read == NULL)
+    {
+        return -1;
+    }
+    const ssize_t got = watch.read(connection, buffer, size, allowSpurious, source);
+    if (got > 0 && source != NULL)
+    {
+        watch.calls.received(watch.calls.argument, buffer, (size_t)got, source->address + AddressAt,
+                             connection == watch.domain->disc_conn_uc);
+    }
+    return got;
+}
+
+void *RabitCycloneWatch(struct RabitCycloneCalls calls)
 {
     struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);
     struct Watch *watch = domain == NULL || domain->n_interfaces < 1 ? NULL : malloc(sizeof *watch);
@@ -173,8 +254,8 @@ void *RabitCycloneWatch(RabitCycloneSent sent, void *argument)
     }
     watch->domain = domain;
     watch->write = domain->xmit_conns[0]->m_write_fn;
-    watch->sent = sent;
-    watch->argument = argument;
+    watch->read = domain->disc_conn_uc->m_read_fn;
+    watch->calls = calls;
     pthread_rwlock_wrlock(&lock);
     watch->next = first;
     first = watch;
@@ -185,6 +266,16 @@ void *RabitCycloneWatch(RabitCycloneSent sent, void *argument)
         if (domain->xmit_conns[i]->m_write_fn == watch->write)
         {
             domain->xmit_conns[i]->m_write_fn = WriteAndTell;
+        }
+    }
+    /* A thread of the vendor's may be about to read what somebody else announces: it does so either way. */
+    ddsi_tran_conn_t reading[] = {domain->disc_conn_mc, domain->disc_conn_uc, domain->data_conn_mc,
+                                  domain->data_conn_uc};
+    for (size_t i = 0; i < sizeof reading / sizeof reading[0]; ++i)
+    {
+        if (reading[i] != NULL && reading[i]->m_read_fn == watch->read)
+        {
+            __atomic_store_n(&reading[i]->m_read_fn, ReadAndTell, __ATOMIC_RELEASE);
         }
     }
     return watch;
@@ -232,4 +323,45 @@ int RabitCycloneDestinations(const struct ddsi_sertype *type, const ddsi_guid_t 
     }
     thread_state_asleep(lookup_thread_state());
     return count;
+}
+
+void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant)
+{
+    struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;
+    thread_state_awake(lookup_thread_state(), domain);
+    struct ddsi_participant *known = entidx_lookup_participant_guid(domain->entity_index, participant);
+    if (known != NULL)
+    {
+        ddsrt_mutex_lock(&known->e.lock);
+        if (known->spdp_xevent != NULL)
+        {
+            resched_xevent_if_earlier(known->spdp_xevent, ddsrt_time_monotonic());
+        }
+        ddsrt_mutex_unlock(&known->e.lock);
+    }
+    thread_state_asleep(lookup_thread_state());
+}
+
+bool RabitCycloneIsUnheard(const void *watch, const ddsi_guid_t *participant)
+{
+    struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;
+    ddsi_guid_t guid = *participant;
+    guid.entityid.u = NN_ENTITYID_SEDP_BUILTIN_PUBLICATIONS_WRITER;
+    bool unheard = false;
+    thread_state_awake(lookup_thread_state(), domain);
+    struct ddsi_writer *known = entidx_lookup_writer_guid(domain->entity_index, &guid);
+    if (known != NULL)
+    {
+        ddsrt_mutex_lock(&known->e.lock);
+        ddsrt_avl_iter_t at;
+        for (const struct ddsi_wr_prd_match *match =
+                 ddsrt_avl_iter_first(&ddsi_wr_readers_treedef, &known->readers, &at);
+             match != NULL && !unheard; match = ddsrt_avl_iter_next(&at))
+        {
+            unheard = !match->has_replied_to_hb;
+        }
+        ddsrt_mutex_unlock(&known->e.lock);
+    }
+    thread_state_asleep(lookup_thread_state());
+    return unheard;
 }

@@ -4,6 +4,7 @@
 #include <dds/ddsi/ddsi_guid.h>
 #include <dds/ddsi/ddsi_sertype.h>
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -11,18 +12,37 @@ extern "C"
 {
 #endif
 
-    /* Called, on any thread, for each datagram that was given to a socket: its beginning, up to RtpsHeadSize
-       bytes, and its size. */
-    typedef void (*RabitCycloneSent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
+    /* What is called for each datagram, on any thread. A head is its beginning, up to RtpsHeadSize bytes. */
+    struct RabitCycloneCalls
+    {
+        void *argument;
+        /* Whether it is of discovery. These alone are asked about before they are sent: whether one may go
+           to that IPv4 address, or group, and what of it, which is changed in place. */
+        bool (*isDiscovery)(const unsigned char *head, size_t headSize);
+        bool (*may)(void *argument, unsigned char *datagram, size_t size, const unsigned char to[4]);
+        /* It was given to a socket. */
+        void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
+        /* It came; it may be changed in place. `direct`: it was sent to us alone, for discovery. */
+        void (*received)(void *argument, unsigned char *datagram, size_t size, const unsigned char from[4],
+                         bool direct);
+    };
 
     /* Watches the domain that this thread has just created, until it is deleted. NULL if that cannot be told.
        To be given to RabitCycloneUnwatch after the domain was deleted. */
-    void *RabitCycloneWatch(RabitCycloneSent sent, void *argument);
+    void *RabitCycloneWatch(struct RabitCycloneCalls calls);
     void RabitCycloneUnwatch(void *watch);
 
-    /* What this thread writes, until RabitCycloneWriteToAll, goes to these participants alone, at their own
-       addresses. Of more than four addresses that they have the rest is left out. */
-    void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *participants, size_t count);
+    /* Announces an own participant of a domain that is watched to all, now. */
+    void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant);
+    /* Whether somebody whom it knows has not answered yet what it said of its writers: whoever knows us does.
+     */
+    bool RabitCycloneIsUnheard(const void *watch, const ddsi_guid_t *participant);
+
+    /* What this thread writes, until RabitCycloneWriteToAll, goes to those of these participants alone that
+       have readers of this writer of a topic of that type, at their own addresses. Of more than four
+       addresses that they have the rest is left out. */
+    void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *writer,
+                             const ddsi_guid_t *participants, size_t count);
     void RabitCycloneWriteToAll(void);
 
     /* To how many addresses the vendor sends what this writer of a topic of that type writes. 0 if it does

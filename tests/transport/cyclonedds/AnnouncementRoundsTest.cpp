@@ -1,0 +1,89 @@
+// When a participant is announced beside its period.
+#include "AnnouncementRounds.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace
+{
+
+using namespace std::chrono_literals;
+using Rabit::Cyclone::AnnouncementRounds;
+
+class AnnouncementRoundsTest : public testing::Test
+{
+protected:
+    // Lives until then; the times at which it announces, in ms from the start.
+    std::vector<int> Live(std::chrono::milliseconds until, bool unheard)
+    {
+        std::vector<int> announced;
+        while (Rounds.Due() && *Rounds.Due() <= Start + until)
+        {
+            const auto now = *Rounds.Due();
+            if (Rounds.Next(now, unheard))
+            {
+                announced.push_back(static_cast<int>((now - Start) / 1ms));
+            }
+        }
+        return announced;
+    }
+
+    AnnouncementRounds::TimePoint Start{1h};
+    AnnouncementRounds Rounds{100ms, Start};
+};
+
+TEST_F(AnnouncementRoundsTest, AtFirstAFewAtDoublingDistances)
+{
+    EXPECT_EQ(Live(1h, false), (std::vector{200, 600, 1400, 3000, 6200}));
+    EXPECT_FALSE(Rounds.Due().has_value());
+}
+
+TEST_F(AnnouncementRoundsTest, ANewcomerIsAnsweredOnceIfAllShowThatTheyHeardUs)
+{
+    Live(1min, false);
+    Rounds.OnPeer(Start + 1min);
+    EXPECT_EQ(Live(1h, false), std::vector{60100});
+}
+
+TEST_F(AnnouncementRoundsTest, WhoDoesNotShowThatItHeardUsIsAnsweredAgain)
+{
+    Live(1min, false);
+    Rounds.OnPeer(Start + 1min);
+    EXPECT_EQ(Live(1h, true),
+              (std::vector{60100, 60300, 60700, 61500, 63100, 66300, 72700, 85500, 111100, 162300}));
+}
+
+TEST_F(AnnouncementRoundsTest, OneAnswerIsForAllWhoComeUntilThen)
+{
+    Live(1min, false);
+    for (const auto after : {0ms, 30ms, 60ms, 90ms})
+    {
+        Rounds.OnPeer(Start + 1min + after);
+    }
+    EXPECT_EQ(Live(1h, false), std::vector{60100});
+}
+
+TEST_F(AnnouncementRoundsTest, WhoComesLaterIsAnsweredAsSoonAsTheFirst)
+{
+    Live(1min, false);
+    Rounds.OnPeer(Start + 1min);
+    Live(70s, true);
+    Rounds.OnPeer(Start + 70s);
+    EXPECT_EQ(Live(70s + 500ms, true), (std::vector{70100, 70300}));
+}
+
+TEST_F(AnnouncementRoundsTest, WhatWasSaidToNewcomersJustBeforeNeedsNotBeSaidAgain)
+{
+    Rounds.OnPeer(Start + 60ms);  // answered at 160
+    EXPECT_EQ(Live(1h, false), (std::vector{160, 600, 1400, 3000, 6200}));
+}
+
+TEST_F(AnnouncementRoundsTest, NothingIsDueTwice)
+{
+    EXPECT_FALSE(Rounds.Next(Start + 199ms, true));
+    EXPECT_TRUE(Rounds.Next(Start + 200ms, true));
+    EXPECT_FALSE(Rounds.Next(Start + 200ms, true));
+}
+
+}  // namespace
