@@ -15,7 +15,7 @@ using Rabit::FastDds::AnnouncementReplies;
 class AnnouncementRepliesTest : public testing::Test
 {
 protected:
-    AnnouncementReplies Replies;
+    AnnouncementReplies Replies{10s};
     AnnouncementReplies::TimePoint Now{1h};
 };
 
@@ -62,8 +62,27 @@ TEST_F(AnnouncementRepliesTest, WhoWasSilentForLongMayHaveForgottenUs)
 {
     Replies.OnAnnouncement(Sender, Now);
     Replies.OnAddressed(Sender);
-    EXPECT_FALSE(Replies.OnAnnouncement(Sender, Now + 14999ms));
-    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 29999ms));
+    EXPECT_FALSE(Replies.OnAnnouncement(Sender, Now + 24999ms));
+    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 49999ms));
+}
+
+TEST_F(AnnouncementRepliesTest, WhoAnnouncesItselfOnceInALongPeriodHasNotForgottenUs)
+{
+    AnnouncementReplies rare{60s};
+    rare.OnAnnouncement(Sender, Now);
+    rare.OnAddressed(Sender);
+    EXPECT_FALSE(rare.OnAnnouncement(Sender, Now + 60s));
+    EXPECT_FALSE(rare.OnAnnouncement(Sender, Now + 180s));  // one was lost
+    EXPECT_TRUE(rare.OnAnnouncement(Sender, Now + 330s));
+}
+
+TEST_F(AnnouncementRepliesTest, WhoWasSilentForAShortPeriodMayBeBusy)
+{
+    AnnouncementReplies often{500ms};
+    often.OnAnnouncement(Sender, Now);
+    often.OnAddressed(Sender);
+    EXPECT_FALSE(often.OnAnnouncement(Sender, Now + 14999ms));
+    EXPECT_TRUE(often.OnAnnouncement(Sender, Now + 29999ms));
 }
 
 TEST_F(AnnouncementRepliesTest, WhoWasGoneIsNew)

@@ -18,7 +18,7 @@ using Rabit::FastDds::RtpsGuard;
 class Gate
 {
 public:
-    explicit Gate(RtpsGuard::Mode mode = RtpsGuard::Mode::Full) : _guard(mode) {}
+    explicit Gate(RtpsGuard::Mode mode = RtpsGuard::Mode::Full) : _guard(mode, std::chrono::seconds(10)) {}
 
     // Whether the guard found nothing to count; what it handed on is in Handed.
     bool Admit(Bytes datagram)

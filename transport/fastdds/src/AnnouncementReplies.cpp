@@ -1,9 +1,15 @@
 #include "AnnouncementReplies.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace Rabit::FastDds
 {
+
+AnnouncementReplies::AnnouncementReplies(std::chrono::milliseconds period)
+    : _silence(std::max(ShortestSilence, 5 * period / 2))
+{
+}
 
 bool AnnouncementReplies::OnAnnouncement(const GuidPrefix &peer, TimePoint now)
 {
@@ -17,7 +23,7 @@ bool AnnouncementReplies::OnAnnouncement(const GuidPrefix &peer, TimePoint now)
         return false;
     }
     Peer &known = found->second;
-    if (now - std::exchange(known.Announced, now) >= Silence)
+    if (now - std::exchange(known.Announced, now) >= _silence)
     {
         known.KnowsUs = false;
         known.Replies = 0;

@@ -23,9 +23,12 @@ public:
     static constexpr std::chrono::milliseconds Gap{100};
     // Somebody may have nothing to say to us.
     static constexpr int MostForOne = 8;
-    // Who was silent for so long may have forgotten us. Longer than the announcement periods in use.
-    static constexpr std::chrono::seconds Silence{15};
+    // Who was silent for so long may have forgotten us; but never while it has missed one period at most.
+    static constexpr std::chrono::milliseconds ShortestSilence{15000};
     static constexpr std::size_t MostPeers = 1024;
+
+    // The period in which all announce themselves.
+    explicit AnnouncementReplies(std::chrono::milliseconds period);
 
     // A participant has announced itself. Whether to announce ourselves now.
     bool OnAnnouncement(const GuidPrefix &peer, TimePoint now);
@@ -41,6 +44,7 @@ private:
         int Replies = 0;
     };
 
+    const std::chrono::milliseconds _silence;
     std::map<GuidPrefix, Peer> _peers;
     std::optional<TimePoint> _last;
 };

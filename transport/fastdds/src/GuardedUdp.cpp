@@ -58,7 +58,7 @@ public:
     explicit GuardedUdp(const GuardedUdpDescriptor &descriptor)
         : ChainingTransport(descriptor),
           _descriptor(descriptor),
-          _guard(descriptor.Chosen().Mode),
+          _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod),
           _announcements(descriptor.Chosen().AnnouncementPeriod)
     {
         _descriptor.Chosen().Owed->Set([this] { SendOwed(); });

@@ -42,7 +42,8 @@ public:
     using TimePoint = KnownPeers::TimePoint;
     using Deliver = std::function<void(std::span<const std::uint8_t>)>;
 
-    explicit RtpsGuard(Mode mode) : _mode(mode) {}
+    // The period in which all announce themselves.
+    RtpsGuard(Mode mode, std::chrono::milliseconds period) : _mode(mode), _replies(period) {}
 
     // Hands on what of a datagram the vendor may see: all, a part, or nothing. Parts that it must not see are
     // blanked in place, and the counts that it tells repeats by are replaced (those of acknowledgements as
