@@ -104,6 +104,13 @@ void CapacityEstimate::Reported(Peer peer, Duration delay, Duration arrivedAt, D
     _limited = _limited && !IsUnused(now);
 }
 
+void CapacityEstimate::Forget()
+{
+    _reports.Clear();
+    _limited = false;
+    _agreed = false;
+}
+
 void CapacityEstimate::Congested(Duration now)
 {
     const double sent = _limited ? _carried : _sent.Between(now - 1s, now);

@@ -50,6 +50,10 @@ public:
     // itself came later than the peer's quickest.
     void Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now);
 
+    // What was learned says nothing any more, as when DDS has had the air for itself: unlimited until peers
+    // agree on a delay anew.
+    void Forget();
+
     // Bytes a second; empty: unlimited. Changes with time, too: ask ten times a second while there is a rate.
     std::optional<double> Rate(Duration now) const;
     // The queue that is in front of the next datagram, as far as known.

@@ -41,6 +41,8 @@ public:
 
     void Add(Peer peer, Duration delay, Duration arrivedAt, Duration now);
 
+    void Clear() { _peers.clear(); }
+
     // By the newest reports of those who have said something lately; empty: nobody.
     std::optional<Duration> Latest(Duration now) const;
     // Whether the peers agree that datagrams come later than that: more than half of them by their last two

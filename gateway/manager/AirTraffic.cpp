@@ -84,9 +84,19 @@ void AirTraffic::Reported(CapacityEstimate::Peer peer, Duration delay, Duration 
 std::size_t AirTraffic::TakeSent()
 {
     const TransportCounters counters = _session->Counters();
+    LookAtDiscovery(counters.DiscoveryBytes);
     const std::uint64_t sent = counters.DiscoveryBytes + counters.SampleBytes;
     const std::uint64_t before = std::exchange(_sent, sent);
     return static_cast<std::size_t>(sent - std::min(sent, before));
+}
+
+void AirTraffic::LookAtDiscovery(std::uint64_t sent)
+{
+    const std::uint64_t before = std::exchange(_discovered, sent);
+    if (_discovery.IsOverAfter(static_cast<std::size_t>(sent - std::min(sent, before)), Now()))
+    {
+        _estimate.Forget();
+    }
 }
 
 // What went since the last look, and was not paid for.

@@ -12,6 +12,7 @@
 #include "air/AirCost.h"
 #include "air/AirSchedule.h"
 #include "air/CapacityEstimate.h"
+#include "air/DiscoveryBurst.h"
 #include "air/UnscheduledShare.h"
 #include "gateway.idl.h"
 #include "manager/AirReport.h"
@@ -60,6 +61,7 @@ private:
     bool IsLimited() const { return !_schedule.Budget().IsUnlimited(); }
     // Bytes that went since the last call.
     std::size_t TakeSent();
+    void LookAtDiscovery(std::uint64_t sent);
     void Watch(Duration now);
     void SetLimit(Duration now);
     Duration ServeUnlimited(Duration now);
@@ -79,6 +81,7 @@ private:
 
     AirSchedule _schedule;
     CapacityEstimate _estimate;
+    DiscoveryBurst _discovery;
     UnscheduledShare _unscheduled;
     StreamId _beat;
     std::vector<StreamId> _publisherStreams;
@@ -87,6 +90,7 @@ private:
 
     double _beatBytes = 150.0;  // on the air, of late ones
     std::uint64_t _sent = 0;    // as the transport counts, when it was last asked
+    std::uint64_t _discovered = 0;
     Duration _watchedAt{0};
     Duration _limitSetAt{0};
 };

@@ -114,6 +114,21 @@ TEST_F(CapacityEstimateTest, WhatRisesIsLimitedToWhatWasCarried)
     EXPECT_LE(highest, 1.6 * Carries);
 }
 
+TEST_F(CapacityEstimateTest, WhatIsForgottenLimitsNoMoreUntilPeersAgreeAnew)
+{
+    RunUntil(5s);
+    ASSERT_GT(Rate(), 0.0);
+    Estimate.Forget();
+    EXPECT_FALSE(Estimate.Rate(5s));
+    Backlog = 0.0;
+    Offered = 1e3;
+    RunUntil(10s);
+    EXPECT_FALSE(Estimate.Rate(10s));
+    Offered = 100e3;
+    RunUntil(15s);
+    EXPECT_TRUE(Estimate.Rate(15s));
+}
+
 TEST_F(CapacityEstimateTest, FindsWhatTheRadioCarriesAndKeepsTheQueueShort)
 {
     RunUntil(30s);
