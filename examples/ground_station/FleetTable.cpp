@@ -1,8 +1,11 @@
 #include "FleetTable.h"
 
+#include "PathText.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <utility>
 
 namespace Ground
 {
@@ -84,6 +87,8 @@ std::string LogLine(const FleetRow &row, double elapsedS)
         line += " no pose yet";
     }
     line += ", mission " + (row.Mission.empty() ? "unknown" : Printable(row.Mission, MissionWidth));
+    const std::string path = PathLogText(row);
+    line += path.empty() ? "" : ", " + path;
     return line + ", commands " + std::to_string(row.Sent) + " sent " + std::to_string(row.Acknowledged) +
            " acknowledged";
 }
@@ -114,7 +119,8 @@ std::string Printable(const std::string &text, std::size_t longest)
     return printable;
 }
 
-std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS)
+std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS,
+                                       std::size_t columns)
 {
     const auto count = [&rows](RowState state)
     {
@@ -128,9 +134,14 @@ std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double
     std::size_t nodeWidth = NodeWidth;
     for (const FleetRow &row : rows)
         nodeWidth = std::clamp(row.Node.size(), nodeWidth, MaxNodeWidth);
-    lines.push_back({TableHeading(nodeWidth), Emphasis::Heading});
+    const std::string heading = TableHeading(nodeWidth);
+    const bool wide = heading.size() + PathColumnsWidth <= columns;
+    lines.push_back({heading + (wide ? PathHeading() : ""), Emphasis::Heading});
     for (const FleetRow &row : rows)
-        lines.push_back({TableRow(row, nodeWidth), EmphasisOf(row)});
+        lines.push_back({TableRow(row, nodeWidth) + (wide ? PathColumns(row) : ""), EmphasisOf(row)});
+    if (!wide)
+        for (std::string &line : PathLines(rows, columns))
+            lines.push_back({std::move(line)});
     return lines;
 }
 

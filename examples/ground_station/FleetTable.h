@@ -2,7 +2,9 @@
 // first.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +35,8 @@ struct FleetRow
     std::string Mission;  // empty: not known
     std::uint64_t Sent = 0;
     std::uint64_t Acknowledged = 0;
+    double RoundTripS = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
+    double DeliveryRate = 0;  // bytes a second of queue messages that arrive there; 0: not known
 
     // A pose older than this is marked as old even if the aircraft is UP.
     static constexpr double FreshS = 1.0;
@@ -55,9 +59,11 @@ struct TableLine
     Emphasis Shown = Emphasis::None;
 };
 
-// The table with a title and a heading, for a screen. What is not fresh stands in parentheses and its age
-// behind an exclamation mark, so that it is told apart without colours too.
-std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS);
+// The table with a title and a heading, for a screen of so many columns. What is not fresh stands in
+// parentheses and its age behind an exclamation mark, so that it is told apart without colours too. How the
+// way to each aircraft does stands in columns of its own, or below the table where there is no room for them.
+std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS,
+                                       std::size_t columns = 80);
 
 // One self-contained line for each row, for a log: time, then the same columns as in the table, named.
 std::vector<std::string> FleetLogLines(const std::vector<FleetRow> &rows, double elapsedS);

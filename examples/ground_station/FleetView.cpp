@@ -1,6 +1,7 @@
 #include "FleetView.h"
 
 #include "ProblemLines.h"
+#include "RadioLines.h"
 
 #include <rabit/gateway/GatewayManager.h>
 
@@ -26,13 +27,12 @@ TerminalScreen::Size TerminalSize()
 }
 }  // namespace
 
-FleetView::FleetView(const std::vector<std::string> &expected, Output output,
-                     Rabit::RabitWorkspace &workspace)
-    : RabitManager("FleetView", workspace), _output(output)
+FleetView::FleetView(const Settings &settings, Output output, Rabit::RabitWorkspace &workspace)
+    : RabitManager("FleetView", workspace), _output(output), _radio(settings.MaxRates)
 {
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
     AddPublishSubscribeMessage("CommandTally", _tally);
-    for (const std::string &node : expected)
+    for (const std::string &node : settings.Expected)
         _aircraft[node] = {std::make_unique<AircraftMonitor>(node, workspace), true};
     SetWakeupTimeDelayMSec(static_cast<int>((_output.IsTerminal ? ScreenPeriod : LogPeriod).count()));
 }
@@ -52,6 +52,8 @@ void FleetView::Look()
 {
     _fleet->FetchMessage();
     _tally->FetchMessage();
+    if (_fleet->WasPosted())
+        _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
     FollowNewNodes();
     _seen.clear();
     for (auto &[node, aircraft] : _aircraft)
@@ -59,6 +61,11 @@ void FleetView::Look()
         Seen seen;
         seen.Row.Node = node;
         seen.Row.State = StateOf(*_fleet, _fleet->GetAgeSeconds(), node);
+        if (const auto *const status = StatusOf(*_fleet, node))
+        {
+            seen.Row.RoundTripS = status->round_trip_s;
+            seen.Row.DeliveryRate = status->delivery_rate;
+        }
         aircraft.Monitor->Show(seen.Row);
         if (!aircraft.Expected && !seen.Row.AgeS && seen.Row.Mission.empty())
             continue;  // not an aircraft, as far as can be told
@@ -101,7 +108,10 @@ void FleetView::Print()
 
 void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
 {
-    std::vector<TableLine> lines = FleetTableLines(rows, elapsedS);
+    const TerminalScreen::Size size = TerminalSize();
+    std::vector<TableLine> lines = FleetTableLines(rows, elapsedS, size.Columns);
+    for (TableLine &line : RadioTableLines(_radio.Use(), _fleet->GetAgeSeconds(), size.Columns))
+        lines.push_back(std::move(line));
     for (const Seen &seen : _seen)
         for (const FoundTarget &target : seen.Targets)
             lines.push_back({TargetLine(target)});
@@ -110,7 +120,7 @@ void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
     std::vector<std::string> above;
     if (_output.TakeLog)
         above = _output.TakeLog();
-    _output.Stream << _screen.Redraw(lines, TerminalSize(), above);
+    _output.Stream << _screen.Redraw(lines, size, above);
 }
 
 void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
@@ -119,6 +129,9 @@ void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
         _output.Stream << line << '\n';
     for (const std::string &line : TargetLinesThatChanged())
         _output.Stream << line << '\n';
+    const std::string radio = RadioLogLine(_radio.Use(), _fleet->GetAgeSeconds(), elapsedS);
+    if (!radio.empty())
+        _output.Stream << radio << '\n';
     const std::string problems = ProblemLogLine(_fleet->problems, _fleet->GetAgeSeconds(), elapsedS);
     if (!problems.empty())
         _output.Stream << problems << '\n';

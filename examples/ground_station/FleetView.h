@@ -3,6 +3,7 @@
 #include "AircraftMonitor.h"
 #include "FleetTable.h"
 #include "NodeState.h"
+#include "RadioWatch.h"
 #include "TargetLines.h"
 #include "TerminalScreen.h"
 #include "gateway.idl.h"
@@ -23,8 +24,8 @@ namespace Ground
 {
 
 // Shows the fleet on the standard output: the manager `FleetView`. On a terminal it redraws a table in place,
-// else it writes a line a second for each aircraft. What keeps data from flowing stands below, as long as it
-// is so.
+// else it writes a line a second for each aircraft. What the radio does stands below, and what keeps data
+// from flowing, as long as it is so.
 //
 // Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose, <node>/MissionState and
 // <node>/Findings of each of them; and CommandTally of the Commander.
@@ -35,6 +36,12 @@ class FleetView : public Rabit::RabitManager
 public:
     static constexpr std::chrono::milliseconds ScreenPeriod{200};
     static constexpr std::chrono::milliseconds LogPeriod{1000};
+
+    struct Settings
+    {
+        std::vector<std::string> Expected;  // names of aircraft
+        RateLimits MaxRates{};              // of this node's configuration
+    };
 
     // Where to show it. The stream must outlive the manager; nobody else may write to it while the manager
     // runs.
@@ -55,7 +62,7 @@ public:
         std::vector<FoundTarget> Targets;
     };
 
-    FleetView(const std::vector<std::string> &expected, Output output,
+    FleetView(const Settings &settings, Output output,
               Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 
     void Startup() final;
@@ -84,6 +91,7 @@ private:
     std::vector<Seen> _seen;
     std::map<std::string, Uav::TargetStage> _shownStages;  // by the name of the target
     TerminalScreen _screen;
+    RadioWatch _radio;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
 };

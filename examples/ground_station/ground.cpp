@@ -119,12 +119,21 @@ std::unique_ptr<Ground::WebServer> MakeWebServer(const Options &options)
     return std::make_unique<Ground::WebServer>(settings);
 }
 
-std::unique_ptr<Ground::WebPage> MakeWebPage(const Options &options, const std::string &node,
+Ground::RateLimits MaxRatesOf(const Rabit::GatewayConfig &config)
+{
+    Ground::RateLimits rates;
+    for (const Rabit::PublishRule &rule : config.Publish)
+        if (rule.MaxRate > 0)
+            rates[rule.Message] = rule.MaxRate;
+    return rates;
+}
+
+std::unique_ptr<Ground::WebPage> MakeWebPage(const Options &options, const Rabit::GatewayConfig &config,
                                              std::unique_ptr<Ground::WebServer> server)
 {
     std::cerr << "Web page: " << Ground::WebPageUrl(server->Endpoint()) << std::endl;
-    return std::make_unique<Ground::WebPage>(Ground::WebPage::Settings{node, options.Expected},
-                                             std::move(server));
+    return std::make_unique<Ground::WebPage>(
+        Ground::WebPage::Settings{config.Node, options.Expected, MaxRatesOf(config)}, std::move(server));
 }
 
 Ground::Commander::Settings CommanderSettings(const Options &options, const std::string &node,
@@ -202,7 +211,8 @@ int Watch(const Options &options)
         log.emplace();
         output.TakeLog = [&log] { return log->Take(); };
     }
-    auto view = std::make_unique<Ground::FleetView>(options.Expected, output);
+    auto view = std::make_unique<Ground::FleetView>(
+        Ground::FleetView::Settings{options.Expected, MaxRatesOf(config)}, output);
     auto commander = std::make_unique<Ground::Commander>(CommanderSettings(options, config.Node, area));
     const Ground::FleetView &theView = *view;  // the reactor keeps both until the end of this function
     Ground::Commander &theCommander = *commander;
@@ -211,7 +221,7 @@ int Watch(const Options &options)
     reactor.AddManager(std::move(view));
     reactor.AddManager(std::move(commander));
     if (server)
-        reactor.AddManager(MakeWebPage(options, config.Node, std::move(server)));
+        reactor.AddManager(MakeWebPage(options, config, std::move(server)));
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
     {

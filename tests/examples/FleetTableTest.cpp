@@ -105,6 +105,30 @@ TEST(FleetTable, FitsATerminalOf80Columns)
         EXPECT_LE(line.Text.size(), 80u) << line.Text;
 }
 
+TEST(FleetTable, ShowsTheWayToEachAircraftInColumnsOfAWideTerminal)
+{
+    FleetRow known = Fresh();
+    known.RoundTripS = 0.0124;
+    known.DeliveryRate = 3210;
+    const auto lines = FleetTableLines({known, Fresh()}, 0, 97);
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_THAT(lines[1].Text, testing::EndsWith("ACKED  RTT ms     kB/s"));
+    EXPECT_THAT(lines[2].Text, testing::EndsWith("    2      12     3.21"));
+    EXPECT_THAT(lines[3].Text, testing::EndsWith("    2       -        -"));
+    EXPECT_LE(lines[1].Text.size(), 97u);
+}
+
+TEST(FleetTable, ShowsTheWayToEachAircraftBelowANarrowTable)
+{
+    FleetRow known = Fresh();
+    known.RoundTripS = 0.0124;
+    known.DeliveryRate = 3210;
+    const auto lines = FleetTableLines({known, Fresh()}, 0, 96);
+    ASSERT_EQ(lines.size(), 5u);
+    EXPECT_THAT(lines[1].Text, testing::EndsWith("ACKED"));
+    EXPECT_EQ(lines[4].Text, "Round trips: uav1 12 ms 3.2 kB/s");
+}
+
 TEST(FleetTable, KeepsItsColumnsWithLongNamesAndAges)
 {
     FleetRow row = WithState(RowState::Lost, 86400);
@@ -131,6 +155,15 @@ TEST(FleetLog, ShowsOneLineForEachRow)
                     "mission GOTO 3, commands 3 sent 2 acknowledged",
                     "   12.4 s  uav1   LOST    OLD pose (age 6.31 s) 49.2574181 -123.2432101 91.2 m 3.4 m/s, "
                     "mission GOTO 3, commands 3 sent 2 acknowledged"));
+}
+
+TEST(FleetLog, TellsOfTheWayThere)
+{
+    FleetRow row = Fresh();
+    row.RoundTripS = 0.0124;
+    row.DeliveryRate = 3210;
+    EXPECT_THAT(FleetLogLines({row}, 0)[0],
+                testing::HasSubstr("mission GOTO 3, round trip 12 ms, delivers 3.2 kB/s, commands 3 sent"));
 }
 
 TEST(FleetLog, SaysThatThereIsNoPoseYet)

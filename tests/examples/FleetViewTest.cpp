@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -30,6 +31,7 @@ protected:
     std::ostringstream _out;
     Rabit::RabitSteppedReactor _reactor{_workspace};
     const Ground::FleetView *_view = nullptr;
+    double _roundTripS = std::numeric_limits<double>::quiet_NaN();
 
     void SetUp() override
     {
@@ -38,8 +40,8 @@ protected:
     }
     void Start(const std::vector<std::string> &expected)
     {
-        auto view =
-            std::make_unique<Ground::FleetView>(expected, Ground::FleetView::Output{_out, false}, _workspace);
+        auto view = std::make_unique<Ground::FleetView>(Ground::FleetView::Settings{expected, {{"Slow", 1}}},
+                                                        Ground::FleetView::Output{_out, false}, _workspace);
         _view = view.get();
         _reactor.AddManager(std::move(view));
         _reactor.Start();
@@ -50,6 +52,7 @@ protected:
         Rabit::Gateway::NodeStatus status;
         status.node = "uav1";
         status.state = state;
+        status.round_trip_s = _roundTripS;
         _fleet->nodes = {status};
         _fleet->PostMessage();
         return Printed();
@@ -131,6 +134,40 @@ TEST_F(FleetView, ShowsWhatKeepsDataFromFlowingAsLongAsItIsSo)
     EXPECT_THAT(Show(NodeState::UP), HasSubstr("1 problem: subscribe Pse (uav1)"));
     _fleet->problems.clear();
     EXPECT_THAT(Show(NodeState::UP), testing::Not(HasSubstr("problem")));
+}
+
+TEST_F(FleetView, ShowsTheRadioInOneShortLineWhileNothingLimitsIt)
+{
+    Start({"uav1"});
+    EXPECT_THAT(Printed(), testing::Not(HasSubstr("radio")));
+    _fleet->air.used = 1230;
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr(" s  radio not limited, 1.2 kB/s used\n"));
+}
+
+TEST_F(FleetView, ShowsWhatIsHeldBackByABudgetButNotByTheConfiguration)
+{
+    Start({"uav1"});
+    _fleet->air.budget = 5000;
+    _fleet->publications.resize(2);
+    _fleet->publications[0].message = "Pose";
+    _fleet->publications[1].message = "Slow";
+    for (int i = 0; i < 3; ++i)
+    {
+        for (auto &publication : _fleet->publications)
+            publication.offered += 10;
+        _fleet->publications[0].replaced += 4;
+        _fleet->publications[1].replaced += 9;
+        Show(NodeState::UP);
+    }
+    EXPECT_THAT(_out.str(), HasSubstr("held back: 4.0 posts/s; Pose: 10.0/s posted, 6.0/s sent\n"));
+}
+
+TEST_F(FleetView, ShowsTheWayToAnAircraftAsOldWhenItIsLost)
+{
+    Start({"uav1"});
+    _roundTripS = 0.0124;
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr(", round trip 12 ms, "));
+    EXPECT_THAT(Show(NodeState::LOST), HasSubstr(", OLD round trip 12 ms, "));
 }
 
 TEST_F(FleetView, ShowsWhatTheCommanderHasSent)

@@ -127,7 +127,8 @@ Json ToJson(const AircraftData &aircraft)
                    {"state", WireName(aircraft.State)},
                    {"reason", aircraft.Reason},
                    {"heard_s", Short(aircraft.HeardS)},
-                   {"round_trip_s", Rounded(aircraft.RoundTripS, 1e5)}};
+                   {"round_trip_s", Rounded(aircraft.RoundTripS, 1e5)},
+                   {"delivery_rate", Rounded(aircraft.DeliveryRate, 1)}};
     Add(object, "pose", aircraft.Pose);
     Add(object, "mission", aircraft.Mission);
     Add(object, "health", aircraft.Health);
@@ -208,6 +209,43 @@ Json ToJson(const std::vector<Rabit::Gateway::Problem> &problems)
     }
     return {{"count", problems.size()}, {"items", std::move(items)}};
 }
+
+// Bytes a second. What is not set is null.
+Json ToJson(const Rabit::Gateway::AirStatus &air)
+{
+    const auto limit = [](double value) { return value > 0 ? Rounded(value, 1) : Json(nullptr); };
+    return {{"budget", limit(air.budget)},
+            {"capacity", limit(air.capacity)},
+            {"used", Rounded(air.used, 1)},
+            {"presence", Rounded(air.presence, 1)},
+            {"command", Rounded(air.command, 1)},
+            {"state", Rounded(air.state, 1)},
+            {"telemetry", Rounded(air.telemetry, 1)},
+            {"bulk", Rounded(air.bulk, 1)},
+            {"discovery", Rounded(air.discovery, 1)}};
+}
+
+Json ToJson(const RadioUse &use)
+{
+    if (!use.Known)
+        return nullptr;
+    Json streams = Json::array();
+    for (std::size_t i = 0; i < std::min(use.Streams.size(), HeldInSnapshot); ++i)
+        streams.push_back({{"message", use.Streams[i].Message},
+                           {"posted_per_s", Rounded(use.Streams[i].PostedPerS, 10)},
+                           {"sent_per_s", Rounded(use.Streams[i].SentPerS, 10)}});
+    Json links = Json::array();
+    for (std::size_t i = 0; i < std::min(use.Links.size(), HeldInSnapshot); ++i)
+        links.push_back({{"node", use.Links[i].Node},
+                         {"queue", use.Links[i].Queue},
+                         {"waiting", use.Links[i].Waiting},
+                         {"expired", use.Links[i].Expired}});
+    return {{"air", ToJson(use.Air)},
+            {"posts_held_per_s", Rounded(use.PostsHeldPerS, 10)},
+            {"messages_held", use.MessagesHeld},
+            {"streams", {{"count", use.Streams.size()}, {"items", std::move(streams)}}},
+            {"links", {{"count", use.Links.size()}, {"items", std::move(links)}}}};
+}
 }  // namespace
 
 std::string SnapshotText(const StationData &data, const std::deque<StationEvent> &events)
@@ -223,7 +261,8 @@ std::string SnapshotText(const StationData &data, const std::deque<StationEvent>
                      {"fleet_age_s", Short(data.FleetAgeS)},
                      {"aircraft", std::move(aircraft)},
                      {"events", ToJson(events, data.NowS)},
-                     {"problems", ToJson(data.Problems)}};
+                     {"problems", ToJson(data.Problems)},
+                     {"radio", ToJson(data.Radio)}};
     Add(snapshot, "area", data.Area);
     snapshot["commands"] = data.Commands ? ToJson(*data.Commands.Content, data.Commands.AgeS) : Json::array();
     return snapshot.dump(-1, ' ', false, Json::error_handler_t::replace);

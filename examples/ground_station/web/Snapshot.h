@@ -15,6 +15,8 @@ inline constexpr std::size_t CommandsInSnapshot = 40;
 inline constexpr std::size_t EventsInSnapshot = 40;
 // The first of the problems there are now; all are counted.
 inline constexpr std::size_t ProblemsInSnapshot = 20;
+// The first of the streams and of the links that are held back; all are counted.
+inline constexpr std::size_t HeldInSnapshot = 20;
 
 // What the page is told, as JSON. Units and names are those of the IDL; what is not known is null or left
 // out. Every part has the age that it had at `server_s`, so that the page can count on. Texts from the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "FleetTable.h"
+#include "RadioWatch.h"
 #include "gateway.idl.h"
 #include "ground.idl.h"
 #include "uav.idl.h"
@@ -54,6 +55,7 @@ struct AircraftData
     std::string Reason;       // why it is not UP
     double HeardS = Unknown;  // since it was last heard
     double RoundTripS = Unknown;
+    double DeliveryRate = Unknown;  // bytes a second of queue messages that arrive there
     Aged<Uav::Pose> Pose;
     Aged<Uav::MissionState> Mission;
     Aged<Uav::Health> Health;
@@ -75,6 +77,7 @@ struct StationData
     Aged<Uav::SearchArea> Area;
     Aged<CommandList> Commands;
     std::vector<Rabit::Gateway::Problem> Problems;
+    RadioUse Radio;  // of this node, as old as the states of the aircraft
 };
 
 }  // namespace Ground

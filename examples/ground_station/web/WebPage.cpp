@@ -27,6 +27,7 @@ bool IsVision(const std::string &node)
 WebPage::WebPage(Settings settings, std::unique_ptr<WebServer> server, Rabit::RabitWorkspace &workspace)
     : RabitManager("WebPage", workspace),
       _settings(std::move(settings)),
+      _radio(_settings.MaxRates),
       _pictureQueue(std::make_shared<RabitQueue>(PicturesWaiting, "Pictures")),
       _server(std::move(server))
 {
@@ -92,6 +93,9 @@ void WebPage::Look()
     _data.Area = Latest(*_area);
     _data.Commands = Latest(*_commands);
     _data.Problems = _fleet->problems;
+    if (_fleet->WasPosted())
+        _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
+    _data.Radio = _radio.Use();
     _data.Aircraft.clear();
     for (const auto &[node, follower] : _followers)
     {
@@ -121,6 +125,7 @@ void WebPage::Show(AircraftData &data, AircraftFollower &follower) const
         data.Reason = status->reason;
         data.HeardS = status->last_heard_s + _data.FleetAgeS;
         data.RoundTripS = status->round_trip_s;
+        data.DeliveryRate = status->delivery_rate > 0 ? status->delivery_rate : AircraftData::Unknown;
     }
     follower.Show(data);
     const auto picture = _pictures.find(data.Node);

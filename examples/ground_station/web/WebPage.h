@@ -4,6 +4,7 @@
 #include "EventLog.h"
 #include "NodeState.h"
 #include "PageRequest.h"
+#include "RadioWatch.h"
 #include "StationData.h"
 #include "WebServer.h"
 #include "gateway.idl.h"
@@ -43,6 +44,7 @@ public:
     {
         std::string Node = "ground";  // of this ground station
         std::vector<std::string> Expected;
+        RateLimits MaxRates{};  // of its configuration
     };
 
     WebPage(Settings settings, std::unique_ptr<WebServer> server,
@@ -80,6 +82,7 @@ private:
     std::uint64_t _number = 0;
     StationData _data;
     EventLog _events;
+    RadioWatch _radio;
     std::map<std::string, std::unique_ptr<AircraftFollower>, NaturalOrder> _followers;
     std::map<std::string, TakenPicture> _pictures;
     OrderRate _rate;

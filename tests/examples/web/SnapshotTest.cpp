@@ -44,6 +44,7 @@ TEST_F(Snapshot, TellsWhatIsKnownWithTheAgeOfEachPart)
     Aircraft().Pose = {&_pose, 0.25};
     Aircraft().Health = {&_health, 1.5};
     Aircraft().RoundTripS = 0.0021;
+    Aircraft().DeliveryRate = 3210.4;
     _data.NowS = 12.5;
     _data.FleetAgeS = 0.5;
     const Json shown = Shown();
@@ -53,6 +54,7 @@ TEST_F(Snapshot, TellsWhatIsKnownWithTheAgeOfEachPart)
     EXPECT_EQ(aircraft["node"], "uav1");
     EXPECT_EQ(aircraft["state"], "up");
     EXPECT_EQ(aircraft["round_trip_s"], 0.0021);
+    EXPECT_EQ(aircraft["delivery_rate"], 3210);
     EXPECT_EQ(aircraft["pose"]["latitude_deg"], 47.1234568);
     EXPECT_EQ(aircraft["pose"]["speed_mps"], 5);
     EXPECT_EQ(aircraft["pose"]["age_s"], 0.25);
@@ -72,6 +74,8 @@ TEST_F(Snapshot, TellsNothingOfWhatIsNotKnown)
     const Json &aircraft = shown["aircraft"][0];
     EXPECT_TRUE(aircraft["health"]["battery_percent"].is_null());
     EXPECT_TRUE(aircraft["round_trip_s"].is_null());
+    EXPECT_TRUE(aircraft["delivery_rate"].is_null());
+    EXPECT_TRUE(shown["radio"].is_null()) << "there is no Fleet at all";
     EXPECT_TRUE(aircraft["pose"]["latitude_deg"].is_null());
     EXPECT_TRUE(aircraft["pose"]["longitude_deg"].is_null());
     EXPECT_TRUE(aircraft["pose"]["altitude_m"].is_null());
@@ -153,6 +157,74 @@ TEST_F(Snapshot, HoldsTheFirstProblemsAndCountsAll)
     EXPECT_EQ(shown["count"], 1000);
     EXPECT_EQ(shown["items"].size(), Ground::ProblemsInSnapshot);
     EXPECT_EQ(shown["items"][0]["subject"], "first");
+}
+
+TEST_F(Snapshot, TellsWhatTheRadioDoesAndWhatIsHeldBack)
+{
+    _data.Radio.Known = true;
+    _data.Radio.Air.budget = 5000;
+    _data.Radio.Air.used = 4940.4;
+    _data.Radio.Air.presence = 400;
+    _data.Radio.Air.command = 90;
+    _data.Radio.Air.state = 30;
+    _data.Radio.Air.telemetry = 4200;
+    _data.Radio.Air.bulk = 10;
+    _data.Radio.Air.discovery = 210;
+    _data.Radio.Streams = {{"Pose", 10, 6.24}};
+    _data.Radio.PostsHeldPerS = 3.76;
+    _data.Radio.Links = {{"uav2", "MissionControl", 3, 2}};
+    _data.Radio.MessagesHeld = 3;
+    const Json shown = Shown()["radio"];
+    EXPECT_EQ(shown["air"], Json({{"budget", 5000},
+                                  {"capacity", nullptr},
+                                  {"used", 4940},
+                                  {"presence", 400},
+                                  {"command", 90},
+                                  {"state", 30},
+                                  {"telemetry", 4200},
+                                  {"bulk", 10},
+                                  {"discovery", 210}}));
+    EXPECT_EQ(shown["posts_held_per_s"], 3.8);
+    EXPECT_EQ(shown["messages_held"], 3);
+    EXPECT_EQ(
+        shown["streams"],
+        Json({{"count", 1}, {"items", {{{"message", "Pose"}, {"posted_per_s", 10}, {"sent_per_s", 6.2}}}}}));
+    EXPECT_EQ(
+        shown["links"],
+        Json({{"count", 1},
+              {"items", {{{"node", "uav2"}, {"queue", "MissionControl"}, {"waiting", 3}, {"expired", 2}}}}}));
+}
+
+TEST_F(Snapshot, HoldsTheFirstOfWhatIsHeldBackAndCountsAll)
+{
+    _data.Radio.Known = true;
+    _data.Radio.Streams.resize(100);
+    _data.Radio.Links.resize(1000);
+    const Json shown = Shown()["radio"];
+    EXPECT_EQ(shown["streams"]["count"], 100);
+    EXPECT_EQ(shown["streams"]["items"].size(), Ground::HeldInSnapshot);
+    EXPECT_EQ(shown["links"]["count"], 1000);
+    EXPECT_EQ(shown["links"]["items"].size(), Ground::HeldInSnapshot);
+}
+
+TEST_F(Snapshot, TellsNothingOfARadioWhoseNumbersMakeNoSense)
+{
+    _data.Radio.Known = true;
+    _data.Radio.Air.budget = NaN;
+    _data.Radio.Air.capacity = -1;
+    _data.Radio.Air.used = std::numeric_limits<double>::infinity();
+    _data.Radio.Air.bulk = NaN;
+    _data.Radio.PostsHeldPerS = std::numeric_limits<double>::max();
+    _data.Radio.Streams = {{"\xFF", NaN, NaN}};
+    Aircraft().DeliveryRate = std::numeric_limits<double>::infinity();
+    const Json whole = Shown();
+    const Json &shown = whole["radio"];
+    for (const char *name : {"budget", "capacity", "used", "bulk"})
+        EXPECT_TRUE(shown["air"][name].is_null()) << name;
+    EXPECT_TRUE(shown["posts_held_per_s"].is_null());
+    EXPECT_EQ(shown["streams"]["items"][0]["message"], "\xEF\xBF\xBD");
+    EXPECT_TRUE(shown["streams"]["items"][0]["sent_per_s"].is_null());
+    EXPECT_TRUE(whole["aircraft"][0]["delivery_rate"].is_null());
 }
 
 TEST_F(Snapshot, TellsOfTargetsHowLongTheyWereNotSeenByTheClockOfTheAircraft)

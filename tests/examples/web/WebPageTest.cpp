@@ -49,7 +49,8 @@ protected:
         auto server = std::make_unique<Ground::WebServer>(Ground::WebServer::Settings{});
         _page = std::make_unique<PageClient>(server->Endpoint());
         _reactor.AddManager(std::make_unique<Ground::WebPage>(
-            Ground::WebPage::Settings{"ground", std::move(expected)}, std::move(server), _workspace));
+            Ground::WebPage::Settings{"ground", std::move(expected), {{"Slow", 1}}}, std::move(server),
+            _workspace));
         _reactor.Start();
         _reactor.RunDue();
         ASSERT_EQ(_page->Open(), 101u);
@@ -121,6 +122,37 @@ TEST_F(WebPage, ShowsAnExpectedAircraftBeforeItIsHeard)
     const Json shown = Shown();
     ASSERT_EQ(shown["aircraft"].size(), 1u);
     EXPECT_EQ(shown["aircraft"][0]["state"], "waiting");
+}
+
+TEST_F(WebPage, ShowsTheRadioOnceTheGatewayHasToldOfIt)
+{
+    Start({"uav1"});
+    EXPECT_TRUE(Shown()["radio"].is_null());
+    _fleet->air.used = 1230;
+    PostFleet({{"uav1", NodeState::UP}});
+    const Json shown = Shown();
+    EXPECT_EQ(shown["radio"]["air"]["used"], 1230);
+    EXPECT_TRUE(shown["aircraft"][0]["delivery_rate"].is_null()) << "it is not known";
+}
+
+TEST_F(WebPage, ShowsWhatIsHeldBackByABudgetButNotByTheConfiguration)
+{
+    Start({"uav1"});
+    _fleet->air.budget = 5000;
+    _fleet->publications.resize(2);
+    _fleet->publications[0].message = "Pose";
+    _fleet->publications[1].message = "Slow";
+    for (int i = 0; i < 3; ++i)
+    {
+        for (auto &publication : _fleet->publications)
+            publication.offered += 10;
+        _fleet->publications[0].replaced += 4;
+        _fleet->publications[1].replaced += 9;
+        PostFleet({{"uav1", NodeState::UP}});
+        _reactor.RunFor(*_clock, 1s);
+    }
+    const Json streams = Shown()["radio"]["streams"];
+    EXPECT_EQ(streams["items"], Json::parse(R"([{"message": "Pose", "posted_per_s": 10, "sent_per_s": 6}])"));
 }
 
 TEST_F(WebPage, LetsWhatItShowsGrowOld)

@@ -1,8 +1,9 @@
 // The real web page over a scripted fleet, for the tests in a browser:
 //   web_fixture AIRCRAFT [hostile] [PORT]
 // Prints the page's address, then each order that it gets. Lines on the standard input say what happens to
-// the fleet: `stale NODE`, `lost NODE`, `up NODE`, `problems COUNT` (there are so many now), `silence`
-// (nothing is posted any more); it ends at their end.
+// the fleet: `stale NODE`, `lost NODE`, `up NODE`, `problems COUNT` (there are so many now), `radio held` (it
+// has a budget, and two in five posts of Pose and some messages for uav2 are held back), `radio free` (not
+// limited), `silence` (nothing is posted any more); it ends at their end.
 #include "WebPage.h"
 #include "WebServer.h"
 
@@ -14,6 +15,7 @@
 #include <deque>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -146,6 +148,8 @@ private:
             words >> what >> node;
             if (what == "silence")
                 _silent = true;
+            if (what == "radio")
+                _held = node == "held";
             if (what == "problems")
                 SetProblems(std::stoul(node));
             for (FlyingAircraft &one : _aircraft)
@@ -203,6 +207,7 @@ private:
             status.node = one.Node;
             status.state = one.State;
             status.round_trip_s = 0.004;
+            status.delivery_rate = _hostile ? std::numeric_limits<double>::infinity() : 3210;
             if (one.State != NodeState::UP)
                 status.reason = _hostile ? Markup : "not heard";
             _fleet->nodes.push_back(status);
@@ -213,7 +218,30 @@ private:
             for (auto &problem : _fleet->problems)
                 problem.subject = problem.reason = problem.node = Markup;
         }
+        SetRadio();
         _fleet->PostMessage();
+    }
+    void SetRadio()
+    {
+        const bool held = _held || _hostile;
+        auto &air = _fleet->air;
+        air.budget = held ? 5000 : 0;
+        air.used = held ? 4940 : 1230;
+        air.telemetry = held ? 4240 : 830;
+        air.presence = 400;
+        air.discovery = held ? 300 : 0;
+        air.bulk = _hostile ? std::numeric_limits<double>::quiet_NaN() : 0;
+        _fleet->publications.resize(1);
+        auto &pose = _fleet->publications.front();
+        pose.message = _hostile ? Markup : "Pose";
+        ++pose.offered;
+        pose.replaced += held && _step % 5 < 2 ? 1 : 0;
+        _fleet->links.resize(1);
+        auto &link = _fleet->links.front();
+        link.node = _hostile ? Markup : "uav2";
+        link.queue = "MissionControl";
+        link.outbox = held ? 3 : 0;
+        link.expired = held ? 2 : link.expired;
     }
     void Fly(FlyingAircraft &one, int index)
     {
@@ -286,6 +314,7 @@ private:
     Script &_script;
     std::vector<FlyingAircraft> _aircraft;
     bool _silent = false;
+    bool _held = false;
     int _step = 0;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();

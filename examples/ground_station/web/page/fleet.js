@@ -1,8 +1,9 @@
 // The table of the aircraft, and the line about the selected one.
 import {ageText, ageWithUnit, fixed, isNumber, STATES} from './format.js';
 import {byId, element, keepList, setAttribute, setClass, setText} from './dom.js';
+import {kilo} from './radio.js';
 
-const COLUMNS = ['name', 'state', 'age number', 'rtt number', 'battery number', 'altitude number', 'speed number', 'mission'];
+const COLUMNS = ['name', 'state', 'age number', 'rtt number', 'delivery number', 'battery number', 'altitude number', 'speed number', 'mission'];
 
 export class FleetTable {
   constructor(model, onSelect) {
@@ -47,15 +48,17 @@ export class FleetTable {
     mark(cells[2], 'age number', fresh);
     setText(cells[3], isNumber(aircraft.round_trip_s) ? fixed(aircraft.round_trip_s * 1000, 1) : '–');
     mark(cells[3], 'rtt number', state === 'up');
-    setText(cells[4], health ? fixed(health.battery_percent, 0) : '–');
-    mark(cells[4], 'battery number', !health || model.isFresh(aircraft, 'health'));
-    setText(cells[5], pose ? fixed(pose.altitude_m, 0) : '–');
-    mark(cells[5], 'altitude number', fresh);
-    setText(cells[6], pose ? fixed(pose.speed_mps, 1) : '–');
-    mark(cells[6], 'speed number', fresh);
-    setText(cells[7], mission ? mission.mode.toUpperCase() + (mission.target ? ` ${mission.target}` : '') : '–');
-    mark(cells[7], 'mission', !mission || model.isFresh(aircraft, 'mission'));
-    setAttribute(cells[7], 'title', mission?.text ?? '');
+    setText(cells[4], isNumber(aircraft.delivery_rate) ? kilo(aircraft.delivery_rate) : '–');
+    mark(cells[4], 'delivery number', state === 'up');
+    setText(cells[5], health ? fixed(health.battery_percent, 0) : '–');
+    mark(cells[5], 'battery number', !health || model.isFresh(aircraft, 'health'));
+    setText(cells[6], pose ? fixed(pose.altitude_m, 0) : '–');
+    mark(cells[6], 'altitude number', fresh);
+    setText(cells[7], pose ? fixed(pose.speed_mps, 1) : '–');
+    mark(cells[7], 'speed number', fresh);
+    setText(cells[8], mission ? mission.mode.toUpperCase() + (mission.target ? ` ${mission.target}` : '') : '–');
+    mark(cells[8], 'mission', !mission || model.isFresh(aircraft, 'mission'));
+    setAttribute(cells[8], 'title', mission?.text ?? '');
   }
 
   // Arrow keys choose an aircraft.

@@ -59,14 +59,14 @@ async function showsHostileTextsAsText(programs) {
   await fleet.page.keyboard.press('Enter');
   fixture.tell('lost uav1');
   const markup = '<img src=x onerror=';
-  for (const place of ['#selected-text', '#commands', '#problems', '#events']) {
+  for (const place of ['#selected-text', '#commands', '#radio-held', '#problems', '#events']) {
     await becomes(async () => (await fleet.text(place)).includes(markup), `${place} shows the text as it is`);
   }
   await becomes(async () => (await fleet.text('#targets')).includes('<b>uav</b>'), 'the list of targets shows the text');
   await becomes(async () => (await fleet.text('#fleet')).includes('<svg onload='), 'the table shows the text');
   await watch(fleet.page, 10);
   assert.equal(await fleet.page.evaluate(() => window.pwned), undefined, 'a script of the network ran');
-  assert.equal(await fleet.page.locator('img[src="x"], #events script, #events img, #problems script, #problems img, td b, td svg').count(), 0);
+  assert.equal(await fleet.page.locator('img[src="x"], #events script, #events img, #problems script, #problems img, #radio-held script, #radio-held img, td b, td svg').count(), 0);
   // What has no way to run would be stopped by the policy as well.
   const blocked = await fleet.page.evaluate(() => new Promise((resolve) => {
     document.addEventListener('securitypolicyviolation', (event) => resolve(event.effectiveDirective), {once: true});
@@ -98,6 +98,32 @@ async function showsTheProblemsThatThereAreNow(programs) {
   assert.equal(await page.isVisible('#problems-panel'), true, 'what is still there does not scroll away');
   fixture.tell('silence');
   await becomes(async () => /old/.test(await fleet.text('#problems-title')), 'they are marked as old');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function showsWhatTheRadioHoldsBack(programs) {
+  const {fixture, url} = await start(programs, 3);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && row.delivery === '3.21', 'is shown with its delivery rate');
+  const summary = () => fleet.text('#radio-summary');
+  await becomes(async () => (await summary()) === 'not limited · 1.2 kB/s used', 'an unlimited radio takes one short line');
+  assert.equal(await fleet.text('#radio-classes'), '');
+  assert.equal(await page.isVisible('#radio-list'), false);
+  fixture.tell('radio held');
+  const list = () => fleet.text('#radio-held');
+  await becomes(async () => /posted, 6\.\d\/s sent/.test(await list()), async () => `the stream is held back: ${await list()}`);
+  assert.match(await summary(), /^budget 5\.0 kB\/s · 4\.9 kB\/s used · ▲ held back: \d+\.\d posts\/s, 3 queue messages$/);
+  assert.equal(await fleet.text('#radio-classes'), 'kB/s: presence 0.40 · telemetry 4.24 · discovery 0.30');
+  assert.match(await fleet.text('#radio-held li'), /^uav2\/MissionControl3 wait, 2 expired$/, 'commands come first');
+  assert.equal(await page.isVisible('#radio-list'), true);
+  fixture.tell('radio free');
+  await becomes(async () => (await summary()) === 'not limited · 1.2 kB/s used', 'what is gone goes');
+  await becomes(async () => !(await page.isVisible('#radio-list')), async () => `nothing is held back: ${await list()}`);
+  fixture.tell('silence');
+  await becomes(async () => /ago\)$/.test(await summary()), 'it is marked as old');
+  assert.match(await page.getAttribute('#radio-panel', 'class'), /\bold\b/);
   assert.deepEqual(fleet.errors, []);
 }
 
@@ -293,6 +319,7 @@ export const cases = {
   follows_twenty_aircraft: followsTwentyAircraft,
   shows_hostile_texts_as_text: showsHostileTextsAsText,
   shows_the_problems_that_there_are_now: showsTheProblemsThatThereAreNow,
+  shows_what_the_radio_holds_back: showsWhatTheRadioHoldsBack,
   sends_a_dragged_search_area: sendsADraggedSearchArea,
   recovers_from_a_reload_and_a_restart: recoversFromAReloadAndARestart,
   works_by_keyboard_alone: worksByKeyboardAlone,

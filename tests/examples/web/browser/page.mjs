@@ -57,13 +57,13 @@ export class FleetPage {
   text(selector) {
     return this.page.textContent(selector);
   }
-  // The row of an aircraft: {state, age, old, ...}, or null.
+  // The row of an aircraft: {state, age, old, delivery, ...}, or null.
   row(node) {
     return this.page.evaluate((name) => {
       const row = [...document.querySelectorAll('#fleet tbody tr')].find((one) => one.cells[0].textContent === name);
       if (!row) return null;
-      const [, state, age, , , altitude, , mission] = [...row.cells].map((cell) => cell.textContent);
-      return {state, age: parseFloat(age.replace('! ', '')), old: row.cells[2].classList.contains('old'), marked: age.startsWith('!'), altitude, mission};
+      const [, state, age, , delivery, , altitude, , mission] = [...row.cells].map((cell) => cell.textContent);
+      return {state, age: parseFloat(age.replace('! ', '')), old: row.cells[2].classList.contains('old'), marked: age.startsWith('!'), altitude, mission, delivery};
     }, node);
   }
   async rowBecomes(node, condition, what) {

@@ -1,0 +1,20 @@
+// Numbers as an operator reads them: few digits, and never more than a few letters, whatever the number is.
+#pragma once
+
+#include <string>
+
+namespace Ground
+{
+
+// `-`: not known (not finite, or negative).
+
+// Bytes a second, with the unit: `850 B/s`, `3.2 kB/s`, `1.5 MB/s`.
+std::string BytesPerSecondText(double bytesPerS);
+// The same as a bare number of kB/s, for a column or a list: `0.85`, `12.5`, `340`.
+std::string KiloText(double bytesPerS);
+// Events a second: `0.5`, `10.0`, `250`.
+std::string PerSecondText(double perS);
+// Milliseconds: `0.9`, `12`, `1500`.
+std::string MillisecondsText(double seconds);
+
+}  // namespace Ground
