@@ -108,7 +108,7 @@ const std::vector<DelayMeter::Report> &DelayMeter::Take(std::size_t most, Durati
         Peer &peer = next->second;
         peer.Told = true;
         peer.ToldAt = now;
-        _reports.push_back({next->first, peer.Delay, std::max(now - peer.ArrivedAt, Duration(0))});
+        _reports.push_back({&next->first, peer.Delay, std::max(now - peer.ArrivedAt, Duration(0))});
     }
     return _reports;
 }

@@ -39,7 +39,7 @@ public:
     // What is to be told to a node.
     struct Report
     {
-        std::string_view Node;
+        const std::string *Node = nullptr;
         Duration Delay{0};
         Duration Held{0};  // since that datagram arrived
     };

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "manager/ImportanceOf.h"
+#include "wire/BeatFormat.h"
 
 namespace Rabit
 {
@@ -23,6 +24,10 @@ constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 constexpr double BeatShare = 0.05;
 constexpr double SmallestBeat = 100.0;  // on the air
 constexpr Duration QuickestBeat = std::chrono::milliseconds(500);
+// Without a budget the others learn by the beats how late datagrams come, so who sends much beats more often:
+// one for so many times its bytes, but not before this time.
+constexpr double BytesForABeat = 20.0;
+constexpr Duration ShortestBeatGap = std::chrono::milliseconds(100);
 
 std::size_t LargestDatagramOf(const GatewayConfig &config)
 {
@@ -85,6 +90,8 @@ std::size_t AirTraffic::TakeSent()
 {
     const TransportCounters counters = _session->Counters();
     LookAtDiscovery(counters.DiscoveryBytes);
+    _sinceBeat += static_cast<double>(counters.SampleBytes - std::min(counters.SampleBytes, _samples));
+    _samples = counters.SampleBytes;
     const std::uint64_t sent = counters.DiscoveryBytes + counters.SampleBytes;
     const std::uint64_t before = std::exchange(_sent, sent);
     return static_cast<std::size_t>(sent - std::min(sent, before));
@@ -116,6 +123,20 @@ void AirTraffic::Watch(Duration now)
     }
 }
 
+// So much was sent that the others should have one to time it by.
+bool AirTraffic::IsBeatWorth(Duration now) const
+{
+    return _sinceBeat >= BytesForABeat * _beatBytes && !_config.Radio.Budget &&
+           now >= _beatAt + ShortestBeatGap;
+}
+
+std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
+{
+    _beatAt = now;
+    _sinceBeat = 0.0;
+    return _presence.SendBeat(now, std::min(most, BeatFormat::Largest));
+}
+
 void AirTraffic::SetLimit(Duration now)
 {
     _limitSetAt = now;
@@ -142,11 +163,13 @@ void AirTraffic::SetLimit(Duration now)
 
 Duration AirTraffic::ServeUnlimited(Duration now)
 {
-    if (now >= _presence.BeatDue())
+    Duration beatDue = _presence.BeatDue();
+    if (now >= beatDue || IsBeatWorth(now))
     {
-        _presence.SendBeat(now);
+        SendBeat(BeatFormat::Largest, now);
+        beatDue = _presence.BeatDue();
     }
-    Duration next = std::min(_presence.BeatDue(), _links.Service());
+    Duration next = std::min(beatDue, _links.Service());
     for (TopicPublisher &publisher : _publishers)
     {
         next = std::min(next, publisher.Service(Now()));
@@ -156,7 +179,7 @@ Duration AirTraffic::ServeUnlimited(Duration now)
 
 void AirTraffic::LookAtBeat(Duration now)
 {
-    if (now >= _presence.BeatDue())
+    if (now >= _presence.BeatDue() || IsBeatWorth(now))
     {
         _schedule.Ready(_beat,
                         std::min(static_cast<std::size_t>(_beatBytes), _cost.Of(_presence.BeatSize(now))));
@@ -211,7 +234,7 @@ void AirTraffic::Send(StreamId id, Duration now)
     if (id == _beat)
     {
         const std::size_t body = _cost.BodyWithin(std::max(most, AirBudget::SmallestDatagram), false);
-        _presence.SendBeat(now, std::min(body, Presence::LargestBeat));
+        SendBeat(body, now);
     }
     else if (!_linkStreams.Send(id, most, sent))
     {
@@ -229,6 +252,7 @@ void AirTraffic::Send(StreamId id, Duration now)
     }
     else if (id == _beat)
     {
+        _sinceBeat = 0.0;
         _beatBytes += (static_cast<double>(bytes) - _beatBytes) / 8.0;
         _beatBytes = std::max(_beatBytes, SmallestBeat);
         LookAtBeat(now);

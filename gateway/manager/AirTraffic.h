@@ -33,7 +33,8 @@ namespace Rabit
 //   published message. A datagram is made when its turn has come, from what is newest then.
 // - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
 //   DDS's own, is paid for, too, and a part of a budget is kept free for it.
-// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`.
+// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one there are
+//   more of them while much is sent, up to ten a second.
 //
 // Gateway's thread only.
 class AirTraffic
@@ -66,6 +67,8 @@ private:
     void SetLimit(Duration now);
     Duration ServeUnlimited(Duration now);
     Duration ServeLimited();
+    bool IsBeatWorth(Duration now) const;
+    std::size_t SendBeat(std::size_t most, Duration now);
     void LookAtBeat(Duration now);
     void LookAt(std::size_t publisher, Duration now);
     void Send(StreamId id, Duration now);
@@ -89,7 +92,10 @@ private:
     AirReport _report;
 
     double _beatBytes = 150.0;  // on the air, of late ones
-    std::uint64_t _sent = 0;    // as the transport counts, when it was last asked
+    double _sinceBeat = 0.0;    // bytes of samples that went since the last one
+    std::uint64_t _samples = 0;
+    Duration _beatAt{0};
+    std::uint64_t _sent = 0;  // as the transport counts, when it was last asked
     std::uint64_t _discovered = 0;
     Duration _watchedAt{0};
     Duration _limitSetAt{0};

@@ -148,6 +148,11 @@ public:
         {
             _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt, now);
         }
+        if (_links.HasDelays())
+        {
+            _links.TakeDelays(now, [this](const std::string &node, Duration delay, Duration arrivedAt)
+                              { _presence.NoteDelay(node, delay, arrivedAt); });
+        }
         if (served.RepeatStates)
         {
             for (TopicPublisher &publisher : _publishers)

@@ -17,7 +17,7 @@ std::uint16_t Milliseconds(DelayNotes::Duration duration)
 
 }  // namespace
 
-void DelayNotes::Note(Tag node, Duration delay, Duration arrival)
+bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
 {
     if (_notes.size() >= MostNodes && _notes.count(node) == 0)
     {
@@ -25,17 +25,18 @@ void DelayNotes::Note(Tag node, Duration delay, Duration arrival)
                       [arrival](const auto &note) { return arrival - note.second.Arrival > LongestHeld; });
         if (_notes.size() >= MostNodes)
         {
-            return;
+            return false;
         }
     }
     Entry &entry = _notes[node];
     if (arrival < entry.Arrival)
     {
-        return;
+        return false;
     }
     entry.Delay = delay;
     entry.Arrival = arrival;
     entry.IsNew = true;
+    return delay >= Large;
 }
 
 bool DelayNotes::IsDue(const Entry &entry, Duration now)

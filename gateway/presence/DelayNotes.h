@@ -23,13 +23,15 @@ public:
     using Tag = std::uint32_t;
 
     static constexpr Duration Small = std::chrono::milliseconds(20);
+    static constexpr Duration Large = std::chrono::milliseconds(60);
     static constexpr Duration SmallPeriod = std::chrono::seconds(2);
     // Older news is none.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
 
-    // A datagram of that node came at `arrival`, by this node's monotonic clock.
-    void Note(Tag node, Duration delay, Duration arrival);
+    // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns whether its sender
+    // should hear of it soon.
+    bool Note(Tag node, Duration delay, Duration arrival);
     // How many there are to be told, no more than `most`.
     std::size_t Due(Duration now, std::size_t most) const;
     // What is to be told now, in turns.

@@ -136,7 +136,7 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
         return;
     }
     const PeerTable::Peer &peer = *_peers.Find(heard.Node);
-    _contents.Delays().Note(peer.Tag, peer.Clock.LastDelay(), heard.Arrival);
+    _owesNews |= _contents.Delays().Note(peer.Tag, peer.Clock.LastDelay(), heard.Arrival);
     TakeDelays(heard, peer, served);
     TakeQuestions(heard.Beat, now, served);
     if (!heard.Beat.states.empty() || change.Offers)
@@ -263,6 +263,10 @@ Presence::Duration Presence::BeatDue() const
     {
         due = std::min(due, std::max(*question, _pace.EarliestToAsk()));
     }
+    if (_owesNews)
+    {
+        due = std::min(due, _pace.EarliestToAsk());
+    }
     if (const std::optional<Duration> answer = _contents.AnswerDue())
     {
         due = std::min(due, std::max(*answer, _pace.Earliest()));
@@ -274,7 +278,7 @@ void Presence::NoteDelay(std::string_view node, Duration delay, Duration arrived
 {
     if (const PeerTable::Peer *peer = _peers.Find(std::string(node)))
     {
-        _contents.Delays().Note(peer->Tag, delay, arrivedAt);
+        _owesNews |= _contents.Delays().Note(peer->Tag, delay, arrivedAt);
     }
 }
 
@@ -305,6 +309,7 @@ std::size_t Presence::SendBeat(Duration now, std::size_t most)
     const PostTime time = _clock.Now();
     Gateway::Beat beat = MakeBeat(time);
     _contents.Fill(beat, time.Monotonic, most);
+    _owesNews = false;
     _peers.NoteSent(beat.source_ns, time.Monotonic);
     static_cast<void>(Write(beat, time));
     _pace.Sent(now);

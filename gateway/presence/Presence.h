@@ -136,6 +136,7 @@ private:
     Introductions _introductions;
     BeatPace _pace;
     BeatContents _contents;
+    bool _owesNews = false;  // of a delay, to be told before the next beat is due
     OtherFormats _otherFormats;
     PresenceInbox _inbox;
 

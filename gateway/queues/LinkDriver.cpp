@@ -222,16 +222,12 @@ void LinkDriver::Tell(const News &news)
 }
 
 void LinkDriver::TakeDelays(Duration now,
-                            const std::function<void(std::string_view, Duration, Duration)> &take)
+                            const std::function<void(const std::string &, Duration, Duration)> &take)
 {
-    if (!_anyDelays)
-    {
-        return;
-    }
     const std::lock_guard lock(_mutex);
     for (const DelayMeter::Report &report : _delays.Take(DelayMeter::MostPeers, now))
     {
-        take(report.Node, report.Delay, now - report.Held);
+        take(*report.Node, report.Delay, now - report.Held);
     }
     _anyDelays = false;
 }

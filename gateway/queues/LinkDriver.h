@@ -71,9 +71,10 @@ public:
     void WillServe(Duration at);
     // How late the frames of other nodes come, where that is worth telling them (DelayMeter); one datagram is
     // told once. The name is valid during the call.
+    bool HasDelays() const { return _anyDelays; }
     void TakeDelays(
         Duration now,
-        const std::function<void(std::string_view node, Duration delay, Duration arrivedAt)> &take);
+        const std::function<void(const std::string &node, Duration delay, Duration arrivedAt)> &take);
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
 
     // A node is in that life. The links may learn it later, and send what is accepted meanwhile to the life

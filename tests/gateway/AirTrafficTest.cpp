@@ -253,5 +253,92 @@ TEST_F(AirTrafficTest, BulkGoesInThePausesOfWhatIsMoreImportant)
     EXPECT_EQ(arrived, 200u);
 }
 
+class ThinAirTest : public AirTrafficTest
+{
+protected:
+    ThinAirTest()
+    {
+        AddAircraft(AircraftConfig("uav1"));
+        ground = &fleet.Add(GroundConfig());
+        seen = ground->Register<Uav::Pose>("uav1/Pose");
+        Fly(5s, 5ms, 1s);
+    }
+
+    void SetRate(std::uint64_t bytesPerSecond)
+    {
+        fleet.Network.SetMedium("*", {.BytesPerSecond = bytesPerSecond});
+    }
+
+    // Flies, and returns the largest age of a pose as it came.
+    Duration OldestIn(Duration duration)
+    {
+        Duration oldest = 0s;
+        Fly(duration, 5ms, 1s,
+            [&](Duration)
+            {
+                if (seen->FetchMessage())
+                {
+                    oldest = std::max(
+                        oldest,
+                        Duration(static_cast<std::int64_t>(1e9 * seen->GetAgeSeconds(*ground->Clock))));
+                }
+            });
+        return oldest;
+    }
+
+    SimulatedNode *ground = nullptr;
+    std::shared_ptr<Uav::Pose> seen;
+};
+
+TEST_F(ThinAirTest, ANodeWithoutABudgetFollowsWhatTheAirCarries)
+{
+    SetRate(12'500);
+    OldestIn(15s);
+    const std::uint64_t before = Bytes("uav1");
+    EXPECT_LE(OldestIn(20s), 500ms);
+    EXPECT_GE(Bytes("uav1") - before, 20 * 12'500 / 2);
+    EXPECT_LE(Bytes("uav1") - before, 20 * 12'500);
+    EXPECT_NEAR(aircraft->Fleet().air.capacity, 12'500.0, 6'000.0);
+    EXPECT_EQ(ground->StateOf("uav1"), "UP");
+    EXPECT_EQ(aircraft->StateOf("ground"), "UP");
+}
+
+TEST_F(ThinAirTest, WhatTheAirCarriesAgainIsUsedAgain)
+{
+    SetRate(12'500);
+    OldestIn(30s);
+    SetRate(125'000);
+    OldestIn(15s);
+    const std::uint64_t before = Bytes("uav1");
+    OldestIn(5s);
+    EXPECT_GE(Bytes("uav1") - before, 5 * 200 * 148 * 8 / 10);
+}
+
+TEST_F(ThinAirTest, AWideWireIsNotLimited)
+{
+    EXPECT_LE(OldestIn(30s), 10ms);
+    EXPECT_EQ(aircraft->Fleet().air.capacity, 0.0);
+    EXPECT_EQ(ground->Fleet().air.capacity, 0.0);
+}
+
+TEST_F(ThinAirTest, AStepOfAWallClockIsNotTakenForThinAir)
+{
+    ground->AddIdleManager("Commands");
+    for (const double step : {-5.0, 5.0, -0.2, 0.2})
+    {
+        aircraft->Clock->SetGpsTimeSeconds(aircraft->Clock->GpsTimeSeconds() + step);
+        Fly(10s, 5ms, 1s,
+            [&](Duration passed)
+            {
+                if (passed % 100ms == 0s)
+                {
+                    SendReport(1);
+                }
+            });
+        EXPECT_EQ(aircraft->Fleet().air.capacity, 0.0) << step;
+        EXPECT_EQ(ground->Fleet().air.capacity, 0.0) << step;
+    }
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -48,7 +48,7 @@ TEST_F(DelayMeterTest, ALateDatagramIsToldAgainstTheQuickest)
     EXPECT_TRUE(Hear("uav1", 2s, 150ms));
     const auto reports = meter.Take(4, 2200ms);
     ASSERT_EQ(reports.size(), 1u);
-    EXPECT_EQ(reports[0].Node, "uav1");
+    EXPECT_EQ(*reports[0].Node, "uav1");
     EXPECT_EQ(reports[0].Delay, 150ms);
     EXPECT_EQ(reports[0].Held, 49ms);
 }
@@ -98,8 +98,8 @@ TEST_F(DelayMeterTest, WhoHasWaitedForLongestIsToldFirst)
     }
     const auto reports = meter.Take(2, 2200ms);
     ASSERT_EQ(reports.size(), 2u);
-    EXPECT_EQ(reports[0].Node, "uav3");
-    EXPECT_EQ(reports[1].Node, "uav1");
+    EXPECT_EQ(*reports[0].Node, "uav3");
+    EXPECT_EQ(*reports[1].Node, "uav1");
 }
 
 TEST_F(DelayMeterTest, AnotherLifeIsMeasuredAnew)
