@@ -41,25 +41,32 @@ bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
 
 bool DelayNotes::IsDue(const Entry &entry, Duration now)
 {
-    const bool matters = entry.Delay >= Small || entry.Told >= Small;
     return entry.IsNew && now - entry.Arrival <= LongestHeld &&
-           (matters || !entry.ToldAt || now - *entry.ToldAt >= SmallPeriod);
+           (!IsSmall(entry) || !entry.ToldAt || now - *entry.ToldAt >= SmallPeriod);
 }
 
 std::size_t DelayNotes::Due(Duration now, std::size_t most) const
 {
-    const auto due = std::count_if(_notes.begin(), _notes.end(),
-                                   [now](const auto &note) { return IsDue(note.second, now); });
-    return std::min(static_cast<std::size_t>(due), most);
+    std::size_t large = 0;
+    std::size_t small = 0;
+    for (const auto &[node, entry] : _notes)
+    {
+        if (IsDue(entry, now))
+        {
+            ++(IsSmall(entry) ? small : large);
+        }
+    }
+    return std::min(large + std::min(small, MostSmall), most);
 }
 
 std::vector<Gateway::DelayReport> DelayNotes::Take(Duration now, std::size_t most)
 {
     std::vector<Gateway::DelayReport> reports;
+    std::size_t small = 0;
     TakeTurns(_notes, _last, most,
               [&](Tag node, Entry &entry)
               {
-                  if (!IsDue(entry, now))
+                  if (!IsDue(entry, now) || (IsSmall(entry) && ++small > MostSmall))
                   {
                       return false;
                   }

@@ -25,6 +25,8 @@ public:
     static constexpr Duration Small = std::chrono::milliseconds(20);
     static constexpr Duration Large = std::chrono::milliseconds(60);
     static constexpr Duration SmallPeriod = std::chrono::seconds(2);
+    // In a large fleet a few of them are enough.
+    static constexpr std::size_t MostSmall = 2;  // at once
     // Older news is none.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
@@ -46,6 +48,7 @@ private:
         Duration Told{0};  // the delay told last
         std::optional<Duration> ToldAt;
     };
+    static bool IsSmall(const Entry &entry) { return entry.Delay < Small && entry.Told < Small; }
     static bool IsDue(const Entry &entry, Duration now);
 
     std::map<Tag, Entry> _notes;

@@ -217,7 +217,7 @@ void Presence::Note(const PeerTable::Change &change, const std::string &node, Se
         _contents.Questions().Forget(forgotten);
         served.Change.Forgotten.push_back(forgotten);
     }
-    Publish(node);
+    Publish(node, change);
 }
 
 // Live nodes beside that one and this one.
@@ -232,14 +232,17 @@ std::size_t Presence::OthersThan(const std::string &node) const
 }
 
 // Hands what is known of a node to those who read it on other threads.
-void Presence::Publish(const std::string &node)
+void Presence::Publish(const std::string &node, const PeerTable::Change &change)
 {
     const PeerTable::Peer *peer = _peers.Find(node);
     if (peer == nullptr)
     {
         return;
     }
-    _remote.Update(*peer);
+    if (change.State || change.NewLife || change.Offers)
+    {
+        _remote.Update(*peer);
+    }
     if (const std::optional<PeerClock::SourceRelation> source = peer->Clock.Source())
     {
         _origins.Set(node, OriginTable::Origin{peer->Incarnation, *source, peer->Clock.SourceToWall()});

@@ -119,7 +119,7 @@ private:
     void TakeQuestions(const Gateway::Beat &beat, Duration now, Served &served);
     void TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, Served &served) const;
     void Note(const PeerTable::Change &change, const std::string &node, Served &served);
-    void Publish(const std::string &node);
+    void Publish(const std::string &node, const PeerTable::Change &change);
     std::size_t OthersThan(const std::string &node) const;
     Gateway::Beat MakeBeat(const PostTime &time) const;
     WriteResult Write(const Gateway::Beat &beat, const PostTime &time);

@@ -69,6 +69,21 @@ TEST(DelayNotes, NodesTakeTurns)
     EXPECT_EQ(rest[0].node, 3u);
 }
 
+TEST(DelayNotes, ThatThereIsNoDelayIsToldToAFewAtOnce)
+{
+    DelayNotes notes;
+    for (std::uint32_t node = 0; node < 100; ++node)
+    {
+        notes.Note(node, 1ms, 1s);
+    }
+    notes.Note(50, 30ms, 1s);
+    EXPECT_EQ(notes.Due(1s, 16), DelayNotes::MostSmall + 1);
+    EXPECT_EQ(notes.Take(1s, 16).size(), DelayNotes::MostSmall + 1);
+    const auto next = notes.Take(1500ms, 16);
+    ASSERT_EQ(next.size(), DelayNotes::MostSmall);
+    EXPECT_GT(next[0].node, 50u) << "in turns";
+}
+
 TEST(DelayNotes, WhatIsTooLongAgoIsNoNews)
 {
     DelayNotes notes;
