@@ -180,20 +180,35 @@ TEST_F(RadioWatch, BeginsAnewWithAnotherLifeOfTheGateway)
     EXPECT_DOUBLE_EQ(Use().Streams[0].PostedPerS, 10);
 }
 
-TEST_F(RadioWatch, SurvivesCountersThatFallAndTimesThatGoBack)
+TEST_F(RadioWatch, SurvivesCountersThatFall)
 {
-    Post("Pose", std::numeric_limits<std::uint64_t>::max(), std::numeric_limits<std::uint64_t>::max());
-    Link("uav1").delivered = Link("uav1").expired = std::numeric_limits<std::uint64_t>::max();
+    constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
+    Post("Pose", largest, largest);
+    Post("Other", largest, 0);
+    Link("uav1").delivered = Link("uav1").expired = largest;
     Look();
-    Publication("Pose").offered = Publication("Pose").replaced = 0;
+    Publication("Pose").offered = Publication("Pose").replaced = Publication("Other").offered = 0;
     Link("uav1").delivered = Link("uav1").expired = 0;
-    Pass(3, [this] { Post("Pose", 10, 4); });
+    Pass(3,
+         [this]
+         {
+             Post("Pose", 10, 4);
+             Post("Other", 10, 4);
+         });
     EXPECT_THAT(Use().Streams, IsEmpty());
     EXPECT_THAT(Use().Links, IsEmpty());
+}
+
+TEST_F(RadioWatch, BeginsAnewWhenTimeGoesBack)
+{
+    Look();
+    Pass(3, [this] { Post("Pose", 10, 4); });
     _now -= 60s;
     Look();
-    EXPECT_TRUE(Use().Known);
     EXPECT_THAT(Use().Streams, IsEmpty());
+    Pass(2, [this] { Post("Pose", 10, 4); });
+    ASSERT_THAT(Use().Streams, SizeIs(1));
+    EXPECT_DOUBLE_EQ(Use().Streams[0].PostedPerS, 10);
 }
 
 TEST_F(RadioWatch, ShowsALinkForWhichMessagesWait)
