@@ -10,20 +10,25 @@ namespace Rabit
 
 bool Introductions::Ask(const std::string &node, Reason reason, std::size_t others, Duration now)
 {
-    if (!MayAsk(node, reason, now))
+    if (!Grant(node, reason, now))
     {
         return false;
     }
     _statesWanted |= reason == Reason::Heard;
+    Begin(others, now);
+    return true;
+}
+
+void Introductions::Begin(std::size_t others, Duration now)
+{
     if (!_beatsAt)
     {
         _beatsAt = std::max(now + SpreadAmong(others, _random), _last ? *_last + Together : now);
     }
-    return true;
 }
 
 // What is remembered is bounded: only who was granted something, and no longer than it counts.
-bool Introductions::MayAsk(const std::string &node, Reason reason, Duration now)
+bool Introductions::Grant(const std::string &node, Reason reason, Duration now)
 {
     std::erase_if(_asked, [now](const auto &entry) { return now - entry.second >= RestForOne; });
     const Duration restedAt = std::max(_restedAt, now) + RestForAll;

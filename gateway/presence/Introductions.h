@@ -34,7 +34,7 @@ public:
 
     enum class Reason
     {
-        Appeared,  // the transport has found the node: it wants to hear of us
+        Appeared,  // the transport has found the node: it wants to hear of us, as soon as it can
         Heard      // its first beat of a life came: it can use what we publish
     };
 
@@ -43,6 +43,9 @@ public:
     // A node has come. `others`: nodes that know of it as well; all of them hear of it at the same moment
     // (Spread.h). Returns whether this node speaks up for it.
     bool Ask(const std::string &node, Reason reason, std::size_t others, Duration now);
+    // The same in two steps: whether this node speaks up for that one, and that it is to do so now.
+    bool Grant(const std::string &node, Reason reason, Duration now);
+    void Begin(std::size_t others, Duration now);
     // When this node speaks up next; empty: for nobody.
     std::optional<Duration> Due() const;
     // Whether it is time for the first beat. Says so once.
@@ -51,8 +54,6 @@ public:
     bool TakeStates(Duration now);
 
 private:
-    bool MayAsk(const std::string &node, Reason reason, Duration now);
-
     const RandomSource _random;
     std::map<std::pair<std::string, Reason>, Duration> _asked;  // within RestForOne
     Duration _restedAt{0};                                      // nothing of MostInARow is used then

@@ -101,6 +101,11 @@ Presence::Served Presence::Service(Duration now)
             _remote.Update(*peer);
         }
     }
+    _lookedAt = now;
+    if (_watch.Look(_writer ? _writer->MatchedReaders() : 0, now))
+    {
+        _introductions.Begin(OthersThan(""), now);
+    }
     if (_introductions.TakeBeats(now))
     {
         _pace.Introduce(now);
@@ -199,9 +204,10 @@ void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
         Note(_peers.OnLeft(event.Node, event.Incarnation), event.Node, served);
     }
     // Whoever has just appeared wants to know who is here.
-    if (event.What == PeerEvent::Kind::Appeared)
+    if (event.What == PeerEvent::Kind::Appeared &&
+        _introductions.Grant(event.Node, Introductions::Reason::Appeared, now))
     {
-        _introductions.Ask(event.Node, Introductions::Reason::Appeared, OthersThan(event.Node), now);
+        _watch.Expect(now);
     }
 }
 
@@ -252,7 +258,8 @@ void Presence::Publish(const std::string &node, const PeerTable::Change &change)
 Presence::Duration Presence::NextDue() const
 {
     Duration next = Duration::max();
-    for (const std::optional<Duration> &due : {_peers.NextChange(), _introductions.Due()})
+    for (const std::optional<Duration> &due :
+         {_peers.NextChange(), _introductions.Due(), _watch.Due(_lookedAt)})
     {
         next = due ? std::min(next, *due) : next;
     }

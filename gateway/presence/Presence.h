@@ -21,6 +21,7 @@
 #include "presence/OtherFormats.h"
 #include "presence/PeerTable.h"
 #include "presence/PresenceInbox.h"
+#include "presence/ReaderWatch.h"
 #include "presence/RemoteQueues.h"
 #include "wire/BeatFormat.h"
 
@@ -134,6 +135,8 @@ private:
 
     PeerTable _peers;
     Introductions _introductions;
+    ReaderWatch _watch;
+    Duration _lookedAt{0};
     BeatPace _pace;
     BeatContents _contents;
     bool _owesNews = false;  // of a delay, to be told before the next beat is due

@@ -75,7 +75,7 @@ GatewayConfig Node(const std::string &name)
 
 TEST(Presence, ANodeThatAppearsHearsSeveralBeatsBeforeAPeriodIsOver)
 {
-    SimulatedFleet fleet;
+    SimulatedFleet fleet{1, QuickRounds()};
     fleet.Add(Node("uav1"));
     fleet.RunFor(10s);
     const BeatListener listener(fleet.Network);
@@ -123,7 +123,7 @@ protected:
         }
     }
 
-    SimulatedFleet fleet;
+    SimulatedFleet fleet{1, QuickRounds()};
 
 private:
     std::vector<std::shared_ptr<Uav::MissionState>> _states;

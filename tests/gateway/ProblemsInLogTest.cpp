@@ -49,7 +49,7 @@ protected:
     }
 
     RabitTest::CapturedLog log;
-    SimulatedFleet fleet;
+    SimulatedFleet fleet{1, QuickRounds()};
 
 private:
     std::vector<std::shared_ptr<Uav::Pose>> _poses;

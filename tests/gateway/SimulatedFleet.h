@@ -120,11 +120,23 @@ public:
     RabitSteppedReactor Reactor;
 };
 
+// Where endpoints are told at once to whoever lacks them, and not in rounds: for what has to be measured from
+// when nodes know each other.
+inline SimulatedTimings QuickRounds()
+{
+    SimulatedTimings timings;
+    timings.EndpointRound = timings.LongestEndpointRound = std::chrono::milliseconds(10);
+    return timings;
+}
+
 // Nodes in one process, on a simulated network, under one time: the seed decides all that happens.
 class SimulatedFleet
 {
 public:
-    explicit SimulatedFleet(std::uint64_t seed = 1) : Network(seed) {}
+    explicit SimulatedFleet(std::uint64_t seed = 1, const SimulatedTimings &timings = {})
+        : Network(seed, timings)
+    {
+    }
 
     // Adds and starts a node. No two nodes' clocks agree. A second node of one name needs a key of its own.
     SimulatedNode &Add(const GatewayConfig &config, double gps = 1.4e9, const std::string &key = "")
