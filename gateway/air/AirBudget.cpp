@@ -29,8 +29,11 @@ void AirBudget::SetRate(Mode mode, double bytesPerSecond, Duration now)
     _rate = std::max(bytesPerSecond, SmallestRate);
     if (before > 0.0 && _nextAt > now)
     {
-        const double left = static_cast<double>((_nextAt - now).count()) * before / Pace();
-        _nextAt = now + Duration(static_cast<Duration::rep>(left));
+        // What is under way takes as long as it does at the new rate; no longer than the longest hold-up if
+        // it did not before.
+        const auto left = static_cast<double>((_nextAt - now).count());
+        const double longest = std::max(left, static_cast<double>(LongestHoldUp / Duration(1)));
+        _nextAt = now + Duration(static_cast<Duration::rep>(std::min(left * before / Pace(), longest)));
     }
 }
 

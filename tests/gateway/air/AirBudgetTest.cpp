@@ -242,6 +242,15 @@ TEST(AirBudget, WhatWasNotScheduledHoldsUpAPaceForASecondAtMost)
     EXPECT_EQ(budget.WhenFits(100, 10s), 11s);
 }
 
+TEST(AirBudget, APaceThatFallsFarHoldsUpNobodyForLong)
+{
+    AirBudget budget(Largest);
+    budget.SetPace(1'000'000, 10s);
+    budget.Spent(50'000'000, 10s);
+    budget.SetPace(100, 10s);
+    EXPECT_LE(budget.WhenFits(100, 10s), 11s);
+}
+
 TEST(AirBudget, AHigherRateHoldsForADatagramThatIsUnderWay)
 {
     AirBudget budget(Largest);
