@@ -12,7 +12,7 @@ using Duration = AirBudget::Duration;
 
 // What a late driver may catch up.
 constexpr Duration CatchUp = std::chrono::milliseconds(10);
-// By which what was not scheduled holds up a pace at most.
+// By which what was not scheduled holds up the next datagram of a pace at most, however often it comes.
 constexpr Duration LongestHoldUp = std::chrono::seconds(1);
 
 double Seconds(Duration time)
@@ -66,7 +66,11 @@ void AirBudget::Spent(std::size_t bytes, Duration now)
     }
     else if (_mode == Mode::Pace)
     {
-        _nextAt = std::max(_nextAt, std::min(std::max(_nextAt, now) + TimeOf(bytes), now + LongestHoldUp));
+        // Nobody wanted to send for so long: nobody was held up.
+        _heldUp = now - _nextAt > LongestHoldUp ? Duration(0) : _heldUp;
+        const Duration more = std::min(TimeOf(bytes), LongestHoldUp - _heldUp);
+        _heldUp += more;
+        _nextAt = std::max(_nextAt, now) + more;
     }
 }
 
@@ -96,6 +100,7 @@ void AirBudget::Sent(std::size_t bytes, Duration now)
         return;
     }
     _nextAt = std::max(_nextAt, now - CatchUp) + TimeOf(bytes);
+    _heldUp = Duration(0);
     if (_mode == Mode::Budget)
     {
         _second.Add(bytes, 0, now);

@@ -77,6 +77,7 @@ private:
     double _rate = 0.0;
     double _reserved = 0.0;
     Duration _nextAt = Duration::min() / 2;  // the last datagram has had its time
+    Duration _heldUp{0};                     // since it went, by what was not scheduled
     SlidingSecond _second;
 };
 

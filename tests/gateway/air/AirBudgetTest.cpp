@@ -242,6 +242,23 @@ TEST(AirBudget, WhatWasNotScheduledHoldsUpAPaceForASecondAtMost)
     EXPECT_EQ(budget.WhenFits(100, 10s), 11s);
 }
 
+TEST(AirBudget, WhatIsNeverOverAndNotScheduledLeavesAPaceSomethingEachSecond)
+{
+    AirBudget budget(Largest);
+    budget.SetPace(300, 0ns);
+    int sent = 0;
+    for (Duration now = 10s; now < 30s; now += 10ms)
+    {
+        budget.Spent(100, now);
+        if (budget.MaySend(100, now))
+        {
+            budget.Sent(100, now);
+            ++sent;
+        }
+    }
+    EXPECT_GE(sent, 14);
+}
+
 TEST(AirBudget, APaceThatFallsFarHoldsUpNobodyForLong)
 {
     AirBudget budget(Largest);
