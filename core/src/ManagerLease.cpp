@@ -2,21 +2,36 @@
 
 #include "WorkspaceRegistry.h"
 
+#include <rabit/RabitLog.h>
+
 #include <algorithm>
 #include <utility>
 
 namespace Rabit
 {
 
-ManagerLease::ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup)
-    : _workspace(workspace), _wakeup(std::move(wakeup)), _owner(workspace._registry->AddManager(_wakeup))
+ManagerLease::ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup,
+                           std::string managerName)
+    : _workspace(workspace), _wakeup(std::move(wakeup)), _managerName(std::move(managerName))
 {
+    _owner = _workspace._registry->NewOwner();
+    WarnIfNotAlone(_workspace._registry->ManagerIsPresent(_owner, _managerName, _wakeup));
 }
 
 ManagerLease::~ManagerLease()
 {
     EndHandlers();
-    _workspace._registry->ManagerIsGone(_owner);
+    _workspace._registry->ManagerIsGone(_owner, _ran);
+}
+
+void ManagerLease::WarnIfNotAlone(bool alone) const
+{
+    if (!alone)
+    {
+        RabitLog::Write(RabitLogLevel::Warning,
+                        "two managers are named \"" + _managerName +
+                            "\": the one that was added last gets all messages for that queue");
+    }
 }
 
 bool ManagerLease::AddMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg)
@@ -72,6 +87,7 @@ void ManagerLease::Return()
     std::vector<Queue> queues;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
+        _ran = true;
         if (!std::exchange(_left, false))
         {
             return;
@@ -79,15 +95,44 @@ void ManagerLease::Return()
         messages = _messages;
         queues = _queues;
     }
-    _workspace._registry->ManagerReturns(_owner, _wakeup);
+    WarnIfNotAlone(_workspace._registry->ManagerIsPresent(_owner, _managerName, _wakeup));
     for (const Message &message : messages)
     {
-        _workspace.RegisterMessageFor(message.Name, message.Local, _owner, message.Global);
+        Restore(message);
     }
     for (const Queue &queue : queues)
     {
         _workspace.AddQueue(queue.Name, queue.Handle, _owner);
     }
+}
+
+void ManagerLease::Restore(const Message &message)
+{
+    const MessageRegistration registration =
+        _workspace.RegisterMessageFor(message.Name, message.Local, _owner, message.Global);
+    if (registration.Result == MessageRegistrationResult::OtherType || registration.Global == message.Global)
+    {
+        return;
+    }
+    RabitMessage *const local = message.Local.get();
+    registration.Global->_published.DisownAllOf(local);  // of an earlier message at this address
+    message.Global->_published.HandOverAllOf(local, registration.Global->_published);
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (Message &own : _messages)
+    {
+        if (own.Local == message.Local && own.Name == message.Name)
+        {
+            own.Global = registration.Global;
+        }
+    }
+}
+
+std::shared_ptr<PublishSubscribeMessage> ManagerLease::FindGlobal(const std::string &name) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = std::find_if(_messages.begin(), _messages.end(),
+                                    [&](const Message &message) { return message.Name == name; });
+    return found == _messages.end() ? nullptr : found->Global;
 }
 
 void ManagerLease::EndHandlers()
@@ -101,6 +146,11 @@ void ManagerLease::EndHandlers()
     {
         message.Global->_published.DisconnectAllOf(message.Local.get());
     }
+}
+
+void ManagerLease::AddManagerName()
+{
+    _workspace.AddManagerName(_managerName, _owner);
 }
 
 void ManagerLease::RequestShutdownOfAllManagers()

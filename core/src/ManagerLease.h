@@ -17,7 +17,10 @@ class RabitWakeup;
 class ManagerLease
 {
 public:
-    ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup);
+    // Logs a warning if the workspace has a manager of that name already.
+    ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup, std::string managerName);
+    // The names of a manager that never ran go with it; of one that ran its messages stay until a reactor
+    // leaves.
     ~ManagerLease();
     ManagerLease(const ManagerLease &) = delete;
     ManagerLease &operator=(const ManagerLease &) = delete;
@@ -26,12 +29,17 @@ public:
     void AddQueue(const std::string &name, const std::shared_ptr<RabitQueueHandle> &handle);
     // Has these managers, all of the one workspace, leave it together.
     static void Leave(RabitWorkspace &workspace, const std::vector<ManagerLease *> &leases);
-    // Registers everything again if it left. A message whose name was taken meanwhile is attached to what is
-    // there now.
+    // Before each run: registers everything again if it left. A message whose name was taken meanwhile is
+    // attached to what is there now, and its handlers with it. Warns as the constructor does.
     void Return();
+    // The global copy of a message that the manager registered under that name, also while it has left; null
+    // if there is none.
+    std::shared_ptr<PublishSubscribeMessage> FindGlobal(const std::string &name) const;
     // Disconnects the handlers that were registered through the manager's messages: they usually call the
     // manager.
     void EndHandlers();
+    // Notes that the manager was given to a reactor.
+    void AddManagerName();
     // Has all managers that are present in the workspace shut down.
     void RequestShutdownOfAllManagers();
 
@@ -48,13 +56,18 @@ private:
         std::shared_ptr<RabitQueueHandle> Handle;
     };
 
+    void WarnIfNotAlone(bool alone) const;
+    void Restore(const Message &message);
+
     RabitWorkspace &_workspace;
     const std::shared_ptr<RabitWakeup> _wakeup;
-    const std::uint64_t _owner;
-    std::mutex _mutex;
+    const std::string _managerName;
+    std::uint64_t _owner = 0;
+    mutable std::mutex _mutex;
     std::vector<Message> _messages;
     std::vector<Queue> _queues;
     bool _left = false;
+    bool _ran = false;
 };
 
 }  // namespace Rabit

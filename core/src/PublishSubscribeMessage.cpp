@@ -28,13 +28,20 @@ std::unique_ptr<RabitMessage> NotNull(std::unique_ptr<RabitMessage> message)
     return message;
 }
 
-// Takes something away for the duration of a scope and puts it back, whatever happens to it in between.
+// Puts something back as it was at the end of a scope. It stays in its place meanwhile, where others read it,
+// and is not written to unless it was changed.
 template <typename T>
 class Keeper
 {
 public:
-    explicit Keeper(T &kept) : _kept(kept), _value(std::move(kept)) {}
-    ~Keeper() { _kept = std::move(_value); }
+    explicit Keeper(T &kept) : _kept(kept), _value(kept) {}
+    ~Keeper()
+    {
+        if (_kept != _value)
+        {
+            _kept = std::move(_value);
+        }
+    }
     Keeper(const Keeper &) = delete;
     Keeper &operator=(const Keeper &) = delete;
 
@@ -54,7 +61,8 @@ PublishSubscribeMessage::PublishSubscribeMessage(std::unique_ptr<RabitMessage> s
       _published(_mutex),
       _message(NotNull(std::move(stMessage))),
       _type(typeid(*_message)),
-      _lastOwnStamp(-std::numeric_limits<double>::infinity())
+      _lastReading{-std::numeric_limits<double>::infinity(), std::chrono::nanoseconds::min()},
+      _lastStamp(-std::numeric_limits<double>::infinity())
 {
     // The copy must not hold on to another global copy, nor to itself.
     _message->_globalPublishSubscribeMessageRef.reset();
@@ -113,7 +121,12 @@ void PublishSubscribeMessage::PostMessage(RabitMessage *msg)
     {
         throw std::invalid_argument("a null message cannot be posted");
     }
-    Post(*msg, Now(), true);
+    const PostTime now = Now();
+    if (_usesSystemClock)
+    {
+        SystemTimeClock::GetSystemTimeClock()->ReportSteps();
+    }
+    Post(*msg, now, true);
 }
 
 void PublishSubscribeMessage::PostMessage(RabitMessage *msg, const PostTime &time)
@@ -139,18 +152,44 @@ inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
     }
 }
 
-void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime time, bool strictlyIncreasing)
+// Makes the time stamp of a post later than that of the last one, unless the wall clock was set back. Asks the
+// clock again, with the lock given back, if the stamp would be too far ahead of it.
+void PublishSubscribeMessage::PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock)
+{
+    const PostTime *latest = &time;
+    double stamp = time.GpsTimeSeconds;
+    while (time.GpsTimeSeconds <= _lastStamp)
+    {
+        // A post of another thread may have overtaken this one, whose time is then old, not set back.
+        const bool overtaken = time.Monotonic < _lastReading.Monotonic;
+        if (!overtaken && time.GpsTimeSeconds < _lastReading.GpsTimeSeconds - SystemTimeClock::LeastStepBack)
+        {
+            break;
+        }
+        stamp = std::nextafter(_lastStamp, std::numeric_limits<double>::infinity());
+        if (!_usesSystemClock || stamp <= time.GpsTimeSeconds + SystemTimeClock::MaxAhead)
+        {
+            latest = overtaken ? &_lastReading : &time;
+            break;
+        }
+        lock.unlock();
+        time = Now();
+        lock.lock();
+        stamp = time.GpsTimeSeconds;
+    }
+    _lastReading = *latest;
+    _lastStamp = stamp;
+    time.GpsTimeSeconds = stamp;
+}
+
+void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime time, bool byOwnClock)
 {
     RabitEvent::Handlers handlers;
     {
-        const std::lock_guard<std::mutex> lock(*_mutex);
-        if (strictlyIncreasing)
+        std::unique_lock<std::mutex> lock(*_mutex);
+        if (byOwnClock)
         {
-            if (time.GpsTimeSeconds <= _lastOwnStamp)
-            {
-                time.GpsTimeSeconds = std::nextafter(_lastOwnStamp, std::numeric_limits<double>::infinity());
-            }
-            _lastOwnStamp = time.GpsTimeSeconds;
+            PutAfterLast(time, lock);
         }
         const double formerStamp = std::exchange(msg._timeStamp, time.GpsTimeSeconds);
         if (&msg != _message.get())

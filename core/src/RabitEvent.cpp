@@ -18,32 +18,48 @@ using SlotList = std::vector<std::shared_ptr<Detail::EventSlot>>;
 namespace Detail
 {
 
-// Takes the slots that meet the condition out of the list. What their handlers own is destroyed after the
-// lock is given back.
+// Takes the slots that meet the condition out of the list and returns them. What their handlers own is
+// destroyed with what is returned, after the lock is given back.
 template <typename Condition>
-void RemoveSlots(EventState &event, Condition condition)
+SlotList TakeSlots(EventState &event, Condition condition)
 {
     std::shared_ptr<const SlotList> former;
+    SlotList taken;
     const std::lock_guard<std::mutex> lock(*event.Mutex);
     if (!event.Slots)
     {
-        return;
+        return taken;
     }
     auto remaining = std::make_shared<SlotList>();
     for (const auto &slot : *event.Slots)
     {
-        if (condition(*slot))
-        {
-            slot->Connected.store(false, std::memory_order_release);
-        }
-        else
-        {
-            remaining->push_back(slot);
-        }
+        (condition(*slot) ? taken : *remaining).push_back(slot);
     }
     event.Count.store(static_cast<int>(remaining->size()), std::memory_order_release);
     former = std::move(event.Slots);
     event.Slots = remaining->empty() ? nullptr : std::move(remaining);
+    return taken;
+}
+
+template <typename Condition>
+void RemoveSlots(EventState &event, Condition condition)
+{
+    for (const auto &slot : TakeSlots(event, condition))
+    {
+        slot->Connected.store(false, std::memory_order_release);
+    }
+}
+
+// Read-modify-write of the count: see Fire.
+static void AddSlots(EventState &event, const SlotList &added)
+{
+    std::shared_ptr<const SlotList> former;
+    const std::lock_guard<std::mutex> lock(*event.Mutex);
+    auto slots = event.Slots ? std::make_shared<SlotList>(*event.Slots) : std::make_shared<SlotList>();
+    slots->insert(slots->end(), added.begin(), added.end());
+    event.Count.exchange(static_cast<int>(slots->size()), std::memory_order_acq_rel);
+    former = std::move(event.Slots);
+    event.Slots = std::move(slots);
 }
 
 }  // namespace Detail
@@ -94,16 +110,7 @@ RabitConnection RabitEvent::Connect(RabitHandler handler, const void *owner)
         throw std::invalid_argument("an empty handler cannot be connected to an event");
     }
     const auto slot = std::make_shared<Detail::EventSlot>(std::move(handler), owner);
-    std::shared_ptr<const SlotList> former;
-    {
-        const std::lock_guard<std::mutex> lock(*_state->Mutex);
-        auto slots =
-            _state->Slots ? std::make_shared<SlotList>(*_state->Slots) : std::make_shared<SlotList>();
-        slots->push_back(slot);
-        former = std::move(_state->Slots);
-        _state->Slots = std::move(slots);
-        _state->Count.fetch_add(1, std::memory_order_acq_rel);
-    }
+    Detail::AddSlots(*_state, {slot});
     RabitConnection connection;
     connection._event = _state;
     connection._slot = slot;
@@ -119,6 +126,16 @@ void RabitEvent::DisconnectAllOf(const void *owner)
 void RabitEvent::DisconnectAll()
 {
     Detail::RemoveSlots(*_state, [](const Detail::EventSlot &) { return true; });
+}
+
+void RabitEvent::HandOverAllOf(const void *owner, RabitEvent &other)
+{
+    const SlotList slots = Detail::TakeSlots(
+        *_state, [&](const Detail::EventSlot &slot) { return owner != nullptr && slot.Owner == owner; });
+    if (!slots.empty())
+    {
+        Detail::AddSlots(*other._state, slots);
+    }
 }
 
 void RabitEvent::DisownAllOf(const void *owner)

@@ -40,7 +40,7 @@ RabitManager::RabitManager(std::string name, RabitWorkspace &workspace)
     : _name(std::move(name)),
       _workspace(workspace),
       _wakeup(std::make_shared<RabitWakeup>()),
-      _lease(std::make_unique<ManagerLease>(workspace, _wakeup))
+      _lease(std::make_unique<ManagerLease>(workspace, _wakeup, _name))
 {
     _mgrMessageQueue_sptr = std::make_shared<RabitQueue>(OwnQueueCapacity, _name);
     RegisterQueue(_name, RabitWorkspace::MakeQueueHandle(_mgrMessageQueue_sptr));

@@ -72,37 +72,27 @@ void RabitManager::ShutdownManager()
 
 void RabitManager::ShutdownAllManagers(bool value)
 {
-    // The manager's own copy may be in use by its thread.
-    if (MayTouchOwnMessages())
-    {
-        _mgrControlAllMgrs_sptr->ShutdownManager(value);
-        _mgrControlAllMgrs_sptr->PostMessage();
-    }
-    else
-    {
-        PostControlOfAllManagers(value);
-    }
     if (value)
     {
         _lease->RequestShutdownOfAllManagers();
     }
-}
-
-void RabitManager::PostControlOfAllManagers(bool shutdown)
-{
-    const auto global = _workspace.FindGlobalMessage("ManagerControlMessage");
-    ManagerControlMessage control;
-    if (global && global->MsgTypeIndex() == control.GetTypeIndex())
+    // The manager's own copy belongs to its thread, or to the one that starts and joins it.
+    if (IsInItsLoop())
     {
-        global->ForceFetchMessage(&control);
-        control.ShutdownManager(shutdown);
-        global->PostMessage(&control);
+        _mgrControlAllMgrs_sptr->ShutdownManager(value);
+        _mgrControlAllMgrs_sptr->PostMessage();
+        return;
     }
+    ManagerControlMessage control;
+    const auto global = _lease->FindGlobal("ManagerControlMessage");
+    global->ForceFetchMessage(&control);
+    control.ShutdownManager(value);
+    global->PostMessage(&control);
 }
 
-bool RabitManager::MayTouchOwnMessages() const
+bool RabitManager::IsInItsLoop() const
 {
-    return !_loopActive.load() || _loopThread.load() == std::this_thread::get_id();
+    return _loopActive.load() && _loopThread.load() == std::this_thread::get_id();
 }
 
 void RabitManager::ThreadMain()
@@ -174,6 +164,7 @@ bool RabitManager::CycleStep()
     const bool good = Guard("ExecuteUnitOfWork", ManagerStatusMessage::Error_ExecuteUnitOfWork,
                             [this] { ExecuteUnitOfWork(); });
     const std::chrono::nanoseconds end = clock.Monotonic();
+    SystemTimeClock::GetSystemTimeClock()->ReportSteps();
     CountPass(start, end);
     ObeyControlMessages();  // the unit of work may have changed them
     if (good && _lastPassFailed)
@@ -298,13 +289,16 @@ void RabitManager::ObeyControlMessages()
 template <typename Work>
 bool RabitManager::Guard(const char *what, int errorCode, Work work)
 {
+    _step.store(what, std::memory_order_relaxed);
     try
     {
         work();
+        _step.store(nullptr, std::memory_order_relaxed);
         return true;
     }
     catch (...)
     {
+        _step.store(nullptr, std::memory_order_relaxed);
         ReportFailure(what, errorCode, CurrentExceptionText());
         return false;
     }

@@ -1,11 +1,14 @@
 #include <rabit/RabitReactor.h>
 
+#include "HangWatch.h"
 #include "ManagerLease.h"
 #include "ShutdownSignals.h"
 
 #include <rabit/RabitLog.h>
 
+#include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -19,17 +22,22 @@ struct RabitReactor::State
 
     void ShutdownAll()
     {
+        const std::lock_guard<std::mutex> lock(Mutex);
         for (const auto &manager : Managers)
         {
             manager->ShutdownManager();
         }
     }
     void StartAll(ShutdownSignals &signals);
+    void AwaitEnd(ShutdownSignals &signals);
     void JoinAll();
     void Leave();
 
     RabitWorkspace &Workspace;
+    // Guards the list of managers, which another thread may walk over to shut them down.
+    std::mutex Mutex;
     std::vector<std::unique_ptr<RabitManager>> Managers;
+    std::chrono::nanoseconds Patience = std::chrono::seconds(5);
     bool HandleSignals = true;
     std::atomic<bool> Running{false};
     std::atomic<std::size_t> Ended{0};
@@ -96,7 +104,8 @@ void RabitReactor::AddManager(std::unique_ptr<RabitManager> manager)
         throw std::logic_error("manager \"" + manager->GetManagerName() +
                                "\" was added to a reactor that runs");
     }
-    state.Workspace.AddManagerName(manager->GetManagerName());
+    manager->_lease->AddManagerName();
+    const std::lock_guard<std::mutex> lock(state.Mutex);
     state.Managers.push_back(std::move(manager));
 }
 
@@ -117,6 +126,28 @@ void RabitReactor::State::StartAll(ShutdownSignals &signals)
                 Ended.fetch_add(1);
                 signals.Wake();
             });
+    }
+}
+
+void RabitReactor::State::AwaitEnd(ShutdownSignals &signals)
+{
+    bool told = false;
+    HangWatch watch(Managers.size(), Patience);
+    while (Ended.load() < Managers.size())
+    {
+        signals.WaitFor(Patience / 2);
+        if (signals.SignalCame() && !std::exchange(told, true))
+        {
+            RabitLog::Write(RabitLogLevel::Info, "a signal asks for shutdown");
+            ShutdownAll();
+        }
+        const HangWatch::Clock::time_point now = HangWatch::Clock::now();
+        for (std::size_t i = 0; i < Managers.size(); ++i)
+        {
+            const RabitManager &manager = *Managers[i];
+            watch.Look(i, manager._name, manager._loopActive.load() && manager._wakeup->IsShutdownRequested(),
+                       manager._step.load(), now);
+        }
     }
 }
 
@@ -164,16 +195,7 @@ void RabitReactor::Run()
             state.Running.store(false);
             throw;
         }
-        bool told = false;
-        while (state.Ended.load() < state.Managers.size())
-        {
-            signals.Wait();
-            if (signals.SignalCame() && !std::exchange(told, true))
-            {
-                RabitLog::Write(RabitLogLevel::Info, "a signal asks for shutdown");
-                state.ShutdownAll();
-            }
-        }
+        state.AwaitEnd(signals);
         state.JoinAll();
     }
     state.Leave();
@@ -183,6 +205,11 @@ void RabitReactor::Run()
 void RabitReactor::ShutdownAllManagers()
 {
     StateOrThrow().ShutdownAll();
+}
+
+void RabitReactor::SetPatience(std::chrono::nanoseconds patience)
+{
+    StateOrThrow().Patience = std::max<std::chrono::nanoseconds>(patience, std::chrono::milliseconds(1));
 }
 
 void RabitReactor::SetHandleSignals(bool handle)

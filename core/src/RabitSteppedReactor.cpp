@@ -35,7 +35,7 @@ void RabitSteppedReactor::AddManager(std::unique_ptr<RabitManager> manager)
         throw std::invalid_argument("manager \"" + manager->GetManagerName() +
                                     "\" belongs to another workspace than its reactor");
     }
-    _workspace.AddManagerName(manager->GetManagerName());
+    manager->_lease->AddManagerName();
     _entries.emplace_back();
     _entries.back().Manager = std::move(manager);
     if (_started)

@@ -52,9 +52,9 @@ std::vector<std::string> RabitWorkspace::GetListOfManagerNames()
     return _registry->ManagerNames();
 }
 
-void RabitWorkspace::AddManagerName(const std::string &managerName)
+void RabitWorkspace::AddManagerName(const std::string &managerName, std::uint64_t owner)
 {
-    _registry->AddManagerName(managerName);
+    _registry->AddManagerName(managerName, owner);
 }
 
 void RabitWorkspace::AddQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner)

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cerrno>
+#include <ctime>
 #include <mutex>
 
 #include <csignal>
@@ -170,9 +171,15 @@ ShutdownSignals::~ShutdownSignals()
     sem_destroy(&_own.Semaphore);
 }
 
-void ShutdownSignals::Wait()
+void ShutdownSignals::WaitFor(std::chrono::nanoseconds longest)
 {
-    sem_wait(&_place->Semaphore);  // interrupted by another signal: returns for no reason, as it may
+    const auto until = std::chrono::steady_clock::now().time_since_epoch() + longest;
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(until);
+    std::timespec deadline{};
+    deadline.tv_sec = static_cast<std::time_t>(seconds.count());
+    deadline.tv_nsec = static_cast<long>((until - seconds).count());
+    // Interrupted by another signal: returns for no reason, as it may.
+    sem_clockwait(&_place->Semaphore, CLOCK_MONOTONIC, &deadline);
 }
 
 void ShutdownSignals::Wake()

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 
 #include <semaphore.h>
 
@@ -22,8 +23,9 @@ public:
     ShutdownSignals(const ShutdownSignals &) = delete;
     ShutdownSignals &operator=(const ShutdownSignals &) = delete;
 
-    // Blocks until a signal came or Wake was called, once for each; may also return for no reason.
-    void Wait();
+    // Blocks until a signal came or Wake was called, once for each, but no longer than that; may also return
+    // for no reason.
+    void WaitFor(std::chrono::nanoseconds longest);
     // From any thread.
     void Wake();
     // Whether a signal came since construction.

@@ -1,9 +1,12 @@
 #include <rabit/SystemTimeClock.h>
 
+#include <rabit/RabitLog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <ratio>
 
 namespace Rabit
@@ -66,6 +69,7 @@ SystemTimeClock *SystemTimeClock::GetSystemTimeClock()
 SystemTimeClock::SystemTimeClock()
 {
     MeasureWallOffset();
+    _stepNotReported.store(0, std::memory_order_relaxed);  // from nothing to what the computer says
 }
 
 void SystemTimeClock::SetGpsTimeOffset()
@@ -99,11 +103,48 @@ void SystemTimeClock::MeasureWallOffset()
             break;
         }
     }
-    if (std::llabs(bestOffset - _wallOffset.load(std::memory_order_relaxed)) > bestWidth)
+    std::int64_t former = _wallOffset.load(std::memory_order_relaxed);
+    // Of several threads that find a step at once, one counts it.
+    if (std::llabs(bestOffset - former) > bestWidth &&
+        _wallOffset.compare_exchange_strong(former, bestOffset, std::memory_order_relaxed) &&
+        std::llabs(bestOffset - former) >= LeastStepReported)
     {
-        _wallOffset.store(bestOffset, std::memory_order_relaxed);
+        _stepNotReported.fetch_add(bestOffset - former, std::memory_order_relaxed);
     }
     _measuredAt.store(after, std::memory_order_release);
+}
+
+void SystemTimeClock::WriteSteps()
+{
+    const std::int64_t step = _stepNotReported.exchange(0, std::memory_order_relaxed);
+    if (step != 0)
+    {
+        char text[120];
+        std::snprintf(text, sizeof text, "the wall clock was set %s by %.3f s: time stamps follow",
+                      step < 0 ? "back" : "forward", std::fabs(static_cast<double>(step)) * 1e-9);
+        RabitLog::Write(RabitLogLevel::Warning, text);
+    }
+}
+
+// For a reading that is not later than what the thread was given last.
+PostTime SystemTimeClock::ReadAfter(PostTime time)
+{
+    LastOfThread &last = _last;
+    for (;; time = Read())
+    {
+        const double reading = time.GpsTimeSeconds;
+        if (reading <= last.Given && reading >= last.Reading - LeastStepBack)
+        {
+            const double next = std::nextafter(last.Given, std::numeric_limits<double>::infinity());
+            if (next > reading + MaxAhead)
+            {
+                continue;
+            }
+            time.GpsTimeSeconds = next;
+        }
+        last = LastOfThread{time.GpsTimeSeconds, reading};
+        return time;
+    }
 }
 
 double SystemTimeClock::GetCurrentGpsTimeInSeconds()

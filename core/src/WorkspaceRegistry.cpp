@@ -10,17 +10,21 @@
 namespace Rabit
 {
 
-std::uint64_t WorkspaceRegistry::AddManager(const std::shared_ptr<RabitWakeup> &wakeup)
+std::uint64_t WorkspaceRegistry::NewOwner()
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    _present.emplace(++_lastOwner, wakeup);
-    return _lastOwner;
+    return ++_lastOwner;
 }
 
-void WorkspaceRegistry::ManagerReturns(std::uint64_t owner, const std::shared_ptr<RabitWakeup> &wakeup)
+bool WorkspaceRegistry::ManagerIsPresent(std::uint64_t owner, const std::string &name,
+                                         const std::shared_ptr<RabitWakeup> &wakeup)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    _present.emplace(owner, wakeup);
+    const bool alone =
+        std::none_of(_present.begin(), _present.end(),
+                     [&](const auto &other) { return other.first != owner && other.second.Name == name; });
+    _present.insert_or_assign(owner, PresentManager{name, wakeup});
+    return alone;
 }
 
 // Takes the owners off all entries, and out those entries that have no owner left through that.
@@ -47,12 +51,21 @@ void WorkspaceRegistry::RemoveOwned(Map &map, const std::vector<std::uint64_t> &
     }
 }
 
-void WorkspaceRegistry::ManagerIsGone(std::uint64_t owner)
+void WorkspaceRegistry::ManagerIsGone(std::uint64_t owner, bool ran)
 {
     Removed removed;  // declared before the lock: what it holds is destroyed after the lock is given back
     const std::lock_guard<std::mutex> lock(_mutex);
     _present.erase(owner);
     RemoveOwned(_queues, {owner}, removed.Queues);
+    if (!ran)
+    {
+        RemoveOwned(_messages, {owner}, removed.Messages);
+        const auto isOfNobody = [&](ManagerName &name)
+        { return name.OwnedBy.erase(owner) > 0 && name.OwnedBy.empty(); };
+        _managerNames.erase(std::remove_if(_managerNames.begin(), _managerNames.end(), isOfNobody),
+                            _managerNames.end());
+        return;
+    }
     for (auto &message : _messages)
     {
         if (message.second.OwnedBy.erase(owner) > 0)
@@ -91,7 +104,7 @@ void WorkspaceRegistry::RequestShutdownOfAllManagers()
         const std::lock_guard<std::mutex> lock(_mutex);
         for (const auto &manager : _present)
         {
-            wakeups.push_back(manager.second);
+            wakeups.push_back(manager.second.Wakeup);
         }
     }
     for (const auto &wakeup : wakeups)
@@ -100,19 +113,30 @@ void WorkspaceRegistry::RequestShutdownOfAllManagers()
     }
 }
 
-void WorkspaceRegistry::AddManagerName(const std::string &name)
+void WorkspaceRegistry::AddManagerName(const std::string &name, std::uint64_t owner)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (std::find(_managerNames.begin(), _managerNames.end(), name) == _managerNames.end())
+    const auto found = std::find_if(_managerNames.begin(), _managerNames.end(),
+                                    [&](const ManagerName &known) { return known.Name == name; });
+    if (found != _managerNames.end())
     {
-        _managerNames.push_back(name);
+        found->OwnedBy.insert(owner);
+    }
+    else
+    {
+        _managerNames.push_back(ManagerName{name, {owner}});
     }
 }
 
 std::vector<std::string> WorkspaceRegistry::ManagerNames() const
 {
+    std::vector<std::string> names;
     const std::lock_guard<std::mutex> lock(_mutex);
-    return _managerNames;
+    for (const ManagerName &name : _managerNames)
+    {
+        names.push_back(name.Name);
+    }
+    return names;
 }
 
 MessageRegistration WorkspaceRegistry::AddMessage(const std::string &name,

@@ -26,16 +26,21 @@ class WorkspaceRegistry
 public:
     explicit WorkspaceRegistry(std::shared_ptr<const RabitClock> clock) : _clock(std::move(clock)) {}
 
-    // Managers. A manager is present from its construction until it is destroyed or its reactor has left.
-    std::uint64_t AddManager(const std::shared_ptr<RabitWakeup> &wakeup);
-    void ManagerReturns(std::uint64_t owner, const std::shared_ptr<RabitWakeup> &wakeup);
-    // Forgets the queues of a manager that is destroyed. Its messages stay until a reactor leaves.
-    void ManagerIsGone(std::uint64_t owner);
+    // Managers. A manager is present from its construction until it is destroyed or its reactor has left, and
+    // again when it runs again.
+    std::uint64_t NewOwner();
+    // False if another manager of that name is present.
+    bool ManagerIsPresent(std::uint64_t owner, const std::string &name,
+                          const std::shared_ptr<RabitWakeup> &wakeup);
+    // Forgets the queues of a manager that is destroyed, and all that it alone registered if it never ran.
+    // The messages of one that ran stay until a reactor leaves.
+    void ManagerIsGone(std::uint64_t owner, bool ran);
     // Forgets what only these managers registered, and everything if no manager is present any more.
     void ManagersLeave(const std::vector<std::uint64_t> &owners);
     void RequestShutdownOfAllManagers();
 
-    void AddManagerName(const std::string &name);
+    // The name of a manager that was given to a reactor.
+    void AddManagerName(const std::string &name, std::uint64_t owner);
     std::vector<std::string> ManagerNames() const;
 
     // global is what becomes the global copy if the name is new; null: a clone of the message.
@@ -64,6 +69,16 @@ private:
         std::shared_ptr<RabitQueueHandle> Handle;
         Owners OwnedBy;
     };
+    struct PresentManager
+    {
+        std::string Name;
+        std::shared_ptr<RabitWakeup> Wakeup;
+    };
+    struct ManagerName
+    {
+        std::string Name;
+        Owners OwnedBy;
+    };
     using MessageMap = std::unordered_map<std::string, MessageEntry>;
     using QueueMap = std::unordered_map<std::string, QueueEntry>;
     // What was taken out of the tables; destroyed by its holder after the lock is given back.
@@ -81,8 +96,8 @@ private:
     mutable std::mutex _mutex;
     MessageMap _messages;
     QueueMap _queues;
-    std::vector<std::string> _managerNames;
-    std::unordered_map<std::uint64_t, std::shared_ptr<RabitWakeup>> _present;
+    std::vector<ManagerName> _managerNames;
+    std::unordered_map<std::uint64_t, PresentManager> _present;
     std::uint64_t _lastOwner = 0;
 };
 

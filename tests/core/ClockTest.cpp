@@ -49,7 +49,7 @@ class SystemClockTest : public testing::Test
 protected:
     ~SystemClockTest() override
     {
-        Clock.SetLeapSecondOffset(17.0);
+        Clock.SetLeapSecondOffset(18.0);
         Clock.SetTimeSyncOffset(0.0);
     }
     SystemTimeClock &Clock = *SystemTimeClock::GetSystemTimeClock();
@@ -74,6 +74,7 @@ TEST_F(SystemClockTest, DoesNotGoBackFromReadingToReading)
         const double now = Clock.GetCurrentGpsTimeInSeconds();
         // What a measurement of the wall clock may take back: no more than its uncertainty.
         ASSERT_GT(now, last - 1e-3);
+        ASSERT_NE(now, last);
         last = now;
     }
 }
@@ -81,7 +82,7 @@ TEST_F(SystemClockTest, DoesNotGoBackFromReadingToReading)
 TEST_F(SystemClockTest, OffsetsTakeEffectAtOnce)
 {
     const double utc = Clock.GetCurrentUTCTimeInSeconds();
-    EXPECT_NEAR(Clock.GetCurrentGpsTimeInSeconds() - utc, 17.0, 5.0);
+    EXPECT_NEAR(Clock.GetCurrentGpsTimeInSeconds() - utc, 18.0, 5.0);
     Clock.SetTimeSyncOffset(1e6);
     EXPECT_NEAR(Clock.GetCurrentUTCTimeInSeconds() - utc, 1e6, 100.0);
     Clock.SetTimeSyncOffset(std::numeric_limits<double>::quiet_NaN());
@@ -90,9 +91,9 @@ TEST_F(SystemClockTest, OffsetsTakeEffectAtOnce)
 
 TEST_F(SystemClockTest, TheLeapSecondOffsetIsAWholeNumberFrom0To100)
 {
-    EXPECT_EQ(Clock.GetLeapSecondOffset(), 17.0);
-    Clock.SetLeapSecondOffset(18.9);
-    EXPECT_EQ(Clock.GetLeapSecondOffset(), 18.0);
+    EXPECT_EQ(Clock.GetLeapSecondOffset(), 18.0);  // since 2017-01-01
+    Clock.SetLeapSecondOffset(19.9);
+    EXPECT_EQ(Clock.GetLeapSecondOffset(), 19.0);
     Clock.SetLeapSecondOffset(-1.0);
     EXPECT_EQ(Clock.GetLeapSecondOffset(), 0.0);
     Clock.SetLeapSecondOffset(1000.0);
@@ -102,9 +103,9 @@ TEST_F(SystemClockTest, TheLeapSecondOffsetIsAWholeNumberFrom0To100)
 TEST_F(SystemClockTest, ConvertsTimePointsBothWays)
 {
     const system_clock::time_point gpsEpoch(std::chrono::seconds(SystemTimeClock::GpsEpochUnixSeconds));
-    EXPECT_EQ(Clock.ConvertTimePointToGpsTimeInSeconds(gpsEpoch), 17.0);
-    EXPECT_EQ(Clock.ConvertTimePointToGpsTimeInSecondsMethod2Resolution1Second(gpsEpoch + 1999ms), 18.0);
-    EXPECT_EQ(Clock.GpsTimeSecondsToSystemClockTimepoint(17.0), gpsEpoch);
+    EXPECT_EQ(Clock.ConvertTimePointToGpsTimeInSeconds(gpsEpoch), 18.0);
+    EXPECT_EQ(Clock.ConvertTimePointToGpsTimeInSecondsMethod2Resolution1Second(gpsEpoch + 1999ms), 19.0);
+    EXPECT_EQ(Clock.GpsTimeSecondsToSystemClockTimepoint(18.0), gpsEpoch);
     const system_clock::time_point now = system_clock::now();
     const auto back =
         Clock.GpsTimeSecondsToSystemClockTimepoint(Clock.ConvertTimePointToGpsTimeInSeconds(now));
@@ -114,7 +115,7 @@ TEST_F(SystemClockTest, ConvertsTimePointsBothWays)
 TEST_F(SystemClockTest, WritesCalendarTimes)
 {
     // 2016-12-25T13:30:15 UTC, written down as 1482672615 Unix seconds.
-    const double gps = 1482672615.0 - 315964800.0 + 17.0;
+    const double gps = 1482672615.0 - 315964800.0 + 18.0;
     EXPECT_EQ(Clock.GetUTCTimeStringFromGpsTimeStamp(gps + 0.9), "2016-12-25T13:30:15");
     const std::tm utc = Clock.GetUTCTimeStructFromGpsTimeStamp(gps);
     EXPECT_EQ(utc.tm_year, 116);
@@ -131,9 +132,9 @@ TEST_F(SystemClockTest, WritesLocalTimes)
     const std::string kept = former != nullptr ? former : "";
     setenv("TZ", "EST5", 1);
     tzset();
-    EXPECT_EQ(Clock.GetLocalTimeStringFromGpsTimeStamp(1482672615.0 - 315964800.0 + 17.0),
+    EXPECT_EQ(Clock.GetLocalTimeStringFromGpsTimeStamp(1482672615.0 - 315964800.0 + 18.0),
               "2016-12-25T08:30:15");
-    EXPECT_EQ(Clock.GetLocalTimeStructFromGpsTimeStamp(1482672615.0 - 315964800.0 + 17.0).tm_hour, 8);
+    EXPECT_EQ(Clock.GetLocalTimeStructFromGpsTimeStamp(1482672615.0 - 315964800.0 + 18.0).tm_hour, 8);
     former != nullptr ? setenv("TZ", kept.c_str(), 1) : unsetenv("TZ");
     tzset();
 }

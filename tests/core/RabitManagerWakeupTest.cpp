@@ -230,15 +230,31 @@ TEST(ManagerWakeup, OfAManagerThatIsJustDestroyedIsSafe)
                 message->PostMessage();
             }
         });
+    const auto wakeUps = std::make_shared<std::atomic<int>>(0);
+    bool eachWasWoken = true;
     for (int i = 0; i < 200; ++i)
     {
         ScriptedManager manager("Manager", workspace);
         const auto own = std::make_shared<NumberMessage>();
         manager.AddPublishSubscribeMessage("Message", own);
         manager.WakeUpManagerOnMessagePost(own);
+        const int before = *wakeUps;
+        own->Register_SomethingPublished(
+            [wakeUps, wakeUp = manager.WakeUpHandler()]
+            {
+                ++*wakeUps;
+                wakeUp();
+            });
+        // Destroyed while the other thread posts.
+        eachWasWoken = Eventually([&] { return *wakeUps > before; }) && eachWasWoken;
     }
     stop = true;
     posting.join();
+    EXPECT_TRUE(eachWasWoken);
+    const int before = *wakeUps;
+    message->PostMessage();
+    EXPECT_EQ(*wakeUps, before);
+    EXPECT_EQ(wakeUps.use_count(), 1) << "a handler outlived its manager";
 }
 
 }  // namespace

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -57,7 +60,18 @@ TEST(RabitReactor, ReturnsAtOnceWithoutManagers)
     RabitWorkspace workspace;
     RabitReactor reactor(workspace);
     reactor.AddManager(nullptr);
-    reactor.Run();
+    std::atomic<bool> returned{false};
+    std::thread running(
+        [&]
+        {
+            reactor.Run();
+            returned = true;
+        });
+    const bool byItself = Eventually([&] { return returned.load(); });
+    reactor.ShutdownAllManagers();
+    EXPECT_TRUE(byItself);
+    running.join();
+    EXPECT_TRUE(workspace.GetListOfManagerNames().empty());
 }
 
 TEST(RabitReactor, IsShutDownFromAnotherThreadThoughItsManagersSleepLong)
@@ -274,6 +288,49 @@ TEST(RabitReactor, RefusesToRunTwiceAtOnceAndToTakeManagersWhileItRuns)
     reactor.Run();
     EXPECT_TRUE(refusedRun);
     EXPECT_TRUE(refusedManager);
+}
+
+TEST(RabitReactor, SaysForWhichManagerItWaits)
+{
+    const CapturedLog log;
+    RabitWorkspace workspace;
+    RabitReactor reactor(workspace);
+    reactor.SetPatience(std::chrono::milliseconds(1));
+    ScriptedManager &hanging = AddTo(reactor, workspace, "Hanging");
+    ScriptedManager &healthy = AddTo(reactor, workspace, "Healthy");
+    const auto isSaid = [&]
+    {
+        const auto lines = log.Lines();
+        return std::any_of(lines.begin(), lines.end(),
+                           [](const std::string &line)
+                           {
+                               return line.find("waits for manager \"Hanging\"") != std::string::npos &&
+                                      line.find("in ExecuteUnitOfWork") != std::string::npos;
+                           });
+    };
+    hanging.OnWork = [&]
+    {
+        reactor.ShutdownAllManagers();
+        EXPECT_TRUE(Eventually([&] { return isSaid() && healthy.Shutdowns == 1; }));
+    };
+    reactor.Run();
+    EXPECT_TRUE(isSaid());
+}
+
+TEST(RabitReactor, SaysNothingOfAManagerThatWasNotToldToShutDown)
+{
+    const CapturedLog log;
+    RabitWorkspace workspace;
+    RabitReactor reactor(workspace);
+    reactor.SetPatience(std::chrono::milliseconds(1));
+    ScriptedManager &manager = AddTo(reactor, workspace, "Manager");
+    manager.OnWork = [&]
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // long for a reactor of that patience
+        manager.ShutdownManager();
+    };
+    reactor.Run();
+    EXPECT_TRUE(log.Lines().empty()) << log.Lines().front();
 }
 
 TEST(RabitReactor, DestroysItsManagersInReverseOrder)

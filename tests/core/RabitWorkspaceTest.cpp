@@ -164,6 +164,24 @@ TEST(RabitWorkspaceQueues, AnUnknownNameOrAFullQueueGivesFalse)
     EXPECT_FALSE(workspace.AddMessageToQueue("Queue", 6));
 }
 
+TEST(RabitWorkspaceQueues, ANullMessageIsRefusedByALocalQueueAsByARemoteOne)
+{
+    RabitWorkspace workspace;
+    const auto queue = std::make_shared<MessageQueue>(5, "Queue");
+    const auto typed = std::make_shared<RabitMessageQueue<std::shared_ptr<NumberMessage>>>(5, "Typed");
+    workspace.AddManagerMessageQueue("Queue", queue);
+    workspace.AddManagerMessageQueue("Typed", typed);
+    for (const char *name : {"Queue", "Typed", "Unknown"})
+    {
+        const auto receipt = std::make_shared<RabitQueueReceipt>();
+        EXPECT_FALSE(workspace.AddMessageToQueue(name, std::shared_ptr<NumberMessage>(), receipt)) << name;
+        EXPECT_EQ(receipt->Outcome(), QueueOutcome::Refused) << name;
+        EXPECT_FALSE(workspace.AddMessageToQueue(name, std::shared_ptr<RabitMessage>())) << name;
+    }
+    EXPECT_TRUE(queue->IsEmpty());
+    EXPECT_TRUE(typed->IsEmpty());
+}
+
 TEST(RabitWorkspaceQueues, AnElementOfAnotherTypeThrowsAClearException)
 {
     RabitWorkspace workspace;

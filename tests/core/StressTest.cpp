@@ -367,6 +367,7 @@ TEST(Stress, ManagersThatWakeEachOtherMissNoWakeUp)
     constexpr int rounds = 5000;
     RabitWorkspace workspace;
     RabitReactor reactor(workspace);
+    std::atomic<int> played{0};
     const auto addPlayer = [&](const char *name, const char *partner, bool serves)
     {
         auto manager = std::make_unique<ScriptedManager>(name, workspace);
@@ -377,23 +378,25 @@ TEST(Stress, ManagersThatWakeEachOtherMissNoWakeUp)
             player->OnStartup = [player, partner]
             { player->AddMessageToQueue(partner, std::make_shared<NumberMessage>()); };
         }
-        player->OnWork = [player, partner]
+        player->OnWork = [player, partner, &played]
         {
             std::shared_ptr<RabitMessage> ball;
             while (player->GetManagerMessageQueue()->GetMessage(ball))
             {
-                if (++static_cast<NumberMessage &>(*ball).Number == rounds)
+                if (++played < rounds)
                 {
-                    player->ShutdownAllManagers(true);
+                    player->AddMessageToQueue(partner, ball);
                 }
-                player->AddMessageToQueue(partner, ball);
             }
         };
         reactor.AddManager(std::move(manager));
     };
     addPlayer("Left", "Right", true);
     addPlayer("Right", "Left", false);
-    reactor.Run();
+    std::thread running([&] { reactor.Run(); });
+    EXPECT_TRUE(Eventually([&] { return played == rounds; })) << "it lies still after " << played;
+    reactor.ShutdownAllManagers();
+    running.join();
 }
 
 }  // namespace

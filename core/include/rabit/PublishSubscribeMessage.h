@@ -54,7 +54,10 @@ public:
     std::unique_ptr<RabitMessage> GetCopyOfMessage();
 
     // Stamps the message with the current time, copies it to the global copy, then calls the handlers. Time
-    // stamps of one name strictly increase: by the least step of a double if the clock did not move on.
+    // stamps of one name strictly increase, by the least step of a double if the clock did not move on, unless
+    // the wall clock was set back: then they follow it. By the system's clock a burst of posts, from however
+    // many threads, runs ahead by 4 us at most: then a post waits. (By another clock, which may stand still,
+    // it runs ahead as far as it must.)
     // Throws std::invalid_argument, changing nothing, if the message is of another type and refuses the copy.
     // If CopyMessage throws, that passes to the caller and the post did not happen.
     void PostMessage(RabitMessage *msg);
@@ -87,7 +90,8 @@ private:
     // Set in _sequence when GetTestMessage was called: no message's remembered sequence equals it then.
     static constexpr std::uint64_t Exposed = std::uint64_t{1} << 63;
 
-    void Post(RabitMessage &msg, PostTime time, bool strictlyIncreasing);
+    void Post(RabitMessage &msg, PostTime time, bool byOwnClock);
+    void PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock);
     bool FetchIfChanged(RabitMessage *msg);
     void CopyFromMessage(RabitMessage &msg);
     bool CopyToMessage(RabitMessage &msg);
@@ -110,7 +114,9 @@ private:
     RabitEvent _published;
     std::unique_ptr<RabitMessage> _message;
     const std::type_index _type;
-    double _lastOwnStamp;
+    // Of the last post that was stamped here: its time by the clock, and the stamp that it got.
+    PostTime _lastReading;
+    double _lastStamp;
 };
 
 }  // namespace Rabit

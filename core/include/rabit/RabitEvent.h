@@ -95,6 +95,9 @@ public:
     void DisconnectAllOf(const void *owner);
     void DisconnectAll();
     void DisownAllOf(const void *owner);
+    // Has the other event call the handlers with that mark (not null) from now on instead of this one, behind
+    // those that it has. Connections to them end nothing any more.
+    void HandOverAllOf(const void *owner, RabitEvent &other);
     // Tells all handlers. Takes no lock if there are none.
     void Fire() const;
     // The handlers connected now. The caller holds the mutex that was given to the constructor.

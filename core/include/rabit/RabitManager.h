@@ -237,14 +237,13 @@ private:
     void TakeControlMessagesAsRead();
     std::pair<std::shared_ptr<PublishSubscribeMessage>, std::shared_ptr<PublishSubscribeMessage>>
     ControlGlobals() const;
-    void PostControlOfAllManagers(bool shutdown);
     template <typename Work>
     bool Guard(const char *what, int errorCode, Work work);
     void ReportFailure(const char *what, int errorCode, const std::string &reason);
     void UpdateStats(std::chrono::nanoseconds now);
     void PostStatus();
     void PostStatusIfDue(std::chrono::nanoseconds now);
-    bool MayTouchOwnMessages() const;
+    bool IsInItsLoop() const;
 
     const std::string _name;
     RabitWorkspace &_workspace;
@@ -258,6 +257,7 @@ private:
     std::thread _thread;
     std::atomic<bool> _loopActive{false};
     std::atomic<std::thread::id> _loopThread{};
+    std::atomic<const char *> _step{nullptr};  // which of the three runs just now
 
     // Used by the loop alone.
     ManagerStats_t _stats;

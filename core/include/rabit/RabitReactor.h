@@ -3,6 +3,7 @@
 #include <rabit/RabitManager.h>
 #include <rabit/RabitWorkspace.h>
 
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -42,6 +43,10 @@ public:
     void ShutdownAllManagers();
     // Whether Run reacts to SIGINT and SIGTERM; it does unless told otherwise. Not while it runs.
     void SetHandleSignals(bool handle);
+    // A manager that was told to shut down and has not ended after this time, because a step of it does not
+    // return, is named in the log, as a warning, while Run goes on waiting for it; again each time that twice
+    // as long has passed. 5 s unless set; at least 1 ms. Not while it runs.
+    void SetPatience(std::chrono::nanoseconds patience);
 
 private:
     struct State;

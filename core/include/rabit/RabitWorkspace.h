@@ -83,7 +83,8 @@ public:
     // managers when its Run ends, and all of them if no manager of another reactor is left in the workspace.
     void LeavingReactor();
 
-    // The names of the managers that were given to a reactor, in that order, each once. -1: no such name.
+    // The names of the managers that were given to a reactor, in that order, each once. -1: no such name. A
+    // name goes with a manager that is destroyed before it ever ran, unless another one has it too.
     int GetManagerIndexNumber(std::string managerName);
     bool DoesManagerExist(std::string managerName);
     std::vector<std::string> GetListOfManagerNames();
@@ -118,8 +119,9 @@ public:
     // Adds a message to the queue of that name. The message is of the queue's element type, or a shared
     // pointer to a class derived from the one the queue holds pointers to, or something that converts to
     // std::string for a queue of those. If there is no such queue, a message that converts to a shared
-    // pointer to RabitMessage is offered to the forwarder. False if the name is unknown, the queue full, or
-    // the forwarder refuses. Throws QueueTypeException if the queue holds something else.
+    // pointer to RabitMessage is offered to the forwarder. False if the name is unknown, the queue full, the
+    // forwarder refuses, or the message is a null pointer to a RabitMessage, which no queue takes by name.
+    // Throws QueueTypeException if the queue holds something else.
     //
     // The receipt, if there is one, tells what became of the message, see RabitQueueReceipt; it learns of a
     // refusal as well. If this throws it learns nothing.
@@ -188,7 +190,7 @@ private:
     friend class RabitManager;
     friend class ManagerLease;
 
-    void AddManagerName(const std::string &managerName);
+    void AddManagerName(const std::string &managerName, std::uint64_t owner);
 
     // global is what becomes the global copy if the name is new; null: a clone of the message.
     MessageRegistration RegisterMessageFor(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
@@ -248,6 +250,13 @@ QueueAddResult RabitWorkspace::AddToHandle(RabitQueueHandle &handle, T &msg)
 template <typename T>
 bool RabitWorkspace::AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt)
 {
+    if constexpr (std::is_convertible_v<T, std::shared_ptr<RabitMessage>>)
+    {
+        if (!msg)
+        {
+            return TellReceipt(receipt, false);
+        }
+    }
     const std::shared_ptr<RabitQueueHandle> handle = FindQueue(name);
     if (handle)
     {

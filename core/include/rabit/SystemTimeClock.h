@@ -18,7 +18,12 @@ namespace Rabit
 // offset. One object for the process. All methods may be called from any thread.
 //
 // The current time is computed from the UptimeClock and its distance to the wall clock, which is measured
-// anew when the last measurement is 10 ms old: a step of the wall clock shows within that time.
+// anew when the last measurement is 10 ms old: a step of the wall clock shows within that time, and is logged
+// as a warning if it is 1 ms or more.
+//
+// Leap seconds: 18, which holds since 2017-01-01 and until the IERS announces another in its Bulletin C. A
+// program that knows better calls SetLeapSecondOffset before it makes its first message; all nodes that
+// exchange time stamps with UTC should be set alike.
 class SystemTimeClock
 {
 public:
@@ -31,7 +36,7 @@ public:
 
     // Measures the distance to the wall clock now, for a program that has just set the wall clock.
     void SetGpsTimeOffset();
-    // GPS minus UTC in seconds; 17 unless set.
+    // GPS minus UTC in seconds; 18 unless set.
     double GetLeapSecondOffset();
     // Whole seconds from 0 to 100: a fraction is cut off, other values become the nearest bound. Takes effect
     // at once. NaN is ignored.
@@ -41,10 +46,31 @@ public:
     // Takes effect at once. A value that is not finite is ignored.
     void SetTimeSyncOffset(double seconds);
 
+    // How far, in seconds, the current time may be given ahead of the clock; and how far that may go back
+    // without being followed.
+    static constexpr double MaxAhead = 2e-6;
+    static constexpr double LeastStepBack = 1e-5;
+
     // The current time, both clocks of one moment, for one clock read.
+    //
+    // A double holds GPS seconds in steps of 238 ns. Still, no two readings of one thread, one after the
+    // other, are equal: the second is one step later if the clock did not move on so far. A burst of readings
+    // thereby runs ahead of the clock, by MaxAhead at most: then a reading waits for the clock, so that a
+    // thread gets no more than one each 238 ns. A wall clock that is set back by more than LeastStepBack is
+    // followed; a smaller step is bridged like a burst.
     PostTime Now();
     double GetCurrentGpsTimeInSeconds();
     double GetCurrentUTCTimeInSeconds();
+
+    // Logs that the wall clock was set, if it was and this was not called since. Posts and managers call it:
+    // reading the time itself calls nobody. No lock may be held.
+    void ReportSteps()
+    {
+        if (_stepNotReported.load(std::memory_order_relaxed) != 0)
+        {
+            WriteSteps();
+        }
+    }
 
     // GPS seconds of a time point of the system clock. The sync offset is not part of conversions.
     double ConvertTimePointToGpsTimeInSeconds(std::chrono::system_clock::time_point timePoint);
@@ -76,22 +102,39 @@ private:
     // Age in nanoseconds at which the distance of the two clocks is measured anew.
     static constexpr std::int64_t MeasurementLifetime = 10000000;
 
+    // A step of the wall clock of so many nanoseconds is worth a line in the log.
+    static constexpr std::int64_t LeastStepReported = 1000000;
+
+    // What a thread was given last, and the reading that it was given for.
+    struct LastOfThread
+    {
+        double Given;
+        double Reading;
+    };
+
     SystemTimeClock();
+    PostTime Read();
+    PostTime ReadAfter(PostTime time);
     void MeasureWallOffset();
     void UpdateAddedSeconds();
+    void WriteSteps();
+
+    static inline thread_local LastOfThread _last{0.0, 0.0};
 
     std::mutex _mutex;
-    double _leapSeconds = 17.0;
+    double _leapSeconds = 18.0;
     double _syncSeconds = 0.0;
     // Leap plus sync offset: what is added to UTC since 1980 to give GPS time.
-    std::atomic<double> _addedSeconds{17.0};
+    std::atomic<double> _addedSeconds{18.0};
     // Wall clock minus monotonic clock in nanoseconds, and when it was measured by the monotonic clock.
     std::atomic<std::int64_t> _wallOffset{0};
     std::atomic<std::int64_t> _measuredAt{0};
+    // Nanoseconds.
+    std::atomic<std::int64_t> _stepNotReported{0};
 };
 
 // Inline for the sake of posting, of which it is the largest part.
-inline PostTime SystemTimeClock::Now()
+inline PostTime SystemTimeClock::Read()
 {
     const std::chrono::nanoseconds monotonic = UptimeClock::now().time_since_epoch();
     if (monotonic.count() - _measuredAt.load(std::memory_order_acquire) >= MeasurementLifetime)
@@ -102,6 +145,17 @@ inline PostTime SystemTimeClock::Now()
         monotonic.count() + _wallOffset.load(std::memory_order_relaxed) - GpsEpochUnixSeconds * 1000000000;
     return PostTime{static_cast<double>(sinceGpsEpoch) * 1e-9 + _addedSeconds.load(std::memory_order_relaxed),
                     monotonic};
+}
+
+inline PostTime SystemTimeClock::Now()
+{
+    const PostTime time = Read();
+    if (time.GpsTimeSeconds > _last.Given)
+    {
+        _last = LastOfThread{time.GpsTimeSeconds, time.GpsTimeSeconds};
+        return time;
+    }
+    return ReadAfter(time);
 }
 
 }  // namespace Rabit
