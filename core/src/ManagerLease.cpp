@@ -135,6 +135,20 @@ std::shared_ptr<PublishSubscribeMessage> ManagerLease::FindGlobal(const std::str
     return found == _messages.end() ? nullptr : found->Global;
 }
 
+void ManagerLease::ReadQueues(std::vector<QueueStatus_t> &queues) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    queues.resize(_queues.size());
+    for (std::size_t i = 0; i < _queues.size(); ++i)
+    {
+        const RabitQueueHandle &handle = *_queues[i].Handle;
+        queues[i].Name = _queues[i].Name;
+        queues[i].Capacity = handle.Capacity();
+        queues[i].FillLevel = handle.FillLevel();
+        queues[i].RefusedAdds = handle.RefusedAdds();
+    }
+}
+
 void ManagerLease::EndHandlers()
 {
     std::vector<Message> messages;

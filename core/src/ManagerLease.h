@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/ManagerStatusMessage.h>
 #include <rabit/RabitWorkspace.h>
 
 #include <cstdint>
@@ -35,6 +36,8 @@ public:
     // The global copy of a message that the manager registered under that name, also while it has left; null
     // if there is none.
     std::shared_ptr<PublishSubscribeMessage> FindGlobal(const std::string &name) const;
+    // What the manager's queues are like now; the first is the one that was registered first.
+    void ReadQueues(std::vector<QueueStatus_t> &queues) const;
     // Disconnects the handlers that were registered through the manager's messages: they usually call the
     // manager.
     void EndHandlers();

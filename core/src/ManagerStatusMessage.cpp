@@ -56,6 +56,7 @@ bool ManagerStatusMessage::CopyMessage(RabitMessage *msg)
     ErrorCondition = other->ErrorCondition;
     ErrorCode = other->ErrorCode;
     ManagerStats = other->ManagerStats;
+    Queues = other->Queues;
     return true;
 }
 
@@ -65,6 +66,7 @@ void ManagerStatusMessage::Clear()
     ErrorCondition = false;
     ErrorCode = 0;
     ManagerStats = ManagerStats_t();
+    Queues.clear();
 }
 
 std::string ManagerStatusMessage::ToString() const
@@ -75,6 +77,11 @@ std::string ManagerStatusMessage::ToString() const
          << "ErrorCondition: " << ErrorCondition << "\n"
          << "ErrorCode: " << ErrorCode << "\n"
          << ManagerStats.ToString();
+    for (const QueueStatus_t &queue : Queues)
+    {
+        text << "Queue " << queue.Name << ": " << queue.FillLevel << " of " << queue.Capacity
+             << ", refused: " << queue.RefusedAdds << "\n";
+    }
     return text.str();
 }
 

@@ -16,7 +16,6 @@ namespace Rabit
 namespace
 {
 
-constexpr int OwnQueueCapacity = 1000;
 constexpr double LongestDelay_Sec = 1e9;
 
 template <typename T>
@@ -36,13 +35,18 @@ RabitManager::RabitManager(std::string name) : RabitManager(std::move(name), *Ra
 {
 }
 
-RabitManager::RabitManager(std::string name, RabitWorkspace &workspace)
+RabitManager::RabitManager(std::string name, int queueCapacity)
+    : RabitManager(std::move(name), *RabitWorkspace::GetWorkspace(), queueCapacity)
+{
+}
+
+RabitManager::RabitManager(std::string name, RabitWorkspace &workspace, int queueCapacity)
     : _name(std::move(name)),
       _workspace(workspace),
       _wakeup(std::make_shared<RabitWakeup>()),
       _lease(std::make_unique<ManagerLease>(workspace, _wakeup, _name))
 {
-    _mgrMessageQueue_sptr = std::make_shared<RabitQueue>(OwnQueueCapacity, _name);
+    _mgrMessageQueue_sptr = std::make_shared<RabitQueue>(queueCapacity, _name);
     RegisterQueue(_name, RabitWorkspace::MakeQueueHandle(_mgrMessageQueue_sptr));
     WakeUpManagerOnEnqueue(_mgrMessageQueue_sptr);
 
@@ -57,6 +61,7 @@ RabitManager::RabitManager(std::string name, RabitWorkspace &workspace)
     _mgrStatus_sptr = RegisterOrThrow<ManagerStatusMessage>(*_lease, _name + ":ManagerStatusMessage");
     _mgrStatus_sptr->ManagerName = _name;
     _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Startup;
+    _lease->ReadQueues(_mgrStatus_sptr->Queues);
     _mgrStatus_sptr->PostMessage();
 }
 

@@ -344,6 +344,7 @@ void RabitManager::PostStatus()
 {
     try
     {
+        _lease->ReadQueues(_mgrStatus_sptr->Queues);
         _mgrStatus_sptr->PostMessage();
     }
     catch (...)  // out of memory, at most: the manager goes on

@@ -225,14 +225,20 @@ std::shared_ptr<RabitQueueHandle> WorkspaceRegistry::FindQueue(const std::string
 
 std::vector<QueueInfo> WorkspaceRegistry::Queues() const
 {
-    std::vector<QueueInfo> list;
+    std::vector<std::pair<std::string, std::shared_ptr<RabitQueueHandle>>> queues;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
         for (const auto &queue : _queues)
         {
-            const RabitQueueHandle &handle = *queue.second.Handle;
-            list.push_back(QueueInfo{queue.first, handle.ElementType(), handle.Capacity()});
+            queues.emplace_back(queue.first, queue.second.Handle);
         }
+    }
+    // Asking a queue takes its lock.
+    std::vector<QueueInfo> list;
+    for (const auto &[name, handle] : queues)
+    {
+        list.push_back(QueueInfo{name, handle->ElementType(), handle->Capacity(), handle->FillLevel(),
+                                 handle->RefusedAdds()});
     }
     std::sort(list.begin(), list.end(),
               [](const QueueInfo &left, const QueueInfo &right) { return left.Name < right.Name; });

@@ -51,6 +51,28 @@ TYPED_TEST(AnyQueue, HoldsExactlyItsCapacityAndRefusesMore)
     EXPECT_FALSE(queue.AddMessageNoEventTrigger(4));
 }
 
+TYPED_TEST(AnyQueue, TellsHowFullItIsAndHowManyMessagesItRefused)
+{
+    TypeParam queue(2, "Queue");
+    EXPECT_EQ(queue.NoMessagesInQueue(), 0);
+    EXPECT_TRUE(queue.IsEmpty());
+    queue.AddMessage(1);
+    queue.AddMessageNoEventTrigger(2);
+    EXPECT_EQ(queue.NoMessagesInQueue(), 2);
+    EXPECT_EQ(queue.GetNumberOfRefusedMessages(), 0U);
+    queue.AddMessage(3);
+    queue.AddMessageNoEventTrigger(4);
+    EXPECT_EQ(queue.NoMessagesInQueue(), 2);
+    EXPECT_EQ(queue.GetNumberOfRefusedMessages(), 2U);
+    int message = 0;
+    queue.GetMessage(message);
+    EXPECT_EQ(queue.NoMessagesInQueue(), 1);
+    queue.ClearMessageQueue();
+    EXPECT_FALSE(queue.GetMessage(message));
+    EXPECT_EQ(queue.NoMessagesInQueue(), 0);
+    EXPECT_EQ(queue.GetNumberOfRefusedMessages(), 2U);
+}
+
 TYPED_TEST(AnyQueue, ClampsItsCapacityAndNamesItself)
 {
     TypeParam small(-5, "");

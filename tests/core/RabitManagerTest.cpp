@@ -39,6 +39,46 @@ TEST(RabitManager, RefusesANameThatBelongsToAnotherMessage)
     EXPECT_THROW(ScriptedManager("Pilot", workspace), std::invalid_argument);
 }
 
+TEST(RabitManager, ItsOwnQueueHasTheCapacityThatWasChosen)
+{
+    class Small : public RabitManager
+    {
+    public:
+        explicit Small(RabitWorkspace &workspace) : RabitManager("Small", workspace, 3) {}
+        void ExecuteUnitOfWork() final {}
+    };
+    RabitWorkspace workspace;
+    Small manager(workspace);
+    EXPECT_EQ(manager.GetManagerMessageQueue()->GetMaxNoMessagesAllowedInQueue(), 3);
+    ScriptedManager usual("Usual", workspace);
+    EXPECT_EQ(usual.GetManagerMessageQueue()->GetMaxNoMessagesAllowedInQueue(), 1000);
+}
+
+TEST(RabitManager, ItsStatusTellsOfItsQueues)
+{
+    SteppedFixture fixture;
+    ScriptedManager &manager = fixture.Add("Pilot");
+    manager.AddManagerMessageQueue("Orders", std::make_shared<RabitMessageQueue<int>>(1, "Orders"));
+    fixture.Reactor.Start();
+    for (int i = 0; i < 3; ++i)
+    {
+        fixture.Workspace.AddMessageToQueue("Orders", i);
+        fixture.Workspace.AddMessageToQueue("Pilot", std::make_shared<NumberMessage>());
+    }
+    fixture.RunFor(11s);
+    const auto status = fixture.StatusOf("Pilot");
+    ASSERT_EQ(status->Queues.size(), 2U);
+    EXPECT_EQ(status->Queues[0].Name, "Pilot");
+    EXPECT_EQ(status->Queues[0].Capacity, 1000);
+    EXPECT_EQ(status->Queues[0].FillLevel, 3);
+    EXPECT_EQ(status->Queues[0].RefusedAdds, 0U);
+    EXPECT_EQ(status->Queues[1].Name, "Orders");
+    EXPECT_EQ(status->Queues[1].Capacity, 1);
+    EXPECT_EQ(status->Queues[1].FillLevel, 1);
+    EXPECT_EQ(status->Queues[1].RefusedAdds, 2U);
+    EXPECT_NE(status->ToString().find("Queue Orders: 1 of 1, refused: 2"), std::string::npos);
+}
+
 TEST(RabitManager, ItsQueueNameEndsWithItButNotThatOfASuccessor)
 {
     RabitWorkspace workspace;

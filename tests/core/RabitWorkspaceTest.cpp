@@ -144,6 +144,24 @@ TEST(RabitWorkspaceQueues, RegisteringReplacesAFormerQueueOfThatName)
     EXPECT_EQ(list[0].ElementType, std::type_index(typeid(double)));
 }
 
+TEST(RabitWorkspaceQueues, AreListedWithTheirFillLevelAndWhatTheyRefused)
+{
+    RabitWorkspace workspace;
+    workspace.AddManagerMessageQueue("Many", std::make_shared<RabitMessageQueue<int>>(2, "Many"));
+    workspace.AddManagerMessageQueue("Single", std::make_shared<RabitNonBlockingSPSCQueue<int>>(1, "Single"));
+    for (int i = 0; i < 3; ++i)
+    {
+        workspace.AddMessageToQueue("Many", i);
+        workspace.AddMessageToQueue("Single", i);
+    }
+    const auto list = workspace.GetListOfQueues();
+    ASSERT_EQ(list.size(), 2U);
+    EXPECT_EQ(list[0].FillLevel, 2);
+    EXPECT_EQ(list[0].RefusedAdds, 1U);
+    EXPECT_EQ(list[1].FillLevel, 1);
+    EXPECT_EQ(list[1].RefusedAdds, 2U);
+}
+
 TEST(RabitWorkspaceQueues, TakeMessagesByName)
 {
     RabitWorkspace workspace;

@@ -6,9 +6,19 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace Rabit
 {
+
+// A queue of a manager as it was when the status was posted.
+struct QueueStatus_t
+{
+    std::string Name;
+    int Capacity = 0;
+    int FillLevel = 0;              // messages that waited in it
+    std::uint64_t RefusedAdds = 0;  // messages that it had no room for, since it was made
+};
 
 // What a manager tells about itself, as "<its name>:ManagerStatusMessage".
 class ManagerStatusMessage : public RabitMessage
@@ -35,6 +45,8 @@ public:
     bool ErrorCondition = false;
     int ErrorCode = 0;
     ManagerStats_t ManagerStats;
+    // The manager's own queue, then those that it registered, in that order.
+    std::vector<QueueStatus_t> Queues;
 
     std::unique_ptr<RabitMessage> Clone() const final;
     bool CopyMessage(RabitMessage *msg) final;
@@ -42,8 +54,9 @@ public:
     void Clear() final;
     std::string ToString() const final;
     // Big endian: header, ManagerName, state (a byte), ErrorCondition, ErrorCode (int32), then the statistics
-    // in the order of their declaration up to NumberOfWakeUpCallsWhileAwake. Return the bytes used; 0, and
-    // the message stays as it is, if the buffer is too small or its contents impossible.
+    // in the order of their declaration up to NumberOfWakeUpCallsWhileAwake; nothing of the queues. Return
+    // the bytes used; 0, and the message stays as it is, if the buffer is too small or its contents
+    // impossible.
     int Serialize(std::uint8_t *buf, int maxBufSize, int stype = 0) override;
     int DeSerialize(std::uint8_t *buf, int len, int stype = 0) override;
 };

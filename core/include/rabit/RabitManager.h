@@ -52,14 +52,19 @@ class RabitManager
 {
 public:
     typedef RabitMessageQueue<std::shared_ptr<RabitMessage>> RabitQueue;
+    static constexpr int DefaultQueueCapacity = 1000;
 
     // Registers, in the default workspace: the manager's own queue under its name, with a wake-up on what is
     // added to it; "ManagerControlMessage" and "<name>:ManagerControlMessage", with a wake-up on posts; and
     // "<name>:ManagerStatusMessage", which it posts. Throws std::invalid_argument if one of these names
     // belongs to a message of another type.
+    //
+    // Logs a warning if a manager of that name is there already: the one that was made last gets all messages
+    // for the queue of that name. The capacity of the manager's own queue is clamped as that of any queue.
     explicit RabitManager(std::string name);
+    RabitManager(std::string name, int queueCapacity);
     // The same in another workspace, which must outlive the manager.
-    RabitManager(std::string name, RabitWorkspace &workspace);
+    RabitManager(std::string name, RabitWorkspace &workspace, int queueCapacity = DefaultQueueCapacity);
     virtual ~RabitManager();
     RabitManager(const RabitManager &) = delete;
     RabitManager &operator=(const RabitManager &) = delete;

@@ -134,7 +134,7 @@ private:
 
 }  // namespace Rabit
 
-#include <rabit/PublishSubscribeMessage.h>
+#include <rabit/PublishSubscribeClass.h>
 
 namespace Rabit
 {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -78,7 +79,7 @@ public:
         RabitEvent::Handlers handlers;
         {
             const std::lock_guard<std::mutex> lock(*_mutex);
-            if (!_ring.Push(msg))
+            if (!Push(msg))
             {
                 return false;
             }
@@ -92,7 +93,7 @@ public:
     bool AddMessageNoEventTrigger(T msg)
     {
         const std::lock_guard<std::mutex> lock(*_mutex);
-        return _ring.Push(msg);
+        return Push(msg);
     }
 
     // Calls the handlers for what AddMessageNoEventTrigger added: for an adder that may call nobody while it
@@ -134,11 +135,26 @@ public:
 
     bool IsEmpty() { return NoMessagesInQueue() == 0; }
 
+    // How many messages were not added because the queue was full, since it was made.
+    std::uint64_t GetNumberOfRefusedMessages()
+    {
+        const std::lock_guard<std::mutex> lock(*_mutex);
+        return _refused;
+    }
+
 private:
+    bool Push(T &msg)
+    {
+        const bool pushed = _ring.Push(msg);
+        _refused += pushed ? 0 : 1;
+        return pushed;
+    }
+
     const std::string _name;
     // Guards the messages and both lists of handlers.
     const std::shared_ptr<std::mutex> _mutex = std::make_shared<std::mutex>();
     RabitRing<T> _ring;
+    std::uint64_t _refused = 0;
     RabitEvent _enqueued{_mutex};
     RabitEvent _dequeued{_mutex};
 };

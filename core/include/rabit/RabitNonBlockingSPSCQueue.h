@@ -8,7 +8,9 @@
 #include <boost/signals2.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -63,7 +65,7 @@ public:
     // False, and no handler called, when full.
     bool AddMessage(T const &msg)
     {
-        if (!_queue.push(msg))
+        if (!AddMessageNoEventTrigger(msg))
         {
             return false;
         }
@@ -72,7 +74,12 @@ public:
     }
 
     // The same without calling handlers.
-    bool AddMessageNoEventTrigger(T const &msg) { return _queue.push(msg); }
+    bool AddMessageNoEventTrigger(T const &msg)
+    {
+        const bool added = _queue.push(msg);
+        Count(added ? _added : _refused);
+        return added;
+    }
 
     // Takes the oldest message. False, the target untouched and no handler called, when empty.
     bool GetMessage(T &msg)
@@ -81,6 +88,7 @@ public:
         {
             return false;
         }
+        Count(_taken);
         _dequeued.Fire();
         return true;
     }
@@ -88,13 +96,38 @@ public:
     // Destroys all messages. Calls no handlers. For the consumer.
     void ClearMessageQueue()
     {
-        _queue.consume_all([](T &) {});
+        _queue.consume_all([this](T &) { Count(_taken); });
     }
 
+    // How many messages wait: from any thread, but for others than the two at work the number of a moment
+    // ago.
+    int NoMessagesInQueue()
+    {
+        const std::uint64_t taken = _taken.load(std::memory_order_acquire);
+        const std::uint64_t added = _added.load(std::memory_order_acquire);
+        // The consumer may have counted a message that the producer has not counted yet.
+        return added > taken ? static_cast<int>(std::min<std::uint64_t>(
+                                   added - taken, static_cast<std::uint64_t>(_capacity)))
+                             : 0;
+    }
+    bool IsEmpty() { return NoMessagesInQueue() == 0; }
+
+    // How many messages were not added because the queue was full, since it was made.
+    std::uint64_t GetNumberOfRefusedMessages() { return _refused.load(std::memory_order_relaxed); }
+
 private:
+    // Each counter has one writer.
+    static void Count(std::atomic<std::uint64_t> &counter)
+    {
+        counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    }
+
     const std::string _name;
     const int _capacity;
     boost::lockfree::spsc_queue<T> _queue;
+    std::atomic<std::uint64_t> _added{0};
+    std::atomic<std::uint64_t> _taken{0};
+    std::atomic<std::uint64_t> _refused{0};
     RabitEvent _enqueued;
     RabitEvent _dequeued;
 };

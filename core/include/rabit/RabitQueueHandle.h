@@ -3,6 +3,7 @@
 #include <rabit/RabitEvent.h>
 #include <rabit/RabitMessage.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -33,6 +34,9 @@ public:
     virtual std::type_index QueueType() const = 0;
     virtual std::shared_ptr<void> Queue() const = 0;
     virtual int Capacity() const = 0;
+    // How many messages wait in it now, and how many were refused because it was full, since it was made.
+    virtual int FillLevel() const = 0;
+    virtual std::uint64_t RefusedAdds() const = 0;
 
     // Adds *element, which is of the given type; moves from it unless the result is WrongType.
     virtual QueueAddResult AddElement(std::type_index type, void *element) = 0;
@@ -74,6 +78,8 @@ public:
     std::type_index QueueType() const override { return typeid(QueueT); }
     std::shared_ptr<void> Queue() const override { return _queue; }
     int Capacity() const override { return _queue->GetMaxNoMessagesAllowedInQueue(); }
+    int FillLevel() const override { return _queue->NoMessagesInQueue(); }
+    std::uint64_t RefusedAdds() const override { return _queue->GetNumberOfRefusedMessages(); }
 
     QueueAddResult AddElement(std::type_index type, void *element) override
     {

@@ -55,6 +55,8 @@ struct QueueInfo
     std::string Name;
     std::type_index ElementType;
     int Capacity;
+    int FillLevel;              // messages that wait in it
+    std::uint64_t RefusedAdds;  // messages that it had no room for, since it was made
 };
 
 // The names by which managers find each other's messages and queues. Most programs have the one of
