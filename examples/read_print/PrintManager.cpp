@@ -15,26 +15,43 @@ PrintManager::PrintManager(const Options &options) : RabitManager("PrintManager"
 
 void PrintManager::Startup()
 {
-    std::cout << "PrintManager: ready" << std::endl;
+    SayThatItWaits();
 }
 
 void PrintManager::ExecuteUnitOfWork()
 {
-    // A fetch brings the last line only, however many were posted since the one before.
-    if (_line->FetchMessage())
+    if (PrintWhatIsThere())
     {
+        SayThatItWaits();
+    }
+}
+
+bool PrintManager::PrintWhatIsThere()
+{
+    bool printed = false;
+    // A fetch brings the last line only, however many were posted since the one before.
+    if (_line->FetchMessage() && _line->WasPosted())
+    {
+        printed = true;
         std::cout << "posted: " << _line->Line << std::endl;
     }
     // A queue keeps them all.
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
     {
+        printed = true;
         std::cout << "queued: " << message->ToString() << std::endl;
     }
+    return printed;
+}
+
+void PrintManager::SayThatItWaits()
+{
+    std::cout << "PrintManager is waiting for a Message" << std::endl;
 }
 
 void PrintManager::Shutdown()
 {
-    ExecuteUnitOfWork();
+    PrintWhatIsThere();
     std::cout << "PrintManager: shut down" << std::endl;
 }

@@ -24,5 +24,8 @@ public:
     void Shutdown() final;
 
 private:
+    bool PrintWhatIsThere();  // whether there was something
+    static void SayThatItWaits();
+
     const std::shared_ptr<LineMessage> _line = std::make_shared<LineMessage>();
 };

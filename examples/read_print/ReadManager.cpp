@@ -1,8 +1,11 @@
 #include "ReadManager.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstddef>
 #include <iostream>
+#include <string_view>
 
 #include <poll.h>
 #include <unistd.h>
@@ -13,6 +16,22 @@ namespace
 // The unit of work blocks no longer than this, so that the manager notices when it is told to shut down.
 constexpr int LongestWait_MSec = 200;
 
+std::string Trimmed(const std::string &text)
+{
+    constexpr const char *blanks = " \t\r\v\f";
+    const std::size_t first = text.find_first_not_of(blanks);
+    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+// In whatever case.
+bool StartsWith(const std::string &text, std::string_view lowerCaseWord)
+{
+    return text.size() >= lowerCaseWord.size() &&
+           std::equal(lowerCaseWord.begin(), lowerCaseWord.end(), text.begin(),
+                      [](char wanted, char letter)
+                      { return std::tolower(static_cast<unsigned char>(letter)) == wanted; });
+}
+
 }  // namespace
 
 ReadManager::ReadManager() : RabitManager("ReadManager")
@@ -20,6 +39,19 @@ ReadManager::ReadManager() : RabitManager("ReadManager")
     AddPublishSubscribeMessage("Line", _line);
     // The unit of work itself waits for input: no sleep in between.
     SetWakeupTimeDelayMSec(0);
+}
+
+void ReadManager::Startup()
+{
+    Prompt();
+}
+
+void ReadManager::Prompt()
+{
+    if (isatty(STDIN_FILENO) == 1)
+    {
+        std::cout << "Type a line (quit or exit ends): " << std::flush;
+    }
 }
 
 void ReadManager::ExecuteUnitOfWork()
@@ -54,23 +86,32 @@ bool ReadManager::ReadWhatIsThere()
     return true;
 }
 
-void ReadManager::HandleLine(const std::string &line)
+void ReadManager::HandleLine(const std::string &untrimmed)
 {
-    if (line == "quit" || line == "exit")
+    const std::string line = Trimmed(untrimmed);
+    if (StartsWith(line, "quit") || StartsWith(line, "exit"))
     {
         ShutdownAllManagers(true);
         return;
     }
     _line->Line = line;
-    if (line.find("queue") == std::string::npos)
+    if (StartsWith(line, "queue"))
+    {
+        PutIntoQueue();
+    }
+    else
     {
         _line->PostMessage();
-        return;
     }
+    Prompt();
+}
+
+void ReadManager::PutIntoQueue()
+{
     // A clone, because the queue keeps the message while the next line overwrites ours.
     if (!AddMessageToQueue("PrintManager", std::shared_ptr<Rabit::RabitMessage>(_line->Clone())))
     {
-        std::cerr << "ReadManager: the queue of PrintManager is full, lost: " << line << std::endl;
+        std::cerr << "ReadManager: the queue of PrintManager is full, lost: " << _line->Line << std::endl;
     }
 }
 

@@ -12,7 +12,7 @@ int main(int argc, char **argv)
 {
     PrintManager::Options options;
     CLI::App app(
-        "Prints the lines it reads: posted ones, and those with \"queue\" in them by way of a queue.");
+        "Prints the lines it reads: posted ones, and those that start with \"queue\" by way of a queue.");
     app.add_option("--period", options.Period_Sec,
                    "Seconds between two prints if nothing wakes the printing manager")
         ->capture_default_str()

@@ -6,6 +6,8 @@ No result depends on how fast anything is: each step waits for a line of output,
 test after a generous time.
 """
 
+import os
+import pty
 import queue
 import signal
 import subprocess
@@ -26,7 +28,7 @@ class Session:
         self.seen = []
         self._lines = queue.Queue()
         threading.Thread(target=self._read, daemon=True).start()
-        self.wait_for("PrintManager: ready")
+        self.wait_for("PrintManager is waiting for a Message")
 
     def __enter__(self):
         return self
@@ -122,6 +124,41 @@ class ReadPrint(unittest.TestCase):
             session.write("quit")
             self.assert_shut_down_cleanly(session)
             self.assertEqual(session.seen_with("queued: "), lines)
+
+    def test_the_words_count_at_the_begin_of_a_line_in_any_case_and_with_blanks_around(self):
+        for word in ("quit", "EXIT", "  Quit  ", "\texit now", "Quitting"):
+            with self.subTest(word), Session("--period", "3600", "--wake-on-post") as session:
+                session.write("  Queue one ")
+                session.wait_for("queued: Queue one")
+                session.write("the queue")
+                session.wait_for("posted: the queue")
+                session.write("do not quit")
+                session.wait_for("posted: do not quit")
+                session.write(word)
+                self.assert_shut_down_cleanly(session)
+
+    def test_it_says_that_it_waits_after_what_it_printed(self):
+        with Session("--period", "3600") as session:
+            session.write("queue one")
+            session.wait_for("queued: queue one")
+            session.wait_for("PrintManager is waiting for a Message")
+            session.write("quit")
+            self.assert_shut_down_cleanly(session)
+
+    def test_a_terminal_gets_a_prompt_for_each_line_and_a_pipe_none(self):
+        master, terminal = pty.openpty()
+        with subprocess.Popen([PROGRAM], stdin=terminal, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            os.write(master, b"one\nquit\n")
+            output, _ = process.communicate(timeout=PATIENCE_SEC)
+        os.close(master)
+        os.close(terminal)
+        self.assertEqual(process.returncode, 0)
+        self.assertEqual(output.count("Type a line (quit or exit ends): "), 2)
+        with Session() as session:
+            session.write("one", "quit")
+            self.assert_shut_down_cleanly(session)
+            self.assertEqual([line for line in session.seen if "Type a line" in line], [])
 
     def test_the_end_of_the_input_shuts_down_and_nothing_is_lost(self):
         with Session("--period", "3600", "--no-wake-on-queue") as session:
