@@ -108,13 +108,38 @@ std::string CppType(const Type &type)
         case Type::Kind::String:
             return "::std::string";
         case Type::Kind::Sequence:
-            return "::std::vector<" + CppType(*type.Element) + ">";
+        {
+            const std::string maker = MakerOf(*type.Element);
+            return "::std::vector<" + CppType(*type.Element) +
+                   (maker.empty() ? ">" : ", ::Rabit::Idl::FreshAllocator<" + maker + ">>");
+        }
         case Type::Kind::Array:
             return "::std::array<" + CppType(*type.Element) + ", " + std::to_string(type.Length) + ">";
         case Type::Kind::Named:
             return CppScopedName(type.Named->Scope, type.Named->Name);
     }
     return "";
+}
+
+std::string MakerOf(const Type &alias)
+{
+    const Type &type = Unalias(alias);
+    if (type.What == Type::Kind::Array)
+    {
+        const std::string element = MakerOf(*type.Element);
+        return element.empty()
+                   ? ""
+                   : "::Rabit::Idl::FreshArray<" + element + ", " + std::to_string(type.Length) + ">";
+    }
+    const auto *definition =
+        type.What == Type::Kind::Named ? dynamic_cast<const EnumDefinition *>(type.Named) : nullptr;
+    if (definition == nullptr || definition->Enumerators[definition->Default].Value == 0)
+    {
+        return "";
+    }
+    const std::string name = CppScopedName(definition->Scope, definition->Name);
+    return "::Rabit::Idl::FreshEnum<" + name + ", " + name +
+           "::" + definition->Enumerators[definition->Default].Name + ">";
 }
 
 std::string CodecOf(const Type &alias)
@@ -129,7 +154,8 @@ std::string CodecOf(const Type &alias)
         case Type::Kind::String:
             return prefix + "Text<" + std::to_string(type.Bound) + ">";
         case Type::Kind::Sequence:
-            return prefix + "List<" + CodecOf(*type.Element) + ", " + std::to_string(type.Bound) + ">";
+            return prefix + "List<" + CodecOf(*type.Element) + ", " + std::to_string(type.Bound) +
+                   (MakerOf(*type.Element).empty() ? ">" : ", " + CppType(type) + ">");
         case Type::Kind::Array:
             return prefix + "Fixed<" + CodecOf(*type.Element) + ", " + std::to_string(type.Length) + ">";
         case Type::Kind::Named:
@@ -222,6 +248,11 @@ std::string Initializer(const Member &member)
             return " = " + CppScopedName(definition->Scope, definition->Name) +
                    "::" + definition->Enumerators[definition->Default].Name;
         }
+    }
+    const std::string maker = MakerOf(type);
+    if (!maker.empty())
+    {
+        return " = " + maker + "::Make()";
     }
     return type.What == Type::Kind::Array || type.What == Type::Kind::Named ? "{}" : "";
 }

@@ -12,6 +12,9 @@ namespace RabitIdl
 std::string CppPrimitive(Primitive primitive);
 // The C++ type, fully qualified: `::std::vector<::Uav::Pose>`.
 std::string CppType(const Type &type);
+// What makes new values of the type where C++ by itself would make an enum 0 that does not start at 0:
+// `::Rabit::Idl::FreshEnum<::Uav::Mode, ::Uav::Mode::IDLE>`; empty if C++ makes the right ones.
+std::string MakerOf(const Type &type);
 // The codec that runs over values of the type: `::Rabit::Idl::List<::Rabit::Idl::Codec<::Uav::Pose>, 0>`.
 std::string CodecOf(const Type &type);
 // A value of the type.

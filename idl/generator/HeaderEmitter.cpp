@@ -136,6 +136,8 @@ void EmitEnum(TextBuilder &out, const EnumDefinition &definition)
     out.Close(";");
     out.Line("// The enumerator's name, or the number if it is not declared.");
     out.Line("::std::string ToString(" + definition.Name + " value);");
+    out.Line("// The enumerator of that name. False, and nothing changed, if there is none.");
+    out.Line("bool FromText(::std::string_view text, " + definition.Name + " &value);");
     out.Line();
 }
 
@@ -165,8 +167,26 @@ void EmitBitmask(TextBuilder &out, const BitmaskDefinition &definition)
         out.Line("return a = a " + text + " b;");
         out.Close();
     }
+    unsigned long long all = 0;
+    for (const auto &bit : definition.Bits)
+    {
+        all |= 1ULL << bit.Position;
+    }
+    out.Line("// All declared bits that are not set.");
+    out.Line("constexpr " + name + " operator~(" + name + " a)");
+    out.Open();
+    out.Line("return static_cast<" + name + ">(~static_cast<" + wide + ">(a) & " + std::to_string(all) +
+             (definition.BitBound > 32 ? "ULL" : "U") + ");");
+    out.Close();
+    out.Line("// Whether all of these bits are set.");
+    out.Line("constexpr bool Has(" + name + " value, " + name + " bits)");
+    out.Open();
+    out.Line("return (value & bits) == bits;");
+    out.Close();
     out.Line("// The names of the bits that are set, joined with `|`.");
     out.Line("::std::string ToString(" + name + " value);");
+    out.Line("// The reverse; `0` is no bit. False, and nothing changed, if a name is not declared.");
+    out.Line("bool FromText(::std::string_view text, " + name + " &value);");
     out.Line();
 }
 
@@ -227,6 +247,10 @@ void EmitCodecDeclaration(TextBuilder &out, const Definition &definition)
     out.Line("struct Rabit::Idl::Codec<" + name + ">");
     out.Open();
     out.Line("static constexpr ::std::size_t MinSize = " + std::to_string(MinSize(definition)) + ";");
+    if (!small)
+    {
+        out.Line("static constexpr ::std::size_t FreshSize = " + std::to_string(FreshSize(definition)) + ";");
+    }
     if (structure != nullptr)
     {
         const std::optional<std::uint64_t> keySize = MaxKeySize(*structure);
@@ -254,7 +278,9 @@ std::string EmitHeader(const Model &model)
     out.Line("#pragma once");
     out.Line();
     out.Line("#include <rabit/RabitMessage.h>");
+    out.Line("#include <rabit/idl/Box.h>");
     out.Line("#include <rabit/idl/Codec.h>");
+    out.Line("#include <rabit/idl/Fresh.h>");
     out.Line();
     for (const std::string &include : model.Includes)
     {

@@ -197,6 +197,38 @@ std::uint64_t MinSize(const Type &alias)
     return 0;
 }
 
+std::uint64_t FreshSize(const Definition &definition)
+{
+    if (const auto *choice = dynamic_cast<const UnionDefinition *>(&definition))
+    {
+        return FreshSize(choice->Cases.front().Content.Type);
+    }
+    std::uint64_t sum = 0;
+    if (const auto *structure = dynamic_cast<const StructDefinition *>(&definition))
+    {
+        for (const Member *member : AllMembers(*structure))
+        {
+            const auto *text = member->Default ? std::get_if<std::string>(member->Default.get()) : nullptr;
+            sum += text != nullptr ? text->size() + 1 : FreshSize(member->Type);
+        }
+    }
+    return sum;
+}
+
+std::uint64_t FreshSize(const Type &alias)
+{
+    const Type &type = Unalias(alias);
+    switch (type.What)
+    {
+        case Type::Kind::Array:
+            return type.Length * FreshSize(*type.Element);
+        case Type::Kind::Named:
+            return FreshSize(*type.Named);
+        default:
+            return 0;
+    }
+}
+
 std::optional<std::uint64_t> FixedSize(const StructDefinition &definition)
 {
     return EndOfMembers(definition, 0, Only::Fixed, false);

@@ -11,6 +11,9 @@ namespace RabitIdl
 // Fewest bytes that any value of the type takes, alignment not counted.
 std::uint64_t MinSize(const Type &type);
 std::uint64_t MinSize(const Definition &definition);
+// Bytes that a new value allocates at most: texts of @default, with their terminating zero.
+std::uint64_t FreshSize(const Type &type);
+std::uint64_t FreshSize(const Definition &definition);
 // Bytes of every value of the struct that starts a sample; nothing if they differ.
 std::optional<std::uint64_t> FixedSize(const StructDefinition &definition);
 // Most bytes that the key of a struct takes; nothing if there is no limit. 0 without keys.

@@ -105,7 +105,7 @@ bool IsMessageMember(const std::string &name)
 
 bool IsGeneratorName(const std::string &name)
 {
-    return name == "ToString";
+    return name == "ToString" || name == "FromText" || name == "Has";
 }
 
 bool IsIdlKeyword(const std::string &name)

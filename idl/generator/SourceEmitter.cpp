@@ -46,7 +46,7 @@ std::string ClearLine(const Member &member)
     {
         return name + ".clear();";
     }
-    if (type.What == Type::Kind::Array)
+    if (type.What == Type::Kind::Array && MakerOf(type).empty())
     {
         return name + ".fill({});";
     }
@@ -260,6 +260,20 @@ void EmitEnumSource(TextBuilder &out, const EnumDefinition &definition)
     out.Close();
     out.Line();
     EmitToString(out, definition, name + " ");
+    out.Line("bool " + ScopedName(definition.Scope, "FromText") + "(::std::string_view text, " + name +
+             " &value)");
+    out.Open();
+    for (const auto &enumerator : definition.Enumerators)
+    {
+        out.Line("if (text == \"" + enumerator.Name + "\")");
+        out.Open();
+        out.Line("value = " + name + "::" + enumerator.Name + ";");
+        out.Line("return true;");
+        out.Close();
+    }
+    out.Line("return false;");
+    out.Close();
+    out.Line();
 }
 
 void EmitBitmaskSource(TextBuilder &out, const BitmaskDefinition &definition)
@@ -303,6 +317,38 @@ void EmitBitmaskSource(TextBuilder &out, const BitmaskDefinition &definition)
     out.Close();
     out.Line();
     EmitToString(out, definition, name + " ");
+    out.Line("bool " + ScopedName(definition.Scope, "FromText") + "(::std::string_view text, " + name +
+             " &value)");
+    out.Open();
+    out.Line("if (text == \"0\")");
+    out.Open();
+    out.Line("value = " + name + "{};");
+    out.Line("return true;");
+    out.Close();
+    out.Line("::std::uint64_t bits = 0;");
+    out.Line("for (bool more = true; more;)");
+    out.Open();
+    out.Line("const ::std::size_t end = text.find('|');");
+    out.Line("const ::std::string_view one = text.substr(0, end);");
+    for (std::size_t i = 0; i < definition.Bits.size(); ++i)
+    {
+        const auto &bit = definition.Bits[i];
+        out.Line((i == 0 ? "if (one == \"" : "else if (one == \"") + bit.Name + "\")");
+        out.Open();
+        out.Line("bits |= " + std::to_string(1ULL << bit.Position) + "ULL;");
+        out.Close();
+    }
+    out.Line("else");
+    out.Open();
+    out.Line("return false;");
+    out.Close();
+    out.Line("more = end != ::std::string_view::npos;");
+    out.Line("text.remove_prefix(more ? end + 1 : text.size());");
+    out.Close();
+    out.Line("value = static_cast<" + name + ">(bits);");
+    out.Line("return true;");
+    out.Close();
+    out.Line();
 }
 
 void EmitDefinition(TextBuilder &out, const Model &model, const Definition &definition)

@@ -21,19 +21,44 @@ bool HasSeveralLabels(const Case &item)
     return item.Default || item.Labels.size() > 1;
 }
 
+// How the union keeps a member of that type.
+std::string KeptType(const Type &type)
+{
+    const std::string maker = MakerOf(type);
+    return "::Rabit::Idl::Kept<" + CppType(type) + (maker.empty() ? ">" : ", " + maker + ">");
+}
+
+// A new union selects its first member, as its maker makes it.
+std::string FirstContent(const UnionDefinition &definition)
+{
+    const Type &type = definition.Cases.front().Content.Type;
+    const std::string maker = MakerOf(type);
+    return maker.empty() ? ""
+                         : "{::std::in_place_index<0>, ::Rabit::Idl::FreshKept<" + CppType(type) + ", " +
+                               maker + ">()}";
+}
+
 std::string ContentType(const UnionDefinition &definition)
 {
     std::string text = "::std::variant<";
     for (std::size_t i = 0; i < definition.Cases.size(); ++i)
     {
-        text += (i == 0 ? "" : ", ") + CppType(definition.Cases[i].Content.Type);
+        text += (i == 0 ? "" : ", ") + KeptType(definition.Cases[i].Content.Type);
     }
     return text + (definition.HasUnusedValue ? ", ::std::monostate>" : ">");
 }
 
-std::string Parameter(const Type &type)
+// How setters take a value: a large one to be copied and to be moved.
+std::vector<std::string> Parameters(const Type &type)
 {
-    return IsSmall(type) ? CppType(type) : "const " + CppType(type) + " &";
+    const std::string name = CppType(type);
+    return IsSmall(type) ? std::vector<std::string>{name + " "}
+                         : std::vector<std::string>{"const " + name + " &", name + " &&"};
+}
+
+std::string Passed(const std::string &parameter)
+{
+    return parameter.back() == '&' && parameter[parameter.size() - 2] == '&' ? "::std::move(value)" : "value";
 }
 
 void EmitLines(TextBuilder &out, const std::string &lines)
@@ -87,11 +112,13 @@ void EmitUnionClass(TextBuilder &out, const UnionDefinition &definition)
         out.Line("// Selected by " + SelectedBy(definition, item) + ". Setting it selects it.");
         out.Line("const " + type + " &" + member + "() const;");
         out.Line(type + " &" + member + "();");
-        out.Line("void " + member + "(" + Parameter(item.Content.Type) + " value);");
-        if (HasSeveralLabels(item))
+        for (const std::string &parameter : Parameters(item.Content.Type))
         {
-            out.Line("void " + member + "(" + Parameter(item.Content.Type) + " value, " + selector +
-                     " discriminator);");
+            out.Line("void " + member + "(" + parameter + "value);");
+            if (HasSeveralLabels(item))
+            {
+                out.Line("void " + member + "(" + parameter + "value, " + selector + " discriminator);");
+            }
         }
     }
     out.Line();
@@ -104,7 +131,7 @@ void EmitUnionClass(TextBuilder &out, const UnionDefinition &definition)
     out.Line();
     out.Line(selector + " _discriminator = " +
              CppLabel(LabelOf(definition, definition.Cases.front()), definition.Discriminator) + ";");
-    out.Line(ContentType(definition) + " _content;");
+    out.Line(ContentType(definition) + " _content" + FirstContent(definition) + ";");
     out.Close(";");
     out.Line("// For people.");
     out.Line("::std::string ToString(const " + name + " &value);");
@@ -185,26 +212,32 @@ void EmitUnionFunctions(TextBuilder &out, const UnionDefinition &definition)
             out.Open();
             out.Line("_wrongMember();");
             out.Close();
-            out.Line("return *::std::get_if<" + index + ">(&_content);");
+            out.Line("return ::Rabit::Idl::Held(*::std::get_if<" + index + ">(&_content));");
             out.Close();
             out.Line();
         }
-        out.Line("void " + method + item.Content.Name + "(" + Parameter(item.Content.Type) + " value)");
-        out.Open();
-        out.Line("_content.emplace<" + index + ">(value);");
-        out.Line("_discriminator = " + CppLabel(LabelOf(definition, item), definition.Discriminator) + ";");
-        out.Close();
-        out.Line();
-        if (HasSeveralLabels(item))
+        for (const std::string &parameter : Parameters(item.Content.Type))
         {
-            out.Line("void " + method + item.Content.Name + "(" + Parameter(item.Content.Type) + " value, " +
-                     selector + " discriminator)");
+            const std::string head = "void " + method + item.Content.Name + "(" + parameter + "value";
+            const std::string emplace = "_content.emplace<" + index + ">(" + Passed(parameter) + ");";
+            out.Line(head + ")");
+            out.Open();
+            out.Line(emplace);
+            out.Line("_discriminator = " + CppLabel(LabelOf(definition, item), definition.Discriminator) +
+                     ";");
+            out.Close();
+            out.Line();
+            if (!HasSeveralLabels(item))
+            {
+                continue;
+            }
+            out.Line(head + ", " + selector + " discriminator)");
             out.Open();
             out.Line("if (_caseOf(discriminator) != " + index + ")");
             out.Open();
             out.Line("_wrongMember();");
             out.Close();
-            out.Line("_content.emplace<" + index + ">(value);");
+            out.Line(emplace);
             out.Line("_discriminator = discriminator;");
             out.Close();
             out.Line();
@@ -258,8 +291,8 @@ void EmitUnionCodec(TextBuilder &out, const UnionDefinition &definition)
         "if (!" + selectorCodec + "::Write(writer, value._discriminator))\n{\n    return false;\n}",
         [&](const Case &item, const std::string &i)
         {
-            out.Line("return " + CodecOf(item.Content.Type) + "::Write(writer, *::std::get_if<" + i +
-                     ">(&value._content));");
+            out.Line("return " + CodecOf(item.Content.Type) +
+                     "::Write(writer, ::Rabit::Idl::Held(*::std::get_if<" + i + ">(&value._content)));");
         },
         "return " + unused + ";", "value._content.index()");
     function(
@@ -269,13 +302,13 @@ void EmitUnionCodec(TextBuilder &out, const UnionDefinition &definition)
             "::_caseOf(discriminator);",
         [&](const Case &item, const std::string &i)
         {
-            out.Line("if (value._content.index() != " + i + ")");
+            out.Line("if (!Select<" + CodecOf(item.Content.Type) + ", " + i + ">(reader, value._content))");
             out.Open();
-            out.Line("value._content.emplace<" + i + ">();");
+            out.Line("return false;");
             out.Close();
             out.Line("value._discriminator = discriminator;");
-            out.Line("return " + CodecOf(item.Content.Type) + "::Read(reader, *::std::get_if<" + i +
-                     ">(&value._content));");
+            out.Line("return " + CodecOf(item.Content.Type) +
+                     "::Read(reader, ::Rabit::Idl::Held(*::std::get_if<" + i + ">(&value._content)));");
         },
         definition.HasUnusedValue ? "value._content.emplace<" + unusedCase +
                                         ">();\nvalue._discriminator = discriminator;\nreturn true;"
@@ -293,8 +326,8 @@ void EmitUnionCodec(TextBuilder &out, const UnionDefinition &definition)
         selectorCodec + "::Size(sizer, value._discriminator);",
         [&](const Case &item, const std::string &i)
         {
-            out.Line(CodecOf(item.Content.Type) + "::Size(sizer, *::std::get_if<" + i +
-                     ">(&value._content));");
+            out.Line(CodecOf(item.Content.Type) + "::Size(sizer, ::Rabit::Idl::Held(*::std::get_if<" + i +
+                     ">(&value._content)));");
             out.Line("break;");
         },
         "break;", "value._content.index()");
@@ -303,8 +336,8 @@ void EmitUnionCodec(TextBuilder &out, const UnionDefinition &definition)
         [&](const Case &item, const std::string &i)
         {
             out.Line("text.Raw(\"{" + item.Content.Name + ": \");");
-            out.Line(CodecOf(item.Content.Type) + "::Print(text, *::std::get_if<" + i +
-                     ">(&value._content));");
+            out.Line(CodecOf(item.Content.Type) + "::Print(text, ::Rabit::Idl::Held(*::std::get_if<" + i +
+                     ">(&value._content)));");
             out.Line("text.Raw(\"}\");");
             out.Line("break;");
         },

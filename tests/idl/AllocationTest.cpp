@@ -1,10 +1,15 @@
 // Counts what encoding and decoding allocate. A program of its own, because it replaces operator new.
 #include "SampleTest.h"
 
+#include "growth.idl.h"
+
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <iterator>
 #include <new>
 
 namespace
@@ -111,6 +116,76 @@ TEST_EACH_SAMPLE(Allocation, LengthsFromTheWireAreNotBelieved)
             ASSERT_LT(allocatedBytes - before, 200 * bytes.size() + 1000) << "at byte " << at;
         }
     }
+}
+
+// What decoding may allocate for a sample, whatever its type and contents: MessageType.h.
+std::size_t MostFor(std::size_t sampleSize)
+{
+    return 256 * sampleSize + 65536;
+}
+
+// A sample that begins with the length of a sequence and goes on with one byte, again and again.
+std::vector<std::uint8_t> Bomb(std::uint32_t length, std::uint8_t filling, std::size_t size)
+{
+    std::vector<std::uint8_t> bytes(size, filling);
+    const std::uint8_t head[] = {0, 1, 0, 0};
+    std::copy(std::begin(head), std::end(head), bytes.begin());
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        bytes[4 + i] = static_cast<std::uint8_t>(length >> (8 * i));
+    }
+    return bytes;
+}
+
+TEST(DecodingBomb, OfNoShapeAllocatesMoreThanTheBytesAccountFor)
+{
+    for (const Rabit::MessageType *type :
+         {&Growth::Sparses::IdlType(), &Growth::Heavies::IdlType(), &Growth::Grids::IdlType(),
+          &Growth::Wordies::IdlType(), &Growth::Messages::IdlType(), &Growth::Nested::IdlType(),
+          &Growth::Rows::IdlType(), &Growth::Texts::IdlType()})
+    {
+        for (const std::size_t size : {16U, 200U, 4000U})
+        {
+            for (std::uint32_t length = 1; length < size; length = length * 3 / 2 + 1)
+            {
+                for (std::uint8_t filling = 0; filling < 4; ++filling)
+                {
+                    const std::vector<std::uint8_t> bytes = Bomb(length, filling, size);
+                    const auto target = type->Create();
+                    const std::size_t before = allocatedBytes;
+                    type->Deserialize(bytes, *target);
+                    ASSERT_LE(allocatedBytes - before, MostFor(size))
+                        << type->Name() << ", " << length << " elements in " << size << " bytes";
+                }
+            }
+        }
+    }
+}
+
+TEST(DecodingBomb, IsNotWhatManySmallUnionsAreThatCouldBeLarge)
+{
+    Growth::Sparses message;
+    message.list.resize(20000);
+    for (Growth::Sparse &one : message.list)
+    {
+        one._default();
+    }
+    std::array<std::uint8_t, 32768> page{};
+    page[100] = 7;
+    message.list[3].page(page);
+    Growth::Sparses read;
+    ASSERT_TRUE(Growth::Sparses::IdlType().Deserialize(BytesOf(message), read));
+    EXPECT_EQ(read, message);
+}
+
+TEST(DecodingBomb, OfMessagesInsideMessagesIsRefusedAndAFewOfThemAreNot)
+{
+    Growth::Nested message;
+    message.list.resize(100);
+    const auto target = Growth::Nested::IdlType().Create();
+    EXPECT_TRUE(Growth::Nested::IdlType().Deserialize(BytesOf(message), *target));
+    message.list.resize(10000);
+    EXPECT_FALSE(Growth::Nested::IdlType().Deserialize(BytesOf(message), *target));
 }
 
 }  // namespace

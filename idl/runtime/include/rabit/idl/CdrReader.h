@@ -15,14 +15,20 @@ namespace Rabit::Idl
 
 // Reads the body of a sample (what follows the encapsulation header) as plain XCDR1, OMG
 // DDS-XTypes 1.3, 7.4.1, of either byte order, from borrowed bytes. Alignment is relative to the begin of the
-// bytes. Everything is checked against the bytes that are left before it is read and before anything is
-// allocated for it; what does not fit is a false, never an exception of Fast-CDR, which does the decoding.
-// Used by one thread at a time.
+// bytes. Everything is checked against the bytes that are left before it is read, and against a budget before
+// anything is allocated for it; what does not fit is a false, never an exception of Fast-CDR, which does the
+// decoding. Used by one thread at a time.
 class CdrReader
 {
 public:
+    // What decoding may allocate: so many bytes for each of the sample, and these besides. Values of types
+    // that are of any use stay far below; a sequence of small things that are large in memory may not.
+    static constexpr std::size_t MaxGrowth = 256;
+    static constexpr std::size_t Allowance = 65536;
+
     CdrReader(std::span<const std::uint8_t> bytes, bool littleEndian)
         : _bytes(bytes),
+          _budget(MaxGrowth * bytes.size() + Allowance),
           // Fast-CDR takes no constant buffer, but does not write to it when reading.
           _buffer(const_cast<char *>(reinterpret_cast<const char *>(bytes.data())), bytes.size()),
           _cdr(_buffer,
@@ -36,6 +42,18 @@ public:
 
     std::size_t Used() const { return _cdr.getSerializedDataLength(); }
     std::size_t Left() const { return _bytes.size() - Used(); }
+
+    // Takes count objects of so many bytes in memory off the budget; false if it is too small for that.
+    bool Spend(std::size_t count, std::size_t size)
+    {
+        const std::uint64_t wanted = std::uint64_t{count} * size;  // a count has 32 bits
+        if (wanted > _budget)
+        {
+            return false;
+        }
+        _budget -= wanted;
+        return true;
+    }
 
     // Reads one primitive value, aligned to its size.
     template <class T>
@@ -132,6 +150,7 @@ private:
     }
 
     std::span<const std::uint8_t> _bytes;
+    std::uint64_t _budget;
     eprosima::fastcdr::FastBuffer _buffer;
     eprosima::fastcdr::Cdr _cdr;
 };

@@ -26,6 +26,8 @@ class TextWriter;
 //                     that is not null
 //   Size              adds what Write would write
 //   Print             appends the value for people
+// and for structs and unions also
+//   FreshSize         bytes that a new value allocates at most: texts of @default
 // and for structs also
 //   FixedSize         bytes of every value at offset 0, 0 if values differ in size
 //   HasKey            whether there are @key members

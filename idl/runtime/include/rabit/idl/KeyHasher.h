@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace Rabit::Idl
@@ -49,18 +50,33 @@ public:
     {
         if (!_fits)
         {
-            boost::uuids::detail::md5::digest_type digest;
+            using Digest = boost::uuids::detail::md5::digest_type;
+            static_assert(IsDigestOfNumbers<Digest> || IsDigestOfBytes<Digest>,
+                          "this version of Boost gives an MD5 in a form that is not known here");
+            Digest digest;
             _md5.get_digest(digest);
-            // Boost gives MD5's bytes as four numbers, the first byte the highest.
             for (std::size_t i = 0; i < _short.size(); ++i)
             {
-                _short[i] = static_cast<std::uint8_t>(digest[i / 4] >> (24 - 8 * (i % 4)));
+                if constexpr (IsDigestOfBytes<Digest>)
+                {
+                    _short[i] = static_cast<std::uint8_t>(digest[i]);
+                }
+                else
+                {
+                    _short[i] = static_cast<std::uint8_t>(digest[i / 4] >> (24 - 8 * (i % 4)));
+                }
             }
         }
         return _short;
     }
 
 private:
+    // Boost gives MD5's bytes as four numbers, the first byte the highest; since 1.86 as they are.
+    template <class Digest>
+    static constexpr bool IsDigestOfNumbers = std::is_same_v<Digest, unsigned int[4]>;
+    template <class Digest>
+    static constexpr bool IsDigestOfBytes = std::is_same_v<Digest, unsigned char[16]>;
+
     void PutBytes(const void *bytes, std::size_t size)
     {
         if (!_fits)

@@ -76,7 +76,7 @@ struct Text
     static bool Read(CdrReader &reader, std::string &value)
     {
         std::string_view view;
-        if (!reader.GetString(Bound, view))
+        if (!reader.GetString(Bound, view) || !reader.Spend(view.size(), 1))
         {
             return false;
         }
@@ -213,12 +213,43 @@ struct ValueOf<Codec<T>>
     using Type = T;
 };
 
+// What a new value allocates beside itself: texts of @default.
+template <class Element>
+constexpr std::size_t FreshSizeOf()
+{
+    if constexpr (requires { Element::FreshSize; })
+    {
+        return Element::FreshSize;
+    }
+    else
+    {
+        return 0;
+    }
+}
+
+// Has a union hold that member, if it does not. False if the budget does not allow for it.
+template <class Element, std::size_t Index, class Content>
+bool Select(CdrReader &reader, Content &content)
+{
+    if (content.index() != Index)
+    {
+        if (!reader.Spend(1, sizeof(typename ValueOf<Element>::Type) + FreshSizeOf<Element>()))
+        {
+            return false;
+        }
+        content.template emplace<Index>();
+    }
+    return true;
+}
+
 // A sequence of at most Bound elements, 0: any number.
-template <class Element, std::size_t Bound>
+template <class Element, std::size_t Bound, class Container = std::vector<typename ValueOf<Element>::Type>>
 struct List
 {
-    using Value = std::vector<typename ValueOf<Element>::Type>;
+    using Value = Container;
     static constexpr std::size_t MinSize = 4;
+    static constexpr std::size_t ElementMemory =
+        sizeof(typename Container::value_type) + FreshSizeOf<Element>();
     static bool Write(CdrWriter &writer, const Value &values)
     {
         return (Bound == 0 || values.size() <= Bound) && writer.PutLength(values.size()) &&
@@ -227,7 +258,7 @@ struct List
     static bool Read(CdrReader &reader, Value &values)
     {
         std::size_t length = 0;
-        if (!reader.GetLength(Bound, Element::MinSize, length))
+        if (!reader.GetLength(Bound, Element::MinSize, length) || !reader.Spend(length, ElementMemory))
         {
             return false;
         }
@@ -245,6 +276,10 @@ struct List
         }
         else
         {
+            if (length > values.capacity())
+            {
+                values.reserve(length);  // resizing alone might take twice as much
+            }
             values.resize(length);
             return Elements<Element, Value>::Read(reader, values);
         }
@@ -272,6 +307,7 @@ struct Fixed
 {
     using Value = std::array<typename ValueOf<Element>::Type, Length>;
     static constexpr std::size_t MinSize = Length * Element::MinSize;
+    static constexpr std::size_t FreshSize = Length * FreshSizeOf<Element>();
     static bool Write(CdrWriter &writer, const Value &values)
     {
         return Elements<Element, Value>::Write(writer, values);
