@@ -6,6 +6,9 @@
 #include "TextBuilder.h"
 #include "UnionEmitter.h"
 
+#include <algorithm>
+#include <set>
+
 namespace RabitIdl
 {
 namespace
@@ -72,11 +75,31 @@ void EmitComparison(TextBuilder &out, const std::string &name)
     out.Close();
 }
 
+// Of a string or sequence that has one; else 0.
+std::uint32_t BoundOf(const Type &type)
+{
+    return Unalias(type).Bound;
+}
+
 void EmitMembers(TextBuilder &out, const StructDefinition &definition)
 {
+    const std::vector<const Member *> all = AllMembers(definition);
     for (const Member &member : definition.Members)
     {
+        out.Comment(member.Comment);
+        if (!member.Unit.empty())
+        {
+            out.Line("// Unit: " + member.Unit);
+        }
         out.Line(CppType(member.Type) + " " + member.Name + Initializer(member) + ";");
+        const std::string bound = member.Name + "_bound";
+        const bool isFree =
+            std::none_of(all.begin(), all.end(), [&](const Member *other) { return other->Name == bound; });
+        if (BoundOf(member.Type) != 0 && isFree)
+        {
+            out.Line("static constexpr ::std::size_t " + bound + " = " +
+                     std::to_string(BoundOf(member.Type)) + ";");
+        }
     }
 }
 
@@ -131,6 +154,7 @@ void EmitEnum(TextBuilder &out, const EnumDefinition &definition)
     out.Open();
     for (const auto &enumerator : definition.Enumerators)
     {
+        out.Comment(enumerator.Comment);
         out.Line(enumerator.Name + " = " + std::to_string(enumerator.Value) + "U,");
     }
     out.Close(";");
@@ -149,6 +173,7 @@ void EmitBitmask(TextBuilder &out, const BitmaskDefinition &definition)
     out.Open();
     for (const auto &bit : definition.Bits)
     {
+        out.Comment(bit.Comment);
         out.Line(bit.Name + " = " + std::to_string(1ULL << bit.Position) + "U" +
                  (definition.BitBound > 32 ? "LL" : "") + ",");
     }
@@ -202,6 +227,7 @@ void EmitConst(TextBuilder &out, const ConstDefinition &definition)
 
 void EmitDefinition(TextBuilder &out, const Definition &definition)
 {
+    out.Comment(definition.Comment);
     if (const auto *structure = dynamic_cast<const StructDefinition *>(&definition))
     {
         IsMessage(*structure) ? EmitMessage(out, *structure) : EmitPlainStruct(out, *structure);
@@ -223,6 +249,11 @@ void EmitDefinition(TextBuilder &out, const Definition &definition)
     else if (const auto *alias = dynamic_cast<const TypedefDefinition *>(&definition))
     {
         out.Line("using " + alias->Name + " = " + CppType(alias->Type) + ";");
+        if (BoundOf(alias->Type) != 0)
+        {
+            out.Line("inline constexpr ::std::size_t " + alias->Name +
+                     "_bound = " + std::to_string(BoundOf(alias->Type)) + ";");
+        }
         out.Line();
     }
     else
@@ -269,6 +300,56 @@ void EmitCodecDeclaration(TextBuilder &out, const Definition &definition)
     out.Line();
 }
 
+// `linux` and `unix` are lower-case macros that GNU compilers still have.
+std::set<std::string> MacrosUsedAsNames(const Model &model)
+{
+    std::set<std::string> used;
+    const auto note = [&](const std::string &name)
+    {
+        if (name == "linux" || name == "unix")
+        {
+            used.insert(name);
+        }
+    };
+    for (const auto &definition : model.Definitions)
+    {
+        note(definition->Name);
+        for (const std::string &module : definition->Scope)
+        {
+            note(module);
+        }
+        if (const auto *structure = dynamic_cast<const StructDefinition *>(definition.get()))
+        {
+            for (const Member &member : structure->Members)
+            {
+                note(member.Name);
+            }
+        }
+        else if (const auto *choice = dynamic_cast<const UnionDefinition *>(definition.get()))
+        {
+            for (const Case &item : choice->Cases)
+            {
+                note(item.Content.Name);
+            }
+        }
+        else if (const auto *enumeration = dynamic_cast<const EnumDefinition *>(definition.get()))
+        {
+            for (const auto &enumerator : enumeration->Enumerators)
+            {
+                note(enumerator.Name);
+            }
+        }
+        else if (const auto *bitmask = dynamic_cast<const BitmaskDefinition *>(definition.get()))
+        {
+            for (const auto &bit : bitmask->Bits)
+            {
+                note(bit.Name);
+            }
+        }
+    }
+    return used;
+}
+
 }  // namespace
 
 std::string EmitHeader(const Model &model)
@@ -277,6 +358,10 @@ std::string EmitHeader(const Model &model)
     out.Line("// Generated from " + model.MainFile + " by Rabit's IDL generator. Do not edit.");
     out.Line("#pragma once");
     out.Line();
+    for (const std::string &macro : MacrosUsedAsNames(model))
+    {
+        out.Line("#undef " + macro + "  // a macro of GNU C++ if it is not asked for standard C++ alone");
+    }
     out.Line("#include <rabit/RabitMessage.h>");
     out.Line("#include <rabit/idl/Box.h>");
     out.Line("#include <rabit/idl/Codec.h>");

@@ -201,7 +201,8 @@ void Collect(const Definition &definition, std::set<const Definition *> &used)
 
 void EmitStruct(TextBuilder &out, const StructDefinition &definition)
 {
-    out.Line(definition.Nested ? "@final @nested" : "@final");
+    out.Line(std::string(definition.Appendable ? "@appendable" : "@final") +
+             (definition.Nested ? " @nested" : ""));
     out.Line("struct " + IdlName(definition.Name) +
              (definition.Base != nullptr ? " : " + IdlScopedName(*definition.Base) : "") + " {");
     out.Indent();
@@ -217,7 +218,7 @@ void EmitStruct(TextBuilder &out, const StructDefinition &definition)
 
 void EmitUnion(TextBuilder &out, const UnionDefinition &definition)
 {
-    out.Line("@final");
+    out.Line(definition.Appendable ? "@appendable" : "@final");
     out.Line("union " + IdlName(definition.Name) + " switch (" + IdlType(definition.Discriminator) + ") {");
     for (const Case &item : definition.Cases)
     {

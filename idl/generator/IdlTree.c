@@ -205,7 +205,12 @@ enum TreeExtensibility TreeExtensibilityOf(TreeNode node)
 
 bool TreeAllowsXcdr1(TreeNode node)
 {
-    return (idl_allowable_data_representations(node) & IDL_DATAREPRESENTATION_FLAG_XCDR1) != 0;
+    // Without the annotation the parser rules XCDR1 out for what is not final, which is its own limit: in XCDR1 an
+    // appendable type is encoded as a final one.
+    const bool annotated = idl_is_struct(node)
+                               ? ((const idl_struct_t *)node)->data_representation.annotation != NULL
+                               : ((const idl_union_t *)node)->data_representation.annotation != NULL;
+    return !annotated || (idl_allowable_data_representations(node) & IDL_DATAREPRESENTATION_FLAG_XCDR1) != 0;
 }
 
 TreeNode TreeDeclarators(TreeNode memberOrTypedef)
@@ -222,6 +227,16 @@ TreeNode TreeTypeSpec(TreeNode node)
 bool TreeIsKey(TreeNode member)
 {
     return ((const idl_member_t *)member)->key.value;
+}
+
+const char *TreeUnit(TreeNode member)
+{
+    return ((const idl_member_t *)member)->unit.value;
+}
+
+uint32_t TreeMemberId(TreeNode declarator)
+{
+    return ((const idl_declarator_t *)declarator)->id.value;
 }
 
 TreeNode TreeDefault(TreeNode member)

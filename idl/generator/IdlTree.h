@@ -94,6 +94,10 @@ extern "C"
     TreeNode TreeDeclarators(TreeNode memberOrTypedef);
     TreeNode TreeTypeSpec(TreeNode node);
     bool TreeIsKey(TreeNode member);
+    // The text of @unit, or null.
+    const char *TreeUnit(TreeNode member);
+    // The member id, given by @id or one of the automatic rules.
+    uint32_t TreeMemberId(TreeNode declarator);
     // The literal of @default, or null.
     TreeNode TreeDefault(TreeNode member);
     // First dimension of an array declarator, or null; a literal.

@@ -65,6 +65,18 @@ bool HasKey(const StructDefinition &definition)
     return std::any_of(members.begin(), members.end(), [](const Member *member) { return member->Key; });
 }
 
+std::vector<const Member *> KeyMembers(const StructDefinition &definition)
+{
+    std::vector<const Member *> members = AllMembers(definition);
+    if (HasKey(definition))
+    {
+        members.erase(
+            std::remove_if(members.begin(), members.end(), [](const Member *member) { return !member->Key; }),
+            members.end());
+    }
+    return members;
+}
+
 bool IsMessage(const StructDefinition &definition)
 {
     return !definition.Nested;

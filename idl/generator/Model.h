@@ -71,7 +71,8 @@ struct Definition
     std::string Name;
     std::string File;
     std::uint32_t Line = 0;
-    bool InMainFile = false;  // false: from an included file, whose own header defines it
+    bool InMainFile = false;           // false: from an included file, whose own header defines it
+    std::vector<std::string> Comment;  // lines for people
 };
 
 struct Member
@@ -79,6 +80,9 @@ struct Member
     std::string Name;
     RabitIdl::Type Type;
     bool Key = false;
+    std::uint32_t Id = 0;
+    std::string Unit;
+    std::vector<std::string> Comment;  // lines for people
     std::unique_ptr<Literal> Default;
     std::string File;
     std::uint32_t Line = 0;
@@ -87,7 +91,8 @@ struct Member
 struct StructDefinition : Definition
 {
     const StructDefinition *Base = nullptr;
-    bool Nested = false;  // a plain struct; otherwise a message
+    bool Nested = false;      // a plain struct; otherwise a message
+    bool Appendable = false;  // encoded as a final one
     std::vector<Member> Members;
 };
 
@@ -100,6 +105,7 @@ struct Case
 
 struct UnionDefinition : Definition
 {
+    bool Appendable = false;
     RabitIdl::Type Discriminator;
     std::vector<Case> Cases;
     bool HasDefaultCase = false;
@@ -113,6 +119,7 @@ struct EnumDefinition : Definition
     {
         std::string Name;
         std::uint32_t Value = 0;
+        std::vector<std::string> Comment;
     };
     std::vector<Enumerator> Enumerators;
     std::size_t Default = 0;
@@ -125,6 +132,7 @@ struct BitmaskDefinition : Definition
     {
         std::string Name;
         unsigned Position = 0;
+        std::vector<std::string> Comment;
     };
     std::vector<Bit> Bits;
     unsigned BitBound = 32;
@@ -155,6 +163,8 @@ const Type &Unalias(const Type &type);
 std::vector<const Member *> AllMembers(const StructDefinition &definition);
 // Whether a struct or one of its bases has @key members.
 bool HasKey(const StructDefinition &definition);
+// The members that make up the key of a struct: those with @key or, if there are none, all.
+std::vector<const Member *> KeyMembers(const StructDefinition &definition);
 // Whether a struct that is a message, or a base of it that is one.
 bool IsMessage(const StructDefinition &definition);
 

@@ -58,56 +58,62 @@ void ModelReader::CheckAnnotations(TreeNode node)
 {
     static const std::set<std::string> refused{"external", "max",   "min",          "must_understand",
                                                "optional", "range", "try_construct"};
-    // Structs and unions are asked for what holds in the end, defaults included: CheckExtensibility.
+    // Structs and unions are asked for what holds in the end, defaults included: IsAppendable.
     const TreeKind kind = TreeKindOf(node);
     const bool isAggregate = kind == TreeStruct || kind == TreeUnion;
     for (TreeNode item = TreeAnnotations(node); item != nullptr; item = TreeNext(item))
     {
         const std::string name = TreeAnnotationName(item);
-        if (refused.count(name) != 0 || (!isAggregate && (name == "appendable" || name == "mutable")))
+        if (refused.count(name) != 0 || (!isAggregate && name == "mutable"))
         {
             Refuse(item, "annotation @" + name + " is not supported");
         }
     }
 }
 
-// The order of the keys in a key hash goes by member id (OMG DDS-XTypes 1.3, 7.6.8); without @id that is the
-// order of declaration, which the generator keeps.
-void ModelReader::CheckIds(TreeNode structure, const StructDefinition &definition)
+namespace
 {
-    if (!HasKey(definition))
+
+// The first member whose id is below that of one before it, or null.
+const Member *FirstOutOfOrder(const std::vector<const Member *> &members)
+{
+    for (std::size_t i = 1; i < members.size(); ++i)
     {
-        return;
-    }
-    const auto check = [&](TreeNode node)
-    {
-        for (TreeNode item = TreeAnnotations(node); item != nullptr; item = TreeNext(item))
+        if (members[i]->Id < members[i - 1]->Id)
         {
-            const std::string name = TreeAnnotationName(item);
-            if (name == "id" || name == "hashid" || name == "autoid")
-            {
-                Refuse(item, "annotation @" + name + " is not supported in a struct with keys");
-            }
+            return members[i];
         }
-    };
-    check(structure);
-    for (TreeNode member = TreeMembers(structure); member != nullptr; member = TreeNext(member))
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+// The order of the keys in a key hash goes by member id (OMG DDS-XTypes 1.3, 7.6.8); the generator keeps that
+// of declaration.
+void ModelReader::CheckIds(const StructDefinition &definition)
+{
+    const Member *member = HasKey(definition) ? FirstOutOfOrder(KeyMembers(definition)) : nullptr;
+    if (member != nullptr)
     {
-        check(member);
+        _refusals.Add(member->File, member->Line,
+                      "the id of key '" + member->Name +
+                          "' is below that of a key before it; declare keys in the order of their ids");
     }
 }
 
-void ModelReader::CheckExtensibility(TreeNode node)
+bool ModelReader::IsAppendable(TreeNode node)
 {
     const std::string name = TreeName(node);
-    if (TreeExtensibilityOf(node) != TreeFinal)
+    if (TreeExtensibilityOf(node) == TreeMutable)
     {
-        Refuse(node, "'" + name + "' is not @final; only @final types are supported");
+        Refuse(node, "'" + name + "' is @mutable; only @final and @appendable types are supported");
     }
     if (!TreeAllowsXcdr1(node))
     {
         Refuse(node, "'" + name + "' excludes the data representation XCDR1, the only one supported");
     }
+    return TreeExtensibilityOf(node) == TreeAppendable;
 }
 
 void ModelReader::CheckKey(TreeNode place, const Type &type)
@@ -133,13 +139,15 @@ void ModelReader::CheckKey(TreeNode place, const Type &type)
     }
     if (const auto *structure = dynamic_cast<const StructDefinition *>(real.Named))
     {
-        const bool some = HasKey(*structure);
-        for (const Member *member : AllMembers(*structure))
+        const std::vector<const Member *> members = KeyMembers(*structure);
+        if (!HasKey(*structure) && FirstOutOfOrder(members) != nullptr)
         {
-            if (!some || member->Key)
-            {
-                CheckKey(place, member->Type);
-            }
+            Refuse(place, "a key of type '" + structure->Name + "' is not supported: the id of its member '" +
+                              FirstOutOfOrder(members)->Name + "' is below that of one before it");
+        }
+        for (const Member *member : members)
+        {
+            CheckKey(place, member->Type);
         }
     }
 }

@@ -112,6 +112,22 @@ void ModelReader::Refuse(TreeNode place, const std::string &message)
     _refusals.Add(TreeFileOf(place), TreeLineOf(place), message);
 }
 
+std::vector<std::string> ModelReader::CommentOn(TreeNode node)
+{
+    if (!TreeInMainFile(_state, node))
+    {
+        return {};
+    }
+    const std::string file = TreeFileOf(node);
+    const auto found = _comments.try_emplace(file, file).first;
+    return found->second.About(TreeLineOf(node));
+}
+
+std::vector<std::string> ModelReader::CommentOnPart(TreeNode node, const Definition &whole)
+{
+    return TreeLineOf(node) == whole.Line ? std::vector<std::string>() : CommentOn(node);
+}
+
 template <class T>
 std::unique_ptr<T> ModelReader::Begin(TreeNode node)
 {
@@ -121,6 +137,7 @@ std::unique_ptr<T> ModelReader::Begin(TreeNode node)
     definition->File = TreeFileOf(node);
     definition->Line = TreeLineOf(node);
     definition->InMainFile = TreeInMainFile(_state, node);
+    definition->Comment = CommentOn(node);
     CheckTypeName(node, definition->Name);
     CheckAnnotations(node);
     return definition;
@@ -136,7 +153,7 @@ void ModelReader::ReadStruct(TreeNode node)
 {
     auto definition = Begin<StructDefinition>(node);
     definition->Nested = TreeIsNested(node);
-    CheckExtensibility(node);
+    definition->Appendable = IsAppendable(node);
     if (TreeHasKeylist(node))
     {
         Refuse(node, "#pragma keylist is not supported, mark the members with @key");
@@ -162,7 +179,7 @@ void ModelReader::ReadStruct(TreeNode node)
         Refuse(node, "'" + definition->Name + "' has no members");
     }
     CheckMemberNames(node, *definition);
-    CheckIds(node, *definition);
+    CheckIds(*definition);
     Finish(node, std::move(definition));
 }
 
@@ -181,6 +198,9 @@ void ModelReader::ReadMembers(TreeNode structure, StructDefinition &definition)
             CheckName(declarator, member.Name);
             member.Type = ReadDeclaredType(TreeTypeSpec(node), declarator);
             member.Key = TreeIsKey(node);
+            member.Id = TreeMemberId(declarator);
+            member.Comment = CommentOnPart(declarator, definition);
+            member.Unit = TreeUnit(node) != nullptr ? TreeUnit(node) : "";
             if (member.Key)
             {
                 CheckKey(declarator, member.Type);
@@ -198,7 +218,7 @@ void ModelReader::ReadMembers(TreeNode structure, StructDefinition &definition)
 void ModelReader::ReadUnion(TreeNode node)
 {
     auto definition = Begin<UnionDefinition>(node);
-    CheckExtensibility(node);
+    definition->Appendable = IsAppendable(node);
     const TreeNode selector = TreeSwitch(node);
     CheckAnnotations(selector);
     if (TreeSwitchIsKey(selector))
@@ -214,6 +234,7 @@ void ModelReader::ReadUnion(TreeNode node)
         entry.Content.Name = TreeName(declarator);
         entry.Content.File = TreeFileOf(declarator);
         entry.Content.Line = TreeLineOf(declarator);
+        entry.Content.Comment = CommentOnPart(declarator, *definition);
         CheckName(declarator, entry.Content.Name);
         entry.Content.Type = ReadDeclaredType(TreeTypeSpec(item), declarator);
         for (TreeNode label = TreeLabels(item); label != nullptr; label = TreeNext(label))
@@ -251,7 +272,8 @@ void ModelReader::ReadEnum(TreeNode node)
             definition->Default = definition->Enumerators.size();
         }
         _enumerators[item] = {definition.get(), definition->Enumerators.size()};
-        definition->Enumerators.push_back({TreeName(item), TreeEnumeratorValue(item)});
+        definition->Enumerators.push_back(
+            {TreeName(item), TreeEnumeratorValue(item), CommentOnPart(item, *definition)});
     }
     Finish(node, std::move(definition));
 }
@@ -264,7 +286,7 @@ void ModelReader::ReadBitmask(TreeNode node)
     {
         CheckName(item, TreeName(item));
         CheckAnnotations(item);
-        definition->Bits.push_back({TreeName(item), TreeBitPosition(item)});
+        definition->Bits.push_back({TreeName(item), TreeBitPosition(item), CommentOnPart(item, *definition)});
     }
     Finish(node, std::move(definition));
 }

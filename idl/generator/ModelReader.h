@@ -4,6 +4,7 @@
 #include "IdlTree.h"
 #include "Model.h"
 #include "Refusals.h"
+#include "SourceComments.h"
 
 #include <map>
 #include <set>
@@ -37,11 +38,16 @@ private:
     void CheckTypeName(TreeNode node, const std::string &name);
     void CheckMemberNames(TreeNode node, const StructDefinition &definition);
     void CheckAnnotations(TreeNode node);
-    void CheckIds(TreeNode structure, const StructDefinition &definition);
-    void CheckExtensibility(TreeNode node);
+    void CheckIds(const StructDefinition &definition);
+    bool IsAppendable(TreeNode node);
     void CheckKey(TreeNode place, const Type &type);
     void CheckDefault(TreeNode place, const Member &member);
 
+    // What the comments in the file say of a node; nothing for included files.
+    std::vector<std::string> CommentOn(TreeNode node);
+    // The same for a part of a definition; nothing if that begins in the same line, whose comment is about
+    // the whole.
+    std::vector<std::string> CommentOnPart(TreeNode node, const Definition &whole);
     void Refuse(TreeNode place, const std::string &message);
     template <class T>
     std::unique_ptr<T> Begin(TreeNode node);
@@ -51,6 +57,7 @@ private:
     Refusals &_refusals;
     Model _model;
     std::vector<std::string> _scope;
+    std::map<std::string, SourceComments> _comments;                                  // by file
     std::map<TreeNode, const Definition *> _known;                                    // by type node
     std::map<TreeNode, std::pair<const EnumDefinition *, std::size_t>> _enumerators;  // by enumerator node
 };

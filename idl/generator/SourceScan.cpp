@@ -162,31 +162,13 @@ private:
 
 const std::set<std::string> &KnownToIdlc()
 {
-    static const std::set<std::string> names{"appendable",
-                                             "autoid",
-                                             "bit_bound",
-                                             "data_representation",
-                                             "default",
-                                             "default_literal",
-                                             "default_nested",
-                                             "extensibility",
-                                             "external",
-                                             "final",
-                                             "hashid",
-                                             "id",
-                                             "key",
-                                             "max",
-                                             "min",
-                                             "mutable",
-                                             "must_understand",
-                                             "nested",
-                                             "optional",
-                                             "position",
-                                             "range",
-                                             "topic",
-                                             "try_construct",
-                                             "unit",
-                                             "value"};
+    static const std::set<std::string> names{
+        "appendable", "autoid", "bit_bound", "data_representation", "default", "default_literal",
+        "default_nested", "extensibility", "external", "final", "hashid", "id", "key", "max", "min",
+        "mutable", "must_understand", "nested", "optional", "position", "range", "topic", "try_construct",
+        "unit", "value",
+        // Documentation, or what becomes of it in other languages: nothing of ours.
+        "verbatim"};
     return names;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace RabitIdl
 {
@@ -17,6 +18,14 @@ public:
             _text.append(4 * _depth, ' ');
         }
         _text += text + "\n";
+    }
+    // Lines of comment.
+    void Comment(const std::vector<std::string> &lines)
+    {
+        for (const std::string &line : lines)
+        {
+            Line(line.empty() ? "//" : "// " + line);
+        }
     }
     void Open()
     {

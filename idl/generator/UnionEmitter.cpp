@@ -109,6 +109,7 @@ void EmitUnionClass(TextBuilder &out, const UnionDefinition &definition)
     {
         const std::string type = CppType(item.Content.Type);
         const std::string &member = item.Content.Name;
+        out.Comment(item.Content.Comment);
         out.Line("// Selected by " + SelectedBy(definition, item) + ". Setting it selects it.");
         out.Line("const " + type + " &" + member + "() const;");
         out.Line(type + " &" + member + "();");

@@ -42,6 +42,7 @@ const dds_topic_descriptor_t *DescriptorOf(const Rabit::RabitMessage &message)
         {"Keys::WideBoundedTextKey", &Keys_WideBoundedTextKey_desc},
         {"Keys::NestedKey", &Keys_NestedKey_desc},
         {"Keys::ArrayKey", &Keys_ArrayKey_desc},
+        {"Keys::NumberedKey", &Keys_NumberedKey_desc},
         {"Keys::DerivedKey", &Keys_DerivedKey_desc}};
     const auto found = all.find(Rabit::MessageTypeRegistry::Of(message)->Name());
     return found == all.end() ? nullptr : found->second;
@@ -79,7 +80,7 @@ std::vector<Sample> SamplesWithCType()
 
 TEST(CycloneBytes, EqualValuesGiveEqualBytes)
 {
-    ASSERT_EQ(SamplesWithCValue().size(), 16U);
+    ASSERT_EQ(SamplesWithCValue().size(), 17U);
     for (const Sample &sample : SamplesWithCValue())
     {
         const CycloneValue value = CycloneValueNamed(sample.Name.c_str());
@@ -91,7 +92,7 @@ TEST(CycloneBytes, EqualValuesGiveEqualBytes)
 
 TEST(CycloneBytes, CycloneReadsOurBytesAndWritesTheSame)
 {
-    ASSERT_EQ(SamplesWithCType().size(), 29U);
+    ASSERT_EQ(SamplesWithCType().size(), 30U);
     for (const Sample &sample : SamplesWithCType())
     {
         const std::vector<std::uint8_t> bytes = BytesOf(*sample.Message);
@@ -143,7 +144,7 @@ TEST(CycloneBytes, KeyHashesAreThoseOfCyclone)
                   std::vector<std::uint8_t>(expected, expected + hash.size()))
             << sample.Name;
     }
-    EXPECT_EQ(compared, 10);
+    EXPECT_EQ(compared, 11);
 }
 
 // What we accept is a sample for Cyclone DDS, too, and the same one: we are not laxer.

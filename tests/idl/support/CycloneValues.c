@@ -167,6 +167,7 @@ CycloneValue CycloneValueNamed(const char *name)
     RETURN_VALUE("WideBoundedTextKey", Keys_WideBoundedTextKey, WideBoundedTextKey())
     RETURN_PLAIN("NestedKey", Keys_NestedKey, {.place = {7, 0.5, 'z'}, .value = 8, .plain = {true, 1.5F}})
     RETURN_PLAIN("ArrayKey", Keys_ArrayKey, {{{1, 2, 3}, {4, 5, 6}}, Keys_K1, 7})
+    RETURN_PLAIN("NumberedKey", Keys_NumberedKey, {3, "text", {4, 5}})
     RETURN_PLAIN("DerivedKey", Keys_DerivedKey, {{5, "base"}, 0.5})
     return (CycloneValue){.type = NULL, .value = NULL};
 }

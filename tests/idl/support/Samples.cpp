@@ -230,6 +230,11 @@ void AddKeys(std::vector<Sample> &samples)
     arrayKey.kind = Keys::Kind::K1;
     arrayKey.value = 7;
     samples.push_back(Named("ArrayKey", arrayKey));
+    Keys::NumberedKey numberedKey;
+    numberedKey.first = 3;
+    numberedKey.text = "text";
+    numberedKey.second = {4, 5};
+    samples.push_back(Named("NumberedKey", numberedKey));
     Keys::DerivedKey derivedKey;
     derivedKey.id = 5;
     derivedKey.text = "base";

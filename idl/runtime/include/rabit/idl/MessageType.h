@@ -51,7 +51,9 @@ public:
     // Reads a message from borrowed bytes of either byte order. Returns false if they are not a sample of
     // this type (truncated, more than 3 bytes too long, out of bounds, an unknown encoding, an impossible
     // value); the message then has valid but unspecified contents. Never throws on account of the bytes,
-    // never reads past them, and never allocates more than the bytes account for. The message's time stamp,
+    // never reads past them, and never allocates more than 256 bytes for each of them and 64 KiB besides: a
+    // message that would take more is refused, which needs things that are small on the wire and large in
+    // memory, in great number (idl/README.md). The message's time stamp,
     // its three ints and its global reference stay as they are. Throws as SerializedSize.
     virtual bool Deserialize(std::span<const std::uint8_t> bytes, RabitMessage &message) const = 0;
 
