@@ -152,6 +152,18 @@ void ModelReader::CheckKey(TreeNode place, const Type &type)
     }
 }
 
+// Some compilers read keys out of comments. A topic without its key would match nobody, and say nothing.
+void ModelReader::CheckKeyInComment(TreeNode place, const Member &member)
+{
+    const bool isKey = std::any_of(member.Comment.begin(), member.Comment.end(),
+                                   [](const std::string &line) { return line == "@key"; });
+    if (isKey && !member.Key)
+    {
+        Refuse(place, "'" + member.Name +
+                          "' is a key by a comment alone, which is not supported; write @key before it");
+    }
+}
+
 void ModelReader::CheckDefault(TreeNode place, const Member &member)
 {
     const Type &type = Unalias(member.Type);

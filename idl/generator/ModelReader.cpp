@@ -200,6 +200,7 @@ void ModelReader::ReadMembers(TreeNode structure, StructDefinition &definition)
             member.Key = TreeIsKey(node);
             member.Id = TreeMemberId(declarator);
             member.Comment = CommentOnPart(declarator, definition);
+            CheckKeyInComment(declarator, member);
             member.Unit = TreeUnit(node) != nullptr ? TreeUnit(node) : "";
             if (member.Key)
             {

@@ -41,6 +41,7 @@ private:
     void CheckIds(const StructDefinition &definition);
     bool IsAppendable(TreeNode node);
     void CheckKey(TreeNode place, const Type &type);
+    void CheckKeyInComment(TreeNode place, const Member &member);
     void CheckDefault(TreeNode place, const Member &member);
 
     // What the comments in the file say of a node; nothing for included files.

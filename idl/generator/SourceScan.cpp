@@ -48,6 +48,10 @@ public:
             {
                 Annotation(used, declared);
             }
+            else if (letter == '#')
+            {
+                CheckPragma();
+            }
             else
             {
                 Step();
@@ -90,6 +94,15 @@ private:
             ++_at;
         }
         _at = std::min(_text.size(), _at + (_at < _text.size() && _text[_at] == quote ? 1 : 0));
+    }
+
+    void CheckPragma()
+    {
+        Step();
+        if (Name() == "pragma" && Name() == "DCPS_DATA_KEY")
+        {
+            _refusals.Add(_file, _line, "#pragma DCPS_DATA_KEY is not supported, mark the members with @key");
+        }
     }
 
     void CheckEscape()
