@@ -204,7 +204,7 @@ def swarm(fleet, uavs, seconds):
     """The example itself: aircraft that search, and the ground station, which says once a second what it shows."""
     fleet.ground.reset()
     names = [node for node in fleet.ground.nodes if node != "ground"]
-    station = fleet.start_example("ground", "ground_station/ground.yaml", "--seconds", seconds + LIMIT_S,
+    station = fleet.start_example("ground", "ground_station/ground.yaml", "--seconds", int(seconds) + LIMIT_S,
                                   "--command-period", 2, *(word for node in names for word in ("--expect", node)))
     began = time.monotonic()
     for node in names:
