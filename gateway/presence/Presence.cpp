@@ -101,10 +101,13 @@ Presence::Served Presence::Service(Duration now)
             _remote.Update(*peer);
         }
     }
-    _lookedAt = now;
-    if (_watch.Look(_writer ? _writer->MatchedReaders() : 0, now))
+    if (now >= _lookAt || _watch.IsExpecting())
     {
-        _introductions.Begin(OthersThan(""), now);
+        _lookAt = now + (_watch.IsExpecting() ? ReaderWatch::Period : ReaderWatch::Memory / 2);
+        if (_watch.Look(_writer ? _writer->MatchedReaders() : 0, now))
+        {
+            _introductions.Begin(OthersThan(""), now);
+        }
     }
     if (_introductions.TakeBeats(now))
     {
@@ -258,8 +261,8 @@ void Presence::Publish(const std::string &node, const PeerTable::Change &change)
 Presence::Duration Presence::NextDue() const
 {
     Duration next = Duration::max();
-    for (const std::optional<Duration> &due :
-         {_peers.NextChange(), _introductions.Due(), _watch.Due(_lookedAt)})
+    for (const std::optional<Duration> &due : {_peers.NextChange(), _introductions.Due(),
+                                               _watch.IsExpecting() ? std::optional(_lookAt) : std::nullopt})
     {
         next = due ? std::min(next, *due) : next;
     }

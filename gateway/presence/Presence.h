@@ -136,7 +136,7 @@ private:
     PeerTable _peers;
     Introductions _introductions;
     ReaderWatch _watch;
-    Duration _lookedAt{0};
+    Duration _lookAt{0};  // at the readers
     BeatPace _pace;
     BeatContents _contents;
     bool _owesNews = false;  // of a delay, to be told before the next beat is due

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 
 namespace Rabit
 {
@@ -49,11 +48,8 @@ public:
         return found > 0;
     }
 
-    // When to look again; empty: nobody is expected.
-    std::optional<Duration> Due(Duration now) const
-    {
-        return _expected > 0 ? std::optional(now + Period) : std::nullopt;
-    }
+    // Whether to look again after Period; now and then otherwise, within Memory.
+    bool IsExpecting() const { return _expected > 0; }
 
 private:
     int _expected = 0;
