@@ -13,6 +13,7 @@
 #include "incarnation/IncarnationStore.h"
 #include "manager/AirTraffic.h"
 #include "manager/TransportSettingsOf.h"
+#include "mirrors/StateExchange.h"
 #include "mirrors/Subscriptions.h"
 #include "mirrors/TopicPublisher.h"
 #include "presence/OriginTable.h"
@@ -78,6 +79,7 @@ public:
               config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
               [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace),
+          _states(_presence, _subscriptions, random),
           _fleet(std::make_shared<Gateway::Fleet>())
     {
         if (!_transport)
@@ -129,14 +131,10 @@ public:
         const PeerTable::Change &change = served.Change;
         for (const std::string &node : change.Forgotten)
         {
-            _subscriptions.Forget(node);
             _links.Forget(node);
             _outgoing->Forget(node);
         }
-        if (change.Offers || change.NewLife)
-        {
-            _subscriptions.OnOffers(_presence.Peers());
-        }
+        _states.Serve(served, _publishers, now);
         if (change.NewLife)
         {
             for (const PeerTable::Peer *peer : _presence.Peers().Heard())
@@ -153,14 +151,12 @@ public:
             _links.TakeDelays(now, [this](const std::string &node, Duration delay, Duration arrivedAt)
                               { _presence.NoteDelay(node, delay, arrivedAt); });
         }
-        if (served.RepeatStates)
-        {
-            for (TopicPublisher &publisher : _publishers)
-            {
-                publisher.Repeat();
-            }
-        }
-        const Duration next = std::min(_presence.NextDue(), _air.Serve(now));
+        Duration next = std::min(_presence.NextDue(), _air.Serve(now));
+        _states.TellVersions(_publishers, now);
+        next = std::min(next, _states.Due().value_or(next));
+        // One that is due waits for its turn.
+        const Duration beat = _presence.BeatDue();
+        next = beat > now ? std::min(next, beat) : next;
         if (change.State || change.Offers || now >= _nextFleet)
         {
             PostFleet(now);
@@ -202,6 +198,7 @@ private:
             Attach(_publishers.back());
         }
         _air.Open(*_session);
+        _states.Open(_publishers);
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
         if (!_forwards)
         {
@@ -323,6 +320,7 @@ private:
     const SourceClock _source;
     Presence _presence;
     Subscriptions _subscriptions;
+    StateExchange _states;
     std::shared_ptr<Gateway::Fleet> _fleet;
     const std::string _logName =
         _config.Name == GatewayConfig().Name ? "gateway: " : "gateway " + _config.Name + ": ";

@@ -1,12 +1,13 @@
 #include "mirrors/Subscriptions.h"
 
-#include <rabit/RabitLog.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
-#include <algorithm>
+#include <numeric>
 
 #include "names/NamePattern.h"
+#include "wire/Announcements.h"
 #include "wire/GatewayTopics.h"
+#include "wire/Offers.h"
 
 namespace Rabit
 {
@@ -19,104 +20,110 @@ Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const Orig
 
 void Subscriptions::Open(TransportSession &session)
 {
-    _session = &session;
     for (const SubscribeRule &rule : _rules)
     {
-        if (rule.Qos)
-        {
-            OpenOne(rule, *rule.Qos);
-        }
+        _subscriptions.push_back(
+            {&rule, std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
+                                                      _workspace)});
+        _subscriptions.back().Subscriber->Open(session);
     }
 }
 
 void Subscriptions::Close()
 {
-    _subscribers.clear();
-    _session = nullptr;
+    _subscriptions.clear();
+    _known.clear();
 }
 
-void Subscriptions::OpenOne(const SubscribeRule &rule, QosProfile profile)
+// With what profile the node announces what the rule wants; empty if it does not.
+std::optional<QosProfile> Subscriptions::OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer)
 {
-    std::unique_ptr<TopicSubscriber> &subscriber = _subscribers[{&rule, profile}];
-    if (!subscriber)
+    if (!peer.HasPresentOffers() || !MatchesAny(rule.From, peer.Node))
     {
-        auto made = std::make_unique<TopicSubscriber>(rule, profile, *MessageTypeRegistry::Find(rule.Type),
-                                                      _origins, _workspace);
-        made->Open(*_session);
-        subscriber = std::move(made);
+        return std::nullopt;
     }
+    const Gateway::PublishedMessage *offer = Offers::Find(*peer.Offers, rule.Message);
+    return offer != nullptr && offer->type == rule.Type ? std::optional(GatewayTopics::ProfileOf(offer->qos))
+                                                        : std::nullopt;
 }
 
-void Subscriptions::OnOffers(const PeerTable &peers)
+std::vector<const PeerTable::Peer *> Subscriptions::OnOffers(const PeerTable &peers)
 {
-    if (_session == nullptr)
+    std::vector<const PeerTable::Peer *> changed;
+    for (const PeerTable::Peer *peer : peers.Heard())
     {
-        return;
-    }
-    for (const SubscribeRule &rule : _rules)
-    {
-        for (const PeerTable::Peer *peer : peers.Heard())
+        const Known now{peer->Incarnation, peer->Offers ? std::optional(peer->OffersDigest) : std::nullopt};
+        Known &known = _known[peer->Node];
+        if (known == now)
         {
-            if (rule.Qos || !peer->Offers || !MatchesAny(rule.From, peer->Node))
-            {
-                continue;
-            }
-            for (const Gateway::PublishedMessage &offer : peer->Offers->publishes)
-            {
-                if (offer.message == rule.Message && offer.type == rule.Type)
-                {
-                    OpenOne(rule, offer.qos == GatewayTopics::NameOf(QosProfile::Telemetry)
-                                      ? QosProfile::Telemetry
-                                      : QosProfile::State);
-                }
-            }
+            continue;
+        }
+        known = now;
+        changed.push_back(peer);
+        for (const Subscription &subscription : _subscriptions)
+        {
+            subscription.Subscriber->SetOffer(peer->Node, OfferFor(*subscription.Rule, *peer));
         }
     }
+    return changed;
+}
+
+std::vector<StateRepair::Wanted> Subscriptions::StatesWanted(const PeerTable::Peer &peer) const
+{
+    std::vector<StateRepair::Wanted> wanted;
+    for (std::size_t i = 0; i < _rules.size(); ++i)
+    {
+        if (OfferFor(_rules[i], peer) == QosProfile::State)
+        {
+            wanted.push_back(
+                {.State = *Announcements::StateIndexOf(*peer.Offers, _rules[i].Message), .Subscription = i});
+        }
+    }
+    return wanted;
+}
+
+std::optional<std::int64_t> Subscriptions::TakenIn(std::size_t rule, const std::string &node,
+                                                   std::uint64_t incarnation) const
+{
+    return rule < _subscriptions.size() ? _subscriptions[rule].Subscriber->TakenIn(node, incarnation)
+                                        : std::nullopt;
 }
 
 void Subscriptions::Forget(const std::string &node)
 {
-    for (const auto &[key, subscriber] : _subscribers)
+    _known.erase(node);
+    for (const Subscription &subscription : _subscriptions)
     {
-        if (subscriber)
-        {
-            subscriber->Forget(node);
-        }
+        subscription.Subscriber->Forget(node);
     }
 }
 
 std::uint64_t Subscriptions::CrowdedOut() const
 {
-    std::uint64_t sum = 0;
-    for (const auto &[key, subscriber] : _subscribers)
-    {
-        sum += subscriber ? subscriber->CrowdedOut() : 0;
-    }
-    return sum;
+    return std::accumulate(_subscriptions.begin(), _subscriptions.end(), std::uint64_t{0},
+                           [](std::uint64_t sum, const Subscription &subscription)
+                           { return sum + subscription.Subscriber->CrowdedOut(); });
 }
 
 void Subscriptions::Report(Gateway::Fleet &fleet) const
 {
-    for (const auto &[key, subscriber] : _subscribers)
+    for (const Subscription &subscription : _subscriptions)
     {
-        if (subscriber)
-        {
-            const auto status = subscriber->Status();
-            fleet.topics.insert(fleet.topics.end(), status.begin(), status.end());
-        }
+        const auto status = subscription.Subscriber->Status();
+        fleet.topics.insert(fleet.topics.end(), status.begin(), status.end());
     }
 }
 
 Reception Subscriptions::ReceptionFrom(const std::string &node, const SubscribeRule &rule) const
 {
     Reception reception;
-    for (const auto &[key, subscriber] : _subscribers)
+    for (const Subscription &subscription : _subscriptions)
     {
-        if (key.first == &rule && subscriber)
+        if (subscription.Rule == &rule)
         {
-            reception.Received += subscriber->ReceivedFrom(node);
-            reception.MatchedWriters += subscriber->MatchedWriters();
-            reception.LocalProblem += subscriber->LocalProblem(node);
+            reception.Received = subscription.Subscriber->ReceivedFrom(node);
+            reception.MatchedWriters = subscription.Subscriber->MatchedWriters();
+            reception.LocalProblem = subscription.Subscriber->LocalProblem(node);
         }
     }
     return reception;

@@ -4,14 +4,17 @@
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "gateway.idl.h"
 #include "mirrors/Reception.h"
+#include "mirrors/StateRepair.h"
 #include "mirrors/TopicSubscriber.h"
 #include "presence/OriginTable.h"
 #include "presence/PeerTable.h"
@@ -19,8 +22,7 @@
 namespace Rabit
 {
 
-// All messages that this node wants of others. A rule that names no QoS profile takes what the publishers
-// announce: its reader is opened when the first announcement that fits arrives. Gateway's thread only.
+// All messages that this node wants of others: one reader for each rule. Gateway's thread only.
 class Subscriptions
 {
 public:
@@ -28,11 +30,17 @@ public:
     Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
                   RabitWorkspace &workspace);
 
-    // Opens what needs no announcement. Throws TransportError.
+    // Throws TransportError.
     void Open(TransportSession &session);
     void Close();
-    // Opens what has become known to be needed.
-    void OnOffers(const PeerTable &peers);
+    // Takes in what the nodes announce, and that one has begun another life. Returns of which nodes something
+    // was new.
+    std::vector<const PeerTable::Peer *> OnOffers(const PeerTable &peers);
+    // Which States of that node are wanted, by which of Rules().
+    std::vector<StateRepair::Wanted> StatesWanted(const PeerTable::Peer &peer) const;
+    // As TopicSubscriber::TakenIn, of the reader of one of Rules().
+    std::optional<std::int64_t> TakenIn(std::size_t rule, const std::string &node,
+                                        std::uint64_t incarnation) const;
 
     void Forget(const std::string &node);
     // Samples dropped because they came from a node beyond those that are kept.
@@ -43,15 +51,28 @@ public:
     Reception ReceptionFrom(const std::string &node, const SubscribeRule &rule) const;
 
 private:
-    using Key = std::pair<const SubscribeRule *, QosProfile>;
+    struct Subscription
+    {
+        const SubscribeRule *Rule = nullptr;
+        std::unique_ptr<TopicSubscriber> Subscriber;
+    };
 
-    void OpenOne(const SubscribeRule &rule, QosProfile profile);
+    // Which announcement of a node was taken in.
+    struct Known
+    {
+        std::uint64_t Incarnation = 0;
+        std::optional<std::uint32_t> Digest;  // empty: none
+
+        bool operator==(const Known &) const = default;
+    };
+
+    static std::optional<QosProfile> OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer);
 
     const std::vector<SubscribeRule> &_rules;
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
-    TransportSession *_session = nullptr;
-    std::map<Key, std::unique_ptr<TopicSubscriber>> _subscribers;
+    std::vector<Subscription> _subscriptions;  // of each rule, in their order, while open
+    std::map<std::string, Known> _known;
 };
 
 }  // namespace Rabit

@@ -1,6 +1,8 @@
 #include "mirrors/TopicPublisher.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "wire/GatewayTopics.h"
 
@@ -58,6 +60,7 @@ void TopicPublisher::Fetch()
     {
         _offered = posts - _postsBefore;
         _pending = true;
+        _time = TimeOfPost();
     }
 }
 
@@ -75,38 +78,64 @@ TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
     return _writer.OwesDisposal() ? std::min(value, _lastWrite + NextGap()) : value;
 }
 
-// What was posted, and what somebody new waits for, at once; a State's repetition in its period; nothing more
-// often than the rule allows.
+// What was posted at once, and what others ask for when it is its turn; nothing more often than the rule
+// allows.
 TopicPublisher::Duration TopicPublisher::ValueDueAt(Duration now) const
 {
-    const bool repeats = _rule.Qos == QosProfile::State && _everWritten;
     const Duration mayWriteAt = _everWritten ? _lastWrite + NextGap() : now;
-    if (_pending || (repeats && _repeatNow))
+    if (_pending)
     {
         return mayWriteAt;
     }
-    return repeats ? std::max(_lastWrite + StateRepeatPeriod, mayWriteAt) : Duration::max();
+    const std::optional<Duration> repeat = _repeat.Due();
+    return repeat ? std::max(*repeat, mayWriteAt) : Duration::max();
 }
 
 void TopicPublisher::Write(Duration now)
 {
-    const WriteResult result = now >= ValueDueAt(now) ? WriteValue() : _writer.DisposeFormer();
+    const WriteResult result = now >= ValueDueAt(now) ? WriteValue(now) : _writer.DisposeFormer();
     _failures += result == WriteResult::Ok ? 0 : 1;
     _timedOut = result == WriteResult::TimedOut || _writer.OwesDisposal();
     _lastWrite = now;
 }
 
-WriteResult TopicPublisher::WriteValue()
+// Of two States within a step of StateVersion the second is stamped as if it came with the next step.
+std::int64_t TopicPublisher::TimeOfPost() const
+{
+    const std::int64_t posted = _source.At(_local->GetPostTime().Monotonic);
+    if (_rule.Qos != QosProfile::State)
+    {
+        return posted;
+    }
+    constexpr std::int64_t ShortlyBefore = 100 * StateVersion::Step;
+    const std::int64_t time = StateVersion::Quantised(posted);
+    return time <= _time && _time - time < ShortlyBefore ? StateVersion::Next(_time) : time;
+}
+
+void TopicPublisher::AskedFor(Duration now)
+{
+    if (_version != StateVersion::None)
+    {
+        _repeat.Ask(now);
+    }
+}
+
+WriteResult TopicPublisher::WriteValue(Duration now)
 {
     _taken += _pending ? 1 : 0;
-    const WriteResult result = _writer.Write(*_local, _source.At(_local->GetPostTime().Monotonic));
+    const WriteResult result = _writer.Write(*_local, _time);
     _written += result == WriteResult::Ok ? 1 : 0;
     // A value that the network did not take in time is tried again; one that can never be sent would only
     // fail again.
     _taken -= _pending && result == WriteResult::TimedOut ? 1 : 0;
     _pending = result == WriteResult::TimedOut;
     _everWritten = true;
-    _repeatNow = false;
+    if (_rule.Qos == QosProfile::State && !_pending)
+    {
+        const std::uint32_t version =
+            result == WriteResult::Ok ? StateVersion::Of(_time) : StateVersion::None;
+        _repeat.Written(std::exchange(_version, version) != version, now);
+    }
     return result;
 }
 

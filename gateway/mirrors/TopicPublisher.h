@@ -15,20 +15,21 @@
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
 #include "mirrors/InstanceWriter.h"
+#include "mirrors/RepeatPace.h"
+#include "mirrors/StateVersion.h"
 
 namespace Rabit
 {
 
-// Mirrors one local message to a topic: writes its newest value whenever it was posted, and repeats a State
-// once a second; all no more often than the rule allows. Intermediate values may be skipped, as with a
-// fetch. Of a type with a key the newest value's instance alone is there: the former one is disposed. Used by
-// the gateway's thread only.
+// Mirrors one local message to a topic: writes its newest value whenever it was posted, and a State again
+// when others ask for it (RepeatPace); all no more often than the rule allows. Intermediate values may be
+// skipped, as with a fetch. Of a type with a key the newest value's instance alone is there: the former one
+// is disposed. Used by the gateway's thread only.
 class TopicPublisher
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    static constexpr Duration StateRepeatPeriod = std::chrono::seconds(1);
     // Between attempts of which the network takes none: while there is none, a write ends at once.
     static constexpr Duration RetryGap = std::chrono::milliseconds(50);
 
@@ -43,8 +44,11 @@ public:
     void SetAttached();
     bool IsAttached() const { return _global != nullptr; }
 
-    // Has a State that was written be written again as soon as the rule allows: somebody new is listening.
-    void Repeat() { _repeatNow = _everWritten; }
+    // Of the State that was written last, for the beats to tell (StateVersion). None: nothing was, or what
+    // was posted last can never be written, or it is telemetry.
+    std::uint32_t Version() const { return _version; }
+    // Somebody lacks the State of that version.
+    void AskedFor(Duration now);
     // Fetches and writes what is due. Returns when to call again even if nothing is posted (Duration::max():
     // never).
     Duration Service(Duration now);
@@ -65,7 +69,8 @@ public:
     Gateway::PublicationStatus Status() const;
 
 private:
-    WriteResult WriteValue();
+    WriteResult WriteValue(Duration now);
+    std::int64_t TimeOfPost() const;
     Duration ValueDueAt(Duration now) const;
     Duration MinimumGap() const;
     Duration NextGap() const;
@@ -79,7 +84,9 @@ private:
     bool _pending = false;                       // fetched and not written yet
     bool _timedOut = false;                      // the last write, or the disposal after it
     bool _everWritten = false;
-    bool _repeatNow = false;
+    std::int64_t _time = 0;  // source time of what was fetched last
+    std::uint32_t _version = StateVersion::None;
+    RepeatPace _repeat;
     Duration _lastWrite{0};
     std::uint64_t _offered = 0;  // posts, of this name, since it was attached
     std::uint64_t _postsBefore = 0;

@@ -3,10 +3,10 @@
 #include <rabit/RabitLog.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
 #include "clocks/GpsTime.h"
+#include "mirrors/StateVersion.h"
 #include "names/NamePattern.h"
 #include "presence/PeerTable.h"
 #include "wire/GatewayTopics.h"
@@ -16,28 +16,14 @@ namespace Rabit
 namespace
 {
 
-// Backends may round a time to a microsecond; two posts as close as that differ in content or do not matter.
-constexpr std::int64_t Rounding = 2000;
-
 // Nodes that are kept of one message; one more for programs that are no nodes.
 constexpr std::size_t MostSources = PeerTable::MaximumPeers + 1;
 
-std::uint64_t HashOf(SampleBytes bytes)
-{
-    return std::hash<std::string_view>{}(
-        std::string_view(reinterpret_cast<const char *>(bytes.data()), bytes.size()));
-}
-
 }  // namespace
 
-TopicSubscriber::TopicSubscriber(const SubscribeRule &rule, QosProfile profile, const MessageType &type,
+TopicSubscriber::TopicSubscriber(const SubscribeRule &rule, const MessageType &type,
                                  const OriginTable &origins, RabitWorkspace &workspace)
-    : _rule(rule),
-      _profile(profile),
-      _type(type),
-      _origins(origins),
-      _workspace(workspace),
-      _scratch(type.Create())
+    : _rule(rule), _type(type), _origins(origins), _workspace(workspace), _scratch(type.Create())
 {
 }
 
@@ -49,8 +35,8 @@ TopicSubscriber::~TopicSubscriber()
 void TopicSubscriber::Open(TransportSession &session)
 {
     _reader = session.CreateReader(
-        GatewayTopics::Describe(_rule.Message, _type), GatewayTopics::QosOf(_profile), _rule.From,
-        [this](SampleBytes bytes, const SampleInfo &info) { OnSample(bytes, info); });
+        GatewayTopics::Describe(_rule.Message, _type), GatewayTopics::QosOf(QosProfile::Telemetry),
+        _rule.From, [this](SampleBytes bytes, const SampleInfo &info) { OnSample(bytes, info); });
 }
 
 int TopicSubscriber::MatchedWriters() const
@@ -92,6 +78,38 @@ void TopicSubscriber::Forget(const std::string &node)
 {
     const std::lock_guard lock(_mutex);
     _sources.erase(node);
+    _offers.erase(node);
+}
+
+void TopicSubscriber::SetOffer(const std::string &node, std::optional<QosProfile> profile)
+{
+    const std::lock_guard lock(_mutex);
+    if (profile)
+    {
+        _offers[node] = *profile;
+    }
+    else
+    {
+        _offers.erase(node);
+    }
+}
+
+std::optional<QosProfile> TopicSubscriber::OfferOf(std::string_view node) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _offers.find(node);
+    return found == _offers.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::int64_t> TopicSubscriber::TakenIn(const std::string &node, std::uint64_t incarnation) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _sources.find(node);
+    if (found == _sources.end() || !found->second->Taken || found->second->Taken->Incarnation != incarnation)
+    {
+        return std::nullopt;
+    }
+    return found->second->Taken->Time;
 }
 
 std::uint64_t TopicSubscriber::CrowdedOut() const
@@ -114,24 +132,22 @@ void TopicSubscriber::Register(Source &source)
     source.Problem = problem;
 }
 
-bool TopicSubscriber::IsRepetition(const Source &source, const SampleInfo &info, std::uint64_t hash) const
+bool TopicSubscriber::IsRepetition(const Source &source, const SampleInfo &info)
 {
-    return _profile == QosProfile::State && source.AnyPosted && source.Incarnation == info.Incarnation &&
-           source.LastHash == hash && std::llabs(source.LastTime - info.SourceTime) <= Rounding;
+    return source.Posted && source.Posted->Incarnation == info.Incarnation &&
+           StateVersion::IsSame(source.Posted->Time, info.SourceTime);
 }
 
-// What the network held up while the two nodes lost each other comes after what followed it: DDS keeps the
-// order only as long as a match lasts.
+// Nothing keeps the order on the way: what the network held up may come long after what followed it.
 bool TopicSubscriber::IsOvertaken(const Source &source, const SampleInfo &info)
 {
-    return source.AnyPosted && source.Incarnation == info.Incarnation &&
-           info.SourceTime < source.LastTime - Rounding;
+    return source.Posted && source.Posted->Incarnation == info.Incarnation &&
+           info.SourceTime < source.Posted->Time &&
+           !StateVersion::IsSame(info.SourceTime, source.Posted->Time);
 }
 
-void TopicSubscriber::CountUndecodable(Source &source, std::size_t size)
+void TopicSubscriber::LogUndecodable(Source &source, std::size_t size)
 {
-    const std::lock_guard lock(_mutex);
-    ++source.Counters.undecodable;
     if (source.Log.MayPass(_workspace.GetClock().Monotonic()))
     {
         RabitLog::Write(
@@ -149,51 +165,64 @@ void TopicSubscriber::OnSample(SampleBytes bytes, const SampleInfo &info)
     {
         return;
     }
-    const std::shared_ptr<Source> source = SourceOf(info.Node);
-    if (!source)
+    if (const std::shared_ptr<Source> source = SourceOf(info.Node))
     {
-        return;
+        const Outcome outcome = Take(*source, OfferOf(info.Node), bytes, info);
+        Count(*source, outcome, info);
+        if (outcome == Outcome::Undecodable)
+        {
+            LogUndecodable(*source, bytes.size());
+        }
     }
+}
+
+TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<QosProfile> offer,
+                                               SampleBytes bytes, const SampleInfo &info)
+{
     const auto origin = _origins.Find(info.Node);
     const bool known = !info.Node.empty() && origin && origin->Incarnation == info.Incarnation;
     const auto posted =
         known ? origin->PostedAt(info.SourceTime, _workspace.GetClock().Monotonic()) : std::nullopt;
-    if (!posted || IsOvertaken(*source, info))
+    if (!posted || IsOvertaken(source, info) || (_rule.Qos == QosProfile::State && offer != _rule.Qos))
     {
-        const std::lock_guard lock(_mutex);
-        ++source->Counters.refused;
-        return;
+        return Outcome::Refused;
     }
-    const std::uint64_t hash = _profile == QosProfile::State ? HashOf(bytes) : 0;
-    if (IsRepetition(*source, info, hash))
+    if (offer == QosProfile::State && IsRepetition(source, info))
     {
-        const std::lock_guard lock(_mutex);
-        ++source->Counters.repeated;
-        return;
+        return Outcome::Repeated;
     }
     if (!_type.Deserialize(bytes, *_scratch))
     {
-        CountUndecodable(*source, bytes.size());
-        return;
+        return Outcome::Undecodable;
     }
-    if (!source->Global)
+    if (!source.Global)
     {
-        Register(*source);
+        Register(source);
     }
-    if (!source->Global)
+    if (!source.Global)
     {
-        const std::lock_guard lock(_mutex);
-        ++source->Counters.refused;
-        return;
+        return Outcome::NotPostable;
     }
     const double stamp = GpsTime::ToGps(info.SourceTime + origin->SourceToWall.count());
-    source->Global->PostMessage(_scratch.get(), PostTime{stamp, *posted});
-    source->AnyPosted = true;
-    source->Incarnation = info.Incarnation;
-    source->LastTime = info.SourceTime;
-    source->LastHash = hash;
+    source.Global->PostMessage(_scratch.get(), PostTime{stamp, *posted});
+    source.Posted = Sample{info.Incarnation, info.SourceTime};
+    return Outcome::Posted;
+}
+
+void TopicSubscriber::Count(Source &source, Outcome outcome, const SampleInfo &info)
+{
     const std::lock_guard lock(_mutex);
-    ++source->Counters.received;
+    Gateway::TopicStatus &counters = source.Counters;
+    counters.received += outcome == Outcome::Posted ? 1 : 0;
+    counters.repeated += outcome == Outcome::Repeated ? 1 : 0;
+    counters.undecodable += outcome == Outcome::Undecodable ? 1 : 0;
+    counters.refused += outcome == Outcome::Refused || outcome == Outcome::NotPostable ? 1 : 0;
+    if (outcome != Outcome::Refused)
+    {
+        const bool first = !source.Taken || source.Taken->Incarnation != info.Incarnation;
+        source.Taken =
+            Sample{info.Incarnation, first ? info.SourceTime : std::max(source.Taken->Time, info.SourceTime)};
+    }
 }
 
 std::uint64_t TopicSubscriber::ReceivedFrom(const std::string &node) const

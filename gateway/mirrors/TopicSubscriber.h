@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,12 +23,13 @@
 namespace Rabit
 {
 
-// Mirrors one topic to local messages `<node>/<message>`, one for each node that writes it with a given QoS
-// profile. Decodes each sample once, on the transport's thread, and posts it there, without a lock held.
+// Mirrors one topic to local messages `<node>/<message>`, one for each node that writes it. Decodes each
+// sample once, on the transport's thread, and posts it there, without a lock held. The reader is best effort
+// and volatile whatever the node announces: what is lost of a State is asked for (StateRepair).
 //
-// What is not posted: samples of a node that has not been heard as live or is in another life by now (a late
-// joiner may be handed the past; a State is repeated soon after), what is older than what was posted of that
-// life, or of a time in the future, repetitions of a State that is posted already, what does not decode, and
+// What is not posted: samples of a node that has not been heard as live or is in another life by now, of one
+// that does not announce the profile that the rule asks for, what is older than what was posted of that life,
+// or of a time in the future, repetitions of a State that is posted already, what does not decode, and
 // samples of programs that are not nodes. All but the repetitions are counted as dropped.
 //
 // That an instance is disposed, or has lost its writer, changes nothing. If it is the former one, the message
@@ -37,18 +39,24 @@ class TopicSubscriber
 {
 public:
     // `origins` and the workspace must outlive the object.
-    TopicSubscriber(const SubscribeRule &rule, QosProfile profile, const MessageType &type,
-                    const OriginTable &origins, RabitWorkspace &workspace);
+    TopicSubscriber(const SubscribeRule &rule, const MessageType &type, const OriginTable &origins,
+                    RabitWorkspace &workspace);
     ~TopicSubscriber();
 
     // Opens the reader; throws TransportError.
     void Open(TransportSession &session);
 
-    QosProfile Profile() const { return _profile; }
+    // The profile with which a node announces the message; empty: it does not say, or not yet. A rule that
+    // asks for State takes nothing of who does not announce it.
+    void SetOffer(const std::string &node, std::optional<QosProfile> profile);
+    // The source time of the newest sample of that life of a node that was taken in: posted, or of no use
+    // here however often it came.
+    std::optional<std::int64_t> TakenIn(const std::string &node, std::uint64_t incarnation) const;
     // Samples of that node that were posted, and DDS writers that match now.
     std::uint64_t ReceivedFrom(const std::string &node) const;
     int MatchedWriters() const;
-    // The node is forgotten: so are its counters. Its local message stays, as every message does.
+    // The node is forgotten: so are its counters and its offer. Its local message stays, as every message
+    // does.
     void Forget(const std::string &node);
     // Samples dropped because they came from a node beyond those that are kept.
     std::uint64_t CrowdedOut() const;
@@ -58,37 +66,54 @@ public:
     std::string LocalProblem(const std::string &node) const;
 
 private:
+    struct Sample
+    {
+        std::uint64_t Incarnation = 0;
+        std::int64_t Time = 0;
+    };
+
     // One node that writes the topic.
     struct Source
     {
         Gateway::TopicStatus Counters;
         std::shared_ptr<PublishSubscribeMessage> Global;
         std::string Problem;
-        std::uint64_t Incarnation = 0;
-        std::int64_t LastTime = 0;
-        std::uint64_t LastHash = 0;
-        bool AnyPosted = false;
+        std::optional<Sample> Posted;
+        std::optional<Sample> Taken;  // guarded, as the counters are
         LogThrottle Log;
     };
 
+    // What happened to a sample.
+    enum class Outcome
+    {
+        Posted,
+        Repeated,
+        Undecodable,
+        Refused,
+        NotPostable  // the local message is of another type
+    };
+
     void OnSample(SampleBytes bytes, const SampleInfo &info);
+    Outcome Take(Source &source, std::optional<QosProfile> offer, SampleBytes bytes, const SampleInfo &info);
+    void Count(Source &source, Outcome outcome, const SampleInfo &info);
     std::shared_ptr<Source> SourceOf(std::string_view node);
+    std::optional<QosProfile> OfferOf(std::string_view node) const;
     void Register(Source &source);
     static bool IsOvertaken(const Source &source, const SampleInfo &info);
-    bool IsRepetition(const Source &source, const SampleInfo &info, std::uint64_t hash) const;
-    void CountUndecodable(Source &source, std::size_t size);
+    static bool IsRepetition(const Source &source, const SampleInfo &info);
+    void LogUndecodable(Source &source, std::size_t size);
 
     const SubscribeRule _rule;
-    const QosProfile _profile;
     const MessageType &_type;
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
     // Only the handler uses it, and a reader's handlers never run two at once.
     std::unique_ptr<RabitMessage> _scratch;
 
-    mutable std::mutex _mutex;  // guards the counters in _sources, and the map
+    mutable std::mutex _mutex;  // guards the counters in _sources, and the maps
     // The handler holds the one that it uses, which may be forgotten meanwhile.
     std::map<std::string, std::shared_ptr<Source>, std::less<>> _sources;
+    std::map<std::string, QosProfile, std::less<>> _offers;
     std::uint64_t _crowdedOut = 0;
 
     std::unique_ptr<TransportReader> _reader;

@@ -21,9 +21,17 @@ void BeatPace::Introduce(Duration now)
     _step = ShortestGap;
 }
 
+void BeatPace::StateWritten(Duration now)
+{
+    if (_period <= DefaultPeriod)
+    {
+        _stateDue = std::max(now + AfterState, _last ? *_last + GapForStates : now);
+    }
+}
+
 void BeatPace::Sent(Duration now)
 {
-    if (now < _due)
+    if (now < Due())
     {
         _gap = std::min(2 * _gap, _period);
         _broughtForward = now;
@@ -33,6 +41,7 @@ void BeatPace::Sent(Duration now)
         _gap = ShortestGap;
     }
     _last = now;
+    _stateDue.reset();
     _due = now + std::min(_step, _period);
     _step = _step < _period ? 2 * _step : Duration::max();
 }

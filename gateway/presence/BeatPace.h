@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -7,9 +8,9 @@ namespace Rabit
 {
 
 // When this node beats: once a period, quickly when somebody has come who must not wait for the next period,
-// and earlier when there is something to ask for. Beats that were brought forward follow each other less and
-// less quickly, until nobody has brought one forward for a while: who asks without end does not make this
-// node shout.
+// and earlier when there is something to ask for, or a State was written that may be lost. Beats that were
+// brought forward follow each other less and less quickly, until nobody has brought one forward for a while:
+// who asks without end does not make this node shout.
 //
 // A pure state machine; `now` never goes back.
 class BeatPace
@@ -24,6 +25,11 @@ public:
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
     // After so long without one the next may be brought forward as if it were the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
+    // Who lacks a State learns of it from the beat after it. So that comes so long after the last of several
+    // States in a row, but for States alone no sooner than that after another beat, and with a period longer
+    // than the usual one not before its time.
+    static constexpr Duration AfterState = std::chrono::milliseconds(100);
+    static constexpr Duration GapForStates = std::chrono::milliseconds(200);
 
     Duration Period() const { return _period; }
     // Raised or lowered to what is possible. A longer one holds from the next beat on, which is the first to
@@ -31,7 +37,7 @@ public:
     void SetPeriod(Duration period);
 
     // When the next beat is due if nobody has anything to ask.
-    Duration Due() const { return _due; }
+    Duration Due() const { return _stateDue ? std::min(_due, *_stateDue) : _due; }
     // Before this there is none at all.
     Duration Earliest() const { return _last ? *_last + ShortestGap : Duration(0); }
     // Before this none is brought forward because there is something to ask for.
@@ -39,6 +45,8 @@ public:
 
     // Somebody has come: the next beats follow each other quickly, each step twice the one before.
     void Introduce(Duration now);
+    // A State was written.
+    void StateWritten(Duration now);
     // A beat was sent.
     void Sent(Duration now);
 
@@ -49,6 +57,7 @@ private:
     Duration _gap = ShortestGap;
     std::optional<Duration> _last;
     std::optional<Duration> _broughtForward;
+    std::optional<Duration> _stateDue;
 };
 
 }  // namespace Rabit

@@ -1,7 +1,6 @@
 #include "presence/Introductions.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "presence/Spread.h"
 
@@ -14,7 +13,6 @@ bool Introductions::Ask(const std::string &node, Reason reason, std::size_t othe
     {
         return false;
     }
-    _statesWanted |= reason == Reason::Heard;
     Begin(others, now);
     return true;
 }
@@ -41,11 +39,6 @@ bool Introductions::Grant(const std::string &node, Reason reason, Duration now)
     return true;
 }
 
-std::optional<Introductions::Duration> Introductions::Due() const
-{
-    return _beatsAt && _statesAt ? std::min(_beatsAt, _statesAt) : _beatsAt ? _beatsAt : _statesAt;
-}
-
 bool Introductions::TakeBeats(Duration now)
 {
     if (!_beatsAt || now < *_beatsAt)
@@ -54,20 +47,6 @@ bool Introductions::TakeBeats(Duration now)
     }
     _beatsAt.reset();
     _last = now;
-    if (std::exchange(_statesWanted, false))
-    {
-        _statesAt = now + StatesAfter;
-    }
-    return true;
-}
-
-bool Introductions::TakeStates(Duration now)
-{
-    if (!_statesAt || now < *_statesAt)
-    {
-        return false;
-    }
-    _statesAt.reset();
     return true;
 }
 

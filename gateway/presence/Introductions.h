@@ -11,10 +11,9 @@
 namespace Rabit
 {
 
-// Decides when this node speaks up for those who have just come, with beats that follow each other quickly
-// and its States: a newcomer must not wait for the next period, and a crowd of newcomers, or one that comes
-// again and again, must not make a whole fleet shout. Whom nobody speaks up for has what it needs a period
-// later.
+// Decides when this node speaks up for those who have just come, with beats that follow each other quickly: a
+// newcomer must not wait for the next period, and a crowd of newcomers, or one that comes again and again,
+// must not make a whole fleet shout. Whom nobody speaks up for has what it needs a period later.
 //
 // A pure state machine; `now` never goes back.
 class Introductions
@@ -29,8 +28,6 @@ public:
     static constexpr Duration RestForAll = std::chrono::seconds(1);
     // Those who come as close together as this are answered together.
     static constexpr Duration Together = std::chrono::milliseconds(10);
-    // States follow the first beat after this time: the other one drops what comes before it knows the beat.
-    static constexpr Duration StatesAfter = std::chrono::milliseconds(20);
 
     enum class Reason
     {
@@ -47,20 +44,16 @@ public:
     bool Grant(const std::string &node, Reason reason, Duration now);
     void Begin(std::size_t others, Duration now);
     // When this node speaks up next; empty: for nobody.
-    std::optional<Duration> Due() const;
+    std::optional<Duration> Due() const { return _beatsAt; }
     // Whether it is time for the first beat. Says so once.
     bool TakeBeats(Duration now);
-    // Whether it is time to repeat the States. Says so once.
-    bool TakeStates(Duration now);
 
 private:
     const RandomSource _random;
     std::map<std::pair<std::string, Reason>, Duration> _asked;  // within RestForOne
     Duration _restedAt{0};                                      // nothing of MostInARow is used then
     std::optional<Duration> _beatsAt;
-    std::optional<Duration> _statesAt;
     std::optional<Duration> _last;
-    bool _statesWanted = false;
 };
 
 }  // namespace Rabit

@@ -113,7 +113,6 @@ Presence::Served Presence::Service(Duration now)
     {
         _pace.Introduce(now);
     }
-    served.RepeatStates = _introductions.TakeStates(now);
     return served;
 }
 

@@ -64,8 +64,6 @@ public:
     struct Served
     {
         PeerTable::Change Change;
-        // Somebody has come that can use what this node publishes, and now is the time to repeat it.
-        bool RepeatStates = false;
         // Nodes whose beats have told of their States: PeerTable::Peer::States.
         std::vector<std::string> StatesTold;
         // States of this node that others have asked for, by their places (Announcements::StateIndexOf).
@@ -97,6 +95,8 @@ public:
     {
         _contents.SetStateVersion(state, version);
     }
+    // One was written just now: the next beat comes soon, for those whom it did not reach.
+    void StateWritten(Duration now) { _pace.StateWritten(now); }
     // The States of that node, by their places, that are to be asked for in each beat from now on; none:
     // nothing is. `soon`: the next beat is brought forward. Holds for the present life of the node.
     void WantStates(const std::string &node, const std::vector<bool> &states, bool soon, Duration now)

@@ -8,6 +8,8 @@
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
 #include "names/TypeDefinition.h"
+#include "wire/GatewayTopics.h"
+#include "wire/Offers.h"
 
 namespace Rabit::Diagnosis
 {
@@ -17,15 +19,7 @@ namespace
 // What the node says of that message; null if it says nothing.
 const Gateway::PublishedMessage *OfferOf(const std::string &message, const PeerTable::Peer &peer)
 {
-    if (!peer.Offers)
-    {
-        return nullptr;
-    }
-    const auto &offered = peer.Offers->publishes;
-    const auto found =
-        std::find_if(offered.begin(), offered.end(),
-                     [&message](const auto &published) { return published.message == message; });
-    return found == offered.end() ? nullptr : &*found;
+    return peer.Offers ? Offers::Find(*peer.Offers, message) : nullptr;
 }
 
 // "From everybody" means from whoever has it: once somebody has, it is no problem that others have not.
@@ -61,7 +55,7 @@ std::string WhyNoMatch(const SubscribeRule &rule, std::uint64_t definition, cons
     {
         return peer.Node + " was built with another definition of `" + rule.Type + "`";
     }
-    if (rule.Qos == QosProfile::State && found->qos != "state")
+    if (rule.Qos == QosProfile::State && GatewayTopics::ProfileOf(found->qos) != rule.Qos)
     {
         return peer.Node + " publishes `" + rule.Message + "` with qos " + found->qos +
                ", this node wants qos state";

@@ -30,5 +30,7 @@ TopicQos QosOf(QosProfile profile);
 
 // The word for a profile in configurations and announcements.
 const char *NameOf(QosProfile profile);
+// The profile of such a word; of another one State.
+QosProfile ProfileOf(const std::string &word);
 
 }  // namespace Rabit::GatewayTopics

@@ -91,6 +91,72 @@ TEST(BeatPace, ALongerPeriodHoldsFromTheNextBeatOn)
     EXPECT_EQ(BeatsOf(pace, 1s, 12s), (std::vector<Ns>{1500ms, 6500ms, 11500ms}));
 }
 
+TEST(BeatPace, ABeatComesSoonAfterAState)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.StateWritten(1300ms);
+    EXPECT_EQ(BeatsOf(pace, 1s, 2s), (std::vector<Ns>{1300ms + BeatPace::AfterState, 1900ms}));
+}
+
+TEST(BeatPace, SoonAfterTheLastOfSeveralStatesAndWithinThePeriod)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    std::vector<Ns> beats;
+    for (Ns now = 1010ms; now < 3s; now += 90ms)
+    {
+        pace.StateWritten(now);
+        const auto more = BeatsOf(pace, now, now + 90ms);
+        beats.insert(beats.end(), more.begin(), more.end());
+    }
+    EXPECT_EQ(beats, (std::vector<Ns>{1500ms, 2s, 2500ms, 3s}));
+}
+
+TEST(BeatPace, StatesBringNoMoreThanFiveBeatsASecond)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    std::vector<Ns> beats;
+    for (Ns now = 1s; now < 11s; now += 110ms)
+    {
+        pace.StateWritten(now);
+        const auto more = BeatsOf(pace, now, now + 110ms);
+        beats.insert(beats.end(), more.begin(), more.end());
+    }
+    EXPECT_GT(beats.size(), 25u);
+    EXPECT_LE(beats.size(), 50u);
+}
+
+TEST(BeatPace, ABeatThatComesBeforeHasToldOfTheState)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.StateWritten(1450ms);
+    EXPECT_EQ(BeatsOf(pace, 1s, 2200ms), (std::vector<Ns>{1500ms, 2s}));
+}
+
+TEST(BeatPace, WhoseBeatsAreSeldomBeatsNoMoreOftenForStates)
+{
+    BeatPace pace;
+    pace.SetPeriod(2s);
+    pace.Sent(1s);
+    pace.StateWritten(1300ms);
+    EXPECT_EQ(pace.Due(), 3s);
+}
+
+TEST(BeatPace, BeatsForStatesDoNotHoldUpQuestions)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    for (Ns now = 1300ms; now < 3s; now += 300ms)
+    {
+        pace.StateWritten(now);
+        BeatsOf(pace, now, now + 300ms);
+    }
+    EXPECT_LE(pace.EarliestToAsk(), 3s + BeatPace::ShortestGap);
+}
+
 TEST(BeatPace, APeriodThatIsImpossibleBecomesTheNearestThatIs)
 {
     BeatPace pace;

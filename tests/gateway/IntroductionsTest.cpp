@@ -28,21 +28,6 @@ TEST(Introductions, TheOnlyOtherNodeAnswersANewcomerAtOnce)
     EXPECT_FALSE(introductions.TakeBeats(2s));
 }
 
-TEST(Introductions, StatesAreRepeatedForOneThatWasHeardAndAfterTheFirstBeat)
-{
-    Introductions introductions([] { return 0; });
-    introductions.Ask("uav1", Reason::Appeared, 0, 1s);
-    ASSERT_TRUE(introductions.TakeBeats(1s));
-    EXPECT_FALSE(introductions.TakeStates(2s));
-    introductions.Ask("uav1", Reason::Heard, 0, 3s);
-    EXPECT_FALSE(introductions.TakeStates(4s));
-    ASSERT_TRUE(introductions.TakeBeats(4s));
-    EXPECT_EQ(introductions.Due(), 4s + Introductions::StatesAfter);
-    EXPECT_FALSE(introductions.TakeStates(4s));
-    EXPECT_TRUE(introductions.TakeStates(4s + Introductions::StatesAfter));
-    EXPECT_FALSE(introductions.TakeStates(5s));
-}
-
 TEST(Introductions, ThoseWhoComeTogetherAreAnsweredTogether)
 {
     Introductions introductions([] { return 0; });
@@ -52,7 +37,6 @@ TEST(Introductions, ThoseWhoComeTogetherAreAnsweredTogether)
     introductions.Ask("uav3", Reason::Heard, 0, 1001ms);
     EXPECT_EQ(introductions.Due(), 1010ms);
     EXPECT_TRUE(introductions.TakeBeats(1010ms));
-    EXPECT_TRUE(introductions.TakeStates(1030ms));
     EXPECT_FALSE(introductions.Due());
 }
 

@@ -228,9 +228,8 @@ TEST_F(MirrorTest, AStateGetsThroughALossyNetwork)
     {
         state->commands = i;
         state->PostMessage();
-        fleet.RunFor(2s);
-        mirrored->FetchMessage();
-        EXPECT_EQ(mirrored->commands, i);
+        EXPECT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage() && mirrored->commands == i; }, 10s))
+            << i;
     }
 }
 
@@ -361,6 +360,41 @@ TEST_F(MirrorTest, WhyNoDataComesIsSaidByNameWithinTwoSeconds)
         },
         2s))
         << ground.Problems();
+}
+
+TEST_F(MirrorTest, WhoAsksForAStateTakesNoTelemetryAndIsToldOnce)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    GatewayConfig config = GroundConfig();
+    config.Subscribe[0].Qos = QosProfile::State;
+    SimulatedNode &ground = fleet.Add(config);
+    auto pose = uav.Register<Uav::Pose>("Pose");
+    auto mirrored = ground.Register<Uav::Pose>("uav1/Pose");
+    Settle();
+    pose->PostMessage();
+    fleet.RunFor(5s);
+    EXPECT_FALSE(mirrored->FetchMessage() && mirrored->WasPosted());
+    const std::string problem =
+        "subscribe Pose: uav1 publishes `Pose` with qos telemetry, this node wants qos state\n";
+    const std::string problems = ground.Problems();
+    const std::size_t at = problems.find(problem);
+    ASSERT_NE(at, std::string::npos) << problems;
+    EXPECT_EQ(problems.find("subscribe Pose", at + 1), std::string::npos) << problems;
+}
+
+TEST_F(MirrorTest, WhoAsksForTelemetryTakesAState)
+{
+    SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));
+    GatewayConfig config = GroundConfig();
+    config.Subscribe[1].Qos = QosProfile::Telemetry;
+    SimulatedNode &ground = fleet.Add(config);
+    auto state = uav.Register<Uav::MissionState>("MissionState");
+    auto mirrored = ground.Register<Uav::MissionState>("uav1/MissionState");
+    Settle();
+    state->commands = 3;
+    state->PostMessage();
+    ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 2s));
+    EXPECT_EQ(mirrored->commands, 3u);
 }
 
 TEST_F(MirrorTest, ALocalMessageOfAnotherTypeIsReportedNotOverwritten)

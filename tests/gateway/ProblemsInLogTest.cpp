@@ -68,14 +68,21 @@ TEST_F(ProblemsInLog, EachIsToldByNameWithinFiveSeconds)
     ground.Workspace.AddManagerMessageQueue("Ground", std::make_shared<RabitMessageQueue<int>>(10, "Ground"));
     ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Pose>());
     fleet.RunFor(5s);
-    EXPECT_THAT(log.Lines(),
+    // The two transports see by themselves that they differ in the type of a topic.
+    const auto gateways = [this]
+    {
+        std::vector<std::string> lines = log.Lines();
+        std::erase_if(lines, [](const std::string &line) { return line.starts_with("transport: "); });
+        return lines;
+    };
+    EXPECT_THAT(gateways(),
                 UnorderedElementsAre(HasSubstr("subscribe Pse, uav1: uav1 does not publish `Pse`"),
                                      HasSubstr("subscribe Pose, uav1: uav1 publishes `Pose` as `Uav::Pose`"),
                                      HasSubstr("subscribe MissionState: no node named `uav9` has been heard"),
                                      HasSubstr("accept Ground: the local queue `Ground` does not hold"),
                                      HasSubstr("send uav1/MissionControl: ")));
     fleet.RunFor(10min);
-    EXPECT_EQ(log.Lines().size(), 5u) << "each once";
+    EXPECT_EQ(log.Lines().size(), 7u) << "each once";
 }
 
 TEST_F(ProblemsInLog, EachIsToldOnceMoreWhenItIsGone)

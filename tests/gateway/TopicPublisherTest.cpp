@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "OneWriterNetwork.h"
 #include "keyed.idl.h"
 #include "uav.idl.h"
 
@@ -17,56 +18,8 @@ namespace
 {
 
 using namespace std::chrono_literals;
-
-struct Network
-{
-    WriteResult Result = WriteResult::Ok;
-    int Writes = 0;
-    WriteResult DisposalResult = WriteResult::Ok;
-    int Disposals = 0;
-    int Readers = 0;
-};
-
-class Writer final : public TransportWriter
-{
-public:
-    explicit Writer(Network &network) : _network(network) {}
-    WriteResult Write(const SampleEncoder &sample, std::int64_t) override
-    {
-        ++_network.Writes;
-        std::vector<std::uint8_t> bytes(sample.EncodedSize());
-        return sample.Encode(bytes) ? _network.Result : WriteResult::Failed;
-    }
-    WriteResult Dispose(const SampleEncoder &, std::int64_t) override
-    {
-        ++_network.Disposals;
-        return _network.DisposalResult;
-    }
-    int MatchedReaders() const override { return _network.Readers; }
-
-private:
-    Network &_network;
-};
-
-class Session final : public TransportSession
-{
-public:
-    explicit Session(Network &network) : _network(network) {}
-    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &, const TopicQos &,
-                                                  const std::vector<std::string> &) override
-    {
-        return std::make_unique<Writer>(_network);
-    }
-    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &, const TopicQos &,
-                                                  const std::vector<std::string> &, SampleHandler) override
-    {
-        return nullptr;
-    }
-    TransportCounters Counters() const override { return {}; }
-
-private:
-    Network &_network;
-};
+using OneWriter::Network;
+using OneWriter::Session;
 
 // While there is no network a write ends at once: without a gap the gateway's thread would do nothing else.
 TEST(TopicPublisher, WhatTheNetworkDoesNotTakeIsTriedAgainAfterAGap)

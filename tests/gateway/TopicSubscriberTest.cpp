@@ -1,4 +1,4 @@
-// What a subscriber does when it hears that an instance is no more.
+// What a subscriber posts, and what it does when it hears that an instance is no more.
 #include "mirrors/TopicSubscriber.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 
 #include "MessageSample.h"
 #include "keyed.idl.h"
+#include "uav.idl.h"
 
 namespace Rabit
 {
@@ -33,16 +34,18 @@ public:
     {
         return nullptr;
     }
-    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &, const TopicQos &,
+    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &, const TopicQos &qos,
                                                   const std::vector<std::string> &,
                                                   SampleHandler handler) override
     {
+        Qos = qos;
         Handler = std::move(handler);
         return std::make_unique<Reader>();
     }
     TransportCounters Counters() const override { return {}; }
 
     SampleHandler Handler;
+    TopicQos Qos;
 };
 
 class TopicSubscriberTest : public testing::Test
@@ -53,6 +56,7 @@ protected:
         origins.Set("uav1", {.Incarnation = 5, .Source = {}, .SourceToWall = 0s});
         workspace.AddPublishSubscribeMessage("uav1/Contact", mirrored);
         subscriber.Open(session);
+        subscriber.SetOffer("uav1", QosProfile::State);
     }
 
     void Hear(std::uint32_t number, std::int64_t time)
@@ -74,6 +78,13 @@ protected:
         session.Handler({}, info);
     }
 
+    void HearBytes(std::vector<std::uint8_t> bytes, std::int64_t time)
+    {
+        session.Handler(bytes, InfoOf(0, time));
+    }
+
+    Gateway::TopicStatus Counters() const { return subscriber.Status().at(0); }
+
     // The number that is shown if it was posted anew, else -1.
     int Posted() { return mirrored->FetchMessage() ? static_cast<int>(mirrored->number) : -1; }
 
@@ -93,7 +104,7 @@ protected:
     Session session;
     std::shared_ptr<Contact> mirrored = std::make_shared<Contact>();
     const SubscribeRule rule{.Message = "Contact", .Type = "GatewayTest::Contact", .From = {"*"}};
-    TopicSubscriber subscriber{rule, QosProfile::State, Contact::IdlType(), origins, workspace};
+    TopicSubscriber subscriber{rule, Contact::IdlType(), origins, workspace};
 
 private:
     std::uint64_t _sequence = 0;
@@ -133,6 +144,106 @@ TEST_F(TopicSubscriberTest, TheEndOfTheLastWriterLeavesTheLastValue)
     EXPECT_EQ(mirrored->text, "here");
     EXPECT_EQ(subscriber.Status().at(0).received, 1u);
     EXPECT_EQ(subscriber.Status().at(0).refused, 0u);
+}
+
+TEST_F(TopicSubscriberTest, ItsReaderIsBestEffortAndVolatile)
+{
+    EXPECT_EQ(session.Qos.Reliability, Reliability::BestEffort);
+    EXPECT_EQ(session.Qos.Durability, Durability::Volatile);
+}
+
+TEST_F(TopicSubscriberTest, AStateThatComesAgainIsPostedOnce)
+{
+    Hear(1, 1'000'000'512);
+    EXPECT_EQ(Posted(), 1);
+    Hear(1, 1'000'000'512);
+    EXPECT_EQ(Posted(), -1);
+    EXPECT_EQ(Counters().received, 1u);
+    EXPECT_EQ(Counters().repeated, 1u);
+}
+
+TEST_F(TopicSubscriberTest, TelemetryOfOneMomentIsPostedAsOftenAsItComes)
+{
+    subscriber.SetOffer("uav1", QosProfile::Telemetry);
+    Hear(1, 1'000'000'512);
+    Hear(2, 1'000'000'512);
+    EXPECT_EQ(Posted(), 2);
+    EXPECT_EQ(Counters().received, 2u);
+}
+
+TEST_F(TopicSubscriberTest, WhatIsOlderThanWhatWasPostedIsDropped)
+{
+    Hear(2, 2'000'000'000);
+    EXPECT_EQ(Posted(), 2);
+    Hear(1, 1'999'998'000);
+    EXPECT_EQ(Posted(), -1);
+    EXPECT_EQ(Counters().refused, 1u);
+}
+
+TEST_F(TopicSubscriberTest, WhoDoesNotAnnounceAStateIsNotHeardByARuleThatAsksForOne)
+{
+    SubscribeRule asks = rule;
+    asks.Qos = QosProfile::State;
+    TopicSubscriber strict(asks, Contact::IdlType(), origins, workspace);
+    strict.Open(session);
+    Hear(1, 1'000'000'000);
+    EXPECT_EQ(Posted(), -1) << "not announced yet";
+    strict.SetOffer("uav1", QosProfile::Telemetry);
+    Hear(2, 2'000'000'000);
+    EXPECT_EQ(Posted(), -1);
+    EXPECT_EQ(strict.Status().at(0).refused, 2u);
+    EXPECT_FALSE(strict.TakenIn("uav1", 5));
+    strict.SetOffer("uav1", QosProfile::State);
+    Hear(3, 3'000'000'000);
+    EXPECT_EQ(Posted(), 3);
+    strict.SetOffer("uav1", std::nullopt);
+    Hear(4, 4'000'000'000);
+    EXPECT_EQ(Posted(), -1) << "another life, that has not announced itself";
+}
+
+TEST_F(TopicSubscriberTest, AStateIsHeardByARuleThatAsksForTelemetry)
+{
+    SubscribeRule asks = rule;
+    asks.Qos = QosProfile::Telemetry;
+    TopicSubscriber lenient(asks, Contact::IdlType(), origins, workspace);
+    lenient.Open(session);
+    lenient.SetOffer("uav1", QosProfile::State);
+    Hear(1, 1'000'000'000);
+    EXPECT_EQ(Posted(), 1);
+}
+
+TEST_F(TopicSubscriberTest, WhatWasTakenInIsKnownOfThePresentLife)
+{
+    EXPECT_FALSE(subscriber.TakenIn("uav1", 5));
+    Hear(1, 1'000'000'000);
+    EXPECT_EQ(subscriber.TakenIn("uav1", 5), 1'000'000'000);
+    EXPECT_FALSE(subscriber.TakenIn("uav1", 6));
+    EXPECT_FALSE(subscriber.TakenIn("uav2", 5));
+    Hear(1, 500'000'000);
+    EXPECT_EQ(subscriber.TakenIn("uav1", 5), 1'000'000'000) << "it was overtaken";
+    origins.Set("uav1", {.Incarnation = 6, .Source = {}, .SourceToWall = 0s});
+    Hear(2, 2'000'000'000);
+    EXPECT_EQ(subscriber.TakenIn("uav1", 5), 1'000'000'000) << "that life is not the present one";
+    subscriber.Forget("uav1");
+    EXPECT_FALSE(subscriber.TakenIn("uav1", 5));
+}
+
+// To ask for it again would bring the same.
+TEST_F(TopicSubscriberTest, WhatCannotBeUsedIsTakenInNevertheless)
+{
+    HearBytes({0, 1, 0, 0, 1, 2, 3}, 1'000'000'000);
+    EXPECT_EQ(Counters().undecodable, 1u);
+    EXPECT_EQ(subscriber.TakenIn("uav1", 5), 1'000'000'000);
+    origins.Set("uav2", {.Incarnation = 5, .Source = {}, .SourceToWall = 0s});
+    workspace.AddPublishSubscribeMessage("uav2/Contact", std::make_shared<Uav::Pose>());
+    Contact contact;
+    const MessageSample sample(contact);
+    std::vector<std::uint8_t> bytes(sample.EncodedSize());
+    ASSERT_TRUE(sample.Encode(bytes));
+    SampleInfo info = InfoOf(0, 3'000'000'000);
+    info.Node = "uav2";
+    session.Handler(bytes, info);
+    EXPECT_EQ(subscriber.TakenIn("uav2", 5), 3'000'000'000);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ ROOMS = {
     "presence": ["names", "clocks", "wire"],
     "mirrors": ["air", "names", "clocks", "wire", "presence"],
     "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
-    "report": ["names", "presence", "mirrors", "queues"],
+    "report": ["names", "wire", "presence", "mirrors", "queues"],
     "manager": ["air", "names", "clocks", "configuration", "incarnation", "wire", "links", "presence", "mirrors", "queues",
                 "report"],
 }

@@ -209,7 +209,50 @@ def offered_at_most(run, wanted):
     return [f"{percent:.0f} % of the medium offered, at most {wanted} % wanted"] if percent > wanted else []
 
 
-ALL = (offered_at_most, least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, foreign_refused, lives)
+def last_states(run, wanted):
+    """Seconds: each last life shows the last post of each State of the others' last lives, no later than that after the
+    post, or after it saw the other one UP, whichever is later; and none goes back meanwhile."""
+    wrong = []
+    for node, lives_of_node in run.lives.items():
+        for origin, lives_of_origin in run.lives.items():
+            if node == origin:
+                continue
+            posted = {}
+            for event in lives_of_origin[-1].of("state_posted"):
+                posted[event["message"]] = event
+            up = [e.time for e in lives_of_node[-1].of("peer") if e["node"] == origin and e["state"] == "UP"]
+            for message, last in posted.items():
+                name = f"{node} and {message} of {origin}"
+                seen = [e for e in lives_of_node[-1].of("state") if e["from"] == origin and e["message"] == message]
+                found = [e for e in seen if e.time >= last.time and e["number"] == last["number"]]
+                since = max([last.time, *up[-1:]]) * 1e-9
+                if not found or seen[-1]["number"] != last["number"]:
+                    wrong.append(f"{name}: shows {seen[-1]['number'] if seen else 'nothing'} at the end, not "
+                                 + last["number"])
+                elif found[0].time * 1e-9 - since > wanted:
+                    wrong.append(f"{name}: shown {found[0].time * 1e-9 - since:.1f} s late, at most {wanted} s wanted")
+                begun = [e for e in seen if e.time >= lives_of_origin[-1].begin and up and e.time >= up[-1]]
+                numbers = [e.number("number") for e in begun]
+                if numbers != sorted(numbers):
+                    wrong.append(f"{name}: went back: {numbers}")
+    return wrong
+
+
+def state_samples_at_most(run, wanted):
+    """[times, more]: of each State in the last life of each node so many times its posts were written, and so many more
+    for who was not there yet when it was posted."""
+    times, more = wanted
+    wrong = []
+    for node, lives_of_node in run.lives.items():
+        posts = collections.Counter(e["message"] for e in lives_of_node[-1].of("state_posted"))
+        written = {e["message"]: e.number("written") for e in lives_of_node[-1].of("state_samples")}
+        wrong += [f"{node}: {message} was posted {count} times and written {written.get(message, 0)} times"
+                  for message, count in posts.items() if written.get(message, 0) > times * count + more]
+    return wrong
+
+
+ALL = (offered_at_most, least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, foreign_refused, lives,
+       last_states, state_samples_at_most)
 
 
 def check(run, wanted):

@@ -2,6 +2,7 @@
 // the lines. Each line is one write(2), so a kill loses at most the line being written.
 #include "LedgerFile.h"
 #include "PictureClerk.h"
+#include "StateClerk.h"
 #include "TestNode.h"
 #include "gateway.idl.h"
 #include "ledger.idl.h"
@@ -48,6 +49,7 @@ struct Options
     std::size_t TickPayload = 0;
     TestNode::PictureOptions Pictures;
     bool TakesPictures = false;
+    TestNode::StateOptions States;
 };
 
 // Sends notes, takes notes, and follows the ticks and the fleet.
@@ -303,6 +305,9 @@ void Describe(CLI::App &app, Options &o)
     app.add_flag("--take-pictures", o.TakesPictures);
     app.add_option("--pictures", o.Pictures.Count, "How many");
     app.add_option("--picture-bytes", o.Pictures.Size);
+    app.add_option("--states", o.States.Count, "States that each node may publish; follow those of the others");
+    app.add_option("--state-posts", o.States.Posts, "How often each of them is posted");
+    app.add_option("--state-period-ns", o.States.PeriodNs, "From one post of each to its next");
 }
 
 void Run(Options &options)
@@ -323,6 +328,12 @@ void Run(Options &options)
     options.Pictures.LedgerFile = options.LedgerFile;
     std::vector<std::unique_ptr<Rabit::RabitManager>> managers;
     managers.push_back(std::make_unique<Clerk>(options));
+    if (options.States.Count > 0)
+    {
+        options.States.LedgerFile = options.LedgerFile;
+        TestNode::StateClerk::Configure(options.States, config);
+        managers.push_back(std::make_unique<TestNode::StateClerk>(options.States));
+    }
     if (options.TakesPictures || !options.Pictures.To.empty())
     {
         TestNode::PictureClerk::Configure(config);

@@ -14,6 +14,18 @@ def version(name, find, replace):
     return Mutation(name, MIRRORS + "StateVersion.h", find, replace, f"{PROGRAM}:StateVersion.*")
 
 
+def pace(name, find, replace):
+    return Mutation(name, MIRRORS + "RepeatPace.h", find, replace, f"{PROGRAM}:RepeatPace.*")
+
+
+def publisher(name, find, replace):
+    return Mutation(name, MIRRORS + "TopicPublisher.cpp", find, replace, f"{PROGRAM}:*Publisher*")
+
+
+def subscriber(name, find, replace):
+    return Mutation(name, MIRRORS + "TopicSubscriber.cpp", find, replace, f"{PROGRAM}:TopicSubscriberTest.*")
+
+
 MUTATIONS = [
     # When a State is asked for
     repair("who is heard first is given time", "entry.Judged ? AskAfter : Duration(0)", "AskAfter"),
@@ -56,4 +68,32 @@ MUTATIONS = [
     version("versions that came again are the same",
             "(sourceTime & ~(Step - 1)) == (other & ~(Step - 1))", "Of(sourceTime) == Of(other)"),
     version("a version may be of the future", "middle > notAfter ? middle - Step : middle", "middle"),
+    # When a State is written again
+    pace("it is repeated at once however often", "_gap = isNew ? ShortestGap : std::min(2 * _gap, LongestGap);", ""),
+    pace("a new value waits as long as an old one", "isNew ? ShortestGap : std::min(2 * _gap, LongestGap)",
+         "std::min(2 * _gap, LongestGap)"),
+    pace("there is no longest wait", "std::min(2 * _gap, LongestGap)", "2 * _gap"),
+    pace("quiet is not rewarded", "now - *_lastAsked >= Quiet", "false"),
+    pace("a question that crossed the answer is answered", "&& now - *_lastWritten >= ShortestGap", ""),
+    pace("an answer is not the last", "_waits = false;", ""),
+    publisher("telemetry is repeated", "if (_rule.Qos == QosProfile::State && !_pending)", "if (!_pending)"),
+    publisher("what the network did not take has a version", "_rule.Qos == QosProfile::State && !_pending",
+              "_rule.Qos == QosProfile::State"),
+    publisher("what can never be written has a version", "result == WriteResult::Ok ? StateVersion::Of(_time) : StateVersion::None",
+              "StateVersion::Of(_time)"),
+    publisher("two States of one moment are one", "? StateVersion::Next(_time) : time", "? _time : time"),
+    publisher("times are as they are", "StateVersion::Quantised(posted)", "posted"),
+    publisher("what is asked for comes more often than the rule allows", "std::max(*repeat, mayWriteAt)", "*repeat"),
+    publisher("what was never written is repeated", "if (_version != StateVersion::None)", "if (true)"),
+    # What is taken in
+    subscriber("a State may be telemetry", "(_rule.Qos == QosProfile::State && offer != _rule.Qos)", "false"),
+    subscriber("a State that comes again is posted", "offer == QosProfile::State && IsRepetition(source, info)", "false"),
+    subscriber("telemetry of one moment is one", "offer == QosProfile::State && IsRepetition(source, info)",
+               "IsRepetition(source, info)"),
+    subscriber("what was overtaken is posted", "!posted || IsOvertaken(source, info)", "!posted"),
+    subscriber("what is refused was taken in", "if (outcome != Outcome::Refused)", "if (true)"),
+    subscriber("what does not decode is asked for again", "if (outcome != Outcome::Refused)",
+               "if (outcome == Outcome::Posted || outcome == Outcome::Repeated)"),
+    subscriber("another life's State was taken in", "found->second->Taken->Incarnation != incarnation", "false"),
+    subscriber("an announcement is never taken back", "_offers.erase(node); } }", "} }"),
 ]

@@ -12,17 +12,21 @@ PARTS = "gateway_parts_test"
 
 MUTATIONS = [
     # Mirrors
-    Mutation("a repeated state is stamped anew", "TopicPublisher.cpp", "_source.At(_local->GetPostTime().Monotonic)",
-             "_source.At(now)", FLEET),
-    Mutation("a held-up value replaces a newer one", "TopicSubscriber.cpp", "!posted || IsOvertaken(*source, info)",
+    Mutation("a repeated state is stamped anew", "TopicPublisher.cpp", "_writer.Write(*_local, _time)",
+             "_writer.Write(*_local, _source.At(now))", FLEET),
+    Mutation("a held-up value replaces a newer one", "TopicSubscriber.cpp", "!posted || IsOvertaken(source, info)",
              "!posted", NODES),
     Mutation("values are posted as of their arrival", "TopicSubscriber.cpp", "PostTime{stamp, *posted}",
              "PostTime{stamp, _workspace.GetClock().Monotonic()}", FLEET),
     Mutation("any life of an origin will do", "TopicSubscriber.cpp",
              "origin && origin->Incarnation == info.Incarnation;", "origin.has_value();", FLEET),
-    Mutation("a value posted while the last is written is forgotten", "TopicPublisher.cpp",
-             "(_local->FetchMessage() && _local->WasPosted()) || _pending", "false && _local->FetchMessage()", FLEET),
-    Mutation("nobody is subscribed to", "GatewayManager.cpp", "_subscriptions.OnOffers(_presence.Peers());", "", FLEET),
+    Mutation("nothing that is posted is fetched", "TopicPublisher.cpp",
+             "_local->FetchMessage() && _local->WasPosted()", "false && _local->FetchMessage()", FLEET),
+    Mutation("versions are not told", "StateExchange.cpp", "_presence.SetStateVersion(place, version);", "", FLEET),
+    Mutation("nothing is asked for", "StateExchange.cpp", "_presence.WantStates(ask.Node, ask.States, ask.Now, now);", "",
+             FLEET),
+    Mutation("what is asked for is not written", "StateExchange.cpp", "publishers[_states[place]].AskedFor(now);", "",
+             FLEET),
     # Presence
     Mutation("a silent node stays UP", "PeerTable.cpp", "silence > peer.StaleAfter() && peer.State == NodeState::UP", "false",
              FLEET),

@@ -17,9 +17,9 @@ namespace Rabit
 // publisher announces unless it names one itself.
 enum class QosProfile
 {
-    // Reliable, the last value reaches late joiners, repeated once a second: for what must be known.
+    // The last value reaches everybody, late joiners too; who lacks it asks for it: for what must be known.
     State,
-    // Best effort, nothing is repeated: for what is soon replaced by a newer value.
+    // Nothing is repeated: for what is soon replaced by a newer value.
     Telemetry
 };
 

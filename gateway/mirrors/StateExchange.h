@@ -1,0 +1,52 @@
+#pragma once
+
+#include <rabit/gateway/RandomSource.h>
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mirrors/StateRepair.h"
+#include "mirrors/Subscriptions.h"
+#include "mirrors/TopicPublisher.h"
+#include "presence/Presence.h"
+
+namespace Rabit
+{
+
+// Carries what beats tell and ask of States between Presence and the mirrors, both ways: tells the versions
+// of what this node publishes, has written again what others ask for, and asks for what it lacks itself
+// (StateRepair). Gateway's thread only.
+class StateExchange
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // References must outlive the object.
+    StateExchange(Presence &presence, Subscriptions &subscriptions, RandomSource random);
+
+    // Once all publishers are there, in the order of the announcement.
+    void Open(const std::deque<TopicPublisher> &publishers);
+    // After Presence has served, and before what is due is sent.
+    void Serve(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now);
+    // After the publishers have written.
+    void TellVersions(const std::deque<TopicPublisher> &publishers, Duration now);
+    // When to call Serve again at the latest, beside the times that Presence knows; empty: not at all.
+    std::optional<Duration> Due() const { return _repair.Due(); }
+
+private:
+    void TakeIn(const PeerTable::Change &change);
+    void TakeIn(const std::vector<std::string> &told, Duration now);
+    void Ask(Duration now);
+
+    Presence &_presence;
+    Subscriptions &_subscriptions;
+    StateRepair _repair;
+    std::vector<std::size_t> _states;      // which publisher has the State of that place
+    std::vector<std::uint32_t> _versions;  // as told last
+};
+
+}  // namespace Rabit

@@ -1,0 +1,227 @@
+// When a State is written, under which version, and when again.
+#include <gtest/gtest.h>
+#include <rabit/ManualClock.h>
+#include <rabit/RabitWorkspace.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "OneWriterNetwork.h"
+#include "mirrors/TopicPublisher.h"
+#include "uav.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using OneWriter::Network;
+using OneWriter::Session;
+
+// A publisher with a local message that is posted.
+class StatePublisherTest : public testing::Test
+{
+protected:
+    StatePublisherTest()
+    {
+        workspace.AddPublishSubscribeMessage("Pose", pose);
+        workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+        publisher.SetAttached();
+    }
+
+    // Runs for so long, asking in each step if so told. Returns the writes meanwhile.
+    int Run(std::chrono::nanoseconds duration, std::chrono::nanoseconds step = 10ms, bool ask = false)
+    {
+        const int before = network.Writes;
+        for (const auto end = Now() + duration; Now() < end;)
+        {
+            if (ask)
+            {
+                publisher.AskedFor(Now());
+            }
+            publisher.Service(Now());
+            clock->AdvanceTo(std::min(end, Now() + step));
+        }
+        return network.Writes - before;
+    }
+
+    int Ask()
+    {
+        publisher.AskedFor(Now());
+        return Run(1ms, 1ms);
+    }
+
+    int Post()
+    {
+        pose->PostMessage();
+        return Run(1ms, 1ms);
+    }
+
+    std::chrono::nanoseconds Now() const { return clock->Monotonic(); }
+
+    std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>(1.4e9, 10s);
+    RabitWorkspace workspace{clock};
+    Network network;
+    Session session{network};
+    std::shared_ptr<Uav::Pose> pose = std::make_shared<Uav::Pose>();
+    TopicPublisher publisher{
+        {.Message = "Pose", .Type = "Uav::Pose"}, Uav::Pose::IdlType(), "uav1", SourceClock(*clock), session};
+};
+
+TEST_F(StatePublisherTest, AStateIsWrittenOnceAndItsVersionIsThatOfItsTime)
+{
+    EXPECT_EQ(publisher.Version(), StateVersion::None);
+    EXPECT_EQ(Post(), 1);
+    EXPECT_EQ(Run(1h, 1s), 0);
+    EXPECT_EQ(publisher.Version(), StateVersion::Of(network.Times.at(0)));
+    EXPECT_EQ(network.Times.at(0), StateVersion::Quantised(network.Times.at(0)));
+}
+
+TEST_F(StatePublisherTest, OneThatIsAskedForIsWrittenAgainAsTheSame)
+{
+    Post();
+    const std::uint32_t version = publisher.Version();
+    Run(10s);
+    EXPECT_EQ(Ask(), 1);
+    EXPECT_EQ(network.Times.at(1), network.Times.at(0));
+    EXPECT_EQ(publisher.Version(), version);
+    EXPECT_EQ(Run(1min), 0) << "once for each time that it is asked for";
+}
+
+TEST_F(StatePublisherTest, AllWhoAskTogetherAreAnsweredOnce)
+{
+    Post();
+    Run(10s);
+    publisher.AskedFor(Now());
+    EXPECT_EQ(Ask(), 1);
+    EXPECT_EQ(Ask(), 0) << "asked before the answer came";
+    EXPECT_EQ(Run(10s), 0);
+}
+
+TEST_F(StatePublisherTest, WhoAsksAgainWaitsTwiceAsLongEachTime)
+{
+    Post();
+    Run(10s);
+    EXPECT_EQ(Ask(), 1);
+    auto last = Now() - 1ms;
+    for (std::chrono::nanoseconds gap = 100ms; gap < 3s; gap *= 2)
+    {
+        const auto wait = std::min<std::chrono::nanoseconds>(gap, RepeatPace::LongestGap);
+        while (Run(1ms, 1ms, true) == 0)
+        {
+        }
+        EXPECT_EQ(Now() - 1ms - last, wait);
+        last = Now() - 1ms;
+    }
+    Run(RepeatPace::Quiet);
+    EXPECT_EQ(Ask(), 1) << "as if he were the first";
+}
+
+TEST_F(StatePublisherTest, WhoAsksWithoutEndCostsASampleInTwoSeconds)
+{
+    Post();
+    Run(10s);
+    EXPECT_LE(Run(10min, 5ms, true), 310);
+}
+
+TEST_F(StatePublisherTest, WhoAsksWithoutEndCostsAsMuchAgainAsAQuickState)
+{
+    int writes = 0;
+    for (int posts = 0; posts < 100; ++posts)
+    {
+        pose->PostMessage();
+        writes += Run(100ms, 5ms, true);
+    }
+    EXPECT_LE(writes, 200);
+}
+
+TEST_F(StatePublisherTest, ANewValueIsRepeatedAsQuicklyAsTheFirst)
+{
+    Post();
+    Run(1min, 5ms, true);
+    Post();
+    EXPECT_EQ(Run(RepeatPace::ShortestGap, 5ms, true), 0);
+    EXPECT_EQ(Run(15ms, 5ms, true), 1);
+}
+
+TEST_F(StatePublisherTest, NothingIsAskedForBeforeItWasWritten)
+{
+    EXPECT_EQ(Ask(), 0);
+    network.Result = WriteResult::TimedOut;
+    Post();
+    EXPECT_EQ(publisher.Version(), StateVersion::None);
+    network.Result = WriteResult::Ok;
+    Run(1s);
+    EXPECT_NE(publisher.Version(), StateVersion::None);
+}
+
+TEST_F(StatePublisherTest, WhatCanNeverBeWrittenIsNotAskedFor)
+{
+    Post();
+    network.Result = WriteResult::TooLarge;
+    Post();
+    EXPECT_EQ(publisher.Version(), StateVersion::None);
+    Run(10s);
+    EXPECT_EQ(Ask(), 0);
+}
+
+TEST_F(StatePublisherTest, OfTwoStatesOfOneMomentTheSecondIsTheLater)
+{
+    for (int i = 0; i < 5; ++i)
+    {
+        pose->PostMessage();
+        publisher.Service(Now());
+    }
+    ASSERT_EQ(network.Times.size(), 5u);
+    for (std::size_t i = 1; i < 5; ++i)
+    {
+        EXPECT_GT(network.Times[i], network.Times[i - 1]);
+        EXPECT_NE(StateVersion::Of(network.Times[i]), StateVersion::Of(network.Times[i - 1]));
+    }
+    Post();
+    EXPECT_EQ(publisher.Version(), StateVersion::Of(network.Times.back()));
+}
+
+TEST_F(StatePublisherTest, NothingIsRepeatedMoreOftenThanTheRuleAllows)
+{
+    TopicPublisher slow({.Message = "Pose", .Type = "Uav::Pose", .MaxRate = 1}, Uav::Pose::IdlType(), "uav1",
+                        SourceClock(*clock), session);
+    workspace.AddPublishSubscribeMessage("Pose", slow.Local());
+    slow.SetAttached();
+    pose->PostMessage();
+    slow.Service(Now());
+    EXPECT_EQ(network.Writes, 1);
+    for (int i = 0; i < 990; ++i)
+    {
+        clock->AdvanceTo(Now() + 1ms);
+        slow.AskedFor(Now());
+        slow.Service(Now());
+    }
+    EXPECT_EQ(network.Writes, 1);
+    clock->AdvanceTo(Now() + 20ms);
+    slow.Service(Now());
+    EXPECT_EQ(network.Writes, 2);
+}
+
+TEST(TopicPublisher, TelemetryHasNoVersionAndIsNotRepeated)
+{
+    Network network;
+    Session session(network);
+    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
+    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
+    RabitWorkspace workspace;
+    auto pose = std::make_shared<Uav::Pose>();
+    workspace.AddPublishSubscribeMessage("Pose", pose);
+    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    publisher.SetAttached();
+    pose->PostMessage();
+    publisher.Service(10s);
+    EXPECT_EQ(publisher.Version(), StateVersion::None);
+    publisher.AskedFor(20s);
+    publisher.Service(20s);
+    EXPECT_EQ(network.Writes, 1);
+}
+
+}  // namespace
+}  // namespace Rabit
