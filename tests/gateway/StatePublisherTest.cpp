@@ -156,6 +156,18 @@ TEST_F(StatePublisherTest, NothingIsAskedForBeforeItWasWritten)
     EXPECT_NE(publisher.Version(), StateVersion::None);
 }
 
+TEST_F(StatePublisherTest, WhileTheNetworkDoesNotTakeANewValueTheFormerVersionIsTold)
+{
+    Post();
+    const std::uint32_t version = publisher.Version();
+    network.Result = WriteResult::TimedOut;
+    Post();
+    EXPECT_EQ(publisher.Version(), version);
+    network.Result = WriteResult::Ok;
+    Run(1s);
+    EXPECT_NE(publisher.Version(), version);
+}
+
 TEST_F(StatePublisherTest, WhatCanNeverBeWrittenIsNotAskedFor)
 {
     Post();
