@@ -152,11 +152,13 @@ public:
                               { _presence.NoteDelay(node, delay, arrivedAt); });
         }
         Duration next = std::min(_presence.NextDue(), _air.Serve(now));
-        _states.TellVersions(_publishers, now);
         next = std::min(next, _states.Due().value_or(next));
-        // One that is due waits for its turn.
-        const Duration beat = _presence.BeatDue();
-        next = beat > now ? std::min(next, beat) : next;
+        if (_states.TellVersions(_publishers, now))
+        {
+            // One that is due already waits for its turn.
+            const Duration beat = _presence.BeatDue();
+            next = beat > now ? std::min(next, beat) : next;
+        }
         if (change.State || change.Offers || now >= _nextFleet)
         {
             PostFleet(now);

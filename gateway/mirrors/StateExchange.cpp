@@ -39,7 +39,7 @@ void StateExchange::Serve(const Presence::Served &served, std::deque<TopicPublis
         }
     }
     const std::optional<Duration> due = _repair.Due();
-    if ((due && *due <= now) || _presence.BeatDue() <= now)
+    if (!_repair.IsIdle() && ((due && *due <= now) || _presence.BeatDue() <= now))
     {
         Ask(now);
     }
@@ -103,8 +103,9 @@ void StateExchange::Ask(Duration now)
     }
 }
 
-void StateExchange::TellVersions(const std::deque<TopicPublisher> &publishers, Duration now)
+bool StateExchange::TellVersions(const std::deque<TopicPublisher> &publishers, Duration now)
 {
+    bool any = false;
     for (std::size_t place = 0; place < _states.size(); ++place)
     {
         const std::uint32_t version = publishers[_states[place]].Version();
@@ -112,8 +113,10 @@ void StateExchange::TellVersions(const std::deque<TopicPublisher> &publishers, D
         {
             _presence.SetStateVersion(place, version);
             _presence.StateWritten(now);
+            any = true;
         }
     }
+    return any;
 }
 
 }  // namespace Rabit

@@ -32,8 +32,8 @@ public:
     void Open(const std::deque<TopicPublisher> &publishers);
     // After Presence has served, and before what is due is sent.
     void Serve(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now);
-    // After the publishers have written.
-    void TellVersions(const std::deque<TopicPublisher> &publishers, Duration now);
+    // After the publishers have written. Returns whether a beat may be due sooner than before.
+    bool TellVersions(const std::deque<TopicPublisher> &publishers, Duration now);
     // When to call Serve again at the latest, beside the times that Presence knows; empty: not at all.
     std::optional<Duration> Due() const { return _repair.Due(); }
 

@@ -89,6 +89,8 @@ public:
     std::vector<Ask> Take(Duration now);
     // Empty: nothing is lacking.
     std::optional<Duration> Due() const;
+    // Whether nothing is lacking, and Take has nothing to take back.
+    bool IsIdle() const { return _due.empty() && _changed.empty(); }
 
 private:
     struct Entry

@@ -44,12 +44,14 @@ int TopicSubscriber::MatchedWriters() const
     return _reader ? _reader->MatchedWriters() : 0;
 }
 
-std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_view node)
+std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_view node,
+                                                                   std::optional<QosProfile> &offer)
 {
     const std::lock_guard lock(_mutex);
     const auto found = _sources.find(node);
     if (found != _sources.end())
     {
+        offer = found->second->Offer;
         return found->second;
     }
     if (_sources.size() >= MostSources)
@@ -71,6 +73,9 @@ std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_v
     auto source = std::make_shared<Source>();
     source->Counters.message = _rule.Message;
     source->Counters.node = node;
+    const auto offered = _offers.find(node);
+    source->Offer = offered == _offers.end() ? std::nullopt : std::optional(offered->second);
+    offer = source->Offer;
     return _sources.emplace(node, std::move(source)).first->second;
 }
 
@@ -84,6 +89,10 @@ void TopicSubscriber::Forget(const std::string &node)
 void TopicSubscriber::SetOffer(const std::string &node, std::optional<QosProfile> profile)
 {
     const std::lock_guard lock(_mutex);
+    if (const auto source = _sources.find(node); source != _sources.end())
+    {
+        source->second->Offer = profile;
+    }
     if (profile)
     {
         _offers[node] = *profile;
@@ -92,13 +101,6 @@ void TopicSubscriber::SetOffer(const std::string &node, std::optional<QosProfile
     {
         _offers.erase(node);
     }
-}
-
-std::optional<QosProfile> TopicSubscriber::OfferOf(std::string_view node) const
-{
-    const std::lock_guard lock(_mutex);
-    const auto found = _offers.find(node);
-    return found == _offers.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::optional<std::int64_t> TopicSubscriber::TakenIn(const std::string &node, std::uint64_t incarnation) const
@@ -165,9 +167,10 @@ void TopicSubscriber::OnSample(SampleBytes bytes, const SampleInfo &info)
     {
         return;
     }
-    if (const std::shared_ptr<Source> source = SourceOf(info.Node))
+    std::optional<QosProfile> offer;
+    if (const std::shared_ptr<Source> source = SourceOf(info.Node, offer))
     {
-        const Outcome outcome = Take(*source, OfferOf(info.Node), bytes, info);
+        const Outcome outcome = Take(*source, offer, bytes, info);
         Count(*source, outcome, info);
         if (outcome == Outcome::Undecodable)
         {

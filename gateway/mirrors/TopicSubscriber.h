@@ -79,7 +79,8 @@ private:
         std::shared_ptr<PublishSubscribeMessage> Global;
         std::string Problem;
         std::optional<Sample> Posted;
-        std::optional<Sample> Taken;  // guarded, as the counters are
+        std::optional<Sample> Taken;      // guarded, as the counters are
+        std::optional<QosProfile> Offer;  // likewise
         LogThrottle Log;
     };
 
@@ -96,8 +97,8 @@ private:
     void OnSample(SampleBytes bytes, const SampleInfo &info);
     Outcome Take(Source &source, std::optional<QosProfile> offer, SampleBytes bytes, const SampleInfo &info);
     void Count(Source &source, Outcome outcome, const SampleInfo &info);
-    std::shared_ptr<Source> SourceOf(std::string_view node);
-    std::optional<QosProfile> OfferOf(std::string_view node) const;
+    // Null if there is no room for it. `offer` becomes what it announces.
+    std::shared_ptr<Source> SourceOf(std::string_view node, std::optional<QosProfile> &offer);
     void Register(Source &source);
     static bool IsOvertaken(const Source &source, const SampleInfo &info);
     static bool IsRepetition(const Source &source, const SampleInfo &info);

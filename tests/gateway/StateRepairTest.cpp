@@ -182,9 +182,12 @@ TEST_F(StateRepairTest, WhatIsAskedIsAskedInEachBeatUntilItIsThere)
     EXPECT_THAT(Take(10s), ElementsAre("uav1: 0 !"));
     EXPECT_THAT(Take(10s + 1ms), ElementsAre()) << "it has been said";
     Have("uav1", 10, 1s);
-    EXPECT_THAT(Take(10s + 2ms), ElementsAre("uav1:"));
-    EXPECT_THAT(Take(20s), ElementsAre());
+    Tell("uav1", {1s, 1s, 1s}, 10s + 2ms);
     EXPECT_FALSE(repair.Due());
+    EXPECT_FALSE(repair.IsIdle()) << "that has to be said";
+    EXPECT_THAT(Take(10s + 2ms), ElementsAre("uav1:"));
+    EXPECT_TRUE(repair.IsIdle());
+    EXPECT_THAT(Take(20s), ElementsAre());
 }
 
 TEST_F(StateRepairTest, WhatIsStillLackingIsAskedForAgainEachTimeAfterTwiceAsLong)

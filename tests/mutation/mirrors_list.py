@@ -96,5 +96,6 @@ MUTATIONS = [
     subscriber("what does not decode is asked for again", "if (outcome != Outcome::Refused)",
                "if (outcome == Outcome::Posted || outcome == Outcome::Repeated)"),
     subscriber("another life's State was taken in", "found->second->Taken->Incarnation != incarnation", "false"),
-    subscriber("an announcement is never taken back", "_offers.erase(node); } }", "} }"),
+    subscriber("an announcement is never taken back", "source->second->Offer = profile;",
+               "source->second->Offer = profile ? profile : source->second->Offer;"),
 ]
