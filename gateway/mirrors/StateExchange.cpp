@@ -26,8 +26,8 @@ void StateExchange::Open(const std::deque<TopicPublisher> &publishers)
     _versions.assign(_states.size(), StateVersion::None);
 }
 
-void StateExchange::Serve(const Presence::Served &served, std::deque<TopicPublisher> &publishers,
-                          Duration now)
+void StateExchange::TakeIn(const Presence::Served &served, std::deque<TopicPublisher> &publishers,
+                           Duration now)
 {
     TakeIn(served.Change);
     TakeIn(served.StatesTold, now);

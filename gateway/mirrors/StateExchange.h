@@ -31,13 +31,23 @@ public:
     // Once all publishers are there, in the order of the announcement.
     void Open(const std::deque<TopicPublisher> &publishers);
     // After Presence has served, and before what is due is sent.
-    void Serve(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now);
+    void Serve(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now)
+    {
+        // Most of the time there is nothing to do.
+        const PeerTable::Change &change = served.Change;
+        if (change.State || change.Offers || change.NewLife || !change.Forgotten.empty() ||
+            !served.StatesTold.empty() || !served.StatesAsked.empty() || !_repair.IsIdle())
+        {
+            TakeIn(served, publishers, now);
+        }
+    }
     // After the publishers have written. Returns whether a beat may be due sooner than before.
     bool TellVersions(const std::deque<TopicPublisher> &publishers, Duration now);
     // When to call Serve again at the latest, beside the times that Presence knows; empty: not at all.
     std::optional<Duration> Due() const { return _repair.Due(); }
 
 private:
+    void TakeIn(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now);
     void TakeIn(const PeerTable::Change &change);
     void TakeIn(const std::vector<std::string> &told, Duration now);
     void Ask(Duration now);
