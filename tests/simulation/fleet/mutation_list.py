@@ -15,7 +15,7 @@ MUTATIONS = [
     Mutation("a repeated state is stamped anew", "TopicPublisher.cpp", "_writer.Write(*_local, _time)",
              "_writer.Write(*_local, _source.At(now))", FLEET),
     Mutation("a held-up value replaces a newer one", "TopicSubscriber.cpp", "!posted || IsOvertaken(source, info)",
-             "!posted", NODES),
+             "!posted", PARTS),
     Mutation("values are posted as of their arrival", "TopicSubscriber.cpp", "PostTime{stamp, *posted}",
              "PostTime{stamp, _workspace.GetClock().Monotonic()}", FLEET),
     Mutation("any life of an origin will do", "TopicSubscriber.cpp",
