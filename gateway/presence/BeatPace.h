@@ -26,9 +26,9 @@ public:
     // After so long without one the next may be brought forward as if it were the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
     // Who lacks a State learns of it from the beat after it. So that comes so long after the last of several
-    // States in a row, but for States alone no sooner than that after another beat, and with a period longer
-    // than the usual one not before its time.
-    static constexpr Duration AfterState = std::chrono::milliseconds(100);
+    // States in a row (those of 10 Hz need none of their own), but for States alone no sooner than that after
+    // another beat, and with a period longer than the usual one not before its time.
+    static constexpr Duration AfterState = std::chrono::milliseconds(120);
     static constexpr Duration GapForStates = std::chrono::milliseconds(200);
 
     Duration Period() const { return _period; }

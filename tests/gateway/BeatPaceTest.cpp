@@ -96,7 +96,8 @@ TEST(BeatPace, ABeatComesSoonAfterAState)
     BeatPace pace;
     pace.Sent(1s);
     pace.StateWritten(1300ms);
-    EXPECT_EQ(BeatsOf(pace, 1s, 2s), (std::vector<Ns>{1300ms + BeatPace::AfterState, 1900ms}));
+    EXPECT_EQ(BeatsOf(pace, 1s, 2s),
+              (std::vector<Ns>{1300ms + BeatPace::AfterState, 1800ms + BeatPace::AfterState}));
 }
 
 TEST(BeatPace, SoonAfterTheLastOfSeveralStatesAndWithinThePeriod)
@@ -104,10 +105,10 @@ TEST(BeatPace, SoonAfterTheLastOfSeveralStatesAndWithinThePeriod)
     BeatPace pace;
     pace.Sent(1s);
     std::vector<Ns> beats;
-    for (Ns now = 1010ms; now < 3s; now += 90ms)
+    for (Ns now = 1010ms; now < 3s; now += 100ms)
     {
         pace.StateWritten(now);
-        const auto more = BeatsOf(pace, now, now + 90ms);
+        const auto more = BeatsOf(pace, now, now + 100ms);
         beats.insert(beats.end(), more.begin(), more.end());
     }
     EXPECT_EQ(beats, (std::vector<Ns>{1500ms, 2s, 2500ms, 3s}));
@@ -118,10 +119,10 @@ TEST(BeatPace, StatesBringNoMoreThanFiveBeatsASecond)
     BeatPace pace;
     pace.Sent(1s);
     std::vector<Ns> beats;
-    for (Ns now = 1s; now < 11s; now += 110ms)
+    for (Ns now = 1s; now < 11s; now += 130ms)
     {
         pace.StateWritten(now);
-        const auto more = BeatsOf(pace, now, now + 110ms);
+        const auto more = BeatsOf(pace, now, now + 130ms);
         beats.insert(beats.end(), more.begin(), more.end());
     }
     EXPECT_GT(beats.size(), 25u);
