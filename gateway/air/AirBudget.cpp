@@ -15,6 +15,11 @@ constexpr Duration CatchUp = std::chrono::milliseconds(10);
 // By which what was not scheduled holds up the next datagram of a pace at most, however often it comes.
 constexpr Duration LongestHoldUp = std::chrono::seconds(1);
 
+Duration Scaled(Duration time, double by)
+{
+    return Duration(static_cast<Duration::rep>(static_cast<double>(time.count()) * by));
+}
+
 double Seconds(Duration time)
 {
     return std::chrono::duration<double>(time).count();
@@ -29,11 +34,13 @@ void AirBudget::SetRate(Mode mode, double bytesPerSecond, Duration now)
     _rate = std::max(bytesPerSecond, SmallestRate);
     if (before > 0.0 && _nextAt > now)
     {
-        // What is under way takes as long as it does at the new rate; no longer than the longest hold-up if
-        // it did not before.
-        const auto left = static_cast<double>((_nextAt - now).count());
-        const double longest = std::max(left, static_cast<double>(LongestHoldUp / Duration(1)));
-        _nextAt = now + Duration(static_cast<Duration::rep>(std::min(left * before / Pace(), longest)));
+        // What is under way takes as long as it does at the new rate; what held it up beside, no longer than
+        // anything may.
+        const double ratio = before / Pace();
+        const Duration held = std::min(_heldUp, _nextAt - now);
+        const Duration underWay = Scaled(_nextAt - now - held, ratio);
+        _heldUp = std::min(Scaled(held, ratio), LongestHoldUp);
+        _nextAt = now + underWay + _heldUp;
     }
 }
 
