@@ -127,7 +127,7 @@ public:
     Duration Service()
     {
         const Duration now = Now();
-        const Presence::Served served = _presence.Service(now);
+        const Presence::Served &served = _presence.Service(now);
         const PeerTable::Change &change = served.Change;
         for (const std::string &node : change.Forgotten)
         {

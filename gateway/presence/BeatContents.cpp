@@ -33,6 +33,10 @@ void BeatContents::Begin(std::vector<std::uint8_t> offers, std::size_t states)
 
 std::optional<BeatContents::Duration> BeatContents::QuestionDue() const
 {
+    if (_peers.Missing().IsEmpty() && _questions.IsEmpty())
+    {
+        return std::nullopt;
+    }
     const std::optional<Duration> offers = _peers.Missing().NextDue();
     const std::optional<Duration> states = _questions.DueSince();
     return offers && states ? std::min(offers, states) : offers ? offers : states;

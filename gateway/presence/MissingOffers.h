@@ -44,6 +44,7 @@ public:
     };
     // When somebody is to be asked next.
     std::optional<Duration> NextDue() const;
+    bool IsEmpty() const { return _lacking.empty(); }
     // How many there are to be asked now, no more than `most`.
     std::size_t Due(Duration now, std::size_t most) const;
     // Whom to ask now, in turns.

@@ -90,6 +90,8 @@ public:
         bool NewLife = false;                // a node that was not known in this incarnation is UP
         bool Offers = false;                 // an announcement said something new
         std::vector<std::string> Forgotten;  // nodes that made room for another one
+
+        bool Any() const { return Beat || State || NewLife || Offers || !Forgotten.empty(); }
     };
 
     Change OnBeat(const HeardBeat &heard);

@@ -89,10 +89,26 @@ void Presence::WakeIf(bool somethingCame)
     }
 }
 
-Presence::Served Presence::Service(Duration now)
+void Presence::Served::Clear()
 {
-    Served served;
-    TakeIn(_inbox.Take(), now, served);
+    Change.Beat = Change.State = Change.NewLife = Change.Offers = false;
+    Change.Forgotten.clear();
+    StatesTold.clear();
+    StatesAsked.clear();
+    Delays.clear();
+}
+
+const Presence::Served &Presence::Service(Duration now)
+{
+    Served &served = _served;
+    if (served.Any())
+    {
+        served.Clear();
+    }
+    if (!_inbox.IsEmpty())
+    {
+        TakeIn(_inbox.Take(), now, served);
+    }
     served.Change.State |= _peers.Advance(now).State;
     if (served.Change.State)
     {

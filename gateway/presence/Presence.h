@@ -69,10 +69,16 @@ public:
         // States of this node that others have asked for, by their places (Announcements::StateIndexOf).
         std::vector<std::size_t> StatesAsked;
         std::vector<DelayHeard> Delays;
+
+        bool Any() const
+        {
+            return Change.Any() || !StatesTold.empty() || !StatesAsked.empty() || !Delays.empty();
+        }
+        void Clear();
     };
 
-    // Takes in what has come; sends nothing.
-    Served Service(Duration now);
+    // Takes in what has come; sends nothing. What is returned holds until the next call.
+    const Served &Service(Duration now);
     // When to call Service again at the latest.
     Duration NextDue() const;
 
@@ -136,6 +142,7 @@ private:
     PeerTable _peers;
     Introductions _introductions;
     ReaderWatch _watch;
+    Served _served;
     Duration _lookAt{0};  // at the readers
     BeatPace _pace;
     BeatContents _contents;

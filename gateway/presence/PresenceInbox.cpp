@@ -95,6 +95,7 @@ bool PresenceInbox::HasRoomFor(std::size_t bytes)
         return false;
     }
     _bytes += bytes;
+    _any.store(true, std::memory_order_release);
     return true;
 }
 
@@ -107,6 +108,7 @@ bool PresenceInbox::Drop()
 PresenceInbox::Contents PresenceInbox::Take()
 {
     const std::lock_guard lock(_mutex);
+    _any.store(false, std::memory_order_relaxed);
     _bytes = 0;
     return std::exchange(_contents, {});
 }

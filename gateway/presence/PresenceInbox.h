@@ -2,6 +2,7 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -42,6 +43,8 @@ public:
     bool AddEvent(const PeerEvent &event);
 
     Contents Take();
+    // Whether there is nothing to take: without the lock, for most passes of the gateway find nothing.
+    bool IsEmpty() const { return !_any.load(std::memory_order_acquire); }
     // Samples that made no sense, and what found the inbox full.
     std::uint64_t Dropped() const;
 
@@ -52,6 +55,7 @@ private:
     mutable std::mutex _mutex;
     Contents _contents;
     std::size_t _bytes = 0;
+    std::atomic<bool> _any{false};  // changed with the mutex held
     std::uint64_t _dropped = 0;
 };
 

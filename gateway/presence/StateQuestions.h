@@ -29,6 +29,7 @@ public:
     };
     // Since when something is to be asked for soon that was not yet.
     std::optional<Duration> DueSince() const;
+    bool IsEmpty() const { return _wanted.empty(); }
     // What is to be asked in the next beat, in turns.
     std::vector<Question> Take(std::size_t most);
     // Of how many nodes something is asked, no more than `most`; and the bytes of the longest question.
