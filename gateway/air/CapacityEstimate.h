@@ -17,15 +17,14 @@ namespace Rabit
 // - Then: what was really carried while the delay rose, that is the bytes sent between two reported datagrams
 //   by the time between their arrivals, less what it takes to empty the queue.
 // - As long as there is a queue, each report corrects what is carried; the rate is below it while the delay
-// is
-//   above the goal, and a little above it while it is below.
+//   is above the goal, and a little above it while it is below.
 // - It rises by the same amount for every node, so that in the end nodes on one radio have as much as others.
 // - Without a queue it rises more if it is used: gently, and after three quiet seconds by half each second.
 // - Never below Floor. Unlimited again when it was not used by half for 20 s, without delays.
 // - Without reports: what was unlimited stays so, since a node that hears nobody knows nothing of the air,
-// and
-//   to guess would cost every silent wire its speed. A rate falls after three seconds, by a tenth each second
-//   and to a half at most (reports may be missing because of the queue), and does not rise without a report.
+//   and to guess would cost every silent wire its speed. A rate falls after three seconds, by a tenth each
+//   second and to a half at most (reports may be missing because of the queue), and does not rise without a
+//   report.
 //
 // Taken from others: the rate is that of delivery and the queue is emptied once rather than shared (BBR,
 // Cardwell et al. 2016); a target for the delay above the least one, approached in proportion (LEDBAT, RFC
