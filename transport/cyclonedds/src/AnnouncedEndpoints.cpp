@@ -1,10 +1,10 @@
 #include "AnnouncedEndpoints.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 
 #include "common/ParticipantIdentity.h"
+#include "common/RtpsSubmessages.h"
 
 namespace Rabit::Cyclone
 {
@@ -13,15 +13,12 @@ namespace
 {
 
 // OMG DDSI-RTPS 2.3, 9.4
-constexpr std::size_t HeaderSize = 20;
-constexpr std::size_t SubmessageHeaderSize = 4;
 constexpr std::uint8_t Data = 0x15;
 constexpr std::uint8_t LittleEndian = 0x01;
 constexpr std::uint8_t InlineQos = 0x02;
 constexpr std::uint8_t HasData = 0x04;
 constexpr std::size_t WriterAt = 8;
 constexpr std::size_t PayloadAt = 20;
-constexpr std::array<std::uint8_t, 4> ParticipantWriter{0x00, 0x01, 0x00, 0xc2};
 constexpr std::size_t EncapsulationSize = 4;
 constexpr std::uint8_t ParametersLittleEndian = 0x03;  // PL_CDR_LE
 // 9.6.2.2.2
@@ -90,7 +87,7 @@ std::span<std::uint8_t> ParametersOf(std::span<std::uint8_t> body, std::uint8_t 
 {
     if (kind != Data || (flags & (LittleEndian | HasData)) != (LittleEndian | HasData) ||
         body.size() < PayloadAt ||
-        !std::equal(ParticipantWriter.begin(), ParticipantWriter.end(), body.begin() + WriterAt))
+        !std::equal(ParticipantWriterId.begin(), ParticipantWriterId.end(), body.begin() + WriterAt))
     {
         return {};
     }
@@ -135,20 +132,13 @@ bool LeaveOut(std::span<std::uint8_t> parameters)
 bool LeaveOutIdleEndpoints(std::span<std::uint8_t> datagram)
 {
     bool changed = false;
-    auto rest = datagram.subspan(std::min(HeaderSize, datagram.size()));
-    while (rest.size() >= SubmessageHeaderSize)
-    {
-        const std::uint8_t kind = rest[0];
-        const std::uint8_t flags = rest[1];
-        const std::size_t first = rest[2];
-        const std::size_t second = rest[3];
-        const std::size_t size = (flags & LittleEndian) != 0 ? second << 8 | first : first << 8 | second;
-        rest = rest.subspan(SubmessageHeaderSize);
-        // A size of 0 may mean up to the end: of an announcement it does.
-        const std::size_t length = size == 0 && kind == Data ? rest.size() : std::min(size, rest.size());
-        changed = LeaveOut(ParametersOf(rest.first(length), kind, flags)) || changed;
-        rest = rest.subspan(length);
-    }
+    VisitSubmessages(datagram,
+                     [&changed](const RtpsSubmessage<std::uint8_t> &submessage)
+                     {
+                         const auto parameters =
+                             ParametersOf(submessage.Body(), submessage.Kind, submessage.Flags);
+                         changed = LeaveOut(parameters) || changed;
+                     });
     return changed;
 }
 

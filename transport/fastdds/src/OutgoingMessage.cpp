@@ -13,7 +13,6 @@ namespace Rabit::FastDds
 namespace
 {
 
-constexpr std::uint8_t LittleEndian = 0x01;
 constexpr std::uint8_t Final = 0x02;      // of an ACKNACK: no answer is wanted
 constexpr std::uint8_t InlineQos = 0x02;  // of a DATA: as one that disposes has
 constexpr std::uint8_t HasData = 0x04;
@@ -38,32 +37,7 @@ bool Asks(RtpsReader body, std::uint8_t flags, FirstRequest &request)
     return body.IsGood() && (flags & Final) == 0 && base <= 1 && bits == 0;
 }
 
-struct Part
-{
-    SubmessageKind Kind = SubmessageKind::Pad;
-    std::uint8_t Flags = 0;
-    bool LittleEndian = false;
-    std::span<const std::uint8_t> Whole;
-    std::span<const std::uint8_t> Bytes() const { return Whole.subspan(SubmessageHeaderSize); }
-};
-
-// Calls visit(part) with each submessage.
-template <typename Visit>
-void VisitAll(std::span<const std::uint8_t> datagram, const Visit &visit)
-{
-    auto rest = datagram.subspan(std::min(RtpsHeaderSize, datagram.size()));
-    while (rest.size() >= SubmessageHeaderSize)
-    {
-        Part part{.Kind = static_cast<SubmessageKind>(rest[0]), .Flags = rest[1], .Whole = {}};
-        part.LittleEndian = (part.Flags & LittleEndian) != 0;
-        const std::size_t length = RtpsReader(rest.subspan(2, 2), part.LittleEndian).U16();
-        const bool toTheEnd =
-            length == 0 && part.Kind != SubmessageKind::Pad && part.Kind != SubmessageKind::InfoTimestamp;
-        part.Whole = toTheEnd ? rest : rest.first(std::min(SubmessageHeaderSize + length, rest.size()));
-        visit(part);
-        rest = rest.subspan(part.Whole.size());
-    }
-}
+using Part = RtpsSubmessage<const std::uint8_t>;
 
 GuidPrefix PrefixIn(std::span<const std::uint8_t> bytes)
 {
@@ -96,14 +70,14 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     std::uint64_t digest = 0;
     const auto visit = [&](const Part &part)
     {
-        RtpsReader body(part.Bytes(), part.LittleEndian);
-        switch (part.Kind)
+        RtpsReader body(part.Body(), part.LittleEndian);
+        switch (static_cast<SubmessageKind>(part.Kind))
         {
             case SubmessageKind::Pad:
             case SubmessageKind::InfoTimestamp:
                 break;
             case SubmessageKind::InfoDestination:
-                peer = PrefixIn(part.Bytes());
+                peer = PrefixIn(part.Body());
                 break;
             case SubmessageKind::AckNack:
                 message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
@@ -115,7 +89,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 body.Skip(ReaderInData + EntitySize);
                 const EntityId writer = body.Entity();
                 message.HasSamples = message.HasSamples || !IsBuiltin(writer);
-                const bool whole = part.Kind == SubmessageKind::Data;
+                const bool whole = SubmessageKind{part.Kind} == SubmessageKind::Data;
                 const bool announces = whole && writer == ParticipantWriter && (part.Flags & HasData) != 0 &&
                                        (part.Flags & InlineQos) == 0;
                 const bool tells = whole && (writer == PublicationsWriter || writer == SubscriptionsWriter);
@@ -123,7 +97,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 // Whatever reader it is for.
                 digest =
                     31 * digest +
-                    DigestOf(part.Bytes().subspan(std::min(ReaderInData + EntitySize, part.Bytes().size())));
+                    DigestOf(part.Body().subspan(std::min(ReaderInData + EntitySize, part.Body().size())));
                 break;
             }
             case SubmessageKind::Heartbeat:
@@ -145,7 +119,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 break;
         }
     };
-    VisitAll(datagram, visit);
+    VisitSubmessages(datagram, visit);
     const int all = announcements + requests + heartbeats + endpoints + others;
     if (announcements == 1 && all == 1)
     {
@@ -171,21 +145,22 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
 std::vector<std::uint8_t> ForAll(std::span<const std::uint8_t> datagram)
 {
     std::vector<std::uint8_t> result(datagram.begin(), datagram.begin() + RtpsHeaderSize);
-    VisitAll(datagram,
-             [&](const Part &part)
-             {
-                 if (part.Kind == SubmessageKind::InfoDestination)
-                 {
-                     return;
-                 }
-                 const auto begin = static_cast<std::ptrdiff_t>(result.size());
-                 result.insert(result.end(), part.Whole.begin(), part.Whole.end());
-                 if (part.Kind == SubmessageKind::Data && part.Bytes().size() >= ReaderInData + EntitySize)
-                 {
-                     std::fill_n(result.begin() + begin + SubmessageHeaderSize + ReaderInData, EntitySize,
-                                 std::uint8_t{0});
-                 }
-             });
+    VisitSubmessages(datagram,
+                     [&](const Part &part)
+                     {
+                         if (SubmessageKind{part.Kind} == SubmessageKind::InfoDestination)
+                         {
+                             return;
+                         }
+                         const auto begin = static_cast<std::ptrdiff_t>(result.size());
+                         result.insert(result.end(), part.Whole.begin(), part.Whole.end());
+                         if (SubmessageKind{part.Kind} == SubmessageKind::Data &&
+                             part.Body().size() >= ReaderInData + EntitySize)
+                         {
+                             std::fill_n(result.begin() + begin + SubmessageHeaderSize + ReaderInData,
+                                         EntitySize, std::uint8_t{0});
+                         }
+                     });
     return result;
 }
 
@@ -193,28 +168,28 @@ std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> 
 {
     std::vector<Acknowledgement> found;
     GuidPrefix sender = PrefixIn(datagram.subspan(std::min(PrefixAt, datagram.size())));
-    VisitAll(datagram,
-             [&](const Part &part)
-             {
-                 if (part.Kind == SubmessageKind::InfoSource)
-                 {
-                     sender = PrefixIn(part.Bytes().subspan(std::min(PrefixAt, part.Bytes().size())));
-                 }
-                 if (part.Kind != SubmessageKind::AckNack)
-                 {
-                     return;
-                 }
-                 RtpsReader body(part.Bytes(), part.LittleEndian);
-                 Acknowledgement said{.Peer = sender};
-                 said.Reader = body.Entity();
-                 said.Writer = body.Entity();
-                 said.Base = body.Sequence();
-                 said.Asks = body.Bits() > 0 || (said.Base <= 1 && (part.Flags & Final) == 0);
-                 if (body.IsGood())
-                 {
-                     found.push_back(said);
-                 }
-             });
+    VisitSubmessages(datagram,
+                     [&](const Part &part)
+                     {
+                         if (SubmessageKind{part.Kind} == SubmessageKind::InfoSource)
+                         {
+                             sender = PrefixIn(part.Body().subspan(std::min(PrefixAt, part.Body().size())));
+                         }
+                         if (SubmessageKind{part.Kind} != SubmessageKind::AckNack)
+                         {
+                             return;
+                         }
+                         RtpsReader body(part.Body(), part.LittleEndian);
+                         Acknowledgement said{.Peer = sender};
+                         said.Reader = body.Entity();
+                         said.Writer = body.Entity();
+                         said.Base = body.Sequence();
+                         said.Asks = body.Bits() > 0 || (said.Base <= 1 && (part.Flags & Final) == 0);
+                         if (body.IsGood())
+                         {
+                             found.push_back(said);
+                         }
+                     });
     return found;
 }
 

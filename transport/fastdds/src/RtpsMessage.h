@@ -7,11 +7,10 @@
 #include <optional>
 #include <span>
 
+#include "common/RtpsSubmessages.h"
+
 namespace Rabit::FastDds
 {
-
-constexpr std::size_t RtpsHeaderSize = 20;
-constexpr std::size_t SubmessageHeaderSize = 4;
 
 using GuidPrefix = std::array<std::uint8_t, 12>;
 // Its four bytes as one number, the first the highest: 0x000100c2 writes the announcements of participants.
