@@ -14,7 +14,7 @@ using Rabit::FastDds::LargestSequence;
 bool IsSound(std::uint8_t kind, const Bytes &body, std::uint8_t flags = 1)
 {
     Bytes message = Message(kind, body, flags);
-    auto rest = std::span(message).subspan(Rabit::FastDds::RtpsHeaderSize);
+    auto rest = std::span(message).subspan(Rabit::RtpsHeaderSize);
     const auto submessage = Rabit::FastDds::TakeSubmessage(rest);
     return submessage && Rabit::FastDds::CheckDelivery(*submessage).has_value();
 }
