@@ -125,6 +125,11 @@ std::size_t AirBudget::LargestDatagram() const
     {
         fits = std::sqrt(fits * static_cast<double>(SmallestDatagram));
     }
+    if (_mode == Mode::Budget)
+    {
+        fits = std::max(
+            fits, std::min(static_cast<double>(ThriftyDatagram), _rate * Seconds(LongestThriftyDatagram)));
+    }
     return std::min(_largestDatagram,
                     std::max(SmallestDatagram, static_cast<std::size_t>(std::min(fits, 1e9))));
 }

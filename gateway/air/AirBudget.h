@@ -29,6 +29,10 @@ public:
     using Duration = std::chrono::nanoseconds;
     static constexpr std::size_t SmallestDatagram = 400;  // smaller ones are mostly headers
     static constexpr Duration LongestDatagram = std::chrono::milliseconds(250);
+    // With a small budget a quarter of a datagram of SmallestDatagram would be headers: up to this many bytes
+    // it may take longer.
+    static constexpr std::size_t ThriftyDatagram = 576;
+    static constexpr Duration LongestThriftyDatagram = std::chrono::milliseconds(400);
     static constexpr double SmallestRate = 100.0;  // bytes a second; less is raised to it
 
     // largestDatagram: on the air, with its headers.
@@ -42,8 +46,8 @@ public:
     // Bytes a second; empty: unlimited.
     std::optional<double> Rate() const;
 
-    // Keeps so much of a budget, at most half of it, free for what is not scheduled. Without effect on a
-    // pace.
+    // Keeps so much of a budget, at most half of it, free from now on for what is not scheduled. Without
+    // effect on a pace.
     void Reserve(double bytesPerSecond) { _reserved = bytesPerSecond; }
     // So many bytes went without being scheduled, the vendor's discovery for instance. What a budget has
     // reserved pays for them first.
@@ -56,7 +60,7 @@ public:
     void Sent(std::size_t bytes, Duration now);
 
     // How large a datagram should be, where one has the choice, so that what is more important does not wait
-    // longer than LongestDatagram for it; SmallestDatagram at least.
+    // longer than LongestDatagram for it, or LongestThriftyDatagram; SmallestDatagram at least.
     std::size_t LargestDatagram() const;
 
 private:

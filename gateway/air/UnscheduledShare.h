@@ -3,69 +3,87 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <deque>
 
 namespace Rabit
 {
 
-// How much of a budget is to be kept free for what is not scheduled: what DDS says of its own accord. That
-// comes in lumps, half a minute apart, and a budget holds in each second; so it is the most that went in a
-// second of the last half to whole minute. No more than Lump, which is a participant's announcement, or what
-// went on average: when nodes come DDS says a multiple of that, and to keep it free for ever would be a
-// waste.
+// How much of a budget is to be kept free for what is not scheduled: what DDS says of its own accord. That is
+// the participant's announcement, once a period, and what is said when nodes come. A budget holds in each
+// second, so what will be said within a second must find its place; but to keep that free all the time would
+// be a waste of most of a small budget. So:
 //
-// Pure; `now` never goes back.
+// - What was said a period ago is expected again now: it has its place from a second before, as long as it
+//   may come late.
+// - While much is said, as much is expected further on.
+//
+// The first of several nodes that come finds no place, nor does an announcement out of turn: for that second
+// what was sent before it cannot be taken back.
+//
+// Bounded: what went within Together is one. Pure; `now` never goes back.
 class UnscheduledShare
 {
 public:
     using Duration = std::chrono::nanoseconds;
-    static constexpr Duration Memory = std::chrono::seconds(35);
-    static constexpr double Lump = 600.0;
+    // An announcement has no more than that, and no more is kept free for it.
+    static constexpr std::size_t Lump = 600;
+    // How much earlier or later than after a period it may come.
+    static constexpr Duration Early = std::chrono::milliseconds(150);
+    static constexpr Duration Late = std::chrono::milliseconds(500);
+    // Of whatever second it falls into (SlidingSecond).
+    static constexpr Duration Before = std::chrono::milliseconds(1050);
+    // More than a lump within that is a conversation.
+    static constexpr Duration Recent = std::chrono::seconds(2);
+
+    // period: of the announcements.
+    explicit UnscheduledShare(Duration period) : _period(period) {}
 
     void Add(std::size_t bytes, Duration now)
     {
-        Turn(now);
-        _second += bytes;
-        _now.Bytes += bytes;
-        _now.Most = std::max(_now.Most, _second);
+        while (!_said.empty() && now - _said.front().At > _period + Late + Together)
+        {
+            _said.pop_front();
+        }
+        if (_said.empty() || now - _said.back().At >= Together)
+        {
+            _said.push_back({now, 0});
+        }
+        _said.back().Bytes += bytes;
     }
 
     // Bytes a second.
-    double Rate(Duration now)
+    double Rate(Duration now) const
     {
-        Turn(now);
-        const double most = static_cast<double>(std::max(_now.Most, _before.Most));
-        const double average =
-            static_cast<double>(_now.Bytes + _before.Bytes) / std::chrono::duration<double>(Memory).count();
-        return std::min(most, std::max(Lump, average));
+        const std::size_t expected =
+            std::min(Between(now - _period - Late, now - _period + Early + Before), Lump);
+        const std::size_t recent = Between(now - Recent, now);
+        const double goesOn =
+            recent > Lump ? static_cast<double>(recent) / std::chrono::duration<double>(Recent).count() : 0.0;
+        return std::max(static_cast<double>(expected), goesOn);
     }
 
 private:
-    struct Part
+    static constexpr Duration Together = std::chrono::milliseconds(100);
+
+    struct Said
     {
-        std::size_t Most = 0;  // in a second
+        Duration At{0};
         std::size_t Bytes = 0;
     };
 
-    void Turn(Duration now)
+    // What began to be said then.
+    std::size_t Between(Duration from, Duration to) const
     {
-        if (now - _secondBegan >= std::chrono::seconds(1))
+        std::size_t bytes = 0;
+        for (const Said &said : _said)
         {
-            _secondBegan = now;
-            _second = 0;
+            bytes += said.At >= from && said.At <= to ? said.Bytes : 0;
         }
-        if (now - _partBegan >= Memory)
-        {
-            _before = now - _partBegan >= 2 * Memory ? Part{} : _now;
-            _now = {};
-            _partBegan = now;
-        }
+        return bytes;
     }
 
-    Duration _secondBegan{0};
-    Duration _partBegan{0};
-    std::size_t _second = 0;
-    Part _now;
-    Part _before;
+    const Duration _period;
+    std::deque<Said> _said;  // the oldest first
 };
 
 }  // namespace Rabit

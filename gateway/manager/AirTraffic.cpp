@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "manager/ImportanceOf.h"
+#include "manager/TransportSettingsOf.h"
 #include "wire/BeatFormat.h"
 
 namespace Rabit
@@ -45,6 +46,7 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
       _publishers(publishers),
       _cost(config.MaxDatagram),
       _schedule(LargestDatagramOf(config)),
+      _unscheduled(TransportSettingsOf(config, 0).AnnouncementPeriod),
       _beat(_schedule.AddStream(TrafficClass::Presence)),
       _linkStreams(config.Send, links, _schedule),
       _report(config, _cost)

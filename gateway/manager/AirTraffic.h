@@ -32,7 +32,7 @@ namespace Rabit
 // - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); each link; each
 //   published message. A datagram is made when its turn has come, from what is newest then.
 // - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
-//   DDS's own, is paid for, too, and a part of a budget is kept free for it.
+//   DDS's own, is paid for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one there are
 //   more of them while much is sent, up to ten a second.
 //

@@ -289,6 +289,19 @@ TEST(AirBudget, DatagramsAreAsLargeAsAQuarterOfASecondWithinLimits)
     EXPECT_EQ(budget.LargestDatagram(), Largest);
 }
 
+TEST(AirBudget, DatagramsOfASmallBudgetMayTakeLongerThanTheyWouldAsSmallOnes)
+{
+    AirBudget budget(Largest);
+    budget.SetBudget(1200, 0ns);
+    EXPECT_EQ(budget.LargestDatagram(), 480u);
+    budget.SetBudget(1500, 0ns);
+    EXPECT_EQ(budget.LargestDatagram(), 576u);
+    budget.SetBudget(2304, 0ns);
+    EXPECT_EQ(budget.LargestDatagram(), 576u);
+    budget.SetBudget(2400, 0ns);
+    EXPECT_EQ(budget.LargestDatagram(), 600u);
+}
+
 TEST(AirBudget, WithAPaceDatagramsGrowMoreSlowlyThanTheRate)
 {
     // A radio that gives turns gives more to larger datagrams: those who have more must not get more by it.

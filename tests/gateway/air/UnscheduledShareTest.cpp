@@ -9,44 +9,70 @@ namespace
 
 using namespace std::chrono_literals;
 
-TEST(UnscheduledShare, IsTheMostThatWentInASecond)
+TEST(UnscheduledShare, KeepsNothingFreeBetweenAnnouncements)
 {
-    UnscheduledShare share;
+    UnscheduledShare share(30s);
+    share.Add(444, 10s);
+    EXPECT_EQ(share.Rate(10s), 0.0);
+    EXPECT_EQ(share.Rate(25s), 0.0);
+    EXPECT_EQ(share.Rate(38s), 0.0);
+}
+
+TEST(UnscheduledShare, KeepsFreeWhatWentAPeriodAgoFromASecondBefore)
+{
+    UnscheduledShare share(30s);
+    share.Add(444, 10s);
+    EXPECT_EQ(share.Rate(38900ms), 444.0);
+    EXPECT_EQ(share.Rate(40s), 444.0);
+}
+
+TEST(UnscheduledShare, WaitsALittleForWhatComesLate)
+{
+    UnscheduledShare share(30s);
+    share.Add(444, 10s);
+    EXPECT_EQ(share.Rate(40400ms), 444.0);
+    EXPECT_EQ(share.Rate(40600ms), 0.0);
+}
+
+TEST(UnscheduledShare, CountsTogetherWhatFallsIntoOneSecond)
+{
+    UnscheduledShare share(30s);
     share.Add(100, 10s);
     share.Add(300, 10500ms);
-    share.Add(200, 20s);
-    EXPECT_EQ(share.Rate(21s), 400.0);
+    EXPECT_EQ(share.Rate(40s), 400.0);
 }
 
-TEST(UnscheduledShare, LastsForHalfAMinuteAtLeast)
+TEST(UnscheduledShare, ExpectsWhatCameLateFromThenOn)
 {
-    UnscheduledShare share;
-    share.Add(400, 10s);
-    EXPECT_EQ(share.Rate(41s), 400.0);
+    UnscheduledShare share(30s);
+    share.Add(444, 10s);
+    share.Add(444, 40400ms);
+    EXPECT_EQ(share.Rate(69100ms), 0.0);
+    EXPECT_EQ(share.Rate(70500ms), 444.0);
 }
 
-TEST(UnscheduledShare, LastsForALittleMoreThanAMinuteAtMost)
+TEST(UnscheduledShare, KeepsNoMoreFreeThanAnAnnouncementAPeriodLater)
 {
-    UnscheduledShare share;
-    share.Add(400, 10s);
-    share.Add(30, 60s);
-    EXPECT_EQ(share.Rate(100s), 30.0);
-}
-
-TEST(UnscheduledShare, IsNoMoreThanAnAnnouncementOrTheAverage)
-{
-    UnscheduledShare share;
+    UnscheduledShare share(30s);
     share.Add(20000, 10s);
-    EXPECT_EQ(share.Rate(12s), 600.0);
-    share.Add(15000, 14s);
-    EXPECT_EQ(share.Rate(16s), 1000.0);
+    EXPECT_EQ(share.Rate(40s), 600.0);
 }
 
-TEST(UnscheduledShare, IsForgottenWhereNothingWentForLong)
+TEST(UnscheduledShare, ExpectsAConversationToGoOn)
 {
-    UnscheduledShare share;
-    share.Add(400, 10s);
-    EXPECT_EQ(share.Rate(1000s), 0.0);
+    UnscheduledShare share(30s);
+    share.Add(900, 10s);
+    share.Add(700, 11s);
+    EXPECT_EQ(share.Rate(11500ms), 800.0);
+    EXPECT_EQ(share.Rate(14s), 0.0);
+}
+
+TEST(UnscheduledShare, IsForgottenWhereNothingWentForAPeriod)
+{
+    UnscheduledShare share(30s);
+    share.Add(444, 10s);
+    share.Add(30, 60s);
+    EXPECT_EQ(share.Rate(70s), 0.0);
 }
 
 }  // namespace
