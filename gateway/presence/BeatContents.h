@@ -39,6 +39,13 @@ public:
     std::size_t States() const { return _states.size(); }
     void SetStateVersion(std::size_t state, std::uint32_t version) { _states.at(state) = version; }
 
+    // Who beats seldom echoes seldom, and says seldom that all is well.
+    void SetBeatPeriod(Duration period)
+    {
+        _peers.SetBeatPeriod(period);
+        _delays.SetBeatPeriod(period);
+    }
+
     // When there is something to ask for, which need not wait for the next period.
     std::optional<Duration> QuestionDue() const;
     // When a part of the announcement is to be said.

@@ -39,10 +39,10 @@ bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
     return delay >= Large;
 }
 
-bool DelayNotes::IsDue(const Entry &entry, Duration now)
+bool DelayNotes::IsDue(const Entry &entry, Duration now) const
 {
     return entry.IsNew && now - entry.Arrival <= LongestHeld &&
-           (!IsSmall(entry) || !entry.ToldAt || now - *entry.ToldAt >= SmallPeriod);
+           (!IsSmall(entry) || !entry.ToldAt || now - *entry.ToldAt >= _smallPeriod);
 }
 
 std::size_t DelayNotes::Due(Duration now, std::size_t most) const

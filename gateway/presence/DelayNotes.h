@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -24,13 +25,21 @@ public:
 
     static constexpr Duration Small = std::chrono::milliseconds(20);
     static constexpr Duration Large = std::chrono::milliseconds(60);
+    // With each fourth beat, but not more often than this, and while it still counts (DelayReports::Fresh).
     static constexpr Duration SmallPeriod = std::chrono::seconds(2);
+    static constexpr Duration LongestSmallPeriod = std::chrono::milliseconds(3500);
+    static constexpr int SmallEachBeats = 4;
     // In a large fleet a few of them are enough.
     static constexpr std::size_t MostSmall = 2;  // at once
     // Older news is none.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
 
+    // How often this node beats.
+    void SetBeatPeriod(Duration period)
+    {
+        _smallPeriod = std::clamp(SmallEachBeats * period, SmallPeriod, LongestSmallPeriod);
+    }
     // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns whether its sender
     // should hear of it soon.
     bool Note(Tag node, Duration delay, Duration arrival);
@@ -49,8 +58,9 @@ private:
         std::optional<Duration> ToldAt;
     };
     static bool IsSmall(const Entry &entry) { return entry.Delay < Small && entry.Told < Small; }
-    static bool IsDue(const Entry &entry, Duration now);
+    bool IsDue(const Entry &entry, Duration now) const;
 
+    Duration _smallPeriod = SmallPeriod;
     std::map<Tag, Entry> _notes;
     Tag _last = 0;
 };

@@ -346,15 +346,15 @@ std::optional<PeerTable::Duration> PeerTable::NextChange() const
     return next;
 }
 
-bool PeerTable::IsEchoDue(const Peer &peer, Duration now)
+bool PeerTable::IsEchoDue(const Peer &peer, Duration now) const
 {
-    return peer.State != NodeState::LOST && (!peer.LastEchoed || now - *peer.LastEchoed >= EchoPeriod);
+    return peer.State != NodeState::LOST && (!peer.LastEchoed || now - *peer.LastEchoed >= _echoPeriod);
 }
 
 std::size_t PeerTable::EchoesDue(Duration now, std::size_t most) const
 {
     const auto due = std::count_if(_peers.begin(), _peers.end(),
-                                   [now](const auto &entry) { return IsEchoDue(entry.second, now); });
+                                   [&](const auto &entry) { return IsEchoDue(entry.second, now); });
     return std::min(static_cast<std::size_t>(due), most);
 }
 

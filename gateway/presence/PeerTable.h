@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -34,8 +35,10 @@ public:
     // What it says is raised or lowered to what a node can mean.
     static constexpr Duration ShortestPeriod = std::chrono::milliseconds(100);
     static constexpr Duration LongestPeriod = std::chrono::seconds(60);
-    // A node's beat goes back to it so often. The round trip of one that has just come is measured at once.
+    // A node's beat goes back to it so often, or with each so manieth of our beats where that is more seldom.
+    // The round trip of one that has just come is measured at once.
     static constexpr Duration EchoPeriod = std::chrono::seconds(4);
+    static constexpr int EchoEachBeats = 8;
     // Another announcement in the same life is taken so long after the one before at the earliest.
     static constexpr Duration OffersRest = std::chrono::seconds(1);
     // Names come from the network. When another one comes the one LOST for longest is forgotten; never one
@@ -117,6 +120,8 @@ public:
     std::uint64_t Malformed() const { return _malformed + _missing.Wrong(); }
     // A beat of this node was sent, which said so of the source clock.
     void NoteSent(std::int64_t source, Duration now) { _sent.Add(source, now); }
+    // How often this node beats.
+    void SetBeatPeriod(Duration period) { _echoPeriod = std::max(EchoPeriod, EchoEachBeats * period); }
     // How many echoes are due, no more than `most`; and those, of the nodes whose turn it is.
     std::size_t EchoesDue(Duration now, std::size_t most) const;
     std::vector<Gateway::BeatEcho> NextEchoes(Duration now, std::size_t most);
@@ -129,7 +134,7 @@ private:
     static bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now);
     void NoteTwin(Peer &peer, Duration now);
     static void BeginLife(Peer &peer, const HeardBeat &heard);
-    static bool IsEchoDue(const Peer &peer, Duration now);
+    bool IsEchoDue(const Peer &peer, Duration now) const;
     void TakeIn(Peer &peer, const HeardBeat &heard, Change &change);
     void MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const;
     void TakeStates(Peer &peer, const Gateway::Beat &beat);
@@ -146,6 +151,7 @@ private:
     std::uint64_t _forgotten = 0;
     std::uint64_t _crowdedOut = 0;
     std::uint64_t _malformed = 0;
+    Duration _echoPeriod = EchoPeriod;
     std::string _lastEchoed;
     int _ownTwinBeats = 0;
     Duration _ownTwinSince{0};

@@ -92,7 +92,11 @@ public:
     std::size_t SendBeat(Duration now, std::size_t most = BeatFormat::Largest);
     static constexpr std::size_t LargestBeat = BeatFormat::Largest;
     // How often this node beats when nothing is the matter (BeatPace).
-    void SetBeatPeriod(Duration period) { _pace.SetPeriod(period); }
+    void SetBeatPeriod(Duration period)
+    {
+        _pace.SetPeriod(period);
+        _contents.SetBeatPeriod(_pace.Period());
+    }
     Duration BeatPeriod() const { return _pace.Period(); }
 
     // The version of a State of this node, by its place (Announcements::StateIndexOf), for the beats to tell.

@@ -216,6 +216,18 @@ TEST_F(AirTrafficTest, AnIdleNodeWithABudgetCostsLessThanAHundredBytesASecond)
     EXPECT_LE(Bytes("uav1") - before, 60u * 100u);
 }
 
+TEST_F(AirTrafficTest, AnIdleNodeAmongFiveWithABudgetCostsNoMoreThanOneOfTwo)
+{
+    for (const char *node : {"uav1", "uav2", "uav3", "uav4", "uav5"})
+    {
+        fleet.Add(WithBudget(AircraftConfig(node), 1500));
+    }
+    fleet.RunFor(60s);
+    const std::uint64_t before = Bytes("uav1");
+    fleet.RunFor(120s);
+    EXPECT_LE(Bytes("uav1") - before, 120u * 92u);
+}
+
 TEST_F(AirTrafficTest, ANodeThatIsNotLimitedSendsAllThatIsPosted)
 {
     AddAircraft(AircraftConfig("uav1"));

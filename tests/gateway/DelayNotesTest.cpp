@@ -42,6 +42,19 @@ TEST(DelayNotes, ThatThereIsNoDelayIsToldNowAndThen)
     EXPECT_EQ(told, 5);
 }
 
+TEST(DelayNotes, WhoBeatsSeldomTellsThatThereIsNoneWhileItCountsAndNotMoreOften)
+{
+    DelayNotes notes;
+    notes.SetBeatPeriod(2s);
+    int told = 0;
+    for (auto now = 1s + 0ms; now < 41s; now += 500ms)
+    {
+        notes.Note(7, 2ms, now);
+        told += notes.Take(now, 8).empty() ? 0 : 1;
+    }
+    EXPECT_EQ(told, 12);  // each 3.5 s
+}
+
 TEST(DelayNotes, ThatADelayCameOrWentIsToldAtOnce)
 {
     DelayNotes notes;

@@ -373,6 +373,20 @@ TEST_F(PeerTableTest, EchoesTakeTurnsWhenThereAreMoreNodesThanRoom)
     EXPECT_EQ(namesOf(table.NextEchoes(5500ms, 8)), "c");
 }
 
+TEST_F(PeerTableTest, WhoBeatsSeldomEchoesWithEachEighthBeat)
+{
+    table.SetBeatPeriod(2s);
+    Hear("uav1", 1, 1s);
+    EXPECT_EQ(table.NextEchoes(1s, 2).size(), 1u);
+    Hear("uav1", 1, 16s);
+    EXPECT_EQ(table.EchoesDue(16999ms, 2), 0u);
+    EXPECT_EQ(table.NextEchoes(17s, 2).size(), 1u);
+    table.SetBeatPeriod(100ms);
+    Hear("uav1", 1, 20s);
+    EXPECT_EQ(table.EchoesDue(20999ms, 2), 0u);
+    EXPECT_EQ(table.EchoesDue(21s, 2), 1u);
+}
+
 TEST_F(PeerTableTest, ANewLifeIsEchoedAtOnce)
 {
     Hear("uav1", 5, 1s);
