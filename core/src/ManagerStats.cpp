@@ -50,7 +50,8 @@ std::string ManagerStats_t::ToString() const
          << "Sleep [s]: min " << MinSleepTime_Sec << " max " << MaxSleepTime_Sec << " ave "
          << AveSleepTime_Sec << " total " << TotalSleepTime_Sec << "\n"
          << "Wake-up calls: " << NumberOfWakeUpCallsWhileAsleep << " asleep, "
-         << NumberOfWakeUpCallsWhileAwake << " awake\n";
+         << NumberOfWakeUpCallsWhileAwake << " awake\n"
+         << "Missed turns: " << NumberOfMissedTurns << "\n";
     return text.str();
 }
 

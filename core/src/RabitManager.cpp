@@ -18,6 +18,14 @@ namespace
 
 constexpr double LongestDelay_Sec = 1e9;
 
+// Seconds of a caller's; more than 0 does not become 0.
+std::chrono::nanoseconds ToDuration(double seconds)
+{
+    const std::chrono::duration<double> clamped(std::clamp(seconds, 0.0, LongestDelay_Sec));
+    const auto rounded = std::chrono::duration_cast<std::chrono::nanoseconds>(clamped);
+    return seconds > 0.0 ? std::max(rounded, std::chrono::nanoseconds(1)) : rounded;
+}
+
 template <typename T>
 std::shared_ptr<T> RegisterOrThrow(ManagerLease &lease, const std::string &name)
 {
@@ -128,13 +136,7 @@ void RabitManager::SetWakeupTimeDelaySec(double delay_Sec)
     {
         throw std::invalid_argument("the wake-up delay of manager \"" + _name + "\" cannot be NaN");
     }
-    const std::chrono::duration<double> delay(std::clamp(delay_Sec, 0.0, LongestDelay_Sec));
-    auto rounded = std::chrono::duration_cast<std::chrono::nanoseconds>(delay);
-    if (delay_Sec > 0.0)
-    {
-        rounded = std::max(rounded, std::chrono::nanoseconds(1));
-    }
-    _wakeup->SetDelay(rounded);
+    _wakeup->SetDelay(ToDuration(delay_Sec));
 }
 
 int RabitManager::GetWakeupTimeDelayMSec() const
@@ -151,6 +153,35 @@ int RabitManager::GetWakeupTimeDelayMSec() const
 double RabitManager::GetWakeupTimeDelaySec() const
 {
     return std::chrono::duration<double>(_wakeup->GetDelay()).count();
+}
+
+void RabitManager::SetPeriodSec(double period_Sec)
+{
+    if (std::isnan(period_Sec))
+    {
+        throw std::invalid_argument("the period of manager \"" + _name + "\" cannot be NaN");
+    }
+    _wakeup->SetPeriod(ToDuration(period_Sec));
+}
+
+double RabitManager::GetPeriodSec() const
+{
+    return std::chrono::duration<double>(_wakeup->GetPeriod()).count();
+}
+
+void RabitManager::SetWakeupBetweenTurns(bool wakeUp)
+{
+    _wakeup->SetSignalsBetweenTurns(wakeUp);
+}
+
+bool RabitManager::IsTurn() const
+{
+    return _wakeup->IsTurn();
+}
+
+std::uint64_t RabitManager::GetNumberOfMissedTurns() const
+{
+    return _wakeup->MissedTurns();
 }
 
 bool RabitManager::RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg)

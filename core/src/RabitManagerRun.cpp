@@ -100,6 +100,7 @@ void RabitManager::ThreadMain()
     pthread_setname_np(pthread_self(), _name.substr(0, 15).c_str());
     if (StartupStep())
     {
+        _wakeup->BeginTurns(RabitWakeup::SteadyNow());
         while (CycleStep())
         {
             SleepStep();
@@ -159,6 +160,10 @@ bool RabitManager::CycleStep()
     {
         return false;
     }
+    if (!_wakeup->IsWorkDue())
+    {
+        return true;
+    }
     const RabitClock &clock = _workspace.GetClock();
     const std::chrono::nanoseconds start = clock.Monotonic();
     const bool good = Guard("ExecuteUnitOfWork", ManagerStatusMessage::Error_ExecuteUnitOfWork,
@@ -197,8 +202,7 @@ std::chrono::nanoseconds RabitManager::PauseOfThisSleep() const
     {
         return std::chrono::nanoseconds::zero();
     }
-    return _wakeup->GetDelay() > std::chrono::nanoseconds::zero() ? PauseAfterFailure
-                                                                  : PauseAfterFailureWithoutDelay;
+    return _wakeup->MaySleep() ? PauseAfterFailure : PauseAfterFailureWithoutDelay;
 }
 
 void RabitManager::SleepStep()
@@ -218,15 +222,14 @@ std::chrono::nanoseconds RabitManager::NextDue() const
     {
         return _sleepBegan;
     }
-    const std::chrono::nanoseconds sleep =
-        _wakeup->IsSignalled() ? std::chrono::nanoseconds::zero() : _wakeup->GetDelay();
-    return _sleepBegan + std::max(PauseOfThisSleep(), sleep);
+    return std::max(_sleepBegan + PauseOfThisSleep(), _wakeup->SleepUntil(_sleepBegan));
 }
 
 void RabitManager::EndSleepStep()
 {
-    _wakeup->EndSleep();
-    _slept = _workspace.GetClock().Monotonic() > _sleepBegan;
+    const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
+    _wakeup->EndSleep(_sleepBegan, now);
+    _slept = now > _sleepBegan;
 }
 
 void RabitManager::ShutdownStep()
@@ -281,6 +284,7 @@ void RabitManager::ObeyControlMessages()
     {
         _resetToggles = toggles;
         _stats.Clear();
+        _missedAtReset = _wakeup->MissedTurns();
         _wakeup->TakeCounts();
         _statsResetAt = _workspace.GetClock().Monotonic();
     }
@@ -336,6 +340,7 @@ void RabitManager::UpdateStats(std::chrono::nanoseconds now)
     const RabitWakeup::Counts counts = _wakeup->TakeCounts();
     Add(_stats.NumberOfWakeUpCallsWhileAsleep, counts.WhileAsleep);
     Add(_stats.NumberOfWakeUpCallsWhileAwake, counts.WhileAwake);
+    _stats.NumberOfMissedTurns = _wakeup->MissedTurns() - _missedAtReset;
     _stats.TimeSinceLastStatsReset_Sec = InSeconds(now - _statsResetAt);
     _mgrStatus_sptr->ManagerStats = _stats;
 }

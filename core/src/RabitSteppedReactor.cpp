@@ -69,6 +69,7 @@ void RabitSteppedReactor::StartEntry(Entry &entry)
     if (entry.Manager->StartupStep())
     {
         entry.Manager->BeginSleepStep();
+        entry.Manager->_wakeup->BeginTurns(entry.Manager->_sleepBegan);
     }
     else
     {
@@ -90,8 +91,8 @@ std::chrono::nanoseconds RabitSteppedReactor::DueOf(const Entry &entry) const
         return manager._sleepBegan;
     }
     const std::chrono::nanoseconds due = manager.NextDue();
-    const bool noSleep = due == manager._sleepBegan && !manager._wakeup->IsSignalled() &&
-                         !manager._wakeup->IsShutdownRequested();
+    const bool noSleep = due == manager._sleepBegan && !manager._wakeup->MaySleep() &&
+                         !manager._wakeup->IsSignalled() && !manager._wakeup->IsShutdownRequested();
     return noSleep ? due + NoSleepStep : due;
 }
 

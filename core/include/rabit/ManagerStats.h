@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace Rabit
@@ -25,6 +26,8 @@ struct ManagerStats_t
     // How many times the minima, maxima and averages are of.
     int NumberOfExecuteTimes = 0;
     int NumberOfSleepTimes = 0;
+    // Turns of the manager's period that passed without a unit of work of their own.
+    std::uint64_t NumberOfMissedTurns = 0;
 
     // Zeroes everything but TotalNumberOfExecuteCycles.
     void Clear();

@@ -37,7 +37,8 @@ class ManagerLease;
 // Shutdown. All three run on the manager's own thread, never two at once. Between two units of work the
 // manager sleeps for its delay (1 s unless set), unless something wakes it: a post of a chosen message, a
 // message added to or taken from a queue, or a call of WakeUpManagerEH. Events that come during the unit of
-// work cause one more pass instead of the sleep, however many they are.
+// work cause one more pass instead of the sleep, however many they are. A manager that is to run once a
+// second, and not also whenever it is woken, sets a period: SetPeriodSec.
 //
 // Exceptions of any type that leave one of the three are caught, logged, and reported in the status message
 // (ManagerStatusMessage::ErrorCode_e). After a unit of work that threw the manager sleeps as usual, at least
@@ -94,6 +95,29 @@ public:
     // Rounded to milliseconds, but not to 0 if the manager does sleep; at most the largest int.
     int GetWakeupTimeDelayMSec() const;
     double GetWakeupTimeDelaySec() const;
+
+    // The period: the unit of work runs once in each, however often the manager is woken in between; what
+    // would have woken it is seen at the next turn. This is what a sensor that posts once a second needs: the
+    // delay above is only the longest sleep, so each message that comes makes one more pass.
+    //
+    // Turns lie a period apart, counted from the first unit of work, or from the moment at which a running
+    // manager was given the period. They do not drift: one that comes late, because the unit of work took too
+    // long, moves none of the others. If several have come meanwhile, the unit of work runs once for all of
+    // them, and all but the last are counted as missed. Time for which the computer was suspended has no
+    // turns. Shutdown and control messages are obeyed between turns as well.
+    //
+    // While there is a period, the delay counts for nothing. 0 or less: none, as at first. May be set at any
+    // time; the same value once more changes nothing. More than about 31 years is taken as that. NaN throws
+    // std::invalid_argument.
+    void SetPeriodSec(double period_Sec);
+    double GetPeriodSec() const;
+    // For a manager that does something once a period and answers at once besides: has it woken between turns
+    // as well. Its unit of work asks IsTurn whether it is time for what is done once a period.
+    void SetWakeupBetweenTurns(bool wakeUp);
+    // For the unit of work: whether it runs because a turn has come. True if there is no period.
+    bool IsTurn() const;
+    // Since the manager was made. Those since the statistics were reset are in its status message.
+    std::uint64_t GetNumberOfMissedTurns() const;
 
     // Registers a message (a shared pointer to a class derived from RabitMessage) and attaches it to the
     // name's global copy. False if the name belongs to a message of another type. See RabitWorkspace.
@@ -270,6 +294,7 @@ private:
     std::chrono::nanoseconds _statsResetAt{0};
     std::chrono::nanoseconds _statusPostedAt{0};
     std::chrono::nanoseconds _sleepBegan{0};
+    std::uint64_t _missedAtReset = 0;
     bool _slept = false;
     bool _lastPassFailed = false;
     bool _startupFailed = false;

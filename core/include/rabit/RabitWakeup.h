@@ -1,8 +1,11 @@
 #pragma once
 
+#include <rabit/RabitPeriod.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 
 namespace Rabit
@@ -24,7 +27,7 @@ public:
 
     // From any thread.
     void Signal();
-    // The same, and says that a control message was posted.
+    // The same, and says that a control message was posted: this ends a sleep until a turn as well.
     void SignalControlChange();
     // Whether one was posted since this was asked last; true at first.
     bool TakeControlChange() { return _controlChanged.exchange(false, std::memory_order_acq_rel); }
@@ -34,24 +37,48 @@ public:
     // Zero: do not sleep. A sleep that is under way follows the new delay at once.
     void SetDelay(std::chrono::nanoseconds delay);
     std::chrono::nanoseconds GetDelay() const;
+    // In place of the delay; zero: none. A sleep that is under way follows the new period at once.
+    void SetPeriod(std::chrono::nanoseconds period);
+    std::chrono::nanoseconds GetPeriod() const;
+    // Whether signals end a sleep until the next turn of the period; they do not unless this says so.
+    void SetSignalsBetweenTurns(bool count);
+    // Turns that passed without a pass of their own, since construction.
+    std::uint64_t MissedTurns() const;
+    // Whether there are sleeps at all: false if the delay is zero and there is no period.
+    bool MaySleep() const;
 
     // For the manager alone.
     //
-    // Blocks for the delay, or until a signal or a shutdown request; then forgets the signals. For the first
-    // `pause` of it only a shutdown request counts. Returns whether it slept: false if there was no need to.
-    // Reads no clock after a signal, which is on its way to a unit of work.
+    // The next turn of the period is one period after `start`, and the first pass is a turn.
+    void BeginTurns(std::chrono::nanoseconds start);
+    // Now, on the timeline that Sleep takes turns by: that of std::chrono::steady_clock.
+    static std::chrono::nanoseconds SteadyNow();
+    // Blocks until the next turn, or for the delay if there is no period, or until a signal or a shutdown
+    // request; then forgets the signals. For the first `pause` of it only a shutdown request counts. Returns
+    // whether it slept: false if there was no need to. Reads no clock after a signal, which is on its way to
+    // a unit of work, if there is no period.
     bool Sleep(std::chrono::nanoseconds pause);
-    // The same sleep for a manager that is stepped: it sleeps between these two calls.
+    // The same sleep for a manager that is stepped: it sleeps between these two calls. SleepUntil says when
+    // that sleep ends if nothing else happens.
     void BeginSleep();
-    void EndSleep();
+    std::chrono::nanoseconds SleepUntil(std::chrono::nanoseconds start) const;
+    void EndSleep(std::chrono::nanoseconds start, std::chrono::nanoseconds now);
     bool IsSignalled() const;
     void ForgetSignals();
     Counts TakeCounts();
     // Forgets signals and the shutdown request.
     void Reset();
+    // What the last sleep ended for: whether a turn has come (always, if there is no period), and whether
+    // there is a reason for a unit of work at all, or only for a look at the control messages.
+    bool IsTurn() const { return _isTurn; }
+    bool IsWorkDue() const { return _isWorkDue; }
 
 private:
     void NotifyIfWaiting(std::unique_lock<std::mutex> &lock);
+    bool OnlyTurnsCount() const { return _period.IsSet() && !_signalsBetweenTurns; }
+    bool EndsAtOnce() const;
+    std::chrono::nanoseconds EndOf(std::chrono::nanoseconds start) const;
+    void TakeTurn(std::chrono::nanoseconds start, std::chrono::nanoseconds now);
 
     mutable std::mutex _mutex;
     std::condition_variable _changed;
@@ -60,8 +87,14 @@ private:
     bool _waiting = false;
     Counts _counts;
     std::chrono::nanoseconds _delay = std::chrono::seconds(1);
+    RabitPeriod _period;
+    bool _signalsBetweenTurns = false;
     std::atomic<bool> _shutdownRequested{false};
     std::atomic<bool> _controlChanged{true};
+
+    // Of the manager alone.
+    bool _isTurn = true;
+    bool _isWorkDue = true;
 };
 
 }  // namespace Rabit
