@@ -1,5 +1,6 @@
 #include "ExceptionText.h"
 #include "ManagerLease.h"
+#include "QueueRefusals.h"
 
 #include <rabit/RabitLog.h>
 #include <rabit/RabitManager.h>
@@ -170,6 +171,7 @@ bool RabitManager::CycleStep()
                             [this] { ExecuteUnitOfWork(); });
     const std::chrono::nanoseconds end = clock.Monotonic();
     SystemTimeClock::GetSystemTimeClock()->ReportSteps();
+    _workspace._refusals->Report();
     CountPass(start, end);
     ObeyControlMessages();  // the unit of work may have changed them
     if (good && _lastPassFailed)

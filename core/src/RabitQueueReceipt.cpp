@@ -1,5 +1,6 @@
 #include <rabit/RabitQueueReceipt.h>
 
+#include <ostream>
 #include <stdexcept>
 #include <utility>
 
@@ -133,6 +134,11 @@ const char *ToString(QueueOutcome outcome)
             return "refused";
     }
     return "unknown";
+}
+
+std::ostream &operator<<(std::ostream &stream, QueueOutcome outcome)
+{
+    return stream << ToString(outcome);
 }
 
 }  // namespace Rabit

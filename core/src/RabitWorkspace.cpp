@@ -1,5 +1,6 @@
 #include <rabit/RabitWorkspace.h>
 
+#include "QueueRefusals.h"
 #include "WorkspaceForwarders.h"
 #include "WorkspaceRegistry.h"
 
@@ -24,7 +25,8 @@ RabitWorkspace *RabitWorkspace::GetWorkspace()
 RabitWorkspace::RabitWorkspace(std::shared_ptr<RabitClock> clock)
     : _clock(clock ? std::move(clock) : RabitClock::System()),
       _registry(std::make_unique<WorkspaceRegistry>(_clock)),
-      _forwarders(std::make_unique<WorkspaceForwarders>())
+      _forwarders(std::make_unique<WorkspaceForwarders>()),
+      _refusals(std::make_shared<QueueRefusals>(_clock))
 {
 }
 
@@ -59,7 +61,13 @@ void RabitWorkspace::AddManagerName(const std::string &managerName, std::uint64_
 
 void RabitWorkspace::AddQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner)
 {
-    _registry->AddQueue(name, std::move(handle), owner);
+    RabitConnection refusals;
+    if (handle)
+    {
+        refusals = handle->ConnectRefused([noted = _refusals, name, capacity = handle->Capacity()]
+                                          { noted->NoteFull(name, capacity); });
+    }
+    _registry->AddQueue(name, std::move(handle), owner, refusals);
 }
 
 std::shared_ptr<RabitQueueHandle> RabitWorkspace::FindQueue(const std::string &name) const
@@ -125,7 +133,13 @@ bool RabitWorkspace::ForwardMessage(const std::string &name, const std::shared_p
                                     const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     const std::optional<bool> forwarded = _forwarders->Forward(name, message, receipt);
-    return forwarded ? *forwarded : TellReceipt(receipt, false);
+    return forwarded ? *forwarded : RefuseUnknown(name, receipt);
+}
+
+bool RabitWorkspace::RefuseUnknown(const std::string &name, const std::shared_ptr<RabitQueueReceipt> &receipt)
+{
+    _refusals->NoteUnknown(name);
+    return TellReceipt(receipt, false);
 }
 
 bool RabitWorkspace::TellReceipt(const std::shared_ptr<RabitQueueReceipt> &receipt, bool delivered)
@@ -212,6 +226,11 @@ std::vector<MessageInfo> RabitWorkspace::GetListOfMessages() const
 std::vector<QueueInfo> RabitWorkspace::GetListOfQueues() const
 {
     return _registry->Queues();
+}
+
+std::vector<UnknownQueueInfo> RabitWorkspace::GetListOfUnknownQueues() const
+{
+    return _refusals->Unknown();
 }
 
 }  // namespace Rabit

@@ -198,13 +198,13 @@ std::vector<MessageInfo> WorkspaceRegistry::Messages() const
 }
 
 void WorkspaceRegistry::AddQueue(const std::string &name, std::shared_ptr<RabitQueueHandle> handle,
-                                 std::uint64_t owner)
+                                 std::uint64_t owner, RabitConnection refusals)
 {
     if (!handle)
     {
         throw std::invalid_argument("a null queue cannot be registered as \"" + name + "\"");
     }
-    QueueEntry entry{std::move(handle), {owner}};
+    QueueEntry entry{std::move(handle), {owner}, std::move(refusals)};
     // Swapping leaves a former queue to be destroyed outside the lock.
     const std::lock_guard<std::mutex> lock(_mutex);
     QueueEntry &current = _queues[name];

@@ -50,7 +50,9 @@ public:
     std::shared_ptr<PublishSubscribeMessage> FindMessage(const std::string &name) const;
     std::vector<MessageInfo> Messages() const;
 
-    void AddQueue(const std::string &name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner);
+    // The connection ends when the entry goes.
+    void AddQueue(const std::string &name, std::shared_ptr<RabitQueueHandle> handle, std::uint64_t owner,
+                  RabitConnection refusals);
     std::shared_ptr<RabitQueueHandle> FindQueue(const std::string &name) const;
     std::vector<QueueInfo> Queues() const;
 
@@ -68,6 +70,7 @@ private:
     {
         std::shared_ptr<RabitQueueHandle> Handle;
         Owners OwnedBy;
+        RabitScopedConnection Refusals;
     };
     struct PresentManager
     {

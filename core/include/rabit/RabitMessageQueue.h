@@ -65,28 +65,32 @@ public:
     {
         return _dequeued.Connect(std::move(handler));
     }
+    // Has the handler called after each message for which AddMessage had no room.
+    RabitConnection ConnectSomethingRefused(RabitHandler handler)
+    {
+        return _refusal.Connect(std::move(handler));
+    }
 
-    // Disconnects all handlers, for an owner that goes while others may still hold the queue.
+    // Disconnects all handlers of messages added and taken, for an owner that goes while others may still
+    // hold the queue.
     void DisconnectAllHandlers()
     {
         _enqueued.DisconnectAll();
         _dequeued.DisconnectAll();
     }
 
-    // False, and no handler called, when full.
+    // False when full; then the handlers of what is refused are called, and no others.
     bool AddMessage(T msg)
     {
         RabitEvent::Handlers handlers;
+        bool added = false;
         {
             const std::lock_guard<std::mutex> lock(*_mutex);
-            if (!Push(msg))
-            {
-                return false;
-            }
-            handlers = _enqueued.Snapshot();
+            added = Push(msg);
+            handlers = added ? _enqueued.Snapshot() : _refusal.Snapshot();
         }
         handlers.Call();
-        return true;
+        return added;
     }
 
     // The same without calling handlers.
@@ -151,12 +155,13 @@ private:
     }
 
     const std::string _name;
-    // Guards the messages and both lists of handlers.
+    // Guards the messages and the lists of handlers.
     const std::shared_ptr<std::mutex> _mutex = std::make_shared<std::mutex>();
     RabitRing<T> _ring;
     std::uint64_t _refused = 0;
     RabitEvent _enqueued{_mutex};
     RabitEvent _dequeued{_mutex};
+    RabitEvent _refusal{_mutex};
 };
 
 }  // namespace Rabit

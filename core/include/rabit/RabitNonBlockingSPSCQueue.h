@@ -61,12 +61,18 @@ public:
     {
         return _dequeued.Connect(std::move(handler));
     }
+    // Has the handler called after each message for which AddMessage had no room.
+    RabitConnection ConnectSomethingRefused(RabitHandler handler)
+    {
+        return _refusal.Connect(std::move(handler));
+    }
 
-    // False, and no handler called, when full.
+    // False when full; then the handlers of what is refused are called, and no others.
     bool AddMessage(T const &msg)
     {
         if (!AddMessageNoEventTrigger(msg))
         {
+            _refusal.Fire();
             return false;
         }
         _enqueued.Fire();
@@ -130,6 +136,7 @@ private:
     std::atomic<std::uint64_t> _refused{0};
     RabitEvent _enqueued;
     RabitEvent _dequeued;
+    RabitEvent _refusal;
 };
 
 }  // namespace Rabit

@@ -4,6 +4,7 @@
 #include <rabit/RabitMessage.h>
 
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -21,6 +22,10 @@ enum class QueueAddResult
     UnknownQueue,
     WrongType  // the queue holds something else, and the message does not convert to it
 };
+
+// For logs: `ok`, `full`, `unknown queue`, `wrong type`.
+const char *ToString(QueueAddResult result);
+std::ostream &operator<<(std::ostream &stream, QueueAddResult result);
 
 // A queue of any kind and element type, as a workspace keeps it. All methods may be called from any thread,
 // except that adding to a RabitNonBlockingSPSCQueue is for its producer alone.
@@ -52,6 +57,7 @@ public:
 
     virtual RabitConnection ConnectEnqueued(RabitHandler handler) = 0;
     virtual RabitConnection ConnectDequeued(RabitHandler handler) = 0;
+    virtual RabitConnection ConnectRefused(RabitHandler handler) = 0;
 };
 
 namespace Detail
@@ -157,6 +163,10 @@ public:
     RabitConnection ConnectDequeued(RabitHandler handler) override
     {
         return _queue->ConnectSomethingDequeued(std::move(handler));
+    }
+    RabitConnection ConnectRefused(RabitHandler handler) override
+    {
+        return _queue->ConnectSomethingRefused(std::move(handler));
     }
 
 private:

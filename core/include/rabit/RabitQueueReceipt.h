@@ -3,6 +3,7 @@
 #include <rabit/RabitEvent.h>
 
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
 #include <mutex>
 
@@ -75,5 +76,6 @@ private:
 
 // For logs: `pending`, `delivered`, `expired`, `in doubt`, `refused`.
 const char *ToString(QueueOutcome outcome);
+std::ostream &operator<<(std::ostream &stream, QueueOutcome outcome);
 
 }  // namespace Rabit

@@ -25,6 +25,7 @@
 
 namespace Rabit
 {
+class QueueRefusals;
 class WorkspaceForwarders;
 class WorkspaceRegistry;
 
@@ -57,6 +58,11 @@ struct QueueInfo
     int Capacity;
     int FillLevel;              // messages that wait in it
     std::uint64_t RefusedAdds;  // messages that it had no room for, since it was made
+};
+struct UnknownQueueInfo
+{
+    std::string Name;
+    std::uint64_t RefusedAdds;  // messages for it that nobody took
 };
 
 // The names by which managers find each other's messages and queues. Most programs have the one of
@@ -125,6 +131,10 @@ public:
     // forwarder refuses, or the message is a null pointer to a RabitMessage, which no queue takes by name.
     // Throws QueueTypeException if the queue holds something else.
     //
+    // A queue that is full, and a name that nobody knows, are logged as warnings with their names: the first
+    // time at once, then together, at most once a minute. So is a full queue to which the program adds
+    // without its name. GetListOfQueues and GetListOfUnknownQueues have the numbers.
+    //
     // The receipt, if there is one, tells what became of the message, see RabitQueueReceipt; it learns of a
     // refusal as well. If this throws it learns nothing.
     template <typename T>
@@ -185,6 +195,9 @@ public:
     // What is registered now, sorted by name.
     std::vector<MessageInfo> GetListOfMessages() const;
     std::vector<QueueInfo> GetListOfQueues() const;
+    // Names of queues that were not there when messages were added to them, sorted; since the workspace was
+    // made. Those beyond 200 names share an entry.
+    std::vector<UnknownQueueInfo> GetListOfUnknownQueues() const;
 
 private:
     friend class RabitReactor;
@@ -203,6 +216,7 @@ private:
     std::shared_ptr<RabitQueueHandle> FindQueueOrThrow(const std::string &name) const;
     bool ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message,
                         const std::shared_ptr<RabitQueueReceipt> &receipt);
+    bool RefuseUnknown(const std::string &name, const std::shared_ptr<RabitQueueReceipt> &receipt);
     static bool TellReceipt(const std::shared_ptr<RabitQueueReceipt> &receipt, bool delivered);
 
     template <typename QueueT>
@@ -221,6 +235,7 @@ private:
     const std::shared_ptr<RabitClock> _clock;
     const std::unique_ptr<WorkspaceRegistry> _registry;
     const std::unique_ptr<WorkspaceForwarders> _forwarders;
+    const std::shared_ptr<QueueRefusals> _refusals;
 };
 
 template <typename T>
@@ -273,7 +288,7 @@ bool RabitWorkspace::AddMessageToQueue(std::string name, T msg, std::shared_ptr<
     {
         return ForwardMessage(name, std::shared_ptr<RabitMessage>(std::move(msg)), receipt);
     }
-    return TellReceipt(receipt, false);
+    return RefuseUnknown(name, receipt);
 }
 
 }  // namespace Rabit

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <rabit/RabitClock.h>
+#include <rabit/RabitWorkspace.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace Rabit
+{
+
+// What the queues of a workspace refused because they were full, and what was added to names that are no
+// queues. The first of each name is logged at once; those that follow are logged together, at most once a
+// minute for each name. Thread-safe; logs with no lock held.
+class QueueRefusals
+{
+public:
+    static constexpr std::chrono::nanoseconds LogPeriod = std::chrono::minutes(1);
+    // Programs make names as they run: those beyond this number share one entry.
+    static constexpr std::size_t MaxNames = 200;
+
+    explicit QueueRefusals(std::shared_ptr<const RabitClock> clock) : _clock(std::move(clock)) {}
+
+    void NoteFull(const std::string &name, int capacity);
+    void NoteUnknown(const std::string &name);
+    // Logs what has waited for its minute to be over. Cheap if nothing waits.
+    void Report();
+    // Sorted by name.
+    std::vector<UnknownQueueInfo> Unknown() const;
+
+private:
+    struct Entry
+    {
+        std::uint64_t Count = 0;
+        std::uint64_t NotLogged = 0;
+        std::chrono::nanoseconds LoggedAt{0};
+    };
+    using Entries = std::map<std::string, Entry>;
+
+    // The entry of that name; its name in `name`.
+    Entry &EntryOf(Entries &entries, std::string &name);
+    // Counts one, and returns how many are to be logged now.
+    std::uint64_t Count(Entry &entry);
+    template <typename Line>
+    void ReportDue(Entries &entries, Line line, std::vector<std::string> &lines);
+
+    const std::shared_ptr<const RabitClock> _clock;
+    mutable std::mutex _mutex;
+    Entries _full;
+    Entries _unknown;
+    std::atomic<bool> _waiting{false};
+};
+
+}  // namespace Rabit
