@@ -1,11 +1,11 @@
 #pragma once
 
 #include "CommandLog.h"
-#include "gateway.idl.h"
 #include "ground.idl.h"
 #include "uav.idl.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/gateway/Fleet.h>
 
 #include <atomic>
 #include <chrono>

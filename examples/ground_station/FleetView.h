@@ -6,10 +6,10 @@
 #include "RadioWatch.h"
 #include "TargetLines.h"
 #include "TerminalScreen.h"
-#include "gateway.idl.h"
 #include "ground.idl.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/gateway/Fleet.h>
 
 #include <chrono>
 #include <cstdint>

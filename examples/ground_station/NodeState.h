@@ -1,7 +1,8 @@
 #pragma once
 
 #include "FleetTable.h"
-#include "gateway.idl.h"
+
+#include <rabit/gateway/Fleet.h>
 
 #include <cstring>
 #include <string>

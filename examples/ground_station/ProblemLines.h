@@ -3,7 +3,8 @@
 #pragma once
 
 #include "FleetTable.h"
-#include "gateway.idl.h"
+
+#include <rabit/gateway/Fleet.h>
 
 #include <cstddef>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gateway.idl.h"
+#include <rabit/gateway/Fleet.h>
 
 #include <chrono>
 #include <cstdint>

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "Names.h"
-#include "gateway.idl.h"
 #include "mission/HomeRule.h"
 #include "uav.idl.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/gateway/Fleet.h>
 
 #include <chrono>
 #include <memory>

@@ -64,7 +64,7 @@ ALLOWED = {
     "transport/fastdds": {"transport", "fastdds backend", "Fast DDS", "network"},
     "transport/cyclonedds": {"transport", "cyclonedds backend", "Cyclone DDS", "network"},
     "transport/simulated": {"transport", "simulated backend"},
-    "gateway/include": {"core", "transport", "gateway"},
+    "gateway/include": {"core", "transport", "gateway", "gateway messages"},
     "gateway/links": {"links"},
     **{f"gateway/{room}": {"core", "idl", "transport", "gateway", "gateway messages", f"room {room}"}
        | ({"yaml-cpp"} if room == "configuration" else set())

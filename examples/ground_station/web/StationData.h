@@ -2,9 +2,10 @@
 
 #include "FleetTable.h"
 #include "RadioWatch.h"
-#include "gateway.idl.h"
 #include "ground.idl.h"
 #include "uav.idl.h"
+
+#include <rabit/gateway/Fleet.h>
 
 #include <cstdint>
 #include <limits>

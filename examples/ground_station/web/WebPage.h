@@ -7,9 +7,9 @@
 #include "RadioWatch.h"
 #include "StationData.h"
 #include "WebServer.h"
-#include "gateway.idl.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/gateway/Fleet.h>
 
 #include <chrono>
 #include <cstdint>

@@ -10,8 +10,8 @@
 namespace Rabit
 {
 
-// Name of the local message (type Rabit::Gateway::Fleet) in which a gateway tells what it knows.
-// if the configuration gives it no name of its own.
+// Name of the local message (type Rabit::Gateway::Fleet, in rabit/gateway/Fleet.h) in which a gateway tells
+// what it knows, if the configuration gives it no name of its own.
 inline constexpr const char *FleetMessageName = "Gateway/Fleet";
 // Likewise, with the name that the configuration gives.
 inline std::string FleetMessageNameOf(const GatewayConfig &config)
