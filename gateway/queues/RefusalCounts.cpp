@@ -25,6 +25,7 @@ void RefusalCounts::Add(const std::string &node, const std::string &queue, Queue
         acceptance == QueueAcceptance::WrongType || acceptance == QueueAcceptance::OtherDefinition;
     ++(aboutType ? entry.Type : entry.Unknown);
     SetReason(entry, reason);
+    entry.OtherVersion = acceptance == QueueAcceptance::OtherDefinition;
 }
 
 void RefusalCounts::SetReason(Entry &entry, const std::string &reason)
@@ -87,6 +88,7 @@ std::vector<Gateway::Problem> RefusalCounts::Problems() const
             problem.subject = "send " + link.first + "/" + link.second;
             problem.node = link.first == "*" ? "" : link.first;
             problem.reason = entry.Reason;
+            problem.certain = entry.OtherVersion;
             problems.push_back(problem);
         }
     }

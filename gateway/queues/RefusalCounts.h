@@ -38,7 +38,8 @@ private:
     {
         std::uint64_t Unknown = 0;
         std::uint64_t Type = 0;
-        std::string Reason;  // empty: over
+        std::string Reason;         // empty: over
+        bool OtherVersion = false;  // of the type: that is the reason
     };
 
     void SetReason(Entry &entry, const std::string &reason);

@@ -35,6 +35,13 @@ bool MayLack(const SubscribeRule &rule, const PeerTable &peers)
                        { return OfferOf(rule.Message, *peer) != nullptr; });
 }
 
+// What patience does not change.
+bool IsOtherVersion(const Wanted &wanted, const PeerTable::Peer &peer)
+{
+    const Gateway::PublishedMessage *found = OfferOf(wanted.Rule->Message, peer);
+    return found != nullptr && found->type == wanted.Rule->Type && found->definition != wanted.Definition;
+}
+
 std::string WhyNoMatch(const SubscribeRule &rule, std::uint64_t definition, const PeerTable::Peer &peer)
 {
     const Gateway::PublishedMessage *found = OfferOf(rule.Message, peer);
@@ -99,12 +106,13 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTab
                                              std::chrono::nanoseconds now)
 {
     std::vector<Gateway::Problem> problems;
-    const auto add = [&problems, &wanted](const std::string &node, const std::string &reason)
+    const auto add = [&problems, &wanted](const std::string &node, const std::string &reason, bool certain)
     {
         Gateway::Problem problem;
         problem.subject = "subscribe " + wanted.Rule->Message;
         problem.node = node;
         problem.reason = reason;
+        problem.certain = certain;
         problems.push_back(std::move(problem));
     };
     const bool mayLack = MayLack(*wanted.Rule, peers);
@@ -127,13 +135,15 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTab
         const std::string reason = WhyNoData(wanted, *peer, now);
         if (!reason.empty())
         {
-            add(peer->Node, reason);
+            add(peer->Node, reason, IsOtherVersion(wanted, *peer));
         }
     }
     if (!anyNode && sinceStart >= Patience)
     {
-        add("", "no node named " + ListedNames(wanted.Rule->From, [](const auto &name) { return name; }) +
-                    " has been heard");
+        add("",
+            "no node named " + ListedNames(wanted.Rule->From, [](const auto &name) { return name; }) +
+                " has been heard",
+            false);
     }
     return problems;
 }

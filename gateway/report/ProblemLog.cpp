@@ -176,6 +176,7 @@ std::vector<ProblemLog::Key> ProblemLog::TakeIn(const std::vector<Gateway::Probl
         }
         entry.There = true;
         entry.Reason = problem.reason;
+        entry.Certain = problem.certain;
         order.push_back(key);
     }
     for (auto &[key, entry] : _entries)
@@ -212,7 +213,8 @@ ProblemLog::Groups ProblemLog::NewOnes(const std::vector<Key> &present, Duration
     for (const Key &key : present)
     {
         Entry &entry = _entries.at(key);
-        if (!entry.Told && now - entry.Came >= Lasting && entry.Allowed.Has(now))
+        const bool lasts = entry.Certain || now - entry.Came >= Lasting;
+        if (!entry.Told && lasts && entry.Allowed.Has(now))
         {
             AddTo(groups, key, entry);
         }

@@ -17,9 +17,9 @@ namespace Rabit
 // Decides which problems are worth a line in the log, so that each is said once and nothing floods. Pure: it
 // is fed with the problems that are there now and the time, and gives the lines. Not thread-safe. Bounded.
 //
-// - A problem is told once it has lasted, counted from when it was first there; and once more when it has
-// been
-//   gone for as long. One that comes and goes faster than that counts as there all the time.
+// - A problem is told once it has lasted, counted from when it was first there, or at once if it is certain;
+//   and once more when it has been gone for as long. One that comes and goes faster than that counts as there
+//   all the time.
 // - Texts that differ only in numbers are one problem. If another reason takes the place of one with the same
 //   subject and node, the new one is told, and not that the former is gone.
 // - Problems that begin together, with one reason and one node, share a line.
@@ -76,7 +76,8 @@ private:
 
     struct Entry
     {
-        std::string Reason;       // the latest text
+        std::string Reason;  // the latest text
+        bool Certain = false;
         bool There = false;       // at the last look
         Duration Came{0};         // there since then, without a long gap
         Duration Went{0};         // if it is not there: since when

@@ -124,6 +124,7 @@ TEST_F(DiagnosisTest, OtherType)
 {
     Offer("Pose", "Uav::Goto", "telemetry", 11);
     Hear();
+    EXPECT_FALSE(Diagnosis::OfSubscription(wanted, peers, 1s, 1s).at(0).certain);
     EXPECT_EQ(Problem(1s), "uav1: uav1 publishes `Pose` as `Uav::Goto`, this node wants `Uav::Pose`");
 }
 
@@ -132,6 +133,7 @@ TEST_F(DiagnosisTest, OtherDefinitionOfTheSameTypeName)
     Offer("Pose", "Uav::Pose", "telemetry", 99);
     Hear();
     EXPECT_EQ(Problem(1s), "uav1: uav1 was built with another definition of `Uav::Pose`");
+    EXPECT_TRUE(Diagnosis::OfSubscription(wanted, peers, 1s, 1s).at(0).certain);
 }
 
 TEST_F(DiagnosisTest, OtherQos)

@@ -72,6 +72,21 @@ TEST_F(ProblemLogTest, TellsAProblemOnceWhenItHasLasted)
     EXPECT_THAT(For(1h, {Misspelt}), IsEmpty());
 }
 
+TEST_F(ProblemLogTest, TellsACertainProblemAtOnceAndNoMoreOftenThanAnother)
+{
+    Gateway::Problem version = Misspelt;
+    version.certain = true;
+    EXPECT_THAT(For(500ms, {version}), ElementsAre(MisspeltLine));
+    EXPECT_THAT(For(1h, {version}), IsEmpty());
+    EXPECT_THAT(For(3s, {}), ElementsAre(MisspeltGone));
+    std::size_t lines = 0;
+    for (int second = 0; second < 60; ++second)
+    {
+        lines += For(500ms, {version}).size() + For(500ms, {}).size();
+    }
+    EXPECT_LE(lines, 3u);
+}
+
 TEST_F(ProblemLogTest, TellsOnceMoreWhenItHasBeenGoneAsLong)
 {
     For(3s, {Misspelt});
