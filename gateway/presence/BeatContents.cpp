@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
 #include "wire/BeatFormat.h"
 
@@ -52,6 +53,11 @@ std::size_t BeatContents::SizeOfPart(Duration now, std::size_t room) const
     return size < std::min(SmallestPart, _answer.Left()) ? 0 : size;
 }
 
+bool BeatContents::IsPlaceDue(Duration now) const
+{
+    return _peers.OwnNameTwice() && (!_placeSaid || now - *_placeSaid >= PlacePeriod);
+}
+
 std::size_t BeatContents::Size(Duration now) const
 {
     const std::size_t wants =
@@ -61,7 +67,8 @@ std::size_t BeatContents::Size(Duration now) const
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
                              _delays.Due(now, BeatFormat::MostDelays) * BeatFormat::Delay +
                              std::min(_states.size(), BeatFormat::MostStates) * BeatFormat::State;
-    const std::size_t part = SizeOfPart(now, BeatFormat::Largest);
+    const std::size_t announced = SizeOfPart(now, BeatFormat::Largest);
+    const std::size_t part = announced == 0 && IsPlaceDue(now) ? Whereabouts::Size : announced;
     return std::min(size + (part > 0 ? BeatFormat::PartHeader + (part + 3) / 4 * 4 : 0), BeatFormat::Largest);
 }
 
@@ -113,6 +120,12 @@ void BeatContents::AddPart(Gateway::Beat &beat, Duration now, std::size_t &room)
     const std::size_t size = SizeOfPart(now, room / 4 * 4);
     if (size == 0)
     {
+        if (IsPlaceDue(now) && room >= BeatFormat::PartHeader + Whereabouts::Size)
+        {
+            beat.parts.push_back(Whereabouts::Part());
+            room -= BeatFormat::PartHeader + Whereabouts::Size;
+            _placeSaid = now;
+        }
         return;
     }
     const auto first = _offers.begin() + static_cast<std::ptrdiff_t>(_answer.From());

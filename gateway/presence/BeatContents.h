@@ -20,11 +20,15 @@ namespace Rabit
 
 // What this node's beats have to say beside that it is there, and how that is fitted into them: questions
 // first, then echoes and delays, then a part of the announcement for who has asked, then the States. What
-// does not fit follows in the next beats. Used by the gateway's thread only.
+// does not fit follows in the next beats. While another node has this one's name, a beat without such a part
+// says now and then where this one runs. Used by the gateway's thread only.
 class BeatContents
 {
 public:
     using Duration = std::chrono::nanoseconds;
+
+    // Where this node runs is said so often.
+    static constexpr Duration PlacePeriod = std::chrono::seconds(3);
 
     // `peers` must outlive the object.
     BeatContents(PeerTable &peers, RandomSource random) : _answer(std::move(random)), _peers(peers) {}
@@ -61,6 +65,7 @@ private:
     void AddPart(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfPart(Duration now, std::size_t room) const;
+    bool IsPlaceDue(Duration now) const;
 
     OffersAnswer _answer;
     StateQuestions _questions;
@@ -70,6 +75,7 @@ private:
     std::uint32_t _digest = 0;
     std::vector<std::uint32_t> _states;  // versions
     std::size_t _nextState = 0;
+    std::optional<Duration> _placeSaid;
 };
 
 }  // namespace Rabit

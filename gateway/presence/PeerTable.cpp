@@ -6,6 +6,7 @@
 
 #include "names/NodeTag.h"
 #include "presence/TakeTurns.h"
+#include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
 
 namespace Rabit
@@ -26,6 +27,13 @@ std::string NotHeardFor(PeerTable::Duration silence)
     std::snprintf(text, sizeof text, "not heard for %g seconds",
                   std::chrono::duration<double>(silence).count());
     return text;
+}
+
+// What the beat says of where its node runs, or else what was known.
+std::string PlaceIn(const Gateway::Beat &beat, const std::string &known)
+{
+    std::string place = Whereabouts::In(beat);
+    return place.empty() ? known : place;
 }
 
 }  // namespace
@@ -119,6 +127,7 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.LastBeatSource = Duration(-1);
     peer.LastEchoed.reset();
     peer.States.clear();
+    peer.Place.clear();
 }
 
 bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
@@ -133,8 +142,10 @@ bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
     return changed;
 }
 
-void PeerTable::NoteTwin(Peer &peer, Duration now)
+void PeerTable::NoteTwin(Peer &peer, const HeardBeat &heard)
 {
+    const Duration now = heard.Arrival;
+    peer.TwinPlace = PlaceIn(heard.Beat, peer.TwinPlace);
     peer.TwinBeats = now - peer.TwinSince > TwinMemory ? 1 : peer.TwinBeats + 1;
     peer.TwinSince = now;
 }
@@ -146,6 +157,7 @@ PeerTable::Change PeerTable::OnOwnName(const HeardBeat &heard)
     {
         _ownTwinBeats = heard.Arrival - _ownTwinSince > TwinMemory ? 1 : _ownTwinBeats + 1;
         _ownTwinSince = heard.Arrival;
+        _ownTwinPlace = PlaceIn(heard.Beat, _ownTwinPlace);
         change.State = !_ownTwice && _ownTwinBeats >= BeatsOfATwin;
         _ownTwice = _ownTwice || change.State;
     }
@@ -172,7 +184,7 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     {
         if (!change.NewLife && !IsNewLife(*peer, heard.Incarnation, heard.Arrival))
         {
-            NoteTwin(*peer, heard.Arrival);
+            NoteTwin(*peer, heard);
             change.State = !peer->Twice && peer->TwinBeats >= BeatsOfATwin;
             peer->Twice = peer->Twice || change.State;
             return change;
@@ -192,6 +204,7 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     const Gateway::Beat &beat = heard.Beat;
     const Duration source(beat.source_ns);
     const Duration now = heard.Arrival;
+    peer.Place = PlaceIn(beat, peer.Place);
     peer.Clock.OnBeat({.Source = source, .Wall = Duration(heard.Utc)}, now);
     MeasureRoundTrip(peer, heard);
     peer.LastBeatSource = source;
@@ -253,7 +266,8 @@ void PeerTable::CompareOffers(Peer &peer, const HeardBeat &heard, Change &change
         return;
     }
     _missing.Lacks(peer.Node, beat.offers, heard.Arrival);
-    const auto whole = beat.parts.empty() ? std::nullopt : _missing.Add(peer.Node, beat.parts.front());
+    const bool hasPart = !beat.parts.empty() && !Whereabouts::IsIn(beat.parts.front());
+    const auto whole = hasPart ? _missing.Add(peer.Node, beat.parts.front()) : std::nullopt;
     if (!whole)
     {
         return;
@@ -299,6 +313,7 @@ PeerTable::Change PeerTable::Advance(Duration now)
     if (_ownTwice && now - _ownTwinSince > TwinMemory)
     {
         _ownTwice = false;
+        _ownTwinPlace.clear();
         change.State = true;
     }
     for (auto &[name, peer] : _peers)
@@ -306,6 +321,7 @@ PeerTable::Change PeerTable::Advance(Duration now)
         if (peer.Twice && now - peer.TwinSince > TwinMemory)
         {
             peer.Twice = false;
+            peer.TwinPlace.clear();
             change.State = true;
         }
         const Duration silence = now - peer.LastHeard;

@@ -65,6 +65,9 @@ public:
         std::vector<std::uint32_t> States;
         std::uint32_t BeatsOffers = 0;  // digest of that announcement
         bool Twice = false;             // another live node has the same name
+        // Where this one and that one run, as far as they have said so (Whereabouts).
+        std::string Place;
+        std::string TwinPlace;
 
         // Whether Offers is what its beats mean, so that States tells of them.
         bool HasPresentOffers() const { return Offers && OffersDigest == BeatsOffers; }
@@ -113,6 +116,8 @@ public:
     std::uint64_t CrowdedOut() const { return _crowdedOut; }
     // Whether another live node uses this node's name.
     bool OwnNameTwice() const { return _ownTwice; }
+    // Where that one runs; empty while it has not said so.
+    const std::string &OwnTwinPlace() const { return _ownTwinPlace; }
     // The announcements that are lacking, to be asked for.
     MissingOffers &Missing() { return _missing; }
     const MissingOffers &Missing() const { return _missing; }
@@ -132,7 +137,7 @@ private:
     Change OnOwnName(const HeardBeat &heard);
     Change OnGoodbye(const HeardBeat &heard);
     static bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now);
-    void NoteTwin(Peer &peer, Duration now);
+    static void NoteTwin(Peer &peer, const HeardBeat &heard);
     static void BeginLife(Peer &peer, const HeardBeat &heard);
     bool IsEchoDue(const Peer &peer, Duration now) const;
     void TakeIn(Peer &peer, const HeardBeat &heard, Change &change);
@@ -156,6 +161,7 @@ private:
     int _ownTwinBeats = 0;
     Duration _ownTwinSince{0};
     bool _ownTwice = false;
+    std::string _ownTwinPlace;
 };
 
 }  // namespace Rabit

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
 #include "wire/BeatFormat.h"
 #include "wire/GatewayTopics.h"
@@ -28,6 +29,10 @@ bool IsPlausible(const Gateway::Wanted &wanted)
 
 bool IsPlausible(const Gateway::AnnouncementPart &part)
 {
+    if (Whereabouts::IsIn(part))
+    {
+        return part.first == 0 && !part.bytes.empty() && part.bytes.size() <= Whereabouts::Size;
+    }
     return part.of <= Announcements::LargestEncoded && !part.bytes.empty() &&
            part.first + part.bytes.size() <= part.of;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "presence/Whereabouts.h"
+
 namespace Rabit::FleetReport
 {
 namespace
@@ -64,13 +66,19 @@ void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet)
 {
     if (peers.OwnNameTwice())
     {
-        AddProblem("node " + fleet.node, "", "another live node has the name of this one", fleet);
+        const std::string &other = peers.OwnTwinPlace();
+        AddProblem("node " + fleet.node, "",
+                   "another live node has the name of this one; this one is on " +
+                       Whereabouts::OfThisProcess() + (other.empty() ? "" : ", the other on " + other),
+                   fleet);
     }
     for (const PeerTable::Peer *peer : peers.Heard())
     {
         if (peer->Twice)
         {
-            AddProblem("node " + peer->Node, peer->Node, "two live nodes have this name", fleet);
+            std::string places = peer->Place.empty() ? "" : "; one is on " + peer->Place;
+            places += peer->TwinPlace.empty() ? "" : "; one is on " + peer->TwinPlace;
+            AddProblem("node " + peer->Node, peer->Node, "two live nodes have this name" + places, fleet);
         }
     }
 }

@@ -8,6 +8,7 @@
 #include "BeatSamples.h"
 #include "air/AirCost.h"
 #include "names/NodeTag.h"
+#include "presence/Whereabouts.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -36,6 +37,12 @@ TEST(Beat, TheLargestFitsTheSmallestDatagramThatSettingsAllow)
 {
     EXPECT_LE(AirCost(TransportSettings::SmallestDatagram).Of(BeatFormat::Largest),
               TransportSettings::SmallestDatagram + AirCost::IpAndUdp);
+}
+
+TEST(Beat, SaysWhereItsNodeRunsInTheSameNumberOfBytesWhateverTheHostIsCalled)
+{
+    EXPECT_EQ(Whereabouts::Part().bytes.size(), Whereabouts::Size);
+    EXPECT_LE(Whereabouts::OfThisProcess().size(), Whereabouts::Size);
 }
 
 class BeatContentsTest : public ::testing::Test
@@ -84,6 +91,25 @@ protected:
     PeerTable peers{"ground", 7};
     BeatContents contents{peers, [] { return 0; }};
 };
+
+TEST_F(BeatContentsTest, WhereTheNodeRunsIsSaidNowAndThenWhileAnotherHasItsName)
+{
+    BeginLongAgo(100, 0);
+    for (int beat = 0; beat < 3; ++beat)
+    {
+        HeardBeat twin;
+        twin.Node = "ground";
+        twin.Incarnation = 8;
+        twin.Arrival = 1s + beat * 100ms;
+        peers.OnBeat(twin);
+    }
+    EXPECT_EQ(Whereabouts::In(Next(1s)), Whereabouts::OfThisProcess());
+    EXPECT_EQ(BodyOf(Next(1500ms)), BeatFormat::Empty);
+    EXPECT_EQ(Whereabouts::In(Next(4s)), Whereabouts::OfThisProcess());
+    EXPECT_THAT(Next(8s, 60).parts, IsEmpty()) << "no room";
+    peers.Advance(20s);
+    EXPECT_EQ(BodyOf(Next(20s)), BeatFormat::Empty);
+}
 
 TEST_F(BeatContentsTest, WhoHasNothingToSayHasAnEmptyBeat)
 {

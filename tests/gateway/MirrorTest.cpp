@@ -1,10 +1,13 @@
 // Mirrored messages and presence: whole nodes on the simulated network.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <limits>
+#include <string>
 
 #include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "presence/Whereabouts.h"
 
 namespace Rabit
 {
@@ -343,6 +346,14 @@ TEST_F(MirrorTest, TwoNodesOfOneNameAreReportedByBothAndByOthers)
     EXPECT_THAT(first.Problems(), HasSubstr("node uav1: another live node has the name of this one"));
     EXPECT_THAT(second.Problems(), HasSubstr("node uav1: another live node has the name of this one"));
     EXPECT_THAT(ground.Problems(), HasSubstr("node uav1: two live nodes have this name"));
+
+    // All of this test are in one process.
+    const std::string place = Whereabouts::OfThisProcess();
+    EXPECT_THAT(place, HasSubstr(", process " + std::to_string(::getpid())));
+    const std::string both = "this one is on " + place + ", the other on " + place;
+    EXPECT_THAT(first.Problems(), HasSubstr(both));
+    EXPECT_THAT(second.Problems(), HasSubstr(both));
+    EXPECT_THAT(ground.Problems(), HasSubstr("; one is on " + place + "; one is on " + place));
 }
 
 TEST_F(MirrorTest, WhyNoDataComesIsSaidByNameWithinTwoSeconds)

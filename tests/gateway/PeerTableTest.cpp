@@ -275,6 +275,33 @@ TEST_F(PeerTableTest, TwoLiveNodesOfOneNameAreReported)
     EXPECT_EQ(table.Find("uav1")->Incarnation, 6u);
 }
 
+TEST_F(PeerTableTest, WhereTwoNodesOfOneNameRunIsKnownOnceTheySaySoAndForgottenWithTheTwin)
+{
+    const auto hear =
+        [this](const std::string &node, std::uint64_t incarnation, Ns at, const std::string &place)
+    {
+        HeardBeat heard = BeatOf(node, incarnation, at);
+        if (!place.empty())
+        {
+            heard.Beat.parts.emplace_back().bytes.assign(place.begin(), place.end());
+        }
+        table.OnBeat(heard);
+    };
+    for (int i = 1; i <= 4; ++i)
+    {
+        hear("uav1", 6, i * 500ms, i == 3 ? "host a" : "");
+        hear("uav1", 5, i * 500ms + 100ms, i == 4 ? "host\nb" : "");
+        hear("ground", 99, i * 500ms, i == 2 ? "host c" : "");
+    }
+    EXPECT_EQ(table.Find("uav1")->Place, "host a");
+    EXPECT_EQ(table.Find("uav1")->TwinPlace, "host?b");
+    EXPECT_EQ(table.OwnTwinPlace(), "host c");
+    table.Advance(20s);
+    EXPECT_EQ(table.Find("uav1")->TwinPlace, "");
+    EXPECT_EQ(table.OwnTwinPlace(), "");
+    EXPECT_EQ(table.Malformed(), 0u);
+}
+
 TEST_F(PeerTableTest, ARestartIsNotTakenForTwoNodes)
 {
     for (int i = 1; i <= 10; ++i)
@@ -491,7 +518,8 @@ TEST_F(OffersTest, WhoOffersSomethingElseWithEachBeatIsHeededOnceInAWhile)
     for (int i = 0; i < 1000; ++i)
     {
         const Ns at = 1s + i * 10ms;
-        taken += HearOffering(Publishing(std::string("m").append(std::to_string(i))), true, at).Offers ? 1 : 0;
+        taken +=
+            HearOffering(Publishing(std::string("m").append(std::to_string(i))), true, at).Offers ? 1 : 0;
     }
     EXPECT_EQ(taken, 10);
 }
