@@ -23,6 +23,7 @@
 #include "queues/OutgoingQueues.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
+#include "report/Loneliness.h"
 #include "report/OtherGateways.h"
 #include "report/ProblemLog.h"
 #include "wire/Announcements.h"
@@ -290,6 +291,10 @@ private:
 
     void AddProblems(Duration now, Gateway::Fleet &fleet) const
     {
+        if (auto lonely = Loneliness::Look(_config, _presence.Peers(), _session->Counters(), _openedAt, now))
+        {
+            fleet.problems.push_back(std::move(*lonely));
+        }
         for (const TopicPublisher &publisher : _publishers)
         {
             if (!publisher.IsAttached())

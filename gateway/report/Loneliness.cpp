@@ -1,0 +1,72 @@
+#include "report/Loneliness.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace Rabit::Loneliness
+{
+namespace
+{
+
+std::string Listed(const std::vector<std::string> &items, const std::string &none)
+{
+    constexpr std::size_t most = 6;
+    std::string text;
+    for (std::size_t i = 0; i < items.size() && i < most; ++i)
+    {
+        text += (i > 0 ? ", " : "") + items[i];
+    }
+    if (items.size() > most)
+    {
+        text += " and " + std::to_string(items.size() - most) + " more";
+    }
+    return items.empty() ? none : text;
+}
+
+// Where the vendor's own settings may have replaced the transport, what goes out is not counted.
+std::string WhatGoesOut(const GatewayConfig &config, const TransportCounters &counters)
+{
+    if (config.BackendConfig.empty() && counters.DiscoveryBytes == 0)
+    {
+        return "nothing goes out";
+    }
+    if (!config.Multicast)
+    {
+        return "multicast is off";
+    }
+    return config.BackendConfig.empty() ? "multicast goes out" : "multicast is on";
+}
+
+}  // namespace
+
+std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeerTable &peers,
+                                     const TransportCounters &counters, std::chrono::nanoseconds openedAt,
+                                     std::chrono::nanoseconds now)
+{
+    std::chrono::nanoseconds last = openedAt;
+    for (const PeerTable::Peer *peer : peers.Heard())
+    {
+        if (peer->State != Gateway::NodeState::LOST)
+        {
+            return std::nullopt;
+        }
+        last = std::max(last, peer->LastHeard);
+    }
+    const std::chrono::nanoseconds silence = now - last;
+    if (silence < Patience)
+    {
+        return std::nullopt;
+    }
+    Gateway::Problem problem;
+    problem.subject = "network";
+    problem.reason = "nobody heard in domain " + std::to_string(config.Domain) + " on " +
+                     Listed(config.Interfaces, "all interfaces") + " for " +
+                     std::to_string(std::chrono::duration_cast<std::chrono::seconds>(silence).count()) +
+                     " s; " + WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
+                     " (gateway/CONNECTING.md)";
+    problem.certain = true;  // it has lasted already
+    return problem;
+}
+
+}  // namespace Rabit::Loneliness

@@ -1,0 +1,106 @@
+#include "report/Loneliness.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+
+#include "../core/CapturedLog.h"
+#include "BeatSamples.h"
+#include "SimulatedFleet.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class LonelinessTest : public ::testing::Test
+{
+protected:
+    LonelinessTest()
+    {
+        config.Node = "ground";
+        config.Domain = 7;
+        config.Interfaces = {"wlan0"};
+        counters.DiscoveryBytes = 1000;
+    }
+
+    // Of a node that listens since second 100. Empty: none.
+    std::string ReasonAt(std::chrono::nanoseconds now) const
+    {
+        const auto problem = Loneliness::Look(config, peers, counters, 100s, now);
+        return problem ? problem->subject + ": " + problem->reason : "";
+    }
+
+    GatewayConfig config;
+    TransportCounters counters;
+    PeerTable peers{"ground", 1};
+};
+
+TEST_F(LonelinessTest, SaysWhereItListensAndWhatGoesOutWhenNobodyWasHeardForTenSeconds)
+{
+    EXPECT_EQ(ReasonAt(109900ms), "");
+    EXPECT_EQ(ReasonAt(110s),
+              "network: nobody heard in domain 7 on wlan0 for 10 s; multicast goes out; peers: none "
+              "(gateway/CONNECTING.md)");
+}
+
+TEST_F(LonelinessTest, NamesThePeersThatAreListed)
+{
+    config.Interfaces = {};
+    config.Multicast = false;
+    config.Peers = {"10.0.0.2", "uav2.local"};
+    EXPECT_THAT(ReasonAt(130s), HasSubstr("on all interfaces for 30 s; multicast is off; peers: 10.0.0.2, "
+                                          "uav2.local ("));
+}
+
+TEST_F(LonelinessTest, SaysWhenNothingGoesOut)
+{
+    counters.DiscoveryBytes = 0;
+    EXPECT_THAT(ReasonAt(110s), HasSubstr("; nothing goes out; "));
+    config.BackendConfig = "vendor.xml";
+    EXPECT_THAT(ReasonAt(110s), HasSubstr("; multicast is on; ")) << "not counted then";
+}
+
+TEST_F(LonelinessTest, CountsFromTheLastBeatOfANodeThatIsLost)
+{
+    HeardBeat heard;
+    heard.Node = "uav1";
+    heard.Incarnation = 5;
+    heard.Beat = BeatAt(200s);
+    heard.Arrival = 200s;
+    peers.OnBeat(heard);
+    EXPECT_EQ(ReasonAt(201s), "");
+    peers.Advance(209s);
+    EXPECT_EQ(ReasonAt(209s), "");
+    EXPECT_THAT(ReasonAt(212s), HasSubstr(" for 12 s; "));
+}
+
+TEST(LonelyNode, IsToldOnceHoweverLongItLastsAndOnceWhenSomebodyComes)
+{
+    RabitTest::CapturedLog log;
+    SimulatedFleet fleet;
+    GatewayConfig config;
+    config.Node = "uav1";
+    fleet.Add(config);
+    fleet.RunFor(9s);
+    EXPECT_THAT(log.Lines(), IsEmpty());
+    fleet.RunFor(2h);
+    // The simulated network counts what goes to somebody.
+    EXPECT_THAT(log.Lines(), ElementsAre(HasSubstr("nobody heard in domain 0 on all interfaces for 10 s; "
+                                                   "nothing goes out; peers: none")));
+    config.Node = "uav2";
+    fleet.Add(config);
+    fleet.RunFor(20s);
+    ASSERT_EQ(log.Lines().size(), 2u);
+    EXPECT_THAT(log.Lines()[1], HasSubstr("no longer: network: nobody heard"));
+}
+
+}  // namespace
+}  // namespace Rabit
