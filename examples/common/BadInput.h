@@ -1,15 +1,16 @@
 #pragma once
 
-#include <stdexcept>
+#include <rabit/gateway/ConfigError.h>
 
 namespace Common
 {
 
-// An option or a file that a person gave is wrong. what() is one line for that person.
-class BadInput : public std::runtime_error
+// An option or a file that a person gave is wrong. what() is one line for that person, and the program ends
+// as it does when its configuration is wrong.
+class BadInput : public Rabit::ConfigError
 {
 public:
-    using std::runtime_error::runtime_error;
+    using Rabit::ConfigError::ConfigError;
 };
 
 }  // namespace Common

@@ -3,7 +3,6 @@
 #include "Commander.h"
 #include "FleetView.h"
 #include "Limits.h"
-#include "NodeProgram.h"
 #include "NumberWithin.h"
 #include "ScreenLog.h"
 #include "Verdict.h"
@@ -12,6 +11,8 @@
 
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
+#include <rabit/node/NodeOptions.h>
+#include <rabit/node/RunProgram.h>
 #include <rabit/transport/TransportFactory.h>
 
 #include <boost/asio/io_context.hpp>
@@ -36,7 +37,7 @@ namespace
 {
 struct Options
 {
-    Common::NodeOptions Node{.ConfigFile = "ground.yaml"};
+    Rabit::NodeOptions Node{.ConfigFile = "ground.yaml"};
     int Seconds = 0;
     double CommandPeriodS = 0;
     std::vector<double> SearchArea{47.3977, 8.5456, 400, 600, 510};
@@ -48,7 +49,7 @@ struct Options
 
 void Describe(CLI::App &app, Options &options)
 {
-    Common::Describe(app, options.Node);
+    Rabit::AddNodeOptions(app, options.Node);
     app.add_option("--seconds", options.Seconds, "End after so many seconds (default: run until Ctrl-C)")
         ->check(CLI::Range(1, 86400));
     app.add_option(
@@ -74,7 +75,7 @@ void Describe(CLI::App &app, Options &options)
 
 Rabit::GatewayConfig LoadConfig(const Options &options)
 {
-    Rabit::GatewayConfig config = Common::LoadConfig(options.Node);
+    Rabit::GatewayConfig config = Rabit::LoadNodeConfig(options.Node);
     if (options.Web.empty())
         std::erase_if(config.Accept, [](const Rabit::AcceptRule &rule) { return rule.Queue == "Pictures"; });
     return config;
@@ -194,7 +195,7 @@ int Summarize(const Ground::FleetView &view, const Ground::Commander &commander,
     for (const std::string &line : verdict.Summary)
         std::cout << line << '\n';
     std::cout.flush();
-    return verdict.Passed() ? 0 : Common::ExitFailed;
+    return verdict.Passed() ? 0 : Rabit::ExitFailed;
 }
 
 int Watch(const Options &options)
@@ -240,5 +241,5 @@ int main(int argc, char **argv)
     CLI::App app("A ground station for the example fleet.");
     Options options;
     Describe(app, options);
-    return Common::RunProgram(app, argc, argv, [&] { return Watch(options); });
+    return Rabit::RunProgram(app, argc, argv, [&] { return Watch(options); });
 }

@@ -6,16 +6,13 @@
 #include "HealthMonitor.h"
 #include "MissionControl.h"
 #include "Names.h"
-#include "NodeProgram.h"
 #include "NumberWithin.h"
 #include "SimulatedVehicle.h"
 #include "Track.h"
 #include "mavlink/ByteChannel.h"
 #include "mavlink/MavlinkVehicle.h"
 
-#include <rabit/RabitReactor.h>
-#include <rabit/gateway/GatewayManager.h>
-#include <rabit/transport/TransportFactory.h>
+#include <rabit/node/RunNode.h>
 
 #include <CLI/CLI.hpp>
 
@@ -30,7 +27,6 @@ namespace
 {
 struct Options
 {
-    Common::NodeOptions Node{.ConfigFile = "uav.yaml"};
     std::string TrackFile;
     std::string Mavlink;
     std::string Ground = "ground";
@@ -68,30 +64,17 @@ Swarm::HealthMonitor::Options HealthOptions(const Options &options)
     return health;
 }
 
-int Fly(const Options &options)
+void AddManagers(Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config, const Options &options)
 {
-    Rabit::GatewayConfig config = Common::LoadConfig(options.Node);
     Swarm::CompleteAircraftConfig(config, options.Ground);
     const Swarm::Names names(config.Node, config.Node);
-    std::unique_ptr<Swarm::Vehicle> vehicle = MakeVehicle(options, config.Node);
-    if (options.Node.Check)
-        return 0;
-    Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, std::move(vehicle)));
+    reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, MakeVehicle(options, config.Node)));
     reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, options.Ground));
     reactor.AddManager(std::make_unique<Swarm::HealthMonitor>(names, HealthOptions(options)));
-    reactor.AddManager(
-        std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
-    reactor.Run();  // until SIGINT or SIGTERM
-    return 0;
 }
-}  // namespace
 
-int main(int argc, char **argv)
+void AddOptions(CLI::App &app, Options &options)
 {
-    CLI::App app("An aircraft of the example fleet.");
-    Options options;
-    Common::Describe(app, options.Node);
     app.add_option("--track", options.TrackFile, "CSV file of the track to fly (default: circles)");
     app.add_option("--mavlink", options.Mavlink,
                    "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
@@ -100,5 +83,17 @@ int main(int argc, char **argv)
     app.add_option("--endurance", options.EnduranceMinutes,
                    "Minutes that the simulated battery lasts (default: 40)")
         ->check(Common::NumberWithin({0.1, 10'000}));
-    return Common::RunProgram(app, argc, argv, [&] { return Fly(options); });
+}
+}  // namespace
+
+int main(int argc, char **argv)
+{
+    Options options;
+    Rabit::NodeProgram program;
+    program.Description = "An aircraft of the example fleet.";
+    program.ConfigFile = "uav.yaml";
+    program.AddOptions = [&options](CLI::App &app) { AddOptions(app, options); };
+    program.AddManagers = [&options](Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config)
+    { AddManagers(reactor, config, options); };
+    return Rabit::RunNode(argc, argv, program);
 }

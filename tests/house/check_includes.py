@@ -40,6 +40,7 @@ OWNERS = [
     (r"rabit/simulated/", "simulated backend"),
     (r"rabit/gateway/links/", "links"),
     (r"rabit/gateway/", "gateway"),
+    (r"rabit/node/", "node"),
     (r"rabit/", "core"),
     (r"gateway\.idl\.h", "gateway messages"),
     (r".*\.idl\.h", "user messages"),
@@ -69,6 +70,7 @@ ALLOWED = {
     **{f"gateway/{room}": {"core", "idl", "transport", "gateway", "gateway messages", f"room {room}"}
        | ({"yaml-cpp"} if room == "configuration" else set())
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
+    "node": {"core", "factory", "gateway", "node", "CLI11"},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.
     "tests/bench": {"core", "idl", "transport", "factory", "simulated backend", "gateway", "gateway messages",
@@ -78,7 +80,7 @@ ALLOWED = {
     "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
     # Carries frames, whosever they are.
     "tests/integration/radio": {"CLI11", "network"},
-    "examples": {"core", "idl", "factory", "gateway", "gateway messages", "user messages", "CLI11", "network",
+    "examples": {"core", "idl", "factory", "gateway", "node", "gateway messages", "user messages", "CLI11", "network",
                  "yaml-cpp"},
 }
 

@@ -1,0 +1,46 @@
+#include <rabit/gateway/CheckTransportSettings.h>
+#include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/node/NodeOptions.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+
+namespace Rabit
+{
+
+void AddNodeOptions(CLI::App &app, NodeOptions &options)
+{
+    app.add_option("--config", options.ConfigFile,
+                   "The gateway's configuration file (default: " + options.ConfigFile + ")");
+    app.add_option("--node", options.Node, "Name of this node, in place of the file's");
+    app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
+        ->check(CLI::Range(0, 232));
+    app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
+    app.add_flag("--check", options.Check, "Check the options and files, start nothing");
+}
+
+GatewayConfig LoadNodeConfig(const NodeOptions &options)
+{
+    GatewayConfig config = LoadGatewayConfig(options.ConfigFile, options.Node);
+    if (options.Domain >= 0)
+    {
+        config.Domain = options.Domain;
+    }
+    if (!options.Transport.empty())
+    {
+        config.Transport = options.Transport;
+    }
+    ValidateTransportName(config, AvailableTransports(), KnownTransports());
+    if (options.Check)
+    {
+        for (const std::string &missing : CheckTransportSettings(config, *MakeTransport(config.Transport)))
+        {
+            std::cerr << missing << " (it is waited for)\n";
+        }
+    }
+    return config;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,48 @@
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/node/RunNode.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace Rabit
+{
+
+int RunNode(int argc, char **argv, const NodeProgram &program)
+{
+    CLI::App app(program.Description);
+    NodeOptions options;
+    options.ConfigFile = program.ConfigFile;
+    AddNodeOptions(app, options);
+    if (program.AddOptions)
+    {
+        program.AddOptions(app);
+    }
+    return RunProgram(
+        app, argc, argv,
+        [&]
+        {
+            GatewayConfig config = LoadNodeConfig(options);
+            RabitReactor reactor;
+            program.AddManagers(reactor, config);
+            if (options.Check)
+            {
+                return 0;
+            }
+            reactor.AddManager(std::make_unique<GatewayManager>(config, MakeTransport(config.Transport)));
+            reactor.Run();  // until SIGINT or SIGTERM
+            return 0;
+        });
+}
+
+int RunNode(int argc, char **argv, const std::string &configFile,
+            const std::function<void(RabitReactor &reactor)> &addManagers)
+{
+    NodeProgram program;
+    program.ConfigFile = configFile;
+    program.AddManagers = [&addManagers](RabitReactor &reactor, GatewayConfig &) { addManagers(reactor); };
+    return RunNode(argc, argv, program);
+}
+
+}  // namespace Rabit
