@@ -20,6 +20,8 @@ constexpr double EmptyIn = 0.5;
 constexpr Duration ShortEnough = 300ms;
 // Two arrivals closer than this say little about a rate.
 constexpr Duration ShortestSpan = 300ms;
+// How well it is known when a datagram was sent. Of a burst it makes all the difference.
+constexpr Duration KnownTo = 20ms;
 // A correction's weight.
 constexpr double Gain = 0.3;
 // Rise, by second, and after a quiet time.
@@ -44,15 +46,31 @@ double Seconds(Duration time)
 
 }  // namespace
 
-// Bytes a second between two reports' datagrams; empty: they are too close.
+// Bytes a second that were carried between two reports' datagrams, as long as there was a queue; empty: they
+// are too close. How much went between two that went at once is not known.
 std::optional<double> CapacityEstimate::Carried(const DelayReports::Report &from,
                                                 const DelayReports::Report &to) const
+{
+    if (to.ArrivedAt - from.ArrivedAt < ShortestSpan || to.SentAt() - from.SentAt() < 2 * KnownTo)
+    {
+        return std::nullopt;
+    }
+    return _sent.Between(from.SentAt(), to.SentAt()) / Seconds(to.ArrivedAt - from.ArrivedAt);
+}
+
+// The same where the queue came about in between, or there was none at first. Who says little and then much
+// at once had nothing to be carried for most of the time; and of what went at once it is not known which of
+// it a report is about.
+std::optional<double> CapacityEstimate::CarriedOfBurst(const DelayReports::Report &from,
+                                                       const DelayReports::Report &to) const
 {
     if (to.ArrivedAt - from.ArrivedAt < ShortestSpan)
     {
         return std::nullopt;
     }
-    return _sent.Between(from.SentAt(), to.SentAt()) / Seconds(to.ArrivedAt - from.ArrivedAt);
+    const Duration sentAt = to.SentAt() + KnownTo;
+    const double all = _sent.Between(from.SentAt(), sentAt) / Seconds(to.ArrivedAt - from.ArrivedAt);
+    return from.Delay > Goal ? all : std::max(all, _sent.CarriedAtLeast(from.SentAt(), sentAt, to.ArrivedAt));
 }
 
 // The least that some of a peer's reports tell: those before a radio's buffer was full. What did not fit into
@@ -64,7 +82,7 @@ std::optional<double> CapacityEstimate::CarriedWhileRising(const DelayReports::R
     {
         for (std::size_t from = 0; from < to; ++from)
         {
-            const auto carried = Carried(said[from], said[to]);
+            const auto carried = CarriedOfBurst(said[from], said[to]);
             if (carried && said[to].Delay > Target && said[to].Delay > said[from].Delay)
             {
                 least = std::min(least.value_or(*carried), *carried);
@@ -113,10 +131,10 @@ void CapacityEstimate::Forget()
 
 void CapacityEstimate::Congested(Duration now)
 {
-    const double sent = _limited ? _carried : _sent.Between(now - 1s, now);
     const auto carried =
         _reports.MedianOf([this](const auto &said) { return CarriedWhileRising(said); }, now);
-    _carried = std::min(sent, carried.value_or(sent));
+    const double before = _limited ? _carried : carried.value_or(_sent.Between(now - 1s, now));
+    _carried = std::min(before, carried.value_or(before));
     _limitedSince = _limited ? _limitedSince : now;
     _limited = true;
 }

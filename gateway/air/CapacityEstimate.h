@@ -60,6 +60,8 @@ public:
 
 private:
     std::optional<double> Carried(const DelayReports::Report &from, const DelayReports::Report &to) const;
+    std::optional<double> CarriedOfBurst(const DelayReports::Report &from,
+                                         const DelayReports::Report &to) const;
     std::optional<double> CarriedWhileRising(const DelayReports::Reports &said) const;
     void Congested(Duration now);
     void Correct(const DelayReports::Reports &said);

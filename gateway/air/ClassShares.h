@@ -27,8 +27,9 @@ class ClassShares
 public:
     using Waiting = std::array<bool, TrafficClassCount>;  // by class
 
-    // Credit in each round, bytes.
-    static constexpr std::array<std::int64_t, TrafficClassCount> Quantum = {0, 1600, 400, 150, 100};
+    // Credit in each round, bytes. A round is short, so that telemetry does not wait for the 1600 bytes of
+    // commands that it has earned to pass by with 150 of its own: that is seconds with a small budget.
+    static constexpr std::array<std::int64_t, TrafficClassCount> Quantum = {0, 256, 64, 24, 16};
     static constexpr std::int64_t PresenceEarns = 3;  // one byte for so many of the others
 
     // By which presence may go ahead after a pause; bytes.

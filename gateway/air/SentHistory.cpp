@@ -28,11 +28,28 @@ double SentHistory::Between(Duration from, Duration to) const
     return _count == 0 || to <= from ? 0.0 : Before(to) - Before(from);
 }
 
-// What a step has is spread over its length, as far as it has passed.
-double SentHistory::Before(Duration time) const
+double SentHistory::CarriedAtLeast(Duration from, Duration to, Duration arrived) const
+{
+    if (_count == 0 || to <= from)
+    {
+        return 0.0;
+    }
+    const auto rate = [arrived](double bytes, Duration since)
+    { return bytes / std::chrono::duration<double>(arrived - since).count(); };
+    const double before = Before(to);
+    double most = rate(before - Before(from), from);
+    for (std::size_t i = FirstAfter(from); i < _count && Nth(i).At < to; ++i)
+    {
+        most = std::max(most, rate(before - static_cast<double>(Nth(i).Total), Nth(i).At));
+    }
+    return most;
+}
+
+// The number of the first mark behind it.
+std::size_t SentHistory::FirstAfter(Duration time) const
 {
     std::size_t low = 0;
-    std::size_t high = _count;  // the first mark behind `time`
+    std::size_t high = _count;
     while (low < high)
     {
         const std::size_t middle = (low + high) / 2;
@@ -45,6 +62,13 @@ double SentHistory::Before(Duration time) const
             high = middle;
         }
     }
+    return low;
+}
+
+// What a step has is spread over its length, as far as it has passed.
+double SentHistory::Before(Duration time) const
+{
+    const std::size_t low = FirstAfter(time);
     if (low == 0)
     {
         return static_cast<double>(Nth(0).Total);

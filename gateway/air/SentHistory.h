@@ -24,6 +24,10 @@ public:
     // Bytes sent from one time to a later one, not later than the newest `now`. What is too long ago is not
     // counted.
     double Between(Duration from, Duration to) const;
+    // Bytes a second: the most, for any time since `from`, of what was sent from then to `to`, over the time
+    // from then to `arrived`, which is later than `to`. What carried all this until then, carried so much at
+    // least; and no more, if it always had something to carry since that time.
+    double CarriedAtLeast(Duration from, Duration to, Duration arrived) const;
 
 private:
     static constexpr Duration Step = std::chrono::milliseconds(20);
@@ -36,6 +40,7 @@ private:
     };
 
     double Before(Duration time) const;
+    std::size_t FirstAfter(Duration time) const;
     const Mark &Nth(std::size_t i) const { return _marks[(_begin + i) % Steps]; }
 
     std::vector<Mark> _marks;

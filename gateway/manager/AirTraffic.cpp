@@ -111,13 +111,14 @@ void AirTraffic::LookAtDiscovery(std::uint64_t sent)
 // What went since the last look, and was not paid for.
 void AirTraffic::Watch(Duration now)
 {
-    _watchedAt = now;
+    const Duration before = std::exchange(_watchedAt, now);
     const std::size_t bytes = TakeSent();
     if (bytes == 0)
     {
         return;
     }
-    _estimate.Sent(bytes, now);
+    // Without a limit that was sent when this node last served its streams, which may be long ago.
+    _estimate.Sent(bytes, IsLimited() ? now : std::max(_servedAt, before));
     if (IsLimited())
     {
         _unscheduled.Add(bytes, now);
@@ -165,6 +166,7 @@ void AirTraffic::SetLimit(Duration now)
 
 Duration AirTraffic::ServeUnlimited(Duration now)
 {
+    _servedAt = now;
     Duration beatDue = _presence.BeatDue();
     if (now >= beatDue || IsBeatWorth(now))
     {

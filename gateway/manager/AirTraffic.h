@@ -98,6 +98,7 @@ private:
     std::uint64_t _sent = 0;  // as the transport counts, when it was last asked
     std::uint64_t _discovered = 0;
     Duration _watchedAt{0};
+    Duration _servedAt{0};  // without a limit
     Duration _limitSetAt{0};
 };
 

@@ -365,6 +365,29 @@ TEST_F(ThinAirTest, WhatTheAirCarriesAgainIsUsedAgain)
     EXPECT_GE(Bytes("uav1") - before, 5 * 200 * 148 * 8 / 10);
 }
 
+TEST_F(AirTrafficTest, WhoWasNearlySilentLearnsFromABurstWhatTheAirCarriesAndNotThatItWasSilent)
+{
+    AddAircraft(AircraftConfig("uav1"));
+    GatewayConfig station = GroundConfig();
+    station.Accept.push_back({.Queue = "Pictures", .Types = {"GatewayTest::Contact"}});
+    fleet.Add(station).AddIdleManager("Pictures");
+    Fly(5s, 400ms, 20s);
+    fleet.Network.SetMedium("*", {.BytesPerSecond = 6'250});
+    Fly(20s, 400ms, 20s);
+    auto picture = std::make_shared<GatewayTest::Contact>();
+    picture->text = std::string(12'000, 'x');
+    ASSERT_TRUE(aircraft->Workspace.AddMessageToQueue("ground/Pictures", picture));
+    double least = 1e9;
+    Fly(4s, 400ms, 20s,
+        [&](Duration)
+        {
+            const double capacity = aircraft->Fleet().air.capacity;
+            least = capacity > 0.0 ? std::min(least, capacity) : least;
+        });
+    EXPECT_GE(least, 6'250.0 / 2);
+    EXPECT_LT(least, 1e9);
+}
+
 TEST_F(ThinAirTest, AWideWireIsNotLimited)
 {
     EXPECT_LE(OldestIn(30s), 10ms);

@@ -161,6 +161,22 @@ TEST_F(AirScheduleTest, ACommandGoesNextHoweverMuchWaits)
     }
 }
 
+TEST_F(AirScheduleTest, TelemetryIsNotHeldUpForTheCommandsOfWhichItHasHadItsShareAtOnce)
+{
+    Add(TrafficClass::Command, 200);
+    const StreamId pose = Add(TrafficClass::Telemetry, 104);
+    std::size_t others = 0;
+    std::size_t longest = 0;
+    for (int i = 0; i < 1000; ++i)
+    {
+        const StreamId next = *Schedule.Next(0ns);
+        others = next == pose ? 0 : others + 200;
+        longest = std::max(longest, others);
+        Send(next, 0ns);
+    }
+    EXPECT_LE(longest, 104 * 32 / 3 + 2 * 200);
+}
+
 TEST_F(AirScheduleTest, AClassThatComesAndGoesHasNoMoreThanItsShare)
 {
     const StreamId command = Schedule.AddStream(TrafficClass::Command);

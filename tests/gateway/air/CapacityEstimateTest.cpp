@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <optional>
 
 namespace Rabit
 {
@@ -112,6 +114,45 @@ TEST_F(CapacityEstimateTest, WhatRisesIsLimitedToWhatWasCarried)
     }
     EXPECT_GE(highest, 0.5 * Carries);
     EXPECT_LE(highest, 1.6 * Carries);
+}
+
+// 100 bytes each two seconds, then ten datagrams at once, in front of 10 kB a second; both peers tell of
+// each.
+TEST_F(CapacityEstimateTest, ABurstOfWhoWasNearlySilentTellsWhatWasCarriedOfTheBurst)
+{
+    Duration free = 0ns;
+    std::map<Duration, Duration> delays;  // by arrival
+    const auto send = [&](std::size_t bytes, Duration now)
+    {
+        Estimate.Sent(bytes, now);
+        free = std::max(free, now) + Duration(std::llround(static_cast<double>(bytes) / Carries * 1e9));
+        delays[free] = free - now;
+    };
+    const auto report = [&](Duration until)
+    {
+        for (; !delays.empty() && delays.begin()->first <= until; delays.erase(delays.begin()))
+        {
+            const auto &[arrival, delay] = *delays.begin();
+            Estimate.Reported(0, delay, arrival, arrival);
+            Estimate.Reported(1, delay, arrival, arrival);
+        }
+    };
+    for (auto now = 0s; now < 6s; now += 2s)
+    {
+        report(now);
+        send(100, now);
+    }
+    for (int i = 0; i < 10; ++i)
+    {
+        send(1000, 6s);
+    }
+    for (auto now = 6s + 0ms; now < 8s; now += 200ms)
+    {
+        report(now);
+        send(100, now);
+    }
+    const std::optional<double> rate = Estimate.Rate(8s);
+    EXPECT_TRUE(!rate || *rate >= 0.6 * Carries) << *rate;
 }
 
 TEST_F(CapacityEstimateTest, WhatIsForgottenLimitsNoMoreUntilPeersAgreeAnew)

@@ -36,6 +36,28 @@ TEST(SentHistory, WhatWasSentInABurstIsNotSpreadOverThePauseBehindIt)
     EXPECT_EQ(sent.Between(900ms, 1100ms), 1000.0);
 }
 
+TEST(SentHistory, ABurstBehindAPauseWasCarriedSinceItBegan)
+{
+    SentHistory sent;
+    sent.Add(100, 1s);
+    sent.Add(5000, 3s);
+    sent.Add(5000, 3100ms);
+    EXPECT_NEAR(sent.CarriedAtLeast(1s, 3200ms, 4s), 10'000.0, 1.0);
+    EXPECT_NEAR(sent.CarriedAtLeast(3050ms, 3200ms, 4s), 5000.0 / 0.9, 1.0);
+    EXPECT_EQ(sent.CarriedAtLeast(3300ms, 3500ms, 4s), 0.0);
+    EXPECT_EQ(sent.CarriedAtLeast(3s, 2s, 4s), 0.0);
+}
+
+TEST(SentHistory, WhatIsAlwaysSentWasCarriedFromTheFirst)
+{
+    SentHistory sent;
+    for (auto now = 0ms; now < 10s; now += 5ms)
+    {
+        sent.Add(50, now);
+    }
+    EXPECT_NEAR(sent.CarriedAtLeast(2s, 4s, 5s), 20'000.0 / 3.0, 100.0);
+}
+
 TEST(SentHistory, TwentySecondsAreRemembered)
 {
     SentHistory sent;
