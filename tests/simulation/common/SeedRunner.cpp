@@ -121,7 +121,9 @@ public:
             }
             else
             {
-                std::cout << static_cast<double>(figure.Value) / 1e9 << " s\n";
+                figure.How == Figure::Kind::Largest
+                    ? std::cout << static_cast<double>(figure.Value) / 1e9 << " s\n"
+                    : std::cout << figure.Value << " %\n";
             }
         }
         return complete;

@@ -16,6 +16,7 @@ struct Figure
     {
         Sum,      // adds up over the seeds, and must not stay 0
         Largest,  // of the seeds, in nanoseconds
+        LargestPercent,
     };
 
     const char *Name = "";

@@ -1,6 +1,7 @@
 #include "AirOracle.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace Rabit::Sim
@@ -17,9 +18,11 @@ constexpr Time Adapts = 5s;
 constexpr Time Discovers = 20s;
 // What may be lost in a row of what is said once.
 constexpr int InARow = 6;
-// A track on the air, and what part of the medium tracks are to have at the least.
-constexpr std::uint64_t TrackOnAir = 190;
-constexpr std::uint64_t ShareOfTracks = 4;
+// What part of the medium tracks are to have at the least: a quarter, as the plans have it. When the medium
+// carries less than in the plan, notes take all that their class may have: telemetry has 3 parts of 43, and a
+// quarter of all goes to presence first (gateway/RADIO.md).
+constexpr double ShareOfTracks = 1.0 / 4;
+constexpr double ShareWhenItDoesNotFit = 3.0 / 43 * 3 / 4;
 // All that is said for each byte that was to be said, and for each start and each other node.
 constexpr std::uint64_t MostForWork = 2;
 constexpr std::uint64_t MostForStart = 12'000;
@@ -29,10 +32,17 @@ std::string Seconds(Time time)
     return std::to_string(static_cast<double>(time.count()) / 1e9) + " s";
 }
 
-// Bytes a second of a whole fleet that has nothing to say.
-std::uint64_t IdleLaw(std::uint64_t nodes)
+// An outage that lasts longer than a lease of DDS: everybody finds everybody anew, by announcements that come
+// so often. With a budget leases are longer than the outages of the plans.
+constexpr Time Lease = 30s;
+constexpr Time Announces = 10s;
+
+// Bytes a second of a whole fleet that has nothing to say. With a budget, beats have a twentieth of it, and
+// DDS some 25 bytes for each node: 100 for each with a budget of 1500.
+std::uint64_t IdleLaw(std::uint64_t nodes, const std::optional<std::uint64_t> &budget)
 {
-    return 300 * nodes + 20 * nodes * (nodes - 1);
+    const std::uint64_t most = 300 * nodes + 20 * nodes * (nodes - 1);
+    return budget ? std::min(most, nodes * (*budget / 20 + 25)) : most;
 }
 
 }  // namespace
@@ -47,12 +57,12 @@ AirOracle::AirOracle(FleetWorld &world, const SimulatedNetwork &network)
 {
 }
 
-void AirOracle::Restart(std::size_t node)
+void AirOracle::Restart(std::size_t node, Time since)
 {
     for (std::size_t other = 0; other < _senders.size(); ++other)
     {
         const bool counts = _senders[node].Alive && _senders[other].Alive && !_outage && node != other;
-        PairOf(node, other) = PairOf(other, node) = {_world.Now, false, counts};
+        PairOf(node, other) = PairOf(other, node) = {since, false, counts};
     }
 }
 
@@ -60,37 +70,39 @@ void AirOracle::OnStarted(std::size_t node)
 {
     ++_starts;
     _senders[node] = {.Alive = true, .Last = _network.Sent(_world.NameOf(node)), .Second = {}};
-    _discoverySince = _world.Now;
-    Restart(node);
+    _discoverySince = _world.DisturbedAt = _world.Now;
+    Restart(node, _world.Now);
 }
 
 void AirOracle::OnEnded(std::size_t node)
 {
     _senders[node].Alive = false;
-    _discoverySince = _world.Now;
-    Restart(node);
+    _discoverySince = _world.DisturbedAt = _world.Now;
+    Restart(node, _world.Now);
 }
 
 void AirOracle::OnOutage()
 {
     _outage = true;
+    _outageSince = _world.Now;
     std::fill(_pairs.begin(), _pairs.end(), Pair());
 }
 
 void AirOracle::OnOutageEnd()
 {
     _outage = false;
-    _discoverySince = _world.Now;
+    _discoverySince = _world.DisturbedAt = _world.Now;
+    const bool isForgotten = _world.Now > _outageSince + Lease && !_plan->Budget;
     for (std::size_t node = 0; node < _senders.size(); ++node)
     {
-        Restart(node);
+        Restart(node, _world.Now + (isForgotten ? Announces : Time(0)));
     }
 }
 
 void AirOracle::OnRate(std::uint64_t bytesPerSecond)
 {
     _rate = bytesPerSecond;
-    _rateSince = _world.Now;
+    _rateSince = _world.DisturbedAt = _world.Now;
 }
 
 void AirOracle::OnStep()
@@ -98,6 +110,10 @@ void AirOracle::OnStep()
     if (!_plan)
     {
         return;
+    }
+    if (_world.Trace != nullptr && _world.Now >= _saidAt + 1s)
+    {
+        SayWhatIsSent();
     }
     for (std::size_t node = 0; node < _senders.size(); ++node)
     {
@@ -151,6 +167,11 @@ void AirOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
         return;
     }
     const std::size_t observer = _world.Lives[observerLife].Node;
+    if (_world.Trace != nullptr)
+    {
+        _world.Say(_world.NameOf(observer) + " uses " + std::to_string(fleet.air.used) + " of " +
+                   std::to_string(fleet.air.capacity) + " bytes a second");
+    }
     for (const Gateway::NodeStatus &status : fleet.nodes)
     {
         for (std::size_t node = 0; node < _senders.size(); ++node)
@@ -176,6 +197,11 @@ void AirOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
 
 void AirOracle::OnTrack(std::size_t observerLife, std::size_t node, Time age)
 {
+    if (_plan && _world.Trace != nullptr)
+    {
+        _world.Say("a track of " + _world.NameOf(node) + " comes to " +
+                   _world.NameOf(_world.Lives[observerLife].Node) + ", " + Seconds(age) + " old");
+    }
     if (!_plan || _world.Now < _rateSince + Adapts)
     {
         return;
@@ -196,14 +222,33 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
     {
         return;
     }
-    const Time pause = std::max<Time>(_world.Plan.Machines[node].TrackPeriod,
-                                      1s * (_senders.size() * TrackOnAir * ShareOfTracks) / _rate);
+    const double share = _rate < _plan->BytesPerSecond ? ShareWhenItDoesNotFit : ShareOfTracks;
+    const double carried = static_cast<double>(_rate) / static_cast<double>(_senders.size());
+    const double ofNode = std::min(carried, _plan->Budget ? static_cast<double>(*_plan->Budget) : carried);
+    const double seconds = static_cast<double>(TrackOnAir) / share / ofNode;
+    const Time pause = std::max(_world.Plan.Machines[node].TrackPeriod, Time(std::llround(seconds * 1e9)));
     if (age > _plan->PoseAge + InARow * pause)
     {
         _world.Fail(20, "the newest track that " + _world.NameOf(observer) + " has of " +
                             _world.NameOf(node) + " is " +
                             (age == Time::max() ? "of another life" : Seconds(age) + " old"));
     }
+}
+
+// In the second that is over, for a trace.
+void AirOracle::SayWhatIsSent()
+{
+    std::string line = "sent (DDS's own):";
+    _said.resize(_senders.size());
+    for (std::size_t node = 0; node < _senders.size(); ++node)
+    {
+        const SimulatedSent sent = _network.Sent(_world.NameOf(node));
+        line += " " + _world.NameOf(node) + " " + std::to_string(sent.Bytes - _said[node].Bytes) + " (" +
+                std::to_string(sent.DiscoveryBytes - _said[node].DiscoveryBytes) + ")";
+        _said[node] = sent;
+    }
+    _saidAt = _world.Now;
+    _world.Say(line);
 }
 
 std::uint64_t AirOracle::Total() const
@@ -220,9 +265,10 @@ void AirOracle::BeginIdle()
 {
     const std::uint64_t count = _senders.size();
     const std::uint64_t most = MostForWork * _work + MostForStart * _starts * count +
-                               static_cast<std::uint64_t>(_world.Now / 1s) * IdleLaw(count);
+                               static_cast<std::uint64_t>(_world.Now / 1s) * IdleLaw(count, {});
     _sentBeforeIdle = Total();
     _idleSince = _world.Now;
+    _mostSaid = _sentBeforeIdle * 100 / most;
     _world.Say("sent " + std::to_string(_sentBeforeIdle) + " bytes, for " + std::to_string(_work) +
                " of work");
     if (_sentBeforeIdle > most)
@@ -238,7 +284,7 @@ void AirOracle::EndIdle()
     const std::uint64_t count = _senders.size();
     const std::uint64_t bytes =
         (Total() - _sentBeforeIdle) * 1000 / static_cast<std::uint64_t>((_world.Now - _idleSince) / 1ms);
-    const std::uint64_t most = _plan->Budget ? std::min(100 * count, IdleLaw(count)) : IdleLaw(count);
+    const std::uint64_t most = IdleLaw(count, _plan->Budget);
     _world.Say("idle: " + std::to_string(bytes) + " bytes a second");
     if (bytes > most)
     {

@@ -42,6 +42,8 @@ public:
     void EndIdle();
 
     std::uint64_t LongestTrackAge() const { return static_cast<std::uint64_t>(_longestAge.count()); }
+    // Percent of what would do, at most.
+    std::uint64_t MostSaid() const { return _mostSaid; }
     std::uint64_t LongestUntilUp() const { return static_cast<std::uint64_t>(_longestUntilUp.count()); }
 
 private:
@@ -62,9 +64,11 @@ private:
     };
 
     Pair &PairOf(std::size_t observer, std::size_t node) { return _pairs[observer * _senders.size() + node]; }
-    void Restart(std::size_t node);
+    // The node can hear, or cannot, from then on.
+    void Restart(std::size_t node, Time since);
     void CheckBudget(std::size_t node);
     std::uint64_t Total() const;
+    void SayWhatIsSent();
 
     FleetWorld &_world;
     const SimulatedNetwork &_network;
@@ -75,10 +79,14 @@ private:
     std::uint64_t _rate = 0;
     Time _rateSince{0};
     Time _discoverySince{0};  // something made DDS find somebody
+    Time _outageSince{0};
     std::uint64_t _starts = 0;
     std::uint64_t _work = 0;
     std::uint64_t _sentBeforeIdle = 0;
     Time _idleSince{0};
+    Time _saidAt{0};
+    std::vector<SimulatedSent> _said;  // by node
+    std::uint64_t _mostSaid = 0;
     Time _longestAge{0};
     Time _longestUntilUp{0};
 };

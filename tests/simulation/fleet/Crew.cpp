@@ -11,8 +11,7 @@ namespace Rabit::Sim
 namespace
 {
 
-// Bytes on the air: of a track, and of a note that is acknowledged, without its filler.
-constexpr std::uint64_t TrackOnAir = 190;
+// Bytes on the air of a note that is acknowledged, without its filler.
 constexpr std::uint64_t NoteOnAir = 330;
 
 }  // namespace

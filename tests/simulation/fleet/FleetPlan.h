@@ -16,6 +16,9 @@ namespace Rabit::Sim
 
 using Time = std::chrono::nanoseconds;
 
+// A track on the air, bytes, with all headers.
+constexpr std::uint64_t TrackOnAir = 104;
+
 // One machine with a node on it.
 struct MachinePlan
 {

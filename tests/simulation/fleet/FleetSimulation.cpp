@@ -117,6 +117,9 @@ FleetSimulation::FleetSimulation(std::uint64_t seed, std::ostream *trace)
     if (_plan.Thin)
     {
         _network.SetMedium("*", {.BytesPerSecond = _plan.Thin->BytesPerSecond});
+        _world.Say(std::to_string(_plan.Machines.size()) + " nodes on " +
+                   std::to_string(_plan.Thin->BytesPerSecond) + " bytes a second, budget " +
+                   std::to_string(_plan.Thin->Budget.value_or(0)));
     }
     MakeAgenda();
 }
@@ -378,7 +381,7 @@ void FleetSimulation::BeIdle()
     }
     RunUntil(_world.Now + 10s);
     _air.BeginIdle();
-    RunUntil(_world.Now + 20s);
+    RunUntil(_world.Now + 60s);  // twice the period of DDS's announcements with a budget
     if (_world.Failure.empty())
     {
         _air.EndIdle();
@@ -467,6 +470,7 @@ std::vector<Figure> FleetSimulation::Figures() const
              static_cast<std::uint64_t>(std::max(_settledAt - _plan.CalmAt, Time(0)).count()),
              Figure::Kind::Largest},
             {"longest until UP over a thin medium", _air.LongestUntilUp(), Figure::Kind::Largest},
+            {"most said over a thin medium, of what would do", _air.MostSaid(), Figure::Kind::LargestPercent},
             {"oldest track that came over a thin medium", _air.LongestTrackAge(), Figure::Kind::Largest}};
 }
 

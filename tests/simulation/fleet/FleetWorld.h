@@ -26,6 +26,8 @@ struct FleetWorld
     Time Now{0};
     std::vector<Life> Lives;
     std::string Failure{};
+    // When somebody came or went the last time, an outage ended, or a medium changed its rate.
+    Time DisturbedAt{0};
 
     // The numbers are those of the list in tests/simulation/README.md.
     void Fail(int invariant, const std::string &what)

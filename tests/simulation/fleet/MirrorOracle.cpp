@@ -1,5 +1,7 @@
 #include "MirrorOracle.h"
 
+#include <rabit/simulated/SimulatedNetwork.h>
+
 #include <string>
 
 namespace Rabit::Sim
@@ -37,11 +39,22 @@ void MirrorOracle::OnFetched(Topic topic, std::size_t observerLife, std::size_t 
 
     const Time age = _world.Now - posts->second[number - 1];
     const auto shown = static_cast<std::int64_t>(ageSeconds * 1e9);
-    if (shown < (age - AgeTolerance).count() || shown > (age + AgeTolerance).count())
+    if (shown < (age - Tolerance()).count() || shown > (age + Tolerance()).count())
     {
         _world.Fail(13, name + ": is " + std::to_string(static_cast<double>(age.count()) / 1e9) +
                             " s old and shown as " + std::to_string(ageSeconds) + " s old");
     }
+}
+
+Time MirrorOracle::Tolerance() const
+{
+    const std::optional<ThinPlan> &thin = _world.Plan.Thin;
+    if (!thin || _world.Now > _world.DisturbedAt + Settles)
+    {
+        return AgeTolerance;
+    }
+    const std::uint64_t queues = SimulatedMedium().QueueBytes * _world.Plan.Machines.size();
+    return AgeTolerance + Time(std::chrono::seconds(1)) * queues / thin->BytesPerSecond / 2;
 }
 
 bool MirrorOracle::IsUpToDate(Topic topic, std::size_t observerLife, std::size_t life) const

@@ -19,8 +19,12 @@ namespace Rabit::Sim
 class MirrorOracle
 {
 public:
-    // What an age may be wrong by: the delays of the two directions, which nobody can tell apart.
+    // What an age may be wrong by: half the round trip, for nobody can tell the delays of the two directions
+    // apart.
     static constexpr Time AgeTolerance = std::chrono::milliseconds(1300);
+    // Over a thin medium by half of what a full queue of each node takes in addition, when so little time has
+    // passed since DDS found somebody, or the medium fell, that all beats may have waited in it.
+    static constexpr Time Settles = std::chrono::seconds(20);
 
     enum class Topic
     {
@@ -43,6 +47,8 @@ public:
     std::uint64_t Fetched(Topic topic) const { return _fetched[static_cast<std::size_t>(topic)]; }
 
 private:
+    Time Tolerance() const;
+
     static constexpr std::size_t Topics = 2;
     struct Seen
     {

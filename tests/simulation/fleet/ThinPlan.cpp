@@ -11,8 +11,7 @@ namespace
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t TrackOnAir = 190;  // bytes
-constexpr std::size_t NoteOnAir = 400;   // with its acknowledgement, and the few that are large
+constexpr std::size_t NoteOnAir = 400;  // bytes, with its acknowledgement, and the few that are large
 
 // A kind of radio: what it carries, and what must hold with so many nodes on it.
 struct Radio
@@ -79,7 +78,7 @@ void FleetPlan::DrawThin(SimRandom &random)
         Thin->Budget = radio.BytesPerSecond / (2 * count);
     }
     const std::uint64_t share = Thin->Budget.value_or(radio.BytesPerSecond / count) / 4;
-    const Time quickest = std::max<Time>(100ms, 1s * TrackOnAir / share);
+    const Time quickest = std::max<Time>(100ms, Time(1s) * TrackOnAir / share);
     for (std::size_t i = 0; i < count; ++i)
     {
         Machines.push_back(DrawThinMachine(random, i, quickest));
