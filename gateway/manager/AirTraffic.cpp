@@ -23,6 +23,9 @@ constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 
 // Part of a budget that beats take.
 constexpr double BeatShare = 0.05;
+// Of a pace: half of what presence may take where others want to send. The other nodes' reports, by which it
+// is known, come with their beats; so not less.
+constexpr double BeatShareOfPace = 0.125;
 constexpr double SmallestBeat = 100.0;  // on the air
 constexpr Duration QuickestBeat = std::chrono::milliseconds(500);
 // Without a budget the others learn by the beats how late datagrams come, so who sends much beats more often:
@@ -140,6 +143,15 @@ std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
     return _presence.SendBeat(now, std::min(most, BeatFormat::Largest));
 }
 
+// So that beats take so many bytes a second.
+void AirTraffic::SetBeatPeriod(double bytesPerSecond)
+{
+    const auto period =
+        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(_beatBytes / bytesPerSecond));
+    _presence.SetBeatPeriod(std::clamp<Duration>(
+        period, QuickestBeat, std::max<Duration>(QuickestBeat, _config.Radio.SlowestBeat)));
+}
+
 void AirTraffic::SetLimit(Duration now)
 {
     _limitSetAt = now;
@@ -149,18 +161,17 @@ void AirTraffic::SetLimit(Duration now)
     {
         _schedule.Reserve(_unscheduled.Rate(now));
         _schedule.SetBudget(std::min(*budget, carried.value_or(*budget)), now);
-        const auto period = std::chrono::duration_cast<Duration>(
-            std::chrono::duration<double>(_beatBytes / (BeatShare * *budget)));
-        _presence.SetBeatPeriod(std::clamp<Duration>(
-            period, QuickestBeat, std::max<Duration>(QuickestBeat, _config.Radio.SlowestBeat)));
+        SetBeatPeriod(BeatShare * *budget);
     }
     else if (carried)
     {
         _schedule.SetPace(*carried, now);
+        SetBeatPeriod(BeatShareOfPace * *carried);
     }
     else
     {
         _schedule.SetUnlimited();
+        _presence.SetBeatPeriod(QuickestBeat);
     }
 }
 

@@ -354,6 +354,25 @@ TEST_F(ThinAirTest, ANodeWithoutABudgetFollowsWhatTheAirCarries)
     EXPECT_EQ(aircraft->StateOf("ground"), "UP");
 }
 
+TEST_F(ThinAirTest, WhereTheAirCarriesLittleBeatsComeSeldomAndSayIt)
+{
+    ground->AddIdleManager("Commands");
+    SetRate(1'800);
+    fleet.Network.SetFaults("*", "*", {.Loss = 0.1});
+    Fly(20s, 20ms, 1s);
+    int lost = 0;
+    Fly(120s, 20ms, 1s,
+        [&](Duration passed)
+        {
+            if (passed % 500ms == 0s)
+            {
+                SendReport(1);
+            }
+            lost += ground->StateOf("uav1") == "LOST" ? 1 : 0;
+        });
+    EXPECT_EQ(lost, 0);
+}
+
 TEST_F(ThinAirTest, WhatTheAirCarriesAgainIsUsedAgain)
 {
     SetRate(12'500);

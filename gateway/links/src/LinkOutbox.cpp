@@ -28,6 +28,16 @@ void LinkOutbox::Add(OutboxMessage message)
     _waiting.PushBack(std::move(message));
 }
 
+std::size_t LinkOutbox::BytesToCut(std::size_t enough, std::size_t forEach) const
+{
+    std::size_t bytes = IsInPart() ? Next().Bytes - Next().Cut + forEach : 0;
+    for (std::size_t i = 0; i < _waiting.Size() && bytes < enough; ++i)
+    {
+        bytes += _waiting[i].Bytes + forEach;
+    }
+    return bytes;
+}
+
 std::uint64_t LinkOutbox::Cut(std::size_t bytes)
 {
     if (!IsInPart())

@@ -88,6 +88,9 @@ public:
     const OutboxMessage &Next() const { return IsInPart() ? _sent[_sent.Size() - 1] : _waiting.Front(); }
     // The number of Next() among the sent messages, now or once a part of it is cut.
     std::uint64_t NextIs() const { return IsInPart() ? _nextMessage - 1 : _nextMessage; }
+    // Bytes of all that can be cut, with so many for each message; no more messages are looked at once there
+    // are `enough`.
+    std::size_t BytesToCut(std::size_t enough, std::size_t forEach) const;
     // Cuts the next part of Next(): so many bytes. Returns its number.
     std::uint64_t Cut(std::size_t bytes);
     // The newest sent message, which is there in part, ends with one more part, a SKIP.

@@ -18,6 +18,8 @@ constexpr std::size_t SmallestPiece = 200;
 constexpr double LossThatCalls = 0.02;
 constexpr std::size_t SmallPart = 256;
 constexpr std::size_t PartOfDatagram = 4;
+// What stands before a message in a datagram, names left out.
+constexpr std::size_t AboutAnItem = 12;
 // The payload's length may take one byte more than that of an empty one, twice.
 constexpr std::size_t LengthBytes = 2;
 
@@ -62,7 +64,11 @@ std::size_t LinkSender::NextBytes() const
     }
     if (bytes < most && MayCut())
     {
-        bytes += _outbox.Next().Bytes - _outbox.Next().Cut;
+        bytes += _outbox.BytesToCut(most - bytes, AboutAnItem);
+    }
+    if (_path.LossRate() > LossThatCalls)
+    {
+        bytes += std::min(_inFlight, most / PartOfDatagram);
     }
     return std::clamp<std::size_t>(bytes, 1, most);
 }

@@ -12,10 +12,13 @@ namespace
 
 using namespace std::chrono_literals;
 
-// The gateway has found its pace so long after the medium has changed its rate.
+// The gateway has found its pace so long after the medium has changed its rate, and after what had been sent
+// until then has gone: that is a queue of each node at the most, and nobody can take it back.
 constexpr Time Adapts = 5s;
-// DDS says what it has to say of a newcomer in this time.
+// DDS says what it has to say of a newcomer in this time, and it is so many bytes in all, which go before
+// tracks.
 constexpr Time Discovers = 20s;
+constexpr std::uint64_t Discovery = 30'000;
 // What may be lost in a row of what is said once.
 constexpr int InARow = 6;
 // What part of the medium tracks are to have at the least: a quarter, as the plans have it. When the medium
@@ -102,7 +105,15 @@ void AirOracle::OnOutageEnd()
 void AirOracle::OnRate(std::uint64_t bytesPerSecond)
 {
     _rate = bytesPerSecond;
-    _rateSince = _world.DisturbedAt = _world.Now;
+    _world.DisturbedAt = _world.Now;
+    const std::uint64_t queues = SimulatedMedium().QueueBytes * _senders.size();
+    _adaptedAt = _world.Now + Adapts + TimeOf(queues);
+}
+
+// On the medium as it is.
+Time AirOracle::TimeOf(std::uint64_t bytes) const
+{
+    return Time(static_cast<Time::rep>(bytes * 1'000'000'000 / _rate));
 }
 
 void AirOracle::OnStep()
@@ -181,7 +192,7 @@ void AirOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
             {
                 continue;
             }
-            if (status.state == Gateway::NodeState::LOST && pair.WasUp)
+            if (status.state == Gateway::NodeState::LOST && pair.WasUp && _world.Now >= _adaptedAt)
             {
                 _world.Fail(17, _world.NameOf(observer) + " shows " + status.node +
                                     " as LOST, and the medium carries what it says");
@@ -202,7 +213,7 @@ void AirOracle::OnTrack(std::size_t observerLife, std::size_t node, Time age)
         _world.Say("a track of " + _world.NameOf(node) + " comes to " +
                    _world.NameOf(_world.Lives[observerLife].Node) + ", " + Seconds(age) + " old");
     }
-    if (!_plan || _world.Now < _rateSince + Adapts)
+    if (!_plan || _world.Now < _adaptedAt)
     {
         return;
     }
@@ -218,7 +229,7 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
 {
     const Pair &pair = PairOf(observer, node);
     if (!_plan || !pair.Counts || _world.Now < pair.Since + _plan->UpWithin + Adapts ||
-        _world.Now < _rateSince + Adapts)
+        _world.Now < _adaptedAt)
     {
         return;
     }
@@ -227,7 +238,9 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
     const double ofNode = std::min(carried, _plan->Budget ? static_cast<double>(*_plan->Budget) : carried);
     const double seconds = static_cast<double>(TrackOnAir) / share / ofNode;
     const Time pause = std::max(_world.Plan.Machines[node].TrackPeriod, Time(std::llround(seconds * 1e9)));
-    if (age > _plan->PoseAge + InARow * pause)
+    const bool discovers = _world.Now <= _discoverySince + Discovers;
+    const Time most = _plan->PoseAge + InARow * pause + (discovers ? TimeOf(Discovery) : Time(0));
+    if (age > most)
     {
         _world.Fail(20, "the newest track that " + _world.NameOf(observer) + " has of " +
                             _world.NameOf(node) + " is " +

@@ -67,6 +67,7 @@ private:
     // The node can hear, or cannot, from then on.
     void Restart(std::size_t node, Time since);
     void CheckBudget(std::size_t node);
+    Time TimeOf(std::uint64_t bytes) const;
     std::uint64_t Total() const;
     void SayWhatIsSent();
 
@@ -77,7 +78,7 @@ private:
     std::vector<Sender> _senders;
     bool _outage = false;
     std::uint64_t _rate = 0;
-    Time _rateSince{0};
+    Time _adaptedAt{0};       // to that rate
     Time _discoverySince{0};  // something made DDS find somebody
     Time _outageSince{0};
     std::uint64_t _starts = 0;

@@ -22,9 +22,10 @@ public:
     // What an age may be wrong by: half the round trip, for nobody can tell the delays of the two directions
     // apart.
     static constexpr Time AgeTolerance = std::chrono::milliseconds(1300);
-    // Over a thin medium by half of what a full queue of each node takes in addition, when so little time has
-    // passed since DDS found somebody, or the medium fell, that all beats may have waited in it.
-    static constexpr Time Settles = std::chrono::seconds(20);
+    // Over a thin medium by half of what a full queue of each node takes in addition, until so long after
+    // somebody came or the medium changed: all beats may have waited in queues for some seconds then, and a
+    // gateway forgets the quickest of before after 15 to 30 seconds.
+    static constexpr Time Settles = std::chrono::seconds(45);
 
     enum class Topic
     {

@@ -18,7 +18,7 @@ constexpr int LostAfter = 7;
 // The longest that a node lets pass between two beats.
 Time LongestPause(const FleetPlan &plan)
 {
-    return plan.Thin && plan.Thin->Budget ? Time(GatewayConfig().Radio.SlowestBeat) : Time(500ms);
+    return plan.Thin ? Time(GatewayConfig().Radio.SlowestBeat) : Time(500ms);
 }
 
 }  // namespace
