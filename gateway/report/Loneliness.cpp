@@ -53,8 +53,7 @@ std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeerTabl
         }
         last = std::max(last, peer->LastHeard);
     }
-    const std::chrono::nanoseconds silence = now - last;
-    if (silence < Patience)
+    if (now - last < Patience)
     {
         return std::nullopt;
     }
@@ -62,7 +61,7 @@ std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeerTabl
     problem.subject = "network";
     problem.reason = "nobody heard in domain " + std::to_string(config.Domain) + " on " +
                      Listed(config.Interfaces, "all interfaces") + " for " +
-                     std::to_string(std::chrono::duration_cast<std::chrono::seconds>(silence).count()) +
+                     std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Patience).count()) +
                      " s; " + WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
                      " (gateway/CONNECTING.md)";
     problem.certain = true;  // it has lasted already

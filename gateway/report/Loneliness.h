@@ -18,7 +18,8 @@ namespace Rabit
 namespace Loneliness
 {
 
-// Nobody is live for so long.
+// Nobody is live for so long. The problem says that, and not for how long by now: who lists problems as they
+// come would list a new one each second.
 inline constexpr std::chrono::nanoseconds Patience = std::chrono::seconds(10);
 
 // The problem, if there is one. `openedAt`: since when this node listens.
