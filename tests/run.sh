@@ -6,6 +6,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$root/docker/install-packages.sh"
+"$root/docker/install-packages.sh" "$root/docker/packages-check.txt"
 "$root/docker/build-preset.sh" release
 cd "$root"
 [ $# -gt 0 ] || set -- -LE 'mutation|field_long|fuzz_long'

@@ -60,7 +60,7 @@ PublishSubscribeMessage::PublishSubscribeMessage(std::unique_ptr<RabitMessage> s
       _mutex(std::make_shared<std::mutex>()),
       _published(_mutex),
       _message(NotNull(std::move(stMessage))),
-      _type(typeid(*_message)),
+      _type(_message->GetTypeIndex()),
       _lastReading{-std::numeric_limits<double>::infinity(), std::chrono::nanoseconds::min()},
       _lastStamp(-std::numeric_limits<double>::infinity())
 {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <typeinfo>
 #include <utility>
 
 namespace Rabit
@@ -166,7 +165,7 @@ MessageRegistration WorkspaceRegistry::AddMessage(const std::string &name,
         }
         found = inserted.first;  // somebody was quicker
     }
-    if (found->second.Global->MsgTypeIndex() != std::type_index(typeid(*msg)))
+    if (found->second.Global->MsgTypeIndex() != msg->GetTypeIndex())
     {
         return {MessageRegistrationResult::OtherType, found->second.Global};
     }

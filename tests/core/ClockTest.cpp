@@ -102,7 +102,7 @@ TEST_F(SystemClockTest, TheLeapSecondOffsetIsAWholeNumberFrom0To100)
 
 TEST_F(SystemClockTest, ConvertsTimePointsBothWays)
 {
-    const system_clock::time_point gpsEpoch(std::chrono::seconds(SystemTimeClock::GpsEpochUnixSeconds));
+    const system_clock::time_point gpsEpoch{std::chrono::seconds(SystemTimeClock::GpsEpochUnixSeconds)};
     EXPECT_EQ(Clock.ConvertTimePointToGpsTimeInSeconds(gpsEpoch), 18.0);
     EXPECT_EQ(Clock.ConvertTimePointToGpsTimeInSecondsMethod2Resolution1Second(gpsEpoch + 1999ms), 19.0);
     EXPECT_EQ(Clock.GpsTimeSecondsToSystemClockTimepoint(18.0), gpsEpoch);

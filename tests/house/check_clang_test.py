@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Checks that check_clang.py finds what it is there to find, and nothing else.
+
+Usage: check_clang_test.py CLANG"""
+
+import json
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+import check_clang
+
+CLANG = "clang"
+
+
+class CheckClang(unittest.TestCase):
+    def check(self, files, options="-Wall -Wextra", standard="-std=c++20"):
+        """What is said of these files, as a list of (name, text), and how many were checked."""
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            for name, text in files.items():
+                (folder / name).write_text(text)
+            (folder / "compile_commands.json").write_text(json.dumps([
+                {"directory": str(folder), "file": str(folder / name),
+                 "command": f"ccache c++ -I {folder} {options} -O3 {standard} -o {name}.o -c {folder / name}"}
+                for name in files if name.endswith((".c", ".cpp"))]))
+            failures, units = check_clang.check(CLANG, folder, [], 1)
+            return [(pathlib.Path(unit).name, said) for unit, said in failures], units
+
+    def test_good_units_are_good(self):
+        self.assertEqual(self.check({"A.cpp": "int A();\n", "B.cpp": "int B();\n"}), ([], 2))
+
+    def test_a_warning_in_one_unit_of_many_is_found_and_said_of_that_unit_alone(self):
+        failures, _ = self.check({"A.cpp": "int A() { return 1; }\n", "B.cpp": "int B(int unused) { return 1; }\n",
+                                  "C.cpp": "int C() { return 1; }\n"})
+        self.assertEqual([unit for unit, _ in failures], ["B.cpp"])
+        self.assertIn("unused parameter", failures[0][1])
+
+    def test_a_warning_that_g_does_not_have_is_found(self):
+        failures, _ = self.check({"A.cpp": "class A { int _unused = 0; public: int F() { return 1; } };\nA a;\n"})
+        self.assertIn("-Wunused-private-field", failures[0][1])
+
+    def test_units_that_name_something_alike_are_read_apart(self):
+        same = "namespace { int Same() { return 1; } }\nint %s() { return Same(); }\nint main() {}\n"
+        self.assertEqual(self.check({"A.cpp": same % "A", "B.cpp": same % "B", "C.cpp": same % "C"}), ([], 3))
+
+    def test_a_warning_is_found_beside_units_that_name_something_alike(self):
+        same = "namespace { int Same() { return 1; } }\nint %s() { return Same(); }\n"
+        failures, _ = self.check({"A.cpp": same % "A", "B.cpp": same % "B", "C.cpp": "static int Unused() { return 1; }\n"})
+        self.assertEqual([unit for unit, _ in failures], ["C.cpp"])
+
+    def test_a_fault_in_a_header_is_found(self):
+        failures, _ = self.check({"A.h": "#pragma once\nstruct A { int F(int unused) { return 1; } };\n",
+                                  "A.cpp": '#include "A.h"\n', "B.cpp": '#include "A.h"\n'})
+        self.assertEqual([unit for unit, _ in failures], ["A.cpp", "B.cpp"])
+
+    def test_a_unit_is_read_with_the_options_of_its_target(self):
+        text = {"A.cpp": "int A(int unused) { return 1; }\n"}
+        self.assertEqual(self.check(text, options="-Wall -Wextra -Wno-unused-parameter"), ([], 1))
+        self.assertEqual(self.check(text, options="-w"), ([], 0))
+
+    def test_c_is_read_as_c(self):
+        self.assertEqual(self.check({"A.c": "int class = 0;\n", "B.c": "int class = 0;\n"}, standard="-std=gnu11"), ([], 2))
+
+
+if __name__ == "__main__":
+    if not shutil.which(sys.argv[1]):
+        print(f"skipped: no {sys.argv[1]} here")
+        sys.exit(check_clang.SKIPPED)
+    CLANG = sys.argv.pop(1)
+    unittest.main()
