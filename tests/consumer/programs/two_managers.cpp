@@ -1,8 +1,13 @@
 // One manager posts and sends, the other fetches and receives.
 #include "RabitManager.h"
 #include "RabitReactor.h"
+#include "RabitVersion.h"
 
 #include <iostream>
+#include <string_view>
+
+// CMake was told the version of the headers.
+static_assert(std::string_view(RABIT_VERSION_STRING) == PACKAGE_VERSION);
 
 class Count : public Rabit::RabitMessage
 {

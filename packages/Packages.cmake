@@ -1,0 +1,47 @@
+# Debian packages, from a build that is complete: cpack --config build/release/CPackConfig.cmake. README.md lists them.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME rabit)
+set(CPACK_PACKAGE_CONTACT "The maintainers of Distributed Rabit <root@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL dev tools)
+if(TARGET ground)
+  list(APPEND CPACK_COMPONENTS_ALL ground)
+endif()
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+# What the headers and the static libraries need is not seen by dpkg-shlibdeps.
+set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev)
+if(RABIT_WITH_FASTDDS)
+  list(APPEND dev_needs libfastrtps-dev)
+endif()
+if(RABIT_WITH_CYCLONEDDS)
+  list(APPEND dev_needs cyclonedds-dev)
+endif()
+list(JOIN dev_needs ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME librabit-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "cmake, g++")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "Headers, static libraries and CMake files of Distributed Rabit.")
+
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME rabit-tools)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION devel)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS cyclonedds-tools)
+set(CPACK_COMPONENT_TOOLS_DESCRIPTION "The generator of messages from IDL, which idlc loads.")
+
+set(CPACK_DEBIAN_GROUND_PACKAGE_NAME rabit-ground-station)
+set(CPACK_DEBIAN_GROUND_PACKAGE_SECTION science)
+set(CPACK_COMPONENT_GROUND_DESCRIPTION "A ground station that shows a fleet on a page and commands it.")
+
+# Debian wants to be told under what terms each package is.
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  string(TOUPPER ${component} upper)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME} RENAME copyright
+          COMPONENT ${component} EXCLUDE_FROM_ALL)
+endforeach()
+include(CPack)

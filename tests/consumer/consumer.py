@@ -1,0 +1,60 @@
+"""What the tests of the installed package share: building projects outside the tree against it, and running them."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "integration"))
+import harness  # noqa: E402
+
+# Only keeps a broken test from hanging.
+LIMIT_S = 120
+
+
+def run(*argv, fails=False, **options):
+    """Runs a command to its end and returns what it said; shows that if it does not end as it should."""
+    done = subprocess.run([str(a) for a in argv], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          timeout=30 * LIMIT_S, check=False, **options)
+    if (done.returncode != 0) != fails:
+        print(done.stdout)
+        sys.exit(f"ended with {done.returncode}: {' '.join(str(a) for a in argv)}")
+    return done.stdout
+
+
+def build(cmake, name, folder, prefix):
+    """Builds a copy of one of the projects here against the package below the prefix; returns the build directory."""
+    shutil.copytree(HERE / name, folder / name)
+    built = folder / f"{name}_build"
+    run(cmake, "-S", folder / name, "-B", built, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+        f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF")
+    run(cmake, "--build", built)
+    return built
+
+
+def build_template(cmake, folder, prefix):
+    """Builds the template against the package and runs the test that it comes with."""
+    built = build(cmake, "project", folder, prefix)
+    run(pathlib.Path(cmake).parent / "ctest", "--test-dir", built, "--output-on-failure", "--no-tests=error")
+    print("ok: the template")
+
+
+def run_two_managers(program):
+    said = run(program)
+    if said != "received 100, last post 100\n":
+        sys.exit(f"two_managers said: {said}")
+    print("ok: two managers")
+
+
+def exchange(node, first, second):
+    """Runs two nodes against each other, each over its backend."""
+    with harness.Processes() as processes:
+        a = processes.start([node, "a", "b", first, harness.domain()])
+        b = processes.start([node, "b", "a", second, harness.domain()])
+        a.wait_for(re.compile("a has all of b/Exchange").search, LIMIT_S)
+        b.wait_for(re.compile("b has all of a/Exchange").search, LIMIT_S)
+        if a.terminate() != 0 or b.terminate() != 0:
+            sys.exit("a node did not end well")
+    print(f"ok: {first} and {second}")

@@ -1,0 +1,67 @@
+// display CONFIGURATION: shows the wind that the station measures, and once has it calibrated.
+#include <rabit/RabitManager.h>
+#include <rabit/RabitReactor.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <exception>
+#include <iostream>
+#include <memory>
+
+#include "weather.idl.h"
+
+namespace
+{
+
+class Display : public Rabit::RabitManager
+{
+public:
+    Display() : RabitManager("Display")
+    {
+        AddPublishSubscribeMessage("station/Wind", _wind);
+        WakeUpManagerOnMessagePost(_wind);
+    }
+
+    void ExecuteUnitOfWork() final
+    {
+        if (_wind->FetchMessage())
+        {
+            std::cout << _wind->speed << " m/s from " << _wind->direction << " degrees" << std::endl;
+            Calibrate();
+        }
+    }
+
+private:
+    // The station is known by now, since it was heard; if the queue refuses yet, the next measurement tries again.
+    void Calibrate()
+    {
+        if (!_calibrated)
+        {
+            auto order = std::make_shared<Weather::Calibrate>();
+            order->factor = 2.0;
+            _calibrated = AddMessageToQueue("station/Station", order);
+        }
+    }
+
+    std::shared_ptr<Weather::Wind> _wind = std::make_shared<Weather::Wind>();
+    bool _calibrated = false;
+};
+
+}  // namespace
+
+int main(int argc, char **argv)
+try
+{
+    const Rabit::GatewayConfig config = Rabit::LoadGatewayConfig(argc > 1 ? argv[1] : "display.yaml");
+    Rabit::RabitReactor reactor;
+    reactor.AddManager(std::make_unique<Display>());
+    reactor.AddManager(std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
+    reactor.Run();  // until Ctrl-C
+    return 0;
+}
+catch (const std::exception &error)
+{
+    std::cerr << "display: " << error.what() << std::endl;
+    return 2;
+}

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# two_nodes_test.sh STATION DISPLAY: the display shows what the station measures, and its order changes that. Both end
+# well when they are told to.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+"$1" station.yaml &
+station=$!
+coproc shown { exec "$2" display.yaml; }
+display=$shown_PID
+trap 'kill -KILL "$station" "$display" 2>/dev/null || true' EXIT
+
+# The limit only keeps a broken test from hanging.
+wait_for() {
+    local line
+    while read -r -t 120 line <&"${shown[0]}"; do
+        [ "$line" != "$1" ] || return 0
+    done
+    echo "the display has not shown: $1" >&2
+    return 1
+}
+wait_for "5 m/s from 270 degrees"
+wait_for "10 m/s from 270 degrees"
+kill -TERM "$station" "$display"
+wait "$station"
+wait "$display"
+trap - EXIT
+echo "ok: both nodes"
