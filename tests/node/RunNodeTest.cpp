@@ -1,0 +1,161 @@
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/node/RunNode.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <CLI/CLI.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace Rabit
+{
+namespace
+{
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Ends the whole program in its first unit of work.
+class OneShot : public RabitManager
+{
+public:
+    explicit OneShot(int &passes) : RabitManager("OneShot"), _passes(passes) {}
+    void ExecuteUnitOfWork() final
+    {
+        ++_passes;
+        ShutdownAllManagers(true);
+    }
+
+private:
+    int &_passes;
+};
+
+class RunNodeTest : public ::testing::Test
+{
+protected:
+    RunNodeTest()
+    {
+        std::ofstream(_file) << "node: one\ninterfaces: [127.0.0.1]\ntransport: "
+                             << AvailableTransports().front() << "\n";
+        _program.ConfigFile = _file;
+        _program.AddManagers = [this](RabitReactor &reactor, GatewayConfig &config)
+        {
+            _node = config.Node;
+            _domain = config.Domain;
+            reactor.AddManager(std::make_unique<OneShot>(_passes));
+        };
+    }
+    ~RunNodeTest() override { std::filesystem::remove(_file); }
+
+    int Run(std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), "program");
+        std::vector<char *> argv;
+        for (std::string &argument : arguments)
+        {
+            argv.push_back(argument.data());
+        }
+        ::testing::internal::CaptureStdout();
+        ::testing::internal::CaptureStderr();
+        const int code = RunNode(static_cast<int>(argv.size()), argv.data(), _program);
+        _out = ::testing::internal::GetCapturedStdout();
+        _err = ::testing::internal::GetCapturedStderr();
+        return code;
+    }
+
+    const std::string _file =
+        (std::filesystem::temp_directory_path() / ("run_node_test." + std::to_string(::getpid()) + ".yaml"))
+            .string();
+    NodeProgram _program;
+    std::string _out;
+    std::string _err;
+    std::string _node;
+    int _domain = -1;
+    int _passes = 0;
+};
+
+TEST_F(RunNodeTest, RunsTheManagersAndTheGatewayAndReturnsZero)
+{
+    EXPECT_EQ(Run({"--domain", "201"}), 0);
+    EXPECT_GE(_passes, 1);
+    EXPECT_THAT(_err, IsEmpty());
+}
+
+TEST_F(RunNodeTest, OptionsTakeThePlaceOfTheFile)
+{
+    EXPECT_EQ(Run({"--check", "--node", "two", "--domain", "5"}), 0);
+    EXPECT_EQ(_node, "two");
+    EXPECT_EQ(_domain, 5);
+}
+
+TEST_F(RunNodeTest, ACheckMakesTheManagersAndRunsNothing)
+{
+    EXPECT_EQ(Run({"--check"}), 0);
+    EXPECT_EQ(_node, "one");
+    EXPECT_EQ(_passes, 0);
+}
+
+TEST_F(RunNodeTest, AWrongConfigurationIsOneLineAndNothingIsMade)
+{
+    std::ofstream(_file) << "node: one\ndomain: 233\n";
+    EXPECT_EQ(Run({}), ExitBadInput);
+    EXPECT_THAT(_err, HasSubstr(_file + ":2: "));
+    EXPECT_EQ(_err.find('\n'), _err.size() - 1);
+    EXPECT_THAT(_node, IsEmpty());
+}
+
+TEST_F(RunNodeTest, ATransportThatThisBuildHasNotIsOneLine)
+{
+    EXPECT_EQ(Run({"--transport", "pigeon"}), ExitBadInput);
+    EXPECT_EQ(_err.find('\n'), _err.size() - 1);
+}
+
+TEST_F(RunNodeTest, WhatTheProgramFindsWrongInItsOwnFilesEndsInTheSameWay)
+{
+    _program.AddManagers = [](RabitReactor &, GatewayConfig &)
+    { throw ConfigError("world.yaml", 3, "flat"); };
+    EXPECT_EQ(Run({}), ExitBadInput);
+    EXPECT_EQ(_err, "world.yaml:3: flat\n");
+}
+
+TEST_F(RunNodeTest, AnExceptionIsOneLineAndAFailure)
+{
+    _program.AddManagers = [](RabitReactor &, GatewayConfig &) { throw std::runtime_error("no camera"); };
+    EXPECT_EQ(Run({}), ExitFailed);
+    EXPECT_EQ(_err, "program: no camera\n");
+    _program.AddManagers = [](RabitReactor &, GatewayConfig &) { throw 7; };
+    EXPECT_EQ(Run({}), ExitFailed);
+    EXPECT_EQ(_err, "program: ended by an exception of an unknown type\n");
+}
+
+TEST_F(RunNodeTest, OptionsOfTheProgramAreKnownWhenItsManagersAreMade)
+{
+    int rate = 0;
+    int seen = 0;
+    _program.AddOptions = [&rate](CLI::App &app) { app.add_option("--rate", rate, "Hz"); };
+    _program.AddManagers = [&](RabitReactor &, GatewayConfig &) { seen = rate; };
+    EXPECT_EQ(Run({"--check", "--rate", "7"}), 0);
+    EXPECT_EQ(seen, 7);
+    EXPECT_EQ(Run({"--help"}), 0);
+    EXPECT_THAT(_out, HasSubstr("--rate"));
+    EXPECT_THAT(_out, HasSubstr("--config"));
+}
+
+TEST_F(RunNodeTest, AnUnknownOptionIsRefused)
+{
+    EXPECT_EQ(Run({"--speed", "7"}), ExitBadInput);
+    EXPECT_THAT(_err, HasSubstr("--speed"));
+    EXPECT_EQ(_passes, 0);
+}
+
+}  // namespace
+}  // namespace Rabit
