@@ -1,4 +1,4 @@
-# Debian packages, from a build that is complete: cpack --config build/release/CPackConfig.cmake. README.md lists them.
+# Debian packages, from what is built: cpack --config build/release/CPackConfig.cmake. README.md lists them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rabit)
 set(CPACK_PACKAGE_CONTACT "The maintainers of Distributed Rabit <root@localhost>")

@@ -1,11 +1,7 @@
-// display CONFIGURATION: shows the wind that the station measures, and once has it calibrated.
+// display [--config display.yaml]: shows the wind that the station measures, and once has it calibrated.
 #include <rabit/RabitManager.h>
-#include <rabit/RabitReactor.h>
-#include <rabit/gateway/GatewayManager.h>
-#include <rabit/gateway/LoadGatewayConfig.h>
-#include <rabit/transport/TransportFactory.h>
+#include <rabit/node/RunNode.h>
 
-#include <exception>
 #include <iostream>
 #include <memory>
 
@@ -51,17 +47,7 @@ private:
 }  // namespace
 
 int main(int argc, char **argv)
-try
 {
-    const Rabit::GatewayConfig config = Rabit::LoadGatewayConfig(argc > 1 ? argv[1] : "display.yaml");
-    Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<Display>());
-    reactor.AddManager(std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
-    reactor.Run();  // until Ctrl-C
-    return 0;
-}
-catch (const std::exception &error)
-{
-    std::cerr << "display: " << error.what() << std::endl;
-    return 2;
+    return Rabit::RunNode(argc, argv, "display.yaml", [](Rabit::RabitReactor &reactor)
+                          { reactor.AddManager(std::make_unique<Display>()); });
 }

@@ -1,12 +1,7 @@
-// station CONFIGURATION: measures the wind ten times a second, and obeys orders.
+// station [--config station.yaml]: measures the wind ten times a second, and obeys orders.
 #include <rabit/RabitManager.h>
-#include <rabit/RabitReactor.h>
-#include <rabit/gateway/GatewayManager.h>
-#include <rabit/gateway/LoadGatewayConfig.h>
-#include <rabit/transport/TransportFactory.h>
+#include <rabit/node/RunNode.h>
 
-#include <exception>
-#include <iostream>
 #include <memory>
 
 #include "weather.idl.h"
@@ -47,17 +42,7 @@ private:
 }  // namespace
 
 int main(int argc, char **argv)
-try
 {
-    const Rabit::GatewayConfig config = Rabit::LoadGatewayConfig(argc > 1 ? argv[1] : "station.yaml");
-    Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<Station>());
-    reactor.AddManager(std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
-    reactor.Run();  // until Ctrl-C
-    return 0;
-}
-catch (const std::exception &error)
-{
-    std::cerr << "station: " << error.what() << std::endl;
-    return 2;
+    return Rabit::RunNode(argc, argv, "station.yaml", [](Rabit::RabitReactor &reactor)
+                          { reactor.AddManager(std::make_unique<Station>()); });
 }

@@ -3,9 +3,9 @@
 # well when they are told to.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
-"$1" station.yaml &
+"$1" --config station.yaml &
 station=$!
-coproc shown { exec "$2" display.yaml; }
+coproc shown { exec "$2" --config display.yaml; }
 display=$shown_PID
 trap 'kill -KILL "$station" "$display" 2>/dev/null || true' EXIT
 
