@@ -15,16 +15,12 @@ namespace Rabit
 namespace
 {
 
-// What a datagram has beside a frame of the links: RTPS headers 72, encapsulation and length 8, and up to 3
-// bytes of padding.
-constexpr std::size_t DatagramOverhead = 83;
-
 LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
 {
     LinkSettings settings;
     settings.Node = config.Node;
     settings.Clock = std::max<std::uint64_t>(clockName, 1);  // 0 is no name
-    settings.MaxDatagram = std::max(config.MaxDatagram, 3 * DatagramOverhead) - DatagramOverhead;
+    settings.MaxDatagram = LargestLinkFrame(config.MaxDatagram);
     settings.LargestMessage = LargestSample;
     return settings;
 }

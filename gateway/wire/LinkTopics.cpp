@@ -1,5 +1,7 @@
 #include "wire/LinkTopics.h"
 
+#include <algorithm>
+
 #include "gateway.idl.h"
 #include "wire/GatewayTopics.h"
 
@@ -21,6 +23,12 @@ TopicQos LinkTopicQos()
     qos.Durability = Durability::Volatile;
     qos.Depth = 64;
     return qos;
+}
+
+std::size_t LargestLinkFrame(std::size_t maxDatagram)
+{
+    constexpr std::size_t vendors = 176;
+    return std::max(maxDatagram, TransportSettings::SmallestDatagram) - vendors - LinkSampleOverhead;
 }
 
 }  // namespace Rabit

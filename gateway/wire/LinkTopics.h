@@ -2,11 +2,20 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
+
 namespace Rabit
 {
 
 // The topic of the queue links with its type, and its DDS settings.
 TopicDescription DescribeLinkTopic();
 TopicQos LinkTopicQos();
+
+// Of a sample, beside its frame: encapsulation and length.
+inline constexpr std::size_t LinkSampleOverhead = 8;
+// Bytes of a frame that goes in one datagram of so many bytes over every backend. Less than the headers leave
+// room for: the vendors cut a sample in two sooner, Fast DDS one that is less than 176 bytes smaller than the
+// largest datagram, Cyclone DDS 100.
+std::size_t LargestLinkFrame(std::size_t maxDatagram);
 
 }  // namespace Rabit
