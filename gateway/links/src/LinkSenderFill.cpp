@@ -12,7 +12,7 @@ namespace
 {
 
 // A rest of a datagram smaller than this takes no piece of a message.
-constexpr std::size_t SmallestPiece = 200;
+constexpr std::size_t SmallestPiece = 128;
 // Where more than this part is lost, small parts without an acknowledgement go along once more with what is
 // sent anyway, as far as these bytes of each and this part of the datagram.
 constexpr double LossThatCalls = 0.02;

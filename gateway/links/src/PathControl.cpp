@@ -23,6 +23,8 @@ constexpr LinkTime LongestDrain = 2s;
 constexpr std::size_t DatagramsToAsk = 3;
 constexpr std::size_t PartToAsk = 4;
 constexpr LinkTime LongestDatagramTime = 250ms;
+// The window grows to so many times what arrives in the round trip that is aimed at (BBR).
+constexpr double UsefulWindow = 2.0;
 // The probe timer doubles so many times at first: where much is lost, waiting longer does not help. After so
 // many probes in vain there is no path, and it goes on doubling.
 constexpr int FirstDoublings = 3;
@@ -215,6 +217,12 @@ void PathControl::Decide(LinkTime roundTrip)
                                  : empty    ? _window / 4
                                             : Scaled(_window, std::max(factor, 1.0) - 1) / 2;
         _window += std::max<std::size_t>(more, 1);
+        // Sent in bursts, what is under way leaves the buffer empty in between, however much it is.
+        if (!_slowStart && _rate > 0)
+        {
+            const double useful = UsefulWindow * _rate * Seconds(_shortest + target).count();
+            _window = std::min(_window, std::max(static_cast<std::size_t>(useful), FirstWindow()));
+        }
     }
     _window = std::clamp(_window, Datagram(), std::max(_settings.LargestWindow, FirstWindow()));
 }

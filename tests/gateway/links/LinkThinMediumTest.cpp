@@ -27,6 +27,17 @@ void Feed(ThinMedium &medium, LinkTime time)
     }
 }
 
+void FeedSmall(ThinMedium &medium, LinkTime time)
+{
+    for (const LinkTime end = medium.Now + time; medium.Now < end;)
+    {
+        while (medium.A.Enqueue("beta", "q", 1000))
+        {
+        }
+        medium.Live(std::min<LinkTime>(10ms, end - medium.Now));
+    }
+}
+
 TEST(ThinMedium, three_pictures_at_250_kbit_take_what_the_medium_takes)
 {
     ThinMedium medium;
@@ -108,6 +119,20 @@ TEST(ThinMedium, a_satellites_round_trip_leaves_most_of_the_medium_usable)
         medium.BytesCarried = 0;
         Feed(medium, 120s);
         EXPECT_GE(static_cast<double>(medium.BytesCarried) * 8, 0.7 * rate * 120) << rate;
+    }
+}
+
+TEST(ThinMedium, small_messages_have_most_of_what_a_satellite_carries)
+{
+    for (const double rate : {250e3, 1e6})
+    {
+        ThinMedium medium;
+        medium.BitsPerSecond = rate;
+        medium.Delay = 300ms;
+        FeedSmall(medium, 20s);
+        medium.B.DeliveredBytes = 0;
+        FeedSmall(medium, 120s);
+        EXPECT_GE(static_cast<double>(medium.B.DeliveredBytes) * 8, 0.7 * rate * 120) << rate;
     }
 }
 

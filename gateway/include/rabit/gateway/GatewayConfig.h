@@ -64,7 +64,7 @@ struct SendRule
     std::size_t Capacity = 1000;            // messages that may wait, 1 to 1,000,000
     std::size_t CapacityBytes = 16u << 20;  // bytes that may wait, 1 to 2^40
     std::chrono::milliseconds Expire{0};    // a message older than this is never delivered; 0: never too old
-    std::size_t Window = 128;               // messages under way at once, 1 to 256
+    std::size_t Window = 256;               // messages under way at once, 1 to 256
     bool RedeliverInDoubt = false;          // send again, flagged, what a restart left in doubt
     // How important the messages are where the air is thin, any but Presence.
     TrafficClass Class = TrafficClass::Command;

@@ -20,7 +20,7 @@ struct LinkOptions
     LinkTime Expire{0};
     // Messages sent, in whole or in part, and not acknowledged, at most; 1 to LinkMaxWindow. How many bytes
     // may be under way is decided by the path (PathControl), and common to all links to a node.
-    std::size_t Window = 128;
+    std::size_t Window = 256;
     // What to do with messages that were sent and not acknowledged when the receiver restarted. False: they
     // are in doubt. True: they are sent again, marked as redelivered, so that the queue gets each at least
     // once.
