@@ -65,9 +65,13 @@ TEST(QueueRefusal, OfTheSameQueueAreLoggedTogetherAMinuteLater)
 TEST(QueueRefusal, IsLoggedNoMoreThanOnceAMinuteHoweverLongItLasts)
 {
     RefusalFixture fixture;
+    fixture.Add3000();
     for (int second = 0; second < 600; ++second)
     {
-        fixture.Add3000();
+        for (int i = 0; i < 20; ++i)
+        {
+            EXPECT_FALSE(fixture.Workspace.AddMessageToQueue("Small", i));
+        }
         fixture.RunFor(1s);
     }
     EXPECT_EQ(fixture.Log.Lines().size(), 11U);
