@@ -37,6 +37,10 @@ if [ -n "${TRANSPORTS:-}" ]; then
     wanted=$(((${number:-1} - 1) % count + 1))
     set -- --transport "$(echo "$TRANSPORTS" | awk -v n="$wanted" '{print $n}')" "$@"
 fi
-[ "$role" != vision ] || set -- --world /usr/local/share/rabit/world.yaml "$@"
+# The simulated world; a real aircraft flies over other ground.
+case "$role $*" in
+ground* | *--mavlink*) ;;
+*) set -- --world /usr/local/share/rabit/world.yaml "$@" ;;
+esac
 [ -z "${DOMAIN:-}" ] || set -- --domain "$DOMAIN" "$@"
 exec "$role" --config "$config" --node "$NODE" "$@"

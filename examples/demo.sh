@@ -147,7 +147,12 @@ transport_of() { # transport_of K: prints the transport of aircraft K; the groun
 uav_arguments() { # uav_arguments K: sets the array `arguments`
     arguments=(--config "$here/swarm/uav.yaml" --node "uav$1" --domain "$domain"
         --transport "$(transport_of "$1")")
-    [ "$1" -gt ${#tracks[@]} ] || arguments+=(--track "${tracks[$1 - 1]}")
+    # A recorded track may lie anywhere, over other ground than that of the simulated world.
+    if [ "$1" -le ${#tracks[@]} ]; then
+        arguments+=(--track "${tracks[$1 - 1]}")
+    else
+        arguments+=(--world "$here/swarm/world.yaml")
+    fi
 }
 vision_arguments() { # vision_arguments K: sets the array `arguments`
     arguments=(--config "$here/swarm/vision.yaml" --node "uav$1.vision" --domain "$domain"

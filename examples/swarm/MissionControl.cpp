@@ -13,11 +13,12 @@ namespace
 constexpr std::size_t MaxText = 128;  // what MissionState takes
 }
 
-MissionControl::MissionControl(const Names &names, const std::string &ground,
+MissionControl::MissionControl(const Names &names, const std::string &ground, const Floor &floor,
                                Rabit::RabitWorkspace &workspace)
     : RabitManager(names.Own("MissionControl"), workspace),
       _names(names),
-      _mission(names.Aircraft(), *this),
+      _hasFloor(floor.LowestM().has_value()),
+      _mission(names.Aircraft(), *this, floor),
       _others(names, workspace)
 {
     AddPublishSubscribeMessage(names.Of(ground, "SearchArea"), _area);
@@ -30,6 +31,15 @@ MissionControl::MissionControl(const Names &names, const std::string &ground,
     WakeUpManagerOnMessagePost(_area);
     WakeUpManagerOnMessagePost(_mode);
     WakeUpManagerOnMessagePost(_targets);
+}
+
+void MissionControl::Startup()
+{
+    if (!_hasFloor)
+        Rabit::RabitLog::Write(
+            Rabit::RabitLogLevel::Warning,
+            "mission control: there is no floor: points and search areas of any height are "
+            "accepted");
 }
 
 void MissionControl::ExecuteUnitOfWork()
@@ -74,7 +84,7 @@ void MissionControl::TakeArea()
     if (!problem.empty())
         Rabit::RabitLog::Write(
             Rabit::RabitLogLevel::Warning,
-            "mission control: search area " + std::to_string(_area->number) + " is refused: " + problem);
+            "mission control: search area " + std::to_string(_area->number) + " is declined: " + problem);
 }
 
 void MissionControl::TakeMessages()
@@ -130,7 +140,8 @@ void MissionControl::PostState()
     const std::string answers = _answers.Text();
     if (!answers.empty())
         state.text = answers + (state.text.empty() ? "" : "; ") + state.text;
-    state.text.resize(std::min(state.text.size(), MaxText));
+    for (std::string *text : {&state.text, &state.area_declined})
+        text->resize(std::min(text->size(), MaxText));
     std::vector<Uav::Finding> findings = _mission.Findings();
     const bool due = _stateTimes.Due(GetWorkspace().GetClock().Monotonic());
     if (due || state != *_state)

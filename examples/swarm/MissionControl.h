@@ -35,9 +35,10 @@ public:
     static constexpr std::chrono::milliseconds ActPeriod{200};
 
     // `ground` is the node of the ground station, whose SearchArea holds.
-    MissionControl(const Names &names, const std::string &ground = "ground",
+    MissionControl(const Names &names, const std::string &ground = "ground", const Floor &floor = Floor(),
                    Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 
+    void Startup() final;
     void ExecuteUnitOfWork() final;
 
 private:
@@ -52,6 +53,7 @@ private:
     void PostState();
 
     const Names _names;
+    const bool _hasFloor;
     Mission _mission;
     Answers _answers;
     OtherAircraft _others;

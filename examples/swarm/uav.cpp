@@ -11,6 +11,7 @@
 #include "Track.h"
 #include "mavlink/ByteChannel.h"
 #include "mavlink/MavlinkVehicle.h"
+#include "vision/World.h"
 
 #include <rabit/node/RunNode.h>
 
@@ -31,6 +32,8 @@ struct Options
     std::string Mavlink;
     std::string Ground = "ground";
     double EnduranceMinutes = 40;
+    Swarm::Floor::Settings Floor;
+    std::string WorldFile;
 };
 
 // Circles south of the field, beside those of the other aircraft: the number at the end of the name says
@@ -64,12 +67,21 @@ Swarm::HealthMonitor::Options HealthOptions(const Options &options)
     return health;
 }
 
+// Throws Swarm::WorldError.
+Swarm::Floor FloorOf(const Options &options)
+{
+    Swarm::Floor::Settings floor = options.Floor;
+    if (!options.WorldFile.empty() && !floor.GroundM)
+        floor.GroundM = Swarm::World::Load(options.WorldFile).GroundM;
+    return Swarm::Floor(floor);
+}
+
 void AddManagers(Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config, const Options &options)
 {
     Swarm::CompleteAircraftConfig(config, options.Ground);
     const Swarm::Names names(config.Node, config.Node);
     reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, MakeVehicle(options, config.Node)));
-    reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, options.Ground));
+    reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, options.Ground, FloorOf(options)));
     reactor.AddManager(std::make_unique<Swarm::HealthMonitor>(names, HealthOptions(options)));
 }
 
@@ -83,6 +95,19 @@ void AddOptions(CLI::App &app, Options &options)
     app.add_option("--endurance", options.EnduranceMinutes,
                    "Minutes that the simulated battery lasts (default: 40)")
         ->check(Common::NumberWithin({0.1, 10'000}));
+    app.add_option("--floor", options.Floor.AboveSeaM,
+                   "Metres above mean sea level: what would lead it lower is declined (default: none)")
+        ->check(Common::NumberWithin(Common::AltitudeM));
+    app.add_option("--ground-height", options.Floor.GroundM,
+                   "Height of the ground where it flies, in metres above mean sea level: what would lead "
+                   "it lower than --clearance above that is declined (default: not known)")
+        ->check(Common::NumberWithin({-500, 9000}));
+    app.add_option("--clearance", options.Floor.ClearanceM,
+                   "Metres above the ground, where that is known (default: 30)")
+        ->check(Common::NumberWithin({0, 1000}));
+    app.add_option("--world", options.WorldFile,
+                   "YAML file of a simulated world, whose `ground_m` is the height of the ground unless "
+                   "--ground-height says otherwise");
 }
 }  // namespace
 

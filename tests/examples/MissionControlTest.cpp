@@ -63,13 +63,14 @@ protected:
     std::shared_ptr<FakeGateway> _gateway = std::make_shared<FakeGateway>();
     Rabit::RabitSteppedReactor _reactor{_workspace};
     Uav::MissionState _state;
+    const Swarm::Floor _floor{{.AboveSeaM = 10}};
 
     void SetUp() override
     {
         _workspace.AddManagerMessageQueue("Autopilot", _autopilot);
         _workspace.SetQueueForwarder(_gateway);
-        _reactor.AddManager(
-            std::make_unique<Swarm::MissionControl>(Swarm::Names("uav1", "uav1"), "ground", _workspace));
+        _reactor.AddManager(std::make_unique<Swarm::MissionControl>(Swarm::Names("uav1", "uav1"), "ground",
+                                                                    _floor, _workspace));
         _reactor.Start();
     }
     void Receive(const Uav::Goto &command)
@@ -109,6 +110,36 @@ TEST_F(MissionControl, DeclinesACommandThatCannotBeFlownAndSaysWhy)
     ASSERT_EQ(_gateway->Accepted.size(), 1u);
     EXPECT_EQ(_gateway->Accepted[0].second.stage, Uav::CommandStage::COMMAND_DECLINED);
     EXPECT_EQ(_gateway->Accepted[0].second.reason, "speed_mps must be from 0.1 to 50, not 0");
+}
+
+TEST_F(MissionControl, DeclinesACommandBelowItsFloorAndSaysWhy)
+{
+    Uav::Goto command = Command(5);
+    command.altitude_m = 9;
+    Receive(command);
+    EXPECT_TRUE(_autopilot->IsEmpty());
+    ASSERT_EQ(_gateway->Accepted.size(), 1u);
+    EXPECT_EQ(_gateway->Accepted[0].second.stage, Uav::CommandStage::COMMAND_DECLINED);
+    EXPECT_EQ(_gateway->Accepted[0].second.reason, "9 m above sea level is below the floor of 10 m");
+}
+
+TEST_F(MissionControl, PublishesWhyItDeclinesASearchArea)
+{
+    auto area = std::make_shared<Uav::SearchArea>();
+    _workspace.AddPublishSubscribeMessage("ground/SearchArea", area);
+    area->number = 1;
+    area->latitude_deg = 49.2584;
+    area->longitude_deg = -123.2432;
+    area->north_m = area->east_m = 400;
+    area->altitude_m = 9;
+    area->speed_mps = 10;
+    area->lane_m = 60;
+    area->PostMessage();
+    Run(10ms);
+    EXPECT_EQ(_state.area_declined, "9 m above sea level is below the floor of 10 m");
+    EXPECT_EQ(_state.search_area, 0u);
+    EXPECT_TRUE(_state.has_floor);
+    EXPECT_EQ(_state.floor_m, 10);
 }
 
 TEST_F(MissionControl, DeclinesACommandThatTheAutopilotDoesNotTake)
@@ -206,6 +237,7 @@ TEST_F(MissionControl, SaysWhichSearchAreaHoldsAndRefusesOneThatMakesNoSense)
     auto area = std::make_shared<Uav::SearchArea>();
     _workspace.AddPublishSubscribeMessage("ground/SearchArea", area);
     area->number = 4;
+    area->altitude_m = 60;
     area->north_m = area->east_m = 300;
     area->speed_mps = 15;
     area->lane_m = 50;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,7 +83,7 @@ class MissionOf2 : public testing::Test
 {
 protected:
     Output _output;
-    Mission _mission{"uav2", _output};
+    std::optional<Mission> _mission{std::in_place, "uav2", _output};
     Swarm::Situation _now;
 
     void SetUp() override
@@ -107,8 +108,8 @@ protected:
         _now.NowS += seconds;
         _now.GpsTimeS = Gps + _now.NowS;
         _now.Flight.course = static_cast<std::uint32_t>(_output.Courses.size());
-        _mission.Update(_now);
-        _mission.Act();
+        _mission->Update(_now);
+        _mission->Act();
     }
     void Arrive()
     {
@@ -116,25 +117,26 @@ protected:
         Pass(0.2);
         _now.Flight.phase = Uav::FlightPhase::FLIGHT_COURSE;
     }
-    void GiveArea(std::uint32_t number = 1)
+    static Uav::SearchArea AreaAt(float altitudeM, std::uint32_t number = 1)
     {
         Uav::SearchArea area;
         area.number = number;
         area.latitude_deg = Field.LatitudeDeg;
         area.longitude_deg = Field.LongitudeDeg;
-        area.altitude_m = 510;
+        area.altitude_m = altitudeM;
         area.north_m = 200;
         area.east_m = 400;
         area.speed_mps = 16;
         area.lane_m = 50;
-        EXPECT_EQ(_mission.Take(area), "");
+        return area;
     }
+    void GiveArea(std::uint32_t number = 1) { EXPECT_EQ(_mission->Take(AreaAt(510, number)), ""); }
     void CommandSearch(std::uint32_t id = 1)
     {
         Uav::Search search;
         search.id = id;
         search.reply_to = "ground/Commands";
-        _mission.Take(search);
+        _mission->Take(search);
         Pass(0.2);
     }
     void CommandGoto(std::uint32_t id)
@@ -146,7 +148,7 @@ protected:
         command.longitude_deg = Field.LongitudeDeg;
         command.altitude_m = 600;
         command.speed_mps = 10;
-        _mission.Take(command);
+        _mission->Take(command);
         Pass(0.2);
     }
     void CommandHome(std::uint32_t id = 0)
@@ -154,7 +156,7 @@ protected:
         Uav::GoHome home;
         home.id = id;
         home.reason = "the battery is low";
-        _mission.Take(home);
+        _mission->Take(home);
         Pass(0.2);
     }
     // What sensor fusion says: a target seen now by this aircraft's own camera.
@@ -186,7 +188,7 @@ protected:
         validation.node = node;
         validation.accepted = accepted;
         validation.busy = busy;
-        _mission.Take(validation);
+        _mission->Take(validation);
         Pass(0.2);
     }
     void BeAsked(const std::string &by, double northM)
@@ -198,16 +200,16 @@ protected:
         report.latitude_deg = place.LatitudeDeg;
         report.longitude_deg = place.LongitudeDeg;
         report.sigma_m = 2;
-        _mission.Take(report);
+        _mission->Take(report);
         Pass(0.2);
     }
     Uav::MissionState State() const
     {
         Uav::MissionState state;
-        _mission.Describe(state);
+        _mission->Describe(state);
         return state;
     }
-    Uav::TargetStage StageOfFinding() const { return _mission.Findings().at(0).stage; }
+    Uav::TargetStage StageOfFinding() const { return _mission->Findings().at(0).stage; }
     Uav::Validation LastValidation() const
     {
         return _output.Validations.empty() ? Uav::Validation() : _output.Validations.back().second;
@@ -242,8 +244,8 @@ TEST_F(MissionOf2, HasNotArrivedWhenTheAutopilotHoldsAnotherPoint)
     CommandGoto(5);
     _now.Flight.phase = Uav::FlightPhase::FLIGHT_HOLD;
     _now.Flight.course = 0;
-    _mission.Update(_now);
-    _mission.Act();
+    _mission->Update(_now);
+    _mission->Act();
     EXPECT_EQ(State().mode, Mode::MISSION_GOTO);
 }
 
@@ -252,7 +254,8 @@ TEST_F(MissionOf2, SaysThatACommandWasReplaced)
     CommandGoto(5);
     CommandGoto(6);
     EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_ACCEPTED, Stage::COMMAND_REPLACED));
-    EXPECT_EQ(_output.Acks[1].reason, "command 6");
+    EXPECT_EQ(_output.Acks[1].replaced_by, 6u);
+    EXPECT_EQ(_output.Acks[1].reason, "") << "the numbers of commands belong to whoever gives them";
 }
 
 TEST_F(MissionOf2, HoldsForEverWithoutATrack)
@@ -294,6 +297,103 @@ TEST_F(MissionOf2, GoingHomeReplacesACommand)
     CommandGoto(5);
     CommandHome();
     EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_ACCEPTED, Stage::COMMAND_REPLACED));
+    EXPECT_EQ(_output.Acks[1].reason, "it goes home");
+    EXPECT_EQ(_output.Acks[1].replaced_by, 0u);
+}
+
+TEST_F(MissionOf2, TellsWhereHomeIs)
+{
+    EXPECT_TRUE(State().has_home);
+    EXPECT_NEAR(State().home_latitude_deg, Field.LatitudeDeg, 1e-5);
+    EXPECT_NEAR(State().home_longitude_deg, Field.LongitudeDeg, 1e-5);
+    EXPECT_FALSE(State().has_floor);
+    EXPECT_FALSE(State().has_ground);
+}
+
+// uav2 over ground at 430 m, above which it keeps 30 m.
+class MissionAboveGround : public MissionOf2
+{
+protected:
+    void SetUp() override
+    {
+        _mission.emplace("uav2", _output, Swarm::Floor({.GroundM = 430, .ClearanceM = 30}));
+        MissionOf2::SetUp();
+    }
+    static Uav::Goto GotoAt(double altitudeM)
+    {
+        Uav::Goto command;
+        command.id = 5;
+        command.reply_to = "ground/Commands";
+        command.latitude_deg = Field.LatitudeDeg;
+        command.longitude_deg = Field.LongitudeDeg;
+        command.altitude_m = altitudeM;
+        command.speed_mps = 10;
+        return command;
+    }
+};
+
+TEST_F(MissionAboveGround, DeclinesAPointBelowItsFloorAndSaysWhy)
+{
+    _mission->Take(GotoAt(50));
+    EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_DECLINED));
+    EXPECT_EQ(_output.Acks[0].reason,
+              "50 m above sea level is 380 m below the ground and below the floor of 460 m");
+    EXPECT_THAT(_output.Courses, IsEmpty());
+    EXPECT_EQ(State().mode, Mode::MISSION_IDLE);
+}
+
+TEST_F(MissionAboveGround, FliesToAPointOnItsFloor)
+{
+    _mission->Take(GotoAt(460));
+    EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_ACCEPTED));
+}
+
+TEST_F(MissionAboveGround, DeclinesASearchAreaBelowItsFloor)
+{
+    const std::string why = "100 m above sea level is 330 m below the ground and below the floor of 460 m";
+    GiveArea();
+    CommandSearch(1);
+    const std::size_t courses = _output.Courses.size();
+    EXPECT_EQ(_mission->Take(AreaAt(100)), why);
+    Pass(1);
+    EXPECT_EQ(State().area_declined, why);
+    EXPECT_EQ(State().search_area, 1u) << "it goes on with the one before";
+    for (std::size_t i = courses; i < _output.Courses.size(); ++i)
+        EXPECT_GE(_output.Courses[i].Point.AltitudeM, 460);
+    EXPECT_EQ(_mission->Take(AreaAt(470)), "");
+    EXPECT_EQ(State().area_declined, "") << "a good one is in force again";
+}
+
+TEST_F(MissionAboveGround, DeclinesToSearchWhileTheLastAreaIsDeclined)
+{
+    GiveArea();
+    EXPECT_NE(_mission->Take(AreaAt(100)), "");
+    CommandSearch(6);
+    EXPECT_THAT(_output.StagesOf(6), ElementsAre(Stage::COMMAND_DECLINED));
+    EXPECT_THAT(_output.Acks[0].reason,
+                HasSubstr("search area: 100 m above sea level is 330 m below the ground"));
+    EXPECT_EQ(State().mode, Mode::MISSION_IDLE);
+}
+
+TEST_F(MissionAboveGround, GoesHomeNoLowerThanItsFloor)
+{
+    Mission started("uav2", _output, Swarm::Floor({.GroundM = 430, .ClearanceM = 30}));
+    _now.Position->AltitudeM = 430;
+    started.Update(_now);
+    Uav::GoHome home;
+    home.id = 7;
+    started.Take(home);
+    EXPECT_THAT(_output.StagesOf(7), ElementsAre(Stage::COMMAND_ACCEPTED));
+    ASSERT_FALSE(_output.Courses.empty());
+    EXPECT_EQ(_output.Courses.back().Point.AltitudeM, 460);
+}
+
+TEST_F(MissionAboveGround, TellsItsFloorAndTheGround)
+{
+    EXPECT_TRUE(State().has_floor);
+    EXPECT_EQ(State().floor_m, 460);
+    EXPECT_TRUE(State().has_ground);
+    EXPECT_EQ(State().ground_m, 430);
 }
 
 TEST_F(MissionOf2, DeclinesAllButGoingHomeWhileTheBatteryIsLow)
@@ -350,7 +450,7 @@ TEST_F(MissionOf2, TakesANewAreaAtOnce)
     other.north_m = other.east_m = 100;
     other.speed_mps = 12;
     other.lane_m = 50;
-    EXPECT_EQ(_mission.Take(other), "");
+    EXPECT_EQ(_mission->Take(other), "");
     Pass(0.2);
     EXPECT_EQ(State().search_area, 2u);
     EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
@@ -363,7 +463,7 @@ TEST_F(MissionOf2, KeepsItsAreaWhenANewOneMakesNoSense)
     GiveArea(1);
     Uav::SearchArea wrong;
     wrong.number = 2;
-    EXPECT_NE(_mission.Take(wrong), "");
+    EXPECT_NE(_mission->Take(wrong), "");
     EXPECT_EQ(State().search_area, 1u);
 }
 
@@ -374,8 +474,8 @@ TEST_F(MissionOf2, SendsACourseAgainThatTheAutopilotDoesNotFly)
     const std::size_t courses = _output.Courses.size();
     _now.NowS += Mission::RepeatS + 0.1;
     _now.Flight.course = 0;  // it was silent
-    _mission.Update(_now);
-    _mission.Act();
+    _mission->Update(_now);
+    _mission->Act();
     EXPECT_EQ(_output.Courses.size(), courses + 1);
 }
 
@@ -429,13 +529,13 @@ TEST_F(MissionOf2, TracksATargetThatWasValidatedAndSearchesOn)
     Answer("uav1", true);
     EXPECT_EQ(State().mode, Mode::MISSION_TRACK);
     EXPECT_EQ(StageOfFinding(), Uav::TargetStage::TARGET_TRACKED);
-    EXPECT_EQ(_mission.Findings()[0].validated_by, "uav1");
+    EXPECT_EQ(_mission->Findings()[0].validated_by, "uav1");
     Pass(Mission::TrackS);
     EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
-    EXPECT_NEAR(_mission.Findings()[0].tracked_s, Mission::TrackS, 0.5);
+    EXPECT_NEAR(_mission->Findings()[0].tracked_s, Mission::TrackS, 0.5);
     See(30);
     Pass(1000);
-    EXPECT_EQ(_mission.Findings().size(), 1u) << "it knows the target";
+    EXPECT_EQ(_mission->Findings().size(), 1u) << "it knows the target";
     EXPECT_NE(State().mode, Mode::MISSION_CONFIRM);
 }
 
@@ -495,7 +595,7 @@ TEST_F(MissionOf2, GivesARejectedTargetAnotherChanceMuchLater)
     Pass(Swarm::TargetBook::AgainAfterS);
     See(30);
     EXPECT_EQ(State().mode, Mode::MISSION_CONFIRM);
-    EXPECT_EQ(_mission.Findings().size(), 1u);
+    EXPECT_EQ(_mission->Findings().size(), 1u);
 }
 
 TEST_F(MissionOf2, AsksThoseThatWereBusyOnceMoreAndForAMinute)
@@ -582,7 +682,7 @@ TEST_F(MissionOf2, TellsTheAskingAircraftWhenACommandCallsItAway)
     BeAsked("uav1", 80);
     CommandGoto(9);
     EXPECT_FALSE(LastValidation().accepted);
-    EXPECT_EQ(LastValidation().reason, "command 9");
+    EXPECT_EQ(LastValidation().reason, "it was commanded to do something else");
 }
 
 TEST_F(MissionOf2, LeavesItsTargetToAnEarlierNameThatPursuesIt)
@@ -590,7 +690,7 @@ TEST_F(MissionOf2, LeavesItsTargetToAnEarlierNameThatPursuesIt)
     Confirm();
     BeAsked("uav1", 33);
     EXPECT_EQ(State().mode, Mode::MISSION_VALIDATE);
-    EXPECT_THAT(_mission.Findings(), IsEmpty());
+    EXPECT_THAT(_mission->Findings(), IsEmpty());
 }
 
 TEST_F(MissionOf2, KeepsItsTargetAgainstALaterName)
@@ -604,10 +704,10 @@ TEST_F(MissionOf2, KeepsItsTargetAgainstALaterName)
 TEST_F(MissionOf2, LeavesItsTargetWhenAnEarlierNameListsIt)
 {
     Confirm();
-    _now.OthersFindings["uav1"].items = _mission.Findings();
+    _now.OthersFindings["uav1"].items = _mission->Findings();
     Pass(0.2);
     EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
-    EXPECT_THAT(_mission.Findings(), IsEmpty());
+    EXPECT_THAT(_mission->Findings(), IsEmpty());
 }
 
 TEST_F(MissionOf2, GivesWayToAnEarlierNameWhenBothWait)
@@ -628,7 +728,7 @@ TEST_F(MissionOf2, TakesATargetUpAgainThatACommandCalledItAwayFrom)
     CommandSearch(6);
     See(30);
     EXPECT_EQ(State().mode, Mode::MISSION_CONFIRM);
-    EXPECT_EQ(_mission.Findings().size(), 1u);
+    EXPECT_EQ(_mission->Findings().size(), 1u);
 }
 
 TEST_F(MissionOf2, KeepsTheNameOfATargetWithinWhatAMessageTakes)
@@ -647,7 +747,7 @@ TEST_F(MissionOf2, IgnoresReportsThatMakeNoSense)
     Uav::TargetReport report;
     report.seen_by = "uav1";
     report.latitude_deg = std::numeric_limits<double>::quiet_NaN();
-    _mission.Take(report);
+    _mission->Take(report);
     Pass(0.2);
     EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
 }

@@ -53,7 +53,7 @@ inline void AddFlyingManagers(Rabit::RabitSteppedReactor &reactor, Rabit::RabitW
     const Swarm::Circle circle{Swarm::Moved(Field, {-250, eastM, 0}), 60, 12};
     reactor.AddManager(std::make_unique<Swarm::Autopilot>(
         names, std::make_unique<Swarm::SimulatedVehicle>(Swarm::Flight(circle)), workspace));
-    reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, "ground", workspace));
+    reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, "ground", Swarm::Floor(), workspace));
     reactor.AddManager(std::make_unique<Swarm::HealthMonitor>(
         names, Swarm::HealthMonitor::Options{.EnduranceS = 2400.0}, workspace));
 }

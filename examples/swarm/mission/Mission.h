@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../Geo.h"
+#include "Floor.h"
 #include "LawnMower.h"
 #include "TargetBook.h"
 #include "uav.idl.h"
@@ -54,6 +55,9 @@ struct Situation
 // A Goto or GoHome ends all that. An aircraft that holds the point of a Goto and has a recorded track goes
 // back to the track after a while.
 //
+// It declines a point and a search area below its floor, and a Search while the last area is declined: it
+// would search another one than whoever commands it means. Home it flies no lower than its floor.
+//
 // The owner calls Update first, then what came in, then Act, each time anything may have changed and a few
 // times a second. Not thread-safe.
 class Mission
@@ -75,10 +79,11 @@ public:
     static constexpr int Layers = 10;
     static constexpr float HomeSpeedMps = 16;
 
-    Mission(std::string aircraft, MissionOutput &output);
+    Mission(std::string aircraft, MissionOutput &output, const Floor &floor = Floor());
 
     void Update(Situation situation);
-    // A new area takes effect at once. One that makes no sense is refused and changes nothing; returns why.
+    // A new area takes effect at once. One that makes no sense or is too low is declined, and the one before
+    // stays in force for whoever searches it; returns why.
     std::string Take(const Uav::SearchArea &area);
     void Take(const Uav::Goto &command);
     void Take(const Uav::Search &command);
@@ -110,8 +115,9 @@ private:
     void Decline(const Message &command, const std::string &reason);
     template <typename Message>
     void Accept(const Message &command, Uav::MissionMode mode);
-    void Finish(Uav::CommandStage stage, const std::string &reason);
+    void Finish(Uav::CommandStage stage, const std::string &reason, std::uint32_t replacedBy = 0);
     std::string WhyNotNow(bool mayBeTired) const;
+    GeoPoint WhereHomeIs() const;
     void ActOnCommand();
     bool HasArrived() const;
     bool Fly(const GeoPoint &point, float speedMps);
@@ -138,10 +144,12 @@ private:
 
     const std::string _aircraft;
     MissionOutput &_output;
+    const Floor _floor;
     Situation _now;
     TargetBook _book;
     std::optional<GeoPoint> _home;
     std::optional<Uav::SearchArea> _area;
+    std::string _areaDeclined;  // why the last area is not in force
     std::optional<LawnMower> _mower;
 
     Uav::MissionMode _mode = Uav::MissionMode::MISSION_IDLE;

@@ -11,8 +11,8 @@ namespace
 constexpr std::size_t MaxTargetText = 64;  // what MissionState takes
 }
 
-Mission::Mission(std::string aircraft, MissionOutput &output)
-    : _aircraft(aircraft), _output(output), _book(std::move(aircraft))
+Mission::Mission(std::string aircraft, MissionOutput &output, const Floor &floor)
+    : _aircraft(aircraft), _output(output), _floor(floor), _book(std::move(aircraft))
 {
 }
 
@@ -28,7 +28,10 @@ void Mission::Update(Situation situation)
 
 std::string Mission::Take(const Uav::SearchArea &area)
 {
-    const std::string problem = WhyNot(area);
+    std::string problem = WhyNot(area);
+    if (problem.empty())
+        problem = _floor.WhyTooLow(area.altitude_m);
+    _areaDeclined = problem;
     if (!problem.empty())
         return problem;
     _area = area;
@@ -62,9 +65,8 @@ void Mission::Decline(const Message &command, const std::string &reason)
 template <typename Message>
 void Mission::Accept(const Message &command, Uav::MissionMode mode)
 {
-    const std::string why = command.id == 0 ? "it goes home" : "command " + std::to_string(command.id);
-    Finish(Uav::CommandStage::COMMAND_REPLACED, why);
-    LeaveTarget(why);
+    Finish(Uav::CommandStage::COMMAND_REPLACED, command.id == 0 ? "it goes home" : "", command.id);
+    LeaveTarget(command.id == 0 ? "it goes home" : "it was commanded to do something else");
     _open = Command{command.id, command.reply_to};
     Uav::CommandAck ack;
     ack.id = command.id;
@@ -82,7 +84,7 @@ void Mission::Accept(const Message &command, Uav::MissionMode mode)
 }
 
 // The last word about the open command.
-void Mission::Finish(Uav::CommandStage stage, const std::string &reason)
+void Mission::Finish(Uav::CommandStage stage, const std::string &reason, std::uint32_t replacedBy)
 {
     if (!_open)
         return;
@@ -91,6 +93,7 @@ void Mission::Finish(Uav::CommandStage stage, const std::string &reason)
     ack.node = _aircraft;
     ack.stage = stage;
     ack.reason = reason;
+    ack.replaced_by = replacedBy;
     _output.Answer(_open->ReplyTo, ack);
     _open.reset();
 }
@@ -98,6 +101,8 @@ void Mission::Finish(Uav::CommandStage stage, const std::string &reason)
 void Mission::Take(const Uav::Goto &command)
 {
     std::string reason = WhyNot(command);
+    if (reason.empty())
+        reason = _floor.WhyTooLow(command.altitude_m);
     if (reason.empty())
         reason = WhyNotNow(false);
     const GeoPoint point{command.latitude_deg, command.longitude_deg, command.altitude_m};
@@ -115,6 +120,8 @@ void Mission::Take(const Uav::Search &command)
     std::string reason = WhyNotNow(false);
     if (reason.empty() && !_now.Position)
         reason = "it does not know yet where it is";
+    if (reason.empty() && !_areaDeclined.empty())
+        reason = "search area: " + _areaDeclined;
     if (reason.empty() && !_area)
         reason = "no search area is known";
     if (!reason.empty())
@@ -128,14 +135,20 @@ void Mission::Take(const Uav::GoHome &command)
     std::string reason = WhyNotNow(true);
     if (reason.empty() && !_home)
         reason = "it does not know yet where home is";
-    if (reason.empty() && !Fly(*_home, HomeSpeedMps))
+    if (reason.empty() && !Fly(WhereHomeIs(), HomeSpeedMps))
         reason = "the autopilot takes no commands now";
     if (!reason.empty())
         return Decline(command, reason);
     Accept(command, Uav::MissionMode::MISSION_HOME);
     _why = command.reason;
-    _gotoPoint = *_home;
+    _gotoPoint = WhereHomeIs();
     _gotoSpeedMps = HomeSpeedMps;
+}
+
+// It may have started on the ground.
+GeoPoint Mission::WhereHomeIs() const
+{
+    return {_home->LatitudeDeg, _home->LongitudeDeg, _floor.Raised(_home->AltitudeM)};
 }
 
 bool Mission::HasArrived() const
@@ -220,6 +233,14 @@ void Mission::Describe(Uav::MissionState &state) const
         state.partner = _partner;
     }
     state.text = _why;
+    state.area_declined = _areaDeclined;
+    state.has_floor = _floor.LowestM().has_value();
+    state.floor_m = static_cast<float>(_floor.LowestM().value_or(0));
+    state.has_ground = _floor.GroundM().has_value();
+    state.ground_m = static_cast<float>(_floor.GroundM().value_or(0));
+    state.has_home = _home.has_value();
+    state.home_latitude_deg = _home ? static_cast<float>(_home->LatitudeDeg) : 0;
+    state.home_longitude_deg = _home ? static_cast<float>(_home->LongitudeDeg) : 0;
 }
 
 }  // namespace Swarm
