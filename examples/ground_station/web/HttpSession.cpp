@@ -10,16 +10,30 @@ namespace Ground
 {
 namespace http = boost::beast::http;
 
-HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, ServerContext &context)
+HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, std::unique_ptr<ConnectionSlot> slot,
+                         ServerContext &context)
     : _context(context),
-      _slot(std::make_unique<ConnectionSlot>(context)),
+      _id(slot->Id()),
+      _slot(std::move(slot)),
       _stream(std::move(socket)),
       _buffer(WebServer::MaxHeaderBytes + 1024)
 {
+    _context.Requests[_id] = this;
+}
+
+HttpSession::~HttpSession()
+{
+    _context.Requests.erase(_id);
+}
+
+void HttpSession::Drop()
+{
+    _stream.close();
 }
 
 void HttpSession::Read()
 {
+    _context.Gate.BecomesIdle(_id);
     _parser.emplace();
     _parser->header_limit(WebServer::MaxHeaderBytes);
     _parser->body_limit(0);
@@ -42,6 +56,7 @@ void HttpSession::OnRead(const boost::beast::error_code &error)
             Close();
         return;
     }
+    _context.Gate.BecomesBusy(_id);
     const HttpRequest request = _parser->release();
     if (!boost::beast::websocket::is_upgrade(request))
     {

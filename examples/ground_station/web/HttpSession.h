@@ -15,9 +15,15 @@ namespace Ground
 class HttpSession : public std::enable_shared_from_this<HttpSession>
 {
 public:
-    HttpSession(boost::asio::ip::tcp::socket socket, ServerContext &context);
+    HttpSession(boost::asio::ip::tcp::socket socket, std::unique_ptr<ConnectionSlot> slot,
+                ServerContext &context);
+    ~HttpSession();
+    HttpSession(const HttpSession &) = delete;
+    HttpSession &operator=(const HttpSession &) = delete;
 
     void Read();
+    // Ends it, for another one needs its place.
+    void Drop();
 
 private:
     void OnRead(const boost::beast::error_code &error);
@@ -25,6 +31,7 @@ private:
     void Close();
 
     ServerContext &_context;
+    const ConnectionGate::Id _id;
     std::unique_ptr<ConnectionSlot> _slot;
     boost::beast::tcp_stream _stream;
     boost::beast::flat_buffer _buffer;

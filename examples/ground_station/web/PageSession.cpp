@@ -23,6 +23,7 @@ PageSession::~PageSession()
 
 void PageSession::Accept(const HttpRequest &request)
 {
+    _context.Gate.OpensPage(_slot->Id());
     boost::beast::get_lowest_layer(_stream).expires_never();  // the WebSocket has its own timeouts
     boost::beast::error_code ignored;
     boost::beast::get_lowest_layer(_stream).socket().set_option(boost::asio::ip::tcp::no_delay(true),

@@ -1,15 +1,18 @@
 #pragma once
 
+#include "ConnectionGate.h"
 #include "HttpAnswer.h"
 #include "WebServer.h"
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
 
 namespace Ground
 {
+class HttpSession;
 class PageSession;
 
 // What the sessions of a WebServer share. All but the counters and pictures is for the server's thread, or
@@ -21,29 +24,34 @@ struct ServerContext
     RequestGuard Guard;
     WebServer::RequestHandler Handler;
     PictureStore Pictures;
-    std::set<PageSession *> Pages;              // each enters itself, and leaves in its destructor
-    std::shared_ptr<const std::string> Latest;  // snapshot; null before the first
+    ConnectionGate Gate;
+    std::map<ConnectionGate::Id, HttpSession *> Requests;  // each enters itself, and leaves in its destructor
+    std::set<PageSession *> Pages;                         // likewise
+    std::shared_ptr<const std::string> Latest;             // snapshot; null before the first
 
-    std::atomic<std::size_t> ConnectionsOpen{0};
     std::atomic<std::uint64_t> Connections{0};
     std::atomic<std::uint64_t> ConnectionsRefused{0};
+    std::atomic<std::uint64_t> ConnectionsDropped{0};
     std::atomic<std::uint64_t> PagesOpened{0};
     std::atomic<std::uint64_t> PagesOpen{0};
     std::atomic<std::uint64_t> SnapshotsSent{0};
     std::atomic<std::uint64_t> SnapshotsSkipped{0};
 };
 
-// One connection, for as long as it is held.
+// The place of one connection, for as long as it is held.
 class ConnectionSlot
 {
 public:
-    explicit ConnectionSlot(ServerContext &context) : _context(context) { ++_context.ConnectionsOpen; }
-    ~ConnectionSlot() { --_context.ConnectionsOpen; }
+    ConnectionSlot(ServerContext &context, ConnectionGate::Id id) : _context(context), _id(id) {}
+    ~ConnectionSlot() { _context.Gate.Leaves(_id); }
     ConnectionSlot(const ConnectionSlot &) = delete;
     ConnectionSlot &operator=(const ConnectionSlot &) = delete;
 
+    ConnectionGate::Id Id() const { return _id; }
+
 private:
     ServerContext &_context;
+    const ConnectionGate::Id _id;
 };
 
 }  // namespace Ground

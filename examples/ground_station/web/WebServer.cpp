@@ -36,8 +36,8 @@ class WebServer::Core
 public:
     Core(const Settings &settings, std::span<const PageFile> files)
         : _context{settings, files, RequestGuard(settings.Endpoint.address().is_loopback(), HostName()),
-                   {},       {},    {},
-                   {}},
+                   {},       {},    ConnectionGate(settings.Connections),
+                   {},       {},    {}},
           _endpoint(settings.Endpoint)
     {
         Listen();
@@ -91,6 +91,7 @@ public:
         Counters counters;
         counters.Connections = _context.Connections;
         counters.ConnectionsRefused = _context.ConnectionsRefused;
+        counters.ConnectionsDropped = _context.ConnectionsDropped;
         counters.PagesOpened = _context.PagesOpened;
         counters.PagesOpen = _context.PagesOpen;
         counters.SnapshotsSent = _context.SnapshotsSent;
@@ -153,18 +154,30 @@ private:
             _pause->async_wait([this](const boost::system::error_code &) { Accept(); });
             return;
         }
-        if (_context.ConnectionsOpen >= _context.Settings.MaxConnections)
+        Take(std::move(socket));
+        Accept();
+    }
+    void Take(tcp::socket socket)
+    {
+        boost::system::error_code ignored;
+        const tcp::endpoint from = socket.remote_endpoint(ignored);  // of one that has left: no address
+        const ConnectionGate::Decision decision = _context.Gate.Arrive(from.address());
+        if (decision.Dropped)
+        {
+            ++_context.ConnectionsDropped;
+            if (const auto session = _context.Requests.find(*decision.Dropped);
+                session != _context.Requests.end())
+                session->second->Drop();
+        }
+        if (!decision.Taken)
         {
             ++_context.ConnectionsRefused;
-            boost::system::error_code ignored;
             socket.close(ignored);
+            return;
         }
-        else
-        {
-            ++_context.Connections;
-            std::make_shared<HttpSession>(std::move(socket), _context)->Read();
-        }
-        Accept();
+        ++_context.Connections;
+        auto slot = std::make_unique<ConnectionSlot>(_context, *decision.Taken);
+        std::make_shared<HttpSession>(std::move(socket), std::move(slot), _context)->Read();
     }
     void Distribute()
     {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ConnectionGate.h"
 #include "PageFiles.h"
 #include "PictureStore.h"
 #include "WebAddress.h"
@@ -26,7 +27,8 @@ namespace Ground
 // handler; what that returns goes to the page that asked.
 //
 // What comes from the network is bounded: size of requests and messages, time for a request, silence (the
-// server sends pings), number of connections, replies that wait. Whoever goes beyond is disconnected. Nothing
+// server sends pings), number of connections (see ConnectionGate), replies that wait. Whoever goes beyond is
+// disconnected. Nothing
 // from the network throws out of here.
 //
 // Threads: Start, Stop and the destructor belong to one thread; the rest may be called from any.
@@ -36,7 +38,7 @@ public:
     struct Settings
     {
         boost::asio::ip::tcp::endpoint Endpoint{boost::asio::ip::address_v4::loopback(), 0};
-        std::size_t MaxConnections = 64;               // more are closed at once
+        ConnectionGate::Limits Connections{};          // more are closed at once
         std::chrono::milliseconds RequestTime{10000};  // for a request to come, or an answer to be taken
         std::chrono::milliseconds Silence{15000};      // after which a WebSocket is given up
     };
@@ -54,6 +56,7 @@ public:
     {
         std::uint64_t Connections = 0;         // taken
         std::uint64_t ConnectionsRefused = 0;  // one too many
+        std::uint64_t ConnectionsDropped = 0;  // idle ones that made room for others
         std::uint64_t PagesOpened = 0;         // WebSockets
         std::uint64_t PagesOpen = 0;           // now
         std::uint64_t SnapshotsSent = 0;

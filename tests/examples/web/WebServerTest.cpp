@@ -139,7 +139,7 @@ TEST_F(WebServerTest, EndsAConnectionThatSaysNothing)
 
 TEST_F(WebServerTest, TakesSoManyConnectionsAndNoMore)
 {
-    _settings.MaxConnections = 3;
+    _settings.Connections = {.Most = 3, .ForKnown = 0};
     Start();
     std::vector<std::unique_ptr<PageClient>> pages;
     for (int i = 0; i < 3; ++i)
@@ -151,6 +151,28 @@ TEST_F(WebServerTest, TakesSoManyConnectionsAndNoMore)
     EXPECT_EQ(_server->Count().ConnectionsRefused, 1u);
     pages.pop_back();
     EXPECT_TRUE(Becomes([this] { return PageClient(Endpoint()).Open() == 101u; })) << "a place became free";
+}
+
+TEST_F(WebServerTest, OpensThePageWhileAStrangerHoldsHundredsOfIdleConnections)
+{
+    _settings.RequestTime = std::chrono::minutes(10);  // waiting for them to end would take too long
+    Start();
+    PageClient before(Endpoint());
+    ASSERT_EQ(before.Open(), 101u);
+    std::vector<std::unique_ptr<RawClient>> idle;
+    for (int i = 0; i < 300; ++i)
+    {
+        idle.push_back(std::make_unique<RawClient>(Endpoint()));
+        if (i % 2 == 0)
+            idle.back()->Send("GET / HTTP/1.1\r\n");  // and never goes on
+    }
+    EXPECT_THAT(Answer("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"),
+                StartsWith("HTTP/1.1 200 OK\r\n"));
+    EXPECT_EQ(PageClient(Endpoint()).Open(), 101u);
+    EXPECT_GE(_server->Count().ConnectionsDropped, 270u);
+    EXPECT_EQ(_server->Count().ConnectionsRefused, 0u);
+    _server->Broadcast(Text("still here"));
+    EXPECT_THAT(before.Next(), Optional(std::string("still here"))) << "an open page is not dropped";
 }
 
 TEST_F(WebServerTest, OpensAWebSocketForItsOwnPageOnly)
