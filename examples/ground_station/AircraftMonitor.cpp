@@ -9,9 +9,15 @@ namespace Ground
 {
 namespace
 {
-std::string MissionText(const Uav::MissionState &mission)
+// A command of another ground station, or of an earlier life of this one, has no number here.
+std::string WithNumber(const std::string &mode, std::uint32_t id, const CommandTally &tally)
 {
-    const std::string command = std::to_string(mission.last_command);
+    const std::uint32_t index = id - tally.first_id;
+    return index < tally.commands ? mode + " " + std::to_string(index + 1) : mode;
+}
+
+std::string MissionText(const Uav::MissionState &mission, const CommandTally &tally)
+{
     switch (mission.mode)
     {
         case Uav::MissionMode::MISSION_IDLE:
@@ -29,9 +35,9 @@ std::string MissionText(const Uav::MissionState &mission)
         case Uav::MissionMode::MISSION_HOME:
             return "HOME";
         case Uav::MissionMode::MISSION_GOTO:
-            return std::string("GOTO ").append(command);
+            return WithNumber("GOTO", mission.last_command, tally);
         case Uav::MissionMode::MISSION_HOLD:
-            return std::string("HOLD ").append(command);
+            return WithNumber("HOLD", mission.last_command, tally);
     }
     return "?";
 }
@@ -65,7 +71,7 @@ AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &worksp
         });
 }
 
-void AircraftMonitor::Show(FleetRow &row)
+void AircraftMonitor::Show(FleetRow &row, const CommandTally &tally)
 {
     if (!_pose->GetGlobalPublishSubscribeMessageRef() || !_mission->GetGlobalPublishSubscribeMessageRef())
         return;
@@ -81,8 +87,10 @@ void AircraftMonitor::Show(FleetRow &row)
                                   static_cast<double>(_pose->velocity_east_mps),
                                   static_cast<double>(_pose->velocity_down_mps));
     }
-    if (_mission->WasPosted())
-        row.Mission = MissionText(*_mission);
+    if (!_mission->WasPosted())
+        return;
+    row.Mission = MissionText(*_mission, tally);
+    row.AreaDeclined = _mission->area_declined;
 }
 
 std::vector<Uav::Finding> AircraftMonitor::Findings()

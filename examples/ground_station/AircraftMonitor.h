@@ -2,6 +2,7 @@
 
 #include "FleetTable.h"
 #include "PoseCount.h"
+#include "ground.idl.h"
 #include "uav.idl.h"
 
 #include <rabit/RabitWorkspace.h>
@@ -24,8 +25,9 @@ public:
     // Registers the three names in the workspace, which must outlive this object.
     AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace);
 
-    // Fills in the row's pose, its age, and the mission. For one thread: the manager's.
-    void Show(FleetRow &row);
+    // Fills in the row's pose, its age, the mission and what of it is declined. The tally says by which
+    // numbers people know the commands. For one thread: the manager's.
+    void Show(FleetRow &row, const CommandTally &tally = {});
     // The targets that it has found, as it said last. For the same thread.
     std::vector<Uav::Finding> Findings();
     // Any thread.

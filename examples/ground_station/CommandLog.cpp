@@ -62,14 +62,24 @@ CommandProgress ProgressOf(Rabit::QueueOutcome outcome)
     return CommandProgress::PROGRESS_REFUSED;
 }
 
+void Step(CommandStatus &command, CommandProgress progress, const std::string &reason, double nowS)
+{
+    command.progress = progress;
+    command.reason = reason;
+    command.changed_s = nowS;
+    CommandStep step;
+    step.progress = progress;
+    step.reason = reason;
+    step.at_s = nowS;
+    command.steps.push_back(step);
+}
+
 // Goes on to that progress, unless the command is there or beyond.
 bool Advance(CommandStatus &command, CommandProgress progress, const std::string &reason, double nowS)
 {
     if (Rank(progress) <= Rank(command.progress))
         return false;
-    command.progress = progress;
-    command.reason = reason;
-    command.changed_s = nowS;
+    Step(command, progress, reason, nowS);
     return true;
 }
 }  // namespace
@@ -77,21 +87,22 @@ bool Advance(CommandStatus &command, CommandProgress progress, const std::string
 std::uint32_t CommandLog::Sent(CommandStatus command, double nowS)
 {
     ++_tallies[command.node].Sent;
-    return Append(std::move(command), CommandProgress::PROGRESS_SENT, nowS).id;
+    return Append(std::move(command), CommandProgress::PROGRESS_SENT, "", nowS).id;
 }
 
 void CommandLog::RefusedForGood(CommandStatus command, const std::string &reason, double nowS)
 {
     ++_tallies[command.node].Refused;
-    Append(std::move(command), CommandProgress::PROGRESS_REFUSED, nowS).reason = reason;
+    Append(std::move(command), CommandProgress::PROGRESS_REFUSED, reason, nowS);
 }
 
-CommandStatus &CommandLog::Append(CommandStatus command, CommandProgress progress, double nowS)
+CommandStatus &CommandLog::Append(CommandStatus command, CommandProgress progress, const std::string &reason,
+                                  double nowS)
 {
     command.id = NextId();
     command.number = static_cast<std::uint32_t>(_commands.size() + 1);
-    command.progress = progress;
-    command.sent_s = command.changed_s = nowS;
+    command.sent_s = nowS;
+    Step(command, progress, reason, nowS);
     _commands.push_back(std::move(command));
     return _commands.back();
 }
@@ -123,7 +134,10 @@ CommandLog::Answer CommandLog::Answered(const Uav::CommandAck &answer, double no
         return Answer::WrongNode;
     }
     const bool first = Rank(command->progress) < Rank(CommandProgress::PROGRESS_ACCEPTED);
-    if (!Advance(*command, ProgressOf(answer.stage), answer.reason, nowS))
+    // Whoever answers has it, also where the receipt comes after the answer.
+    if (command->progress == CommandProgress::PROGRESS_SENT)
+        Advance(*command, CommandProgress::PROGRESS_DELIVERED, "", nowS);
+    if (!Advance(*command, ProgressOf(answer.stage), ReasonOf(answer), nowS))
     {
         ++_repeated;
         return Answer::Repeated;
@@ -136,6 +150,25 @@ CommandLog::Answer CommandLog::Answered(const Uav::CommandAck &answer, double no
             ++tally.Declined;
     }
     return Answer::Counted;
+}
+
+void CommandLog::StartedAnew(const std::string &node, double lastHeardS, double nowS)
+{
+    for (CommandStatus &command : _commands)
+        if (command.node == node && command.progress == CommandProgress::PROGRESS_ACCEPTED &&
+            command.changed_s <= lastHeardS)
+            Advance(command, CommandProgress::PROGRESS_REPLACED, "the aircraft has started anew", nowS);
+}
+
+// With the number of another command, where the answer has its id.
+std::string CommandLog::ReasonOf(const Uav::CommandAck &answer) const
+{
+    if (answer.replaced_by == 0)
+        return answer.reason;
+    const std::uint32_t index = answer.replaced_by - _firstId;
+    if (index >= _commands.size())
+        return "a command that this ground station did not give";
+    return "command " + std::to_string(_commands[index].number);
 }
 
 CommandLog::Tally CommandLog::Of(const std::string &node) const

@@ -13,7 +13,8 @@
 namespace Ground
 {
 
-// Who was sent which command, and what has become of it. Times are in seconds since the ground station's
+// Who was sent which command, and what has become of it, step by step. People know a command by its number,
+// counted from 1; only the aircraft know it by its id. Times are in seconds since the ground station's
 // start. Not thread-safe.
 class CommandLog
 {
@@ -50,6 +51,11 @@ public:
     // An answer has come.
     Answer Answered(const Uav::CommandAck &answer, double nowS);
 
+    // The id of the command of number 1.
+    std::uint32_t FirstId() const { return _firstId; }
+    // The aircraft has started anew since then: it obeys no command any more that it had accepted by then.
+    void StartedAnew(const std::string &node, double lastHeardS, double nowS);
+
     // Zero for a node that was never sent anything.
     Tally Of(const std::string &node) const;
     // All of them, oldest first.
@@ -63,8 +69,10 @@ public:
     std::uint64_t Unknown() const { return _unknown; }
 
 private:
-    CommandStatus &Append(CommandStatus command, CommandProgress progress, double nowS);
+    CommandStatus &Append(CommandStatus command, CommandProgress progress, const std::string &reason,
+                          double nowS);
     CommandStatus *Find(std::uint32_t id);
+    std::string ReasonOf(const Uav::CommandAck &answer) const;
 
     std::uint32_t _firstId;
     std::vector<CommandStatus> _commands;

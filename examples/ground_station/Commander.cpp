@@ -2,6 +2,7 @@
 
 #include "PlanGoto.h"
 
+#include <rabit/RabitLog.h>
 #include <rabit/gateway/GatewayManager.h>
 
 #include <algorithm>
@@ -60,12 +61,16 @@ void Commander::TakeMessages()
 
 void Commander::Obey(const Order &order)
 {
+    _ordered.insert(order.node);
+    if (const auto aircraft = _aircraft.find(order.node); aircraft != _aircraft.end())
+        aircraft->second.WithoutOrders = false;
     CommandStatus command;
     command.node = order.node;
     command.kind = order.kind;
     command.latitude_deg = order.latitude_deg;
     command.longitude_deg = order.longitude_deg;
-    if (!Send(command, order.altitude_m, order.speed_mps))
+    command.altitude_m = order.altitude_m;
+    if (!Send(command, order.speed_mps))
         _log.RefusedForGood(command, "it is not known, or too much waits for it already", _elapsedS);
 }
 
@@ -92,24 +97,41 @@ void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std:
     aircraft.Pose->FetchMessage();
     if (!(aircraft.Pose->GetAgeSeconds() <= PoseFreshS))
         return;  // no aircraft, or one that is not heard well
+    LookForNewLife(status.node, status.incarnation);
     if (!aircraft.First)
         aircraft.First = aircraft.NextGoto = elapsed + FirstAfter();
     if (elapsed < *aircraft.First)
         return;
 
-    if ((_settings.Searchers.contains(status.node) || _settings.Searchers.contains("*")) &&
+    if (!_ordered.contains(status.node) &&
+        (_settings.Searchers.contains(status.node) || _settings.Searchers.contains("*")) &&
         aircraft.ToldToSearch != status.incarnation)
     {
         CommandStatus command;
         command.node = status.node;
         command.kind = OrderKind::ORDER_SEARCH;
-        if (Send(command, 0, 0))
+        if (Send(command, 0))
             aircraft.ToldToSearch = status.incarnation;
         else
             _log.Refused(status.node);  // the gateway does not know that queue yet: try again soon
     }
     if (_settings.Period && elapsed >= *aircraft.NextGoto && SendGoto(status.node, *aircraft.Pose))
         aircraft.NextGoto = elapsed + *_settings.Period;
+}
+
+// An aircraft that a person has commanded and that starts anew has forgotten that, and waits.
+void Commander::LookForNewLife(const std::string &node, std::uint64_t life)
+{
+    Aircraft &aircraft = AircraftOf(node);
+    const bool isBack = aircraft.Life != 0 && aircraft.Life != life;
+    if (isBack)
+        _log.StartedAnew(node, aircraft.HeardS, _elapsedS);
+    aircraft.Life = life;
+    aircraft.HeardS = _elapsedS;
+    if (!isBack || !_ordered.contains(node))
+        return;
+    aircraft.WithoutOrders = true;
+    Rabit::RabitLog::Write(Rabit::RabitLogLevel::Warning, node + " is back without orders");
 }
 
 bool Commander::SendGoto(const std::string &node, const Uav::Pose &pose)
@@ -120,7 +142,8 @@ bool Commander::SendGoto(const std::string &node, const Uav::Pose &pose)
     command.kind = OrderKind::ORDER_GOTO;
     command.latitude_deg = plan.latitude_deg;
     command.longitude_deg = plan.longitude_deg;
-    if (Send(command, plan.altitude_m, plan.speed_mps))
+    command.altitude_m = plan.altitude_m;
+    if (Send(command, plan.speed_mps))
         return true;
     _log.Refused(node);
     return false;
@@ -137,7 +160,7 @@ Commander::Aircraft &Commander::AircraftOf(const std::string &node)
     return aircraft;
 }
 
-bool Commander::Send(const CommandStatus &command, double altitudeM, float speedMps)
+bool Commander::Send(const CommandStatus &command, float speedMps)
 {
     const std::uint32_t id = _log.NextId();
     const std::string to = command.node + "/MissionControl";
@@ -159,7 +182,7 @@ bool Commander::Send(const CommandStatus &command, double altitudeM, float speed
             auto message = std::make_shared<Uav::Goto>();
             message->latitude_deg = command.latitude_deg;
             message->longitude_deg = command.longitude_deg;
-            message->altitude_m = altitudeM;
+            message->altitude_m = command.altitude_m;
             message->speed_mps = speedMps;
             sent = send(message);
             break;
@@ -192,23 +215,30 @@ void Commander::FollowReceipts()
     }
 }
 
-void Commander::PostIfChanged()
+void Commander::PostTallyIfChanged()
 {
-    std::vector<NodeCommands> nodes;
+    CommandTally tally;
+    tally.first_id = _log.FirstId();
+    tally.commands = static_cast<std::uint32_t>(_log.Commands().size());
     for (const auto &[node, aircraft] : _aircraft)
     {
-        const CommandLog::Tally tally = _log.Of(node);
+        const CommandLog::Tally ofNode = _log.Of(node);
         NodeCommands commands;
         commands.node = node;
-        commands.sent = tally.Sent;
-        commands.acknowledged = tally.Acknowledged;
-        nodes.push_back(commands);
+        commands.sent = ofNode.Sent;
+        commands.acknowledged = ofNode.Acknowledged;
+        commands.without_orders = aircraft.WithoutOrders;
+        tally.nodes.push_back(commands);
     }
-    if (nodes != _tally->nodes)
-    {
-        _tally->nodes = std::move(nodes);
-        _tally->PostMessage();
-    }
+    if (tally == *_tally)
+        return;
+    _tally->CopyMessage(&tally);
+    _tally->PostMessage();
+}
+
+void Commander::PostIfChanged()
+{
+    PostTallyIfChanged();
 
     const std::vector<CommandStatus> &all = _log.Commands();
     const std::size_t listed = std::min(all.size(), MaxListed);

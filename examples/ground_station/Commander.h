@@ -27,8 +27,7 @@ namespace Ground
 // Sends:   Uav::Goto, Uav::GoHome and Uav::Search to the queue MissionControl of an aircraft: those ordered,
 //          and by itself what its settings say.
 // Posts:   SearchArea (Uav::SearchArea), at the start and when it changes; CommandList (Ground::CommandList)
-// and
-//          CommandTally (Ground::CommandTally), when they change.
+//          and CommandTally (Ground::CommandTally), when they change.
 // Fetches: Gateway/Fleet, and <node>/Pose of each node.
 //
 // It also ends the run, when its time is over or when it is asked to: it sends nothing more, waits for the
@@ -45,7 +44,7 @@ public:
         // Where the fleet is to search, until somebody says otherwise. Its number is set here.
         Uav::SearchArea Area{};
         // Aircraft that are told to search, once in each of their lives, as soon as they are heard well; `*`
-        // is all of them.
+        // is all of them. Only until the first Order for that aircraft: from then on a person commands it.
         std::set<std::string> Searchers{};
         // Every aircraft gets a Goto this often; none: never.
         std::optional<std::chrono::milliseconds> Period{};
@@ -87,6 +86,9 @@ private:
             First;  // when the first command is due; none: no pose has come
         std::optional<std::chrono::nanoseconds> NextGoto;  // when the next Goto of the period is due
         std::uint64_t ToldToSearch = 0;                    // the life of it that was told
+        std::uint64_t Life = 0;                            // the last one that was heard well; 0: none
+        double HeardS = 0;                                 // when it was last heard well in that life
+        bool WithoutOrders = false;                        // see NodeCommands
     };
 
     void TakeMessages();
@@ -94,12 +96,14 @@ private:
     void Take(Uav::SearchArea area);
     void CommandBySettings(std::chrono::nanoseconds elapsed);
     void CommandBySettings(const Rabit::Gateway::NodeStatus &status, std::chrono::nanoseconds elapsed);
+    void LookForNewLife(const std::string &node, std::uint64_t life);
     void FollowReceipts();
     Aircraft &AircraftOf(const std::string &node);
     // Hands the command of that number to the gateway. False: it was refused, and nothing was sent.
-    bool Send(const CommandStatus &command, double altitudeM, float speedMps);
+    bool Send(const CommandStatus &command, float speedMps);
     bool SendGoto(const std::string &node, const Uav::Pose &pose);
     void PostIfChanged();
+    void PostTallyIfChanged();
     void EndIfDone(std::chrono::nanoseconds elapsed);
     bool IsQuiet(std::chrono::nanoseconds elapsed) const;
     std::chrono::nanoseconds FirstAfter() const;
@@ -112,6 +116,7 @@ private:
     CommandLog _log;
     std::map<std::uint32_t, std::shared_ptr<Rabit::RabitQueueReceipt>> _onWay;  // by the command's number
     std::map<std::string, Aircraft> _aircraft;
+    std::set<std::string> _ordered;  // those that a person has commanded
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();

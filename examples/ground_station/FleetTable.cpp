@@ -33,6 +33,31 @@ std::string Right(const std::string &text, std::size_t width)
     return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
+int Urgency(RowState state)
+{
+    switch (state)
+    {
+        case RowState::Lost:
+            return 0;
+        case RowState::Stale:
+            return 1;
+        case RowState::Waiting:
+            return 2;
+        case RowState::Up:
+            return 3;
+    }
+    return 3;
+}
+
+// So that a small screen cuts off those that are well.
+std::vector<FleetRow> MostUrgentFirst(std::vector<FleetRow> rows)
+{
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const FleetRow &a, const FleetRow &b)
+                     { return Urgency(a.State) < Urgency(b.State); });
+    return rows;
+}
+
 std::string AgeText(const FleetRow &row)
 {
     if (!row.AgeS)
@@ -110,6 +135,17 @@ std::string ToText(RowState state)
     return "?";
 }
 
+std::string WhatIsMissing(const FleetRow &row)
+{
+    if (row.State == RowState::Waiting || !row.AgeS)
+        return "";
+    const bool beats = row.State == RowState::Up;
+    const bool poses = *row.AgeS <= FleetRow::FreshS;
+    if (beats == poses)
+        return "";
+    return beats ? "poses missing, beats arriving" : "beats missing, poses arriving";
+}
+
 std::string Printable(const std::string &text, std::size_t longest)
 {
     std::string printable = text.substr(0, longest);
@@ -137,7 +173,7 @@ std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double
     const std::string heading = TableHeading(nodeWidth);
     const bool wide = heading.size() + PathColumnsWidth <= columns;
     lines.push_back({heading + (wide ? PathHeading() : ""), Emphasis::Heading});
-    for (const FleetRow &row : rows)
+    for (const FleetRow &row : MostUrgentFirst(rows))
         lines.push_back({TableRow(row, nodeWidth) + (wide ? PathColumns(row) : ""), EmphasisOf(row)});
     if (!wide)
         for (std::string &line : PathLines(rows, columns))

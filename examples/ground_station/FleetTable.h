@@ -32,7 +32,8 @@ struct FleetRow
     double LongitudeDeg = 0;
     double AltitudeM = 0;
     double SpeedMps = 0;
-    std::string Mission;  // empty: not known
+    std::string Mission;       // empty: not known
+    std::string AreaDeclined;  // why it declines the search area; empty if it does not
     std::uint64_t Sent = 0;
     std::uint64_t Acknowledged = 0;
     double RoundTripS = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
@@ -59,7 +60,8 @@ struct TableLine
     Emphasis Shown = Emphasis::None;
 };
 
-// The table with a title and a heading, for a screen of so many columns. What is not fresh stands in
+// The table with a title and a heading, for a screen of so many columns: what is LOST first, then STALE,
+// WAITING and UP, and otherwise in the order of the rows. What is not fresh stands in
 // parentheses and its age behind an exclamation mark, so that it is told apart without colours too. How the
 // way to each aircraft does stands in columns of its own, or below the table where there is no room for them.
 std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS,
@@ -67,6 +69,10 @@ std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double
 
 // One self-contained line for each row, for a log: time, then the same columns as in the table, named.
 std::vector<std::string> FleetLogLines(const std::vector<FleetRow> &rows, double elapsedS);
+
+// What is missing of an aircraft of which something is heard and something is not: `beats missing, poses
+// arriving`; empty if all is heard, or nothing. An aircraft is UP while its gateway's beats come.
+std::string WhatIsMissing(const FleetRow &row);
 
 // The text with everything but printable ASCII replaced by `?`, and cut to a length.
 std::string Printable(const std::string &text, std::size_t longest);

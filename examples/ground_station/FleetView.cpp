@@ -1,5 +1,6 @@
 #include "FleetView.h"
 
+#include "AttentionLines.h"
 #include "ProblemLines.h"
 #include "RadioLines.h"
 
@@ -32,6 +33,7 @@ FleetView::FleetView(const Settings &settings, Output output, Rabit::RabitWorksp
 {
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
     AddPublishSubscribeMessage("CommandTally", _tally);
+    AddPublishSubscribeMessage("CommandList", _commands);
     for (const std::string &node : settings.Expected)
         _aircraft[node] = {std::make_unique<AircraftMonitor>(node, workspace), true};
     SetWakeupTimeDelayMSec(static_cast<int>((_output.IsTerminal ? ScreenPeriod : LogPeriod).count()));
@@ -52,6 +54,7 @@ void FleetView::Look()
 {
     _fleet->FetchMessage();
     _tally->FetchMessage();
+    _commands->FetchMessage();
     if (_fleet->WasPosted())
         _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
     FollowNewNodes();
@@ -66,7 +69,7 @@ void FleetView::Look()
             seen.Row.RoundTripS = status->round_trip_s;
             seen.Row.DeliveryRate = status->delivery_rate;
         }
-        aircraft.Monitor->Show(seen.Row);
+        aircraft.Monitor->Show(seen.Row, *_tally);
         if (!aircraft.Expected && !seen.Row.AgeS && seen.Row.Mission.empty())
             continue;  // not an aircraft, as far as can be told
         for (const NodeCommands &commands : _tally->nodes)
@@ -110,6 +113,8 @@ void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
 {
     const TerminalScreen::Size size = TerminalSize();
     std::vector<TableLine> lines = FleetTableLines(rows, elapsedS, size.Columns);
+    for (const std::string &line : Attention(rows))
+        lines.push_back({line, Emphasis::Warning});
     for (TableLine &line : RadioTableLines(_radio.Use(), _fleet->GetAgeSeconds(), size.Columns))
         lines.push_back(std::move(line));
     for (const Seen &seen : _seen)
@@ -127,6 +132,8 @@ void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
 {
     for (const std::string &line : FleetLogLines(rows, elapsedS))
         _output.Stream << line << '\n';
+    for (const std::string &line : NewAttention(rows))
+        _output.Stream << "         " << line << '\n';
     for (const std::string &line : TargetLinesThatChanged())
         _output.Stream << line << '\n';
     const std::string radio = RadioLogLine(_radio.Use(), _fleet->GetAgeSeconds(), elapsedS);
@@ -135,6 +142,23 @@ void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
     const std::string problems = ProblemLogLine(_fleet->problems, _fleet->GetAgeSeconds(), elapsedS);
     if (!problems.empty())
         _output.Stream << problems << '\n';
+}
+
+std::vector<std::string> FleetView::Attention(const std::vector<FleetRow> &rows) const
+{
+    return AttentionLines(rows, *_commands, *_tally, _fleet->WasPosted() ? _fleet->GetAgeSeconds() : 0);
+}
+
+// What was not so a line of the log before.
+std::vector<std::string> FleetView::NewAttention(const std::vector<FleetRow> &rows)
+{
+    const std::vector<std::string> now = Attention(rows);
+    std::vector<std::string> lines;
+    for (const std::string &line : now)
+        if (!_shownAttention.contains(line))
+            lines.push_back(line);
+    _shownAttention = {now.begin(), now.end()};
+    return lines;
 }
 
 std::vector<std::string> FleetView::TargetLinesThatChanged()

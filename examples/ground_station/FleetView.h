@@ -17,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,11 @@ namespace Ground
 {
 
 // Shows the fleet on the standard output: the manager `FleetView`. On a terminal it redraws a table in place,
-// else it writes a line a second for each aircraft. What the radio does stands below, and what keeps data
-// from flowing, as long as it is so.
+// else it writes a line a second for each aircraft. What else a person should know of the aircraft stands
+// below, what the radio does, and what keeps data from flowing, as long as it is so.
 //
 // Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose, <node>/MissionState and
-// <node>/Findings of each of them; and CommandTally of the Commander.
+// <node>/Findings of each of them; and CommandTally and CommandList of the Commander.
 //
 // A node counts as an aircraft once a pose or mission state of it has come, or if it is expected.
 class FleetView : public Rabit::RabitManager
@@ -84,16 +85,20 @@ private:
     void PrintTable(const std::vector<FleetRow> &rows, double elapsedS);
     void PrintLog(const std::vector<FleetRow> &rows, double elapsedS);
     std::vector<std::string> TargetLinesThatChanged();
+    std::vector<std::string> Attention(const std::vector<FleetRow> &rows) const;
+    std::vector<std::string> NewAttention(const std::vector<FleetRow> &rows);
 
     const Output _output;
     std::chrono::nanoseconds _start{0};
     std::map<std::string, Aircraft, NaturalOrder> _aircraft;
     std::vector<Seen> _seen;
     std::map<std::string, Uav::TargetStage> _shownStages;  // by the name of the target
+    std::set<std::string> _shownAttention;
     TerminalScreen _screen;
     RadioWatch _radio;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
+    std::shared_ptr<CommandList> _commands = std::make_shared<CommandList>();
 };
 
 }  // namespace Ground

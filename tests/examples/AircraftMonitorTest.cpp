@@ -29,9 +29,10 @@ protected:
     FleetRow Shown()
     {
         FleetRow row;
-        _monitor.Show(row);
+        _monitor.Show(row, _tally);
         return row;
     }
+    Ground::CommandTally _tally;
 };
 
 TEST_F(AircraftMonitor, ShowsNothingBeforeTheFirstMessages)
@@ -65,9 +66,23 @@ TEST_F(AircraftMonitor, LetsAnOldPoseGrowOld)
 TEST_F(AircraftMonitor, ShowsTheMission)
 {
     _mission->mode = Uav::MissionMode::MISSION_GOTO;
-    _mission->last_command = 12;
+    _mission->last_command = 1'232'690'012;
+    _mission->area_declined = "too low";
     _mission->PostMessage();
-    EXPECT_EQ(Shown().Mission, "GOTO 12");
+    _tally.first_id = 1'232'690'001;
+    _tally.commands = 12;
+    EXPECT_EQ(Shown().Mission, "GOTO 12") << "by the number that people know";
+    EXPECT_EQ(Shown().AreaDeclined, "too low");
+}
+
+TEST_F(AircraftMonitor, HasNoNumberForACommandOfSomebodyElse)
+{
+    _mission->mode = Uav::MissionMode::MISSION_HOLD;
+    _mission->last_command = 13;
+    _mission->PostMessage();
+    _tally.first_id = 1;
+    _tally.commands = 12;
+    EXPECT_EQ(Shown().Mission, "HOLD");
 }
 
 TEST_F(AircraftMonitor, CountsEveryArrivalEvenIfNobodyFetches)

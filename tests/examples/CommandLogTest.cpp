@@ -1,6 +1,10 @@
 #include "CommandLog.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -8,6 +12,7 @@ using Answer = Ground::CommandLog::Answer;
 using Ground::CommandLog;
 using Ground::CommandProgress;
 using Rabit::QueueOutcome;
+using testing::ElementsAre;
 using Uav::CommandStage;
 
 Ground::CommandStatus To(const std::string &node)
@@ -154,6 +159,76 @@ TEST(CommandLog, KeepsTheReasonOfTheLastWord)
     log.Answered(Ack(1, "uav1", CommandStage::COMMAND_REPLACED, "battery is low"), 3);
     EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_REPLACED);
     EXPECT_EQ(log.Commands()[0].reason, "battery is low");
+}
+
+std::vector<CommandProgress> StepsOf(const CommandLog &log)
+{
+    std::vector<CommandProgress> steps;
+    for (const Ground::CommandStep &step : log.Commands().at(0).steps)
+        steps.push_back(step.progress);
+    return steps;
+}
+
+TEST(CommandLog, KeepsEveryStepWithItsTime)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.OnWay(1, QueueOutcome::Delivered, 3);
+    log.Answered(Ack(1, "uav1"), 4);
+    log.Answered(Ack(1, "uav1", CommandStage::COMMAND_REPLACED, "it goes home"), 5);
+    EXPECT_THAT(StepsOf(log),
+                ElementsAre(CommandProgress::PROGRESS_SENT, CommandProgress::PROGRESS_DELIVERED,
+                            CommandProgress::PROGRESS_ACCEPTED, CommandProgress::PROGRESS_REPLACED));
+    EXPECT_EQ(log.Commands()[0].steps[1].at_s, 3);
+    EXPECT_EQ(log.Commands()[0].steps[3].reason, "it goes home");
+}
+
+TEST(CommandLog, CountsACommandAsDeliveredThatIsAnsweredBeforeItsReceipt)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.Answered(Ack(1, "uav1"), 2);
+    log.OnWay(1, QueueOutcome::Delivered, 3);
+    EXPECT_THAT(StepsOf(log), ElementsAre(CommandProgress::PROGRESS_SENT, CommandProgress::PROGRESS_DELIVERED,
+                                          CommandProgress::PROGRESS_ACCEPTED));
+}
+
+TEST(CommandLog, NamesTheCommandThatReplacedOneByItsNumber)
+{
+    CommandLog log(1'232'690'001);
+    log.Sent(To("uav1"), 1);
+    log.Sent(To("uav1"), 2);
+    log.Answered(Ack(1'232'690'001, "uav1"), 3);
+    Uav::CommandAck replaced = Ack(1'232'690'001, "uav1", CommandStage::COMMAND_REPLACED);
+    replaced.replaced_by = 1'232'690'002;
+    log.Answered(replaced, 4);
+    EXPECT_EQ(log.Commands()[0].reason, "command 2");
+}
+
+TEST(CommandLog, HasNoNumberForACommandOfSomebodyElse)
+{
+    CommandLog log(20001);
+    log.Sent(To("uav1"), 1);
+    Uav::CommandAck replaced = Ack(20001, "uav1", CommandStage::COMMAND_REPLACED);
+    replaced.replaced_by = 70001;
+    log.Answered(replaced, 4);
+    EXPECT_EQ(log.Commands()[0].reason, "a command that this ground station did not give");
+}
+
+TEST(CommandLog, EndsWhatAnAircraftHadAcceptedBeforeItStartedAnew)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.Sent(To("uav2"), 1);
+    log.Sent(To("uav1"), 1);
+    log.Answered(Ack(1, "uav1"), 2);
+    log.Answered(Ack(2, "uav2"), 2);
+    log.Answered(Ack(3, "uav1"), 7);  // by its new life
+    log.StartedAnew("uav1", 5, 8);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_REPLACED);
+    EXPECT_EQ(log.Commands()[0].reason, "the aircraft has started anew");
+    EXPECT_EQ(log.Commands()[1].progress, CommandProgress::PROGRESS_ACCEPTED);
+    EXPECT_EQ(log.Commands()[2].progress, CommandProgress::PROGRESS_ACCEPTED);
 }
 
 TEST(CommandLog, AnExpiredCommandIsAccountedFor)

@@ -370,6 +370,84 @@ TEST_F(Commander, TellsASearcherAgainWhenItHasRestarted)
     EXPECT_EQ(_gateway->All.size(), 2u);
 }
 
+// A searcher that a person has commanded.
+class CommanderOfAnOrderedSearcher : public Commander
+{
+protected:
+    void SetUp() override
+    {
+        Commander::SetUp();
+        Start({.Searchers = {"*"}});
+        Run(1s);
+        ASSERT_EQ(_gateway->All.size(), 1u) << "it was told to search";
+        Order();
+        ASSERT_EQ(_gateway->All.size(), 2u) << "it was called home";
+    }
+    void Order()
+    {
+        auto order = std::make_shared<Ground::Order>();
+        order->node = "uav1";
+        order->kind = Ground::OrderKind::ORDER_HOME;
+        ASSERT_TRUE(_workspace.AddMessageToQueue("Commands", order));
+        Run(100ms);
+    }
+    bool IsWithoutOrders()
+    {
+        Ground::CommandTally tally;
+        _workspace.ForceFetchMessage("CommandTally", &tally);
+        return tally.nodes.at(0).without_orders;
+    }
+};
+
+TEST_F(CommanderOfAnOrderedSearcher, DoesNotSendItSearchingWhenItHasRestarted)
+{
+    SetState(NodeState::LOST);
+    Run(5s);
+    SetState(NodeState::UP, 2);
+    Run(30s);
+    EXPECT_EQ(_gateway->All.size(), 2u);
+}
+
+TEST_F(CommanderOfAnOrderedSearcher, TellsThatItIsBackWithoutOrdersUntilItHasSome)
+{
+    EXPECT_FALSE(IsWithoutOrders());
+    SetState(NodeState::UP, 2);
+    Run(1s);
+    EXPECT_TRUE(IsWithoutOrders());
+    Order();
+    EXPECT_FALSE(IsWithoutOrders());
+}
+
+TEST_F(CommanderOfAnOrderedSearcher, EndsTheCommandsOfItsEarlierLife)
+{
+    Answer(2);
+    Run(1s);
+    SetState(NodeState::UP, 2);
+    Run(1s);
+    EXPECT_EQ(_commander->Log().Commands().at(1).progress, Ground::CommandProgress::PROGRESS_REPLACED);
+}
+
+TEST_F(Commander, TellsNobodyIsWithoutOrdersWhomNobodyCommanded)
+{
+    Start({.Searchers = {"*"}});
+    Run(1s);
+    SetState(NodeState::UP, 2);
+    Run(1s);
+    Ground::CommandTally tally;
+    ASSERT_TRUE(_workspace.FetchMessage("CommandTally", &tally));
+    EXPECT_FALSE(tally.nodes.at(0).without_orders);
+}
+
+TEST_F(Commander, TellsByWhichNumbersPeopleKnowItsCommands)
+{
+    Start({.FirstId = 7001, .Searchers = {"*"}});
+    Run(1s);
+    Ground::CommandTally tally;
+    ASSERT_TRUE(_workspace.FetchMessage("CommandTally", &tally));
+    EXPECT_EQ(tally.first_id, 7001u);
+    EXPECT_EQ(tally.commands, 1u);
+}
+
 TEST_F(Commander, SendsNothingByItselfUnlessItsSettingsSaySo)
 {
     Start({});

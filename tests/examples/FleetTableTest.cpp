@@ -57,6 +57,34 @@ TEST(FleetTable, MarksALostRowAndPutsItsOldValuesInParentheses)
     EXPECT_EQ(lines[2].Shown, Emphasis::Alarm);
 }
 
+TEST(FleetTable, PutsFirstWhatNeedsAttention)
+{
+    std::vector<FleetRow> rows;
+    for (const RowState state :
+         {RowState::Up, RowState::Stale, RowState::Lost, RowState::Waiting, RowState::Lost})
+    {
+        rows.push_back(WithState(state, 0.1));
+        rows.back().Node = "uav" + std::to_string(rows.size());
+    }
+    const auto lines = FleetTableLines(rows, 0);
+    std::vector<std::string> nodes;
+    for (std::size_t i = 2; i < 7; ++i)
+        nodes.push_back(lines[i].Text.substr(0, 4));
+    EXPECT_THAT(nodes, testing::ElementsAre("uav3", "uav5", "uav2", "uav4", "uav1"));
+}
+
+TEST(FleetTable, SaysWhatIsMissing)
+{
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Up, 0.08)), "");
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Stale, 0.08)), "beats missing, poses arriving");
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Lost, 0.08)), "beats missing, poses arriving");
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Up, 4)), "poses missing, beats arriving");
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Lost, 4)), "") << "nothing arrives";
+    FleetRow silent = Fresh();
+    silent.AgeS.reset();
+    EXPECT_EQ(Ground::WhatIsMissing(silent), "");
+}
+
 TEST(FleetTable, MarksAStaleRow)
 {
     const auto lines = FleetTableLines({WithState(RowState::Stale, 1.9)}, 0);

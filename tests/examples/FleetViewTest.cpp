@@ -74,6 +74,35 @@ TEST_F(FleetView, ShowsAnExpectedAircraftBeforeItIsHeard)
     EXPECT_EQ(State(), RowState::Waiting);
 }
 
+TEST_F(FleetView, TellsOnceWhatAnAircraftDeclines)
+{
+    auto mission = std::make_shared<Uav::MissionState>();
+    _workspace.AddPublishSubscribeMessage("uav1/MissionState", mission);
+    Start({"uav1"});
+    mission->area_declined = "100 m above sea level is below the floor of 460 m";
+    mission->PostMessage();
+    const std::string line =
+        "         uav1: the search area is declined: 100 m above sea level is below the floor "
+        "of 460 m\n";
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr(line));
+    EXPECT_THAT(Show(NodeState::UP), testing::Not(HasSubstr(line))) << "a log says it once";
+}
+
+TEST_F(FleetView, TellsWhyACommandIsDeclined)
+{
+    auto list = std::make_shared<Ground::CommandList>();
+    _workspace.AddPublishSubscribeMessage("CommandList", list);
+    Start({"uav1"});
+    Ground::CommandStatus command;
+    command.node = "uav1";
+    command.number = 3;
+    command.progress = Ground::CommandProgress::PROGRESS_DECLINED;
+    command.reason = "the battery is low";
+    list->items = {command};
+    list->PostMessage();
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr("uav1: command 3 (goto) is declined: the battery is low\n"));
+}
+
 TEST_F(FleetView, DoesNotTakeANodeForAnAircraftUntilItsPoseComes)
 {
     Start({});

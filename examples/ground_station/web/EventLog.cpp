@@ -84,6 +84,20 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
         known.Mode = aircraft.Mission.Content->mode;
         Add(Weight::Info, aircraft.Node, WithReason(WireName(*known.Mode), aircraft.Mission.Content->text));
     }
+    if (aircraft.Mission && known.AreaDeclined != aircraft.Mission.Content->area_declined)
+    {
+        known.AreaDeclined = aircraft.Mission.Content->area_declined;
+        if (known.AreaDeclined.empty())
+            Add(Weight::Info, aircraft.Node, "takes the search area");
+        else
+            Add(Weight::Warning, aircraft.Node, WithReason("declines the search area", known.AreaDeclined));
+    }
+    if (known.WithoutOrders != aircraft.WithoutOrders)
+    {
+        known.WithoutOrders = aircraft.WithoutOrders;
+        if (known.WithoutOrders)
+            Add(Weight::Warning, aircraft.Node, "is back without orders");
+    }
     if (aircraft.Health && known.WantsHome != aircraft.Health.Content->wants_home)
     {
         known.WantsHome = aircraft.Health.Content->wants_home;
@@ -112,19 +126,19 @@ void EventLog::LookAtFindings(const AircraftData &aircraft)
     }
 }
 
+// Each step, also where a command has come through several since the last look.
 void EventLog::LookAtCommands(const CommandList &list)
 {
-    std::map<std::uint32_t, CommandProgress> now;
+    std::map<std::uint32_t, std::size_t> now;
     for (const CommandStatus &command : list.items)
     {
-        now[command.id] = command.progress;
+        now[command.id] = command.steps.size();
         const auto known = _commands.find(command.id);
-        if (known != _commands.end() && known->second == command.progress)
-            continue;
-        Add(WeightOf(command.progress), command.node,
-            WithReason("command " + std::to_string(command.number) + " (" + WireName(command.kind) + ") " +
-                           WireName(command.progress),
-                       command.reason));
+        for (std::size_t i = known == _commands.end() ? 0 : known->second; i < command.steps.size(); ++i)
+            Add(WeightOf(command.steps[i].progress), command.node,
+                WithReason("command " + std::to_string(command.number) + " (" + WireName(command.kind) +
+                               ") " + WireName(command.steps[i].progress),
+                           command.steps[i].reason));
     }
     _commands = std::move(now);  // the list is bounded, and so is this
 }

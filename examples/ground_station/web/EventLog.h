@@ -52,6 +52,8 @@ private:
         std::optional<RowState> State;
         std::optional<Uav::MissionMode> Mode;
         bool WantsHome = false;
+        bool WithoutOrders = false;
+        std::string AreaDeclined;
     };
 
     void LookAtAircraft(const AircraftData &aircraft);
@@ -65,7 +67,7 @@ private:
     std::deque<StationEvent> _events;
     std::map<std::string, Known> _aircraft;
     std::map<std::pair<std::string, std::uint32_t>, Uav::TargetStage> _targets;
-    std::map<std::uint32_t, CommandProgress> _commands;
+    std::map<std::uint32_t, std::size_t> _commands;  // by id: how many of its steps were told
     std::set<std::string> _problems;
     std::uint32_t _area = 0;
 };

@@ -45,9 +45,24 @@ Json ToJson(const Uav::Pose &pose)
 
 Json ToJson(const Uav::MissionState &mission)
 {
-    return {{"mode", WireName(mission.mode)},     {"last_command", mission.last_command},
-            {"search_area", mission.search_area}, {"target", mission.target},
-            {"partner", mission.partner},         {"text", mission.text}};
+    return {{"mode", WireName(mission.mode)},
+            {"last_command", mission.last_command},
+            {"search_area", mission.search_area},
+            {"target", mission.target},
+            {"partner", mission.partner},
+            {"text", mission.text},
+            {"area_declined", mission.area_declined}};
+}
+
+// What is known of heights and of home is told with the mission, and holds however old that is.
+void AddPlaces(Json &object, const Uav::MissionState &mission)
+{
+    object["floor_m"] = mission.has_floor ? Rounded(static_cast<double>(mission.floor_m), 10) : Json(nullptr);
+    object["ground_m"] =
+        mission.has_ground ? Rounded(static_cast<double>(mission.ground_m), 10) : Json(nullptr);
+    object["home"] = mission.has_home ? Json{{"latitude_deg", Degrees(mission.home_latitude_deg)},
+                                             {"longitude_deg", Degrees(mission.home_longitude_deg)}}
+                                      : Json(nullptr);
 }
 
 Json ToJson(const Uav::Health &health)
@@ -129,6 +144,10 @@ Json ToJson(const AircraftData &aircraft)
                    {"heard_s", Short(aircraft.HeardS)},
                    {"round_trip_s", Rounded(aircraft.RoundTripS, 1e5)},
                    {"delivery_rate", Rounded(aircraft.DeliveryRate, 1)}};
+    if (aircraft.WithoutOrders)
+        object["without_orders"] = true;
+    if (aircraft.Mission)
+        AddPlaces(object, *aircraft.Mission.Content);
     Add(object, "pose", aircraft.Pose);
     Add(object, "mission", aircraft.Mission);
     Add(object, "health", aircraft.Health);
@@ -164,6 +183,7 @@ Json ToJson(const CommandList &list, double ageS)
         {
             item["latitude_deg"] = Degrees(command->latitude_deg);
             item["longitude_deg"] = Degrees(command->longitude_deg);
+            item["altitude_m"] = Rounded(command->altitude_m, 10);
         }
         items.push_back(std::move(item));
     }

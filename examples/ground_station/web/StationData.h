@@ -64,6 +64,7 @@ struct AircraftData
     Aged<Uav::Targets> Targets;
     Aged<Uav::CameraView> Camera;
     std::optional<PictureData> Picture;
+    bool WithoutOrders = false;  // see NodeCommands
 };
 
 // What the ground station knows now.

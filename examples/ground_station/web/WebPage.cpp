@@ -33,6 +33,7 @@ WebPage::WebPage(Settings settings, std::unique_ptr<WebServer> server, Rabit::Ra
 {
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
     AddPublishSubscribeMessage("CommandList", _commands);
+    AddPublishSubscribeMessage("CommandTally", _tally);
     AddPublishSubscribeMessage("SearchArea", _area);
     AddManagerMessageQueue("Pictures", _pictureQueue);
     for (const std::string &node : _settings.Expected)
@@ -92,6 +93,7 @@ void WebPage::Look()
     _data.FleetAgeS = _fleet->GetAgeSeconds();
     _data.Area = Latest(*_area);
     _data.Commands = Latest(*_commands);
+    _tally->FetchMessage();
     _data.Problems = _fleet->problems;
     if (_fleet->WasPosted())
         _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
@@ -127,6 +129,9 @@ void WebPage::Show(AircraftData &data, AircraftFollower &follower) const
         data.RoundTripS = status->round_trip_s;
         data.DeliveryRate = status->delivery_rate > 0 ? status->delivery_rate : AircraftData::Unknown;
     }
+    for (const NodeCommands &commands : _tally->nodes)
+        if (commands.node == data.Node)
+            data.WithoutOrders = commands.without_orders;
     follower.Show(data);
     const auto picture = _pictures.find(data.Node);
     if (picture == _pictures.end())

@@ -24,7 +24,7 @@ namespace Ground
 // Shows the fleet on a page in the browser, and takes orders from there: the manager `WebPage`.
 //
 // Fetches: Gateway/Fleet, from which it learns who is there; of each aircraft what AircraftFollower says;
-//          CommandList and SearchArea of the Commander.
+//          CommandList, CommandTally and SearchArea of the Commander.
 // Queue:   Pictures takes Uav::Picture, from whichever aircraft has one.
 // Sends:   Ground::Order and Uav::SearchArea to the queue Commands, as the page asks.
 //
@@ -89,6 +89,7 @@ private:
     std::shared_ptr<RabitQueue> _pictureQueue;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<CommandList> _commands = std::make_shared<CommandList>();
+    std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     const std::unique_ptr<WebServer> _server;  // last, for its thread uses the others
 };

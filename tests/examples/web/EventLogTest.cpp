@@ -26,6 +26,24 @@ protected:
 
     void SetUp() override { _data.Aircraft.emplace_back().Node = "uav1"; }
     Ground::AircraftData &Aircraft() { return _data.Aircraft.front(); }
+    void StartCommand()
+    {
+        Ground::CommandStatus command;
+        command.id = 90001;
+        command.number = 1;
+        command.node = "uav1";
+        command.kind = Ground::OrderKind::ORDER_HOME;
+        _commands.items = {command};
+        _data.Commands = {&_commands, 0};
+        AddStep(Ground::CommandProgress::PROGRESS_SENT);
+    }
+    void AddStep(Ground::CommandProgress progress, const std::string &reason = "")
+    {
+        Ground::CommandStep step;
+        step.progress = progress;
+        step.reason = reason;
+        _commands.items[0].steps.push_back(step);
+    }
     // The events since the last call.
     std::vector<std::string> New()
     {
@@ -77,19 +95,48 @@ TEST_F(EventLog, TellsWhatTheAircraftDoAndFind)
 
 TEST_F(EventLog, TellsHowCommandsGoOn)
 {
-    Ground::CommandStatus command;
-    command.id = 90001;
-    command.number = 1;
-    command.node = "uav1";
-    command.kind = Ground::OrderKind::ORDER_HOME;
-    _commands.items = {command};
-    _data.Commands = {&_commands, 0};
+    StartCommand();
     EXPECT_THAT(New(), ElementsAre("uav1|command 1 (home) sent"));
     EXPECT_THAT(New(), ElementsAre());
-    _commands.items[0].progress = Ground::CommandProgress::PROGRESS_DECLINED;
-    _commands.items[0].reason = "no home";
+    AddStep(Ground::CommandProgress::PROGRESS_DECLINED, "no home");
     EXPECT_THAT(New(), ElementsAre("uav1|command 1 (home) declined: no home"));
     EXPECT_EQ(_log.Events().back().How, Weight::Warning);
+}
+
+TEST_F(EventLog, TellsEveryStepOfACommandThatWentThroughSeveralAtOnce)
+{
+    StartCommand();
+    AddStep(Ground::CommandProgress::PROGRESS_DELIVERED);
+    AddStep(Ground::CommandProgress::PROGRESS_ACCEPTED);
+    EXPECT_THAT(New(), ElementsAre("uav1|command 1 (home) sent", "uav1|command 1 (home) delivered",
+                                   "uav1|command 1 (home) accepted"));
+    AddStep(Ground::CommandProgress::PROGRESS_REPLACED, "command 4");
+    EXPECT_THAT(New(), ElementsAre("uav1|command 1 (home) replaced: command 4"));
+}
+
+TEST_F(EventLog, TellsThatAnAircraftDeclinesTheSearchArea)
+{
+    Aircraft().Mission = {&_mission, 0};
+    New();
+    _mission.area_declined = "100 m above sea level is below the floor of 460 m";
+    EXPECT_THAT(New(),
+                ElementsAre("uav1|declines the search area: 100 m above sea level is below the floor of "
+                            "460 m"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Warning);
+    EXPECT_THAT(New(), ElementsAre());
+    _mission.area_declined = "";
+    EXPECT_THAT(New(), ElementsAre("uav1|takes the search area"));
+}
+
+TEST_F(EventLog, TellsThatAnAircraftIsBackWithoutOrders)
+{
+    New();
+    Aircraft().WithoutOrders = true;
+    EXPECT_THAT(New(), ElementsAre("uav1|is back without orders"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Warning);
+    EXPECT_THAT(New(), ElementsAre());
+    Aircraft().WithoutOrders = false;
+    EXPECT_THAT(New(), ElementsAre());
 }
 
 TEST_F(EventLog, TellsOfTheSearchAreaAndOfProblemsOnce)

@@ -84,6 +84,32 @@ TEST_F(Snapshot, TellsNothingOfWhatIsNotKnown)
     EXPECT_EQ(shown["commands"], Json::array());
 }
 
+TEST_F(Snapshot, TellsFloorGroundAndHomeWhereTheyAreKnown)
+{
+    Aircraft().Mission = {&_mission, 0};
+    EXPECT_TRUE(Shown()["aircraft"][0]["floor_m"].is_null());
+    EXPECT_TRUE(Shown()["aircraft"][0]["ground_m"].is_null());
+    EXPECT_TRUE(Shown()["aircraft"][0]["home"].is_null());
+    _mission.has_floor = _mission.has_ground = _mission.has_home = true;
+    _mission.floor_m = 460;
+    _mission.ground_m = 430;
+    _mission.home_latitude_deg = 47.5F;
+    _mission.home_longitude_deg = 8.5F;
+    _mission.area_declined = "too low";
+    const Json aircraft = Shown()["aircraft"][0];
+    EXPECT_EQ(aircraft["floor_m"], 460);
+    EXPECT_EQ(aircraft["ground_m"], 430);
+    EXPECT_EQ(aircraft["home"], Json({{"latitude_deg", 47.5}, {"longitude_deg", 8.5}}));
+    EXPECT_EQ(aircraft["mission"]["area_declined"], "too low");
+}
+
+TEST_F(Snapshot, TellsWhichAircraftIsBackWithoutOrders)
+{
+    EXPECT_FALSE(Shown()["aircraft"][0].contains("without_orders"));
+    Aircraft().WithoutOrders = true;
+    EXPECT_EQ(Shown()["aircraft"][0]["without_orders"], true);
+}
+
 TEST_F(Snapshot, PassesTextsOnAsTheyAreIfTheyAreUtf8)
 {
     _mission.text = "</script><img src=x onerror=alert(1)>\"\n";

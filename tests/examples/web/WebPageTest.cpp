@@ -179,6 +179,7 @@ TEST_F(WebPage, ShowsTheCommandsAndTheSearchArea)
     _workspace.AddPublishSubscribeMessage("SearchArea", area);
     Start();
     list->items.emplace_back().node = "uav1";
+    list->items.back().steps.emplace_back();
     list->PostMessage();
     area->number = 4;
     area->PostMessage();

@@ -1,0 +1,98 @@
+#include "AttentionLines.h"
+
+#include "NodeState.h"
+
+#include <map>
+#include <set>
+
+namespace Ground
+{
+namespace
+{
+constexpr std::size_t LongestName = 64;
+constexpr std::size_t LongestReason = 400;
+
+// How a command ended that its aircraft does not carry out; null for every other.
+const char *HowItFailed(CommandProgress progress)
+{
+    switch (progress)
+    {
+        case CommandProgress::PROGRESS_DECLINED:
+            return "is declined";
+        case CommandProgress::PROGRESS_EXPIRED:
+            return "was too old on the way and never arrived";
+        case CommandProgress::PROGRESS_IN_DOUBT:
+            return "may or may not have arrived";
+        case CommandProgress::PROGRESS_REFUSED:
+            return "was not sent";
+        case CommandProgress::PROGRESS_SENT:
+        case CommandProgress::PROGRESS_DELIVERED:
+        case CommandProgress::PROGRESS_ACCEPTED:
+        case CommandProgress::PROGRESS_DONE:
+        case CommandProgress::PROGRESS_REPLACED:
+            break;
+    }
+    return nullptr;
+}
+
+const char *Name(OrderKind kind)
+{
+    switch (kind)
+    {
+        case OrderKind::ORDER_GOTO:
+            return "goto";
+        case OrderKind::ORDER_HOME:
+            return "home";
+        case OrderKind::ORDER_SEARCH:
+            return "search";
+    }
+    return "?";
+}
+
+std::string CommandText(const CommandStatus &command)
+{
+    const char *const how = HowItFailed(command.progress);
+    if (how == nullptr)
+        return "";
+    const std::string text =
+        "command " + std::to_string(command.number) + " (" + Name(command.kind) + ") " + how;
+    return command.reason.empty() ? text : text + ": " + Printable(command.reason, LongestReason);
+}
+}  // namespace
+
+std::vector<std::string> AttentionLines(const std::vector<FleetRow> &rows, const CommandList &commands,
+                                        const CommandTally &tally, double fleetAgeS)
+{
+    std::map<std::string, const CommandStatus *> last;
+    for (const CommandStatus &command : commands.items)
+        last[command.node] = &command;
+    std::set<std::string> withoutOrders;
+    for (const NodeCommands &node : tally.nodes)
+        if (node.without_orders)
+            withoutOrders.insert(node.node);
+
+    std::vector<std::string> lines;
+    // The states that the rows show then say nothing of the aircraft.
+    const bool silent = fleetAgeS > FleetFreshS;
+    if (silent)
+        lines.push_back("The gateway of this ground station is silent");
+    for (const FleetRow &row : rows)
+    {
+        const auto add = [&](const std::string &text)
+        {
+            if (!text.empty())
+                lines.push_back(Printable(row.Node, LongestName) + ": " + text);
+        };
+        if (!silent)
+            add(WhatIsMissing(row));
+        if (!row.AreaDeclined.empty())
+            add("the search area is declined: " + Printable(row.AreaDeclined, LongestReason));
+        if (const auto command = last.find(row.Node); command != last.end())
+            add(CommandText(*command->second));
+        if (withoutOrders.contains(row.Node))
+            add("it is back without orders");
+    }
+    return lines;
+}
+
+}  // namespace Ground
