@@ -28,8 +28,7 @@ namespace Ground
 //
 // What comes from the network is bounded: size of requests and messages, time for a request, silence (the
 // server sends pings), number of connections (see ConnectionGate), replies that wait. Whoever goes beyond is
-// disconnected. Nothing
-// from the network throws out of here.
+// disconnected. Nothing from the network throws out of here.
 //
 // Threads: Start, Stop and the destructor belong to one thread; the rest may be called from any.
 class WebServer

@@ -1,9 +1,12 @@
 // The real web page over a scripted fleet, for the tests in a browser:
 //   web_fixture AIRCRAFT [hostile] [PORT]
 // Prints the page's address, then each order that it gets. Lines on the standard input say what happens to
-// the fleet: `stale NODE`, `lost NODE`, `up NODE`, `problems COUNT` (there are so many now), `radio held` (it
-// has a budget, and two in five posts of Pose and some messages for uav2 are held back), `radio free` (not
-// limited), `silence` (nothing is posted any more); it ends at their end.
+// the fleet: `stale NODE`, `lost NODE`, `up NODE`, `beatless NODE` (it is STALE, but its poses arrive),
+// `progress STEP [REASON]` (the last command comes to that step, a number of Ground::CommandProgress),
+// `decline NODE REASON` (the search area), `orders NODE` (it is back without), `problems COUNT` (there are so
+// many now), `radio held` (it has a budget, and two in five posts of Pose and some messages for uav2 are held
+// back), `radio free` (not limited), `silence` (nothing is posted any more); it ends at their end. The ground
+// is at 430 m, and each aircraft has a floor of 460 m.
 #include "WebPage.h"
 #include "WebServer.h"
 
@@ -75,6 +78,7 @@ struct FlyingAircraft
 {
     std::string Node;
     NodeState State = NodeState::UP;
+    bool Flies = true;
     std::shared_ptr<Uav::Pose> Pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::MissionState> Mission = std::make_shared<Uav::MissionState>();
     std::shared_ptr<Uav::Health> Health = std::make_shared<Uav::Health>();
@@ -96,6 +100,7 @@ public:
         AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
         AddPublishSubscribeMessage("SearchArea", _area);
         AddPublishSubscribeMessage("CommandList", _commands);
+        AddPublishSubscribeMessage("CommandTally", _tally);
         for (std::size_t i = 0; i < _aircraft.size(); ++i)
         {
             FlyingAircraft &one = _aircraft[i];
@@ -132,7 +137,7 @@ public:
         ++_step;
         PostFleet();
         for (std::size_t i = 0; i < _aircraft.size(); ++i)
-            if (_aircraft[i].State == NodeState::UP)
+            if (_aircraft[i].Flies)
                 Fly(_aircraft[i], static_cast<int>(i));
     }
 
@@ -152,12 +157,44 @@ private:
                 _held = node == "held";
             if (what == "problems")
                 SetProblems(std::stoul(node));
+            std::string text;
+            std::getline(words >> std::ws, text);
+            if (what == "progress" && !_commands->items.empty())
+                Advance(_commands->items.back(), static_cast<Ground::CommandProgress>(std::stoi(node)), text);
+            if (what == "orders")
+                SetWithoutOrders(node);
             for (FlyingAircraft &one : _aircraft)
                 if (one.Node == node)
-                    one.State = what == "up"      ? NodeState::UP
-                                : what == "stale" ? NodeState::STALE
-                                                  : NodeState::LOST;
+                    Happen(one, what, text);
         }
+    }
+    static void Happen(FlyingAircraft &one, const std::string &what, const std::string &text)
+    {
+        if (what == "decline")
+            one.Mission->area_declined = text;
+        if (what == "up" || what == "stale" || what == "lost" || what == "beatless")
+        {
+            one.Flies = what == "up" || what == "beatless";
+            one.State = what == "up" ? NodeState::UP : what == "lost" ? NodeState::LOST : NodeState::STALE;
+        }
+    }
+    void SetWithoutOrders(const std::string &node)
+    {
+        Ground::NodeCommands commands;
+        commands.node = node;
+        commands.without_orders = true;
+        _tally->nodes = {commands};
+        _tally->PostMessage();
+    }
+    void Advance(Ground::CommandStatus &command, Ground::CommandProgress progress, const std::string &reason)
+    {
+        command.progress = progress;
+        command.reason = reason;
+        Ground::CommandStep step;
+        step.progress = progress;
+        step.reason = reason;
+        command.steps.push_back(step);
+        _commands->PostMessage();
     }
     void SetProblems(std::size_t count)
     {
@@ -177,21 +214,25 @@ private:
             if (const auto *const order = dynamic_cast<const Ground::Order *>(message.get()))
             {
                 std::cout << "order " << static_cast<int>(order->kind) << ' ' << order->node << ' '
-                          << order->latitude_deg << ' ' << order->longitude_deg << std::endl;
+                          << order->latitude_deg << ' ' << order->longitude_deg << ' ' << order->altitude_m
+                          << std::endl;
                 Ground::CommandStatus status;
                 status.id = status.number = static_cast<std::uint32_t>(_commands->items.size() + 1);
                 status.node = order->node;
                 status.kind = order->kind;
-                status.reason = _hostile ? Markup : "";
-                status.progress = _hostile ? Ground::CommandProgress::PROGRESS_DECLINED
-                                           : Ground::CommandProgress::PROGRESS_DELIVERED;
+                status.latitude_deg = order->latitude_deg;
+                status.longitude_deg = order->longitude_deg;
+                status.altitude_m = order->altitude_m;
                 _commands->items.push_back(status);
-                _commands->PostMessage();
+                Advance(_commands->items.back(),
+                        _hostile ? Ground::CommandProgress::PROGRESS_DECLINED
+                                 : Ground::CommandProgress::PROGRESS_DELIVERED,
+                        _hostile ? Markup : "");
             }
             else if (auto *const area = dynamic_cast<Uav::SearchArea *>(message.get()))
             {
                 std::cout << "area " << area->latitude_deg << ' ' << area->longitude_deg << ' '
-                          << area->north_m << ' ' << area->east_m << std::endl;
+                          << area->north_m << ' ' << area->east_m << ' ' << area->altitude_m << std::endl;
                 area->number = _area->number + 1;
                 _area->CopyMessage(area);
                 _area->PostMessage();
@@ -265,6 +306,11 @@ private:
         one.Mission->text = _hostile ? Markup : "lane 2 of 7";
         one.Mission->target = _hostile ? "\"><svg onload=window.pwned=1>" : "";
         one.Mission->partner = one.Mission->target;
+        one.Mission->has_floor = one.Mission->has_ground = one.Mission->has_home = true;
+        one.Mission->floor_m = 460;
+        one.Mission->ground_m = 430;
+        one.Mission->home_latitude_deg = 47.395F;
+        one.Mission->home_longitude_deg = 8.5456F;
         one.Mission->PostMessage();
         one.Health->battery_percent = static_cast<float>(90 - index);
         one.Health->wants_home = _hostile;
@@ -319,6 +365,7 @@ private:
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     std::shared_ptr<Ground::CommandList> _commands = std::make_shared<Ground::CommandList>();
+    std::shared_ptr<Ground::CommandTally> _tally = std::make_shared<Ground::CommandTally>();
 };
 
 void Serve(int aircraft, bool hostile, const std::string &port)

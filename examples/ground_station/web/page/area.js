@@ -3,6 +3,7 @@
 import {byId, setText} from './dom.js';
 import {corners, moved, offset} from './geo.js';
 import {fixed, isNumber} from './format.js';
+import {describeHeight, knownGround} from './heights.js';
 import {readNumbers} from './orders.js';
 
 // Names and ranges of Uav::SearchArea.
@@ -53,16 +54,37 @@ export class SearchAreaEditor {
       this.fillFields(inForce);
       this.placeHandles();
     }
-    byId('area-send').disabled = this.draft === null || this.sending === true;
+    const {live, fleetFresh} = this.model;
+    byId('area-send').disabled = this.draft === null || this.sending === true || !live;
+    const again = this.askedAbout != null && this.draft !== null;
+    setText(byId('area-send'), again ? 'Send it all the same' : 'Send area');
+    byId('area-send').classList.toggle('danger', again);
+    setText(byId('area-again'), again ? `▲ ${this.askedAbout} Is it meant so?` : '');
     byId('area-discard').disabled = this.draft === null;
     const panel = byId('area-panel');
     panel.classList.toggle('draft', this.draft !== null);
     const {area} = this;
     const size = area ? `${Math.round(area.north_m)} × ${Math.round(area.east_m)} m at ${Math.round(area.altitude_m)} m` : 'none';
     setText(byId('area-summary'), this.draft ? `▲ new, not sent: ${size}` : area ? `${area.number}: ${size}` : size);
-    if (this.draft) setText(byId('area-note'), 'Not sent yet: the fleet searches the area that is drawn with a full line.');
-    else if (inForce) setText(byId('area-note'), `Area ${inForce.number}. Drag its handles on the map, or change the numbers.`);
+    if (this.draft && !live) setText(byId('area-note'), '✕ There is no connection to the ground station: nothing can be sent.');
+    else if (this.draft && !fleetFresh) setText(byId('area-note'), '▲ The gateway of the ground station is silent: nobody knows whether this will arrive.');
+    else if (this.draft) setText(byId('area-note'), `Not sent yet: the fleet searches the area that is drawn with a full line. ${this.height.says}`);
+    else if (inForce) setText(byId('area-note'), `Area ${inForce.number}. ${this.height.says} Drag its handles on the map, or change the numbers.`);
     else setText(byId('area-note'), 'There is none. “Here” puts one into the middle of the map.');
+  }
+
+  // What is to be known of the altitude, see describeHeight.
+  get height() {
+    const {model} = this;
+    const inForce = model.snapshot?.area;
+    const poses = model.aircraft.map((one) => one.pose?.altitude_m).filter(isNumber);
+    return describeHeight({
+      altitude: this.area?.altitude_m,
+      ...(!this.draft ? {} : inForce ? {present: inForce.altitude_m, than: 'the area in force'}
+        : {present: poses.length > 0 ? Math.min(...poses) : undefined, than: 'the lowest aircraft'}),
+      ground: knownGround(model.aircraft),
+      floors: model.aircraft.map((one) => [one.node, one.floor_m]),
+    });
   }
 
   change(values) {
@@ -75,6 +97,7 @@ export class SearchAreaEditor {
     this.redraw();
   }
   redraw() {
+    this.askedAbout = null;
     setText(byId('area-error'), '');
     this.placeHandles();
     this.fleetMap.layer.paint();
@@ -122,7 +145,14 @@ export class SearchAreaEditor {
   async send() {
     if (!this.draft) return;
     const values = readNumbers(this.fields, byId('area-error'));
-    if (!values) return;
+    if (!values || !this.model.live || this.sending) return;
+    const {asks} = this.height;
+    if (asks && this.askedAbout == null) {
+      this.askedAbout = asks;
+      this.update();
+      byId('area-discard').focus();
+      return;
+    }
     this.sending = true;
     this.update();
     try {
@@ -155,7 +185,8 @@ export class SearchAreaEditor {
   }
 
   addHandle(kind, title, onMove) {
-    const size = kind === 'centre' ? 16 : 12;
+    const touched = window.matchMedia('(pointer: coarse)').matches;
+    const size = touched ? 44 : kind === 'centre' ? 16 : 12;
     const icon = L.divIcon({className: `handle ${kind}`, iconSize: [size, size]});
     const handle = L.marker([0, 0], {icon, draggable: true, keyboard: true, title, autoPan: true, zIndexOffset: -1000}).addTo(this.fleetMap.map);
     handle.on('drag', () => onMove(handle.getLatLng()));

@@ -2,7 +2,7 @@
 // aircraft are thousands of points, ten times a second.
 /* global L */
 
-const COLOURS = ['grid', 'grid-text', 'halo', 'trail', 'footprint', 'area', 'draft', 'target', 'old', 'text'];
+const COLOURS = ['grid', 'grid-text', 'halo', 'trail', 'footprint', 'area', 'draft', 'target', 'old', 'text', 'route'];
 
 export const CanvasLayer = L.Layer.extend({
   // draw(painter) is called whenever the canvas must be painted anew.
@@ -80,6 +80,9 @@ class Painter {
     this.context.fillStyle = colour;
     this.context.fill();
     this.context.globalAlpha = 1;
+  }
+  textWidth(text) {
+    return this.context.measureText(text).width;
   }
   label(text, x, y, colour) {
     const {context} = this;

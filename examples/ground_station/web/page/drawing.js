@@ -1,6 +1,8 @@
 // What is drawn on the canvas of the map, from the bottom up.
 import {corners, ellipse, metresPerDegreeOfLatitude, metresPerDegreeOfLongitude} from './geo.js';
+import {wayLeft} from './destinations.js';
 import {isNumber, STAGES, ageWithUnit} from './format.js';
+import {placesAround} from './labels.js';
 import {project} from './canvas.js';
 
 const CELL_PX = 90;             // a cell of the grid is at least this wide
@@ -51,7 +53,7 @@ export function drawGrid(painter) {
   return cell;
 }
 
-export function drawArea(painter, area, isDraft) {
+export function drawArea(painter, area, isDraft, space) {
   if (!area) return;
   const colour = isDraft ? painter.colours.draft : painter.colours.area;
   const places = corners(area).map((corner) => painter.at(corner));
@@ -60,7 +62,9 @@ export function drawArea(painter, area, isDraft) {
   painter.stroke(colour, 2, isDraft ? [6, 4] : []);
   const [x, y] = places[1];
   const name = isDraft ? 'New search area, not sent' : `Search area ${area.number}`;
-  painter.label(`${name}  ${Math.round(area.north_m)} × ${Math.round(area.east_m)} m`, x + 2, y - 7, colour);
+  const text = `${name}  ${Math.round(area.north_m)} × ${Math.round(area.east_m)} m`;
+  space.block(x + 2, y - 7 - TEXT_PX, painter.textWidth(text), TEXT_PX);
+  painter.label(text, x + 2, y - 7, colour);
 }
 
 export function drawTrails(painter, trails, model) {
@@ -87,7 +91,51 @@ export function drawFootprints(painter, model) {
   }
 }
 
-export function drawTargets(painter, targets) {
+const TEXT_PX = 14;  // the height of a text on the canvas
+
+// A text beside a point, where it covers no other one; none where there is no place for it.
+function labelBeside(painter, space, text, [x, y], gap, colour) {
+  const width = painter.textWidth(text);
+  const places = placesAround(x, y, width, TEXT_PX, gap);
+  const at = space.place(places, width, TEXT_PX);
+  if (at >= 0) painter.label(text, places[at][0], places[at][1] + TEXT_PX - 3, colour);
+}
+
+// Where aircraft were sent: a pin, a dashed line to it, and the way that is left.
+export function drawDestinations(painter, destinations, space) {
+  const {context} = painter;
+  for (const {node, kind, to, from, left, fresh} of destinations) {
+    const colour = fresh ? painter.colours.route : painter.colours.old;
+    const [x, y] = painter.at(to);
+    if (from) {
+      painter.path([painter.at(from), [x, y]], false);
+      painter.stroke(colour, 2, [7, 5]);
+    }
+    context.beginPath();
+    context.moveTo(x, y);
+    context.lineTo(x - 6, y - 13);
+    context.arc(x, y - 15, 6.5, Math.PI - 0.3, 0.3);
+    context.closePath();
+    painter.fill(painter.colours.halo, 1);
+    painter.stroke(colour, 2.5);
+    context.beginPath();
+    context.arc(x, y - 15, 2, 0, 2 * Math.PI);
+    painter.fill(colour, 1);
+    const name = kind === 'home' ? `${node} home` : node;
+    labelBeside(painter, space, `${name} ${wayLeft(left)}${fresh || left === null ? '' : ' (old)'}`.trim(), [x, y - 12], 10, colour);
+  }
+}
+
+// Texts keep away from what is drawn at these places.
+export function blockTargets(painter, targets, space) {
+  for (const {latitude_deg: lat, longitude_deg: lng} of targets) {
+    if (!isNumber(lat) || !isNumber(lng)) continue;
+    const [x, y] = painter.at({lat, lng});
+    space.block(x - 6, y - 6, 12, 12);
+  }
+}
+
+export function drawTargets(painter, targets, space) {
   for (const target of targets) {
     if (!isNumber(target.latitude_deg) || !isNumber(target.longitude_deg)) continue;
     const middle = {lat: target.latitude_deg, lng: target.longitude_deg};
@@ -104,7 +152,7 @@ export function drawTargets(painter, targets) {
     painter.context.textAlign = 'center';
     painter.label(STAGES[target.stage] ?? '?', x, y + 4, colour);
     painter.context.textAlign = 'left';
-    painter.label(`${target.name} ${target.stage}${old}`, x + 9, y + 15, colour);
+    labelBeside(painter, space, `${target.name} ${target.stage}${old}`, [x, y], 9, colour);
   }
 }
 

@@ -1,6 +1,7 @@
 // The table of the aircraft, and the line about the selected one.
 import {ageText, ageWithUnit, fixed, isNumber, STATES} from './format.js';
 import {byId, element, keepList, setAttribute, setClass, setText} from './dom.js';
+import {destinationsOf, wayLeft} from './destinations.js';
 import {kilo} from './radio.js';
 
 const COLUMNS = ['name', 'state', 'age number', 'rtt number', 'delivery number', 'battery number', 'altitude number', 'speed number', 'mission'];
@@ -16,10 +17,10 @@ export class FleetTable {
 
   update() {
     const {model} = this;
-    keepList(this.body, this.rows, model.aircraft, (one) => one.node, (one) => this.make(one), (row, one) => this.fill(row, one));
+    keepList(this.body, this.rows, model.byUrgency, (one) => one.node, (one) => this.make(one), (row, one) => this.fill(row, one));
     byId('fleet-empty').hidden = model.aircraft.length > 0;
     // Exactly one row can be reached by Tab: the selected one, else the first.
-    const reachable = this.rows.get(model.selected) ?? this.rows.get(model.aircraft[0]?.node);
+    const reachable = this.rows.get(model.selected) ?? this.rows.get(model.byUrgency[0]?.node);
     for (const row of this.rows.values()) setAttribute(row.root, 'tabindex', row === reachable ? '0' : '-1');
   }
 
@@ -31,11 +32,14 @@ export class FleetTable {
       return cell;
     });
     setText(cells[0], aircraft.node);
+    const mission = element('span');
+    const why = element('span', 'why');
+    cells[8].append(mission, why);
     root.addEventListener('click', () => this.onSelect(aircraft.node));
-    return {root, cells};
+    return {root, cells, mission, why};
   }
 
-  fill({root, cells}, aircraft) {
+  fill({root, cells, mission: doing, why}, aircraft) {
     const {model} = this;
     const state = model.state(aircraft);
     const {pose, mission, health} = aircraft;
@@ -44,6 +48,10 @@ export class FleetTable {
     setClass(root, model.shownState(aircraft) === 'stale' && state === 'up' ? 'stale' : state);
     setAttribute(root, 'aria-selected', String(aircraft.node === model.selected));
     setText(cells[1], `${STATES[state].sign} ${STATES[state].word}`);
+    // Where one thing is there and another is not, state and age would seem to contradict each other.
+    const missing = model.missing(aircraft);
+    setAttribute(cells[1], 'title', missing);
+    setText(why, /arriving/.test(missing) ? missing : aircraft.without_orders ? 'back without orders' : '');
     setText(cells[2], pose ? `${fresh ? '' : '! '}${ageText(model.age(pose.age_s))}` : '–');
     mark(cells[2], 'age number', fresh);
     setText(cells[3], isNumber(aircraft.round_trip_s) ? fixed(aircraft.round_trip_s * 1000, 1) : '–');
@@ -56,7 +64,7 @@ export class FleetTable {
     mark(cells[6], 'altitude number', fresh);
     setText(cells[7], pose ? fixed(pose.speed_mps, 1) : '–');
     mark(cells[7], 'speed number', fresh);
-    setText(cells[8], mission ? mission.mode.toUpperCase() + (mission.target ? ` ${mission.target}` : '') : '–');
+    setText(doing, mission ? mission.mode.toUpperCase() + (mission.target ? ` ${mission.target}` : '') : '–');
     mark(cells[8], 'mission', !mission || model.isFresh(aircraft, 'mission'));
     setAttribute(cells[8], 'title', mission?.text ?? '');
   }
@@ -64,7 +72,7 @@ export class FleetTable {
   // Arrow keys choose an aircraft.
   onKey(event) {
     const step = {ArrowDown: 1, ArrowUp: -1}[event.key];
-    const names = this.model.aircraft.map((one) => one.node);
+    const names = this.model.byUrgency.map((one) => one.node);
     let next = null;
     if (step) {
       const at = names.indexOf(this.model.selected);
@@ -78,7 +86,7 @@ export class FleetTable {
     this.focus(next);
   }
   focus(node) {
-    const row = this.rows.get(node ?? this.model.aircraft[0]?.node);
+    const row = this.rows.get(node ?? this.model.byUrgency[0]?.node);
     row?.root.focus();
     row?.root.scrollIntoView({block: 'nearest'});
   }
@@ -96,15 +104,24 @@ export function showSelected(model) {
   const state = model.state(aircraft);
   setText(byId('selected-title'), `${aircraft.node} ${STATES[state].sign} ${STATES[state].word}`);
   const said = [];
-  if (state !== 'up' && aircraft.reason) said.push(aircraft.reason);
+  const missing = model.missing(aircraft);
+  if (missing) said.push(missing);
+  if (state !== 'up' && aircraft.reason && model.fleetFresh) said.push(aircraft.reason);
+  if (aircraft.without_orders) said.push('back without orders: it has started anew and was told nothing since');
+  if (aircraft.mission?.area_declined) said.push(`▲ declines the search area: ${aircraft.mission.area_declined}`);
   if (aircraft.pose) {
     const {latitude_deg: latitude, longitude_deg: longitude} = aircraft.pose;
     const age = model.isPoseFresh(aircraft) ? '' : ` (${ageWithUnit(model.age(aircraft.pose.age_s))} ago)`;
     said.push(`${fixed(latitude, 5)}, ${fixed(longitude, 5)}${age}`);
+    if (isNumber(aircraft.ground_m) && isNumber(aircraft.pose.altitude_m))
+      said.push(`${fixed(aircraft.pose.altitude_m - aircraft.ground_m, 0)} m above the ground`);
   }
   if (aircraft.mission?.text)
     said.push(aircraft.mission.text + (model.isFresh(aircraft, 'mission') ? '' : ` (${ageWithUnit(model.age(aircraft.mission.age_s))} ago)`));
   if (aircraft.mission?.partner) said.push(`with ${aircraft.mission.partner}`);
   if (aircraft.health?.wants_home) said.push(`goes home by itself: ${aircraft.health.reason}`);
+  for (const {node, kind, left} of destinationsOf(model)) if (node === aircraft.node && left !== null) said.push(`${kind}: ${wayLeft(left)} left`);
+  // What a small screen leaves out of the table.
+  if (isNumber(aircraft.round_trip_s)) said.push(`RTT ${fixed(aircraft.round_trip_s * 1000, 1)} ms`);
   setText(byId('selected-text'), said.join(' · '));
 }

@@ -16,11 +16,12 @@ export class CommandList {
   }
   make() {
     const root = element('li');
-    const item = {root, who: element('span', 'who'), kind: element('span', 'kind'), what: element('span', 'what'), when: element('span', 'when')};
-    root.append(item.who, item.kind, item.what, item.when);
+    const item = {root, number: element('span', 'nr'), who: element('span', 'who'), kind: element('span', 'kind'), what: element('span', 'what'), when: element('span', 'when')};
+    root.append(item.number, item.who, item.kind, item.what, item.when);
     return item;
   }
   fill(item, command) {
+    setText(item.number, String(command.number));
     setText(item.who, command.node);
     setText(item.kind, command.kind);
     setText(item.when, ageWithUnit(this.model.age(command.changed_age_s)));

@@ -66,7 +66,10 @@ function showCounts() {
   for (const aircraft of model.aircraft) byState[model.state(aircraft)] += 1;
   keepList(byId('counts'), counts, Object.keys(byState).filter((state) => state !== 'waiting' || byState.waiting > 0),
     (state) => state, (state) => ({root: element('span', `state ${state}`)}),
-    ({root}, state) => setText(root, `${STATES[state].sign} ${byState[state]} ${STATES[state].word}`));
+    ({root}, state) => {
+      setText(root, `${STATES[state].sign} ${byState[state]} ${STATES[state].word}`);
+      setClass(root, `state ${state}${byState[state] === 0 ? ' none' : ''}`);
+    });
 }
 
 function showLink() {
@@ -120,7 +123,7 @@ function nextTheme() {
   showTheme();
 }
 const step = (by) => {
-  const names = model.aircraft.map((one) => one.node);
+  const names = model.byUrgency.map((one) => one.node);
   if (names.length === 0) return;
   const at = names.indexOf(model.selected);
   const next = names[at < 0 ? 0 : (at + by + names.length) % names.length];

@@ -2,11 +2,14 @@
 /* global L */
 import {ageWithUnit, isNumber, STATES} from './format.js';
 import {CanvasLayer} from './canvas.js';
-import {drawArea, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
+import {destinationsOf, wayLeft} from './destinations.js';
+import {blockTargets, drawArea, drawDestinations, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
 import {byId, element, setAttribute, setText} from './dom.js';
+import {LabelSpace, placesAround} from './labels.js';
 import {corners} from './geo.js';
 import {pageNow} from './connection.js';
 
+const SYMBOL_PX = 22;  // what the name of an aircraft keeps away from
 const SVG = 'http://www.w3.org/2000/svg';
 
 function svg(tag, attributes) {
@@ -20,7 +23,7 @@ function makeSymbol() {
   const picture = svg('svg', {viewBox: '-14 -14 28 28', 'aria-hidden': 'true'});
   const turned = svg('g', {});
   turned.append(svg('path', {class: 'shape', d: 'M0-11 8 10 0 5-8 10Z'}));
-  picture.append(svg('circle', {class: 'ring', r: 13}), turned, svg('path', {class: 'cross', d: 'M-7-7 7 7M7-7-7 7'}));
+  picture.append(svg('circle', {class: 'touch', r: 22}), svg('circle', {class: 'ring', r: 13}), turned, svg('path', {class: 'cross', d: 'M-7-7 7 7M7-7-7 7'}));
   const label = element('span', 'label');
   root.append(picture, label);
   return {root, turned, label};
@@ -34,6 +37,7 @@ export class FleetMap {
     this.markers = new Map();
     this.trails = new Trails();
     this.fitted = false;
+    this.moved = false;  // by a person, since it was fitted
     this.map = L.map('map', {
       zoomAnimation: false, fadeAnimation: false, markerZoomAnimation: false, inertia: false, attributionControl: false,
       zoomSnap: 0.5, minZoom: 3, maxZoom: 22, center: [0, 0], zoom: 3, doubleClickZoom: false, keyboardPanDelta: 60,
@@ -42,20 +46,65 @@ export class FleetMap {
     this.areaToDraw = () => [null, false];
     this.layer = new CanvasLayer((painter) => this.draw(painter)).addTo(this.map);
     this.map.on('click', (event) => onClick(event.latlng));
-    new ResizeObserver(() => this.map.invalidateSize({pan: false})).observe(byId('map'));
+    this.map.on('movestart zoomstart', () => (this.moved = this.moved || !this.fitting));
+    new ResizeObserver(() => this.resize()).observe(byId('map'));
+  }
+
+  // What was fitted is fitted to the new size; what a person has moved stays where he put it.
+  resize() {
+    this.map.invalidateSize({pan: false});
+    if (this.fitted && !this.moved) this.fit();
   }
 
   draw(painter) {
     const cell = drawGrid(painter);
     const [area, isDraft] = this.areaToDraw();
-    drawArea(painter, this.model.snapshot?.area, false);
-    if (isDraft) drawArea(painter, area, true);
+    const space = new LabelSpace();
+    drawArea(painter, this.model.snapshot?.area, false, space);
+    if (isDraft) drawArea(painter, area, true, space);
     drawFootprints(painter, this.model);
     drawTrails(painter, this.trails.trails, this.model);
-    drawTargets(painter, this.model.targets);
+    const {targets} = this.model;
+    this.placeLabels(space);
+    blockTargets(painter, targets, space);
+    drawDestinations(painter, this.destinations, space);
+    drawTargets(painter, targets, space);
     if (this.goingTo) this.drawGoingTo(painter);
+    // For whoever watches the page by program: what is drawn cannot be read.
+    const text = this.destinations.map(({node, kind, left}) => `${node} ${kind} ${wayLeft(left)}`).join(', ');
+    setAttribute(byId('map'), 'data-destinations', text);
     const size = cell >= 1000 ? `${cell / 1000} km` : `${cell} m`;
     setText(byId('legend'), `Grid ${size} · ellipses 2σ · north up`);
+  }
+
+  get destinations() {
+    return destinationsOf(this.model);
+  }
+
+  // The names of the aircraft: of the selected one first, then of those that need attention. One for which there is no
+  // place is left out, but for the selected one's.
+  placeLabels(space) {
+    const {model} = this;
+    const shown = model.byUrgency.filter(({node}) => this.markers.has(node))
+      .sort((a, b) => Number(b.node === model.selected) - Number(a.node === model.selected));
+    const at = new Map(shown.map(({node}) => [node, this.map.latLngToContainerPoint(this.markers.get(node).marker.getLatLng())]));
+    for (const {x, y} of at.values()) space.block(x - SYMBOL_PX / 2, y - SYMBOL_PX / 2, SYMBOL_PX, SYMBOL_PX);
+    for (const {node} of shown) {
+      const known = this.markers.get(node);
+      const {label} = known.symbol;
+      if (known.measured !== label.textContent) {
+        known.measured = label.textContent;
+        known.size = [label.offsetWidth, label.offsetHeight];
+      }
+      const [width, height] = known.size;
+      const {x, y} = at.get(node);
+      const places = placesAround(x, y, width, height, SYMBOL_PX / 2 + 1);
+      const place = space.place(places, width, height);
+      const [left, top] = places[Math.max(0, place)];
+      label.style.left = `${left - x}px`;
+      label.style.top = `${top - y}px`;
+      label.classList.toggle('no-place', place < 0 && node !== model.selected);
+    }
   }
 
   drawGoingTo(painter) {
@@ -126,7 +175,12 @@ export class FleetMap {
     if (area) points.push(...corners(area).map(({lat, lng}) => [lat, lng]));
     if (points.length === 0) return;
     this.fitted = true;
-    this.map.fitBounds(points, {padding: [50, 50], maxZoom: 18, animate: false});
+    this.moved = false;
+    this.fitting = true;
+    const {x, y} = this.map.getSize();
+    const padding = Math.min(50, x / 8, y / 8);
+    this.map.fitBounds(points, {padding: [padding, padding], maxZoom: 18, animate: false});
+    this.fitting = false;
   }
 
   centre(aircraft) {

@@ -8,6 +8,8 @@ const FLEET_FRESH_S = 3.0;
 const LIVE_S = 1.5;
 const PART_FRESH_S = {mission: 3.5, health: 3.5, targets: 2.5, camera: 2.5, picture: 10};
 
+const URGENCY = ['lost', 'stale', 'waiting', 'up'];
+
 export class Model {
   snapshot = null;
   takenAt = -Infinity;
@@ -27,6 +29,11 @@ export class Model {
 
   get aircraft() {
     return this.snapshot?.aircraft ?? [];
+  }
+  // What needs attention first: LOST, STALE, WAITING, UP; within each by name.
+  get byUrgency() {
+    const rank = new Map(this.aircraft.map((one) => [one, URGENCY.indexOf(this.state(one))]));
+    return [...this.aircraft].sort((a, b) => rank.get(a) - rank.get(b));
   }
   find(node) {
     return this.aircraft.find((one) => one.node === node) ?? null;
@@ -61,6 +68,17 @@ export class Model {
   }
   isFresh(aircraft, part) {
     return this.state(aircraft) === 'up' && this.age(aircraft[part]?.age_s) <= PART_FRESH_S[part];
+  }
+  // What is missing of an aircraft, or of what stands between it and the page; empty if nothing is.
+  missing(aircraft) {
+    if (!this.live) return 'no connection to the ground station';
+    if (!this.fleetFresh) return 'the gateway of the ground station is silent';
+    if (aircraft.state === 'waiting') return '';
+    const beats = aircraft.state === 'up';
+    const poses = this.age(aircraft.pose?.age_s) <= POSE_FRESH_S;
+    if (beats && poses) return '';
+    if (beats) return aircraft.pose ? 'poses missing, beats arriving' : 'no pose has come yet';
+    return poses ? 'beats missing, poses arriving' : 'beats and poses missing';
   }
   // As on the map and in its sign: an aircraft that is UP but whose pose is old is shown as STALE there.
   shownState(aircraft) {

@@ -2,8 +2,10 @@
 import {byId, setText} from './dom.js';
 import {distance} from './geo.js';
 import {fixed, isNumber, STATES} from './format.js';
+import {describeHeight, knownGround} from './heights.js';
 
 const DEFAULT_SPEED_MPS = 12;
+const CLEAR_PX = 34;  // around what the form must not cover
 const FIELDS = [
   ['latitude', 'latitude_deg', -90, 90],
   ['longitude', 'longitude_deg', -180, 180],
@@ -39,7 +41,10 @@ export class Orders {
       this.send();
     });
     byId('order-cancel').addEventListener('click', () => this.close());
-    for (const id of ['latitude', 'longitude']) byId(`order-${id}`).addEventListener('input', () => this.showPoint());
+    this.form.addEventListener('input', () => {
+      this.askedAbout = null;
+      this.showPoint();
+    });
   }
 
   get isOpen() {
@@ -59,7 +64,7 @@ export class Orders {
     const titles = {goto: `Send ${this.node} to a point`, home: `Call ${this.node} home?`, search: `Let ${this.node} search?`};
     setText(byId('order-title'), titles[kind]);
     byId('order-fields').hidden = kind !== 'goto';
-    setText(byId('order-send'), {goto: 'Send', home: 'Call home', search: 'Start search'}[kind]);
+    this.askedAbout = null;
     setText(byId('order-error'), '');
     for (const {input} of this.fields) input.removeAttribute('aria-invalid');
     if (kind === 'goto') {
@@ -99,18 +104,69 @@ export class Orders {
     this.update();
   }
 
-  // What the person should know before it is sent.
+  // What is to be known of the altitude in the form, see describeHeight.
+  get height() {
+    const aircraft = this.model.find(this.node);
+    const typed = byId('order-altitude').value.trim();
+    if (this.kind !== 'goto' || !aircraft || typed === '') return {says: '', asks: ''};
+    const fresh = this.model.isPoseFresh(aircraft);
+    return describeHeight({
+      altitude: Number(typed), present: aircraft.pose?.altitude_m, than: fresh ? 'it is now' : 'it is said to have been',
+      ground: knownGround([aircraft]), floors: [[this.node, aircraft.floor_m]],
+    });
+  }
+
+  // What the person should know before it is sent. What stands between the page and the aircraft comes first: while that is
+  // broken nobody knows how the aircraft is.
   update() {
     if (!this.isOpen) return;
+    const {live, fleetFresh} = this.model;
+    const again = this.askedAbout !== null;
+    byId('order-send').disabled = !live || this.sending === true;
+    setText(byId('order-send'), again ? 'Send it all the same' : {goto: 'Send', home: 'Call home', search: 'Start search'}[this.kind]);
+    byId('order-send').classList.toggle('danger', again);
+    setText(byId('order-again'), again ? `▲ ${this.askedAbout} Is it meant so?` : '');
+    if (!live) {
+      setText(byId('order-note'), '✕ There is no connection to the ground station: nothing can be sent.');
+      this.keepClear();
+      return;
+    }
+    if (!fleetFresh) {
+      setText(byId('order-note'), '▲ The gateway of the ground station is silent: nobody knows whether this will arrive.');
+      this.keepClear();
+      return;
+    }
     const aircraft = this.model.find(this.node);
     const said = [];
+    if (this.kind === 'goto') said.push(this.height.says);
     const state = aircraft ? this.model.shownState(aircraft) : 'lost';
-    if (state !== 'up') said.push(`${STATES[state].sign} ${this.node} is ${STATES[state].word}: it may get this late or not at all.`);
+    if (state !== 'up') said.unshift(`${STATES[state].sign} ${this.node} is ${STATES[state].word}: it may get this late or not at all.`);
     if (this.kind === 'goto' && this.point && aircraft?.pose) {
       const from = {lat: aircraft.pose.latitude_deg, lng: aircraft.pose.longitude_deg};
       said.push(`${Math.round(distance(from, this.point))} m from where it is${state === 'up' ? '' : ' said to have been'}.`);
     }
-    setText(byId('order-note'), said.join(' '));
+    setText(byId('order-note'), said.filter((one) => one).join(' '));
+    this.keepClear();
+  }
+
+  // The form stands in the first corner of the map where it covers neither the aircraft nor the point.
+  keepClear() {
+    const frame = this.form.parentElement.getBoundingClientRect();
+    const {width, height} = this.form.getBoundingClientRect();
+    const aircraft = this.model.find(this.node);
+    const points = [this.kind === 'goto' ? this.point : null,
+      aircraft?.pose ? {lat: aircraft.pose.latitude_deg, lng: aircraft.pose.longitude_deg} : null].filter((one) => one);
+    const places = points.map((point) => this.map.map.latLngToContainerPoint(point));
+    const corners = {'bottom-left': [0, 1], 'bottom-right': [1, 1], 'top-right': [1, 0], 'top-left': [0, 0]};
+    const covers = (name) => {
+      const [right, bottom] = corners[name];
+      const left = right ? frame.width - width - CLEAR_PX : CLEAR_PX;
+      const top = bottom ? frame.height - height - CLEAR_PX : CLEAR_PX;
+      return places.some(({x, y}) => x > left - CLEAR_PX && x < left + width + CLEAR_PX && y > top - CLEAR_PX && y < top + height + CLEAR_PX);
+    };
+    const now = this.form.dataset.corner ?? 'bottom-left';
+    const best = [now, ...Object.keys(corners)].find((name) => !covers(name)) ?? now;
+    if (this.form.dataset.corner !== best) this.form.dataset.corner = best;
   }
 
   async send() {
@@ -119,8 +175,18 @@ export class Orders {
       values = readNumbers(this.fields, byId('order-error'));
       if (!values) return;
     }
+    if (!this.model.live || this.sending) return;
+    // A large descent is asked about again, and Enter does not answer that by itself.
+    const {asks} = this.height;
+    if (asks && this.askedAbout === null) {
+      this.askedAbout = asks;
+      this.update();
+      byId('order-cancel').focus();
+      return;
+    }
     const {kind, node} = this;
-    byId('order-send').disabled = true;
+    this.sending = true;
+    this.update();
     try {
       await this.connection.request({type: 'order', kind, node, ...values});
       this.say(`${kind} for ${node} was given to the ground station.`);
@@ -128,7 +194,8 @@ export class Orders {
     } catch (error) {
       setText(byId('order-error'), error.message);
     } finally {
-      byId('order-send').disabled = false;
+      this.sending = false;
+      this.update();
     }
   }
 }

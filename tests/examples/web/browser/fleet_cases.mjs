@@ -10,15 +10,16 @@ export async function startFleet({bin, root}, count, {vision = false, groundArgu
   const common = (name, node) => ['--config', `${swarm}/${name}.yaml`, '--node', node, '--domain', domain];
   const uavs = [];
   const visions = [];
+  const startUav = (i) => uavs.push(new Program(`${bin}/uav`, [...common('uav', `uav${i}`), '--world', `${swarm}/world.yaml`]));
   for (let i = 1; i <= count; i++) {
-    uavs.push(new Program(`${bin}/uav`, common('uav', `uav${i}`)));
+    startUav(i);
     if (vision)
       visions.push(new Program(`${bin}/vision`, [...common('vision', `uav${i}.vision`), '--world', `${swarm}/world.yaml`]));
   }
   const ground = new Program(`${bin}/ground`, ['--config', `${root}/examples/ground_station/ground.yaml`, '--domain', domain,
     '--web', '0', ...groundArguments]);
   const [url] = await ground.says(/http:\S+/);
-  return {uavs, visions, ground, url};
+  return {uavs, visions, ground, url, startUav};
 }
 
 async function showsAKilledAircraftAsOld(programs) {
@@ -90,7 +91,57 @@ async function commandsAnAircraft(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+// A point and a search area inside the ground: each is declined by the aircraft itself.
+async function declinesWhatIsTooLow(programs) {
+  const {url} = await startFleet(programs, 1);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is UP');
+  await fleet.select('uav1');
+  await becomes(async () => /m above the ground/.test(await fleet.text('#selected-text')), 'the height of the ground is known');
+  await page.keyboard.press('g');
+  await page.fill('#order-altitude', '50');
+  await page.click('#order-send');
+  await page.click('#order-send');
+  const why = '50 m above sea level is 380 m below the ground and below the floor of 460 m';
+  await becomes(async () => (await fleet.text('#commands li')).includes(`declined: ${why}`), async () => `it is declined: ${await fleet.text('#commands')}`);
+  await page.keyboard.press('a');
+  await page.fill('#area-altitude_m', '100');
+  await page.click('#area-send');
+  await page.click('#area-send');
+  const whyNot = '100 m above sea level is 330 m below the ground and below the floor of 460 m';
+  await becomes(async () => (await fleet.text('#events')).includes(`declines the search area: ${whyNot}`), async () => `so is the area: ${await fleet.text('#events')}`);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('s');
+  await page.keyboard.press('Enter');
+  await becomes(async () => (await fleet.text('#commands li')).includes(`declined: search area: ${whyNot}`), 'it does not search another area than the one that was sent');
+  assert.deepEqual(fleet.errors, []);
+}
+
+// An aircraft that a person has called home, is killed, and comes back.
+async function leavesAnAircraftThatIsBackToThePerson(programs) {
+  const {uavs, url, startUav} = await startFleet(programs, 1, {groundArguments: ['--search', '*']});
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /TRANSIT|SEARCH/.test(row.mission), 'was sent searching');
+  await fleet.select('uav1');
+  await page.keyboard.press('h');
+  await page.keyboard.press('Enter');
+  await fleet.rowBecomes('uav1', (row) => /HOME/.test(row.mission), 'flies home');
+  await uavs[0].end();
+  await fleet.rowBecomes('uav1', (row) => /STALE|LOST/.test(row.state), 'is gone');
+  startUav(1);
+  await becomes(async () => /uav1.*is back without orders/.test(await fleet.text('#events')), async () => `an event says so: ${await fleet.text('#events')}`);
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && /IDLE/.test(row.mission) && /back without orders/.test(row.mission), 'waits');
+  assert.equal(await page.locator('#commands li').count(), 2, 'nothing was sent to it');
+  assert.deepEqual(fleet.errors, []);
+}
+
 export const cases = {
+  declines_what_is_too_low: declinesWhatIsTooLow,
+  leaves_an_aircraft_that_is_back_to_the_person: leavesAnAircraftThatIsBackToThePerson,
   shows_a_killed_aircraft_as_old: showsAKilledAircraftAsOld,
   commands_an_aircraft: commandsAnAircraft,
 };

@@ -1,11 +1,13 @@
 // Runs one case: run_case.mjs CASE FOLDER_OF_PROGRAMS ROOT. Exit status 0: passed.
 import {cases as fixtureCases} from './fixture_cases.mjs';
 import {cases as fleetCases} from './fleet_cases.mjs';
+import {cases as lookCases} from './look_cases.mjs';
+import {cases as operatorCases} from './operator_cases.mjs';
 import {closeBrowser} from './page.mjs';
 import {endAll} from './processes.mjs';
 
 const [name, bin, root] = process.argv.slice(2);
-const run = {...fixtureCases, ...fleetCases}[name];
+const run = {...fixtureCases, ...fleetCases, ...lookCases, ...operatorCases}[name];
 if (!run) {
   console.error(`there is no case ${name}`);
   process.exit(2);
