@@ -1,11 +1,16 @@
 #include "TerminalScreen.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
 
 namespace
 {
 using Ground::Emphasis;
 using Ground::TerminalScreen;
+using testing::HasSubstr;
 
 TEST(TerminalScreen, DrawsBelowTheCursorTheFirstTime)
 {
@@ -55,6 +60,21 @@ TEST(TerminalScreen, EndsTheStyleOfALineWithTheLine)
 {
     TerminalScreen screen;
     EXPECT_EQ(screen.Redraw({{"lost", Emphasis::Alarm}}, {3, 24}), "\x1b[K\x1b[1;31mlos\x1b[0m\n\x1b[J");
+}
+
+TEST(TerminalScreen, ShowsTheLostAircraftOfAFleetThatIsTooLargeForIt)
+{
+    std::vector<Ground::FleetRow> rows(20);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+        rows[i].Node = "uav" + std::to_string(i + 1);
+        rows[i].State = i < 18 ? Ground::RowState::Up : Ground::RowState::Lost;
+    }
+    Ground::TerminalScreen screen;
+    const std::string text = screen.Redraw(Ground::FleetTableLines(rows, 0), {80, 12});
+    EXPECT_THAT(text, HasSubstr("12 more"));
+    EXPECT_THAT(text, HasSubstr("uav19    LOST"));
+    EXPECT_THAT(text, HasSubstr("uav20    LOST"));
 }
 
 }  // namespace

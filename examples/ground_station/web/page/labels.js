@@ -4,13 +4,17 @@ const MARGIN_PX = 1;
 
 export class LabelSpace {
   taken = [];
+  // size: of the map, {x, y}. Outside of it no place is free.
+  constructor(size) {
+    this.size = size;
+  }
 
   // Takes a rectangle, whatever is there.
   block(x, y, width, height) {
     this.taken.push({left: x, top: y, right: x + width, bottom: y + height});
   }
   isFree({left, top, right, bottom}) {
-    return !this.taken.some((one) => left < one.right + MARGIN_PX && right > one.left - MARGIN_PX &&
+    return left >= 0 && top >= 0 && right <= this.size.x && bottom <= this.size.y && !this.taken.some((one) => left < one.right + MARGIN_PX && right > one.left - MARGIN_PX &&
       top < one.bottom + MARGIN_PX && bottom > one.top - MARGIN_PX);
   }
   // Takes the first free one of these places, each [x, y] of the upper left corner of a text of that size. Returns its

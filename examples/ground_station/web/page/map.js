@@ -59,7 +59,7 @@ export class FleetMap {
   draw(painter) {
     const cell = drawGrid(painter);
     const [area, isDraft] = this.areaToDraw();
-    const space = new LabelSpace();
+    const space = new LabelSpace(painter.size);
     drawArea(painter, this.model.snapshot?.area, false, space);
     if (isDraft) drawArea(painter, area, true, space);
     drawFootprints(painter, this.model);

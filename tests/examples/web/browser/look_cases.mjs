@@ -220,6 +220,9 @@ async function showsFirstWhatNeedsAttention(programs) {
     boxes.forEach((a, i) => boxes.slice(i + 1).forEach((b) => {
       if (a.box.left < b.box.right && a.box.right > b.box.left && a.box.top < b.box.bottom && a.box.bottom > b.box.top) found.push(`${a.name} and ${b.name}`);
     }));
+    const map = document.getElementById('map').getBoundingClientRect();
+    for (const {name, box} of boxes)
+      if (box.left < map.left || box.right > map.right || box.top < map.top || box.bottom > map.bottom) found.push(`${name} and the edge of the map`);
     return {found, shown: boxes.map((one) => one.name)};
   });
   for (let i = 0; i < 20; i++) {
