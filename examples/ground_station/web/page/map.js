@@ -101,6 +101,7 @@ export class FleetMap {
       const places = placesAround(x, y, width, height, SYMBOL_PX / 2 + 1);
       const place = space.place(places, width, height);
       const [left, top] = places[Math.max(0, place)];
+      if (place < 0 && node === model.selected) space.block(left, top, width, height);
       label.style.left = `${left - x}px`;
       label.style.top = `${top - y}px`;
       label.classList.toggle('no-place', place < 0 && node !== model.selected);
