@@ -26,6 +26,8 @@ constexpr double BeatShare = 0.05;
 // Of a pace: half of what presence may take where others want to send. The other nodes' reports, by which it
 // is known, come with their beats; so not less.
 constexpr double BeatShareOfPace = 0.125;
+// Nobody has asked for seldom beats, and a pace may come of bad weather alone.
+constexpr Duration SlowestBeatOfPace = std::chrono::seconds(1);
 constexpr double SmallestBeat = 100.0;  // on the air
 constexpr Duration QuickestBeat = std::chrono::milliseconds(500);
 // Without a budget the others learn by the beats how late datagrams come, so who sends much beats more often:
@@ -144,12 +146,11 @@ std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
 }
 
 // So that beats take so many bytes a second.
-void AirTraffic::SetBeatPeriod(double bytesPerSecond)
+void AirTraffic::SetBeatPeriod(double bytesPerSecond, Duration slowest)
 {
     const auto period =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(_beatBytes / bytesPerSecond));
-    _presence.SetBeatPeriod(std::clamp<Duration>(
-        period, QuickestBeat, std::max<Duration>(QuickestBeat, _config.Radio.SlowestBeat)));
+    _presence.SetBeatPeriod(std::clamp(period, QuickestBeat, std::max(QuickestBeat, slowest)));
 }
 
 void AirTraffic::SetLimit(Duration now)
@@ -161,12 +162,12 @@ void AirTraffic::SetLimit(Duration now)
     {
         _schedule.Reserve(_unscheduled.Rate(now));
         _schedule.SetBudget(std::min(*budget, carried.value_or(*budget)), now);
-        SetBeatPeriod(BeatShare * *budget);
+        SetBeatPeriod(BeatShare * *budget, _config.Radio.SlowestBeat);
     }
     else if (carried)
     {
         _schedule.SetPace(*carried, now);
-        SetBeatPeriod(BeatShareOfPace * *carried);
+        SetBeatPeriod(BeatShareOfPace * *carried, SlowestBeatOfPace);
     }
     else
     {

@@ -33,9 +33,9 @@ namespace Rabit
 //   published message. A datagram is made when its turn has come, from what is newest then.
 // - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
 //   DDS's own, is paid for, too, and a part of a budget is kept free for it when it is due.
-// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`; where the air is known
-//   to carry little, an eighth of that. Where nothing is known there are more of them while much is sent, up
-//   to ten a second.
+// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, where the
+//   air is known to carry little, an eighth of that, within 500 ms and a second; where it is not, there are
+//   more of them while much is sent, up to ten a second.
 //
 // Gateway's thread only.
 class AirTraffic
@@ -65,7 +65,7 @@ private:
     std::size_t TakeSent();
     void LookAtDiscovery(std::uint64_t sent);
     void Watch(Duration now);
-    void SetBeatPeriod(double bytesPerSecond);
+    void SetBeatPeriod(double bytesPerSecond, Duration slowest);
     void SetLimit(Duration now);
     Duration ServeUnlimited(Duration now);
     Duration ServeLimited();

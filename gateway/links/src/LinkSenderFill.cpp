@@ -20,6 +20,7 @@ constexpr std::size_t SmallPart = 256;
 constexpr std::size_t PartOfDatagram = 4;
 // What stands before a message in a datagram, names left out.
 constexpr std::size_t AboutAnItem = 12;
+constexpr std::size_t AboutNames = 64;
 // The payload's length may take one byte more than that of an empty one, twice.
 constexpr std::size_t LengthBytes = 2;
 
@@ -70,6 +71,8 @@ std::size_t LinkSender::NextBytes() const
     {
         bytes += std::min(_inFlight, most / PartOfDatagram);
     }
+    // At the beginning of a link the queue, the types and both lives are named.
+    bytes += _isKnown ? 0 : _queue.size() + AboutNames;
     return std::clamp<std::size_t>(bytes, 1, most);
 }
 

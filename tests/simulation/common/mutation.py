@@ -17,10 +17,10 @@ def apply(text, mutation):
     return text[:found[0].start()] + mutation.replace + text[found[0].end():]
 
 
-def simulate(program, seeds, jobs):
-    """Runs a simulation. Returns the violated invariant, or None."""
+def simulate(program, seeds, jobs, first=1):
+    """Runs a simulation of so many seeds from the first. Returns the violated invariant, or None."""
     try:
-        run = subprocess.run([str(program), "--seeds", str(seeds), "--jobs", str(jobs)], capture_output=True,
+        run = subprocess.run([str(program), "--first", str(first), "--seeds", str(seeds), "--jobs", str(jobs)], capture_output=True,
                              text=True, timeout=600)
     except subprocess.TimeoutExpired:
         return "the simulation does not end"

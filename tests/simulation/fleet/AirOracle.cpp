@@ -19,6 +19,10 @@ constexpr Time Adapts = 5s;
 // tracks.
 constexpr Time Discovers = 20s;
 constexpr std::uint64_t Discovery = 30'000;
+// A node whose rate is limited sees so long after it that it is over (air/DiscoveryBurst).
+constexpr Time DiscoveryIsOver = 2s;
+// Of a medium that carries less than in the plan as of the slowest one.
+constexpr Time SlowPoseAge = 3s;
 // What may be lost in a row of what is said once.
 constexpr int InARow = 6;
 // What part of the medium tracks are to have at the least: a quarter, as the plans have it. When the medium
@@ -218,7 +222,7 @@ void AirOracle::OnTrack(std::size_t observerLife, std::size_t node, Time age)
         return;
     }
     _longestAge = std::max(_longestAge, age);
-    if (age > _plan->PoseAge)
+    if (age > (_rate < _plan->BytesPerSecond ? std::max(_plan->PoseAge, SlowPoseAge) : _plan->PoseAge))
     {
         _world.Fail(19, "a track of " + _world.NameOf(node) + " that comes to " +
                             _world.NameOf(_world.Lives[observerLife].Node) + " is " + Seconds(age) + " old");
@@ -239,7 +243,8 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
     const double seconds = static_cast<double>(TrackOnAir) / share / ofNode;
     const Time pause = std::max(_world.Plan.Machines[node].TrackPeriod, Time(std::llround(seconds * 1e9)));
     const bool discovers = _world.Now <= _discoverySince + Discovers;
-    const Time most = _plan->PoseAge + InARow * pause + (discovers ? TimeOf(Discovery) : Time(0));
+    const Time most =
+        _plan->PoseAge + InARow * pause + (discovers ? TimeOf(Discovery) + DiscoveryIsOver : Time(0));
     if (age > most)
     {
         _world.Fail(20, "the newest track that " + _world.NameOf(observer) + " has of " +

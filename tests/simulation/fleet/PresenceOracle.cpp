@@ -15,10 +15,11 @@ using namespace std::chrono_literals;
 constexpr int StaleAfter = 3;
 constexpr int LostAfter = 7;
 
-// The longest that a node lets pass between two beats.
+// The longest that a node lets pass between two beats: with a budget, and where datagrams come late, which
+// may be the weather's fault.
 Time LongestPause(const FleetPlan &plan)
 {
-    return plan.Thin ? Time(GatewayConfig().Radio.SlowestBeat) : Time(500ms);
+    return plan.Thin && plan.Thin->Budget ? Time(GatewayConfig().Radio.SlowestBeat) : Time(1s);
 }
 
 }  // namespace

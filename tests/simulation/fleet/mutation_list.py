@@ -7,6 +7,7 @@ where random runs get there too seldom or the links make up for it.
 from mutation import Mutation
 
 FLEET = "fleet_simulation"
+THIN = "fleet_simulation over thin media"
 NODES = "gateway_nodes_test"
 PARTS = "gateway_parts_test"
 
@@ -45,6 +46,32 @@ MUTATIONS = [
     Mutation("any echo is believed", "PeerTable.cpp", "_sent.Find(own->beat);", "std::optional(Duration(0));", PARTS),
     Mutation("what is not as its digest says is taken", "OffersCollector.cpp",
              "if (Announcements::DigestOf(_bytes) != digest)", "if (false)", PARTS),
+    # What goes on the air
+    Mutation("beats wait for all others", "AirTraffic.cpp", "_beat(_schedule.AddStream(TrafficClass::Presence))",
+             "_beat(_schedule.AddStream(TrafficClass::Bulk))", THIN),
+    Mutation("beats do not follow a pace", "AirTraffic.cpp", "SetBeatPeriod(BeatShareOfPace * *carried, SlowestBeatOfPace);",
+             "", THIN),
+    Mutation("beats do not follow a budget", "AirTraffic.cpp",
+             "SetBeatPeriod(BeatShare * *budget, _config.Radio.SlowestBeat);", "", THIN),
+    Mutation("what DDS says is free", "AirTraffic.cpp", "_schedule.Spent(bytes, now);", "", THIN),
+    Mutation("nothing is kept free for what DDS says", "AirTraffic.cpp", "_schedule.Reserve(_unscheduled.Rate(now));", "",
+             THIN),
+    Mutation("a budget is no limit", "AirTraffic.cpp", "_schedule.SetBudget(std::min(*budget, carried.value_or(*budget)), now);",
+             "", THIN),
+    Mutation("late datagrams are no news", "AirTraffic.cpp", "_estimate.Reported(peer, delay, arrivedAt, now);", "", THIN),
+    Mutation("what the air seemed to carry while DDS had it is kept", "AirTraffic.cpp", "_estimate.Forget();", "", THIN),
+    Mutation("beats follow each other without end", "AirTraffic.cpp", "_sinceBeat >= BytesForABeat * _beatBytes &&", "",
+             THIN),
+    Mutation("each value is written again and again", "TopicPublisher.cpp",
+             "const WriteResult result = _writer.Write(*_local, _time);",
+             "for (int i = 0; i < 5; ++i) { static_cast<void>(_writer.Write(*_local, _time)); } "
+             "const WriteResult result = _writer.Write(*_local, _time);", THIN),
+    Mutation("what waits is old", "AirTraffic.cpp", "_schedule.SetPace(*carried, now);",
+             "_schedule.SetPace(100.0 * *carried, now);", THIN),
+    Mutation("beats wait for ten seconds after a start", "AirTraffic.cpp",
+             "if (now >= _presence.BeatDue() || IsBeatWorth(now))",
+             "if (_schedule.SentBytes(_beat) + _schedule.SentBytes(TrafficClass::Telemetry) > 5000 && now >= _presence.BeatDue())",
+             THIN),
     # Queue messages
     Mutation("a program that is no node has its say", "PresenceInbox.cpp", "IsNodeName(info.Node) &&", "", PARTS),
     Mutation("a queue takes messages of everybody", "IncomingQueues.cpp", "|| !found->second.AcceptsFrom(source)", "",

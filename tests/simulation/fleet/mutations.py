@@ -19,7 +19,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
 import mutation  # noqa: E402
-from mutation_list import MUTATIONS  # noqa: E402
+from mutation_list import FLEET, MUTATIONS, THIN  # noqa: E402
+
+FIRST_THIN_SEED = 1000000  # as FleetPlan has it
 
 
 class Build:
@@ -57,8 +59,9 @@ class Build:
                  if word != "-Werror"]
         self.run(words)
         # Before the library, of which the original is not taken then.
-        program = self.work / f"mutant_{change.noticed_by}"
-        link = self.ninja("commands", change.noticed_by).splitlines()[-1]
+        name = change.noticed_by.split()[0]
+        program = self.work / f"mutant_{name}"
+        link = self.ninja("commands", name).splitlines()[-1]
         words = shlex.split(link.split("&&")[1])  # around it: `:`, and what looks for the tests in the program
         at = words.index("-o")
         self.run([*words[:at], str(mutant), "-o", str(program), *words[at + 2:]])
@@ -73,8 +76,10 @@ def test(program):
 
 
 def notice_of(program, change, arguments):
-    if change.noticed_by == "fleet_simulation":
+    if change.noticed_by == FLEET:
         return mutation.simulate(program, arguments.seeds, arguments.jobs)
+    if change.noticed_by == THIN:
+        return mutation.simulate(program, arguments.seeds, arguments.jobs, FIRST_THIN_SEED)
     return test(program)
 
 
