@@ -69,7 +69,12 @@ void AirOracle::Restart(std::size_t node, Time since)
     for (std::size_t other = 0; other < _senders.size(); ++other)
     {
         const bool counts = _senders[node].Alive && _senders[other].Alive && !_outage && node != other;
-        PairOf(node, other) = PairOf(other, node) = {since, false, counts};
+        for (Pair *pair : {&PairOf(node, other), &PairOf(other, node)})
+        {
+            pair->Since = since;
+            pair->WasUp = false;
+            pair->Counts = counts;
+        }
     }
 }
 
@@ -86,13 +91,20 @@ void AirOracle::OnEnded(std::size_t node)
     _senders[node].Alive = false;
     _discoverySince = _world.DisturbedAt = _world.Now;
     Restart(node, _world.Now);
+    for (std::size_t other = 0; other < _senders.size(); ++other)
+    {
+        PairOf(other, node).Ended = PairOf(other, node).Shown;
+    }
 }
 
 void AirOracle::OnOutage()
 {
     _outage = true;
     _outageSince = _world.Now;
-    std::fill(_pairs.begin(), _pairs.end(), Pair());
+    for (Pair &pair : _pairs)
+    {
+        pair.WasUp = pair.Counts = false;
+    }
 }
 
 void AirOracle::OnOutageEnd()
@@ -192,7 +204,12 @@ void AirOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
         for (std::size_t node = 0; node < _senders.size(); ++node)
         {
             Pair &pair = PairOf(observer, node);
-            if (status.node != _world.NameOf(node) || !pair.Counts)
+            if (status.node != _world.NameOf(node))
+            {
+                continue;
+            }
+            pair.Shown = status.incarnation;
+            if (!pair.Counts || pair.Shown == pair.Ended)
             {
                 continue;
             }

@@ -53,6 +53,9 @@ private:
         Time Since{0};  // they can hear each other from here on
         bool WasUp = false;
         bool Counts = false;  // both are there, and nothing is in the way
+        // Lives: the last that was shown, and the one that has ended. Its goodbye may still be under way.
+        std::uint64_t Shown = 0;
+        std::uint64_t Ended = 0;
     };
     // What a node has sent in the last second.
     struct Sender
