@@ -7,6 +7,8 @@
 
 #include "DirectAnnouncements.h"
 #include "Entity.h"
+#include "OutboxThread.h"
+#include "common/DiscoveryRate.h"
 #include "common/SessionLog.h"
 
 namespace Rabit::Cyclone
@@ -17,7 +19,9 @@ class VendorDomain
 {
 public:
     // Throws TransportError. What the vendor says of the domain goes to the log.
-    VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log);
+    // What discovery says of endpoints stays within `rate`.
+    VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
+                 std::shared_ptr<const DiscoveryRate> rate);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
@@ -30,7 +34,8 @@ public:
     bool IsUnheard(const ddsi_guid_t &participant) const;
 
 private:
-    static bool MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to);
+    static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
+                        const RabitCycloneRoute *route);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static void OnReceived(void *self, unsigned char *datagram, std::size_t size, const unsigned char *from,
                            bool direct);
@@ -40,6 +45,7 @@ private:
     const std::shared_ptr<SessionLog> _log;
     const bool _multicast;  // reaches all, but for who announces itself to us alone
     DirectAnnouncements _direct;
+    OutboxThread _outbox;
     Entity _entity;
 };
 
