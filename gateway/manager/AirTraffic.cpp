@@ -28,6 +28,8 @@ constexpr double BeatShare = 0.05;
 constexpr double BeatShareOfPace = 0.125;
 // Nobody has asked for seldom beats, and a pace may come of bad weather alone.
 constexpr Duration SlowestBeatOfPace = std::chrono::seconds(1);
+// Part of a budget that discovery may take, so that beats get through while nodes find each other.
+constexpr double DiscoveryShare = 0.5;
 constexpr double SmallestBeat = 100.0;  // on the air
 constexpr Duration QuickestBeat = std::chrono::milliseconds(500);
 // Without a budget the others learn by the beats how late datagrams come, so who sends much beats more often:
@@ -61,6 +63,10 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
 void AirTraffic::Open(TransportSession &session)
 {
     _session = &session;
+    if (_config.Radio.Budget)
+    {
+        session.SetDiscoveryRate(DiscoveryShare * *_config.Radio.Budget);
+    }
     for (const TopicPublisher &publisher : _publishers)
     {
         _publisherStreams.push_back(
@@ -193,8 +199,22 @@ Duration AirTraffic::ServeUnlimited(Duration now)
     return next;
 }
 
+// A pace is a guess. That who is not heard is taken for lost is certain.
+void AirTraffic::KeepPromise(Duration now)
+{
+    if (!_config.Radio.Budget && now >= _presence.BeatPromised())
+    {
+        SendBeat(_cost.BodyWithin(AirBudget::SmallestDatagram, false), now);
+        const std::size_t bytes = TakeSent();
+        _estimate.Sent(bytes, now);
+        _schedule.Spent(bytes, now);
+        _schedule.NotReady(_beat);
+    }
+}
+
 void AirTraffic::LookAtBeat(Duration now)
 {
+    KeepPromise(now);
     if (now >= _presence.BeatDue() || IsBeatWorth(now))
     {
         _schedule.Ready(_beat,
@@ -232,7 +252,10 @@ Duration AirTraffic::ServeLimited()
     }
     Duration next = std::min(_schedule.NextDue(now), linksDue > now ? linksDue : now + LookPeriod);
     next = _estimate.Rate(now) ? std::min(next, now + LimitPeriod) : next;
-    next = _presence.BeatDue() > now ? std::min(next, _presence.BeatDue()) : next;
+    for (const Duration beat : {_presence.BeatDue(), _presence.BeatPromised()})
+    {
+        next = beat > now ? std::min(next, beat) : next;
+    }
     for (const TopicPublisher &publisher : _publishers)
     {
         const Duration due = publisher.DueAt(now);

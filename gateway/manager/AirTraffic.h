@@ -33,6 +33,8 @@ namespace Rabit
 //   published message. A datagram is made when its turn has come, from what is newest then.
 // - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
 //   DDS's own, is paid for, too, and a part of a budget is kept free for it when it is due.
+// - With a budget discovery may take half of it (TransportSession::SetDiscoveryRate).
+// - Where nothing but an estimate limits it, a beat that is due is not kept waiting.
 // - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, where the
 //   air is known to carry little, an eighth of that, within 500 ms and a second; where it is not, there are
 //   more of them while much is sent, up to ten a second.
@@ -71,6 +73,7 @@ private:
     Duration ServeLimited();
     bool IsBeatWorth(Duration now) const;
     std::size_t SendBeat(std::size_t most, Duration now);
+    void KeepPromise(Duration now);
     void LookAtBeat(Duration now);
     void LookAt(std::size_t publisher, Duration now);
     void Send(StreamId id, Duration now);

@@ -17,8 +17,16 @@ void BeatPace::SetPeriod(Duration period)
 
 void BeatPace::Introduce(Duration now)
 {
-    _due = std::min(_due, std::max(now, Earliest()));
-    _step = ShortestGap;
+    _series = std::min(2 * _series, _period);
+    for (Duration since = _introduced ? now - *_introduced : Quiet;
+         since >= SeriesRest && _series > ShortestGap; since -= SeriesRest)
+    {
+        _series /= 2;
+    }
+    _series = _introduced ? std::max(_series, ShortestGap) : ShortestGap;
+    _introduced = now;
+    _due = std::min(_due, std::max(now, _last ? *_last + _series : Duration(0)));
+    _step = _series;
 }
 
 void BeatPace::StateWritten(Duration now)

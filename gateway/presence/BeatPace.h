@@ -25,6 +25,8 @@ public:
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
     // After so long without one the next may be brought forward as if it were the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
+    // After so long without a newcomer the next one is met with beats that are twice as quick.
+    static constexpr Duration SeriesRest = std::chrono::seconds(1);
     // Who lacks a State learns of it from the beat after it. So that comes so long after the last of several
     // States in a row (those of 10 Hz need none of their own), but for States alone no sooner than that after
     // another beat, and with a period longer than the usual one not before its time.
@@ -38,12 +40,16 @@ public:
 
     // When the next beat is due if nobody has anything to ask.
     Duration Due() const { return _stateDue ? std::min(_due, *_stateDue) : _due; }
+    // What the last one has told the others: one comes by then, whatever there is to say.
+    Duration Promised() const { return _last ? *_last + _period : Duration(0); }
     // Before this there is none at all.
     Duration Earliest() const { return _last ? *_last + ShortestGap : Duration(0); }
     // Before this none is brought forward because there is something to ask for.
     Duration EarliestToAsk() const { return _last ? *_last + _gap : Duration(0); }
 
-    // Somebody has come: the next beats follow each other quickly, each step twice the one before.
+    // Somebody has come: the next beats follow each other quickly, each step twice the one before. Who comes
+    // soon after another has half as quick ones, and of a whole fleet that comes one after another the last
+    // ones hear the usual ones: on a thin radio, that they come over seconds shows that it is full.
     void Introduce(Duration now);
     // A State was written.
     void StateWritten(Duration now);
@@ -55,6 +61,8 @@ private:
     Duration _due{0};
     Duration _step = Duration::max();  // to the beat after the next one; more than the period: the period
     Duration _gap = ShortestGap;
+    Duration _series = ShortestGap;  // first step of the last introduction
+    std::optional<Duration> _introduced;
     std::optional<Duration> _last;
     std::optional<Duration> _broughtForward;
     std::optional<Duration> _stateDue;

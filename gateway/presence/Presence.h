@@ -85,6 +85,8 @@ public:
     // When a beat is to be sent; whoever decides what goes on the air next calls SendBeat then. All beats go
     // this way, the quick ones too.
     Duration BeatDue() const;
+    // By when the last beat has promised the next one.
+    Duration BeatPromised() const { return _pace.Promised(); }
     // What the next beat takes at most, as the bytes of its body (CDR without the encapsulation).
     std::size_t BeatSize(Duration now) const { return _contents.Size(now); }
     // Sends exactly one beat, whose body takes at most so many bytes, but always what an empty one takes; the

@@ -39,6 +39,38 @@ TEST(BeatPace, WhoHasComeHearsBeatsThatFollowEachOtherQuicklyAtFirst)
               (std::vector<Ns>{1200ms, 1250ms, 1350ms, 1550ms, 1950ms, 2450ms, 2950ms}));
 }
 
+TEST(BeatPace, ThoseWhoComeOneAfterAnotherAreNotEachMetWithQuickBeats)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    std::vector<Ns> beats;
+    for (Ns now = 2s; now < 6s; now += 400ms)  // ten
+    {
+        pace.Introduce(now);
+        for (const Ns beat : BeatsOf(pace, now, now + 400ms))
+        {
+            beats.push_back(beat);
+        }
+    }
+    // Eight of them come with the periods, and three for each of the first two, fewer for the next.
+    EXPECT_LE(beats.size(), 8u + 3u + 3u + 2u + 1u);
+    EXPECT_EQ(beats.at(1) - beats.at(0), BeatPace::ShortestGap);
+    EXPECT_GE(beats.back() - beats.at(beats.size() - 2), 400ms);
+}
+
+TEST(BeatPace, AfterSomeQuietANewcomerIsMetWithQuickBeatsAgain)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.Introduce(2s);
+    pace.Introduce(2100ms);
+    BeatsOf(pace, 2100ms, 2100ms + BeatPace::Quiet);
+    pace.Introduce(2100ms + BeatPace::Quiet);
+    const auto beats = BeatsOf(pace, 2100ms + BeatPace::Quiet, 3s + BeatPace::Quiet);
+    ASSERT_GE(beats.size(), 2u);
+    EXPECT_EQ(beats[1] - beats[0], BeatPace::ShortestGap);
+}
+
 TEST(BeatPace, NoTwoBeatsFollowEachOtherMoreQuicklyThanTheShortestGap)
 {
     BeatPace pace;
