@@ -373,6 +373,29 @@ TEST_F(ThinAirTest, WhereTheAirCarriesLittleBeatsComeSeldomAndSayIt)
     EXPECT_EQ(lost, 0);
 }
 
+TEST_F(ThinAirTest, BeatsAreSaidAsPromisedHoweverMuchOfDdsGoesBeside)
+{
+    SetRate(12'500);
+    OldestIn(15s);
+    double longest = 0.0;
+    for (int newcomer = 0; newcomer < 20; ++newcomer)
+    {
+        const std::string name = "uav" + std::to_string(10 + newcomer);
+        fleet.Add(AircraftConfig(name));
+        Fly(4s, 5ms, 1s,
+            [&](Duration)
+            {
+                for (const auto &node : ground->Fleet().nodes)
+                {
+                    longest = node.node == "uav1" ? std::max(longest, node.last_heard_s) : longest;
+                }
+            });
+        fleet.Kill(name);
+    }
+    // Three and a half times as long as the beats promise.
+    EXPECT_LE(longest, 3.5);
+}
+
 TEST_F(ThinAirTest, WhatTheAirCarriesAgainIsUsedAgain)
 {
     SetRate(12'500);
