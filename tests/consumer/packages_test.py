@@ -1,5 +1,5 @@
 """Makes the Debian packages from the build, unpacks them into a root of their own, builds the template against what is
-there, and starts the ground station of the package. packages/README.md lists what is in them: that is compared."""
+there, and starts the ground station of the package. docker/debian/README.md lists what is in them: that is compared."""
 
 import pathlib
 import re
@@ -9,7 +9,7 @@ import tempfile
 
 import consumer
 
-README = consumer.HERE.parents[1] / "packages" / "README.md"
+README = consumer.HERE.parents[1] / "docker" / "debian" / "README.md"
 
 
 def make_packages(cmake, build, folder):
