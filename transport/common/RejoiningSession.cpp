@@ -281,8 +281,7 @@ void RejoiningSession::OnPeer(const PeerEvent &event)
 
 void RejoiningSession::Open(const Current &current)
 {
-    _shared->Inner = _backend->Open(
-        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _rate);
+    _shared->Inner = _backend->Open(current.Settings, [this](const PeerEvent &event) { OnPeer(event); });
     _openedPeers = current.Settings.Peers;
     try
     {

@@ -25,9 +25,8 @@ using namespace Cyclone;
 class CycloneSession final : public BackendSession
 {
 public:
-    CycloneSession(const TransportSettings &settings, PeerHandler onPeer,
-                   std::shared_ptr<const DiscoveryRate> rate)
-        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer), std::move(rate)))
+    CycloneSession(const TransportSettings &settings, PeerHandler onPeer)
+        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer)))
     {
     }
     ~CycloneSession() override { _core->Close(); }
@@ -55,10 +54,9 @@ private:
 class CycloneBackend final : public RejoiningBackend
 {
 public:
-    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<const DiscoveryRate> rate) override
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer) override
     {
-        return std::make_unique<CycloneSession>(settings, std::move(onPeer), std::move(rate));
+        return std::make_unique<CycloneSession>(settings, std::move(onPeer));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {
@@ -90,8 +88,7 @@ private:
         }
         settings.Interfaces = {network->Address};
         settings.Peers.clear();
-        const VendorDomain domain(settings, std::make_shared<SessionLog>(settings),
-                                  std::make_shared<DiscoveryRate>());
+        const VendorDomain domain(settings, std::make_shared<SessionLog>(settings));
     }
 };
 

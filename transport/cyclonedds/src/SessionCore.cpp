@@ -75,13 +75,12 @@ void TakeAll(dds_entity_t reader, const Work &work)
 
 }  // namespace
 
-SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<const DiscoveryRate> rate)
+SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
     : _log(std::make_shared<SessionLog>(Checked(settings))),
       _topics(_log),
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer)),
-      _domain(settings, _log, std::move(rate)),
+      _domain(settings, _log),
       _announcements(AnswerGap(settings)),
       _participant(MakeParticipant(settings, _domain.Id()))
 {

@@ -15,7 +15,6 @@
 #include "Guid.h"
 #include "VendorDomain.h"
 #include "Worker.h"
-#include "common/DiscoveryRate.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -32,8 +31,7 @@ class SessionCore
 {
 public:
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                std::shared_ptr<const DiscoveryRate> rate);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer);
     // Leaves it.
     ~SessionCore();
     SessionCore(const SessionCore &) = delete;

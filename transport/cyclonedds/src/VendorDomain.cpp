@@ -1,10 +1,8 @@
 #include "VendorDomain.h"
 
 #include <mutex>
-#include <optional>
 #include <set>
 #include <string>
-#include <utility>
 
 #include "AnnouncedEndpoints.h"
 #include "DomainConfig.h"
@@ -62,33 +60,16 @@ bool IsGroup(const DirectAnnouncements::Address &address)
 
 }  // namespace
 
-bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size,
-                           const RabitCycloneRoute *route)
+bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to)
 {
-    auto &domain = *static_cast<VendorDomain *>(self);
+    const auto &domain = *static_cast<const VendorDomain *>(self);
     const Announcing announcing = AnnouncingOf({datagram, size});
     if (announcing.Any)
     {
         LeaveOutIdleEndpoints({datagram, size});
     }
-    const DirectAnnouncements::Address address{route->address[0], route->address[1], route->address[2],
-                                               route->address[3]};
-    const bool direct = domain._direct.MayGo(address);
-    if (announcing.Alone && domain._multicast && !IsGroup(address) && !direct)
-    {
-        return false;
-    }
-    if (announcing.Any && IsGroup(address))
-    {
-        domain._outbox.HasGroup(route->connection);
-    }
-    if (auto parts = ReadDiscoveryParts({datagram, size}))
-    {
-        const bool hears = IsGroup(address) || (domain._multicast && !direct);
-        return !domain._outbox.Put({datagram, size}, std::move(*parts), *route, hears);
-    }
-    domain._outbox.Sent(size);
-    return true;
+    const DirectAnnouncements::Address address{to[0], to[1], to[2], to[3]};
+    return !announcing.Alone || !domain._multicast || IsGroup(address) || domain._direct.MayGo(address);
 }
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
@@ -104,7 +85,6 @@ void VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t s
     {
         return;
     }
-    static_cast<VendorDomain *>(self)->_outbox.Received({datagram, size});
     const Announcing announcing = AnnouncingOf({datagram, size});
     if (announcing.Alone && direct)
     {
@@ -116,12 +96,8 @@ void VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t s
     }
 }
 
-VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                           std::shared_ptr<const DiscoveryRate> rate)
-    : _log(log),
-      _multicast(IsMulticastForData(settings)),
-      _outbox(std::move(rate), [this](const auto &route, bool toGroup, auto datagram)
-              { RabitCycloneSend(_watch, &route, toGroup, datagram.data(), datagram.size()); })
+VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log)
+    : _log(log), _multicast(IsMulticastForData(settings))
 {
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
@@ -182,7 +158,6 @@ bool VendorDomain::IsUnheard(const ddsi_guid_t &participant) const
 
 VendorDomain::~VendorDomain()
 {
-    _outbox.Stop();
     _entity.Reset();
     RabitCycloneUnwatch(_watch);
     VendorLog::Leave(_id);

@@ -7,8 +7,6 @@
 
 #include "DirectAnnouncements.h"
 #include "Entity.h"
-#include "OutboxThread.h"
-#include "common/DiscoveryRate.h"
 #include "common/SessionLog.h"
 
 namespace Rabit::Cyclone
@@ -19,9 +17,7 @@ class VendorDomain
 {
 public:
     // Throws TransportError. What the vendor says of the domain goes to the log.
-    // What discovery says of endpoints stays within `rate`.
-    VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                 std::shared_ptr<const DiscoveryRate> rate);
+    VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
@@ -34,8 +30,7 @@ public:
     bool IsUnheard(const ddsi_guid_t &participant) const;
 
 private:
-    static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
-                        const RabitCycloneRoute *route);
+    static bool MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static void OnReceived(void *self, unsigned char *datagram, std::size_t size, const unsigned char *from,
                            bool direct);
@@ -45,7 +40,6 @@ private:
     const std::shared_ptr<SessionLog> _log;
     const bool _multicast;  // reaches all, but for who announces itself to us alone
     DirectAnnouncements _direct;
-    OutboxThread _outbox;
     Entity _entity;
 };
 

@@ -20,9 +20,8 @@ namespace
 class FastDdsSession final : public BackendSession
 {
 public:
-    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer,
-                   std::shared_ptr<const DiscoveryRate> rate)
-        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(rate)))
+    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer)
+        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer)))
     {
     }
     ~FastDdsSession() override { _core->Close(); }
@@ -53,10 +52,9 @@ private:
 class FastDdsBackend final : public RejoiningBackend
 {
 public:
-    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<const DiscoveryRate> rate) override
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer) override
     {
-        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(rate));
+        return std::make_unique<FastDdsSession>(settings, std::move(onPeer));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {

@@ -3,7 +3,7 @@
 // kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h);
 // multicast groups that peers name are not sent to where multicast may not pass; the vendor's statistics are
 // not sent; and what it repeats in haste, or says to each by itself, goes at a measured pace
-// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/DiscoveryOutbox.h).
+// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, RepairPace.h).
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -16,7 +16,6 @@
 
 #include "DeferredCall.h"
 #include "RtpsGuard.h"
-#include "common/DiscoveryRate.h"
 
 namespace Rabit::FastDds
 {
@@ -54,7 +53,6 @@ public:
         // was named, on a thread without locks.
         std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
         std::shared_ptr<DeferredCall> Owed;
-        std::shared_ptr<const DiscoveryRate> Rate;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

@@ -11,7 +11,6 @@
 
 #include "DeferredCall.h"
 #include "RtpsMessage.h"
-#include "common/DiscoveryRate.h"
 #include "common/SessionLog.h"
 
 namespace Rabit::FastDds
@@ -29,7 +28,6 @@ struct NetworkCalls
     // Has Owed run.
     std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
     std::shared_ptr<DeferredCall> Owed;
-    std::shared_ptr<const DiscoveryRate> Rate;
 };
 
 // Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws

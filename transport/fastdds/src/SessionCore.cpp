@@ -50,8 +50,7 @@ PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
 
 }  // namespace
 
-SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<const DiscoveryRate> rate)
+SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
     : _log(std::make_shared<SessionLog>(settings)),
       _topics(_log),
       _peerGate(_log, "peer events"),
@@ -65,8 +64,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
          .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
          .IsInGroup = [this](const auto &prefix) { return IsInGroup(ToVendorPrefix(prefix)); },
          .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
-         .Owed = _owed,
-         .Rate = std::move(rate)});
+         .Owed = _owed});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
