@@ -1,6 +1,7 @@
 #include "AttentionLines.h"
 
 #include "NodeState.h"
+#include "WireNames.h"
 
 #include <map>
 #include <set>
@@ -35,27 +36,13 @@ const char *HowItFailed(CommandProgress progress)
     return nullptr;
 }
 
-const char *Name(OrderKind kind)
-{
-    switch (kind)
-    {
-        case OrderKind::ORDER_GOTO:
-            return "goto";
-        case OrderKind::ORDER_HOME:
-            return "home";
-        case OrderKind::ORDER_SEARCH:
-            return "search";
-    }
-    return "?";
-}
-
 std::string CommandText(const CommandStatus &command)
 {
     const char *const how = HowItFailed(command.progress);
     if (how == nullptr)
         return "";
     const std::string text =
-        "command " + std::to_string(command.number) + " (" + Name(command.kind) + ") " + how;
+        "command " + std::to_string(command.number) + " (" + WireName(command.kind) + ") " + how;
     return command.reason.empty() ? text : text + ": " + Printable(command.reason, LongestReason);
 }
 }  // namespace

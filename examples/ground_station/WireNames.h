@@ -1,4 +1,4 @@
-// What the page calls the values of the enumerations. What is none of them, for it came from the network, is
+// What the page and the terminal call the values of the enumerations. What is none of them, for it came from the network, is
 // `unknown`.
 #pragma once
 
