@@ -51,43 +51,41 @@ std::uint64_t QueueRefusals::Count(Entry &entry)
     return std::exchange(entry.NotLogged, 0);
 }
 
-void QueueRefusals::NoteFull(const std::string &name, int capacity)
+template <typename FirstLine, typename Line>
+void QueueRefusals::Note(Entries &entries, const std::string &name, FirstLine firstLine, Line line)
 {
     std::string entryName = name;
     std::uint64_t count = 0;
     bool first = false;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        Entry &entry = EntryOf(_full, entryName);
+        Entry &entry = EntryOf(entries, entryName);
         first = entry.Count == 0;
         count = Count(entry);
     }
     if (count > 0)
     {
-        RabitLog::Write(RabitLogLevel::Warning, first ? "queue \"" + name +
-                                                            "\" is full: it refused a message, as " +
-                                                            std::to_string(capacity) + " wait in it"
-                                                      : MoreFull(entryName, count));
+        RabitLog::Write(RabitLogLevel::Warning, first ? firstLine() : line(entryName, count));
     }
+}
+
+void QueueRefusals::NoteFull(const std::string &name, int capacity)
+{
+    Note(
+        _full, name,
+        [&]
+        {
+            return "queue \"" + name + "\" is full: it refused a message, as " + std::to_string(capacity) +
+                   " wait in it";
+        },
+        MoreFull);
 }
 
 void QueueRefusals::NoteUnknown(const std::string &name)
 {
-    std::string entryName = name;
-    std::uint64_t count = 0;
-    bool first = false;
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        Entry &entry = EntryOf(_unknown, entryName);
-        first = entry.Count == 0;
-        count = Count(entry);
-    }
-    if (count > 0)
-    {
-        RabitLog::Write(RabitLogLevel::Warning,
-                        first ? "there is no queue \"" + name + "\": a message for it was refused"
-                              : MoreUnknown(entryName, count));
-    }
+    Note(
+        _unknown, name, [&] { return "there is no queue \"" + name + "\": a message for it was refused"; },
+        MoreUnknown);
 }
 
 template <typename Line>

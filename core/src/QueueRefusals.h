@@ -47,6 +47,9 @@ private:
     Entry &EntryOf(Entries &entries, std::string &name);
     // Counts one, and returns how many are to be logged now.
     std::uint64_t Count(Entry &entry);
+    // One was refused. firstLine(): for the first of a name; line(name, count): for those since the last line.
+    template <typename FirstLine, typename Line>
+    void Note(Entries &entries, const std::string &name, FirstLine firstLine, Line line);
     template <typename Line>
     void ReportDue(Entries &entries, Line line, std::vector<std::string> &lines);
 
