@@ -4,6 +4,13 @@
 
 namespace Rabit
 {
+namespace
+{
+
+// Halved so often, the longest period is shorter than the shortest gap.
+constexpr BeatPace::Duration::rep MostRests = 16;
+
+}  // namespace
 
 void BeatPace::SetPeriod(Duration period)
 {
@@ -17,13 +24,8 @@ void BeatPace::SetPeriod(Duration period)
 
 void BeatPace::Introduce(Duration now)
 {
-    _series = std::min(2 * _series, _period);
-    for (Duration since = _introduced ? now - *_introduced : Quiet;
-         since >= SeriesRest && _series > ShortestGap; since -= SeriesRest)
-    {
-        _series /= 2;
-    }
-    _series = _introduced ? std::max(_series, ShortestGap) : ShortestGap;
+    const auto rests = _introduced ? std::min((now - *_introduced) / SeriesRest, MostRests) : MostRests;
+    _series = std::max(std::min(2 * _series, _period) / (1 << rests), ShortestGap);
     _introduced = now;
     _due = std::min(_due, std::max(now, _last ? *_last + _series : Duration(0)));
     _step = _series;
