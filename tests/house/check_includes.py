@@ -32,6 +32,7 @@ ROOMS = {
 # What a header's path says about where it belongs. The first pattern that fits holds.
 OWNERS = [
     *((f"{room}/", f"room {room}") for room in ROOMS),
+    (r"guard/", "guard"),
     (r"rabit/idl/", "idl"),
     (r"rabit/transport/TransportFactory\.h", "factory"),
     (r"rabit/transport/", "transport"),
@@ -61,9 +62,10 @@ ALLOWED = {
     "idl/generator": {"Cyclone DDS"},
     "transport/include": {"transport"},
     "transport/common": {"transport", "network"},
+    "transport/guard": {"transport", "guard"},
     "transport/factory": {"transport", "factory", "fastdds backend", "cyclonedds backend"},
-    "transport/fastdds": {"transport", "fastdds backend", "Fast DDS", "network"},
-    "transport/cyclonedds": {"transport", "cyclonedds backend", "Cyclone DDS", "network"},
+    "transport/fastdds": {"transport", "guard", "fastdds backend", "Fast DDS", "network"},
+    "transport/cyclonedds": {"transport", "guard", "cyclonedds backend", "Cyclone DDS", "network"},
     "transport/simulated": {"transport", "simulated backend"},
     "gateway/include": {"core", "transport", "gateway", "gateway messages"},
     "gateway/links": {"links"},

@@ -3,14 +3,15 @@
 from mutation import Mutation
 
 FASTDDS = "transport/fastdds/src/"
-GUARD = "fastdds_rtps_guard_test"
+GUARD = "transport/guard/"
+GUARD_TEST = "rtps_guard_test"
 HISTORY = "fastdds_history_test"
 TRANSLATOR = "fastdds_acknowledgement_translator_test"
 CONFORMANCE = "fastdds_conformance_test"
 
 
 def guard(name, file, find, replace):
-    return Mutation(name, FASTDDS + file, find, replace, f"{GUARD}:*")
+    return Mutation(name, GUARD + file, find, replace, f"{GUARD_TEST}:*")
 
 
 def history(name, file, find, replace):
@@ -215,8 +216,6 @@ MUTATIONS = [
              "std::copy_n(rest.begin() + PrefixAt, sender.size(), sender.begin());", "", f"{TRANSLATOR}:*"),
     guard("heartbeats keep their count", "RtpsGuard.cpp",
           "if (submessage.Kind == SubmessageKind::Heartbeat) { ReplaceCount", "if (false) { ReplaceCount"),
-    guard("acknowledgements are not translated", "RtpsGuard.cpp",
-          "_acknowledgements.Translate(passage.Datagram.first(end));", ""),
     Mutation("a forged count silences a reader", FASTDDS + "AcknowledgementTranslator.cpp",
              "known->second.Theirs - theirs > FarthestBehind", "theirs > known->second.Theirs",
              f"{TRANSLATOR}:*"),

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "DeliveryCheck.h"
-#include "RtpsBytes.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
@@ -15,7 +15,7 @@ using namespace RtpsBytes;
 using namespace std::chrono_literals;
 using Rabit::FastDds::HeartbeatPace;
 using Rabit::FastDds::LoneHeartbeat;
-using Rabit::FastDds::PublicationsWriter;
+using Rabit::Rtps::PublicationsWriter;
 
 constexpr std::uint64_t Group = 1;
 constexpr std::uint64_t Elsewhere = 2;
@@ -109,8 +109,7 @@ TEST_F(HeartbeatPaceTest, PeersWithoutEndDoNotFillTheMemory)
     for (std::uint64_t i = 0; i < 3 * HeartbeatPace::Most; ++i)
     {
         EXPECT_TRUE(Pace.MayGo(i, ToAll, Start));
-        Pace.OnAcknowledgement({Sender, static_cast<Rabit::FastDds::EntityId>(i), UserWriter, 1, true},
-                               Start);
+        Pace.OnAcknowledgement({Sender, static_cast<Rabit::Rtps::EntityId>(i), UserWriter, 1, true}, Start);
     }
     EXPECT_LE(Pace.Size(), HeartbeatPace::Most);
 }

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "DeliveryCheck.h"
-#include "RtpsBytes.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
@@ -14,8 +14,8 @@ namespace
 using namespace RtpsBytes;
 using Rabit::FastDds::FirstRequest;
 using Rabit::FastDds::OutgoingMessage;
-using Rabit::FastDds::ParticipantWriter;
 using Rabit::FastDds::ReadOutgoing;
+using Rabit::Rtps::ParticipantWriter;
 
 constexpr std::uint8_t HasData = 5;  // and little-endian
 
@@ -72,7 +72,7 @@ TEST(OutgoingMessage, TwoRequestsInOneAreNotHeldAsOne)
 
 TEST(OutgoingMessage, SamplesAndTheirRepairAreToldFromDiscovery)
 {
-    constexpr Rabit::FastDds::EntityId Publications = Rabit::FastDds::PublicationsWriter;
+    constexpr Rabit::Rtps::EntityId Publications = Rabit::Rtps::PublicationsWriter;
     EXPECT_TRUE(ReadOutgoing(Message(Data, DataBody(1), HasData)).HasSamples);
     EXPECT_TRUE(ReadOutgoing(Message(Heartbeat, HeartbeatBody(1, 2, 3))).HasSamples);
     EXPECT_TRUE(ReadOutgoing(Message(AckNack, AckNackBody(4, 0, 1))).HasSamples);
@@ -105,9 +105,9 @@ TEST(OutgoingMessage, AHeartbeatBesidesSomethingElseIsNotHeldWithIt)
 }
 
 // What is said of an endpoint, for one reader of one peer.
-Bytes NewsFor(const GuidPrefix &peer, Rabit::FastDds::EntityId reader, std::int64_t number)
+Bytes NewsFor(const GuidPrefix &peer, Rabit::Rtps::EntityId reader, std::int64_t number)
 {
-    Bytes body = DataBody(number, Bytes(40), Rabit::FastDds::PublicationsWriter);
+    Bytes body = DataBody(number, Bytes(40), Rabit::Rtps::PublicationsWriter);
     for (std::size_t i = 0; i < 4; ++i)
     {
         body[4 + i] = static_cast<std::uint8_t>(reader >> (24 - 8 * i));
@@ -136,7 +136,7 @@ TEST(OutgoingMessage, NewsForOneBecomeNewsForAll)
     ASSERT_TRUE(news.has_value());
     EXPECT_EQ(news->Peer, GuidPrefix());
     EXPECT_EQ(news->Content, ReadOutgoing(NewsFor(Other, 0x000003c7, 1)).Endpoints->Content);
-    Bytes body = DataBody(1, Bytes(40), Rabit::FastDds::PublicationsWriter);
+    Bytes body = DataBody(1, Bytes(40), Rabit::Rtps::PublicationsWriter);
     std::fill_n(body.begin() + 4, 4, std::uint8_t{0});
     EXPECT_EQ(all, Join({Header(), Submessage(Data, body, HasData)}));
 }

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "DeliveryCheck.h"
-#include "RtpsBytes.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
@@ -46,7 +46,7 @@ TEST_F(RequestPaceTest, RepetitionsFollowEachOtherAtDoublingDistances)
 
 TEST_F(RequestPaceTest, DiscoveryIsAskedOnlyIfItDoesNotSpeakByItself)
 {
-    const FirstRequest publications{Sender, 0x000003c7, Rabit::FastDds::PublicationsWriter};
+    const FirstRequest publications{Sender, 0x000003c7, Rabit::Rtps::PublicationsWriter};
     EXPECT_EQ(Ask(0, 1000, 70, publications), (std::vector{140, 210, 350, 560, 980}));
     EXPECT_EQ(Ask(10000, 10100, 70, publications), std::vector<int>());
 }
@@ -75,7 +75,7 @@ TEST_F(RequestPaceTest, PeersWithoutEndDoNotFillTheMemory)
     FirstRequest request = Second;
     for (std::size_t i = 0; i < 3 * RequestPace::MostRequests; ++i)
     {
-        request.Reader = static_cast<Rabit::FastDds::EntityId>(i);
+        request.Reader = static_cast<Rabit::Rtps::EntityId>(i);
         EXPECT_TRUE(Pace.MayGo(1, request, Start));
     }
     EXPECT_LE(Pace.Size(), RequestPace::MostRequests);

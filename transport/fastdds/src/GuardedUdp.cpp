@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "AcknowledgementTranslator.h"
 #include "AnnouncementPace.h"
 #include "HeartbeatPace.h"
 #include "OutgoingMessage.h"
@@ -21,6 +22,8 @@
 
 namespace Rabit::FastDds
 {
+
+using namespace Rtps;
 
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::ChainingTransport;
@@ -128,8 +131,9 @@ public:
     {
         // The vendor's receive buffer, which is not used again before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
-        const auto handOn = [&](std::span<const std::uint8_t> admitted)
+        const auto handOn = [&](std::span<std::uint8_t> admitted)
         {
+            Translate(admitted);
             NoteAcknowledgements(admitted);
             next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()), local, remote);
         };
@@ -205,6 +209,11 @@ private:
         }
     }
 
+    void Translate(std::span<std::uint8_t> datagram)
+    {
+        const std::lock_guard lock(_receiving);
+        _translator.Translate(datagram);
+    }
     void NoteAcknowledgements(std::span<const std::uint8_t> datagram)
     {
         const auto found = ReadAcknowledgements(datagram);
@@ -241,7 +250,9 @@ private:
 
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
-    std::mutex _sending;  // guards what follows
+    std::mutex _receiving;                  // several sockets receive at once
+    AcknowledgementTranslator _translator;  // guarded by _receiving
+    std::mutex _sending;                    // guards what follows
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;

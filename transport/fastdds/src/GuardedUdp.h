@@ -15,7 +15,7 @@
 #include <memory>
 
 #include "DeferredCall.h"
-#include "RtpsGuard.h"
+#include "guard/RtpsGuard.h"
 
 namespace Rabit::FastDds
 {
@@ -26,7 +26,7 @@ public:
     struct Settings
     {
         std::uint32_t MaxDatagram = 0;  // bytes; larger ones are not sent
-        RtpsGuard::Mode Mode = RtpsGuard::Mode::Full;
+        Rtps::RtpsGuard::Mode Mode = Rtps::RtpsGuard::Mode::Full;
         // Multicast groups of peers are sent to at this port only; 0: at all.
         std::uint32_t GroupPort = 0;
         // Interfaces are named, and the vendor has one socket for each, which sends all. Else its first
@@ -48,7 +48,7 @@ public:
         std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt;
         // Whether a participant listens to the group of discovery. Called, on any thread, with the vendor's
         // locks held.
-        std::function<bool(const GuidPrefix &)> IsInGroup;
+        std::function<bool(const Rtps::GuidPrefix &)> IsInGroup;
         // Called, on any thread with the vendor's locks held: Owed is to be run at that time, the last that
         // was named, on a thread without locks.
         std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "DeliveryCheck.h"
+#include "guard/DeliveryCheck.h"
 
 namespace Rabit::FastDds
 {
+
+using namespace Rtps;
 
 HeartbeatPace::Gaps HeartbeatPace::GapsOf(EntityId writer)
 {

@@ -46,10 +46,10 @@ private:
         TimePoint Next;  // time that it may go again
         std::chrono::milliseconds Gap{};
     };
-    using Place = std::tuple<EntityId, std::uint64_t, GuidPrefix>;  // the writer first
-    using Reader = std::tuple<EntityId, GuidPrefix, EntityId>;      // the writer first
+    using Place = std::tuple<Rtps::EntityId, std::uint64_t, Rtps::GuidPrefix>;    // the writer first
+    using Reader = std::tuple<Rtps::EntityId, Rtps::GuidPrefix, Rtps::EntityId>;  // the writer first
 
-    static Gaps GapsOf(EntityId writer);
+    static Gaps GapsOf(Rtps::EntityId writer);
 
     std::map<Place, Sent> _sent;
     std::map<Reader, std::int64_t> _acknowledged;  // all before

@@ -4,11 +4,13 @@
 #include <functional>
 #include <string_view>
 
-#include "DeliveryCheck.h"
-#include "RtpsReader.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsReader.h"
 
 namespace Rabit::FastDds
 {
+
+using namespace Rtps;
 
 namespace
 {

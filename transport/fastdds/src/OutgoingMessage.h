@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
 namespace Rabit::FastDds
 {
@@ -14,17 +14,17 @@ namespace Rabit::FastDds
 // knows of nothing that it lacks.
 struct FirstRequest
 {
-    GuidPrefix Peer{};
-    EntityId Reader = 0;
-    EntityId Writer = 0;
+    Rtps::GuidPrefix Peer{};
+    Rtps::EntityId Reader = 0;
+    Rtps::EntityId Writer = 0;
     auto operator<=>(const FirstRequest &) const = default;
 };
 
 // All that a datagram says is which samples a writer has.
 struct LoneHeartbeat
 {
-    GuidPrefix Peer{};  // zero: all
-    EntityId Writer = 0;
+    Rtps::GuidPrefix Peer{};  // zero: all
+    Rtps::EntityId Writer = 0;
     std::int64_t First = 0;
     std::int64_t Last = 0;
 };
@@ -32,7 +32,7 @@ struct LoneHeartbeat
 // All that a datagram says is which endpoints we have, or had.
 struct EndpointNews
 {
-    GuidPrefix Peer{};          // zero: all for whom the vendor's addresses are
+    Rtps::GuidPrefix Peer{};    // zero: all for whom the vendor's addresses are
     std::uint64_t Content = 0;  // tells one from another
 };
 
@@ -59,9 +59,9 @@ std::vector<std::uint8_t> ForAll(std::span<const std::uint8_t> datagram);
 // What somebody acknowledges to a writer of ours.
 struct Acknowledgement
 {
-    GuidPrefix Peer{};
-    EntityId Reader = 0;
-    EntityId Writer = 0;
+    Rtps::GuidPrefix Peer{};
+    Rtps::EntityId Reader = 0;
+    Rtps::EntityId Writer = 0;
     std::int64_t Base = 0;  // it has all before this one
     bool Asks = false;      // for repair, or for what there is
 };

@@ -22,6 +22,8 @@
 namespace Rabit::FastDds
 {
 
+using namespace Rtps;
+
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "DeferredCall.h"
-#include "RtpsMessage.h"
 #include "common/SessionLog.h"
+#include "guard/RtpsMessage.h"
 
 namespace Rabit::FastDds
 {
@@ -24,7 +24,7 @@ struct NetworkCalls
     std::function<void()> Announce;
     std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt;
     // Whether a participant listens to the group of discovery.
-    std::function<bool(const GuidPrefix &)> IsInGroup;
+    std::function<bool(const Rtps::GuidPrefix &)> IsInGroup;
     // Has Owed run.
     std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
     std::shared_ptr<DeferredCall> Owed;

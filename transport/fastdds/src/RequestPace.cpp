@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "DeliveryCheck.h"
+#include "guard/DeliveryCheck.h"
 
 namespace Rabit::FastDds
 {
+
+using namespace Rtps;
 
 bool RequestPace::MayGo(std::uint32_t socket, const FirstRequest &request, TimePoint now)
 {

@@ -25,7 +25,7 @@ namespace
 // Announcements are overtaken by milliseconds: nobody closes so many sessions in that time.
 constexpr std::size_t MostDeparted = 64;
 
-rtps::GuidPrefix_t ToVendorPrefix(const FastDds::GuidPrefix &prefix)
+rtps::GuidPrefix_t ToVendorPrefix(const Rtps::GuidPrefix &prefix)
 {
     rtps::GuidPrefix_t result;
     std::copy(prefix.begin(), prefix.end(), result.value);

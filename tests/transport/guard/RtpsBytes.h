@@ -5,14 +5,14 @@
 #include <initializer_list>
 #include <vector>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
 namespace RtpsBytes
 {
 
 using Bytes = std::vector<std::uint8_t>;
-using Rabit::FastDds::EntityId;
-using Rabit::FastDds::GuidPrefix;
+using Rabit::Rtps::EntityId;
+using Rabit::Rtps::GuidPrefix;
 
 constexpr std::uint8_t AckNack = 0x06;
 constexpr std::uint8_t Heartbeat = 0x07;

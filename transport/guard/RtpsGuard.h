@@ -1,7 +1,8 @@
 // Stands between the network and the vendor's parser, which trusts what it reads.
 //
-// Debian builds the vendor's library with its assertions on, so a datagram that breaks one ends the process;
-// and others have it allocate gigabytes, or walk through numbers for hours with its locks held.
+// Debian builds Fast DDS with its assertions on, so a datagram that breaks one ends the process; and others
+// have it allocate gigabytes, or walk through numbers for hours with its locks held. Cyclone DDS looks
+// closer, but one forged number far ahead silences a writer for it until one of the two is started again.
 #pragma once
 
 #include <array>
@@ -12,15 +13,14 @@
 #include <span>
 #include <vector>
 
-#include "AcknowledgementTranslator.h"
-#include "AnnouncementReplies.h"
-#include "DeliveryCheck.h"
-#include "DiscoveryFragments.h"
-#include "KnownPeers.h"
-#include "RtpsMessage.h"
-#include "SentFragments.h"
+#include "guard/AnnouncementReplies.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/DiscoveryFragments.h"
+#include "guard/KnownPeers.h"
+#include "guard/RtpsMessage.h"
+#include "guard/SentFragments.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // What is let through is sound in itself (RtpsMessage, DeliveryCheck, DiscoveryCheck) and agrees with what
@@ -40,15 +40,26 @@ public:
     };
 
     using TimePoint = KnownPeers::TimePoint;
-    using Deliver = std::function<void(std::span<const std::uint8_t>)>;
+    // It may change what it is given.
+    using Deliver = std::function<void(std::span<std::uint8_t>)>;
+
+    // Whether requests for fragments are held against what was sent, for a vendor that would read past the
+    // end of a sample. The guard must be told of all that is sent then.
+    enum class Requests
+    {
+        Checked,
+        AsTheyCome
+    };
 
     // The period in which all announce themselves.
-    RtpsGuard(Mode mode, std::chrono::milliseconds period) : _mode(mode), _replies(period) {}
+    RtpsGuard(Mode mode, std::chrono::milliseconds period, Requests requests = Requests::Checked)
+        : _mode(mode), _requests(requests), _replies(period)
+    {
+    }
 
     // Hands on what of a datagram the vendor may see: all, a part, or nothing. Parts that it must not see are
-    // blanked in place, and the counts that it tells repeats by are replaced (those of acknowledgements as
-    // AcknowledgementTranslator.h says). Returns false if something was
-    // kept back that an honest sender does not send.
+    // blanked in place, and the counts that it tells repeats of announcements and heartbeats by are replaced.
+    // Returns false if something was kept back that an honest sender does not send.
     bool Admit(std::span<std::uint8_t> datagram, TimePoint now, const Deliver &deliver);
 
     // Takes note of what we send.
@@ -85,7 +96,7 @@ private:
     };
 
     // What is left of the datagram; empty if nothing.
-    std::span<const std::uint8_t> Filter(Passage &passage);
+    std::span<std::uint8_t> Filter(Passage &passage);
     Verdict Judge(const Submessage &submessage, Passage &passage);
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
@@ -96,15 +107,15 @@ private:
     void ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender);
 
     const Mode _mode;
-    std::mutex _mutex;                            // several sockets receive at once
-    KnownPeers _peers;                            // guarded by _mutex
-    SentFragments _sent;                          // guarded by _mutex
-    DiscoveryFragments _fragments;                // guarded by _mutex
-    AcknowledgementTranslator _acknowledgements;  // guarded by _mutex
-    AnnouncementReplies _replies;                 // guarded by _mutex
-    GuidPrefix _own{};                            // once we have sent; guarded by _mutex
+    const Requests _requests;
+    std::mutex _mutex;              // several sockets receive at once
+    KnownPeers _peers;              // guarded by _mutex
+    SentFragments _sent;            // guarded by _mutex
+    DiscoveryFragments _fragments;  // guarded by _mutex
+    AnnouncementReplies _replies;   // guarded by _mutex
+    GuidPrefix _own{};              // once we have sent; guarded by _mutex
     std::atomic<bool> _replyDue{false};
     std::atomic<std::uint64_t> _announcementsHeard{0};
 };
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

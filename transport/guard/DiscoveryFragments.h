@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "DeliveryCheck.h"
-#include "RtpsMessage.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsMessage.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // An announcement is checked whole before the vendor sees it, so its fragments are put together here: one
@@ -40,4 +40,4 @@ private:
     std::deque<Sample> _samples;
 };
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

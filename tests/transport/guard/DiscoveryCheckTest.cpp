@@ -1,18 +1,18 @@
 // What participants and endpoints may say of themselves.
-#include "DiscoveryCheck.h"
+#include "guard/DiscoveryCheck.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "DeliveryCheck.h"
-#include "RtpsBytes.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
 
 using namespace RtpsBytes;
-using namespace Rabit::FastDds;
+using namespace Rabit::Rtps;
 
 bool IsSound(EntityId topic, Bytes payload)
 {

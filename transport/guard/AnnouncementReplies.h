@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // Decides when to announce ourselves once more to who announces itself. The vendor answers a newcomer once,
@@ -49,4 +49,4 @@ private:
     std::optional<TimePoint> _last;
 };
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

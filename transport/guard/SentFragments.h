@@ -8,9 +8,9 @@
 #include <span>
 #include <utility>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // A peer that asks for a fragment beyond the last one would have the vendor read past the end of the sample.
@@ -32,4 +32,4 @@ private:
     std::deque<Sample> _order;
 };
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

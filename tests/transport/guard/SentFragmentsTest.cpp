@@ -1,15 +1,15 @@
 // Which fragments a peer may ask for.
-#include "SentFragments.h"
+#include "guard/SentFragments.h"
 
 #include <gtest/gtest.h>
 
-#include "RtpsBytes.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
 
 using namespace RtpsBytes;
-using Rabit::FastDds::SentFragments;
+using Rabit::Rtps::SentFragments;
 
 Bytes Fragment(std::int64_t sequence, std::uint16_t size, std::uint32_t whole)
 {

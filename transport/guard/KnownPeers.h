@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <map>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // A writer's numbers rise in steps. One that jumped would have the vendor walk through millions of samples
@@ -107,4 +107,4 @@ private:
     std::uint32_t _highestCount = 0;
 };
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

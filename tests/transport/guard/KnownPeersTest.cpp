@@ -1,17 +1,17 @@
 // What a peer can say, given what it has said before.
-#include "KnownPeers.h"
+#include "guard/KnownPeers.h"
 
 #include <gtest/gtest.h>
 
-#include "DeliveryCheck.h"
-#include "RtpsBytes.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
 
 using namespace RtpsBytes;
 using namespace std::chrono_literals;
-using Rabit::FastDds::KnownPeers;
+using Rabit::Rtps::KnownPeers;
 
 class KnownPeersTest : public testing::Test
 {
@@ -368,7 +368,7 @@ TEST_F(KnownPeersTest, AWriterThatWasNotAnnouncedReachesNothing)
 {
     EXPECT_FALSE(Peers.HasWriter(Sender, 0x00000203));
     EXPECT_FALSE(Peers.Reaches(Sender, 0x00000203, 1, Now));
-    EXPECT_TRUE(Peers.HasWriter(Sender, Rabit::FastDds::PublicationsWriter));
+    EXPECT_TRUE(Peers.HasWriter(Sender, Rabit::Rtps::PublicationsWriter));
 }
 
 TEST_F(KnownPeersTest, NobodyKnowsOfSamplesFarAhead)
@@ -461,7 +461,7 @@ TEST_F(KnownPeersTest, OfTooManyWritersTheOneThatWasSilentForLongestIsForgotten)
     }
     EXPECT_TRUE(Peers.HasWriter(Sender, UserWriter));
     EXPECT_TRUE(Peers.HasWriter(Sender, 5000u << 8 | 3u));
-    EXPECT_TRUE(Peers.HasWriter(Sender, Rabit::FastDds::PublicationsWriter));
+    EXPECT_TRUE(Peers.HasWriter(Sender, Rabit::Rtps::PublicationsWriter));
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-#include "DeliveryCheck.h"
+#include "guard/DeliveryCheck.h"
 
-#include "PayloadPool.h"
-#include "RtpsReader.h"
+#include <rabit/transport/Transport.h>
 
-namespace Rabit::FastDds
+#include "guard/RtpsReader.h"
+
+namespace Rabit::Rtps
 {
 
 namespace
@@ -87,7 +88,7 @@ bool ReadFragments(RtpsReader &body, Delivery &delivery)
     delivery.SampleSize = body.U32();
     if (!body.IsGood() || delivery.FirstFragment == 0 || count == 0 ||
         delivery.FragmentSize < SmallestFragment || delivery.SampleSize == 0 ||
-        delivery.SampleSize > MaxSample)
+        delivery.SampleSize > LargestSample)
     {
         return false;
     }
@@ -213,7 +214,7 @@ std::optional<Delivery> CheckNackFrag(RtpsReader body)
     delivery.CountAt = body.Position();
     body.U32();
     const bool sound = body.IsGood() && AreFromReader(delivery) && IsSequence(delivery.First) &&
-                       delivery.FirstFragment >= 1 && delivery.FirstFragment <= MaxSample;
+                       delivery.FirstFragment >= 1 && delivery.FirstFragment <= LargestSample;
     return sound ? std::optional(delivery) : std::nullopt;
 }
 
@@ -265,4 +266,4 @@ std::optional<Delivery> CheckDelivery(const Submessage &submessage)
     }
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // What a sound announcement is about.
@@ -33,4 +33,4 @@ bool IsKeyOf(EntityId writer, const GuidPrefix &sender, std::span<const std::uin
 // The entity that a key hash, or another GUID of 16 bytes, names.
 EntityId EntityOf(std::span<const std::uint8_t> guid);
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

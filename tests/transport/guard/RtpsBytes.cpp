@@ -1,15 +1,15 @@
-#include "RtpsBytes.h"
+#include "guard/RtpsBytes.h"
 
 #include <cstring>
 
-#include "DeliveryCheck.h"
+#include "guard/DeliveryCheck.h"
 
 namespace RtpsBytes
 {
 
-using Rabit::FastDds::ParticipantEntity;
-using Rabit::FastDds::ParticipantWriter;
-using Rabit::FastDds::PublicationsWriter;
+using Rabit::Rtps::ParticipantEntity;
+using Rabit::Rtps::ParticipantWriter;
+using Rabit::Rtps::PublicationsWriter;
 
 namespace
 {

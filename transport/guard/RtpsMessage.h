@@ -9,7 +9,7 @@
 
 #include "common/RtpsSubmessages.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 using GuidPrefix = std::array<std::uint8_t, 12>;
@@ -68,4 +68,4 @@ std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram);
 // Turns a submessage into padding, which no parser looks into.
 void Blank(const Submessage &submessage);
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

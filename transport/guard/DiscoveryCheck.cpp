@@ -1,12 +1,12 @@
-#include "DiscoveryCheck.h"
+#include "guard/DiscoveryCheck.h"
 
 #include <algorithm>
 #include <array>
 
-#include "DeliveryCheck.h"
-#include "RtpsReader.h"
+#include "guard/DeliveryCheck.h"
+#include "guard/RtpsReader.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 namespace
@@ -348,4 +348,4 @@ bool IsKeyOf(EntityId writer, const GuidPrefix &sender, std::span<const std::uin
            (writer == LivelinessWriter || IsSubjectOf(writer, EntityOf(keyHash)));
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

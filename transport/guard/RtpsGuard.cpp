@@ -1,11 +1,11 @@
-#include "RtpsGuard.h"
+#include "guard/RtpsGuard.h"
 
 #include <algorithm>
 
-#include "DiscoveryCheck.h"
-#include "RtpsReader.h"
+#include "guard/DiscoveryCheck.h"
+#include "guard/RtpsReader.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 namespace
@@ -48,7 +48,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, TimePoint now, const Del
     std::copy_n(datagram.begin(), RtpsHeaderSize, passage.Header.begin());
     passage.Sender = SenderOf(datagram);
     passage.Now = now;
-    std::span<const std::uint8_t> left;
+    std::span<std::uint8_t> left;
     {
         const std::lock_guard lock(_mutex);
         left = Filter(passage);
@@ -64,7 +64,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, TimePoint now, const Del
     return passage.Honest;
 }
 
-std::span<const std::uint8_t> RtpsGuard::Filter(Passage &passage)
+std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
 {
     auto rest = passage.Datagram.subspan(RtpsHeaderSize);
     auto end = passage.Datagram.size();
@@ -108,7 +108,6 @@ std::span<const std::uint8_t> RtpsGuard::Filter(Passage &passage)
     {
         return {};
     }
-    _acknowledgements.Translate(passage.Datagram.first(end));
     return passage.Datagram.first(end);
 }
 
@@ -278,7 +277,8 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
             }
             break;
         case SubmessageKind::NackFrag:
-            if (!_sent.Has(delivery.Writer, delivery.First, delivery.LastFragment))
+            if (_requests == Requests::Checked &&
+                !_sent.Has(delivery.Writer, delivery.First, delivery.LastFragment))
             {
                 return Verdict::Refuse;
             }
@@ -326,4 +326,4 @@ void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)
     }
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // Entities of discovery and liveliness (RTPS 2.3, 9.3.1.3) that we have a use for.
@@ -56,4 +56,4 @@ struct Delivery
 // of the wrong kind.
 std::optional<Delivery> CheckDelivery(const Submessage &submessage);
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

@@ -1,11 +1,11 @@
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "RtpsReader.h"
+#include "guard/RtpsReader.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 namespace
@@ -96,4 +96,4 @@ void Blank(const Submessage &submessage)
     submessage.Whole[submessage.LittleEndian ? 3 : 2] = static_cast<std::uint8_t>(length >> 8);
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

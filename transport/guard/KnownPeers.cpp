@@ -1,11 +1,11 @@
-#include "KnownPeers.h"
+#include "guard/KnownPeers.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "DeliveryCheck.h"
+#include "guard/DeliveryCheck.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 namespace
@@ -282,4 +282,4 @@ std::uint32_t KnownPeers::CountOf(const GuidPrefix &peer, EntityId writer, std::
     return numbers.OurCount;
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "RtpsMessage.h"
+#include "guard/RtpsMessage.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 // Reads nothing outside of the bytes: once something was not there, everything read is 0 and IsGood() false.
@@ -73,4 +73,4 @@ private:
     bool _good = true;
 };
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

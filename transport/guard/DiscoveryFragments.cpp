@@ -1,15 +1,15 @@
-#include "DiscoveryFragments.h"
+#include "guard/DiscoveryFragments.h"
 
 #include <algorithm>
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 namespace
 {
 
 constexpr std::size_t MostSamples = 64;
-constexpr std::uint32_t LargestSample = 60000;
+constexpr std::uint32_t LargestAnnouncement = 60000;
 
 void AppendHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::uint8_t flags,
                   std::size_t length)
@@ -50,7 +50,7 @@ DiscoveryFragments::Sample *DiscoveryFragments::Find(const GuidPrefix &sender, c
             found->FragmentSize == delivery.FragmentSize && found->Bytes.size() == delivery.SampleSize;
         return same ? &*found : nullptr;
     }
-    if (delivery.SampleSize > LargestSample)
+    if (delivery.SampleSize > LargestAnnouncement)
     {
         return nullptr;
     }
@@ -89,16 +89,18 @@ std::vector<std::uint8_t> DiscoveryFragments::Add(std::span<const std::uint8_t> 
     AppendHeader(message, SubmessageKind::InfoDestination, 0, destination.size());
     message.insert(message.end(), destination.begin(), destination.end());
     constexpr std::uint8_t HasData = 0x04;
-    AppendHeader(message, SubmessageKind::Data, HasData, 20 + sample->Bytes.size());
+    const std::size_t padding = (4 - sample->Bytes.size() % 4) % 4;
+    AppendHeader(message, SubmessageKind::Data, HasData, 20 + sample->Bytes.size() + padding);
     message.insert(message.end(), {0, 0, 16, 0});
     AppendEntity(message, delivery.Reader);
     AppendEntity(message, delivery.Writer);
     AppendNumber(message, static_cast<std::uint32_t>(delivery.First >> 32));
     AppendNumber(message, static_cast<std::uint32_t>(delivery.First));
     message.insert(message.end(), sample->Bytes.begin(), sample->Bytes.end());
+    message.insert(message.end(), padding, 0);
     _samples.erase(std::find_if(_samples.begin(), _samples.end(),
                                 [sample](const Sample &each) { return &each == sample; }));
     return message;
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

@@ -1,9 +1,9 @@
-#include "AnnouncementReplies.h"
+#include "guard/AnnouncementReplies.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 AnnouncementReplies::AnnouncementReplies(std::chrono::milliseconds period)
@@ -50,4 +50,4 @@ void AnnouncementReplies::OnGone(const GuidPrefix &peer)
     _peers.erase(peer);
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

@@ -1,8 +1,8 @@
-#include "SentFragments.h"
+#include "guard/SentFragments.h"
 
-#include "RtpsReader.h"
+#include "guard/RtpsReader.h"
 
-namespace Rabit::FastDds
+namespace Rabit::Rtps
 {
 
 namespace
@@ -57,4 +57,4 @@ bool SentFragments::Has(EntityId writer, std::int64_t sequence, std::uint32_t fr
     return found != _fragments.end() && fragment >= 1 && fragment <= found->second;
 }
 
-}  // namespace Rabit::FastDds
+}  // namespace Rabit::Rtps

@@ -1,16 +1,16 @@
 // Who announces itself and has not heard us is answered again.
-#include "AnnouncementReplies.h"
+#include "guard/AnnouncementReplies.h"
 
 #include <gtest/gtest.h>
 
-#include "RtpsBytes.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
 
 using namespace RtpsBytes;
 using namespace std::chrono_literals;
-using Rabit::FastDds::AnnouncementReplies;
+using Rabit::Rtps::AnnouncementReplies;
 
 class AnnouncementRepliesTest : public testing::Test
 {
@@ -96,7 +96,7 @@ TEST_F(AnnouncementRepliesTest, WhoWasGoneIsNew)
 
 TEST_F(AnnouncementRepliesTest, StrangersWithoutEndDoNotFillTheMemory)
 {
-    Rabit::FastDds::GuidPrefix stranger = Other;
+    Rabit::Rtps::GuidPrefix stranger = Other;
     for (std::size_t i = 0; i < AnnouncementReplies::MostPeers; ++i)
     {
         stranger[0] = static_cast<std::uint8_t>(i);

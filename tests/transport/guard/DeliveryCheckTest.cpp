@@ -1,22 +1,22 @@
 // Whether a submessage that carries a sample, or manages its delivery, is sound in itself.
-#include "DeliveryCheck.h"
+#include "guard/DeliveryCheck.h"
 
 #include <gtest/gtest.h>
 
-#include "RtpsBytes.h"
+#include "guard/RtpsBytes.h"
 
 namespace
 {
 
 using namespace RtpsBytes;
-using Rabit::FastDds::LargestSequence;
+using Rabit::Rtps::LargestSequence;
 
 bool IsSound(std::uint8_t kind, const Bytes &body, std::uint8_t flags = 1)
 {
     Bytes message = Message(kind, body, flags);
     auto rest = std::span(message).subspan(Rabit::RtpsHeaderSize);
-    const auto submessage = Rabit::FastDds::TakeSubmessage(rest);
-    return submessage && Rabit::FastDds::CheckDelivery(*submessage).has_value();
+    const auto submessage = Rabit::Rtps::TakeSubmessage(rest);
+    return submessage && Rabit::Rtps::CheckDelivery(*submessage).has_value();
 }
 
 TEST(DeliveryCheck, SoundSubmessagesPass)
