@@ -94,6 +94,14 @@ bool HasOwnInterfaces(const std::string &configFile)
     return !configFile.empty() && Read(configFile).find("<NetworkInterface") != std::string::npos;
 }
 
+Rtps::RtpsGuard::Mode GuardMode(const TransportSettings &settings)
+{
+    using Mode = Rtps::RtpsGuard::Mode;
+    const std::string config = settings.BackendConfig.empty() ? "" : Read(settings.BackendConfig);
+    const auto names = [&](const char *element) { return config.find(element) != std::string::npos; };
+    return names("Security>") ? Mode::Secured : names("SharedMemory>") ? Mode::StructureOnly : Mode::Full;
+}
+
 std::string MakeDomainConfig(const TransportSettings &settings)
 {
     std::ostringstream xml;

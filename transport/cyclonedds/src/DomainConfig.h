@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "guard/RtpsGuard.h"
+
 namespace Rabit::Cyclone
 {
 
@@ -16,5 +18,9 @@ std::string MakeDomainConfig(const TransportSettings &settings);
 // the vendor would add the two and refuse an interface that is in both. Throws TransportError if it cannot be
 // read.
 bool HasOwnInterfaces(const std::string &configFile);
+
+// What of the network's datagrams is checked: less if a configuration file switches DDS Security on, which
+// does that better, or shared memory. Throws TransportError if it cannot be read.
+Rtps::RtpsGuard::Mode GuardMode(const TransportSettings &settings);
 
 }  // namespace Rabit::Cyclone

@@ -1,8 +1,11 @@
 #include "VendorDomain.h"
 
+#include <chrono>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "AnnouncedEndpoints.h"
 #include "DomainConfig.h"
@@ -10,6 +13,7 @@
 #include "VendorTraffic.h"
 #include "common/MulticastUse.h"
 #include "common/RtpsTraffic.h"
+#include "guard/JoinMessages.h"
 
 namespace Rabit::Cyclone
 {
@@ -78,26 +82,54 @@ void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t hea
     IsOfSamples({head, headSize}) ? log.SentSamples(1, size) : log.SentDiscovery(1, size);
 }
 
-void VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t size,
-                              const unsigned char *from, bool direct)
+std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size)
 {
-    if (IsOfSamples({datagram, size}))
+    std::vector<std::vector<std::uint8_t>> others;
+    std::size_t left = 0;
+    const auto handOn = [&](std::span<std::uint8_t> admitted)
     {
-        return;
+        if (admitted.data() == buffer.data())
+        {
+            left = admitted.size();
+        }
+        else
+        {
+            others.emplace_back(admitted.begin(), admitted.end());
+        }
+    };
+    if (!_guard.Admit(buffer.first(size), std::chrono::steady_clock::now(), std::cref(handOn)))
+    {
+        _log->MalformedDatagram();
     }
-    const Announcing announcing = AnnouncingOf({datagram, size});
-    if (announcing.Alone && direct)
+    return Rtps::JoinMessages(others, buffer, left);
+}
+
+std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t size,
+                                     std::size_t capacity, const unsigned char *from, bool direct)
+{
+    auto &domain = *static_cast<VendorDomain *>(self);
+    const std::size_t admitted = domain.Admit({datagram, capacity}, size);
+    if (IsOfSamples({datagram, admitted}))
     {
-        static_cast<VendorDomain *>(self)->_direct.OnAnnouncement({from[0], from[1], from[2], from[3]});
+        return admitted;
+    }
+    const Announcing announcing = AnnouncingOf({datagram, admitted});
+    if (announcing.Alone && direct && from != nullptr)
+    {
+        domain._direct.OnAnnouncement({from[0], from[1], from[2], from[3]});
     }
     if (announcing.Any)
     {
-        LeaveOutIdleEndpoints({datagram, size});
+        LeaveOutIdleEndpoints({datagram, admitted});
     }
+    return admitted;
 }
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log)
-    : _log(log), _multicast(IsMulticastForData(settings))
+    : _log(log),
+      _multicast(IsMulticastForData(settings)),
+      // The vendor knows by itself which fragments it has sent.
+      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome)
 {
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
@@ -139,7 +171,9 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     if (_watch == nullptr)
     {
         log->Line(
-            "Cyclone DDS does not show what it sends: it is not counted, nor is it announced more often");
+            "Cyclone DDS does not show what it sends and gets: it is not counted, it is not announced more "
+            "often, "
+            "and nothing is kept from it");
     }
 }
 

@@ -8,6 +8,7 @@
 #include "DirectAnnouncements.h"
 #include "Entity.h"
 #include "common/SessionLog.h"
+#include "guard/RtpsGuard.h"
 
 namespace Rabit::Cyclone
 {
@@ -32,14 +33,17 @@ public:
 private:
     static bool MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
-    static void OnReceived(void *self, unsigned char *datagram, std::size_t size, const unsigned char *from,
-                           bool direct);
+    static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
+                                  const unsigned char *from, bool direct);
+    // How long what the vendor may see of a datagram is.
+    std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size);
 
     dds_domainid_t _id = 0;
     void *_watch = nullptr;  // of what it sends
     const std::shared_ptr<SessionLog> _log;
     const bool _multicast;  // reaches all, but for who announces itself to us alone
     DirectAnnouncements _direct;
+    Rtps::RtpsGuard _guard;
     Entity _entity;
 };
 

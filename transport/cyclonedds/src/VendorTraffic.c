@@ -236,12 +236,14 @@ static ssize_t ReadAndTell(ddsi_tran_conn_t connection, unsigned char *buffer, s
         return -1;
     }
     const ssize_t got = watch.read(connection, buffer, size, allowSpurious, source);
-    if (got > 0 && source != NULL)
+    if (got <= 0)
     {
-        watch.calls.received(watch.calls.argument, buffer, (size_t)got, source->address + AddressAt,
-                             connection == watch.domain->disc_conn_uc);
+        return got;
     }
-    return got;
+    /* For the vendor a datagram of no bytes is none. */
+    return (ssize_t)watch.calls.received(watch.calls.argument, buffer, (size_t)got, size,
+                                         source == NULL ? NULL : source->address + AddressAt,
+                                         connection == watch.domain->disc_conn_uc);
 }
 
 void *RabitCycloneWatch(struct RabitCycloneCalls calls)

@@ -22,9 +22,11 @@ extern "C"
         bool (*may)(void *argument, unsigned char *datagram, size_t size, const unsigned char to[4]);
         /* It was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
-        /* It came; it may be changed in place. `direct`: it was sent to us alone, for discovery. */
-        void (*received)(void *argument, unsigned char *datagram, size_t size, const unsigned char from[4],
-                         bool direct);
+        /* It came, into a buffer of that capacity, in which it may be changed in place. Returns how long what
+           the vendor may see of it is; 0 if nothing. `from` is NULL if that is not known. `direct`: it was
+           sent to us alone, for discovery. */
+        size_t (*received)(void *argument, unsigned char *datagram, size_t size, size_t capacity,
+                           const unsigned char *from, bool direct);
     };
 
     /* Watches the domain that this thread has just created, until it is deleted. NULL if that cannot be told.

@@ -1,0 +1,84 @@
+#include "guard/JoinMessages.h"
+
+#include <algorithm>
+
+#include "guard/RtpsMessage.h"
+
+namespace Rabit::Rtps
+{
+
+namespace
+{
+
+constexpr std::size_t VersionAt = 4;
+constexpr std::size_t SourceSize = 20;
+
+void AppendHeader(std::vector<std::uint8_t> &whole, SubmessageKind kind, std::size_t length,
+                  std::uint8_t flags = 0)
+{
+    constexpr std::uint8_t littleEndian = 0x01;
+    whole.insert(whole.end(),
+                 {static_cast<std::uint8_t>(kind), static_cast<std::uint8_t>(flags | littleEndian),
+                  static_cast<std::uint8_t>(length), std::uint8_t{0}});
+}
+
+// Who says what follows, to all, and at a time that is not known (RTPS 2.3, 9.4.5).
+void AppendSource(std::vector<std::uint8_t> &whole, std::span<const std::uint8_t> message)
+{
+    constexpr std::size_t unused = 4;
+    AppendHeader(whole, SubmessageKind::InfoSource, SourceSize);
+    whole.insert(whole.end(), unused, 0);
+    whole.insert(whole.end(), message.begin() + VersionAt, message.begin() + RtpsHeaderSize);
+    AppendHeader(whole, SubmessageKind::InfoDestination, GuidPrefix{}.size());
+    whole.insert(whole.end(), GuidPrefix{}.size(), 0);
+    constexpr std::uint8_t invalidate = 0x02;
+    AppendHeader(whole, SubmessageKind::InfoTimestamp, 0, invalidate);
+}
+
+// What follows a submessage begins at a multiple of four, and so the one before must end there.
+bool MayBeFollowed(const std::vector<std::uint8_t> &whole)
+{
+    return whole.size() % SubmessageHeaderSize == 0;
+}
+
+}  // namespace
+
+std::size_t JoinMessages(const std::vector<std::vector<std::uint8_t>> &first, std::span<std::uint8_t> buffer,
+                         std::size_t last)
+{
+    if (first.empty())
+    {
+        return last;
+    }
+    std::vector<std::uint8_t> whole;
+    const auto add = [&](std::span<const std::uint8_t> message)
+    {
+        if (message.empty() || !MayBeFollowed(whole))
+        {
+            return;
+        }
+        const std::size_t before = whole.size();
+        if (before == 0)
+        {
+            whole.assign(message.begin(), message.end());
+        }
+        else
+        {
+            AppendSource(whole, message);
+            whole.insert(whole.end(), message.begin() + RtpsHeaderSize, message.end());
+        }
+        if (whole.size() > buffer.size())
+        {
+            whole.resize(before);
+        }
+    };
+    for (const auto &message : first)
+    {
+        add(message);
+    }
+    add(buffer.first(last));
+    std::copy(whole.begin(), whole.end(), buffer.begin());
+    return whole.size();
+}
+
+}  // namespace Rabit::Rtps
