@@ -15,6 +15,11 @@
 #include <string>
 #include <vector>
 
+namespace Paths
+{
+extern const char *const SwarmFolder;
+}
+
 namespace
 {
 using namespace std::chrono_literals;
@@ -55,7 +60,7 @@ protected:
     }
     void AddAircraft(const std::string &aircraft, double eastM, std::uint64_t seed)
     {
-        const std::string folder = SWARM_FOLDER;
+        const std::string folder = Paths::SwarmFolder;
         Rabit::GatewayConfig flying = Rabit::LoadGatewayConfig(folder + "/uav.yaml", aircraft);
         Swarm::CompleteAircraftConfig(flying, "ground");
         Rabit::SimulatedNode &uav = _fleet.Add(flying);

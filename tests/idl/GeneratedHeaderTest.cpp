@@ -15,7 +15,7 @@ protected:
     {
         const ScratchDirectory scratch;
         const IdlcResult result =
-            RunIdlc(std::filesystem::path(MESSAGES_DIRECTORY) / "conveniences.idl", scratch.Path());
+            RunIdlc(std::filesystem::path(Paths::Messages) / "conveniences.idl", scratch.Path());
         EXPECT_EQ(result.ExitCode, 0) << result.Errors;
         _text = ReadFile(scratch.Path() / "conveniences.idl.h");
     }

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> RefusedFiles()
 {
     std::vector<std::string> names;
-    for (const auto &entry : fs::directory_iterator(REFUSED_DIRECTORY))
+    for (const auto &entry : fs::directory_iterator(Paths::Refused))
     {
         if (entry.path().extension() == ".idl")
         {
@@ -32,7 +32,7 @@ class RefusalTest : public testing::TestWithParam<std::string>
 // The expectation names files without their directory.
 std::string WithoutDirectory(std::string text)
 {
-    const std::string directory = std::string(REFUSED_DIRECTORY) + "/";
+    const std::string directory = std::string(Paths::Refused) + "/";
     for (std::size_t at = text.find(directory); at != std::string::npos; at = text.find(directory, at))
     {
         text.erase(at, directory.size());
@@ -42,7 +42,7 @@ std::string WithoutDirectory(std::string text)
 
 TEST_P(RefusalTest, SaysWhereAndWhy)
 {
-    const fs::path file = fs::path(REFUSED_DIRECTORY) / (GetParam() + ".idl");
+    const fs::path file = fs::path(Paths::Refused) / (GetParam() + ".idl");
     const ScratchDirectory scratch;
     const IdlcResult result = RunIdlc(file, scratch.Path());
     fs::path expectation = file;
@@ -54,7 +54,7 @@ TEST_P(RefusalTest, SaysWhereAndWhy)
 TEST_P(RefusalTest, LeavesNoOutput)
 {
     const ScratchDirectory scratch;
-    RunIdlc(fs::path(REFUSED_DIRECTORY) / (GetParam() + ".idl"), scratch.Path());
+    RunIdlc(fs::path(Paths::Refused) / (GetParam() + ".idl"), scratch.Path());
     for (const auto &entry : fs::directory_iterator(scratch.Path()))
     {
         EXPECT_EQ(entry.path().filename(), "errors.log");

@@ -15,8 +15,8 @@ IdlcResult RunIdlc(const fs::path &idl, const fs::path &output)
 {
     const fs::path log = output / "errors.log";
     const std::string command =
-        std::string("'" IDLC "' -W no-implicit-extensibility -W no-enum-consecutive -l '" PLUGIN "' -o '") +
-        output.string() + "' '" + idl.string() + "' 2>'" + log.string() + "'";
+        std::string("'") + Paths::Idlc + "' -W no-implicit-extensibility -W no-enum-consecutive -l '" +
+        Paths::Plugin + "' -o '" + output.string() + "' '" + idl.string() + "' 2>'" + log.string() + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(log)};
 }

@@ -4,6 +4,15 @@
 #include <filesystem>
 #include <string>
 
+// Set by CMake.
+namespace Paths
+{
+extern const char *const Idlc;
+extern const char *const Plugin;
+extern const char *const Messages;
+extern const char *const Refused;
+}  // namespace Paths
+
 struct IdlcResult
 {
     int ExitCode = 0;

@@ -15,6 +15,11 @@
 #include <sstream>
 #include <thread>
 
+namespace Paths
+{
+extern const char *const SourceFolder;
+}
+
 namespace Rabit::Sim
 {
 
@@ -36,7 +41,7 @@ struct Arguments
 std::string Commit()
 {
     const std::string command =
-        std::string("git -C '") + RABIT_SOURCE_DIR + "' describe --always --dirty 2>/dev/null";
+        std::string("git -C '") + Paths::SourceFolder + "' describe --always --dirty 2>/dev/null";
     const std::unique_ptr<FILE, int (*)(FILE *)> pipe(::popen(command.c_str(), "r"), ::pclose);
     std::array<char, 100> text{};
     if (!pipe || std::fgets(text.data(), static_cast<int>(text.size()), pipe.get()) == nullptr)

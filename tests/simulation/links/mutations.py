@@ -32,14 +32,18 @@ class Build:
         simulation = source / "tests/simulation/links"
         common = source / "tests/simulation/common"
         self.includes = [f"-I{path}" for path in (source / "gateway/links/include", self.links, tests, common)]
-        self.defines = [f'-DRABIT_SOURCE_DIR="{source}"']
         self.compiler = os.environ.get("CXX", "c++")
         sources = {
             "links": sorted(self.links.glob("*.cpp")),
             "simulation": sorted([*simulation.glob("*.cpp"), *common.glob("*.cpp")]),
-            "direct": sorted(tests.glob("Link*Test.cpp")),
+            "direct": [*sorted(tests.glob("Link*Test.cpp")), tests.parent / "AllocationCount.cpp"],
         }
         work.mkdir(parents=True, exist_ok=True)
+        # What rabit_tell_paths of tests/CMakeLists.txt makes.
+        paths = work / "paths.cpp"
+        paths.write_text("namespace Paths\n{\nextern const char *const SourceFolder;\n"
+                         f'const char *const SourceFolder = "{source}";\n}}\n')
+        sources["simulation"].append(paths)
         self.objects = {}
         with ThreadPoolExecutor(jobs) as pool:
             for group, files in sources.items():
@@ -49,7 +53,7 @@ class Build:
                 self.objects[group] = names
 
     def compile(self, source, target):
-        run = subprocess.run([self.compiler, *FLAGS, *self.defines, *self.includes, "-c", str(source), "-o",
+        run = subprocess.run([self.compiler, *FLAGS, *self.includes, "-c", str(source), "-o",
                               str(target)], capture_output=True, text=True)
         if run.returncode != 0:
             raise RuntimeError(f"{source} does not compile:\n{run.stderr}")

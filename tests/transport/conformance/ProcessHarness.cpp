@@ -12,6 +12,11 @@
 #include <thread>
 #include <vector>
 
+namespace Paths
+{
+extern const char *const TransportPeer;
+}
+
 namespace Rabit::Conformance
 {
 
@@ -140,7 +145,7 @@ void ProcessHarness::Settle()
 
 std::unique_ptr<RemoteNode> ProcessHarness::StartRemote(const std::string &node, std::uint64_t incarnation)
 {
-    return std::make_unique<PeerProcess>(std::vector<std::string>{TRANSPORT_PEER_PROGRAM, _backend->Name(),
+    return std::make_unique<PeerProcess>(std::vector<std::string>{Paths::TransportPeer, _backend->Name(),
                                                                   node, std::to_string(incarnation),
                                                                   std::to_string(_domain.Domain())});
 }
