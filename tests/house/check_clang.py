@@ -9,24 +9,36 @@ compiles without any are generated, and are left out.
 Most of the time of a unit goes into what it includes, so units with the same options are read together, as one. Those
 that do not go together (two of them name something alike) are set apart and read again, in the end each alone: what is
 reported is what clang says of one unit by itself.
+
+Where there is ccache it remembers what clang said, and nothing is read again while it and what it includes are as they
+were. All names are handed to it relative to ROOT, so that it knows them in another clone, too.
 """
 
 import argparse
 import concurrent.futures
+import hashlib
 import json
+import os
 import pathlib
 import re
 import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
 
 # What of a unit's command line says how it is to be read. -O is not among it: nothing is compiled.
 KEPT = ("-I", "-isystem", "-D", "-std", "-W")
 TOGETHER = 60  # units in one reading at most
 ENOUGH_FAILURES = 10
 SKIPPED = 77
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+
+
+def relative(path, folder):
+    """The path as seen from a folder, if both are of this project; else as it is."""
+    inside = all(pathlib.Path(p).is_relative_to(ROOT) for p in (path, folder))
+    return os.path.relpath(path, folder) if inside else str(path)
 
 
 def options_of(command):
@@ -63,24 +75,41 @@ class Checker:
         self.clang = clang
         self.work = work
         self.failures = []
-        self.count = 0
+        self.with_ccache = shutil.which("ccache") is not None
+        version = subprocess.run([clang, "--version"], capture_output=True, text=True, check=True).stdout
+        reader = hashlib.sha256((version + (HERE / "clang_syntax.sh").read_text()).encode()).hexdigest()
+        self.environment = {**os.environ, "RABIT_CLANG": clang, "CCACHE_BASEDIR": str(ROOT), "CCACHE_NOHASHDIR": "1",
+                            "CCACHE_DEPEND": "1", "CCACHE_COMPILERTYPE": "clang",
+                            "CCACHE_COMPILERCHECK": f"string:{reader}"}
 
     def says(self, options, path):
         """What clang has against a file, or nothing."""
-        done = subprocess.run([self.clang, *options, "-Werror", "-Wno-unknown-warning-option", "-fsyntax-only",
-                               "-ferror-limit=0", path], capture_output=True, text=True, check=False)
-        return done.stderr if done.returncode != 0 else ""
+        options = [*options, "-Werror", "-Wno-unknown-warning-option", "-ferror-limit=0"]
+        if not self.with_ccache:
+            done = self.run([self.clang, *options, "-fsyntax-only", path])
+            return done.stderr or f"{self.clang} failed" if done.returncode != 0 else ""
+        left = self.work / hashlib.sha256(str((options, path)).encode()).hexdigest()
+        verdict = left.with_suffix(".o")
+        done = self.run(["ccache", str(HERE / "clang_syntax.sh"), *options, "-MD", "-MF", f"{left}.d", "-MT", "unit",
+                         "-c", path, "-o", str(verdict)])
+        if done.returncode != 0:
+            return done.stderr or f"{self.clang} failed"
+        return verdict.read_text().removeprefix("read\n")
+
+    def run(self, command):
+        return subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, env=self.environment)
 
     def together(self, options, units):
         """The units that clang finds fault with when they are read as one."""
-        self.count += 1
-        joined = self.work / f"together_{self.count}.cpp"
         # Each program's own main().
-        lines = [f'#undef main\n#define main main_{i}\n#include "{unit}"\n' for i, unit in enumerate(units)]
-        joined.write_text("".join(lines))
-        said = self.says(options, str(joined))
+        text = "".join(f'#undef main\n#define main main_{i}\n#include "{relative(unit, self.work)}"\n'
+                       for i, unit in enumerate(units))
+        file = self.work / f"together_{hashlib.sha256(text.encode()).hexdigest()}.cpp"
+        file.write_text(text)
+        joined = relative(file, ROOT)
+        said = self.says(options, joined)
         at_fault = {units[(int(number) - 1) // 3]
-                    for number in re.findall(rf"^In file included from {re.escape(str(joined))}:(\d+):", said, re.M)}
+                    for number in re.findall(rf"^In file included from {re.escape(joined)}:(\d+):", said, re.M)}
         return (at_fault or set(units)) if said else set()
 
     def check(self, options, units):
@@ -89,7 +118,7 @@ class Checker:
             return
         if len(units) == 1 or options[0]:
             for unit in units:
-                said = self.says(options[1:], unit)
+                said = self.says(options[1:], relative(unit, ROOT))
                 if said:
                     self.failures.append((unit, said))
             return
@@ -113,12 +142,13 @@ def parts(units):
 def check(clang, build, folders, jobs):
     """What clang says, as (unit, text), and the number of units."""
     by_options = units_by_options(build, folders)
-    with tempfile.TemporaryDirectory(prefix="rabit_clang_") as work:
-        checker = Checker(clang, pathlib.Path(work))
-        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-            for done in [pool.submit(checker.check, options, part)
-                         for options, units in by_options.items() for part in parts(units)]:
-                done.result()
+    work = build / "house_clang"
+    work.mkdir(exist_ok=True)
+    checker = Checker(clang, work)
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        for done in [pool.submit(checker.check, options, part)
+                     for options, units in by_options.items() for part in parts(units)]:
+            done.result()
     return sorted(checker.failures), sum(len(units) for units in by_options.values())
 
 
@@ -126,7 +156,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("clang")
-    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("build", type=lambda folder: pathlib.Path(folder).resolve())
     parser.add_argument("folders", nargs="*", type=lambda folder: pathlib.Path(folder).resolve())
     arguments = parser.parse_args()
     if not shutil.which(arguments.clang):

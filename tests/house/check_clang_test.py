@@ -4,11 +4,13 @@
 Usage: check_clang_test.py CLANG"""
 
 import json
+import os
 import pathlib
 import shutil
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import check_clang
 
@@ -63,6 +65,74 @@ class CheckClang(unittest.TestCase):
 
     def test_c_is_read_as_c(self):
         self.assertEqual(self.check({"A.c": "int class = 0;\n", "B.c": "int class = 0;\n"}, standard="-std=gnu11"), ([], 2))
+
+
+@unittest.skipUnless(shutil.which("ccache"), "no ccache here")
+class WhatIsRemembered(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        cache = unittest.mock.patch.dict(os.environ, {"CCACHE_DIR": str(self.folder / "cache")})
+        cache.start()
+        self.addCleanup(cache.stop)
+        self.write("A.h", "#pragma once\ninline int A() { return 1; }\n")
+        self.write("A.cpp", '#include "A.h"\n')
+        self.write("B.cpp", '#include "A.h"\nint B() { return A(); }\n')
+        self.set_options("-Wall -Wextra")
+        # Counts in how many units it was asked for their syntax.
+        self.clang = self.folder / "clang"
+        self.clang.write_text(f'#!/bin/sh\ncase "$*" in *-fsyntax-only*) echo >>{self.folder}/readings;; esac\n'
+                              f'exec {CLANG} "$@"\n')
+        self.clang.chmod(0o755)
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        # ccache does not trust what is as new as the reading itself.
+        os.utime(self.folder / name, (1, 1))
+
+    def set_options(self, options):
+        self.write("compile_commands.json", json.dumps([
+            {"directory": str(self.folder), "file": str(self.folder / name),
+             "command": f"c++ -I {self.folder} {options} -std=c++20 -o {name}.o -c {self.folder / name}"}
+            for name in ("A.cpp", "B.cpp")]))
+
+    def check(self):
+        """The units at fault, and how many readings there were."""
+        readings = self.folder / "readings"
+        readings.write_text("")
+        failures, _ = check_clang.check(str(self.clang), self.folder, [], 1)
+        return [pathlib.Path(unit).name for unit, _ in failures], len(readings.read_text())
+
+    def test_what_is_good_is_not_read_again(self):
+        self.assertEqual(self.check(), ([], 1))
+        self.assertEqual(self.check(), ([], 0))
+
+    def test_what_is_at_fault_is_said_again(self):
+        self.write("B.cpp", "int B(int unused) { return 1; }\n")
+        first, _ = self.check()
+        second, readings = self.check()
+        self.assertEqual((first, second, readings), (["B.cpp"], ["B.cpp"], 0))
+
+    def test_a_clang_that_fails_is_a_fault(self):
+        self.clang.write_text(f'#!/bin/sh\ncase "$*" in *-fsyntax-only*) exit 139;; esac\nexec {CLANG} "$@"\n')
+        self.assertEqual(self.check()[0], ["A.cpp", "B.cpp"])
+
+    def test_a_fault_that_comes_into_a_header_is_found(self):
+        self.check()
+        self.write("A.h", "#pragma once\ninline int A(int unused = 1) { return 1; }\n")
+        self.assertEqual(self.check()[0], ["A.cpp", "B.cpp"])
+
+    def test_a_fault_that_comes_into_a_unit_is_found(self):
+        self.check()
+        self.write("B.cpp", "int B(int unused) { return 1; }\n")
+        self.assertEqual(self.check()[0], ["B.cpp"])
+
+    def test_what_was_good_by_fewer_warnings_is_read_again(self):
+        self.write("B.cpp", "int B(int same) { { int same = 1; (void)same; } return same; }\n")
+        self.assertEqual(self.check()[0], [])
+        self.set_options("-Wall -Wextra -Wshadow")
+        self.assertEqual(self.check()[0], ["B.cpp"])
 
 
 if __name__ == "__main__":
