@@ -43,13 +43,14 @@ std::string MissionText(const Uav::MissionState &mission, const CommandTally &ta
 }
 }  // namespace
 
-AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace)
+AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace) : _node(std::move(node))
 {
-    workspace.AddPublishSubscribeMessage(node + "/Pose", _pose);
-    workspace.AddPublishSubscribeMessage(node + "/MissionState", _mission);
-    workspace.AddPublishSubscribeMessage(node + "/Findings", _findings);
-    workspace.AddPublishSubscribeMessage(node + "/Pose", _arrivals->Pose);
-    workspace.AddPublishSubscribeMessage(node + "/MissionState", _arrivals->Mission);
+    workspace.AddPublishSubscribeMessage(_node + "/Pose", _pose);
+    workspace.AddPublishSubscribeMessage(_node + "/MissionState", _mission);
+    workspace.AddPublishSubscribeMessage(_node + "/Findings", _findings);
+    workspace.AddPublishSubscribeMessage(_node + ".vision/Targets", _targets);
+    workspace.AddPublishSubscribeMessage(_node + "/Pose", _arrivals->Pose);
+    workspace.AddPublishSubscribeMessage(_node + "/MissionState", _arrivals->Mission);
 
     const auto pose = _arrivals->Pose->GetGlobalPublishSubscribeMessageRef();
     const auto mission = _arrivals->Mission->GetGlobalPublishSubscribeMessageRef();
@@ -93,11 +94,21 @@ void AircraftMonitor::Show(FleetRow &row, const CommandTally &tally)
     row.AreaDeclined = _mission->area_declined;
 }
 
-std::vector<Uav::Finding> AircraftMonitor::Findings()
+SaidOfTargets AircraftMonitor::Targets()
 {
+    SaidOfTargets said;
+    said.Aircraft = _node;
     if (_findings->GetGlobalPublishSubscribeMessageRef())
         _findings->FetchMessage();
-    return _findings->items;
+    said.Findings = &_findings->items;
+    if (_targets->GetGlobalPublishSubscribeMessageRef())
+        _targets->FetchMessage();
+    if (_targets->WasPosted())
+    {
+        said.Targets = _targets.get();
+        said.AgeS = _targets->GetAgeSeconds();
+    }
+    return said;
 }
 
 PoseCount AircraftMonitor::Count() const

@@ -59,6 +59,7 @@ void FleetView::Look()
         _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
     FollowNewNodes();
     _seen.clear();
+    std::vector<SaidOfTargets> said;
     for (auto &[node, aircraft] : _aircraft)
     {
         Seen seen;
@@ -82,10 +83,13 @@ void FleetView::Look()
         const PoseCount count = aircraft.Monitor->Count();
         seen.Published = count.Published();
         seen.Heard = count.Heard();
-        for (const Uav::Finding &finding : aircraft.Monitor->Findings())
-            seen.Targets.push_back({node, finding});
+        said.push_back(aircraft.Monitor->Targets());
         _seen.push_back(std::move(seen));
     }
+    for (ListedTarget &target : ListTargets(said))
+        for (Seen &seen : _seen)
+            if (target.Found && target.Found->Aircraft == seen.Row.Node)
+                seen.Targets.push_back(std::move(*target.Found));
 }
 
 void FleetView::FollowNewNodes()
@@ -168,10 +172,11 @@ std::vector<std::string> FleetView::TargetLinesThatChanged()
     {
         for (const FoundTarget &target : seen.Targets)
         {
-            const auto [shown, isNew] = _shownStages.try_emplace(NameOf(target), target.Finding.stage);
-            if (!isNew && shown->second == target.Finding.stage)
+            const Shown now{target.Finding.stage, target.Formerly.size()};
+            const auto [shown, isNew] = _shownTargets.try_emplace(NameOf(target), now);
+            if (!isNew && shown->second == now)
                 continue;
-            shown->second = target.Finding.stage;
+            shown->second = now;
             lines.push_back("         " + TargetLine(target));
         }
     }

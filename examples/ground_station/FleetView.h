@@ -19,6 +19,7 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Ground
@@ -28,8 +29,9 @@ namespace Ground
 // else it writes a line a second for each aircraft. What else a person should know of the aircraft stands
 // below, what the radio does, and what keeps data from flowing, as long as it is so.
 //
-// Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose, <node>/MissionState and
-// <node>/Findings of each of them; and CommandTally and CommandList of the Commander.
+// Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose, <node>/MissionState,
+// <node>/Findings and <node>.vision/Targets of each of them; and CommandTally and CommandList of the
+// Commander.
 //
 // A node counts as an aircraft once a pose or mission state of it has come, or if it is expected.
 class FleetView : public Rabit::RabitManager
@@ -60,7 +62,7 @@ public:
         FleetRow Row;
         std::uint64_t Published = 0;
         std::uint64_t Heard = 0;
-        std::vector<FoundTarget> Targets;
+        std::vector<FoundTarget> Targets;  // each is listed once, at the aircraft that got farthest with it
     };
 
     FleetView(const Settings &settings, Output output,
@@ -79,6 +81,9 @@ private:
         bool Expected = false;
     };
 
+    // How far a target had come, and how many other names it had.
+    using Shown = std::pair<Uav::TargetStage, std::size_t>;
+
     void Look();
     void FollowNewNodes();
     void Print();
@@ -92,7 +97,7 @@ private:
     std::chrono::nanoseconds _start{0};
     std::map<std::string, Aircraft, NaturalOrder> _aircraft;
     std::vector<Seen> _seen;
-    std::map<std::string, Uav::TargetStage> _shownStages;  // by the name of the target
+    std::map<std::string, Shown> _shownTargets;  // by name
     std::set<std::string> _shownAttention;
     TerminalScreen _screen;
     RadioWatch _radio;

@@ -30,9 +30,14 @@ std::string ToText(Uav::TargetStage stage)
     return "?";
 }
 
+std::string NameOf(const Uav::TargetName &name)
+{
+    return Printable(name.aircraft, LongestName) + "/" + std::to_string(name.number);
+}
+
 std::string NameOf(const FoundTarget &target)
 {
-    return Printable(target.Aircraft, LongestName) + "/" + std::to_string(target.Finding.target);
+    return NameOf(target.Finding.name);
 }
 
 std::string TargetLine(const FoundTarget &target)
@@ -50,6 +55,8 @@ std::string TargetLine(const FoundTarget &target)
                       static_cast<double>(target.Finding.tracked_s));
         line += text.data();
     }
+    for (const Uav::TargetName &name : target.Formerly)
+        line += ", was also " + NameOf(name);
     return line;
 }
 

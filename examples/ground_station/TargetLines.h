@@ -4,6 +4,7 @@
 #include "uav.idl.h"
 
 #include <string>
+#include <vector>
 
 namespace Ground
 {
@@ -13,11 +14,13 @@ struct FoundTarget
 {
     std::string Aircraft;
     Uav::Finding Finding;
+    std::vector<Uav::TargetName> Formerly{};  // other names of it
 };
 
 std::string ToText(Uav::TargetStage stage);
 
-// `uav1/3`: the aircraft that found it, and the number that it gave it.
+// `uav1/3`: what the fleet calls it.
+std::string NameOf(const Uav::TargetName &name);
 std::string NameOf(const FoundTarget &target);
 
 // One line of ASCII, for instance `target uav1/3   TRACKED     47.39771     8.54560  validated by uav2,

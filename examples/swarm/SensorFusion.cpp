@@ -4,7 +4,10 @@ namespace Swarm
 {
 
 SensorFusion::SensorFusion(const Names &names, Rabit::RabitWorkspace &workspace)
-    : RabitManager(names.OwnVision("SensorFusion"), workspace), _table(names.Aircraft())
+    : RabitManager(names.OwnVision("SensorFusion"), workspace),
+      _names(names),
+      _table(names.Aircraft()),
+      _others(names, workspace)
 {
     AddPublishSubscribeMessage(names.OwnVision("Targets"), _targets);
 }
@@ -13,15 +16,17 @@ void SensorFusion::ExecuteUnitOfWork()
 {
     Rabit::RabitClock &clock = GetWorkspace().GetClock();
     const bool due = _reportTimes.Due(clock.Monotonic());
-    if (TakeFrames() || due)
+    if (TakeMessages() || due)
     {
-        _table.Report(clock.GpsTimeSeconds(), *_targets);
+        const double now = clock.GpsTimeSeconds();
+        TellOthers(now);
+        _table.Report(now, *_targets);
         _targets->PostMessage();
     }
     SetWakeupTimeDelayMSec(_reportTimes.DelayMSec(clock.Monotonic()));
 }
 
-bool SensorFusion::TakeFrames()
+bool SensorFusion::TakeMessages()
 {
     bool any = false;
     std::shared_ptr<Rabit::RabitMessage> message;
@@ -31,7 +36,22 @@ bool SensorFusion::TakeFrames()
             _table.Add(*frame);
             any = true;
         }
+        else if (const auto *told = dynamic_cast<const Uav::Targets *>(message.get()))
+        {
+            _table.Hear(*told);
+            any = true;
+        }
     return any;
+}
+
+// What does not arrive is told again after a while.
+void SensorFusion::TellOthers(double gpsTimeS)
+{
+    const auto told = std::make_shared<Uav::Targets>(_table.Tell(gpsTimeS));
+    if (told->items.empty())
+        return;
+    for (const auto &[aircraft, pose] : _others.Poses())
+        AddMessageToQueue(_names.Of(Names::VisionOf(aircraft), "SensorFusion"), told);
 }
 
 }  // namespace Swarm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Names.h"
+#include "OtherAircraft.h"
 #include "Schedule.h"
 #include "uav.idl.h"
 #include "vision/TargetTable.h"
@@ -15,8 +16,10 @@ namespace Swarm
 
 // Makes targets of what the cameras of this aircraft and of the others detect: the manager `SensorFusion`.
 //
-// Queue: SensorFusion takes Uav::Detections.
-// Posts: Targets (Uav::Targets), after each batch of frames and every second.
+// Queue: SensorFusion takes Uav::Detections, and Uav::Targets from the sensor fusion of other aircraft.
+// Posts: Targets (Uav::Targets), after each batch of messages and every second.
+// Sends: Uav::Targets, those whose names the others may not know, to the queue SensorFusion of each of them.
+// Fetches: Pose of the others, to know who they are.
 class SensorFusion : public Rabit::RabitManager
 {
 public:
@@ -28,9 +31,12 @@ public:
     void ExecuteUnitOfWork() final;
 
 private:
-    bool TakeFrames();
+    bool TakeMessages();
+    void TellOthers(double gpsTimeS);
 
+    const Names _names;
     TargetTable _table;
+    OtherAircraft _others;
     Schedule _reportTimes{ReportPeriod};
     std::shared_ptr<Uav::Targets> _targets = std::make_shared<Uav::Targets>();
 };

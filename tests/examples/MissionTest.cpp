@@ -164,7 +164,9 @@ protected:
     {
         const GeoPoint place = Swarm::Moved(Field, {northM, 0, 0});
         Uav::Target target;
-        target.number = number;
+        target.name.aircraft = "uav2";
+        target.name.number = number;
+        target.name.since_gps_time_s = Gps;
         target.found_by = foundBy;
         target.latitude_deg = place.LatitudeDeg;
         target.longitude_deg = place.LongitudeDeg;
@@ -196,6 +198,8 @@ protected:
         const GeoPoint place = Swarm::Moved(Field, {northM, 0, 0});
         Uav::TargetReport report;
         report.target = 4;
+        report.name.aircraft = by;
+        report.name.number = 4;
         report.seen_by = by;
         report.latitude_deg = place.LatitudeDeg;
         report.longitude_deg = place.LongitudeDeg;
@@ -738,6 +742,75 @@ TEST_F(MissionOf2, KeepsTheNameOfATargetWithinWhatAMessageTakes)
     BeAsked(std::string(64, 'a'), 80);
     EXPECT_EQ(State().mode, Mode::MISSION_VALIDATE);
     EXPECT_EQ(State().target, std::string(62, 'a') + "/4");
+}
+
+TEST_F(MissionOf2, KnowsItsTargetByTheNameIntoWhichItsOwnWasMerged)
+{
+    Confirm();
+    Uav::Target target = _now.Targets.items.at(0);
+    target.formerly = {target.name};
+    target.name.aircraft = "uav1";
+    target.name.number = 3;
+    target.name.since_gps_time_s -= 100;
+    _now.Targets.items = {target};
+    Pass(0.2);
+    EXPECT_EQ(State().target, "uav1/3");
+    ASSERT_EQ(_mission->Findings().size(), 1u);
+    EXPECT_EQ(_mission->Findings()[0].name, target.name);
+    Answer("uav1", true);
+    EXPECT_EQ(State().mode, Mode::MISSION_TRACK) << "the answer still finds it";
+}
+
+TEST_F(MissionOf2, LeavesATargetThatAnotherAircraftPursuesUnderAFormerName)
+{
+    Uav::Finding finding;
+    finding.name.aircraft = "uav3";
+    finding.name.number = 2;
+    finding.name.since_gps_time_s = Gps + 50;
+    finding.latitude_deg = Field.LatitudeDeg + 0.001;  // where it saw it last
+    finding.longitude_deg = Field.LongitudeDeg;
+    _now.OthersFindings["uav3"].items = {finding};
+    GiveArea();
+    CommandSearch();
+    Uav::Target target;
+    target.name.aircraft = "uav2";
+    target.name.number = 7;
+    target.formerly = {finding.name};
+    target.found_by = "uav2";
+    target.latitude_deg = Field.LatitudeDeg;
+    target.longitude_deg = Field.LongitudeDeg;
+    target.own_detections = 5;
+    target.own_gps_time_s = Gps + _now.NowS + 0.1;
+    _now.Targets.items = {target};
+    Pass(0.2);
+    EXPECT_THAT(_output.Reports, IsEmpty());
+}
+
+TEST_F(MissionOf2, PursuesATargetBesideOneThatAnotherAircraftHasFound)
+{
+    Uav::Finding finding;
+    finding.name.aircraft = "uav3";
+    finding.name.number = 2;
+    finding.latitude_deg = Field.LatitudeDeg + 0.0003;
+    finding.longitude_deg = Field.LongitudeDeg;
+    _now.OthersFindings["uav3"].items = {finding};
+    Uav::Target other;
+    other.name = finding.name;
+    other.found_by = "uav3";
+    _now.Targets.items = {other};
+    GiveArea();
+    CommandSearch();
+    Uav::Target target;
+    target.name.aircraft = "uav2";
+    target.name.number = 7;
+    target.found_by = "uav2";
+    target.latitude_deg = Field.LatitudeDeg + 0.0004;
+    target.longitude_deg = Field.LongitudeDeg;
+    target.own_detections = 5;
+    target.own_gps_time_s = Gps + _now.NowS + 0.1;
+    _now.Targets.items = {other, target};
+    Pass(0.2);
+    EXPECT_EQ(State().mode, Mode::MISSION_CONFIRM) << "names tell them apart, though they are near";
 }
 
 TEST_F(MissionOf2, IgnoresReportsThatMakeNoSense)

@@ -8,7 +8,8 @@ Ground::FoundTarget Found()
 {
     Ground::FoundTarget target;
     target.Aircraft = "uav1";
-    target.Finding.target = 3;
+    target.Finding.name.aircraft = "uav1";
+    target.Finding.name.number = 3;
     target.Finding.latitude_deg = 47.39771;
     target.Finding.longitude_deg = 8.5456;
     return target;

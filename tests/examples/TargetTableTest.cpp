@@ -76,7 +76,7 @@ TEST_F(Table, ReportsATargetOnceItWasSeenOftenEnough)
     See(1.5, {{10, 20, 0}});
     const auto targets = At(1.5);
     ASSERT_EQ(targets.size(), 1u);
-    EXPECT_EQ(targets[0].number, 1u);
+    EXPECT_EQ(targets[0].name.number, 1u);
     EXPECT_NEAR(PlaceOf(targets[0]).NorthM, 10, 0.1);
     EXPECT_NEAR(PlaceOf(targets[0]).EastM, 20, 0.1);
     EXPECT_EQ(targets[0].detections, 4u);
@@ -97,6 +97,8 @@ TEST_F(Table, TellsWhoFoundATargetAndWhoHasSeenIt)
     for (int i = 1; i < 5; ++i)
         See(i * 0.5, {{10, 20, 0}}, "uav1");
     See(3, {{10, 20, 0}}, "uav3");
+    EXPECT_TRUE(At(3).empty()) << "uav2, which found it, is to name it";
+    _table.Tell(Start + 4);
     const auto targets = At(3);
     ASSERT_EQ(targets.size(), 1u);
     EXPECT_EQ(targets[0].found_by, "uav2");
@@ -178,9 +180,9 @@ TEST_F(Table, ForgetsWhatIsNotSeenForLong)
     for (int i = 0; i < 6; ++i)
         See(i * 0.5, {{0, 0, 0}});
     See(TargetTable::ForgetAfterS + 1, {{500, 0, 0}});
-    EXPECT_EQ(At(302).size(), 1u);
+    EXPECT_EQ(At(TargetTable::ForgetAfterS + 2).size(), 1u);
     See(TargetTable::ForgetAfterS + 4, {{500, 0, 0}});
-    EXPECT_TRUE(At(305).empty());
+    EXPECT_TRUE(At(TargetTable::ForgetAfterS + 5).empty());
 }
 
 TEST_F(Table, NeverGivesANumberAgain)
@@ -188,9 +190,126 @@ TEST_F(Table, NeverGivesANumberAgain)
     for (int i = 0; i < 6; ++i)
         See(i * 0.5, {{0, 0, 0}});
     for (int i = 0; i < 6; ++i)
-        See(400 + i * 0.5, {{0, 0, 0}});
-    ASSERT_EQ(At(403).size(), 1u);
-    EXPECT_EQ(At(403)[0].number, 2u);
+        See(1400 + i * 0.5, {{0, 0, 0}});
+    ASSERT_EQ(At(1403).size(), 1u);
+    EXPECT_EQ(At(1403)[0].name.number, 2u);
+}
+
+// What uav2 tells of a target there.
+Uav::Targets ToldBy2(double time, double northM, double sinceS, std::uint32_t number)
+{
+    const GeoPoint point = Moved(Field, {northM, 0, 0});
+    Uav::Target target;
+    target.name.aircraft = "uav2";
+    target.name.number = number;
+    target.name.since_gps_time_s = Start + sinceS;
+    target.found_by = "uav2";
+    target.latitude_deg = point.LatitudeDeg;
+    target.longitude_deg = point.LongitudeDeg;
+    target.sigma_major_m = target.sigma_minor_m = 2;
+    target.seen_gps_time_s = Start + time;
+    target.detections = 9;
+    target.seen_by = {"uav2"};
+    Uav::Targets told;
+    told.told_by = "uav2";
+    told.gps_time_s = Start + time;
+    told.items = {target};
+    return told;
+}
+
+class TableThatHears : public Table
+{
+protected:
+    void SetUp() override
+    {
+        for (int i = 0; i < 6; ++i)
+            See(10 + i * 0.5, {{0, 0, 0}});
+    }
+};
+
+TEST_F(TableThatHears, CallsATargetByTheOlderNameAndKeepsTheOtherAsAFormerOne)
+{
+    _table.Hear(ToldBy2(12.5, 1, 3, 4));
+    const auto targets = At(13);
+    ASSERT_EQ(targets.size(), 1u);
+    EXPECT_EQ(targets[0].name.aircraft, "uav2");
+    EXPECT_EQ(targets[0].name.number, 4u);
+    ASSERT_EQ(targets[0].formerly.size(), 1u);
+    EXPECT_EQ(targets[0].formerly[0].aircraft, "uav1");
+}
+
+TEST_F(TableThatHears, KeepsItsOwnNameIfThatIsOlderAndSaysSo)
+{
+    _table.Tell(Start + 12.5);
+    _table.Hear(ToldBy2(12.5, 1, 12, 4));
+    ASSERT_EQ(At(13).size(), 1u);
+    EXPECT_EQ(At(13)[0].name.aircraft, "uav1");
+    const Uav::Targets told = _table.Tell(Start + 12.6);
+    ASSERT_EQ(told.items.size(), 1u);
+    EXPECT_EQ(told.items[0].formerly.at(0).aircraft, "uav2");
+}
+
+TEST_F(TableThatHears, KnowsATargetThatOnlyAnotherAircraftHasSeen)
+{
+    _table.Hear(ToldBy2(12.5, 150, 3, 4));
+    ASSERT_EQ(At(13).size(), 2u);
+    for (int i = 0; i < 6; ++i)
+        See(15 + i * 0.5, {{150, 0, 0}});
+    ASSERT_EQ(At(18).size(), 2u);
+    EXPECT_EQ(At(18)[1].name.aircraft, "uav2") << "it is still called that when its own camera sees it";
+}
+
+TEST_F(TableThatHears, GivesNoNumberThatItGaveInAnEarlierLife)
+{
+    Uav::Targets told = ToldBy2(12.5, 150, 3, 7);
+    told.items[0].name.aircraft = "uav1";
+    _table.Hear(told);
+    for (int i = 0; i < 6; ++i)
+        See(15 + i * 0.5, {{-200, 0, 0}});
+    EXPECT_EQ(At(18).back().name.number, 8u);
+}
+
+TEST_F(TableThatHears, NeverTakesForOneWhatAnotherHasSeenSideBySide)
+{
+    Uav::Targets told = ToldBy2(12.5, 12, 3, 4);
+    told.items[0].beside = {At(12)[0].name};
+    _table.Hear(told);
+    EXPECT_EQ(At(13).size(), 2u);
+    told.items[0].latitude_deg = Field.LatitudeDeg;
+    _table.Hear(told);
+    EXPECT_EQ(At(13).size(), 2u);
+}
+
+TEST_F(TableThatHears, TellsANewcomerAllNames)
+{
+    _table.Tell(Start + 12.5);
+    EXPECT_TRUE(_table.Tell(Start + 13).items.empty());
+    See(13, {{300, 0, 0}}, "uav3");
+    EXPECT_EQ(_table.Tell(Start + 13).items.size(), 1u);
+}
+
+TEST_F(TableThatHears, DropsWhatMakesNoSense)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto &spoil :
+         std::vector<void (*)(Uav::Target &)>{
+             [](Uav::Target &target) { target.name.aircraft.clear(); },
+             [](Uav::Target &target) { target.name.number = 0; },
+             [](Uav::Target &target) { target.name.number = 4'000'000'000; },
+             [](Uav::Target &target) { target.name.since_gps_time_s = std::nan(""); },
+             [](Uav::Target &target) { target.name.since_gps_time_s += 1000; },
+             [](Uav::Target &target) { target.latitude_deg = std::nan(""); },
+             [](Uav::Target &target) { target.longitude_deg += 100; },
+             [](Uav::Target &target) { target.sigma_major_m = -1; },
+             [](Uav::Target &target) { target.seen_gps_time_s = std::nan(""); }})
+    {
+        Uav::Targets told = ToldBy2(12.5, 150, 3, 4);
+        spoil(told.items[0]);
+        _table.Hear(told);
+    }
+    _table.Hear(ToldBy2(nan, 150, 3, 4));
+    EXPECT_EQ(At(13).size(), 1u);
+    EXPECT_EQ(_table.Dropped(), 10u);
 }
 
 TEST_F(Table, IsBounded)
@@ -200,7 +319,7 @@ TEST_F(Table, IsBounded)
             See(row * 2 + i * 0.5, {{row * 100.0, 0, 0}});
     const auto targets = At(200);
     EXPECT_EQ(targets.size(), TargetTable::MaxTargets);
-    EXPECT_EQ(targets.back().number, 100u) << "the longest unseen ones went";
+    EXPECT_EQ(targets.back().name.number, 100u) << "the longest unseen ones went";
 }
 
 TEST_F(Table, DropsWhatMakesNoSense)

@@ -191,7 +191,8 @@ protected:
     void SetUp() override
     {
         _target.Aircraft = "uav1";
-        _target.Finding.target = 3;
+        _target.Finding.name.aircraft = "uav1";
+        _target.Finding.name.number = 3;
         _target.Finding.stage = Uav::TargetStage::TARGET_TRACKED;
         _target.Finding.validated_by = "uav2";
         _target.Finding.tracked_s = 12;

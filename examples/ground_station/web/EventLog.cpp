@@ -54,10 +54,8 @@ void EventLog::Look(const StationData &now)
 {
     _nowS = now.NowS;
     for (const AircraftData &aircraft : now.Aircraft)
-    {
         LookAtAircraft(aircraft);
-        LookAtFindings(aircraft);
-    }
+    LookAtTargets(now);
     if (now.Commands)
         LookAtCommands(*now.Commands.Content);
     if (now.Area && now.Area.Content->number != _area)
@@ -108,21 +106,25 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
     }
 }
 
-void EventLog::LookAtFindings(const AircraftData &aircraft)
+void EventLog::LookAtTargets(const StationData &now)
 {
-    if (!aircraft.Findings)
-        return;
-    for (const Uav::Finding &finding : aircraft.Findings.Content->items)
+    for (const ListedTarget &target : TargetsOf(now))
     {
-        const auto key = std::make_pair(aircraft.Node, finding.target);
-        const auto known = _targets.find(key);
+        if (!target.Found)
+            continue;
+        const Uav::Finding &finding = target.Found->Finding;
+        const std::string name = NameOf(finding.name);
+        for (const Uav::TargetName &other : target.Formerly)
+            if (_targets.erase(NameOf(other)) > 0)
+                Add(Weight::Info, target.Found->Aircraft, "target " + NameOf(other) + " is " + name);
+        const auto known = _targets.find(name);
         if (known == _targets.end() ? _targets.size() >= MaxFollowed : known->second == finding.stage)
             continue;
-        _targets[key] = finding.stage;
-        std::string text = "target " + std::to_string(finding.target) + " " + WireName(finding.stage);
+        _targets[name] = finding.stage;
+        std::string text = "target " + name + " " + WireName(finding.stage);
         if (!finding.validated_by.empty())
             text += " (seen by " + finding.validated_by + ")";
-        Add(Weight::Info, aircraft.Node, text);
+        Add(Weight::Info, target.Found->Aircraft, text);
     }
 }
 

@@ -57,7 +57,7 @@ private:
     };
 
     void LookAtAircraft(const AircraftData &aircraft);
-    void LookAtFindings(const AircraftData &aircraft);
+    void LookAtTargets(const StationData &now);
     void LookAtCommands(const CommandList &list);
     void LookAtProblems(const StationData &now);
     void Add(Weight weight, const std::string &node, const std::string &text);
@@ -66,7 +66,7 @@ private:
     std::uint64_t _number = 0;
     std::deque<StationEvent> _events;
     std::map<std::string, Known> _aircraft;
-    std::map<std::pair<std::string, std::uint32_t>, Uav::TargetStage> _targets;
+    std::map<std::string, Uav::TargetStage> _targets;  // by name
     std::map<std::uint32_t, std::size_t> _commands;  // by id: how many of its steps were told
     std::set<std::string> _problems;
     std::uint32_t _area = 0;

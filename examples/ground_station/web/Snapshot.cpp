@@ -1,5 +1,6 @@
 #include "Snapshot.h"
 
+#include "TargetName.h"
 #include "WireNames.h"
 
 #include <nlohmann/json.hpp>
@@ -73,37 +74,43 @@ Json ToJson(const Uav::Health &health)
             {"reason", health.reason}};
 }
 
-Json ToJson(const Uav::Findings &findings)
+// Each target once. Place and ellipse are those of the aircraft that told of it, and as old as what it said
+// last; if sensor fusion has told nothing of it they are the last that its finder knew.
+Json ToJson(const ListedTarget &listed)
 {
-    Json items = Json::array();
-    for (const Uav::Finding &finding : findings.items)
-        items.push_back({{"target", finding.target},
-                         {"stage", WireName(finding.stage)},
-                         {"latitude_deg", Degrees(finding.latitude_deg)},
-                         {"longitude_deg", Degrees(finding.longitude_deg)},
-                         {"validated_by", finding.validated_by},
-                         {"tracked_s", Rounded(static_cast<double>(finding.tracked_s), 10)}});
-    return {{"items", std::move(items)}};
-}
-
-// Both times are of the clock of the aircraft, so that their difference is an age whatever that clock says.
-Json ToJson(const Uav::Targets &targets)
-{
-    Json items = Json::array();
-    for (const Uav::Target &target : targets.items)
-        items.push_back({{"number", target.number},
-                         {"found_by", target.found_by},
-                         {"latitude_deg", Degrees(target.latitude_deg)},
-                         {"longitude_deg", Degrees(target.longitude_deg)},
-                         {"velocity_north_mps", Rounded(static_cast<double>(target.velocity_north_mps), 100)},
-                         {"velocity_east_mps", Rounded(static_cast<double>(target.velocity_east_mps), 100)},
-                         {"sigma_major_m", Rounded(static_cast<double>(target.sigma_major_m), 10)},
-                         {"sigma_minor_m", Rounded(static_cast<double>(target.sigma_minor_m), 10)},
-                         {"sigma_heading_rad", Short(static_cast<double>(target.sigma_heading_rad))},
-                         {"unseen_s", Rounded(targets.gps_time_s - target.seen_gps_time_s, 10)},
-                         {"detections", target.detections},
-                         {"seen_by", target.seen_by}});
-    return {{"items", std::move(items)}};
+    Json item = {{"name", Common::TextOf(listed.Name)}, {"stage", "found"}, {"validated_by", ""}};
+    Json formerly = Json::array();
+    for (const Uav::TargetName &name : listed.Formerly)
+        formerly.push_back(Common::TextOf(name));
+    item["formerly"] = std::move(formerly);
+    if (listed.Found)
+    {
+        const Uav::Finding &finding = listed.Found->Finding;
+        item["node"] = listed.Found->Aircraft;
+        item["stage"] = WireName(finding.stage);
+        item["latitude_deg"] = Degrees(finding.latitude_deg);
+        item["longitude_deg"] = Degrees(finding.longitude_deg);
+        item["validated_by"] = finding.validated_by;
+        item["tracked_s"] = Rounded(static_cast<double>(finding.tracked_s), 10);
+        item["seen_by"] = Json::array({listed.Found->Aircraft});
+    }
+    if (!listed.Target)
+        return item;
+    const Uav::Target &target = *listed.Target;
+    item["told_by"] = listed.ToldBy;
+    item["age_s"] = Short(listed.AgeS);
+    item["unseen_s"] = Rounded(listed.UnseenS, 10);
+    item["found_by"] = target.found_by;
+    item["latitude_deg"] = Degrees(target.latitude_deg);
+    item["longitude_deg"] = Degrees(target.longitude_deg);
+    item["velocity_north_mps"] = Rounded(static_cast<double>(target.velocity_north_mps), 100);
+    item["velocity_east_mps"] = Rounded(static_cast<double>(target.velocity_east_mps), 100);
+    item["sigma_major_m"] = Rounded(static_cast<double>(target.sigma_major_m), 10);
+    item["sigma_minor_m"] = Rounded(static_cast<double>(target.sigma_minor_m), 10);
+    item["sigma_heading_rad"] = Short(static_cast<double>(target.sigma_heading_rad));
+    item["detections"] = target.detections;
+    item["seen_by"] = target.seen_by;
+    return item;
 }
 
 Json ToJson(const Uav::CameraView &view)
@@ -151,8 +158,6 @@ Json ToJson(const AircraftData &aircraft)
     Add(object, "pose", aircraft.Pose);
     Add(object, "mission", aircraft.Mission);
     Add(object, "health", aircraft.Health);
-    Add(object, "findings", aircraft.Findings);
-    Add(object, "targets", aircraft.Targets);
     Add(object, "camera", aircraft.Camera);
     if (aircraft.Picture)
         object["picture"] = {{"number", aircraft.Picture->Number}, {"age_s", Short(aircraft.Picture->AgeS)}};
@@ -273,6 +278,9 @@ std::string SnapshotText(const StationData &data, const std::deque<StationEvent>
     Json aircraft = Json::array();
     for (const AircraftData &one : data.Aircraft)
         aircraft.push_back(ToJson(one));
+    Json targets = Json::array();
+    for (const ListedTarget &target : TargetsOf(data))
+        targets.push_back(ToJson(target));
     Json snapshot = {{"type", "snapshot"},
                      {"node", data.Node},
                      {"life", data.Life},
@@ -280,6 +288,7 @@ std::string SnapshotText(const StationData &data, const std::deque<StationEvent>
                      {"server_s", Short(data.NowS)},
                      {"fleet_age_s", Short(data.FleetAgeS)},
                      {"aircraft", std::move(aircraft)},
+                     {"targets", std::move(targets)},
                      {"events", ToJson(events, data.NowS)},
                      {"problems", ToJson(data.Problems)},
                      {"radio", ToJson(data.Radio)}};

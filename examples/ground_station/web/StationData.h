@@ -1,6 +1,7 @@
 #pragma once
 
 #include "FleetTable.h"
+#include "FleetTargets.h"
 #include "RadioWatch.h"
 #include "ground.idl.h"
 #include "uav.idl.h"
@@ -81,5 +82,15 @@ struct StationData
     std::vector<Rabit::Gateway::Problem> Problems;
     RadioUse Radio;  // of this node, as old as the states of the aircraft
 };
+
+// What the aircraft say of targets, as one list.
+inline std::vector<ListedTarget> TargetsOf(const StationData &data)
+{
+    std::vector<SaidOfTargets> said;
+    for (const AircraftData &one : data.Aircraft)
+        said.push_back({one.Node, one.Targets.Content, one.Targets.AgeS,
+                        one.Findings ? &one.Findings.Content->items : nullptr});
+    return ListTargets(said);
+}
 
 }  // namespace Ground

@@ -8,8 +8,14 @@ namespace Swarm
 {
 namespace
 {
-constexpr std::size_t MaxTargetText = 64;  // what MissionState takes
+// Within what MissionState takes.
+std::string TextOf(const Uav::TargetName &name)
+{
+    constexpr std::size_t longest = 64;
+    const std::string number = std::string("/").append(std::to_string(name.number));
+    return name.aircraft.substr(0, longest - number.size()) + number;
 }
+}  // namespace
 
 Mission::Mission(std::string aircraft, MissionOutput &output, const Floor &floor)
     : _aircraft(aircraft), _output(output), _floor(floor), _book(std::move(aircraft))
@@ -23,7 +29,7 @@ void Mission::Update(Situation situation)
         _home = _now.Position;
     if (_now.Flight.phase == Uav::FlightPhase::FLIGHT_RECORDING)
         _hasTrack = true;
-    _book.Follow(_now.Targets);
+    _book.Follow(_now.Targets, _target);
 }
 
 std::string Mission::Take(const Uav::SearchArea &area)
@@ -223,13 +229,12 @@ void Mission::Describe(Uav::MissionState &state) const
     state.partner.clear();
     if (_mode == Uav::MissionMode::MISSION_VALIDATE)
     {
-        const std::string number = std::string("/").append(std::to_string(_report.target));
-        state.target = _report.seen_by.substr(0, MaxTargetText - number.size()) + number;
+        state.target = TextOf(_report.name);
         state.partner = _report.seen_by;
     }
-    else if (_target != 0)
+    else if (const Uav::Finding *const finding = _book.Find(_target))
     {
-        state.target = _aircraft + "/" + std::to_string(_target);
+        state.target = TextOf(finding->name);
         state.partner = _partner;
     }
     state.text = _why;

@@ -2,6 +2,7 @@
 #include "Mission.h"
 
 #include "../Names.h"
+#include "TargetName.h"
 #include "WhyNot.h"
 
 #include <algorithm>
@@ -108,11 +109,12 @@ Uav::TargetReport Mission::ReportOf(const Uav::Finding &finding) const
 {
     Uav::TargetReport report;
     report.target = finding.target;
+    report.name = finding.name;
     report.seen_by = _aircraft;
     report.latitude_deg = finding.latitude_deg;
     report.longitude_deg = finding.longitude_deg;
     for (const Uav::Target &target : _now.Targets.items)
-        if (target.number == finding.target)
+        if (target.name == finding.name)
             report.sigma_m = target.sigma_major_m;
     report.gps_time_s = _now.GpsTimeS;
     return report;
@@ -144,11 +146,14 @@ void Mission::AskNext()
 
 void Mission::ActOnConfirm()
 {
-    const GeoPoint place = PlaceOf(*_book.Find(_target));
+    const Uav::Finding &own = *_book.Find(_target);
+    if (own.stage == Uav::TargetStage::TARGET_VALIDATED || own.stage == Uav::TargetStage::TARGET_TRACKED)
+        return SearchOn();  // it turned out to be a target that this aircraft has come to the end of
+    const GeoPoint place = PlaceOf(own);
     for (const auto &[name, findings] : _now.OthersFindings)
         for (const Uav::Finding &other : findings.items)
             if (name < _aircraft && _now.Others.contains(name) &&
-                LevelDistanceM(place, PlaceOf(other)) < TargetBook::NearM)
+                IsSame({own.name, place}, {other.name, PlaceOf(other)}, _now.Targets))
             {
                 _book.Drop(_target);
                 return SearchOn();
@@ -215,7 +220,7 @@ std::string Mission::WhyNotLook(const Uav::TargetReport &report)
     const Uav::Finding *own = _book.Find(_target);
     if (_mode == Uav::MissionMode::MISSION_CONFIRM && own)
     {
-        const bool same = LevelDistanceM(PlaceOf(*own), PlaceOf(report)) < TargetBook::NearM;
+        const bool same = IsSame({own->name, PlaceOf(*own)}, {report.name, PlaceOf(report)}, _now.Targets);
         if (!same && !_partner.empty())
             return "it has found another target";
         if (report.seen_by > _aircraft)
@@ -229,18 +234,26 @@ std::string Mission::WhyNotLook(const Uav::TargetReport &report)
     return WhyNotNow(false);
 }
 
-// The nearest target to the place in the report leads it there.
+// The target that is meant leads it there; if its name is not known here, the nearest one to the place in the
+// report.
 void Mission::ActOnValidate()
 {
     const GeoPoint place = PlaceOf(_report);
     const Uav::Target *nearest = nullptr;
     double nearestM = TargetBook::NearM + 3 * _report.sigma_m;
     for (const Uav::Target &target : _now.Targets.items)
+    {
+        if (Common::IsCalled(target, _report.name))
+        {
+            nearest = &target;
+            break;
+        }
         if (const double distance = LevelDistanceM(place, PlaceOf(target)); distance < nearestM)
         {
             nearest = &target;
             nearestM = distance;
         }
+    }
     if (nearest && nearest->own_gps_time_s > _reportGpsTimeS)
     {
         Uav::Validation answer;

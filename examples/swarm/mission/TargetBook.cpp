@@ -1,5 +1,7 @@
 #include "TargetBook.h"
 
+#include "TargetName.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -28,17 +30,55 @@ double LevelDistanceM(const GeoPoint &a, const GeoPoint &b)
     return std::hypot(way.NorthM, way.EastM);
 }
 
-// A number whose target is suddenly elsewhere is another target: sensor fusion has begun anew.
-void TargetBook::Follow(const Uav::Targets &targets)
+bool IsSame(const SpokenOf &a, const SpokenOf &b, const Uav::Targets &targets)
+{
+    const auto find = [&](const Uav::TargetName &name)
+    {
+        return std::find_if(targets.items.begin(), targets.items.end(),
+                            [&](const Uav::Target &target) { return Common::IsCalled(target, name); });
+    };
+    const auto first = find(a.Name);
+    const auto second = find(b.Name);
+    if (first != targets.items.end() && second != targets.items.end())
+        return first == second;
+    return (a.Name == b.Name && Common::MakesSense(a.Name)) ||
+           LevelDistanceM(a.Place, b.Place) < TargetBook::NearM;
+}
+
+void TargetBook::Follow(const Uav::Targets &targets, std::uint32_t pursued)
 {
     for (Entry &entry : _entries)
         for (const Uav::Target &target : targets.items)
-            if (target.number == entry.Finding.target &&
-                LevelDistanceM(PlaceOf(target), PlaceOf(entry.Finding)) < FarthestStepM)
+            if (Common::IsCalled(target, entry.Finding.name))
             {
+                entry.Finding.name = target.name;
                 entry.Finding.latitude_deg = target.latitude_deg;
                 entry.Finding.longitude_deg = target.longitude_deg;
             }
+    MergeThoseOfOneName(pursued);
+}
+
+void TargetBook::MergeThoseOfOneName(std::uint32_t pursued)
+{
+    const auto progress = [](const Uav::Finding &finding)
+    {
+        return std::pair(
+            finding.stage == Uav::TargetStage::TARGET_REJECTED ? -1 : static_cast<int>(finding.stage),
+            finding.tracked_s);
+    };
+    for (std::size_t i = 0; i < _entries.size(); ++i)
+        for (std::size_t j = _entries.size() - 1; j > i; --j)
+        {
+            Entry &kept = _entries[i];
+            const Entry &other = _entries[j];
+            if (!(kept.Finding.name == other.Finding.name) || !Common::MakesSense(kept.Finding.name))
+                continue;
+            const std::uint32_t number = other.Finding.target == pursued ? pursued : kept.Finding.target;
+            if (progress(other.Finding) > progress(kept.Finding))
+                kept = other;
+            kept.Finding.target = number;
+            _entries.erase(_entries.begin() + static_cast<std::ptrdiff_t>(j));
+        }
 }
 
 std::uint32_t TargetBook::TakeUp(const Knowledge &known)
@@ -47,9 +87,9 @@ std::uint32_t TargetBook::TakeUp(const Knowledge &known)
     {
         const bool seenNow = target.own_detections > 0 && target.own_gps_time_s > known.GpsTimeS - FreshS;
         const bool isOurs = target.found_by == _aircraft || !known.Others.contains(target.found_by);
-        if (!seenNow || !isOurs || IsOthers(PlaceOf(target), known))
+        if (!seenNow || !isOurs || IsOthers(target, known))
             continue;
-        Entry *old = NearestTo(PlaceOf(target));
+        Entry *old = FindSame(target, known.Targets);
         if (!old)
             return Add(target);
         const bool again = old->Finding.stage == Uav::TargetStage::TARGET_FOUND ||
@@ -62,7 +102,7 @@ std::uint32_t TargetBook::TakeUp(const Knowledge &known)
 }
 
 // What an aircraft that is gone had not come to the end of is nobody's.
-bool TargetBook::IsOthers(const GeoPoint &place, const Knowledge &known) const
+bool TargetBook::IsOthers(const Uav::Target &target, const Knowledge &known)
 {
     for (const auto &[aircraft, findings] : known.OthersFindings)
         for (const Uav::Finding &finding : findings.items)
@@ -70,26 +110,23 @@ bool TargetBook::IsOthers(const GeoPoint &place, const Knowledge &known) const
             const bool hasEnd = finding.stage == Uav::TargetStage::TARGET_VALIDATED ||
                                 finding.stage == Uav::TargetStage::TARGET_TRACKED;
             if ((hasEnd || known.Others.contains(aircraft)) &&
-                LevelDistanceM(place, PlaceOf(finding)) < NearM)
+                IsSame({target.name, PlaceOf(target)}, {finding.name, PlaceOf(finding)}, known.Targets))
                 return true;
         }
     return false;
 }
 
-TargetBook::Entry *TargetBook::NearestTo(const GeoPoint &place)
+TargetBook::Entry *TargetBook::FindSame(const Uav::Target &target, const Uav::Targets &targets)
 {
-    Entry *nearest = nullptr;
-    double nearestM = NearM;
-    for (Entry &entry : _entries)
-        if (const double distance = LevelDistanceM(place, PlaceOf(entry.Finding)); distance < nearestM)
-        {
-            nearest = &entry;
-            nearestM = distance;
-        }
-    return nearest;
+    const auto same = std::find_if(_entries.begin(), _entries.end(),
+                                   [&](const Entry &entry) {
+                                       return IsSame({target.name, PlaceOf(target)},
+                                                     {entry.Finding.name, PlaceOf(entry.Finding)}, targets);
+                                   });
+    return same == _entries.end() ? nullptr : &*same;
 }
 
-// Under the number that sensor fusion gave it, unless that was another target's before.
+// Under the number of its name, unless that is another target's here.
 std::uint32_t TargetBook::Add(const Uav::Target &target)
 {
     if (_entries.size() == MaxFindings)
@@ -100,7 +137,8 @@ std::uint32_t TargetBook::Add(const Uav::Target &target)
         _entries.erase(rejected == _entries.end() ? _entries.begin() : rejected);
     }
     Entry entry;
-    entry.Finding.target = target.number;
+    entry.Finding.target = std::max<std::uint32_t>(target.name.number, 1);  // 0 is none
+    entry.Finding.name = target.name;
     while (Find(entry.Finding.target))
         ++entry.Finding.target;
     entry.Finding.latitude_deg = target.latitude_deg;
@@ -111,7 +149,12 @@ std::uint32_t TargetBook::Add(const Uav::Target &target)
 
 Uav::Finding *TargetBook::Find(std::uint32_t number)
 {
-    for (Entry &entry : _entries)
+    return const_cast<Uav::Finding *>(std::as_const(*this).Find(number));
+}
+
+const Uav::Finding *TargetBook::Find(std::uint32_t number) const
+{
+    for (const Entry &entry : _entries)
         if (entry.Finding.target == number)
             return &entry.Finding;
     return nullptr;

@@ -16,10 +16,9 @@ namespace Swarm
 class TargetBook
 {
 public:
-    static constexpr double NearM = 25;         // nearer than this it is the same target
-    static constexpr double FreshS = 5;         // its own camera has seen a new target within this time
+    static constexpr double NearM = 25;  // nearer than this what another aircraft speaks of may be meant
+    static constexpr double FreshS = 5;  // its own camera has seen a new target within this time
     static constexpr double AgainAfterS = 120;  // a rejected target that is seen again gets another chance
-    static constexpr double FarthestStepM = 100;
     static constexpr std::size_t MaxFindings = 64;
 
     // What is known when a target is judged.
@@ -33,14 +32,17 @@ public:
 
     explicit TargetBook(std::string aircraft) : _aircraft(std::move(aircraft)) {}
 
-    // Moves the findings along with the targets.
-    void Follow(const Uav::Targets &targets);
+    // Moves the findings along with the targets, and calls them what the fleet calls them now. Of two that
+    // turn out to be one target the one that got farther is kept, under the number of the one that is
+    // pursued.
+    void Follow(const Uav::Targets &targets, std::uint32_t pursued);
     // Takes up a target that this aircraft is to pursue: one that its camera sees now, that it was the first
     // to see (or the first did not live to pursue it), and that neither it nor another aircraft pursues or
     // has done with. Returns its number, 0 if there is none.
     std::uint32_t TakeUp(const Knowledge &known);
     // The finding of that number; null if there is none. Valid until the next TakeUp or Drop.
     Uav::Finding *Find(std::uint32_t number);
+    const Uav::Finding *Find(std::uint32_t number) const;
     void Reject(std::uint32_t number, double gpsTimeS);
     void Drop(std::uint32_t number);
 
@@ -53,13 +55,24 @@ private:
         double RejectedS = 0;
     };
 
-    bool IsOthers(const GeoPoint &place, const Knowledge &known) const;
-    Entry *NearestTo(const GeoPoint &place);
+    static bool IsOthers(const Uav::Target &target, const Knowledge &known);
+    void MergeThoseOfOneName(std::uint32_t pursued);
+    Entry *FindSame(const Uav::Target &target, const Uav::Targets &targets);
     std::uint32_t Add(const Uav::Target &target);
 
     const std::string _aircraft;
     std::vector<Entry> _entries;
 };
+
+// A target, as one of the aircraft speaks of it.
+struct SpokenOf
+{
+    const Uav::TargetName &Name;
+    GeoPoint Place;
+};
+// Whether both mean one target: by their names if sensor fusion knows them, now or formerly, else by their
+// places, as the names of aircraft that have not met yet say nothing.
+bool IsSame(const SpokenOf &a, const SpokenOf &b, const Uav::Targets &targets);
 
 // Where it is, at no height.
 GeoPoint PlaceOf(const Uav::Finding &finding);

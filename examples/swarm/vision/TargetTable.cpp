@@ -1,10 +1,12 @@
+// Detections become targets.
 #include "TargetTable.h"
+
+#include "Assignment.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace Swarm
@@ -13,11 +15,21 @@ namespace
 {
 constexpr double MaxSigmaM = 1000;
 constexpr double MaxDistanceM = 100000;
+// Of one frame. A target in view is missed now and then; something new, a false alarm included, is seen
+// seldom.
+const double CostOfMissing = -2 * std::log(0.15);
+const double CostOfNew = -2 * std::log(1e-4);
+constexpr double CostOfMisfit = 1e6;
 
 TargetFilter::Place ToLocal(const GeoPoint &origin, double latitudeDeg, double longitudeDeg)
 {
     const Offset way = Between(origin, {latitudeDeg, longitudeDeg, origin.AltitudeM});
     return {way.NorthM, way.EastM};
+}
+
+double LargestSigmaM(const TargetFilter::Estimate &estimate)
+{
+    return std::sqrt(estimate.PositionCovariance().diagonal().maxCoeff());
 }
 }  // namespace
 
@@ -28,20 +40,27 @@ void TargetTable::Add(const Uav::Detections &frame)
         ++_dropped;
         return;
     }
+    NoteLife(frame);
     _newestS = std::max(_newestS, frame.pose.gps_time_s);
     Forget();  // what is too old must not be taken for what is seen now
     std::vector<Sighting> sightings = SightingsOf(frame);
     Match(sightings, frame);
-    for (const Sighting &sighting : sightings)
+    for (Sighting &sighting : sightings)
     {
-        if (sighting.Used || _items.size() >= MaxTargets + MaxTentative)
+        if (sighting.Target != 0 || _items.size() >= MaxTargets + MaxTentative)
             continue;
         const double time = frame.pose.gps_time_s;
-        Item item{TargetFilter(sighting.Place, sighting.SigmaM, time), frame.seen_by};
-        Count(item, frame);
-        _items.push_back(std::move(item));
+        FollowedTarget target{++_lastId, TargetFilter(sighting.Place, sighting.SigmaM, time), frame.seen_by};
+        target.NoteSighting(frame.seen_by, time, frame.seen_by == _aircraft);
+        target.FirstPlace = sighting.Place;
+        sighting.Target = target.Id;
+        _items.push_back(std::move(target));
     }
+    NoteTogether(sightings);
     Confirm();
+    MergeThoseThatFit();
+    PartThoseOnOnePlace();
+    GiveNames(_newestS);
     Forget();
 }
 
@@ -68,117 +87,148 @@ std::vector<TargetTable::Sighting> TargetTable::SightingsOf(const Uav::Detection
         const auto place = sense ? ToLocal(*_origin, detection.latitude_deg, detection.longitude_deg)
                                  : TargetFilter::Place(0, 0);
         if (sense && place.norm() <= MaxDistanceM)
-            sightings.push_back({place, detection.sigma_m});
+            sightings.push_back({place, std::hypot(static_cast<double>(detection.sigma_m), BiasM)});
         else
             ++_dropped;
     }
     return sightings;
 }
 
-// All pairs that fit, the best first.
+// The likeliest way to explain the whole frame: each detection is one of a target or of something new, each
+// target is seen once or missed. Costs are -2 ln of likelihoods.
 void TargetTable::Match(std::vector<Sighting> &sightings, const Uav::Detections &frame)
 {
     const double time = frame.pose.gps_time_s;
-    std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+    std::vector<std::size_t> near;
     for (std::size_t i = 0; i < _items.size(); ++i)
     {
-        const TargetFilter &filter = _items[i].Filter;
-        for (std::size_t s = 0; s < sightings.size(); ++s)
+        const FollowedTarget &item = _items[i];
+        if (LargestSigmaM(item.Filter.At(time)) <= DirectM &&
+            std::any_of(sightings.begin(), sightings.end(),
+                        [&](const Sighting &sighting)
+                        { return item.Filter.Distance2(sighting.Place, sighting.SigmaM, time) <= Gate; }))
+            near.push_back(i);
+    }
+    if (near.empty())
+        return;
+    const auto targets = static_cast<Eigen::Index>(near.size());
+    const auto seen = static_cast<Eigen::Index>(sightings.size());
+    Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(targets + seen, targets + seen, CostOfMisfit);
+    costs.bottomRightCorner(seen, targets).setZero();
+    costs.topRightCorner(targets, targets).diagonal().setConstant(CostOfMissing);
+    costs.bottomLeftCorner(seen, seen).diagonal().setConstant(CostOfNew);
+    for (Eigen::Index i = 0; i < targets; ++i)
+        for (Eigen::Index s = 0; s < seen; ++s)
         {
-            const double distance2 = filter.Distance2(sightings[s].Place, sightings[s].SigmaM, time);
-            if (distance2 <= Gate && (filter.At(time).Position() - sightings[s].Place).norm() <= FarthestM)
-                pairs.emplace_back(distance2, i, s);
+            const TargetFilter &filter = _items[near[static_cast<std::size_t>(i)]].Filter;
+            const Sighting &sighting = sightings[static_cast<std::size_t>(s)];
+            if (filter.Distance2(sighting.Place, sighting.SigmaM, time) <= Gate)
+                costs(i, s) = -2 * filter.LogDensity(sighting.Place, sighting.SigmaM, time);
         }
-    }
-    std::sort(pairs.begin(), pairs.end());
-    std::vector<bool> taken(_items.size(), false);
-    for (const auto &[distance2, i, s] : pairs)
+    const std::vector<int> columns = Assign(costs);
+    const auto isGiven = [&](std::size_t i)
+    { return columns[i] < seen && costs(static_cast<Eigen::Index>(i), columns[i]) < CostOfMisfit; };
+    for (std::size_t i = 0; i < near.size(); ++i)
+        for (std::size_t j = 0; j < near.size(); ++j)
+            if (isGiven(i) && !isGiven(j) && costs(static_cast<Eigen::Index>(j), columns[i]) < CostOfMisfit)
+                NoteAlone(_items[near[i]], _items[near[j]]);
+    for (std::size_t i = 0; i < near.size(); ++i)
     {
-        if (taken[i] || sightings[s].Used)
+        if (!isGiven(i))
             continue;
-        taken[i] = sightings[s].Used = true;
-        _items[i].Filter.Update(sightings[s].Place, sightings[s].SigmaM, time);
-        Count(_items[i], frame);
+        FollowedTarget &item = _items[near[i]];
+        Sighting &sighting = sightings[static_cast<std::size_t>(columns[i])];
+        sighting.Target = item.Id;
+        item.Filter.Update(sighting.Place, sighting.SigmaM, time);
+        item.NoteSighting(frame.seen_by, time, frame.seen_by == _aircraft);
     }
 }
 
-void TargetTable::Count(Item &item, const Uav::Detections &frame)
+void TargetTable::NoteTogether(const std::vector<Sighting> &sightings)
 {
-    const double time = frame.pose.gps_time_s;
-    item.LastS = std::max(item.LastS, time);
-    ++item.Count;
-    if (frame.seen_by == _aircraft)
-    {
-        item.OwnS = std::max(item.OwnS, time);
-        ++item.OwnCount;
-    }
-    if (item.Number == 0)
-        item.SeenS.push_back(time);
-    if (std::find(item.SeenBy.begin(), item.SeenBy.end(), frame.seen_by) == item.SeenBy.end() &&
-        item.SeenBy.size() < MaxSeers)
-        item.SeenBy.push_back(frame.seen_by);
+    for (std::size_t i = 0; i < sightings.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (sightings[i].Target != 0 && sightings[j].Target != 0)
+            {
+                Pair &pair = _pairs[std::minmax(sightings[i].Target, sightings[j].Target)];
+                ++pair.Frames;
+                pair.Alone = pair.AloneFirst = 0;
+            }
 }
 
-// Also drops a tentative one that turns out to be a target already known, which happens when a detection was
-// so far off that it fitted nothing.
-void TargetTable::Confirm()
+void TargetTable::NoteAlone(const FollowedTarget &seen, const FollowedTarget &missed)
 {
-    for (Item &item : _items)
+    if (!seen.ConfirmedS || !missed.ConfirmedS)
+        return;
+    Pair &pair = _pairs[KeyOf(seen, missed)];
+    const FollowedTarget &first = seen.Id < missed.Id ? seen : missed;
+    const FollowedTarget &second = seen.Id < missed.Id ? missed : seen;
+    if (pair.Alone == 0)
     {
-        if (item.Number != 0)
-            continue;
-        while (!item.SeenS.empty() && item.SeenS.front() < _newestS - ConfirmWithinS)
-            item.SeenS.pop_front();
-        if (item.SeenS.size() < NeededSightings)
-            continue;
-        if (IsKnown(item))
-            item.SeenS.clear();
-        else
-            item.Number = ++_lastNumber;
+        pair.FirstBefore = Moment{first.Filter, first.LastS};
+        pair.SecondBefore = Moment{second.Filter, second.LastS};
     }
+    ++pair.Alone;
+    pair.AloneFirst += &seen == &first ? 1 : 0;
 }
 
-bool TargetTable::IsKnown(const Item &tentative) const
+FollowedTarget *TargetTable::Find(std::uint64_t id)
 {
-    return std::any_of(
-        _items.begin(), _items.end(),
-        [&](const Item &other)
-        {
-            return other.Number != 0 &&
-                   (other.Filter.At(_newestS).Position() - tentative.Filter.At(_newestS).Position()).norm() <
-                       SameM;
-        });
+    const auto item =
+        std::find_if(_items.begin(), _items.end(), [&](const FollowedTarget &one) { return one.Id == id; });
+    return item == _items.end() ? nullptr : &*item;
 }
 
 void TargetTable::Forget()
 {
-    std::erase_if(_items, [&](const Item &item)
-                  { return item.Number == 0 ? item.SeenS.empty() : item.LastS < _newestS - ForgetAfterS; });
-    const auto known = [](const Item &item) { return item.Number != 0; };
+    const auto gone = [&](const FollowedTarget &item)
+    { return item.ConfirmedS ? item.LastS < _newestS - ForgetAfterS : item.SeenS.empty(); };
+    const std::size_t before = _items.size();
+    std::erase_if(_items, gone);
+    const auto known = [](const FollowedTarget &item) { return item.ConfirmedS.has_value(); };
     while (std::count_if(_items.begin(), _items.end(), known) > static_cast<std::ptrdiff_t>(MaxTargets))
-        _items.erase(std::min_element(
-            _items.begin(), _items.end(),
-            [](const Item &a, const Item &b)
-            { return std::pair(a.Number == 0, a.LastS) < std::pair(b.Number == 0, b.LastS); }));
+        _items.erase(std::min_element(_items.begin(), _items.end(),
+                                      [](const FollowedTarget &a, const FollowedTarget &b) {
+                                          return std::pair(!a.ConfirmedS.has_value(), a.LastS) <
+                                                 std::pair(!b.ConfirmedS.has_value(), b.LastS);
+                                      }));
+    if (_items.size() != before)
+        std::erase_if(_pairs,
+                      [&](const auto &pair) { return !Find(pair.first.first) || !Find(pair.first.second); });
 }
 
 void TargetTable::Report(double gpsTimeS, Uav::Targets &targets) const
 {
+    targets.told_by = _aircraft;
     targets.gps_time_s = gpsTimeS;
     targets.items.clear();
-    for (const Item &item : _items)
-        if (item.Number != 0)
+    for (const FollowedTarget &item : _items)
+        if (item.Name)
             targets.items.push_back(ToMessage(item, gpsTimeS));
 }
 
-Uav::Target TargetTable::ToMessage(const Item &item, double gpsTimeS) const
+std::vector<Uav::TargetName> TargetTable::NamesBeside(const FollowedTarget &item, double gpsTimeS) const
+{
+    constexpr std::size_t most = 8;  // what the message takes
+    const TargetFilter::Place place = item.Filter.At(gpsTimeS).Position();
+    std::vector<Uav::TargetName> names;
+    for (const FollowedTarget &other : _items)
+        if (other.Id != item.Id && other.Name && names.size() < most && AreTwo(item, other) &&
+            (other.Filter.At(gpsTimeS).Position() - place).norm() < BesideM)
+            names.push_back(*other.Name);
+    return names;
+}
+
+Uav::Target TargetTable::ToMessage(const FollowedTarget &item, double gpsTimeS) const
 {
     const TargetFilter::Estimate estimate = item.Filter.At(gpsTimeS);
     const GeoPoint place = Moved(*_origin, {estimate.State[0], estimate.State[1], 0});
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(estimate.PositionCovariance());
     const Eigen::Vector2d major = axes.eigenvectors().col(1);  // eigenvalues rise
     Uav::Target target;
-    target.number = item.Number;
+    target.name = *item.Name;
+    target.formerly = item.Formerly;
+    target.beside = NamesBeside(item, gpsTimeS);
     target.found_by = item.FoundBy;
     target.latitude_deg = place.LatitudeDeg;
     target.longitude_deg = place.LongitudeDeg;

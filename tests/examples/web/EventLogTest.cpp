@@ -80,13 +80,14 @@ TEST_F(EventLog, TellsWhatTheAircraftDoAndFind)
     _mission.text = "lane 3 of 7";
     EXPECT_THAT(New(), ElementsAre());
     Uav::Finding finding;
-    finding.target = 4;
+    finding.name.aircraft = "uav1";
+    finding.name.number = 4;
     _findings.items = {finding};
     Aircraft().Findings = {&_findings, 0};
-    EXPECT_THAT(New(), ElementsAre("uav1|target 4 found"));
+    EXPECT_THAT(New(), ElementsAre("uav1|target uav1/4 found"));
     _findings.items[0].stage = Uav::TargetStage::TARGET_VALIDATED;
     _findings.items[0].validated_by = "uav2";
-    EXPECT_THAT(New(), ElementsAre("uav1|target 4 validated (seen by uav2)"));
+    EXPECT_THAT(New(), ElementsAre("uav1|target uav1/4 validated (seen by uav2)"));
     _health.wants_home = true;
     _health.reason = "battery low";
     Aircraft().Health = {&_health, 0};
@@ -169,7 +170,8 @@ TEST_F(EventLog, IsBounded)
     for (std::uint32_t i = 0; i < 3 * Ground::EventLog::MaxFollowed; ++i)
     {
         Uav::Finding finding;
-        finding.target = i;
+        finding.name.aircraft = "uav1";
+        finding.name.number = i;
         _findings.items = {finding};
         _log.Look(_data);
     }

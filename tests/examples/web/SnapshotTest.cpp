@@ -258,14 +258,16 @@ TEST_F(Snapshot, TellsOfTargetsHowLongTheyWereNotSeenByTheClockOfTheAircraft)
     Uav::Targets targets;
     targets.gps_time_s = 1000;
     Uav::Target target;
-    target.number = 3;
+    target.name.aircraft = "uav1";
+    target.name.number = 3;
     target.seen_gps_time_s = 996;
     target.seen_by = {"uav1", "uav2"};
     targets.items = {target};
     Aircraft().Targets = {&targets, 0.1};
-    const Json shown = Shown()["aircraft"][0]["targets"];
-    EXPECT_EQ(shown["items"][0]["unseen_s"], 4);
-    EXPECT_EQ(shown["items"][0]["seen_by"].size(), 2u);
+    const Json shown = Shown()["targets"][0];
+    EXPECT_EQ(shown["name"], "uav1/3");
+    EXPECT_EQ(shown["unseen_s"], 4);
+    EXPECT_EQ(shown["seen_by"].size(), 2u);
     EXPECT_EQ(shown["age_s"], 0.1);
 }
 

@@ -159,12 +159,13 @@ TEST_F(WebPage, LetsWhatItShowsGrowOld)
 {
     Start();
     _pose->PostMessage();
+    _targets->items.emplace_back().name.aircraft = "uav1";
     _targets->PostMessage();
     PostFleet({{"uav1", NodeState::UP}});
     _reactor.RunFor(*_clock, 1900ms);
     const Json shown = Shown();
     EXPECT_NEAR(shown["aircraft"][0]["pose"]["age_s"].get<double>(), 2, 0.001);
-    EXPECT_NEAR(shown["aircraft"][0]["targets"]["age_s"].get<double>(), 2, 0.001);
+    EXPECT_NEAR(shown["targets"][0]["age_s"].get<double>(), 2, 0.001);
     EXPECT_NEAR(shown["aircraft"][0]["heard_s"].get<double>(), 2.2, 0.001);
     EXPECT_EQ(shown["aircraft"][0]["state"], "up");
     _reactor.RunFor(*_clock, 2s);

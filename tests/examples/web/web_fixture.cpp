@@ -336,7 +336,8 @@ private:
         }
         one.Camera->PostMessage();
         Uav::Target target;
-        target.number = 1;
+        target.name.aircraft = one.Node;
+        target.name.number = 1;
         target.found_by = one.Node;
         target.latitude_deg = 47.3977 + 0.0004 * (index % 5);
         target.longitude_deg = 8.5456 + 0.0006 * (index / 5);
@@ -346,7 +347,7 @@ private:
         one.Targets->items = {target};
         one.Targets->PostMessage();
         Uav::Finding finding;
-        finding.target = 1;
+        finding.name = target.name;
         finding.stage = Uav::TargetStage::TARGET_VALIDATED;
         finding.validated_by = _hostile ? "<b>uav</b>" : "uav1";
         if (one.Findings->items.empty())

@@ -86,36 +86,18 @@ export class Model {
     return state === 'up' && aircraft.pose && !this.isPoseFresh(aircraft) ? 'stale' : state;
   }
 
-  // The targets of all aircraft, as each of them found them: position and ellipse from its vision, stage from its
-  // mission control.
+  // The targets, each once, by the name that the fleet gives it. Of one that no vision tells of only the last
+  // position is known, and not how old that is.
   get targets() {
-    const found = [];
-    for (const aircraft of this.aircraft) {
-      const finds = new Map((aircraft.findings?.items ?? []).map((one) => [one.target, one]));
-      for (const target of aircraft.targets?.items ?? []) {
-        if (target.found_by !== aircraft.node && !finds.has(target.number)) continue;
-        const finding = finds.get(target.number);
-        finds.delete(target.number);
-        found.push({
-          ...target,
-          name: `${aircraft.node}/${target.number}`,
-          stage: finding?.stage ?? 'found',
-          validatedBy: finding?.validated_by ?? '',
-          age: this.age(aircraft.targets.age_s + (target.unseen_s ?? 0)),
-          fresh: this.isFresh(aircraft, 'targets'),
-        });
-      }
-      // Of these only the last position is known.
-      for (const finding of finds.values())
-        found.push({
-          ...finding,
-          name: `${aircraft.node}/${finding.target}`,
-          seen_by: [aircraft.node],
-          validatedBy: finding.validated_by,
-          age: NaN,
-          fresh: false,
-        });
-    }
-    return found;
+      return (this.snapshot?.targets ?? []).map((one) => {
+          const teller = this.find(one.told_by);
+          return {
+              ...one,
+              validatedBy: one.validated_by,
+              age: teller ? this.age(one.age_s + (one.unseen_s ?? 0)) : NaN,
+              fresh: teller !== null && this.state(teller) === 'up' &&
+                  this.age(one.age_s) <= PART_FRESH_S.targets,
+          };
+      });
   }
 }
