@@ -16,6 +16,14 @@ namespace
 using SwarmTest::TrackingFleet;
 using SwarmTest::TrackingScore;
 
+// Without optimization Eigen takes a hundred times as long: there only memory and undefined behaviour are
+// looked at, on few flights, of which figures mean nothing.
+#ifdef NDEBUG
+constexpr std::uint64_t Flights = 50;
+#else
+constexpr std::uint64_t Flights = 1;
+#endif
+
 // As a ground station lists it that hears all of them.
 std::vector<Ground::ListedTarget> ListOf(const TrackingFleet &fleet)
 {
@@ -71,7 +79,7 @@ Swarm::WorldTarget WalkerAt(double northM, double eastM, double headingRad)
 TEST(Tracking, NamesTargetsThatAreFarApartOnceEach)
 {
     TrackingScore all;
-    for (std::uint64_t seed = 1; seed <= 50; ++seed)
+    for (std::uint64_t seed = 1; seed <= Flights; ++seed)
     {
         Swarm::World world;
         world.GroundM = 430;
@@ -81,6 +89,8 @@ TEST(Tracking, NamesTargetsThatAreFarApartOnceEach)
         all.Add(Fly(seed, world, 600));
     }
     Print("far apart", all);
+    if (Flights < 50)
+        return;
     EXPECT_LE(all.Duplicates(), 0.01);
     EXPECT_GE(all.Precision(), 0.95);
     EXPECT_GE(all.Recall(), 0.95);
@@ -92,9 +102,11 @@ TEST(Tracking, NamesTargetsThatAreFarApartOnceEach)
 TEST(Tracking, SeesThroughACrowd)
 {
     TrackingScore all;
-    for (std::uint64_t seed = 1; seed <= 50; ++seed)
+    for (std::uint64_t seed = 1; seed <= Flights; ++seed)
         all.Add(Fly(seed, TrackingFleet::RandomWorld(seed), 600));
     Print("crowd", all);
+    if (Flights < 50)
+        return;
     EXPECT_LE(all.Duplicates(), 0.03);
     EXPECT_GE(all.Precision(), 0.95);
     EXPECT_GE(all.Recall(), 0.95);
@@ -104,7 +116,7 @@ TEST(Tracking, SeesThroughACrowd)
 TEST(Tracking, KeepsTwoThatCrossEachOthersWayTwo)
 {
     TrackingScore all;
-    for (std::uint64_t seed = 1; seed <= 50; ++seed)
+    for (std::uint64_t seed = 1; seed <= Flights; ++seed)
     {
         Swarm::World world;
         world.GroundM = 430;
@@ -113,6 +125,8 @@ TEST(Tracking, KeepsTwoThatCrossEachOthersWayTwo)
         all.Add(Fly(seed, world, 300));
     }
     Print("crossing", all);
+    if (Flights < 50)
+        return;
     EXPECT_LE(all.Duplicates(), 0.03);
     EXPECT_GE(all.Precision(), 0.95);
     EXPECT_GE(all.Recall(), 0.95);
