@@ -123,6 +123,14 @@ flies_a_track)
     end_demo
     expect_no_processes_left
     ;;
+warns_where_processors_are_busy)
+    taskset -c 0 timeout 60 sh -c 'while :; do :; done' &
+    busy=$!
+    taskset -c 0 "$root/examples/demo.sh" --bin "$bin" --uavs 20 --seconds 1 --web off >"$work/out" 2>"$work/err"
+    kill "$busy"
+    grep -q '^demo.sh: 20 aircraft need about 0.80 of a processor, and 0.[0-9]* is idle' "$work/err" ||
+        fail "no warning"
+    ;;
 refuses_a_bad_track)
     echo time_s,latitude_deg,oops >"$work/track.csv"
     demo --seconds 5 --track "$work/track.csv"
