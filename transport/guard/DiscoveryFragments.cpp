@@ -11,14 +11,6 @@ namespace
 constexpr std::size_t MostSamples = 64;
 constexpr std::uint32_t LargestAnnouncement = 60000;
 
-void AppendHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::uint8_t flags,
-                  std::size_t length)
-{
-    message.insert(message.end(),
-                   {static_cast<std::uint8_t>(kind), static_cast<std::uint8_t>(flags | 1u),
-                    static_cast<std::uint8_t>(length), static_cast<std::uint8_t>(length >> 8)});
-}
-
 void AppendEntity(std::vector<std::uint8_t> &message, EntityId entity)
 {
     for (int shift = 24; shift >= 0; shift -= 8)
@@ -86,11 +78,11 @@ std::vector<std::uint8_t> DiscoveryFragments::Add(std::span<const std::uint8_t> 
         return {};
     }
     std::vector<std::uint8_t> message(header.begin(), header.begin() + RtpsHeaderSize);
-    AppendHeader(message, SubmessageKind::InfoDestination, 0, destination.size());
+    AppendSubmessageHeader(message, SubmessageKind::InfoDestination, destination.size());
     message.insert(message.end(), destination.begin(), destination.end());
     constexpr std::uint8_t HasData = 0x04;
     const std::size_t padding = (4 - sample->Bytes.size() % 4) % 4;
-    AppendHeader(message, SubmessageKind::Data, HasData, 20 + sample->Bytes.size() + padding);
+    AppendSubmessageHeader(message, SubmessageKind::Data, 20 + sample->Bytes.size() + padding, HasData);
     message.insert(message.end(), {0, 0, 16, 0});
     AppendEntity(message, delivery.Reader);
     AppendEntity(message, delivery.Writer);

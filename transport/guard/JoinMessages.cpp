@@ -13,26 +13,17 @@ namespace
 constexpr std::size_t VersionAt = 4;
 constexpr std::size_t SourceSize = 20;
 
-void AppendHeader(std::vector<std::uint8_t> &whole, SubmessageKind kind, std::size_t length,
-                  std::uint8_t flags = 0)
-{
-    constexpr std::uint8_t littleEndian = 0x01;
-    whole.insert(whole.end(),
-                 {static_cast<std::uint8_t>(kind), static_cast<std::uint8_t>(flags | littleEndian),
-                  static_cast<std::uint8_t>(length), std::uint8_t{0}});
-}
-
 // Who says what follows, to all, and at a time that is not known (RTPS 2.3, 9.4.5).
 void AppendSource(std::vector<std::uint8_t> &whole, std::span<const std::uint8_t> message)
 {
     constexpr std::size_t unused = 4;
-    AppendHeader(whole, SubmessageKind::InfoSource, SourceSize);
+    AppendSubmessageHeader(whole, SubmessageKind::InfoSource, SourceSize);
     whole.insert(whole.end(), unused, 0);
     whole.insert(whole.end(), message.begin() + VersionAt, message.begin() + RtpsHeaderSize);
-    AppendHeader(whole, SubmessageKind::InfoDestination, GuidPrefix{}.size());
+    AppendSubmessageHeader(whole, SubmessageKind::InfoDestination, GuidPrefix{}.size());
     whole.insert(whole.end(), GuidPrefix{}.size(), 0);
     constexpr std::uint8_t invalidate = 0x02;
-    AppendHeader(whole, SubmessageKind::InfoTimestamp, 0, invalidate);
+    AppendSubmessageHeader(whole, SubmessageKind::InfoTimestamp, 0, invalidate);
 }
 
 // What follows a submessage begins at a multiple of four, and so the one before must end there.

@@ -87,6 +87,15 @@ std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram)
     return mistaken ? datagram.size() : size;
 }
 
+void AppendSubmessageHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::size_t length,
+                            std::uint8_t flags)
+{
+    constexpr std::uint8_t littleEndian = 0x01;
+    message.insert(message.end(),
+                   {static_cast<std::uint8_t>(kind), static_cast<std::uint8_t>(flags | littleEndian),
+                    static_cast<std::uint8_t>(length), static_cast<std::uint8_t>(length >> 8)});
+}
+
 void Blank(const Submessage &submessage)
 {
     // A length of 0 says "to the end" for other kinds, but nothing for padding: written out here.

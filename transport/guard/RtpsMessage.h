@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "common/RtpsSubmessages.h"
 
@@ -64,6 +65,10 @@ std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest);
 // How long a message of our own is without the statistics that Fast DDS puts at the end of each. They are of
 // no use to us, and 60 bytes of a radio's time.
 std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram);
+
+// Puts the header of a little-endian submessage at the end of a message; `length` is that of its body.
+void AppendSubmessageHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::size_t length,
+                            std::uint8_t flags = 0);
 
 // Turns a submessage into padding, which no parser looks into.
 void Blank(const Submessage &submessage);
