@@ -1,5 +1,6 @@
 #include "FleetTargets.h"
 
+#include "FindingProgress.h"
 #include "TargetName.h"
 
 #include <algorithm>
@@ -73,16 +74,6 @@ bool IsDenied(const Uav::TargetName &name, const Uav::TargetName &former,
                        });
 }
 
-// The farther it got the greater.
-int RankOf(Uav::TargetStage stage)
-{
-    return stage == Uav::TargetStage::TARGET_REJECTED ? -1 : static_cast<int>(stage);
-}
-
-auto RankOf(const FoundTarget &found)
-{
-    return std::tuple(RankOf(found.Finding.stage), found.Finding.tracked_s);
-}
 }  // namespace
 
 std::vector<ListedTarget> ListTargets(const std::vector<SaidOfTargets> &said)
@@ -114,7 +105,8 @@ std::vector<ListedTarget> ListTargets(const std::vector<SaidOfTargets> &said)
                 ListedTarget &listed = list[names.Of(finding.name)];
                 FoundTarget found{one.Aircraft, finding};
                 found.Finding.name = names.Of(finding.name);
-                if (!listed.Found || RankOf(found) > RankOf(*listed.Found))
+                if (!listed.Found ||
+                    Common::ProgressOf(found.Finding) > Common::ProgressOf(listed.Found->Finding))
                     listed.Found = std::move(found);
             }
     }

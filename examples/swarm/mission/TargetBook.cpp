@@ -1,5 +1,6 @@
 #include "TargetBook.h"
 
+#include "FindingProgress.h"
 #include "TargetName.h"
 
 #include <algorithm>
@@ -60,12 +61,6 @@ void TargetBook::Follow(const Uav::Targets &targets, std::uint32_t pursued)
 
 void TargetBook::MergeThoseOfOneName(std::uint32_t pursued)
 {
-    const auto progress = [](const Uav::Finding &finding)
-    {
-        return std::pair(
-            finding.stage == Uav::TargetStage::TARGET_REJECTED ? -1 : static_cast<int>(finding.stage),
-            finding.tracked_s);
-    };
     for (std::size_t i = 0; i < _entries.size(); ++i)
         for (std::size_t j = _entries.size() - 1; j > i; --j)
         {
@@ -74,7 +69,7 @@ void TargetBook::MergeThoseOfOneName(std::uint32_t pursued)
             if (!(kept.Finding.name == other.Finding.name) || !Common::MakesSense(kept.Finding.name))
                 continue;
             const std::uint32_t number = other.Finding.target == pursued ? pursued : kept.Finding.target;
-            if (progress(other.Finding) > progress(kept.Finding))
+            if (Common::ProgressOf(other.Finding) > Common::ProgressOf(kept.Finding))
                 kept = other;
             kept.Finding.target = number;
             _entries.erase(_entries.begin() + static_cast<std::ptrdiff_t>(j));
