@@ -37,7 +37,11 @@ class ControlGroup:
         self._old = first.is_dir()
         self.path = (first if self._old else pathlib.Path("/sys/fs/cgroup")) / f"rabit_overload_{os.getpid()}"
         self.path.mkdir()
-        self.limit(None)
+        try:
+            self.limit(None)
+        except OSError:  # groups, but none for processors
+            self.path.rmdir()
+            raise
 
     def limit(self, percent):
         """Of one processor; None: no limit."""
