@@ -30,6 +30,7 @@ public:
     void Run() const
     {
         CheckNode();
+        CheckTool();
         CheckNetwork();
         CheckRadio();
         CheckPublish();
@@ -80,6 +81,20 @@ private:
         if (_config.Lease < std::chrono::milliseconds(200) || _config.Lease > std::chrono::hours(1))
         {
             Fail(LineOf("lease"), "the lease is out of range; expected 200ms to 3600s");
+        }
+    }
+
+    void CheckTool() const
+    {
+        if (!_config.Tool)
+        {
+            return;
+        }
+        CheckPatterns(_config.Tool->AsksOf, "Tool.AsksOf", 0);
+        if (!_config.Publish.empty() || !_config.Accept.empty())
+        {
+            Fail(0, "a tool publishes and accepts nothing; expected no `" +
+                        std::string(_config.Publish.empty() ? "accept" : "publish") + "`");
         }
     }
 

@@ -16,6 +16,7 @@
 #include "mirrors/StateExchange.h"
 #include "mirrors/Subscriptions.h"
 #include "mirrors/TopicPublisher.h"
+#include "names/NamePattern.h"
 #include "presence/OriginTable.h"
 #include "presence/Presence.h"
 #include "presence/RemoteQueues.h"
@@ -190,6 +191,11 @@ private:
         _session = _transport->Open(TransportSettingsOf(_config, _incarnation),
                                     [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
+        if (_config.Tool)
+        {
+            _presence.BeTool([this](const std::string &node)
+                             { return MatchesAny(_config.Tool->AsksOf, node); });
+        }
         // First, so that the others know of this node as early as can be.
         _presence.Open(*_session, Announcements::Of(_config));
         _links.Open(*_session);

@@ -4,6 +4,7 @@
 
 #include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
+#include "wire/BeatExtensions.h"
 #include "wire/BeatFormat.h"
 
 namespace Rabit
@@ -63,7 +64,8 @@ std::size_t BeatContents::Size(Duration now) const
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t size = BeatFormat::Empty + wants * BeatFormat::Wanted(_questions.Longest()) +
+    const std::size_t size = BeatFormat::Empty + (_isTool ? BeatFormat::ToolMark : 0) +
+                             wants * BeatFormat::Wanted(_questions.Longest()) +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
                              _delays.Due(now, BeatFormat::MostDelays) * BeatFormat::Delay +
                              std::min(_states.size(), BeatFormat::MostStates) * BeatFormat::State;
@@ -75,7 +77,7 @@ std::size_t BeatContents::Size(Duration now) const
 void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
 {
     std::size_t room = std::min(most, BeatFormat::Largest);
-    room -= std::min(room, BeatFormat::Empty);
+    room -= std::min(room, BeatFormat::Empty + (_isTool ? BeatFormat::ToolMark : 0));
     AddWants(beat, now, room);
     beat.echoes = _peers.NextEchoes(now, std::min(BeatFormat::MostEchoes, room / BeatFormat::Echo));
     room -= beat.echoes.size() * BeatFormat::Echo;
@@ -83,6 +85,10 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     room -= beat.delays.size() * BeatFormat::Delay;
     AddPart(beat, now, room);
     AddStates(beat, room);
+    if (_isTool)
+    {
+        BeatExtensions::MarkTool(beat);
+    }
 }
 
 void BeatContents::AddWants(Gateway::Beat &beat, Duration now, std::size_t &room)

@@ -50,6 +50,9 @@ public:
         _delays.SetBeatPeriod(period);
     }
 
+    // This node is a tool, and its beats say so.
+    void BeTool() { _isTool = true; }
+
     // When there is something to ask for, which need not wait for the next period.
     std::optional<Duration> QuestionDue() const;
     // When a part of the announcement is to be said.
@@ -71,6 +74,7 @@ private:
     StateQuestions _questions;
     DelayNotes _delays;
     PeerTable &_peers;
+    bool _isTool = false;
     std::vector<std::uint8_t> _offers;
     std::uint32_t _digest = 0;
     std::vector<std::uint32_t> _states;  // versions

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <utility>
 
 #include "names/NodeTag.h"
 #include "presence/TakeTurns.h"
 #include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
+#include "wire/BeatExtensions.h"
 
 namespace Rabit
 {
@@ -58,7 +60,10 @@ std::vector<const PeerTable::Peer *> PeerTable::Heard() const
     heard.reserve(_peers.size());
     for (const auto &[name, peer] : _peers)
     {
-        heard.push_back(&peer);
+        if (!peer.IsTool)
+        {
+            heard.push_back(&peer);
+        }
     }
     return heard;
 }
@@ -70,7 +75,7 @@ PeerTable::Peer *PeerTable::GetOrMake(const std::string &node, Change &change)
     {
         return &found->second;
     }
-    if (_peers.size() >= MaximumPeers && !ForgetOne(change))
+    if (_peers.size() - _tools >= MaximumPeers && !ForgetOne(change))
     {
         ++_crowdedOut;
         return nullptr;
@@ -142,12 +147,16 @@ bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
     return changed;
 }
 
-void PeerTable::NoteTwin(Peer &peer, const HeardBeat &heard)
+// Returns whether this has told that there are two.
+bool PeerTable::NoteTwin(Peer &peer, const HeardBeat &heard)
 {
     const Duration now = heard.Arrival;
     peer.TwinPlace = PlaceIn(heard.Beat, peer.TwinPlace);
     peer.TwinBeats = now - peer.TwinSince > TwinMemory ? 1 : peer.TwinBeats + 1;
     peer.TwinSince = now;
+    const bool news = !peer.Twice && peer.TwinBeats >= BeatsOfATwin;
+    peer.Twice = peer.Twice || news;
+    return news;
 }
 
 PeerTable::Change PeerTable::OnOwnName(const HeardBeat &heard)
@@ -174,7 +183,15 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     {
         return OnGoodbye(heard);
     }
+    if (BeatExtensions::IsTool(heard.Beat))
+    {
+        return OnToolBeat(heard);
+    }
     Change change;
+    if (const auto tool = _peers.find(heard.Node); tool != _peers.end() && tool->second.IsTool)
+    {
+        ForgetTool(tool, change);  // a node has come under the name
+    }
     Peer *peer = GetOrMake(heard.Node, change);
     if (peer == nullptr)
     {
@@ -184,9 +201,7 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     {
         if (!change.NewLife && !IsNewLife(*peer, heard.Incarnation, heard.Arrival))
         {
-            NoteTwin(*peer, heard);
-            change.State = !peer->Twice && peer->TwinBeats >= BeatsOfATwin;
-            peer->Twice = peer->Twice || change.State;
+            change.State = NoteTwin(*peer, heard);
             return change;
         }
         BeginLife(*peer, heard);
@@ -201,6 +216,18 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
 
 void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
 {
+    Measure(peer, heard);
+    change.Beat = true;
+    if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
+    {
+        change.State |= SetState(peer, NodeState::UP, "") || change.NewLife;
+    }
+    CompareOffers(peer, heard, change);
+    TakeStates(peer, heard.Beat);
+}
+
+void PeerTable::Measure(Peer &peer, const HeardBeat &heard) const
+{
     const Gateway::Beat &beat = heard.Beat;
     const Duration source(beat.source_ns);
     const Duration now = heard.Arrival;
@@ -213,13 +240,6 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     peer.LastHeard = std::min(now, peer.Clock.SentAt(source).value_or(now));
     peer.Period =
         std::clamp(Duration(std::chrono::milliseconds(beat.next_ms)), ShortestPeriod, LongestPeriod);
-    change.Beat = true;
-    if (now - peer.LastHeard <= peer.StaleAfter())
-    {
-        change.State |= SetState(peer, NodeState::UP, "") || change.NewLife;
-    }
-    CompareOffers(peer, heard, change);
-    TakeStates(peer, beat);
 }
 
 // An echo of a beat that this node has not sent is a mistake or a lie. How long the peer says to have held it
@@ -260,7 +280,7 @@ void PeerTable::CompareOffers(Peer &peer, const HeardBeat &heard, Change &change
         _missing.LetGo(peer.Node);
         return;
     }
-    if (peer.State == NodeState::LOST ||
+    if (peer.State == NodeState::LOST || (_isAsked && !_isAsked(peer.Node)) ||
         (peer.Offers && !change.NewLife && heard.Arrival - peer.OffersSince < OffersRest))
     {
         return;
@@ -300,7 +320,15 @@ PeerTable::Change PeerTable::OnLeft(const std::string &node, std::uint64_t incar
 {
     Change change;
     const auto found = _peers.find(node);
-    if (found != _peers.end() && found->second.Incarnation == incarnation)
+    if (found == _peers.end() || found->second.Incarnation != incarnation)
+    {
+        return change;
+    }
+    if (found->second.IsTool)
+    {
+        ForgetTool(found, change);
+    }
+    else
     {
         change.State = SetState(found->second, NodeState::LOST, "left");
     }
@@ -316,8 +344,15 @@ PeerTable::Change PeerTable::Advance(Duration now)
         _ownTwinPlace.clear();
         change.State = true;
     }
-    for (auto &[name, peer] : _peers)
+    for (auto entry = _peers.begin(); entry != _peers.end();)
     {
+        Peer &peer = entry->second;
+        if (peer.IsTool)
+        {
+            entry = now - peer.LastHeard > peer.LostAfter() ? ForgetTool(entry, change) : std::next(entry);
+            continue;
+        }
+        ++entry;
         if (peer.Twice && now - peer.TwinSince > TwinMemory)
         {
             peer.Twice = false;
@@ -355,8 +390,8 @@ std::optional<PeerTable::Duration> PeerTable::NextChange() const
         }
         if (peer.State != NodeState::LOST)
         {
-            consider(peer.LastHeard + (peer.State == NodeState::UP ? peer.StaleAfter() : peer.LostAfter()) +
-                     after);
+            const bool staleIsNext = peer.State == NodeState::UP && !peer.IsTool;
+            consider(peer.LastHeard + (staleIsNext ? peer.StaleAfter() : peer.LostAfter()) + after);
         }
     }
     return next;

@@ -44,12 +44,16 @@ public:
     // Names come from the network. When another one comes the one LOST for longest is forgotten; never one
     // that is live or needed. If there is none, what the new one says is dropped and counted.
     static constexpr std::size_t MaximumPeers = 1000;
+    // Tools are kept beside them while they are there, so many; what more of them say is not looked at, but
+    // for what they ask.
+    static constexpr std::size_t MostTools = 32;
 
     struct Peer
     {
         std::string Node;
         std::uint64_t Incarnation = 0;
         std::uint32_t Tag = 0;  // of node and incarnation (names/NodeTag.h)
+        bool IsTool = false;    // UP as long as it is kept; it has no offers and no states
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
         Duration FirstHeard{0};
@@ -88,6 +92,10 @@ public:
 
     PeerTable(std::string ownNode, std::uint64_t ownIncarnation, IsNeeded isNeeded = {});
 
+    // Whether a node's announcement is wanted; without it all are.
+    using IsAsked = std::function<bool(const std::string &node)>;
+    void SetIsAsked(IsAsked isAsked) { _isAsked = std::move(isAsked); }
+
     // What an input changed, so that the gateway can react at once.
     struct Change
     {
@@ -95,7 +103,7 @@ public:
         bool State = false;                  // a state or an incarnation: worth posting
         bool NewLife = false;                // a node that was not known in this incarnation is UP
         bool Offers = false;                 // an announcement said something new
-        std::vector<std::string> Forgotten;  // nodes that made room for another one
+        std::vector<std::string> Forgotten;  // nodes that made room for another one, and tools that are gone
 
         bool Any() const { return Beat || State || NewLife || Offers || !Forgotten.empty(); }
     };
@@ -109,8 +117,10 @@ public:
     std::optional<Duration> NextChange() const;
 
     const Peer *Find(const std::string &node) const;
-    // Nodes that have been heard, by name.
+    // Nodes that have been heard, by name; no tools.
     std::vector<const Peer *> Heard() const;
+    // How many tools are there.
+    std::size_t Tools() const { return _tools; }
     // Nodes forgotten, and beats dropped because no room could be made for their node.
     std::uint64_t Forgotten() const { return _forgotten; }
     std::uint64_t CrowdedOut() const { return _crowdedOut; }
@@ -135,12 +145,17 @@ private:
     Peer *GetOrMake(const std::string &node, Change &change);
     bool ForgetOne(Change &change);
     Change OnOwnName(const HeardBeat &heard);
+    Change OnToolBeat(const HeardBeat &heard);
+    Peer *GetOrMakeTool(const HeardBeat &heard);
+    std::map<std::string, Peer>::iterator ForgetTool(std::map<std::string, Peer>::iterator tool,
+                                                     Change &change);
     Change OnGoodbye(const HeardBeat &heard);
     static bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now);
-    static void NoteTwin(Peer &peer, const HeardBeat &heard);
+    static bool NoteTwin(Peer &peer, const HeardBeat &heard);
     static void BeginLife(Peer &peer, const HeardBeat &heard);
     bool IsEchoDue(const Peer &peer, Duration now) const;
     void TakeIn(Peer &peer, const HeardBeat &heard, Change &change);
+    void Measure(Peer &peer, const HeardBeat &heard) const;
     void MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const;
     void TakeStates(Peer &peer, const Gateway::Beat &beat);
     void CompareOffers(Peer &peer, const HeardBeat &heard, Change &change);
@@ -150,7 +165,9 @@ private:
     const std::uint64_t _ownIncarnation;
     const std::uint32_t _ownTag;
     const IsNeeded _isNeeded;
+    IsAsked _isAsked;
     std::map<std::string, Peer> _peers;
+    std::size_t _tools = 0;  // of these
     MissingOffers _missing;
     SentBeats _sent;
     std::uint64_t _forgotten = 0;

@@ -6,6 +6,7 @@
 #include "clocks/GpsTime.h"
 #include "names/NodeTag.h"
 #include "wire/Announcements.h"
+#include "wire/BeatExtensions.h"
 #include "wire/GatewayTopics.h"
 #include "wire/MessageEncoder.h"
 
@@ -48,6 +49,14 @@ Presence::~Presence()
     _reader.reset();  // its handler uses the rest
 }
 
+void Presence::BeTool(PeerTable::IsAsked asksOf)
+{
+    _isTool = true;
+    _contents.BeTool();
+    _peers.SetIsAsked(std::move(asksOf));
+    SetBeatPeriod(BeatPeriod());
+}
+
 void Presence::Open(TransportSession &session, const Gateway::Announcement &announcement)
 {
     _contents.Begin(Announcements::Encode(announcement), Announcements::StatesIn(announcement));
@@ -68,6 +77,10 @@ void Presence::Close()
         const PostTime time = _clock.Now();
         Gateway::Beat goodbye = MakeBeat(time);
         goodbye.leaving = true;
+        if (_isTool)
+        {
+            BeatExtensions::MarkTool(goodbye);
+        }
         for (int i = 0; i < Goodbyes && Write(goodbye, time) == WriteResult::Ok; ++i)
         {
         }
@@ -109,7 +122,7 @@ const Presence::Served &Presence::Service(Duration now)
     {
         TakeIn(_inbox.Take(), now, served);
     }
-    served.Change.State |= _peers.Advance(now).State;
+    Note(_peers.Advance(now), "", served);
     if (served.Change.State)
     {
         for (const PeerTable::Peer *peer : _peers.Heard())
@@ -159,6 +172,12 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
         return;
     }
     const PeerTable::Peer &peer = *_peers.Find(heard.Node);
+    if (peer.IsTool)
+    {
+        TakeDelays(heard, peer, served);
+        TakeQuestions(heard.Beat, now, served);
+        return;
+    }
     _owesNews |= _contents.Delays().Note(peer.Tag, peer.Clock.LastDelay(), heard.Arrival);
     TakeDelays(heard, peer, served);
     TakeQuestions(heard.Beat, now, served);
@@ -170,7 +189,7 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
     {
         _contents.Questions().Forget(heard.Node);
         const std::size_t others = OthersThan(heard.Node);
-        if (_introductions.Ask(heard.Node, Introductions::Reason::Heard, others, now))
+        if (!_isTool && _introductions.Ask(heard.Node, Introductions::Reason::Heard, others, now))
         {
             _contents.Answer().Asked(0, others, now);
         }
@@ -220,9 +239,14 @@ void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
     if (event.What == PeerEvent::Kind::Left)
     {
         Note(_peers.OnLeft(event.Node, event.Incarnation), event.Node, served);
+        if (_peers.Find(event.Node) == nullptr)
+        {
+            // What a tool had sent may have come after its goodbye.
+            served.Change.Forgotten.push_back(event.Node);
+        }
     }
     // Whoever has just appeared wants to know who is here.
-    if (event.What == PeerEvent::Kind::Appeared &&
+    if (!_isTool && event.What == PeerEvent::Kind::Appeared &&
         _introductions.Grant(event.Node, Introductions::Reason::Appeared, now))
     {
         _watch.Expect(now);
@@ -259,7 +283,7 @@ std::size_t Presence::OthersThan(const std::string &node) const
 void Presence::Publish(const std::string &node, const PeerTable::Change &change)
 {
     const PeerTable::Peer *peer = _peers.Find(node);
-    if (peer == nullptr)
+    if (peer == nullptr || peer->IsTool)
     {
         return;
     }

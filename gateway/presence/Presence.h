@@ -4,6 +4,7 @@
 #include <rabit/gateway/RandomSource.h>
 #include <rabit/transport/Transport.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -46,6 +47,8 @@ public:
              PeerTable::IsNeeded isNeeded, std::function<void()> wake);
     ~Presence();
 
+    // This node is a tool, and asks for the announcements of these nodes alone. Before Open.
+    void BeTool(PeerTable::IsAsked asksOf);
     // Starts to send and to receive. Throws TransportError.
     void Open(TransportSession &session, const Gateway::Announcement &announcement);
     // Says goodbye and stops.
@@ -93,10 +96,12 @@ public:
     // rest of what is to be said follows in the next ones. Returns the bytes of its body; 0 before Open.
     std::size_t SendBeat(Duration now, std::size_t most = BeatFormat::Largest);
     static constexpr std::size_t LargestBeat = BeatFormat::Largest;
+    // Of a tool, at least: nobody waits to learn that it has gone.
+    static constexpr Duration ToolPeriod = std::chrono::seconds(2);
     // How often this node beats when nothing is the matter (BeatPace).
     void SetBeatPeriod(Duration period)
     {
-        _pace.SetPeriod(period);
+        _pace.SetPeriod(_isTool ? std::max(period, ToolPeriod) : period);
         _contents.SetBeatPeriod(_pace.Period());
     }
     Duration BeatPeriod() const { return _pace.Period(); }
@@ -152,6 +157,7 @@ private:
     Duration _lookAt{0};  // at the readers
     BeatPace _pace;
     BeatContents _contents;
+    bool _isTool = false;
     bool _owesNews = false;  // of a delay, to be told before the next beat is due
     OtherFormats _otherFormats;
     PresenceInbox _inbox;

@@ -32,6 +32,9 @@ inline constexpr std::size_t MostWants = 8;
 inline constexpr std::size_t MostEchoes = 2;
 inline constexpr std::size_t MostDelays = 16;
 
+// What tools say that they are (wire/BeatExtensions.h).
+inline constexpr std::size_t ToolMark = Wanted(0);
+
 // Wanted::offers: the announcement is not lacking.
 inline constexpr std::uint16_t NotLacking = 0xffff;
 

@@ -379,6 +379,19 @@ TEST_F(GatewayConfigTest, AConfigurationMadeInCodeIsCheckedAlike)
     EXPECT_NO_THROW(ValidateGatewayConfig(config));
 }
 
+TEST_F(GatewayConfigTest, AToolThatPublishesOrAcceptsIsRefused)
+{
+    GatewayConfig config;
+    config.Node = "tool";
+    config.Tool.emplace();
+    ValidateGatewayConfig(config);
+    config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose"});
+    EXPECT_THROW(ValidateGatewayConfig(config), ConfigError);
+    config.Publish.clear();
+    config.Accept.push_back({.Queue = "Commands", .Types = {"Uav::Goto"}});
+    EXPECT_THROW(ValidateGatewayConfig(config), ConfigError);
+}
+
 TEST_F(GatewayConfigTest, AConfigurationWhoseAnnouncementOthersWouldDropIsRefused)
 {
     GatewayConfig config;

@@ -78,14 +78,24 @@ struct RadioSettings
     // Bytes a second, IP headers and all above included, in whichever second; from SmallestBudget to 1e9.
     // Unset (`auto`): the rate follows what the air carries, and is unlimited where that does not limit it.
     std::optional<double> Budget{};
-    // With a budget a node says that it is there as often as a twentieth of the budget allows, but every 500 ms
-    // at most and at least this often, 500 ms to 60 s. It is STALE after three times that, LOST after seven.
-    // Without a budget it does so every 500 ms.
+    // With a budget a node says that it is there as often as a twentieth of the budget allows, but every 500
+    // ms at most and at least this often, 500 ms to 60 s. It is STALE after three times that, LOST after
+    // seven. Without a budget it does so every 500 ms.
     std::chrono::milliseconds SlowestBeat{2000};
 };
 
 // Below this budget a node could not say in time that it is there and anything else; bytes a second.
 double SmallestBudget(std::chrono::milliseconds slowestBeat);
+
+// A node that looks, asks and sends, and on which nobody counts, as the program `rabit`: it publishes and
+// accepts nothing, the others do not list it, and keep nothing of it once it has gone. README.md (A tool is
+// no node of the fleet) says what exactly holds.
+struct ToolSettings
+{
+    // The nodes whose announcements it asks for; `*` and `?` are wildcards. Of the others it knows only that
+    // they are there: nothing of them is received.
+    std::vector<std::string> AsksOf = {"*"};
+};
 
 // Everything a gateway is told. Fill it in code, or load it with LoadGatewayConfig.
 struct GatewayConfig
@@ -115,6 +125,9 @@ struct GatewayConfig
     std::vector<SubscribeRule> Subscribe;
     std::vector<AcceptRule> Accept;
     std::vector<SendRule> Send;
+
+    // Set: this node is a tool. Only in code.
+    std::optional<ToolSettings> Tool{};
 
     // For error messages: the file it came from and the line of each of its top-level keys, and of those of
     // the section `radio` (`radio.budget`); empty: made in code.

@@ -1,0 +1,70 @@
+// What the table keeps of tools: only while they are there, and only what answers and echoes need.
+#include <utility>
+
+#include "presence/PeerTable.h"
+
+namespace Rabit
+{
+
+using Gateway::NodeState;
+
+PeerTable::Change PeerTable::OnToolBeat(const HeardBeat &heard)
+{
+    Change change;
+    const auto found = _peers.find(heard.Node);
+    if (found != _peers.end() && !found->second.IsTool)
+    {
+        // The name is a node's, as long as it is remembered.
+        change.State = found->second.State != NodeState::LOST && NoteTwin(found->second, heard);
+        return change;
+    }
+    Peer *tool = GetOrMakeTool(heard);
+    if (tool == nullptr || Duration(heard.Beat.source_ns) <= tool->LastBeatSource)
+    {
+        return change;
+    }
+    Measure(*tool, heard);
+    change.Beat = true;
+    return change;
+}
+
+// Null if it is not kept: a straggler of an earlier life, or one too many.
+PeerTable::Peer *PeerTable::GetOrMakeTool(const HeardBeat &heard)
+{
+    const auto found = _peers.find(heard.Node);
+    if (found != _peers.end() && found->second.Incarnation == heard.Incarnation)
+    {
+        return &found->second;
+    }
+    if (found != _peers.end())
+    {
+        if (!IsNewLife(found->second, heard.Incarnation, heard.Arrival))
+        {
+            return nullptr;
+        }
+    }
+    else if (_tools >= MostTools)
+    {
+        return nullptr;
+    }
+    else
+    {
+        ++_tools;
+    }
+    Peer &tool = _peers[heard.Node];
+    tool.Node = heard.Node;
+    tool.IsTool = true;
+    tool.State = NodeState::UP;
+    BeginLife(tool, heard);
+    return &tool;
+}
+
+std::map<std::string, PeerTable::Peer>::iterator PeerTable::ForgetTool(
+    std::map<std::string, Peer>::iterator tool, Change &change)
+{
+    change.Forgotten.push_back(tool->first);
+    --_tools;
+    return _peers.erase(tool);
+}
+
+}  // namespace Rabit

@@ -1,0 +1,81 @@
+#include "wire/BeatExtensions.h"
+
+#include <algorithm>
+#include <span>
+
+namespace Rabit::BeatExtensions
+{
+namespace
+{
+
+template <typename Number>
+void Put(Number number, std::vector<std::uint8_t> &bytes)
+{
+    for (std::size_t i = 0; i < sizeof number; ++i)
+    {
+        bytes.push_back(static_cast<std::uint8_t>(number >> 8 * i));
+    }
+}
+
+template <typename Number>
+Number Take(std::span<const std::uint8_t> &bytes)
+{
+    Number number = 0;
+    for (std::size_t i = 0; i < sizeof number; ++i)
+    {
+        number |= static_cast<Number>(bytes[i]) << 8 * i;
+    }
+    bytes = bytes.subspan(sizeof number);
+    return number;
+}
+
+Gateway::Wanted &Add(Gateway::Beat &beat, std::uint16_t kind)
+{
+    Gateway::Wanted &extension = beat.wants.emplace_back();
+    extension.node = Nobody;
+    extension.offers = kind;
+    return extension;
+}
+
+}  // namespace
+
+void MarkTool(Gateway::Beat &beat)
+{
+    Add(beat, Tool);
+}
+
+bool IsTool(const Gateway::Beat &beat)
+{
+    return std::any_of(beat.wants.begin(), beat.wants.end(),
+                       [](const Gateway::Wanted &wanted)
+                       { return wanted.node == Nobody && wanted.offers == Tool; });
+}
+
+void Ask(Gateway::Beat &beat, const TypeQuestion &question)
+{
+    std::vector<std::uint8_t> bytes;
+    Put(question.Node, bytes);
+    Put(question.Definition, bytes);
+    Put(question.From, bytes);
+    Add(beat, Type).states.assign(bytes.begin(), bytes.end());
+}
+
+std::vector<TypeQuestion> TypeQuestionsIn(const Gateway::Beat &beat)
+{
+    std::vector<TypeQuestion> questions;
+    for (const Gateway::Wanted &wanted : beat.wants)
+    {
+        if (wanted.node == Nobody && wanted.offers == Type && wanted.states.size() == TypeBytes)
+        {
+            std::span<const std::uint8_t> bytes(wanted.states.data(), wanted.states.size());
+            TypeQuestion question;
+            question.Node = Take<std::uint32_t>(bytes);
+            question.Definition = Take<std::uint64_t>(bytes);
+            question.From = Take<std::uint32_t>(bytes);
+            questions.push_back(question);
+        }
+    }
+    return questions;
+}
+
+}  // namespace Rabit::BeatExtensions

@@ -1,0 +1,69 @@
+#include "wire/BeatExtensions.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "BeatSamples.h"
+#include "presence/PresenceInbox.h"
+#include "wire/GatewayTopics.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using BeatExtensions::TypeQuestion;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST(BeatExtensions, ABeatIsOfAToolOnlyIfItSaysSo)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    EXPECT_FALSE(BeatExtensions::IsTool(beat));
+    BeatExtensions::MarkTool(beat);
+    EXPECT_TRUE(BeatExtensions::IsTool(beat));
+}
+
+TEST(BeatExtensions, WhatIsAskedForIsWhatIsUnderstood)
+{
+    const TypeQuestion first{.Node = 0xfedcba98, .Definition = 0x0123456789abcdef, .From = 70000};
+    const TypeQuestion second{.Node = 1, .Definition = 2, .From = 0};
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::Ask(beat, first);
+    BeatExtensions::MarkTool(beat);
+    BeatExtensions::Ask(beat, second);
+    EXPECT_THAT(BeatExtensions::TypeQuestionsIn(beat), ElementsAre(first, second));
+}
+
+TEST(BeatExtensions, AQuestionOfAnotherSizeIsNone)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::Ask(beat, TypeQuestion());
+    beat.wants.back().states.pop_back();
+    EXPECT_THAT(BeatExtensions::TypeQuestionsIn(beat), IsEmpty());
+}
+
+// Gateways that know nothing of extensions judge beats by these rules, and look for their own tag in `wants`.
+TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::MarkTool(beat);
+    BeatExtensions::Ask(beat, TypeQuestion());
+    const MessageType &type = GatewayTopics::TypeOf<Gateway::Beat>();
+    std::vector<std::uint8_t> bytes(type.SerializedSize(beat));
+    ASSERT_EQ(type.Serialize(beat, bytes), bytes.size());
+    SampleInfo info;
+    info.Node = "tool";
+    info.SourceTime = 1;
+    PresenceInbox inbox;
+    EXPECT_TRUE(inbox.AddBeat(bytes, info, std::chrono::seconds(1)));
+    EXPECT_EQ(inbox.Dropped(), 0u);
+    EXPECT_EQ(beat.format, 0xbe02);
+    for (const Gateway::Wanted &wanted : beat.wants)
+    {
+        EXPECT_EQ(wanted.node, 0u);
+    }
+}
+
+}  // namespace
+}  // namespace Rabit

@@ -1,0 +1,121 @@
+// A node that is a tool beside an ordinary one, with all their threads over each real backend, on loopback.
+#include <gtest/gtest.h>
+#include <rabit/RabitQueueReceipt.h>
+#include <rabit/RabitReactor.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/transport/TransportFactory.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "BackendPairs.h"
+#include "gateway.idl.h"
+#include "uav.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+// Only keeps a broken build from hanging.
+constexpr auto Limit = 120s;
+
+class Idle : public RabitManager
+{
+public:
+    using RabitManager::RabitManager;
+    void ExecuteUnitOfWork() final {}
+};
+
+class Process
+{
+public:
+    Process(const GatewayConfig &config, const std::string &backend) : _reactor(Workspace)
+    {
+        _reactor.SetHandleSignals(false);
+        _reactor.AddManager(std::make_unique<Idle>("Commands", Workspace));
+        _reactor.AddManager(std::make_unique<GatewayManager>(config, MakeTransport(backend), Workspace));
+        _runner = std::thread([this] { _reactor.Run(); });
+    }
+    ~Process()
+    {
+        _reactor.ShutdownAllManagers();
+        _runner.join();
+    }
+
+    Gateway::Fleet Fleet()
+    {
+        Gateway::Fleet fleet;
+        Workspace.ForceFetchMessage(FleetMessageName, &fleet);
+        return fleet;
+    }
+
+    RabitWorkspace Workspace;
+
+private:
+    RabitReactor _reactor;
+    std::thread _runner;
+};
+
+GatewayConfig Config(const std::string &node)
+{
+    GatewayConfig config;
+    config.Node = node;
+    config.Domain = 10 + ::getpid() % 200;
+    config.Interfaces = {"lo"};
+    return config;
+}
+
+bool Eventually(const std::function<bool()> &holds)
+{
+    for (const auto end = std::chrono::steady_clock::now() + Limit; !holds();)
+    {
+        if (std::chrono::steady_clock::now() > end)
+        {
+            return false;
+        }
+        std::this_thread::sleep_for(10ms);
+    }
+    return true;
+}
+
+class RealToolTest : public ::testing::TestWithParam<BackendPair>
+{
+};
+
+TEST_P(RealToolTest, SeesSendsAndLeavesWithoutBeingANodeOfTheFleet)
+{
+    GatewayConfig nodeConfig = Config("uav1");
+    nodeConfig.Accept.push_back({.Queue = "Commands", .Types = {"Uav::Goto"}});
+    GatewayConfig toolConfig = Config("tool");
+    toolConfig.Tool.emplace();
+    Process node(nodeConfig, GetParam().first);
+    {
+        Process tool(toolConfig, GetParam().second);
+        ASSERT_TRUE(Eventually([&] { return tool.Fleet().nodes.size() == 1; }));
+        std::shared_ptr<RabitQueueReceipt> receipt;
+        const auto send = [&]
+        {
+            receipt = std::make_shared<RabitQueueReceipt>();  // refused until uav1 has announced itself
+            return tool.Workspace.AddMessageToQueue("uav1/Commands", std::make_shared<Uav::Goto>(), receipt);
+        };
+        ASSERT_TRUE(Eventually(send));
+        ASSERT_TRUE(Eventually([&] { return receipt->Outcome() != QueueOutcome::Pending; }));
+        EXPECT_EQ(receipt->Outcome(), QueueOutcome::Delivered);
+        EXPECT_TRUE(Eventually([&] { return node.Fleet().inbound.size() == 1; }));
+        EXPECT_TRUE(node.Fleet().nodes.empty());
+    }
+    EXPECT_TRUE(Eventually([&] { return node.Fleet().inbound.empty(); })) << "the link of the tool is kept";
+    EXPECT_TRUE(node.Fleet().nodes.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, RealToolTest, ::testing::ValuesIn(AllBackendPairs()), NameOfPair);
+
+}  // namespace
+}  // namespace Rabit
