@@ -1,6 +1,6 @@
 #include "CppText.h"
 
-#include "Names.h"
+#include "model/Names.h"
 
 #include <charconv>
 #include <cmath>

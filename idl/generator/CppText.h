@@ -1,7 +1,7 @@
 // C++ spellings of the types and values of a model.
 #pragma once
 
-#include "Model.h"
+#include "model/Model.h"
 
 #include <string>
 

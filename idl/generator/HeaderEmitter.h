@@ -1,7 +1,7 @@
 // Writes the generated header, `<name>.idl.h`: what users of the messages see.
 #pragma once
 
-#include "Model.h"
+#include "model/Model.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 #include "IdlTextEmitter.h"
 
 #include "CppText.h"
-#include "Names.h"
 #include "TextBuilder.h"
+#include "model/Names.h"
 
 #include <set>
 

@@ -2,7 +2,7 @@
 // gives.
 #pragma once
 
-#include "Model.h"
+#include "model/Model.h"
 
 #include <string>
 

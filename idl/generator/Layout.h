@@ -1,7 +1,7 @@
 // How many bytes values take on the wire, as plain XCDR1 (OMG DDS-XTypes 1.3, 7.4.1).
 #pragma once
 
-#include "Model.h"
+#include "model/Model.h"
 
 #include <optional>
 

@@ -1,8 +1,8 @@
 // The entry point that idlc calls when it is run as `idlc -l <this library> file.idl`.
 #include "HeaderEmitter.h"
-#include "IdlTree.h"
-#include "ModelReader.h"
 #include "SourceEmitter.h"
+#include "model/IdlTree.h"
+#include "model/ModelReader.h"
 
 #include <cstdio>
 #include <exception>

@@ -2,9 +2,9 @@
 
 #include "CppText.h"
 #include "IdlTextEmitter.h"
-#include "Names.h"
 #include "TextBuilder.h"
 #include "UnionEmitter.h"
+#include "model/Names.h"
 
 namespace RabitIdl
 {

@@ -1,7 +1,7 @@
 // Writes the generated source, `<name>.idl.cpp`: the functions and the codecs of the messages.
 #pragma once
 
-#include "Model.h"
+#include "model/Model.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #include "UnionEmitter.h"
 
 #include "CppText.h"
-#include "Names.h"
+#include "model/Names.h"
 
 #include <algorithm>
 

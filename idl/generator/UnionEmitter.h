@@ -1,8 +1,8 @@
 // The class, the functions and the codec of a union.
 #pragma once
 
-#include "Model.h"
 #include "TextBuilder.h"
+#include "model/Model.h"
 
 namespace RabitIdl
 {

@@ -34,6 +34,7 @@ OWNERS = [
     *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"guard/", "guard"),
     (r"rabit/idl/", "idl"),
+    (r"model/", "idl model"),
     (r"rabit/transport/TransportFactory\.h", "factory"),
     (r"rabit/transport/", "transport"),
     (r"rabit/fastdds/", "fastdds backend"),
@@ -59,7 +60,8 @@ OWNERS = [
 ALLOWED = {
     "core": {"core"},
     "idl/runtime": {"core", "idl", "Fast-CDR"},
-    "idl/generator": {"Cyclone DDS"},
+    "idl/model": {"idl model", "Cyclone DDS"},
+    "idl/generator": {"idl model"},
     "transport/include": {"transport"},
     "transport/common": {"transport", "network"},
     "transport/guard": {"transport", "guard"},

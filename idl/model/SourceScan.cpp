@@ -1,4 +1,4 @@
-#include "SourceScan.h"
+#include "model/SourceScan.h"
 
 #include <algorithm>
 #include <cctype>

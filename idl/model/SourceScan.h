@@ -1,7 +1,7 @@
 // Finds in the text of IDL files what idlc drops or misreads without an error, so that it can be refused.
 #pragma once
 
-#include "Refusals.h"
+#include "model/Refusals.h"
 
 #include <string>
 #include <vector>

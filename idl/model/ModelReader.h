@@ -1,10 +1,10 @@
 // Turns idlc's syntax tree into a Model, and refuses what the generator does not support.
 #pragma once
 
-#include "IdlTree.h"
-#include "Model.h"
-#include "Refusals.h"
-#include "SourceComments.h"
+#include "model/IdlTree.h"
+#include "model/Model.h"
+#include "model/Refusals.h"
+#include "model/SourceComments.h"
 
 #include <map>
 #include <set>

@@ -1,4 +1,4 @@
-#include "IdlTree.h"
+#include "model/IdlTree.h"
 
 #include <idl/processor.h>
 #include <idl/tree.h>
@@ -205,8 +205,8 @@ enum TreeExtensibility TreeExtensibilityOf(TreeNode node)
 
 bool TreeAllowsXcdr1(TreeNode node)
 {
-    // Without the annotation the parser rules XCDR1 out for what is not final, which is its own limit: in XCDR1 an
-    // appendable type is encoded as a final one.
+    // Without the annotation the parser rules XCDR1 out for what is not final, which is its own limit: in
+    // XCDR1 an appendable type is encoded as a final one.
     const bool annotated = idl_is_struct(node)
                                ? ((const idl_struct_t *)node)->data_representation.annotation != NULL
                                : ((const idl_union_t *)node)->data_representation.annotation != NULL;

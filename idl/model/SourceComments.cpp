@@ -1,4 +1,4 @@
-#include "SourceComments.h"
+#include "model/SourceComments.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "Refusals.h"
+#include "model/Refusals.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,7 +1,7 @@
-#include "ModelReader.h"
+#include "model/ModelReader.h"
 
-#include "Names.h"
-#include "SourceScan.h"
+#include "model/Names.h"
+#include "model/SourceScan.h"
 
 #include <algorithm>
 #include <functional>
@@ -40,6 +40,10 @@ Model ModelReader::Read()
 void ModelReader::ReadFiles()
 {
     const TreeNode main = TreeFirstSource(_state);
+    if (main == nullptr)
+    {
+        return;  // a text that is in no file
+    }
     _model.MainFile = WithoutDirectories(TreeSourcePath(main));
     for (TreeNode include = TreeIncludes(main); include != nullptr; include = TreeNextSource(include))
     {
@@ -114,7 +118,7 @@ void ModelReader::Refuse(TreeNode place, const std::string &message)
 
 std::vector<std::string> ModelReader::CommentOn(TreeNode node)
 {
-    if (!TreeInMainFile(_state, node))
+    if (TreeFirstSource(_state) == nullptr || !TreeInMainFile(_state, node))
     {
         return {};
     }

@@ -1,7 +1,7 @@
 // The rules by which ModelReader refuses what parses but has no faithful C++ class or no plain XCDR1
 // encoding.
-#include "ModelReader.h"
-#include "Names.h"
+#include "model/ModelReader.h"
+#include "model/Names.h"
 
 #include <algorithm>
 
