@@ -1,6 +1,7 @@
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/idl/MessageTypeRegistry.h>
+#include <rabit/idl/NearestWord.h>
 #include <rabit/transport/Transport.h>
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 
 #include "air/AirSchedule.h"
 #include "names/NamePattern.h"
-#include "names/NearestWord.h"
 #include "wire/Announcements.h"
 
 namespace Rabit

@@ -1,12 +1,11 @@
 #include "configuration/YamlMap.h"
 
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-
-#include "names/NearestWord.h"
 
 namespace Rabit
 {

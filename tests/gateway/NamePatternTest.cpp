@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "names/NearestWord.h"
-
 namespace Rabit
 {
 namespace
@@ -53,19 +51,6 @@ TEST(NamePattern, KnowsMessageNames)
     EXPECT_FALSE(IsMessageName("a//b"));
     EXPECT_FALSE(IsMessageName("Po se"));
     EXPECT_FALSE(IsMessageName(""));
-}
-
-TEST(NearestWord, NamesTheWordOneSlipAway)
-{
-    EXPECT_EQ(NearestWordHint("publsh", {"publish", "subscribe"}), "; did you mean `publish`?");
-    EXPECT_EQ(NearestWordHint("uav::pose", {"Uav::Goto", "Uav::Pose"}), "; did you mean `Uav::Pose`?");
-}
-
-TEST(NearestWord, ListsWhatIsExpectedWhenNothingIsNear)
-{
-    EXPECT_EQ(NearestWordHint("zzzzzz", {"on", "off"}), "; expected one of `on`, `off`");
-    EXPECT_EQ(NearestWordHint("zzzzzz", {"fastdds"}), "; expected `fastdds`");
-    EXPECT_EQ(NearestWordHint("zzzzzz", {}), "");
 }
 
 TEST(NamePatternTest, OnePatternCoversAnotherThatMatchesNoMore)

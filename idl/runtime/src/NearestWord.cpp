@@ -1,4 +1,4 @@
-#include "names/NearestWord.h"
+#include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
 #include <cctype>
