@@ -16,12 +16,10 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 # What the headers and the static libraries need is not seen by dpkg-shlibdeps.
-set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev)
+set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev
+    nlohmann-json3-dev cyclonedds-dev)
 if(RABIT_WITH_FASTDDS)
   list(APPEND dev_needs libfastrtps-dev)
-endif()
-if(RABIT_WITH_CYCLONEDDS)
-  list(APPEND dev_needs cyclonedds-dev)
 endif()
 list(JOIN dev_needs ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME librabit-dev)

@@ -1,5 +1,6 @@
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
+#include <rabit/idl/SelfDescribing.h>
 
 #include <map>
 #include <mutex>
@@ -54,9 +55,16 @@ const MessageType *MessageTypeRegistry::Find(const std::string &name)
 const MessageType *MessageTypeRegistry::Of(const RabitMessage &message)
 {
     Types &types = All();
-    const std::shared_lock lock(types.Mutex);
-    const auto entry = types.ByClass.find(typeid(message));
-    return entry == types.ByClass.end() ? nullptr : entry->second;
+    {
+        const std::shared_lock lock(types.Mutex);
+        const auto entry = types.ByClass.find(typeid(message));
+        if (entry != types.ByClass.end() && entry->second->IsTypeOf(message))
+        {
+            return entry->second;
+        }
+    }
+    const auto *described = dynamic_cast<const Idl::SelfDescribing *>(&message);
+    return described == nullptr ? nullptr : &described->IdlType();
 }
 
 std::vector<std::string> MessageTypeRegistry::Names()

@@ -20,7 +20,8 @@ namespace Rabit
 // that it names; we write little endian), then plain XCDR1 (OMG DDS-XTypes 1.3, 7.4.1), with no header of
 // Rabit's own, filled up with zeros to a multiple of 4 bytes. The last two bits of the header give the number
 // of these zeros (XTypes 1.3, 7.6.3.1.2). Equal messages give equal bytes. One object exists for each
-// generated message class; it lives as long as the process, is immutable, and may be used from any thread.
+// generated message class and lives as long as the process; DynamicType is what is made at run time. All are
+// immutable and may be used from any thread.
 class MessageType
 {
 public:
@@ -32,11 +33,11 @@ public:
     virtual const std::string &Name() const = 0;
     // The IDL that this type was generated from, the types it uses included: it compiles by itself.
     virtual const std::string &IdlText() const = 0;
-    // A message of this type with default values; its dynamic type is the generated class.
+    // A message of this type with default values, of the class CppType.
     virtual std::unique_ptr<RabitMessage> Create() const = 0;
     // The same, shared from the start: one allocation instead of two.
     virtual std::shared_ptr<RabitMessage> CreateShared() const = 0;
-    // The C++ class of its messages.
+    // The C++ class of its messages; messages of several types may share one (SelfDescribing).
     virtual std::type_index CppType() const = 0;
     // Whether this is the type of that message (its dynamic type, not a base of it).
     virtual bool IsTypeOf(const RabitMessage &message) const = 0;

@@ -1,0 +1,252 @@
+#include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/dynamic/DynamicType.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+#include <stdexcept>
+
+#include "dynamic/CdrBuilder.h"
+#include "dynamic/FreshValue.h"
+#include "dynamic/JsonEncoder.h"
+#include "dynamic/JsonSink.h"
+#include "dynamic/KeySink.h"
+#include "dynamic/NormalSink.h"
+#include "dynamic/ReadType.h"
+#include "dynamic/TextSink.h"
+#include "dynamic/Walk.h"
+
+namespace Rabit
+{
+namespace
+{
+
+// What a text may grow to, as what decoding may allocate.
+std::size_t MostText(std::size_t sampleSize)
+{
+    return Idl::CdrReader::MaxGrowth * sampleSize + Idl::CdrReader::Allowance;
+}
+
+// Until the process ends, as the registry asks of its types.
+void Keep(const std::shared_ptr<const DynamicType> &type)
+{
+    static std::mutex mutex;
+    static auto &kept = *new std::vector<std::shared_ptr<const DynamicType>>;
+    const std::lock_guard lock(mutex);
+    kept.push_back(type);
+}
+
+const DynamicMessage &Concrete(const DynamicType &type, const RabitMessage &message)
+{
+    if (!type.IsTypeOf(message))
+    {
+        throw std::invalid_argument("DynamicType " + type.Name() + ": the message is of another type");
+    }
+    return static_cast<const DynamicMessage &>(message);
+}
+
+// Parses JSON; a member that an object has twice is refused, since one of the two would be lost.
+class JsonText
+{
+public:
+    explicit JsonText(std::string_view text)
+    {
+        std::vector<std::set<std::string>> names;
+        const auto look = [&](int, nlohmann::ordered_json::parse_event_t event, nlohmann::ordered_json &value)
+        {
+            using Event = nlohmann::ordered_json::parse_event_t;
+            if (event == Event::object_start)
+            {
+                names.emplace_back();
+            }
+            else if (event == Event::object_end)
+            {
+                names.pop_back();
+            }
+            else if (event == Event::key && !names.back().insert(value.get_ref<const std::string &>()).second)
+            {
+                throw std::invalid_argument("an object names a member twice");
+            }
+            return true;
+        };
+        try
+        {
+            Value = nlohmann::ordered_json::parse(text, look);
+        }
+        catch (const nlohmann::ordered_json::exception &error)
+        {
+            // Without the library's own name before it.
+            const std::string_view what = error.what();
+            Reason = "not JSON: " + std::string(what.substr(std::min(what.find("] ") + 2, what.size())));
+        }
+        catch (const std::invalid_argument &error)
+        {
+            Reason = error.what();
+        }
+    }
+
+    nlohmann::ordered_json Value;
+    std::string Reason;
+};
+
+}  // namespace
+
+ParsedType DynamicType::Parse(std::string_view idlText, std::string_view typeName)
+{
+    ParsedType parsed;
+    std::string name(typeName);
+    auto shapes = Dynamic::ReadType(idlText, name, parsed.Reason);
+    if (shapes)
+    {
+        parsed.Type =
+            std::make_shared<const DynamicType>(std::move(name), std::string(idlText), std::move(shapes));
+    }
+    return parsed;
+}
+
+const MessageType *DynamicType::Register(const std::shared_ptr<const DynamicType> &type)
+{
+    const MessageType *registered = MessageTypeRegistry::Find(type->Name());
+    if (registered == nullptr)
+    {
+        try
+        {
+            MessageTypeRegistry::Add(*type);
+        }
+        catch (const std::logic_error &)
+        {
+            return nullptr;  // another thread was faster, with another text
+        }
+        registered = MessageTypeRegistry::Find(type->Name());
+        if (registered == type.get())
+        {
+            Keep(type);
+        }
+    }
+    return registered->IdlText() == type->IdlText() ? registered : nullptr;
+}
+
+DynamicType::DynamicType(std::string name, std::string idlText, std::unique_ptr<const Dynamic::Shapes> shapes)
+    : _name(std::move(name)), _idlText(std::move(idlText)), _shapes(std::move(shapes))
+{
+}
+
+DynamicType::~DynamicType() = default;
+
+std::optional<std::string> DynamicType::ToJson(std::span<const std::uint8_t> sample) const
+{
+    std::string json;
+    json.reserve(8 * std::min<std::size_t>(sample.size(), 65536));
+    Dynamic::JsonSink sink(json, MostText(sample.size()));
+    return Dynamic::WalkSample(*_shapes->Root, sample, sink) ? std::optional(std::move(json)) : std::nullopt;
+}
+
+std::optional<std::string> DynamicType::ToText(std::span<const std::uint8_t> sample) const
+{
+    Idl::TextWriter text;
+    text.Raw(_name);
+    text.Raw(" ");
+    Dynamic::TextSink sink(text, MostText(sample.size()));
+    return Dynamic::WalkSample(*_shapes->Root, sample, sink) ? std::optional(text.Text()) : std::nullopt;
+}
+
+EncodedSample DynamicType::FromJson(std::string_view json) const
+{
+    const JsonText text(json);
+    return text.Reason.empty() ? FromJson(text.Value) : EncodedSample{std::nullopt, text.Reason};
+}
+
+EncodedSample DynamicType::FromJson(const nlohmann::ordered_json &json) const
+{
+    Dynamic::CdrBuilder out;
+    Dynamic::JsonEncoder encoder(out);
+    return encoder.Put(*_shapes->Root, json) ? EncodedSample{out.Finish(), ""}
+                                             : EncodedSample{std::nullopt, encoder.Reason()};
+}
+
+const std::vector<std::uint8_t> &DynamicType::DefaultSample() const
+{
+    std::call_once(_defaultOnce,
+                   [this]
+                   {
+                       Dynamic::CdrBuilder out;
+                       Dynamic::PutFresh(out, *_shapes->Root);
+                       _default = out.Finish();
+                   });
+    return _default;
+}
+
+std::optional<std::vector<std::uint8_t>> DynamicType::Normalized(std::span<const std::uint8_t> sample) const
+{
+    Dynamic::CdrBuilder out;
+    out.Reserve(sample.size() + Idl::MaxPadding);
+    Dynamic::NormalSink sink(out);
+    return Dynamic::WalkSample(*_shapes->Root, sample, sink) ? std::optional(out.Finish()) : std::nullopt;
+}
+
+std::unique_ptr<RabitMessage> DynamicType::Create() const
+{
+    return std::make_unique<DynamicMessage>(shared_from_this());
+}
+
+std::shared_ptr<RabitMessage> DynamicType::CreateShared() const
+{
+    return std::make_shared<DynamicMessage>(shared_from_this());
+}
+
+std::type_index DynamicType::CppType() const
+{
+    return typeid(DynamicMessage);
+}
+
+bool DynamicType::IsTypeOf(const RabitMessage &message) const
+{
+    return typeid(message) == typeid(DynamicMessage) &&
+           IsSameAs(static_cast<const DynamicMessage &>(message).Type());
+}
+
+std::size_t DynamicType::SerializedSize(const RabitMessage &message) const
+{
+    return Concrete(*this, message).Sample().size();
+}
+
+std::size_t DynamicType::Serialize(const RabitMessage &message, std::span<std::uint8_t> buffer) const
+{
+    const std::vector<std::uint8_t> &sample = Concrete(*this, message).Sample();
+    if (sample.size() > buffer.size())
+    {
+        return 0;
+    }
+    std::memcpy(buffer.data(), sample.data(), sample.size());
+    return sample.size();
+}
+
+bool DynamicType::Deserialize(std::span<const std::uint8_t> bytes, RabitMessage &message) const
+{
+    return const_cast<DynamicMessage &>(Concrete(*this, message)).SetSample(bytes);
+}
+
+bool DynamicType::HasKey() const
+{
+    return _shapes->Root->HasKey;
+}
+
+bool DynamicType::KeyHashOf(std::span<const std::uint8_t> bytes, std::array<std::uint8_t, 16> &hash) const
+{
+    Idl::KeyHasher hasher(_shapes->KeyFitsHash);
+    Dynamic::KeySink sink(hasher);
+    if (!HasKey() || !Dynamic::WalkSample(*_shapes->Root, bytes, sink))
+    {
+        return false;
+    }
+    hash = hasher.Finish();
+    return true;
+}
+
+bool DynamicType::IsSameAs(const DynamicType &other) const
+{
+    return this == &other || (_name == other._name && _idlText == other._idlText);
+}
+
+}  // namespace Rabit

@@ -1,0 +1,80 @@
+#include "dynamic/IdlParser.h"
+
+#include <idl/processor.h>
+
+#include <stdarg.h>
+#include <stdio.h>
+
+/* The parser writes what it does not like to the standard error output, by functions that it calls through
+   the dynamic linker and that are defined here again: a text of a stranger must not write to our terminal,
+   and its sender is to be told the reason. Outside of RabitParseIdl they write as the parser's own do. */
+static _Thread_local char *CollectedReason;
+static _Thread_local size_t CollectedSize;
+static _Thread_local bool Collecting;
+
+void idl_verror(const idl_pstate_t *pstate, const idl_location_t *loc, const char *fmt, va_list ap)
+{
+    char line[512];
+    (void)pstate;
+    const int head = loc ? snprintf(line, sizeof line, "line %u: ", (unsigned)loc->first.line) : 0;
+    vsnprintf(line + head, sizeof line - (size_t)head, fmt, ap);
+    if (!Collecting)
+    {
+        fprintf(stderr, "%s\n", line);
+    }
+    else if (CollectedSize > 0 && CollectedReason[0] == '\0')
+    {
+        snprintf(CollectedReason, CollectedSize, "%s", line);
+    }
+}
+
+void idl_error(const idl_pstate_t *pstate, const idl_location_t *loc, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    idl_verror(pstate, loc, fmt, ap);
+    va_end(ap);
+}
+
+void idl_warning(const idl_pstate_t *pstate, idl_warning_t warning, const idl_location_t *loc,
+                 const char *fmt, ...)
+{
+    va_list ap;
+    (void)warning;
+    if (Collecting)
+    {
+        return;
+    }
+    va_start(ap, fmt);
+    idl_verror(pstate, loc, fmt, ap);
+    va_end(ap);
+}
+
+const void *RabitParseIdl(const char *text, char *reason, size_t reasonSize)
+{
+    idl_pstate_t *state = NULL;
+    reason[0] = '\0';
+    CollectedReason = reason;
+    CollectedSize = reasonSize;
+    Collecting = true;
+    idl_retcode_t result = idl_create_pstate(
+        IDL_FLAG_EXTENDED_DATA_TYPES | IDL_FLAG_ANONYMOUS_TYPES | IDL_FLAG_ANNOTATIONS, NULL, &state);
+    if (result == IDL_RETCODE_OK)
+    {
+        state->config.default_extensibility = IDL_DEFAULT_EXTENSIBILITY_UNDEFINED;
+        result = idl_parse_string(state, text);
+        if (result != IDL_RETCODE_OK)
+        {
+            idl_delete_pstate(state);
+            state = NULL;
+        }
+    }
+    Collecting = false;
+    CollectedReason = NULL;
+    return result == IDL_RETCODE_OK ? state : NULL;
+}
+
+void RabitFreeIdl(const void *state)
+{
+    idl_delete_pstate((idl_pstate_t *)state);
+}

@@ -1,0 +1,133 @@
+// Messages of a type that no code was generated for, as messages of Rabit.
+#include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/dynamic/DynamicType.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "basics.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+constexpr const char *Text = R"(module Late {
+@final
+struct Report {
+    @default(7) long number;
+    string words;
+};
+};
+module Late {
+@final
+struct Other {
+    long number;
+};
+};
+)";
+
+std::shared_ptr<const DynamicType> TypeNamed(const char *name)
+{
+    return DynamicType::Parse(Text, name).Type;
+}
+
+TEST(DynamicMessage, StartsWithDefaults)
+{
+    const DynamicMessage message(TypeNamed("Late::Report"));
+    EXPECT_EQ(message.ToJson(), R"({"number":7,"words":""})");
+    EXPECT_EQ(message.ToString(), R"(Late::Report {number: 7, words: ""})");
+}
+
+TEST(DynamicMessage, TakesOverJsonOrTellsWhyNot)
+{
+    DynamicMessage message(TypeNamed("Late::Report"));
+    EXPECT_EQ(message.SetJson(R"({"words": "over"})"), "");
+    EXPECT_EQ(message.ToJson(), R"({"number":7,"words":"over"})");
+    EXPECT_EQ(message.SetJson(R"({"word": "out"})"),
+              "no member of Late::Report is named `word`; did you mean `words`?");
+    EXPECT_EQ(message.ToJson(), R"({"number":7,"words":"over"})") << "unchanged";
+}
+
+TEST(DynamicMessage, IsClearedToItsDefaults)
+{
+    DynamicMessage message(TypeNamed("Late::Report"));
+    ASSERT_EQ(message.SetJson(R"({"number": 1})"), "");
+    message.Clear();
+    EXPECT_EQ(message.ToJson(), R"({"number":7,"words":""})");
+}
+
+TEST(DynamicMessage, IsCopiedOnlyToItsOwnType)
+{
+    DynamicMessage from(TypeNamed("Late::Report"));
+    ASSERT_EQ(from.SetJson(R"({"number": 1})"), "");
+    DynamicMessage same(TypeNamed("Late::Report"));
+    EXPECT_TRUE(same.CopyMessage(&from)) << "another object of the same text";
+    EXPECT_EQ(same.ToJson(), from.ToJson());
+    DynamicMessage other(TypeNamed("Late::Other"));
+    EXPECT_FALSE(other.CopyMessage(&from));
+    Basics::Stamp stamp;
+    EXPECT_FALSE(same.CopyMessage(&stamp));
+    EXPECT_EQ(same.Clone()->ToString(), from.ToString());
+}
+
+TEST(DynamicMessage, BytesThatAreNoSampleChangeNothing)
+{
+    DynamicMessage message(TypeNamed("Late::Report"));
+    ASSERT_EQ(message.SetJson(R"({"number": 1})"), "");
+    const std::vector<std::uint8_t> before = message.Sample();
+    EXPECT_FALSE(message.SetSample(std::vector<std::uint8_t>{0, 1, 0, 0, 1}));
+    EXPECT_EQ(message.Sample(), before);
+}
+
+TEST(DynamicMessage, TypesRefuseMessagesOfOthers)
+{
+    const auto type = TypeNamed("Late::Report");
+    DynamicMessage other(TypeNamed("Late::Other"));
+    Basics::Stamp stamp;
+    EXPECT_THROW(type->SerializedSize(other), std::invalid_argument);
+    EXPECT_THROW(type->Deserialize(type->DefaultSample(), stamp), std::invalid_argument);
+}
+
+TEST(DynamicMessage, WithoutATypeIsAProgrammingError)
+{
+    EXPECT_THROW(DynamicMessage(nullptr), std::invalid_argument);
+}
+
+TEST(DynamicMessage, TellsTheRegistryItsType)
+{
+    const auto report = TypeNamed("Late::Report");
+    const auto other = TypeNamed("Late::Other");
+    EXPECT_EQ(DynamicType::Register(report), report.get());
+    EXPECT_EQ(DynamicType::Register(other), other.get());
+    EXPECT_EQ(MessageTypeRegistry::Find("Late::Other"), other.get());
+    // All have one C++ class.
+    EXPECT_EQ(MessageTypeRegistry::Of(*report->Create()), report.get());
+    EXPECT_EQ(MessageTypeRegistry::Of(*other->Create()), other.get());
+}
+
+TEST(DynamicMessage, RegisteredTwiceIsTheFirstOne)
+{
+    const auto first = DynamicType::Register(TypeNamed("Late::Report"));
+    EXPECT_EQ(DynamicType::Register(TypeNamed("Late::Report")), first);
+}
+
+TEST(DynamicMessage, AGeneratedTypeOfTheSameTextStays)
+{
+    const MessageType &generated = Basics::Stamp::IdlType();
+    const auto dynamic = DynamicType::Parse(generated.IdlText(), generated.Name()).Type;
+    EXPECT_EQ(DynamicType::Register(dynamic), &generated);
+}
+
+TEST(DynamicMessage, AnotherDefinitionOfARegisteredNameIsRefused)
+{
+    const auto other =
+        DynamicType::Parse("module Basics { struct Stamp { long number; }; };", "Basics::Stamp");
+    ASSERT_TRUE(other.Type) << other.Reason;
+    EXPECT_EQ(DynamicType::Register(other.Type), nullptr);
+}
+
+}  // namespace
+}  // namespace Rabit
