@@ -43,16 +43,18 @@ std::size_t LargestDatagramOf(const GatewayConfig &config)
 }  // namespace
 
 AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence,
-                       LinkDriver &links, std::deque<TopicPublisher> &publishers)
+                       LinkDriver &links, std::deque<TopicPublisher> &publishers, TypeExchange &types)
     : _config(config),
       _clock(clock),
       _presence(presence),
       _links(links),
       _publishers(publishers),
+      _types(types),
       _cost(config.MaxDatagram),
       _schedule(LargestDatagramOf(config)),
       _unscheduled(TransportSettingsOf(config, 0).AnnouncementPeriod),
       _beat(_schedule.AddStream(TrafficClass::Presence)),
+      _typeTexts(_schedule.AddStream(TrafficClass::Bulk)),
       _linkStreams(config.Send, links, _schedule),
       _report(config, _cost)
 {
@@ -185,7 +187,7 @@ Duration AirTraffic::ServeUnlimited(Duration now)
         SendBeat(BeatFormat::Largest, now);
         beatDue = _presence.BeatDue();
     }
-    Duration next = std::min(beatDue, _links.Service());
+    Duration next = std::min({beatDue, _links.Service(), _types.Service(now)});
     for (TopicPublisher &publisher : _publishers)
     {
         next = std::min(next, publisher.Service(Now()));
@@ -230,6 +232,20 @@ void AirTraffic::LookAt(std::size_t publisher, Duration now)
     }
 }
 
+void AirTraffic::LookAtTypes(Duration now)
+{
+    const std::optional<Duration> due = _types.Due();
+    if (due && *due <= now)
+    {
+        const std::size_t most = _cost.BodyWithin(_schedule.Budget().LargestDatagram(), true);
+        _schedule.Ready(_typeTexts, _cost.Of(_types.NextBody(most), {.Destinations = 1, .Directed = true}));
+    }
+    else
+    {
+        _schedule.NotReady(_typeTexts);
+    }
+}
+
 Duration AirTraffic::ServeLimited()
 {
     const Duration linksDue = _links.Advance();
@@ -239,6 +255,7 @@ Duration AirTraffic::ServeLimited()
     {
         LookAt(i, now);
     }
+    LookAtTypes(now);
     _linkStreams.Look(_schedule.Budget().LargestDatagram(), now);
     while (const auto chosen = _schedule.Next(now))
     {
@@ -250,6 +267,8 @@ Duration AirTraffic::ServeLimited()
     {
         next = beat > now ? std::min(next, beat) : next;
     }
+    const Duration types = _types.Due().value_or(now);
+    next = types > now ? std::min(next, types) : next;
     for (const TopicPublisher &publisher : _publishers)
     {
         const Duration due = publisher.DueAt(now);
@@ -268,6 +287,10 @@ void AirTraffic::Send(StreamId id, Duration now)
     {
         const std::size_t body = _cost.BodyWithin(std::max(most, AirBudget::SmallestDatagram), false);
         SendBeat(body, now);
+    }
+    else if (id == _typeTexts)
+    {
+        _types.SendOne(_cost.BodyWithin(most, true), now);
     }
     else if (!_linkStreams.Send(id, most, sent))
     {
@@ -289,6 +312,10 @@ void AirTraffic::Send(StreamId id, Duration now)
         _beatBytes += (static_cast<double>(bytes) - _beatBytes) / 8.0;
         _beatBytes = std::max(_beatBytes, SmallestBeat);
         LookAtBeat(now);
+    }
+    else if (id == _typeTexts)
+    {
+        LookAtTypes(now);
     }
     else if (sent)
     {

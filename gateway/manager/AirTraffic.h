@@ -17,6 +17,7 @@
 #include "gateway.idl.h"
 #include "manager/AirReport.h"
 #include "manager/LinkStreams.h"
+#include "manager/TypeExchange.h"
 #include "mirrors/TopicPublisher.h"
 #include "presence/Presence.h"
 #include "queues/LinkDriver.h"
@@ -29,7 +30,8 @@ namespace Rabit
 //
 // - `radio: budget` limits, and what the peers' reports of late datagrams say that the air carries
 //   (CapacityEstimate), whichever is less.
-// - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); each link; each
+// - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); the texts of
+//   types that are asked for (class bulk); each link; each
 //   published message. A datagram is made when its turn has come, from what is newest then.
 // - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
 //   DDS's own, is paid for, too, and a part of a budget is kept free for it when it is due.
@@ -46,7 +48,7 @@ public:
 
     // References must outlive the object.
     AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
-               std::deque<TopicPublisher> &publishers);
+               std::deque<TopicPublisher> &publishers, TypeExchange &types);
 
     // Once there are all publishers. The session is kept until Close.
     void Open(TransportSession &session);
@@ -75,6 +77,7 @@ private:
     void KeepPromise(Duration now);
     void LookAtBeat(Duration now);
     void LookAt(std::size_t publisher, Duration now);
+    void LookAtTypes(Duration now);
     void Send(StreamId id, Duration now);
     Duration Now() const { return _clock.Monotonic(); }
 
@@ -83,6 +86,7 @@ private:
     Presence &_presence;
     LinkDriver &_links;
     std::deque<TopicPublisher> &_publishers;
+    TypeExchange &_types;
     const AirCost _cost;
     TransportSession *_session = nullptr;
 
@@ -91,6 +95,7 @@ private:
     DiscoveryBurst _discovery;
     UnscheduledShare _unscheduled;
     StreamId _beat;
+    StreamId _typeTexts;
     std::vector<StreamId> _publisherStreams;
     LinkStreams _linkStreams;
     AirReport _report;

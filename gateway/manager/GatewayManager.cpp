@@ -12,7 +12,9 @@
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
 #include "manager/AirTraffic.h"
+#include "manager/Exploration.h"
 #include "manager/TransportSettingsOf.h"
+#include "manager/TypeExchange.h"
 #include "mirrors/StateExchange.h"
 #include "mirrors/Subscriptions.h"
 #include "mirrors/TopicPublisher.h"
@@ -60,7 +62,7 @@ class GatewayManager::Parts
 {
 public:
     Parts(const GatewayConfig &config, std::shared_ptr<Transport> transport, GatewayManager &manager,
-          const RandomSource &random)
+          const RandomSource &random, Exploration &exploration)
         : _config(Validated(config)),
           _manager(manager),
           _workspace(manager.GetWorkspace()),
@@ -82,7 +84,8 @@ public:
               [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace),
           _states(_presence, _subscriptions, random),
-          _fleet(std::make_shared<Gateway::Fleet>())
+          _fleet(std::make_shared<Gateway::Fleet>()),
+          _exploration(exploration)
     {
         if (!_transport)
         {
@@ -131,6 +134,11 @@ public:
         const Duration now = Now();
         const Presence::Served &served = _presence.Service(now);
         const PeerTable::Change &change = served.Change;
+        _types.TakeIn(served, now);
+        if (_exploration.IsWanted())
+        {
+            Explore(change.State || change.Offers || change.NewLife, now);
+        }
         for (const std::string &node : change.Forgotten)
         {
             _links.Forget(node);
@@ -216,6 +224,36 @@ private:
         }
     }
 
+    // What is asked for at run time.
+    void Explore(bool anyNews, Duration now)
+    {
+        if (anyNews || !std::exchange(_explored, true))
+        {
+            _exploration.SetNodes(_presence.Peers());
+        }
+        const Exploration::Requests requests = _exploration.TakeRequests();
+        for (const TypeQuestions::Wanted &wanted : requests.Types)
+        {
+            static_cast<void>(_types.Want(wanted, now));  // of too many the asker asks again
+        }
+        bool any = false;
+        for (const SubscribeRule &rule : requests.Subscriptions)
+        {
+            try
+            {
+                any |= _subscriptions.Add(rule, *_session);
+            }
+            catch (const TransportError &error)
+            {
+                Log({"subscribe " + rule.Message + ": " + error.what()});
+            }
+        }
+        if (any)
+        {
+            _states.SubscriptionsAdded(now);
+        }
+    }
+
     ConfigError NameTaken() const
     {
         return {_config.File, LineOfSetting(_config, "name"),
@@ -284,7 +322,7 @@ private:
         fleet.forgotten = _presence.Peers().Forgotten();
         fleet.crowded_out =
             _presence.Peers().CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
-        fleet.malformed = _presence.Malformed() + _links.Malformed();
+        fleet.malformed = _presence.Malformed() + _links.Malformed() + _types.Malformed();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
         _air.Report(fleet, now);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
@@ -335,6 +373,8 @@ private:
     Subscriptions _subscriptions;
     StateExchange _states;
     std::shared_ptr<Gateway::Fleet> _fleet;
+    Exploration &_exploration;
+    bool _explored = false;
     const std::string _logName =
         _config.Name == GatewayConfig().Name ? "gateway: " : "gateway " + _config.Name + ": ";
     ProblemLog _problemLog{FleetMessageNameOf(_config)};
@@ -343,7 +383,10 @@ private:
     Duration _openedAt{0};
     std::unique_ptr<TransportSession> _session;
     std::deque<TopicPublisher> _publishers;
-    AirTraffic _air{_config, _workspace.GetClock(), _presence, _links, _publishers};
+    TypeExchange _types{_config, _presence, _links, _manager.WakeUpHandler(),
+                        [this](std::uint64_t definition, std::string text)
+                        { _exploration.AddText(definition, std::move(text)); }};
+    AirTraffic _air{_config, _workspace.GetClock(), _presence, _links, _publishers, _types};
 };
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport)
@@ -357,18 +400,25 @@ GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Tran
       _config(config),
       _transport(std::move(transport)),
       _random(std::move(random)),
-      _parts(std::make_unique<Parts>(_config, _transport, *this, _random))
+      _exploration(std::make_unique<Exploration>(WakeUpHandler())),
+      _parts(std::make_unique<Parts>(_config, _transport, *this, _random, *_exploration))
 {
 }
 
 GatewayManager::~GatewayManager() = default;
+
+FleetExplorer &GatewayManager::Explorer()
+{
+    _exploration->BeWanted();
+    return *_exploration;
+}
 
 void GatewayManager::Startup()
 {
     if (!_parts || !_parts->IsOpen())
     {
         _parts.reset();
-        _parts = std::make_unique<Parts>(_config, _transport, *this, _random);
+        _parts = std::make_unique<Parts>(_config, _transport, *this, _random, *_exploration);
     }
 }
 

@@ -54,10 +54,7 @@ void StateExchange::TakeIn(const PeerTable::Change &change)
     }
     if (change.Offers || change.NewLife)
     {
-        for (const PeerTable::Peer *peer : _subscriptions.OnOffers(_presence.Peers()))
-        {
-            _repair.SetWanted(peer->Node, peer->Incarnation, _subscriptions.StatesWanted(*peer));
-        }
+        Compare();
     }
     if (change.State)
     {
@@ -69,6 +66,26 @@ void StateExchange::TakeIn(const PeerTable::Change &change)
             }
         }
     }
+}
+
+// What is wanted with what is offered.
+void StateExchange::Compare()
+{
+    for (const PeerTable::Peer *peer : _subscriptions.OnOffers(_presence.Peers()))
+    {
+        _repair.SetWanted(peer->Node, peer->Incarnation, _subscriptions.StatesWanted(*peer));
+    }
+}
+
+void StateExchange::SubscriptionsAdded(Duration now)
+{
+    Compare();
+    std::vector<std::string> nodes;
+    for (const PeerTable::Peer *peer : _presence.Peers().Heard())
+    {
+        nodes.push_back(peer->Node);
+    }
+    TakeIn(nodes, now);
 }
 
 void StateExchange::TakeIn(const std::vector<std::string> &told, Duration now)

@@ -41,6 +41,8 @@ public:
             TakeIn(served, publishers, now);
         }
     }
+    // After Subscriptions::Add.
+    void SubscriptionsAdded(Duration now);
     // After the publishers have written. Returns whether a beat may be due sooner than before.
     bool TellVersions(const std::deque<TopicPublisher> &publishers, Duration now);
     // When to call Serve again at the latest, beside the times that Presence knows; empty: not at all.
@@ -49,6 +51,7 @@ public:
 private:
     void TakeIn(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now);
     void TakeIn(const PeerTable::Change &change);
+    void Compare();
     void TakeIn(const std::vector<std::string> &told, Duration now);
     void Ask(Duration now);
 

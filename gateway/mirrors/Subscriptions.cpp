@@ -2,7 +2,9 @@
 
 #include <rabit/idl/MessageTypeRegistry.h>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "names/NamePattern.h"
 #include "wire/Announcements.h"
@@ -14,7 +16,7 @@ namespace Rabit
 
 Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
                              RabitWorkspace &workspace)
-    : _rules(rules), _origins(origins), _workspace(workspace)
+    : _rules(rules.begin(), rules.end()), _origins(origins), _workspace(workspace)
 {
 }
 
@@ -22,11 +24,37 @@ void Subscriptions::Open(TransportSession &session)
 {
     for (const SubscribeRule &rule : _rules)
     {
-        _subscriptions.push_back(
-            {&rule, std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
-                                                      _workspace)});
-        _subscriptions.back().Subscriber->Open(session);
+        Open(rule, session);
     }
+}
+
+void Subscriptions::Open(const SubscribeRule &rule, TransportSession &session)
+{
+    auto subscriber =
+        std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins, _workspace);
+    subscriber->Open(session);
+    _subscriptions.push_back({&rule, std::move(subscriber)});
+}
+
+bool Subscriptions::Add(const SubscribeRule &rule, TransportSession &session)
+{
+    if (std::any_of(_rules.begin(), _rules.end(),
+                    [&rule](const SubscribeRule &other) { return other.Message == rule.Message; }))
+    {
+        return false;
+    }
+    _rules.push_back(rule);
+    try
+    {
+        Open(_rules.back(), session);
+    }
+    catch (...)
+    {
+        _rules.pop_back();
+        throw;
+    }
+    _known.clear();
+    return true;
 }
 
 void Subscriptions::Close()

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,13 +27,16 @@ namespace Rabit
 class Subscriptions
 {
 public:
-    // The rules, origins and workspace must outlive the object.
+    // Origins and workspace must outlive the object.
     Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
                   RabitWorkspace &workspace);
 
     // Throws TransportError.
     void Open(TransportSession &session);
     void Close();
+    // One more, while open; false if the message is subscribed to already. Throws TransportError. OnOffers
+    // then returns all nodes once more.
+    bool Add(const SubscribeRule &rule, TransportSession &session);
     // Takes in what the nodes announce, and that one has begun another life. Returns of which nodes something
     // was new.
     std::vector<const PeerTable::Peer *> OnOffers(const PeerTable &peers);
@@ -46,7 +50,7 @@ public:
     // Samples dropped because they came from a node beyond those that are kept.
     std::uint64_t CrowdedOut() const;
     void Report(Gateway::Fleet &fleet) const;
-    const std::vector<SubscribeRule> &Rules() const { return _rules; }
+    const std::deque<SubscribeRule> &Rules() const { return _rules; }
     // The rule must be one of Rules().
     Reception ReceptionFrom(const std::string &node, const SubscribeRule &rule) const;
 
@@ -66,9 +70,10 @@ private:
         bool operator==(const Known &) const = default;
     };
 
+    void Open(const SubscribeRule &rule, TransportSession &session);
     static std::optional<QosProfile> OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer);
 
-    const std::vector<SubscribeRule> &_rules;
+    std::deque<SubscribeRule> _rules;  // they stay where they are
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
     std::vector<Subscription> _subscriptions;  // of each rule, in their order, while open

@@ -51,12 +51,12 @@ std::string Normalized(const std::string &idl)
     return normalized;
 }
 
-std::uint64_t ComputeHash(const MessageType &type)
-{
-    return Fnv1a(Normalized(type.Name() + "\n" + type.IdlText()));
-}
-
 }  // namespace
+
+std::uint64_t DefinitionHash(const std::string &name, const std::string &idlText)
+{
+    return Fnv1a(Normalized(name + "\n" + idlText));
+}
 
 std::uint64_t DefinitionHash(const MessageType &type)
 {
@@ -65,7 +65,9 @@ std::uint64_t DefinitionHash(const MessageType &type)
     static std::map<const MessageType *, std::uint64_t> hashes;
     const std::lock_guard lock(mutex);
     const auto found = hashes.find(&type);
-    return found != hashes.end() ? found->second : hashes.emplace(&type, ComputeHash(type)).first->second;
+    return found != hashes.end()
+               ? found->second
+               : hashes.emplace(&type, DefinitionHash(type.Name(), type.IdlText())).first->second;
 }
 
 }  // namespace Rabit

@@ -35,13 +35,17 @@ void BeatContents::Begin(std::vector<std::uint8_t> offers, std::size_t states)
 
 std::optional<BeatContents::Duration> BeatContents::QuestionDue() const
 {
-    if (_peers.Missing().IsEmpty() && _questions.IsEmpty())
+    if (_peers.Missing().IsEmpty() && _questions.IsEmpty() && _types.IsEmpty())
     {
         return std::nullopt;
     }
-    const std::optional<Duration> offers = _peers.Missing().NextDue();
-    const std::optional<Duration> states = _questions.DueSince();
-    return offers && states ? std::min(offers, states) : offers ? offers : states;
+    std::optional<Duration> first;
+    for (const std::optional<Duration> &due :
+         {_peers.Missing().NextDue(), _questions.DueSince(), _types.NextDue()})
+    {
+        first = due ? std::min(first.value_or(*due), *due) : first;
+    }
+    return first;
 }
 
 std::size_t BeatContents::SizeOfPart(Duration now, std::size_t room) const
@@ -66,6 +70,7 @@ std::size_t BeatContents::Size(Duration now) const
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
     const std::size_t size = BeatFormat::Empty + (_isTool ? BeatFormat::ToolMark : 0) +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
+                             _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
                              _delays.Due(now, BeatFormat::MostDelays) * BeatFormat::Delay +
                              std::min(_states.size(), BeatFormat::MostStates) * BeatFormat::State;
@@ -79,6 +84,7 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     std::size_t room = std::min(most, BeatFormat::Largest);
     room -= std::min(room, BeatFormat::Empty + (_isTool ? BeatFormat::ToolMark : 0));
     AddWants(beat, now, room);
+    AddTypes(beat, now, room);
     beat.echoes = _peers.NextEchoes(now, std::min(BeatFormat::MostEchoes, room / BeatFormat::Echo));
     room -= beat.echoes.size() * BeatFormat::Echo;
     beat.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
@@ -119,6 +125,21 @@ void BeatContents::AddWants(Gateway::Beat &beat, Duration now, std::size_t &room
         wanted->states = std::move(question.States);
     }
     room += (count - beat.wants.size()) * longest;
+}
+
+void BeatContents::AddTypes(Gateway::Beat &beat, Duration now, std::size_t &room)
+{
+    const std::size_t count = std::min(BeatFormat::MostTypeQuestions, room / BeatFormat::TypeQuestion);
+    for (const TypeQuestions::Question &question : _types.Take(now, count))
+    {
+        const PeerTable::Peer *peer = _peers.Find(question.Node);
+        if (peer != nullptr && peer->State != Gateway::NodeState::LOST)
+        {
+            BeatExtensions::Ask(
+                beat, {.Node = peer->Tag, .Definition = question.Definition, .From = question.From});
+            room -= BeatFormat::TypeQuestion;
+        }
+    }
 }
 
 void BeatContents::AddPart(Gateway::Beat &beat, Duration now, std::size_t &room)

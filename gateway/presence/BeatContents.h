@@ -14,6 +14,7 @@
 #include "presence/OffersAnswer.h"
 #include "presence/PeerTable.h"
 #include "presence/StateQuestions.h"
+#include "types/TypeQuestions.h"
 
 namespace Rabit
 {
@@ -39,6 +40,8 @@ public:
 
     OffersAnswer &Answer() { return _answer; }
     StateQuestions &Questions() { return _questions; }
+    TypeQuestions &Types() { return _types; }
+    const TypeQuestions &Types() const { return _types; }
     DelayNotes &Delays() { return _delays; }
     std::size_t States() const { return _states.size(); }
     void SetStateVersion(std::size_t state, std::uint32_t version) { _states.at(state) = version; }
@@ -64,6 +67,7 @@ public:
     void Fill(Gateway::Beat &beat, Duration now, std::size_t most);
 
 private:
+    void AddTypes(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddWants(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddPart(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddStates(Gateway::Beat &beat, std::size_t &room);
@@ -72,6 +76,7 @@ private:
 
     OffersAnswer _answer;
     StateQuestions _questions;
+    TypeQuestions _types;
     DelayNotes _delays;
     PeerTable &_peers;
     bool _isTool = false;

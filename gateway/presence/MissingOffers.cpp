@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "presence/TakeTurns.h"
+#include "names/TakeTurns.h"
 
 namespace Rabit
 {

@@ -1,6 +1,6 @@
 #include "presence/OffersCollector.h"
 
-#include <algorithm>
+#include <span>
 
 #include "wire/Announcements.h"
 
@@ -9,24 +9,17 @@ namespace Rabit
 
 OffersCollector::Outcome OffersCollector::Add(std::uint32_t digest, const Gateway::AnnouncementPart &part)
 {
-    if (digest != _digest || part.of != _bytes.size())
+    if (digest != _digest || part.of != _parts.Size())
     {
         _digest = digest;
-        _bytes.assign(part.of, 0);
-        _have.assign(part.of, false);
-        _lacking = part.of;
+        _parts.Begin(part.of);
     }
-    for (std::size_t i = 0; i < part.bytes.size() && part.first + i < _bytes.size(); ++i)
-    {
-        _bytes[part.first + i] = part.bytes[i];
-        _lacking -= _have[part.first + i] ? 0 : 1;
-        _have[part.first + i] = true;
-    }
-    if (_lacking > 0)
+    _parts.Add(part.first, std::span<const std::uint8_t>(part.bytes.data(), part.bytes.size()));
+    if (!_parts.IsComplete())
     {
         return Outcome::Incomplete;
     }
-    if (Announcements::DigestOf(_bytes) != digest)
+    if (Announcements::DigestOf(_parts.Bytes()) != digest)
     {
         *this = {};
         return Outcome::Wrong;
@@ -36,9 +29,7 @@ OffersCollector::Outcome OffersCollector::Add(std::uint32_t digest, const Gatewa
 
 std::uint16_t OffersCollector::FirstLacking(std::uint32_t digest) const
 {
-    return digest != _digest
-               ? std::uint16_t{0}
-               : static_cast<std::uint16_t>(std::find(_have.begin(), _have.end(), false) - _have.begin());
+    return digest != _digest ? std::uint16_t{0} : static_cast<std::uint16_t>(_parts.FirstLacking());
 }
 
 }  // namespace Rabit

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "gateway.idl.h"
+#include "wire/PartsCollector.h"
 
 namespace Rabit
 {
@@ -23,15 +23,13 @@ public:
 
     // The part must lie within the whole, and that within the bounds of an announcement.
     Outcome Add(std::uint32_t digest, const Gateway::AnnouncementPart &part);
-    const std::vector<std::uint8_t> &Bytes() const { return _bytes; }
+    const std::vector<std::uint8_t> &Bytes() const { return _parts.Bytes(); }
     // The first byte that is lacking of that announcement.
     std::uint16_t FirstLacking(std::uint32_t digest) const;
 
 private:
     std::uint32_t _digest = 0;
-    std::vector<std::uint8_t> _bytes;
-    std::vector<bool> _have;
-    std::size_t _lacking = 0;  // how many bytes
+    PartsCollector _parts;
 };
 
 }  // namespace Rabit

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "names/NodeTag.h"
-#include "presence/TakeTurns.h"
+#include "names/TakeTurns.h"
 #include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
 #include "wire/BeatExtensions.h"

@@ -109,6 +109,7 @@ void Presence::Served::Clear()
     StatesTold.clear();
     StatesAsked.clear();
     Delays.clear();
+    TypesAsked.clear();
 }
 
 const Presence::Served &Presence::Service(Duration now)
@@ -175,12 +176,12 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
     if (peer.IsTool)
     {
         TakeDelays(heard, peer, served);
-        TakeQuestions(heard.Beat, now, served);
+        TakeQuestions(heard, now, served);
         return;
     }
     _owesNews |= _contents.Delays().Note(peer.Tag, peer.Clock.LastDelay(), heard.Arrival);
     TakeDelays(heard, peer, served);
-    TakeQuestions(heard.Beat, now, served);
+    TakeQuestions(heard, now, served);
     if (!heard.Beat.states.empty() || change.Offers)
     {
         served.StatesTold.push_back(heard.Node);
@@ -196,8 +197,19 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
     }
 }
 
-void Presence::TakeQuestions(const Gateway::Beat &beat, Duration now, Served &served)
+void Presence::TakeQuestions(const HeardBeat &heard, Duration now, Served &served)
 {
+    const Gateway::Beat &beat = heard.Beat;
+    if (!beat.wants.empty())
+    {
+        for (const BeatExtensions::TypeQuestion &question : BeatExtensions::TypeQuestionsIn(beat))
+        {
+            if (question.Node == _tag)
+            {
+                served.TypesAsked.emplace_back(heard.Node, question);
+            }
+        }
+    }
     for (const Gateway::Wanted &wanted : beat.wants)
     {
         if (wanted.node != _tag)

@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "clocks/SourceClock.h"
@@ -24,6 +25,7 @@
 #include "presence/PresenceInbox.h"
 #include "presence/ReaderWatch.h"
 #include "presence/RemoteQueues.h"
+#include "wire/BeatExtensions.h"
 #include "wire/BeatFormat.h"
 
 namespace Rabit
@@ -72,10 +74,13 @@ public:
         // States of this node that others have asked for, by their places (Announcements::StateIndexOf).
         std::vector<std::size_t> StatesAsked;
         std::vector<DelayHeard> Delays;
+        // Who asks for which text of a type.
+        std::vector<std::pair<std::string, BeatExtensions::TypeQuestion>> TypesAsked;
 
         bool Any() const
         {
-            return Change.Any() || !StatesTold.empty() || !StatesAsked.empty() || !Delays.empty();
+            return Change.Any() || !StatesTold.empty() || !StatesAsked.empty() || !Delays.empty() ||
+                   !TypesAsked.empty();
         }
         void Clear();
     };
@@ -120,6 +125,9 @@ public:
     {
         _contents.Questions().Set(node, states, soon, now);
     }
+    // The texts of types that are lacking, for the beats to ask for.
+    TypeQuestions &TypesLacking() { return _contents.Types(); }
+    const TypeQuestions &TypesLacking() const { return _contents.Types(); }
     // A datagram of that node that is no beat came so much later than its quickest, for the beats to tell.
     void NoteDelay(std::string_view node, Duration delay, Duration arrivedAt);
 
@@ -134,7 +142,7 @@ private:
     void TakeIn(const PresenceInbox::Contents &inbox, Duration now, Served &served);
     void TakeIn(const HeardBeat &heard, Duration now, Served &served);
     void TakeIn(const PeerEvent &event, Duration now, Served &served);
-    void TakeQuestions(const Gateway::Beat &beat, Duration now, Served &served);
+    void TakeQuestions(const HeardBeat &heard, Duration now, Served &served);
     void TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, Served &served) const;
     void Note(const PeerTable::Change &change, const std::string &node, Served &served);
     void Publish(const std::string &node, const PeerTable::Change &change);

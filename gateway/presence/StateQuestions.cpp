@@ -1,6 +1,6 @@
 #include "presence/StateQuestions.h"
 
-#include "presence/TakeTurns.h"
+#include "names/TakeTurns.h"
 
 namespace Rabit
 {

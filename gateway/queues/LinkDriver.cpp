@@ -67,6 +67,12 @@ std::uint64_t LinkDriver::Incarnation() const
     return _links->Incarnation();
 }
 
+void LinkDriver::SetOtherFrames(std::uint8_t firstByte, OtherFrames take)
+{
+    _otherByte = firstByte;
+    _otherFrames = std::move(take);
+}
+
 void LinkDriver::Open(TransportSession &session)
 {
     _session = &session;
@@ -110,6 +116,11 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
     if (!IsNodeName(info.Node) || !OpenLinkSample(bytes, encoded) || encoded.empty())
     {
         ++_malformed;
+        return;
+    }
+    if (_otherFrames && encoded[0] == _otherByte)
+    {
+        _otherFrames(info.Node, encoded);
         return;
     }
     if (encoded[0] != LinkVersion)

@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -50,6 +51,12 @@ public:
 
     // The present life of this node.
     std::uint64_t Incarnation() const;
+    // What is to be done with frames that begin with that byte, which is no version of the links: called on
+    // the transport's threads, with the node that has written it. Before Open.
+    using OtherFrames = std::function<void(std::string_view node, std::span<const std::uint8_t> frame)>;
+    void SetOtherFrames(std::uint8_t firstByte, OtherFrames take);
+    // Sends such a frame to that node alone; gateway's thread only. A loss is for who asked to notice.
+    void SendOther(const std::string &node, std::span<const std::uint8_t> frame);
     // Starts to receive, and keeps the session for writing until Close. Throws TransportError.
     void Open(TransportSession &session);
     // Sends nothing more and receives nothing more. What has no outcome yet gets one. For good.
@@ -152,6 +159,9 @@ private:
     LinkDatagrams _outbox;
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
+
+    std::uint8_t _otherByte = LinkVersion;
+    OtherFrames _otherFrames;
 
     DelayMeter _delays;
     std::atomic<bool> _anyDelays{false};  // changed with the mutex held

@@ -97,6 +97,17 @@ void LinkDriver::WillServe(Duration at)
     _nextService = std::min(_nextService, at);
 }
 
+void LinkDriver::SendOther(const std::string &node, std::span<const std::uint8_t> frame)
+{
+    MakeWriter();
+    if (_writer)
+    {
+        static_cast<void>(
+            _writer->WriteTo(node, FrameBytesEncoder(frame),
+                             GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds())));
+    }
+}
+
 void LinkDriver::MakeWriter()
 {
     if (!_writer && _session != nullptr)

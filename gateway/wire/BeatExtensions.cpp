@@ -3,31 +3,16 @@
 #include <algorithm>
 #include <span>
 
+#include "wire/LittleEndian.h"
+
 namespace Rabit::BeatExtensions
 {
+
+using LittleEndian::Put;
+using LittleEndian::Take;
+
 namespace
 {
-
-template <typename Number>
-void Put(Number number, std::vector<std::uint8_t> &bytes)
-{
-    for (std::size_t i = 0; i < sizeof number; ++i)
-    {
-        bytes.push_back(static_cast<std::uint8_t>(number >> 8 * i));
-    }
-}
-
-template <typename Number>
-Number Take(std::span<const std::uint8_t> &bytes)
-{
-    Number number = 0;
-    for (std::size_t i = 0; i < sizeof number; ++i)
-    {
-        number |= static_cast<Number>(bytes[i]) << 8 * i;
-    }
-    bytes = bytes.subspan(sizeof number);
-    return number;
-}
 
 Gateway::Wanted &Add(Gateway::Beat &beat, std::uint16_t kind)
 {

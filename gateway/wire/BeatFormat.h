@@ -35,6 +35,10 @@ inline constexpr std::size_t MostDelays = 16;
 // What tools say that they are (wire/BeatExtensions.h).
 inline constexpr std::size_t ToolMark = Wanted(0);
 
+// A question for a type.
+inline constexpr std::size_t TypeQuestion = Wanted(16);
+inline constexpr std::size_t MostTypeQuestions = 4;
+
 // Wanted::offers: the announcement is not lacking.
 inline constexpr std::uint16_t NotLacking = 0xffff;
 

@@ -5,6 +5,7 @@
 #include <rabit/idl/CdrWriter.h>
 #include <rabit/idl/GeneratedMessageType.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace Rabit
@@ -15,6 +16,28 @@ namespace
 // Of the sequence.
 constexpr std::size_t LengthSize = 4;
 
+std::size_t SizeOfSample(std::size_t frame)
+{
+    return Idl::SampleSize(LengthSize + frame);
+}
+
+// All of a sample but its frame, whose bytes it returns for filling; the buffer is as large as the sample.
+std::span<std::uint8_t> WrapFrame(std::span<std::uint8_t> buffer, std::size_t size)
+{
+    for (std::size_t i = 0; i < LengthSize; ++i)
+    {
+        buffer[Idl::EncapsulationSize + i] = static_cast<std::uint8_t>(size >> (8 * i));
+    }
+    const std::size_t head = Idl::EncapsulationSize + LengthSize;
+    const std::size_t padding = buffer.size() - head - size;
+    for (std::size_t i = 0; i < padding; ++i)
+    {
+        buffer[head + size + i] = 0;
+    }
+    Idl::WriteEncapsulation(buffer, padding);
+    return buffer.subspan(head, size);
+}
+
 }  // namespace
 
 LinkSampleEncoder::LinkSampleEncoder(const LinkFrame &frame)
@@ -24,7 +47,7 @@ LinkSampleEncoder::LinkSampleEncoder(const LinkFrame &frame)
 
 std::size_t LinkSampleEncoder::EncodedSize() const
 {
-    return Idl::SampleSize(LengthSize + _size);
+    return SizeOfSample(_size);
 }
 
 bool LinkSampleEncoder::Encode(std::span<std::uint8_t> buffer) const
@@ -33,18 +56,22 @@ bool LinkSampleEncoder::Encode(std::span<std::uint8_t> buffer) const
     {
         return false;
     }
-    for (std::size_t i = 0; i < LengthSize; ++i)
+    LinkFrameCodec::Encode(_frame, WrapFrame(buffer, _size));
+    return true;
+}
+
+std::size_t FrameBytesEncoder::EncodedSize() const
+{
+    return SizeOfSample(_frame.size());
+}
+
+bool FrameBytesEncoder::Encode(std::span<std::uint8_t> buffer) const
+{
+    if (buffer.size() != EncodedSize())
     {
-        buffer[Idl::EncapsulationSize + i] = static_cast<std::uint8_t>(_size >> (8 * i));
+        return false;
     }
-    const std::size_t head = Idl::EncapsulationSize + LengthSize;
-    LinkFrameCodec::Encode(_frame, buffer.subspan(head, _size));
-    const std::size_t padding = buffer.size() - head - _size;
-    for (std::size_t i = 0; i < padding; ++i)
-    {
-        buffer[head + _size + i] = 0;
-    }
-    Idl::WriteEncapsulation(buffer, padding);
+    std::copy(_frame.begin(), _frame.end(), WrapFrame(buffer, _frame.size()).begin());
     return true;
 }
 

@@ -25,6 +25,19 @@ private:
     const std::size_t _size;  // of the frame
 };
 
+// The same of a frame that is encoded already.
+class FrameBytesEncoder final : public SampleEncoder
+{
+public:
+    explicit FrameBytesEncoder(std::span<const std::uint8_t> frame) : _frame(frame) {}
+
+    std::size_t EncodedSize() const override;
+    bool Encode(std::span<std::uint8_t> buffer) const override;
+
+private:
+    const std::span<const std::uint8_t> _frame;
+};
+
 // The frame in such a sample, which a LinkFrameCodec may decode. False if the bytes are no such sample.
 bool OpenLinkSample(SampleBytes bytes, std::span<const std::uint8_t> &frame);
 

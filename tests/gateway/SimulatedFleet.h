@@ -44,10 +44,12 @@ public:
           Workspace(Clock),
           Reactor(Workspace)
     {
-        Reactor.AddManager(std::make_unique<GatewayManager>(
+        auto gateway = std::make_unique<GatewayManager>(
             config, std::make_shared<SimulatedTransport>(network), Workspace,
             [engine = std::mt19937_64(static_cast<std::uint64_t>(monotonic.count()))]() mutable
-            { return engine(); }));
+            { return engine(); });
+        Manager = gateway.get();
+        Reactor.AddManager(std::move(gateway));
     }
 
     IdleManager &AddIdleManager(const std::string &name)
@@ -118,6 +120,7 @@ public:
     const std::shared_ptr<ManualClock> Clock;
     RabitWorkspace Workspace;
     RabitSteppedReactor Reactor;
+    GatewayManager *Manager = nullptr;
 };
 
 // Where endpoints are told at once to whoever lacks them, and not in rounds: for what has to be measured from

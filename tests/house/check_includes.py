@@ -21,12 +21,13 @@ ROOMS = {
     "incarnation": ["links"],
     "wire": ["names", "links"],
     "configuration": ["air", "names", "wire"],
-    "presence": ["names", "clocks", "wire"],
+    "types": ["names", "wire"],
+    "presence": ["names", "clocks", "wire", "types"],
     "mirrors": ["air", "names", "clocks", "wire", "presence"],
     "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
     "report": ["names", "wire", "presence", "mirrors", "queues"],
-    "manager": ["air", "names", "clocks", "configuration", "incarnation", "wire", "links", "presence", "mirrors", "queues",
-                "report"],
+    "manager": ["air", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "mirrors",
+                "queues", "report"],
 }
 
 # What a header's path says about where it belongs. The first pattern that fits holds.

@@ -9,6 +9,8 @@
 
 namespace Rabit
 {
+class Exploration;
+class FleetExplorer;
 
 // Name of the local message (type Rabit::Gateway::Fleet, in rabit/gateway/Fleet.h) in which a gateway tells
 // what it knows, if the configuration gives it no name of its own.
@@ -60,6 +62,10 @@ public:
                    RabitWorkspace &workspace, RandomSource random = SystemRandom);
     ~GatewayManager() override;
 
+    // What this gateway knows of the others, and may be asked for while it runs, for programs that look at a
+    // fleet. As long as the manager lives; any thread.
+    FleetExplorer &Explorer();
+
     // A gateway that ran before joins again, in a new life.
     void Startup() final;
     void ExecuteUnitOfWork() final;
@@ -72,6 +78,7 @@ private:
     const GatewayConfig _config;
     const std::shared_ptr<Transport> _transport;
     const RandomSource _random;
+    std::unique_ptr<Exploration> _exploration;
     std::unique_ptr<Parts> _parts;  // null if joining again failed
 };
 

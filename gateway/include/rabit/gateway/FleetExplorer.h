@@ -1,0 +1,50 @@
+#pragma once
+
+#include <rabit/gateway/Fleet.h>
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Rabit
+{
+
+// For programs that look at a fleet whose messages they were not built with: what each node offers, the types
+// of that as IDL text, and subscriptions made while the gateway runs. GatewayManager::Explorer gives it; it
+// lives as long as the gateway. All functions may be called from any thread; the gateway acts on them a
+// moment later.
+class FleetExplorer
+{
+public:
+    virtual ~FleetExplorer() = default;
+
+    struct Node
+    {
+        std::string Name;
+        Gateway::NodeState State = Gateway::NodeState::LOST;
+        std::uint64_t Incarnation = 0;
+        // Empty: its announcement has not come. Names in it are valid ones, but for the types', which may be
+        // any text.
+        std::optional<Gateway::Announcement> Offers;
+    };
+    // The other nodes, by name.
+    virtual std::vector<Node> Nodes() const = 0;
+
+    // Asks that node for the text of a type, by the definition hash that its announcement gives. It goes on
+    // asking, ever more seldom, until the text comes or another node is to be asked for it.
+    virtual void AskForType(const std::string &node, const std::string &type, std::uint64_t definition) = 0;
+    // The text of that hash, once it has come.
+    virtual std::optional<std::string> TypeText(std::uint64_t definition) const = 0;
+
+    // As if the rule stood in the configuration. Its type must be in the MessageTypeRegistry
+    // (std::invalid_argument if not). A message that is subscribed to already stays as it is.
+    virtual void Subscribe(const SubscribeRule &rule) = 0;
+
+    // Called on the gateway's thread when something of the above has changed; must be quick.
+    virtual void SetOnChange(std::function<void()> onChange) = 0;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,94 @@
+#include "manager/Exploration.h"
+
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <stdexcept>
+
+namespace Rabit
+{
+
+std::vector<FleetExplorer::Node> Exploration::Nodes() const
+{
+    const std::lock_guard lock(_mutex);
+    return _nodes;
+}
+
+void Exploration::AskForType(const std::string &node, const std::string &type, std::uint64_t definition)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        _requests.Types.push_back({node, type, definition});
+    }
+    _wake();
+}
+
+std::optional<std::string> Exploration::TypeText(std::uint64_t definition) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _texts.find(definition);
+    return found == _texts.end() ? std::nullopt : std::optional(found->second);
+}
+
+void Exploration::Subscribe(const SubscribeRule &rule)
+{
+    if (MessageTypeRegistry::Find(rule.Type) == nullptr)
+    {
+        throw std::invalid_argument("subscribe " + rule.Message + ": no type `" + rule.Type +
+                                    "` is registered");
+    }
+    {
+        const std::lock_guard lock(_mutex);
+        _requests.Subscriptions.push_back(rule);
+    }
+    _wake();
+}
+
+void Exploration::SetOnChange(std::function<void()> onChange)
+{
+    const std::lock_guard lock(_mutex);
+    _onChange = std::move(onChange);
+}
+
+Exploration::Requests Exploration::TakeRequests()
+{
+    const std::lock_guard lock(_mutex);
+    return std::exchange(_requests, {});
+}
+
+void Exploration::SetNodes(const PeerTable &peers)
+{
+    std::vector<Node> nodes;
+    for (const PeerTable::Peer *peer : peers.Heard())
+    {
+        nodes.push_back({peer->Node, peer->State, peer->Incarnation, peer->Offers});
+    }
+    {
+        const std::lock_guard lock(_mutex);
+        _nodes = std::move(nodes);
+    }
+    Tell();
+}
+
+void Exploration::AddText(std::uint64_t definition, std::string text)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        _texts[definition] = std::move(text);
+    }
+    Tell();
+}
+
+void Exploration::Tell()
+{
+    std::function<void()> onChange;
+    {
+        const std::lock_guard lock(_mutex);
+        onChange = _onChange;
+    }
+    if (onChange)
+    {
+        onChange();
+    }
+}
+
+}  // namespace Rabit

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <rabit/gateway/FleetExplorer.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "presence/PeerTable.h"
+#include "types/TypeQuestions.h"
+
+namespace Rabit
+{
+
+// A FleetExplorer, and the gateway's side of it. Until somebody wants it the gateway tells it nothing.
+// Thread-safe.
+class Exploration final : public FleetExplorer
+{
+public:
+    // `wake` makes the gateway's thread call TakeRequests soon.
+    explicit Exploration(std::function<void()> wake) : _wake(std::move(wake)) {}
+
+    void BeWanted() { _wanted = true; }
+    bool IsWanted() const { return _wanted; }
+
+    std::vector<Node> Nodes() const override;
+    void AskForType(const std::string &node, const std::string &type, std::uint64_t definition) override;
+    std::optional<std::string> TypeText(std::uint64_t definition) const override;
+    void Subscribe(const SubscribeRule &rule) override;
+    void SetOnChange(std::function<void()> onChange) override;
+
+    struct Requests
+    {
+        std::vector<TypeQuestions::Wanted> Types;
+        std::vector<SubscribeRule> Subscriptions;
+
+        bool Any() const { return !Types.empty() || !Subscriptions.empty(); }
+    };
+    // Gateway's thread only, as those that follow.
+    Requests TakeRequests();
+    void SetNodes(const PeerTable &peers);
+    void AddText(std::uint64_t definition, std::string text);
+
+private:
+    void Tell();
+
+    const std::function<void()> _wake;
+    std::atomic<bool> _wanted{false};
+    mutable std::mutex _mutex;
+    std::vector<Node> _nodes;
+    std::map<std::uint64_t, std::string> _texts;
+    Requests _requests;
+    std::function<void()> _onChange;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+// Parts of the IDL texts of types, as they go to who has asked for them: frames of the topic rabit/Link whose
+// first byte is no version of the links.
+namespace Rabit::TypeFrames
+{
+
+inline constexpr std::uint8_t FirstByte = 'T';
+
+// Bytes of a text at most; what is larger is neither handed out nor taken.
+inline constexpr std::size_t LargestText = 128 * 1024;
+
+struct Part
+{
+    std::uint64_t Definition = 0;         // hash of the type, as in announcements
+    std::uint32_t First = 0;              // of the text's bytes, counted from 0
+    std::uint32_t Of = 0;                 // bytes of the whole
+    std::span<const std::uint8_t> Bytes;  // at least one
+};
+
+// Of a frame, beside the bytes of the text.
+inline constexpr std::size_t HeaderSize = 20;
+
+std::vector<std::uint8_t> Encode(const Part &part);
+// The bytes are views into the frame. Empty if it is no such frame, or says what cannot be.
+std::optional<Part> Decode(std::span<const std::uint8_t> frame);
+
+}  // namespace Rabit::TypeFrames

@@ -1,0 +1,243 @@
+// What a program learns of a fleet whose messages it was not built with: whole nodes on the simulated
+// network.
+#include <gmock/gmock.h>
+#include <rabit/gateway/FleetExplorer.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "HandNode.h"
+#include "SimulatedFleet.h"
+#include "names/TypeDefinition.h"
+#include "wire/BeatExtensions.h"
+#include "wire/LinkSampleCodec.h"
+#include "wire/LinkTopics.h"
+#include "wire/TypeFrames.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using ::testing::SizeIs;
+
+std::uint64_t HashOf(const std::string &type)
+{
+    return DefinitionHash(*MessageTypeRegistry::Find(type));
+}
+
+class ExplorerTest : public ::testing::Test
+{
+protected:
+    ExplorerTest() : uav(fleet.Add(AircraftConfig("uav1"))) { fleet.RunFor(3s); }
+
+    // A tool, and its explorer.
+    FleetExplorer &AddTool(const std::function<void(GatewayConfig &)> &change = {})
+    {
+        GatewayConfig config;
+        config.Node = "tool";
+        config.Tool.emplace();
+        if (change)
+        {
+            change(config);
+        }
+        tool = &fleet.Add(config);
+        return tool->Manager->Explorer();
+    }
+
+    bool Get(FleetExplorer &explorer, const std::string &type, std::chrono::nanoseconds limit = 10s)
+    {
+        explorer.AskForType("uav1", type, HashOf(type));
+        return fleet.RunUntil([&] { return explorer.TypeText(HashOf(type)).has_value(); }, limit);
+    }
+
+    SimulatedFleet fleet;
+    SimulatedNode &uav;
+    SimulatedNode *tool = nullptr;
+};
+
+TEST_F(ExplorerTest, TellsWhatEachNodeAnnounces)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    ASSERT_THAT(explorer.Nodes(), SizeIs(1));
+    const FleetExplorer::Node node = explorer.Nodes().front();
+    EXPECT_EQ(node.Name, "uav1");
+    EXPECT_EQ(node.State, Gateway::NodeState::UP);
+    ASSERT_TRUE(node.Offers.has_value());
+    EXPECT_EQ(node.Offers->publishes[0].message, "Pose");
+    EXPECT_EQ(node.Offers->accepts[0].queue, "MissionControl");
+}
+
+TEST_F(ExplorerTest, GetsTheTextOfATypeThatANodePublishesAcceptsOrKnows)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(1s);
+    for (const char *type : {"Uav::Pose", "Uav::Goto", "Uav::CommandAck"})
+    {
+        ASSERT_TRUE(Get(explorer, type)) << type;
+        EXPECT_EQ(explorer.TypeText(HashOf(type)), MessageTypeRegistry::Find(type)->IdlText());
+    }
+}
+
+TEST_F(ExplorerTest, ATextComesWithinASecond)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    EXPECT_TRUE(Get(explorer, "Uav::MissionState", 1s));
+}
+
+TEST_F(ExplorerTest, ATextComesOverALinkThatLosesHalf)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    SimulatedFaults half;
+    half.Loss = 0.5;
+    fleet.Network.SetFaults("uav1", "tool", half);
+    fleet.Network.SetFaults("tool", "uav1", half);
+    EXPECT_TRUE(Get(explorer, "Uav::MissionState", 60s));
+}
+
+TEST_F(ExplorerTest, OfAHashThatNobodyHasNothingComesAndNothingElseSuffers)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(1s);
+    explorer.AskForType("uav1", "Uav::Pose", 12345);
+    fleet.RunFor(30s);
+    EXPECT_FALSE(explorer.TypeText(12345).has_value());
+    EXPECT_TRUE(Get(explorer, "Uav::Pose"));
+}
+
+TEST_F(ExplorerTest, AnAnswerGoesToWhoAskedAlone)
+{
+    int frames = 0;
+    HandNode other(fleet.Network, "other", 1);
+    const auto reader = other.Session().CreateReader(
+        DescribeLinkTopic(), LinkTopicQos(), {}, [&frames](SampleBytes, const SampleInfo &) { ++frames; });
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    ASSERT_TRUE(Get(explorer, "Uav::Pose"));
+    EXPECT_EQ(frames, 0);
+}
+
+TEST_F(ExplorerTest, AnAnswerKeepsToTheBudgetOfTheRadio)
+{
+    GatewayConfig config = AircraftConfig("uav2");
+    config.Radio.Budget = 1000;
+    fleet.Add(config);
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(20s);
+    std::vector<std::uint64_t> wanted;
+    for (const std::string &type : MessageTypeRegistry::Names())
+    {
+        if (type.rfind("Uav::", 0) == 0)
+        {
+            wanted.push_back(HashOf(type));
+            explorer.AskForType("uav2", type, wanted.back());
+        }
+    }
+    ASSERT_GT(wanted.size(), 5u);
+    const auto sent = [this] { return fleet.Network.Sent("uav2").Bytes; };
+    for (int second = 0; second < 10; ++second)
+    {
+        const std::uint64_t before = sent();
+        fleet.RunFor(1s);
+        EXPECT_LE(sent() - before, 1000u) << second;
+    }
+    EXPECT_TRUE(fleet.RunUntil(
+        [&]
+        {
+            return std::all_of(wanted.begin(), wanted.end(),
+                               [&](std::uint64_t definition)
+                               { return explorer.TypeText(definition).has_value(); });
+        },
+        120s));
+}
+
+// A node that answers what it is asked for, and what it is not, with what it likes.
+TEST_F(ExplorerTest, WhatStrangersAnswerIsCheckedAndBounded)
+{
+    FleetExplorer &explorer = AddTool();
+    HandNode liar(fleet.Network, "liar", 1);
+    const auto writer = liar.Session().CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
+    fleet.RunFor(2s);
+    explorer.AskForType("liar", "Uav::Pose", HashOf("Uav::Pose"));
+    fleet.RunFor(1s);
+    const auto answer = [&](std::uint64_t definition, const std::string &text, std::uint32_t of)
+    {
+        const auto *bytes = reinterpret_cast<const std::uint8_t *>(text.data());
+        const auto frame = TypeFrames::Encode(
+            {.Definition = definition, .First = 0, .Of = of, .Bytes = std::span(bytes, text.size())});
+        EXPECT_EQ(writer->WriteTo("tool", FrameBytesEncoder(frame), 1), WriteResult::Ok);
+    };
+    const std::uint64_t before = tool->Fleet().malformed;
+    answer(HashOf("Uav::Pose"), "module Uav { struct Pose { long lie; }; };", 42);
+    answer(HashOf("Uav::Goto"), "unasked", 7);
+    answer(HashOf("Uav::Pose"), "too large", 1u << 30);
+    fleet.RunFor(3s);
+    EXPECT_FALSE(explorer.TypeText(HashOf("Uav::Pose")).has_value());
+    EXPECT_FALSE(explorer.TypeText(HashOf("Uav::Goto")).has_value());
+    EXPECT_EQ(tool->Fleet().malformed, before + 3);
+    const std::string text = MessageTypeRegistry::Find("Uav::Pose")->IdlText();
+    answer(HashOf("Uav::Pose"), text, static_cast<std::uint32_t>(text.size()));
+    fleet.RunFor(1s);
+    EXPECT_EQ(explorer.TypeText(HashOf("Uav::Pose")), text);
+}
+
+TEST_F(ExplorerTest, SubscribesWhileItRunsAndHasTheLastStateAtOnce)
+{
+    const auto state = uav.Register<Uav::MissionState>("MissionState");
+    state->PostMessage();
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(5s);
+    explorer.Subscribe({.Message = "MissionState", .Type = "Uav::MissionState"});
+    const auto received = tool->Register<Uav::MissionState>("uav1/MissionState");
+    EXPECT_TRUE(fleet.RunUntil([&] { return received->FetchMessage(); }, 1s));
+    state->PostMessage();
+    EXPECT_TRUE(fleet.RunUntil([&] { return received->FetchMessage(); }, 1s));
+}
+
+TEST_F(ExplorerTest, AnEarlierSubscriptionGoesOnWhenOneIsAdded)
+{
+    const auto state = uav.Register<Uav::MissionState>("MissionState");
+    const auto pose = uav.Register<Uav::Pose>("Pose");
+    state->PostMessage();
+    FleetExplorer &explorer =
+        AddTool([](GatewayConfig &config)
+                { config.Subscribe.push_back({.Message = "MissionState", .Type = "Uav::MissionState"}); });
+    const auto received = tool->Register<Uav::MissionState>("uav1/MissionState");
+    const auto receivedPose = tool->Register<Uav::Pose>("uav1/Pose");
+    fleet.RunFor(5s);
+    ASSERT_TRUE(received->FetchMessage());
+    explorer.Subscribe({.Message = "Pose", .Type = "Uav::Pose"});
+    fleet.RunFor(2s);
+    EXPECT_FALSE(received->FetchMessage()) << "posted again";
+    pose->PostMessage();
+    state->PostMessage();
+    fleet.RunFor(2s);
+    EXPECT_TRUE(received->FetchMessage());
+    EXPECT_TRUE(receivedPose->FetchMessage());
+}
+
+TEST_F(ExplorerTest, ASubscriptionToATypeThatIsNotThereIsAMistakeOfTheCaller)
+{
+    FleetExplorer &explorer = AddTool();
+    EXPECT_THROW(explorer.Subscribe({.Message = "Pose", .Type = "Uav::Poze"}), std::invalid_argument);
+}
+
+TEST_F(ExplorerTest, SaysWhenSomethingIsNew)
+{
+    FleetExplorer &explorer = AddTool();
+    int changes = 0;
+    explorer.SetOnChange([&changes] { ++changes; });
+    fleet.RunFor(2s);
+    EXPECT_GT(changes, 0);
+    const int before = changes;
+    ASSERT_TRUE(Get(explorer, "Uav::Pose"));
+    EXPECT_GT(changes, before);
+}
+
+}  // namespace
+}  // namespace Rabit
