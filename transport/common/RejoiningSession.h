@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "common/AddressWatch.h"
+#include "common/DiscoveryRate.h"
 #include "common/DuplicateAddresses.h"
 #include "common/HandlerGate.h"
 #include "common/HostNetworks.h"
@@ -59,6 +60,7 @@ public:
                                                   SampleHandler handler) override;
     TransportCounters Counters() const override;
     std::vector<SettingsProblem> NetworkProblems() const override;
+    void SetDiscoveryRate(double bytesPerSecond) override { _rate->Set(bytesPerSecond); }
 
     // Looks from now on, on a thread of the session, whenever the kernel tells of a change.
     void Watch();
@@ -90,6 +92,7 @@ private:
     const std::shared_ptr<RejoiningBackend> _backend;
     const Host _host;
     const std::shared_ptr<RejoiningShared> _shared;
+    const std::shared_ptr<DiscoveryRate> _rate = std::make_shared<DiscoveryRate>();
     HandlerGate _peerGate;
     TransportCounters _before;  // of the backend's sessions before this one; guarded by Structure
     mutable std::mutex _mutex;

@@ -27,15 +27,15 @@ struct RtpsSubmessage
     std::span<Byte> Body() const { return Whole.subspan(SubmessageHeaderSize); }
 };
 
-// Calls visit(submessage) with each. The message may be the beginning of one alone, and says what it wants:
-// nothing outside of it is touched.
+// Calls visit(submessage) with each that follows a header of that size. The message may be the beginning of
+// one alone, and says what it wants: nothing outside of it is touched.
 template <typename Byte, typename Visit>
-void VisitSubmessages(std::span<Byte> message, const Visit &visit)
+void VisitSubmessages(std::span<Byte> message, std::size_t header, const Visit &visit)
 {
     // 9.4.5.1.3: of all others a length of 0 means up to the end.
     constexpr std::uint8_t pad = 0x01;
     constexpr std::uint8_t timestamp = 0x09;
-    auto rest = message.subspan(std::min(RtpsHeaderSize, message.size()));
+    auto rest = message.subspan(std::min(header, message.size()));
     while (rest.size() >= SubmessageHeaderSize)
     {
         RtpsSubmessage<Byte> found{
@@ -48,6 +48,11 @@ void VisitSubmessages(std::span<Byte> message, const Visit &visit)
         visit(found);
         rest = rest.subspan(found.Whole.size());
     }
+}
+template <typename Byte, typename Visit>
+void VisitSubmessages(std::span<Byte> message, const Visit &visit)
+{
+    VisitSubmessages(message, RtpsHeaderSize, visit);
 }
 
 }  // namespace Rabit

@@ -150,7 +150,12 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
         case SubmessageKind::NackFrag:
         {
             const auto delivery = CheckDelivery(submessage);
-            return delivery ? JudgeDelivery(submessage, *delivery, passage) : Verdict::Drop;
+            if (!delivery)
+            {
+                return Verdict::Drop;
+            }
+            // What is said to several at once is of builtin endpoints, which all have by the same names.
+            return IsForOthers(passage) ? Verdict::Ignore : JudgeDelivery(submessage, *delivery, passage);
         }
         default:
             // Those that redirect answers (INFO_REPLY), which neither vendor sends, are among those that are
@@ -159,6 +164,11 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
                        ? Verdict::Ignore
                        : Verdict::Drop;
     }
+}
+
+bool RtpsGuard::IsForOthers(const Passage &passage) const
+{
+    return passage.Destination != GuidPrefix{} && _own != GuidPrefix{} && passage.Destination != _own;
 }
 
 RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const Delivery &delivery,

@@ -98,6 +98,7 @@ private:
     // What is left of the datagram; empty if nothing.
     std::span<std::uint8_t> Filter(Passage &passage);
     Verdict Judge(const Submessage &submessage, Passage &passage);
+    bool IsForOthers(const Passage &passage) const;
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     // Against what was said before.

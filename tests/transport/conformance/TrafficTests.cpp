@@ -1,7 +1,9 @@
 // What writing costs on the air, and that it is counted.
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "ConformanceTest.h"
 
@@ -68,6 +70,33 @@ TEST_P(Conformance, WhatGoesToEachReaderByItselfCostsThatOftenAndIsCounted)
 TEST_P(Conformance, WhatGoesToAllByMulticastCostsOnceAndIsCounted)
 {
     ExpectCostOfWriting(true, 1);
+}
+
+TEST_P(Conformance, WithLittleToSayForDiscoverySessionsFindAllOfEachOther)
+{
+    constexpr double Rate = 1000.0;
+    constexpr int Endpoints = 10;
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    writing->SetDiscoveryRate(Rate);
+    reading->SetDiscoveryRate(Rate);
+    std::vector<std::unique_ptr<TransportWriter>> writers;
+    std::vector<std::unique_ptr<TransportReader>> readers;
+    SampleRecorder recorder;
+    for (int i = 0; i < Endpoints; ++i)
+    {
+        const auto topic = TextTopic("Text" + std::to_string(i));
+        writers.push_back(writing->CreateWriter(topic, Telemetry(), {}));
+        readers.push_back(reading->CreateReader(topic, Telemetry(), {}, recorder.Handler()));
+    }
+    EXPECT_TRUE(Until(
+        [&]
+        {
+            return std::all_of(writers.begin(), writers.end(),
+                               [](const auto &writer) { return writer->MatchedReaders() == 1; }) &&
+                   std::all_of(readers.begin(), readers.end(),
+                               [](const auto &reader) { return reader->MatchedWriters() == 1; });
+        }));
 }
 
 void Conformance::ExpectThatOneNodeCanBeWrittenTo(bool multicast)

@@ -73,6 +73,19 @@ TEST_F(AnnouncementRoundsTest, WhoComesLaterIsAnsweredAsSoonAsTheFirst)
     EXPECT_EQ(Live(70s + 500ms, true), (std::vector{70100, 70300}));
 }
 
+TEST_F(AnnouncementRoundsTest, ThoseWhoComeOneAfterAnotherAreAnsweredMoreAndMoreSeldom)
+{
+    Live(1min, false);
+    std::vector<int> announced;
+    for (auto at = 60000ms; at < 64000ms; at += 200ms)
+    {
+        Rounds.OnPeer(Start + at);
+        const auto more = Live(at + 199ms, false);
+        announced.insert(announced.end(), more.begin(), more.end());
+    }
+    EXPECT_EQ(announced, (std::vector{60100, 60300, 60500, 60900, 61700, 63300}));
+}
+
 TEST_F(AnnouncementRoundsTest, WhatWasSaidToNewcomersJustBeforeNeedsNotBeSaidAgain)
 {
     Rounds.OnPeer(Start + 60ms);  // answered at 160

@@ -104,43 +104,6 @@ TEST(OutgoingMessage, AHeartbeatBesidesSomethingElseIsNotHeldWithIt)
     }
 }
 
-// What is said of an endpoint, for one reader of one peer.
-Bytes NewsFor(const GuidPrefix &peer, Rabit::Rtps::EntityId reader, std::int64_t number)
-{
-    Bytes body = DataBody(number, Bytes(40), Rabit::Rtps::PublicationsWriter);
-    for (std::size_t i = 0; i < 4; ++i)
-    {
-        body[4 + i] = static_cast<std::uint8_t>(reader >> (24 - 8 * i));
-    }
-    return Join({Header(), To(peer), Submessage(Data, body, HasData)});
-}
-
-TEST(OutgoingMessage, NewsOfEndpointsAreEqualWhomeverTheyAreFor)
-{
-    const auto first = ReadOutgoing(NewsFor(Sender, 0x000003c7, 1)).Endpoints;
-    ASSERT_TRUE(first.has_value());
-    EXPECT_EQ(first->Peer, Sender);
-    const auto second = ReadOutgoing(NewsFor(Other, 0, 1)).Endpoints;
-    ASSERT_TRUE(second.has_value());
-    EXPECT_EQ(second->Peer, Other);
-    EXPECT_EQ(second->Content, first->Content);
-    EXPECT_NE(ReadOutgoing(NewsFor(Sender, 0x000003c7, 2)).Endpoints->Content, first->Content);
-    EXPECT_FALSE(ReadOutgoing(Message(Data, DataBody(1), HasData)).Endpoints.has_value());
-    EXPECT_FALSE(ReadOutgoing(ParticipantMessage()).Endpoints.has_value());
-}
-
-TEST(OutgoingMessage, NewsForOneBecomeNewsForAll)
-{
-    const Bytes all = Rabit::FastDds::ForAll(NewsFor(Other, 0x000003c7, 1));
-    const auto news = ReadOutgoing(all).Endpoints;
-    ASSERT_TRUE(news.has_value());
-    EXPECT_EQ(news->Peer, GuidPrefix());
-    EXPECT_EQ(news->Content, ReadOutgoing(NewsFor(Other, 0x000003c7, 1)).Endpoints->Content);
-    Bytes body = DataBody(1, Bytes(40), Rabit::Rtps::PublicationsWriter);
-    std::fill_n(body.begin() + 4, 4, std::uint8_t{0});
-    EXPECT_EQ(all, Join({Header(), Submessage(Data, body, HasData)}));
-}
-
 TEST(OutgoingMessage, AcknowledgementsSayWhatTheyHaveAndWhetherTheyAsk)
 {
     const Bytes message =

@@ -83,6 +83,28 @@ TEST_F(RtpsGuardTest, WhoAnnouncesItselfAgainBeforeItHasSaidAnythingToUsIsAnswer
     EXPECT_FALSE(Guard.TakeReplyDue());
 }
 
+TEST_F(RtpsGuardTest, WhatIsForAnotherParticipantIsKeptFromTheVendor)
+{
+    Guard.Sending(Join({Header(Other), Submessage(Data, DataBody(1), 5)}));
+    const GuidPrefix third = {1, 15, 9};
+    const Bytes forUs = Join(
+        {Submessage(InfoDestination, Bytes(Other.begin(), Other.end())), Submessage(Data, DataBody(11), 5)});
+    const Bytes toThird = Submessage(InfoDestination, Bytes(third.begin(), third.end()));
+    const Bytes forThird = Submessage(Heartbeat, HeartbeatBody(1, 12, 1));
+    EXPECT_TRUE(Guard.Admit(Join({Header(), forUs, toThird, forThird})));
+    ASSERT_EQ(Guard.Handed.size(), 1u);
+    Bytes left = Join({Header(), forUs, toThird});
+    left.resize(left.size() + forThird.size());
+    constexpr std::uint8_t pad = 0x01;
+    left[left.size() - forThird.size()] = pad;
+    ASSERT_EQ(Guard.Handed[0].size(), left.size());
+    EXPECT_EQ(Guard.Handed[0][left.size() - forThird.size()], pad);
+    EXPECT_TRUE(std::equal(left.begin(), left.end() - static_cast<std::ptrdiff_t>(forThird.size()),
+                           Guard.Handed[0].begin()));
+    EXPECT_TRUE(Guard.Admit(Join({Header(), toThird, forThird})));
+    EXPECT_TRUE(Guard.Handed.empty());
+}
+
 TEST_F(RtpsGuardTest, OtherProtocolsAreStopped)
 {
     Bytes message = Message(Data, DataBody(11), 5);

@@ -33,7 +33,7 @@ void AnnouncementRounds::OnPeer(TimePoint now)
     // One that is due already is for this newcomer as well.
     if (!_answers.Due || _answers.Left < MostAnswers)
     {
-        _answers.Begin(now, _answerGap, MostAnswers);
+        _answers.Begin(now, std::max(_answerGap, _last + _spacing - now), MostAnswers);
     }
 }
 
@@ -55,10 +55,12 @@ bool AnnouncementRounds::Next(TimePoint now, bool unheard)
         _answers.Due.reset();
     }
     const Duration initialGap = _initial.Gap;
-    const bool initial = _initial.Pass(now) && now - _last >= initialGap / 2;
+    const bool initial = _initial.Pass(now) && now - _last >= initialGap;
     const bool announces = initial || (answers && (isFirstAnswer || unheard));
     if (announces)
     {
+        _spacing = now - _last >= Rest ? Duration(ShortestSpacing)
+                                       : std::min<Duration>(2 * _spacing, LongestSpacing);
         _last = now;
     }
     return announces;

@@ -22,6 +22,11 @@ public:
     static constexpr int InitialRounds = 5;
     // After a newcomer; the last a minute or two after it.
     static constexpr int MostAnswers = 10;
+    // Newcomers who come one after another, as over a thin radio, are answered together: no sooner than that
+    // after the last announcement, twice as long after each that followed one within Rest.
+    static constexpr std::chrono::milliseconds ShortestSpacing{100};
+    static constexpr std::chrono::milliseconds LongestSpacing{1600};
+    static constexpr std::chrono::milliseconds Rest{3200};
 
     // Begins when the participant was announced. `answerGap`: from a newcomer to the answer; best not the
     // same for all who answer.
@@ -49,6 +54,7 @@ private:
     Series _initial;
     Series _answers;
     TimePoint _last;  // time that it was announced
+    Duration _spacing = ShortestSpacing;
 };
 
 }  // namespace Rabit::Cyclone

@@ -25,8 +25,9 @@ using namespace Cyclone;
 class CycloneSession final : public BackendSession
 {
 public:
-    CycloneSession(const TransportSettings &settings, PeerHandler onPeer)
-        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer)))
+    CycloneSession(const TransportSettings &settings, PeerHandler onPeer,
+                   std::shared_ptr<const DiscoveryRate> rate)
+        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer), std::move(rate)))
     {
     }
     ~CycloneSession() override { _core->Close(); }
@@ -54,9 +55,10 @@ private:
 class CycloneBackend final : public RejoiningBackend
 {
 public:
-    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer) override
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
+                                         std::shared_ptr<const DiscoveryRate> rate) override
     {
-        return std::make_unique<CycloneSession>(settings, std::move(onPeer));
+        return std::make_unique<CycloneSession>(settings, std::move(onPeer), std::move(rate));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {
@@ -88,7 +90,8 @@ private:
         }
         settings.Interfaces = {network->Address};
         settings.Peers.clear();
-        const VendorDomain domain(settings, std::make_shared<SessionLog>(settings));
+        const VendorDomain domain(settings, std::make_shared<SessionLog>(settings),
+                                  std::make_shared<DiscoveryRate>());
     }
 };
 

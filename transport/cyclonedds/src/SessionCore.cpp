@@ -75,12 +75,13 @@ void TakeAll(dds_entity_t reader, const Work &work)
 
 }  // namespace
 
-SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
+SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
+                         std::shared_ptr<const DiscoveryRate> rate)
     : _log(std::make_shared<SessionLog>(Checked(settings))),
       _topics(_log),
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer)),
-      _domain(settings, _log),
+      _domain(settings, _log, std::move(rate)),
       _announcements(AnswerGap(settings)),
       _participant(MakeParticipant(settings, _domain.Id()))
 {

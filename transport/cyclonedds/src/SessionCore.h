@@ -15,6 +15,7 @@
 #include "Guid.h"
 #include "VendorDomain.h"
 #include "Worker.h"
+#include "common/DiscoveryRate.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -31,7 +32,8 @@ class SessionCore
 {
 public:
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer,
+                std::shared_ptr<const DiscoveryRate> rate);
     // Leaves it.
     ~SessionCore();
     SessionCore(const SessionCore &) = delete;

@@ -3,8 +3,10 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "AnnouncedEndpoints.h"
@@ -64,16 +66,33 @@ bool IsGroup(const DirectAnnouncements::Address &address)
 
 }  // namespace
 
-bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to)
+bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size,
+                           const RabitCycloneRoute *route)
 {
-    const auto &domain = *static_cast<const VendorDomain *>(self);
+    auto &domain = *static_cast<VendorDomain *>(self);
     const Announcing announcing = AnnouncingOf({datagram, size});
     if (announcing.Any)
     {
         LeaveOutIdleEndpoints({datagram, size});
     }
-    const DirectAnnouncements::Address address{to[0], to[1], to[2], to[3]};
-    return !announcing.Alone || !domain._multicast || IsGroup(address) || domain._direct.MayGo(address);
+    const DirectAnnouncements::Address address{route->address[0], route->address[1], route->address[2],
+                                               route->address[3]};
+    const bool direct = domain._direct.MayGo(address);
+    if (announcing.Alone && domain._multicast && !IsGroup(address) && !direct)
+    {
+        return false;
+    }
+    if (announcing.Any && IsGroup(address))
+    {
+        domain._outbox.HasGroup(route->connection);
+    }
+    if (auto parts = ReadDiscoveryParts({datagram, size}))
+    {
+        const bool hears = IsGroup(address) || (domain._multicast && !direct);
+        return !domain._outbox.Put({datagram, size}, std::move(*parts), *route, hears);
+    }
+    announcing.Any ? domain._outbox.Announced({datagram, size}) : domain._outbox.Sent(size);
+    return true;
 }
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
@@ -113,6 +132,7 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     {
         return admitted;
     }
+    domain._outbox.Received({datagram, admitted});
     const Announcing announcing = AnnouncingOf({datagram, admitted});
     if (announcing.Alone && direct && from != nullptr)
     {
@@ -125,11 +145,14 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     return admitted;
 }
 
-VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log)
+VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
+                           std::shared_ptr<const DiscoveryRate> rate)
     : _log(log),
       _multicast(IsMulticastForData(settings)),
       // The vendor knows by itself which fragments it has sent.
-      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome)
+      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
+      _outbox(std::move(rate), [this](const auto &route, bool toGroup, auto datagram)
+              { RabitCycloneSend(_watch, &route, toGroup, datagram.data(), datagram.size()); })
 {
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
@@ -192,6 +215,7 @@ bool VendorDomain::IsUnheard(const ddsi_guid_t &participant) const
 
 VendorDomain::~VendorDomain()
 {
+    _outbox.Stop();
     _entity.Reset();
     RabitCycloneUnwatch(_watch);
     VendorLog::Leave(_id);

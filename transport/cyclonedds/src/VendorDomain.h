@@ -7,6 +7,8 @@
 
 #include "DirectAnnouncements.h"
 #include "Entity.h"
+#include "OutboxThread.h"
+#include "common/DiscoveryRate.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsGuard.h"
 
@@ -18,7 +20,9 @@ class VendorDomain
 {
 public:
     // Throws TransportError. What the vendor says of the domain goes to the log.
-    VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log);
+    // What discovery says of endpoints stays within `rate`.
+    VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
+                 std::shared_ptr<const DiscoveryRate> rate);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
@@ -31,7 +35,8 @@ public:
     bool IsUnheard(const ddsi_guid_t &participant) const;
 
 private:
-    static bool MaySend(void *self, unsigned char *datagram, std::size_t size, const unsigned char *to);
+    static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
+                        const RabitCycloneRoute *route);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);
@@ -44,6 +49,7 @@ private:
     const bool _multicast;  // reaches all, but for who announces itself to us alone
     DirectAnnouncements _direct;
     Rtps::RtpsGuard _guard;
+    OutboxThread _outbox;
     Entity _entity;
 };
 

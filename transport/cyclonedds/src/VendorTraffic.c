@@ -99,7 +99,9 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
         return watch->write(connection, destination, parts, part, flags);
     }
     const ddsrt_iovec_t whole = {datagram, Gather(datagram, sizeof datagram, parts, part)};
-    if (!watch->calls.may(watch->calls.argument, datagram, size, destination->address + AddressAt))
+    struct RabitCycloneRoute route = {.connection = connection, .port = destination->port};
+    memcpy(route.address, destination->address + AddressAt, sizeof route.address);
+    if (!watch->calls.may(watch->calls.argument, datagram, size, &route))
     {
         return 0;
     }
@@ -325,6 +327,25 @@ int RabitCycloneDestinations(const struct ddsi_sertype *type, const ddsi_guid_t 
     }
     thread_state_asleep(lookup_thread_state());
     return count;
+}
+
+void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, bool toGroup,
+                      const unsigned char *datagram, size_t size)
+{
+    const struct Watch *of = watch;
+    ddsi_locator_t destination = of->domain->loc_meta_mc;
+    if (!toGroup)
+    {
+        destination.kind = NN_LOCATOR_KIND_UDPv4;
+        destination.port = route->port;
+        memset(destination.address, 0, sizeof destination.address);
+        memcpy(destination.address + AddressAt, route->address, sizeof route->address);
+    }
+    const ddsrt_iovec_t whole = {(void *)datagram, size};
+    if (of->write(route->connection, &destination, 1, &whole, 0) > 0)
+    {
+        of->calls.sent(of->calls.argument, datagram, size < HeadSize ? size : HeadSize, size);
+    }
 }
 
 void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant)

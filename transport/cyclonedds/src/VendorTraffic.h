@@ -6,20 +6,30 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C"
 {
 #endif
 
+    /* From one of the vendor's sockets to an IPv4 address, or group. */
+    struct RabitCycloneRoute
+    {
+        void *connection;
+        unsigned char address[4];
+        uint32_t port;
+    };
+
     /* What is called for each datagram, on any thread. A head is its beginning, up to RtpsHeadSize bytes. */
     struct RabitCycloneCalls
     {
         void *argument;
         /* Whether it is of discovery. These alone are asked about before they are sent: whether one may go
-           to that IPv4 address, or group, and what of it, which is changed in place. */
+           that way now, and what of it, which is changed in place. */
         bool (*isDiscovery)(const unsigned char *head, size_t headSize);
-        bool (*may)(void *argument, unsigned char *datagram, size_t size, const unsigned char to[4]);
+        bool (*may)(void *argument, unsigned char *datagram, size_t size,
+                    const struct RabitCycloneRoute *route);
         /* It was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
         /* It came, into a buffer of that capacity, in which it may be changed in place. Returns how long what
@@ -33,6 +43,11 @@ extern "C"
        To be given to RabitCycloneUnwatch after the domain was deleted. */
     void *RabitCycloneWatch(struct RabitCycloneCalls calls);
     void RabitCycloneUnwatch(void *watch);
+
+    /* Sends a datagram of ours that way, without asking whether it may go, or from the same socket to the
+       group of discovery. Until the domain is deleted. */
+    void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, bool toGroup,
+                          const unsigned char *datagram, size_t size);
 
     /* Announces an own participant of a domain that is watched to all, now. */
     void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant);

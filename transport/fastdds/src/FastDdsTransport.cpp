@@ -20,8 +20,9 @@ namespace
 class FastDdsSession final : public BackendSession
 {
 public:
-    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer)
-        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer)))
+    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer,
+                   std::shared_ptr<const DiscoveryRate> rate)
+        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(rate)))
     {
     }
     ~FastDdsSession() override { _core->Close(); }
@@ -52,9 +53,10 @@ private:
 class FastDdsBackend final : public RejoiningBackend
 {
 public:
-    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer) override
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
+                                         std::shared_ptr<const DiscoveryRate> rate) override
     {
-        return std::make_unique<FastDdsSession>(settings, std::move(onPeer));
+        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(rate));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {

@@ -17,8 +17,8 @@
 #include "AnnouncementPace.h"
 #include "HeartbeatPace.h"
 #include "OutgoingMessage.h"
-#include "RepairPace.h"
 #include "RequestPace.h"
+#include "common/DiscoveryOutbox.h"
 
 namespace Rabit::FastDds
 {
@@ -93,11 +93,8 @@ public:
         {
             return true;
         }
-        if (message.Endpoints && _descriptor.Chosen().IsInGroup(message.Endpoints->Peer) && !_groups.empty())
-        {
-            // The vendor gives it to each of its sockets.
-            return socket != 0 || SendToAll({buffer, left}, message.Endpoints->Content, now, timeout);
-        }
+        const auto parts =
+            message.HasSamples || message.Announcement ? std::nullopt : ReadDiscoveryParts({buffer, left});
         _chosen.clear();
         for (; *begin != *end; ++*begin)
         {
@@ -106,7 +103,9 @@ public:
             const bool held =
                 (message.Announcement &&
                  !_announcements.MayGo(number, *message.Announcement, _guard.AnnouncementsHeard(), now)) ||
-                (message.Heartbeat && !_heartbeats.MayGo(number, *message.Heartbeat, now));
+                (message.Heartbeat && !_heartbeats.MayGo(number, *message.Heartbeat, now)) ||
+                (parts && Leaves(socket, destination) &&
+                 Put(sender, destination, {buffer, left}, *parts, now));
             if (!held)
             {
                 _chosen.push_back(destination);
@@ -122,6 +121,14 @@ public:
             {
                 _descriptor.Chosen().AnnounceAt(*due);
             }
+        }
+        if (const auto due = _outbox.Due(); due && parts)
+        {
+            _descriptor.Chosen().SendOwedAt(*due);
+        }
+        if (!message.HasSamples)
+        {
+            CountPast(sender, {buffer, left}, message.Announcement.has_value(), now);
         }
         return SendChosen(sender, {buffer, left}, message.HasSamples, timeout);
     }
@@ -149,61 +156,82 @@ public:
 
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
+    // Whether that socket does send to a destination that it is given.
+    bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const
+    {
+        return _descriptor.Chosen().SocketsSendAll ||
+               rtps::IPLocator::isMulticast(destination) != (socket == 0);
+    }
 
+    // Into the outbox, with _sending held. False if it is to go as it is.
+    bool Put(rtps::SenderResource *sender, const rtps::Locator_t &destination,
+             std::span<const std::uint8_t> datagram, const std::vector<DiscoveryPart> &parts, TimePoint now)
+    {
+        const bool toGroup = rtps::IPLocator::isMulticast(destination);
+        if (toGroup && _groups.empty())
+        {
+            return false;
+        }
+        constexpr std::uint64_t Groups = 0;  // all of them
+        const auto route = static_cast<std::uint64_t>(NumberOf(sender)) << 32 | NumberOf(destination);
+        _routes.insert_or_assign(route, std::pair(sender, destination));
+        _outbox.SetRate(_descriptor.Chosen().Rate->Get());
+        for (const DiscoveryPart &part : parts)
+        {
+            const bool hears = toGroup || (!_groups.empty() && _descriptor.Chosen().IsInGroup(part.About.To));
+            _outbox.Put(datagram, part,
+                        {.Address = route, .Group = hears ? std::optional(Groups) : std::nullopt}, now);
+        }
+        return true;
+    }
+    std::size_t DatagramsTo(rtps::SenderResource *sender)
+    {
+        const std::uint32_t socket = NumberOf(sender);
+        return static_cast<std::size_t>(std::count_if(_chosen.begin(), _chosen.end(),
+                                                      [&](const rtps::Locator_t &destination)
+                                                      { return Leaves(socket, destination); }));
+    }
+    // What goes to _chosen without waiting in the outbox.
+    void CountPast(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram, bool announcement,
+                   TimePoint now)
+    {
+        for (std::size_t i = DatagramsTo(sender); i > 0; --i)
+        {
+            announcement ? _outbox.Announced(datagram, now) : _outbox.Sent(datagram.size(), now);
+        }
+    }
     // To _chosen, with _sending held.
     bool SendChosen(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram, bool samples,
                     const TimePoint &timeout)
     {
-        const bool isFirst = NumberOf(sender) == 0;
-        const auto leaves = [&](const rtps::Locator_t &destination) {
-            return _descriptor.Chosen().SocketsSendAll ||
-                   rtps::IPLocator::isMulticast(destination) != isFirst;
-        };
-        const auto datagrams =
-            static_cast<std::size_t>(std::count_if(_chosen.begin(), _chosen.end(), leaves));
+        const std::size_t datagrams = DatagramsTo(sender);
         _descriptor.Chosen().OnSent(samples, datagrams, datagrams * datagram.size());
         ListIterator first(_chosen.cbegin());
         ListIterator last(_chosen.cend());
         return sender->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), &first, &last,
                             timeout);
     }
-
-    // What somebody lacks of our endpoints, with _sending held.
-    bool SendToAll(std::span<const std::uint8_t> datagram, std::uint64_t content, TimePoint now,
-                   const TimePoint &timeout)
-    {
-        auto forAll = ForAll(datagram);
-        if (_repairs.MayGo(content, now))
-        {
-            return SendToGroups(forAll, timeout);
-        }
-        _owed.insert_or_assign(content, std::move(forAll));
-        _descriptor.Chosen().SendOwedAt(*_repairs.Due());
-        return true;
-    }
-    bool SendToGroups(std::span<const std::uint8_t> datagram, const TimePoint &timeout)
-    {
-        bool sent = true;
-        for (const auto &[sender, group] : _groups)
-        {
-            _chosen.assign(1, group);
-            sent = SendChosen(sender, datagram, false, timeout) && sent;
-        }
-        return sent;
-    }
     void SendOwed()
     {
         constexpr std::chrono::milliseconds LongestWait{100};
         const std::lock_guard lock(_sending);
         const auto now = std::chrono::steady_clock::now();
-        for (const std::uint64_t content : _repairs.TakeDue(now))
+        for (const DiscoveryOutbox::Datagram &owed : _outbox.TakeDue(now))
         {
-            if (const auto owed = _owed.extract(content); !owed.empty())
+            if (!owed.ToGroup)
             {
-                SendToGroups(owed.mapped(), now + LongestWait);
+                const auto &[sender, destination] = _routes.at(owed.Address);
+                _chosen.assign(1, destination);
+                SendChosen(sender, owed.Bytes, false, now + LongestWait);
+                continue;
+            }
+            for (const auto &[sender, group] : _groups)
+            {
+                _chosen.assign(1, group);
+                SendChosen(sender, owed.Bytes, false, now + LongestWait);
             }
         }
-        if (const auto due = _repairs.Due())
+        if (const auto due = _outbox.Due())
         {
             _descriptor.Chosen().SendOwedAt(*due);
         }
@@ -223,6 +251,7 @@ private:
         }
         const auto now = std::chrono::steady_clock::now();
         const std::lock_guard lock(_sending);
+        _outbox.Received(datagram, now);
         for (const Acknowledgement &acknowledgement : found)
         {
             _heartbeats.OnAcknowledgement(acknowledgement, now);
@@ -256,8 +285,8 @@ private:
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
-    RepairPace _repairs;
-    std::map<std::uint64_t, std::vector<std::uint8_t>> _owed;  // content -> what goes to the groups
+    DiscoveryOutbox _outbox;
+    std::map<std::uint64_t, std::pair<rtps::SenderResource *, rtps::Locator_t>> _routes;
     // Where announcements go to all.
     std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _groups;
     std::map<rtps::Locator_t, std::uint32_t> _destinations;

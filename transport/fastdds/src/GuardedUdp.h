@@ -3,7 +3,7 @@
 // kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h);
 // multicast groups that peers name are not sent to where multicast may not pass; the vendor's statistics are
 // not sent; and what it repeats in haste, or says to each by itself, goes at a measured pace
-// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, RepairPace.h).
+// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/DiscoveryOutbox.h).
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -15,6 +15,7 @@
 #include <memory>
 
 #include "DeferredCall.h"
+#include "common/DiscoveryRate.h"
 #include "guard/RtpsGuard.h"
 
 namespace Rabit::FastDds
@@ -53,6 +54,7 @@ public:
         // was named, on a thread without locks.
         std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
         std::shared_ptr<DeferredCall> Owed;
+        std::shared_ptr<const DiscoveryRate> Rate;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

@@ -64,7 +64,6 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     int announcements = 0;
     int requests = 0;
     int heartbeats = 0;
-    int endpoints = 0;
     int others = 0;
     GuidPrefix peer{};
     FirstRequest request;
@@ -94,8 +93,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 const bool whole = SubmessageKind{part.Kind} == SubmessageKind::Data;
                 const bool announces = whole && writer == ParticipantWriter && (part.Flags & HasData) != 0 &&
                                        (part.Flags & InlineQos) == 0;
-                const bool tells = whole && (writer == PublicationsWriter || writer == SubscriptionsWriter);
-                (announces ? announcements : tells ? endpoints : others) += 1;
+                (announces ? announcements : others) += 1;
                 // Whatever reader it is for.
                 digest =
                     31 * digest +
@@ -122,7 +120,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
         }
     };
     VisitSubmessages(datagram, visit);
-    const int all = announcements + requests + heartbeats + endpoints + others;
+    const int all = announcements + requests + heartbeats + others;
     if (announcements == 1 && all == 1)
     {
         message.Announcement = digest;
@@ -137,33 +135,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
         heartbeat.Peer = peer;
         message.Heartbeat = heartbeat;
     }
-    if (endpoints > 0 && all == endpoints)
-    {
-        message.Endpoints = EndpointNews{.Peer = peer, .Content = digest};
-    }
     return message;
-}
-
-std::vector<std::uint8_t> ForAll(std::span<const std::uint8_t> datagram)
-{
-    std::vector<std::uint8_t> result(datagram.begin(), datagram.begin() + RtpsHeaderSize);
-    VisitSubmessages(datagram,
-                     [&](const Part &part)
-                     {
-                         if (SubmessageKind{part.Kind} == SubmessageKind::InfoDestination)
-                         {
-                             return;
-                         }
-                         const auto begin = static_cast<std::ptrdiff_t>(result.size());
-                         result.insert(result.end(), part.Whole.begin(), part.Whole.end());
-                         if (SubmessageKind{part.Kind} == SubmessageKind::Data &&
-                             part.Body().size() >= ReaderInData + EntitySize)
-                         {
-                             std::fill_n(result.begin() + begin + SubmessageHeaderSize + ReaderInData,
-                                         EntitySize, std::uint8_t{0});
-                         }
-                     });
-    return result;
 }
 
 std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> datagram)

@@ -29,13 +29,6 @@ struct LoneHeartbeat
     std::int64_t Last = 0;
 };
 
-// All that a datagram says is which endpoints we have, or had.
-struct EndpointNews
-{
-    Rtps::GuidPrefix Peer{};    // zero: all for whom the vendor's addresses are
-    std::uint64_t Content = 0;  // tells one from another
-};
-
 // What a datagram of our own is, as far as that decides when it goes and how it is counted.
 struct OutgoingMessage
 {
@@ -47,14 +40,10 @@ struct OutgoingMessage
     // Set if there is nothing else in it.
     std::optional<FirstRequest> Request;
     std::optional<LoneHeartbeat> Heartbeat;
-    std::optional<EndpointNews> Endpoints;
 };
 
 // `datagram` comes from the vendor's writers and is trusted to be sound.
 OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram);
-
-// News of endpoints that were for one peer, for all.
-std::vector<std::uint8_t> ForAll(std::span<const std::uint8_t> datagram);
 
 // What somebody acknowledges to a writer of ours.
 struct Acknowledgement
@@ -66,7 +55,7 @@ struct Acknowledgement
     bool Asks = false;      // for repair, or for what there is
 };
 
-// Those in a datagram that came; it must be sound.
+// Those in a datagram that came; it must be sound, and what is for others must be taken out of it.
 std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> datagram);
 
 }  // namespace Rabit::FastDds

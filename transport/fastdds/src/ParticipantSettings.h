@@ -10,6 +10,7 @@
 #include <string>
 
 #include "DeferredCall.h"
+#include "common/DiscoveryRate.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsMessage.h"
 
@@ -28,6 +29,7 @@ struct NetworkCalls
     // Has Owed run.
     std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
     std::shared_ptr<DeferredCall> Owed;
+    std::shared_ptr<const DiscoveryRate> Rate;
 };
 
 // Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws

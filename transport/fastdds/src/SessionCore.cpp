@@ -50,7 +50,8 @@ PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
 
 }  // namespace
 
-SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
+SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
+                         std::shared_ptr<const DiscoveryRate> rate)
     : _log(std::make_shared<SessionLog>(settings)),
       _topics(_log),
       _peerGate(_log, "peer events"),
@@ -64,7 +65,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer)
          .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
          .IsInGroup = [this](const auto &prefix) { return IsInGroup(ToVendorPrefix(prefix)); },
          .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
-         .Owed = _owed});
+         .Owed = _owed,
+         .Rate = std::move(rate)});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();

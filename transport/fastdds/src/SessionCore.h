@@ -14,9 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "DeferredCall.h"
 #include "ParticipantNumber.h"
 #include "ParticipantTimer.h"
-#include "DeferredCall.h"
+#include "common/DiscoveryRate.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -34,7 +35,8 @@ public:
     using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer,
+                std::shared_ptr<const DiscoveryRate> rate);
     // Leaves it.
     ~SessionCore() override;
     SessionCore(const SessionCore &) = delete;

@@ -330,6 +330,11 @@ public:
     // carrier or address, peers' names without an address; and why it could not be joined. None of them
     // Impossible, and none is logged: whoever holds the session tells people. Empty if all is well.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
+    // How much discovery may say of endpoints at most, in bytes a second as counted by TransportCounters; 0,
+    // as at first: as much as answers show that the air carries. What it says of participants is never held
+    // back, but what that takes is missing for the rest. Nodes take longer to find each other with less, but
+    // do. Any thread; does not wait. The simulated network does not heed it.
+    virtual void SetDiscoveryRate(double /*bytesPerSecond*/) {}
 };
 
 // A backend.

@@ -1,0 +1,124 @@
+#include "OutboxThread.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace Rabit::Cyclone
+{
+
+OutboxThread::OutboxThread(std::shared_ptr<const DiscoveryRate> rate, Send send)
+    : _rate(std::move(rate)), _send(std::move(send)), _thread([this] { Run(); })
+{
+}
+
+OutboxThread::~OutboxThread()
+{
+    Stop();
+}
+
+void OutboxThread::Stop()
+{
+    {
+        const std::lock_guard lock(_mutex);
+        _stop = true;
+    }
+    _changed.notify_one();
+    if (_thread.joinable())
+    {
+        _thread.join();
+    }
+}
+
+void OutboxThread::HasGroup(const void *connection)
+{
+    const std::lock_guard lock(_mutex);
+    _groups.insert(connection);
+}
+
+bool OutboxThread::Put(std::span<const std::uint8_t> message, std::vector<DiscoveryPart> parts,
+                       const RabitCycloneRoute &route, bool hears)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        if (_stop)
+        {
+            return false;
+        }
+        DiscoveryOutbox::Route way{.Address = NumberOf(route), .Group = {}};
+        if (hears && _groups.contains(route.connection))
+        {
+            way.Group = reinterpret_cast<std::uintptr_t>(route.connection);
+        }
+        _outbox.SetRate(_rate->Get());
+        const auto now = Clock::now();
+        for (DiscoveryPart &part : parts)
+        {
+            _outbox.Put(message, std::move(part), way, now);
+        }
+    }
+    _changed.notify_one();
+    return true;
+}
+
+void OutboxThread::Sent(std::size_t size)
+{
+    const std::lock_guard lock(_mutex);
+    _outbox.Sent(size, Clock::now());
+}
+
+void OutboxThread::Announced(std::span<const std::uint8_t> message)
+{
+    const std::lock_guard lock(_mutex);
+    _outbox.Announced(message, Clock::now());
+}
+
+void OutboxThread::Received(std::span<const std::uint8_t> message)
+{
+    const std::lock_guard lock(_mutex);
+    _outbox.Received(message, Clock::now());
+}
+
+std::uint64_t OutboxThread::NumberOf(const RabitCycloneRoute &route)
+{
+    const auto found = std::find_if(
+        _routes.begin(), _routes.end(),
+        [&route](const RabitCycloneRoute &other)
+        {
+            return route.connection == other.connection && route.port == other.port &&
+                   std::equal(std::begin(route.address), std::end(route.address), std::begin(other.address));
+        });
+    const auto number = static_cast<std::uint64_t>(found - _routes.begin());
+    if (found == _routes.end())
+    {
+        _routes.push_back(route);
+    }
+    return number;
+}
+
+void OutboxThread::Run()
+{
+    std::unique_lock lock(_mutex);
+    while (!_stop)
+    {
+        const auto due = _outbox.Due();
+        if (!due)
+        {
+            _changed.wait(lock);
+            continue;
+        }
+        if (Clock::now() < *due)
+        {
+            _changed.wait_until(lock, *due);
+            continue;
+        }
+        for (const DiscoveryOutbox::Datagram &datagram : _outbox.TakeDue(Clock::now()))
+        {
+            const RabitCycloneRoute route = _routes.at(datagram.Address);
+            lock.unlock();
+            _send(route, datagram.ToGroup, datagram.Bytes);
+            lock.lock();
+        }
+    }
+}
+
+}  // namespace Rabit::Cyclone
