@@ -28,6 +28,8 @@ constexpr double BeatShare = 0.05;
 constexpr double BeatShareOfPace = 0.125;
 // Nobody has asked for seldom beats, and a pace may come of bad weather alone.
 constexpr Duration SlowestBeatOfPace = std::chrono::seconds(1);
+// Part of a budget that discovery may take, so that beats get through while nodes find each other.
+constexpr double DiscoveryShare = 0.5;
 constexpr double SmallestBeat = 100.0;  // on the air
 constexpr Duration QuickestBeat = std::chrono::milliseconds(500);
 // Without a budget the others learn by the beats how late datagrams come, so who sends much beats more often:
@@ -63,6 +65,10 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
 void AirTraffic::Open(TransportSession &session)
 {
     _session = &session;
+    if (_config.Radio.Budget)
+    {
+        session.SetDiscoveryRate(DiscoveryShare * *_config.Radio.Budget);
+    }
     for (const TopicPublisher &publisher : _publishers)
     {
         _publisherStreams.push_back(

@@ -35,6 +35,7 @@ namespace Rabit
 //   published message. A datagram is made when its turn has come, from what is newest then.
 // - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
 //   DDS's own, is paid for, too, and a part of a budget is kept free for it when it is due.
+// - With a budget discovery may take half of it (TransportSession::SetDiscoveryRate).
 // - Where nothing but an estimate limits it, a beat that is due is not kept waiting.
 // - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, where the
 //   air is known to carry little, an eighth of that, within 500 ms and a second; where it is not, there are
