@@ -225,13 +225,19 @@ DiscoveryOutbox::Datagram DiscoveryOutbox::Take(TimePoint now)
     return datagram;
 }
 
+DiscoveryOutbox::Duration DiscoveryOutbox::FirstGapOf(const Slot &slot) const
+{
+    return std::min<Duration>(
+        std::max<Duration>(slot.Part.IsNews ? FirstGapOfNews : FirstGap, 2 * _answerTime), LongestGap);
+}
+
 void DiscoveryOutbox::Go(Slots::iterator slot, TimePoint now)
 {
     Slot &said = slot->second;
     _due.erase(*said.Due);
     said.Due.reset();
     const bool isRepeat = said.Said && said.Content == said.Part.Content;
-    const Duration first = std::max<Duration>(said.Part.IsNews ? FirstGapOfNews : FirstGap, 2 * _answerTime);
+    const Duration first = FirstGapOf(said);
     const int factor = said.Part.IsNews ? 4 : 2;
     said.Gap = std::min<Duration>(isRepeat ? factor * said.Gap : first, LongestGap);
     if (said.Part.About.Kind == Heartbeat && said.Part.About.To != All)
@@ -317,15 +323,33 @@ void DiscoveryOutbox::KnowsUs(const DiscoveryPart::Prefix &peer, TimePoint now)
     {
         _knowUs.clear();  // those that are there say something again
     }
-    if (!_knowUs.insert(peer).second)
+    const auto [known, isNew] = _knowUs.try_emplace(peer, now);
+    if (!isNew && now - std::exchange(known->second, now) < Rest)
     {
         return;
     }
-    for (auto slot = _slots.begin(); slot != _slots.end(); ++slot)
+    for (auto at = _slots.begin(); at != _slots.end(); ++at)
     {
-        if (slot->second.Part.IsNews && slot->first.About.To == peer && !slot->second.Said)
+        Slot &slot = at->second;
+        if (at->first.About.To == peer && slot.Part.IsNews && !slot.Said)
         {
-            SetDue(slot, now);
+            SetDue(at, now);
+        }
+        else if (at->first.About.To == peer && slot.Said && isNew)
+        {
+            slot.Said = false;
+            if (slot.Due)
+            {
+                SetDue(at, now);
+            }
+        }
+        else if (slot.Said && at->first.About.To == All)
+        {
+            slot.Gap = std::min(slot.Gap, FirstGapOf(slot));
+            if (slot.Due)
+            {
+                SetDue(at, std::max(now, slot.SaidAt + slot.Gap));
+            }
         }
     }
 }
