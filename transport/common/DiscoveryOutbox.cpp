@@ -291,6 +291,10 @@ void DiscoveryOutbox::Received(std::span<const std::uint8_t> message, TimePoint 
         }
     };
     put(message, PrefixAt, from);
+    if (from != own)
+    {
+        Heard(from, now);
+    }
     VisitSubmessages(message,
                      [&](const RtpsSubmessage<const std::uint8_t> &submessage)
                      {
@@ -317,6 +321,31 @@ void DiscoveryOutbox::Received(std::span<const std::uint8_t> message, TimePoint 
                      });
 }
 
+void DiscoveryOutbox::Heard(const DiscoveryPart::Prefix &peer, TimePoint now)
+{
+    if (_heard.size() >= MostSlots)
+    {
+        _heard.clear();
+    }
+    const auto [known, isNew] = _heard.try_emplace(peer, now);
+    if (!isNew && now - std::exchange(known->second, now) < Rest)
+    {
+        return;
+    }
+    for (auto at = _slots.begin(); at != _slots.end(); ++at)
+    {
+        Slot &slot = at->second;
+        if (slot.Said && at->first.About.To == All)
+        {
+            slot.Said = false;
+            if (slot.Due)
+            {
+                SetDue(at, now);
+            }
+        }
+    }
+}
+
 void DiscoveryOutbox::KnowsUs(const DiscoveryPart::Prefix &peer, TimePoint now)
 {
     if (_knowUs.size() >= MostSlots)
@@ -341,14 +370,6 @@ void DiscoveryOutbox::KnowsUs(const DiscoveryPart::Prefix &peer, TimePoint now)
             if (slot.Due)
             {
                 SetDue(at, now);
-            }
-        }
-        else if (slot.Said && at->first.About.To == All)
-        {
-            slot.Gap = std::min(slot.Gap, FirstGapOf(slot));
-            if (slot.Due)
-            {
-                SetDue(at, std::max(now, slot.SaidAt + slot.Gap));
             }
         }
     }

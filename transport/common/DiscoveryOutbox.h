@@ -24,8 +24,8 @@ namespace Rabit
 // - What has come together within Hold goes in one datagram, to all if it is for several who hear the group.
 // - What is said again unchanged goes at growing distances, and not before an answer can be here: nobody
 //   knows yet whether it was heard.
-// - To who has not said anything to us before, or not for long, all is new that was said to all: it may not
-//   have known us then. What is said again to all goes at the first distance once more.
+// - To who has not said anything before, or not for long, all is new that was said to all: it was not there.
+//   What is said again to all goes at once, and then at the first distance once more.
 // - Who does not hear the group hears an announcement of ours when its turn comes, often after we have heard
 //   it. News for it wait until it has said something to us: it would not heed them before, and asks for them
 //   then.
@@ -148,6 +148,8 @@ private:
     void Ask(const Question &question, bool alone, bool again, TimePoint now);
     void SetDue(Slots::iterator slot, TimePoint due);
     Duration FirstGapOf(const Slot &slot) const;
+    // Somebody has said something, to whomever.
+    void Heard(const DiscoveryPart::Prefix &peer, TimePoint now);
     // Somebody has said something to us.
     void KnowsUs(const DiscoveryPart::Prefix &peer, TimePoint now);
     Slots::iterator First(TimePoint now) const;
@@ -160,6 +162,7 @@ private:
     Duration _answerTime{0};               // the longest, by half less with each that is shorter
     std::map<Question, Asked> _questions;  // that are not answered yet
     std::map<DiscoveryPart::Prefix, TimePoint> _knowUs;  // and when they last said something to us
+    std::map<DiscoveryPart::Prefix, TimePoint> _heard;  // when they last said something
     std::optional<TimePoint> _announcedAt;  // last
     std::optional<TimePoint> _roundAt;      // that was missing last
     double _left = Burst;

@@ -33,7 +33,8 @@ void AnnouncementRounds::OnPeer(TimePoint now)
     // One that is due already is for this newcomer as well.
     if (!_answers.Due || _answers.Left < MostAnswers)
     {
-        _answers.Begin(now, std::max(_answerGap, _last + _spacing - now), MostAnswers);
+        _answers.Begin(now, _answerGap, MostAnswers);
+        _answers.Due = std::max(*_answers.Due, _last + _spacing);
     }
 }
 

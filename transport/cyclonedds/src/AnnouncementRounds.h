@@ -25,7 +25,7 @@ public:
     // Newcomers who come one after another, as over a thin radio, are answered together: no sooner than that
     // after the last announcement, twice as long after each that followed one within Rest.
     static constexpr std::chrono::milliseconds ShortestSpacing{100};
-    static constexpr std::chrono::milliseconds LongestSpacing{1600};
+    static constexpr std::chrono::milliseconds LongestSpacing{400};
     static constexpr std::chrono::milliseconds Rest{3200};
 
     // Begins when the participant was announced. `answerGap`: from a newcomer to the answer; best not the
