@@ -33,6 +33,10 @@ void DiscoveryOutbox::SetRate(double most)
 {
     _isSet = most > 0.0;
     _most = _isSet ? std::min(most, MostRate) : MostRate;
+    if (_isSet)
+    {
+        _left = std::min(_left, std::min(Burst, _most));
+    }
 }
 
 void DiscoveryOutbox::PutHeader(std::span<const std::uint8_t> message)
@@ -123,8 +127,8 @@ void DiscoveryOutbox::Fill(TimePoint now)
 {
     if (now > _filledAt)
     {
-        _left = std::min(std::min(Burst, Rate()),
-                         _left + Rate() * std::chrono::duration<double>(now - _filledAt).count());
+        const double filled = _left + Rate() * std::chrono::duration<double>(now - _filledAt).count();
+        _left = std::min(filled, std::max(_left, std::min(Burst, Rate())));
         _filledAt = now;
     }
 }
@@ -162,10 +166,9 @@ std::size_t DiscoveryOutbox::Largest() const
 DiscoveryOutbox::Slots::iterator DiscoveryOutbox::First(TimePoint now) const
 {
     const auto first = _due.begin();
-    const auto last = _due.upper_bound({std::min(now, first->first.first + Patience), UINT64_MAX});
-    const auto control = std::find_if(
-        first, last,
-        [](const auto &due) { return !due.second->second.Part.IsNews && !due.second->first.ToGroup; });
+    const auto last = _aheadOfNews < Largest() ? _due.upper_bound({now, UINT64_MAX}) : std::next(first);
+    const auto control =
+        std::find_if(first, last, [](const auto &due) { return !due.second->second.Part.IsNews; });
     return (control != last ? control : first)->second;
 }
 
@@ -173,6 +176,7 @@ DiscoveryOutbox::Slots::iterator DiscoveryOutbox::First(TimePoint now) const
 DiscoveryOutbox::Datagram DiscoveryOutbox::Take(TimePoint now)
 {
     const auto first = First(now);
+    const bool isAhead = first != _due.begin()->second;
     std::vector<Slots::iterator> chosen;
     std::set<DiscoveryPart::Prefix> destinations;
     std::size_t size = _header.size();
@@ -222,6 +226,7 @@ DiscoveryOutbox::Datagram DiscoveryOutbox::Take(TimePoint now)
     {
         Go(slot, now);
     }
+    _aheadOfNews = isAhead ? _aheadOfNews + datagram.Bytes.size() : 0;
     return datagram;
 }
 

@@ -25,15 +25,18 @@ namespace Rabit
 // - What is said again unchanged goes at growing distances, and not before an answer can be here: nobody
 //   knows yet whether it was heard.
 // - To who has not said anything before, or not for long, all is new that was said to all: it was not there.
-//   What is said again to all goes at once, and then at the first distance once more.
+//   The same holds for what was said to one alone before it knew us: it did not heed that.
 // - Who does not hear the group hears an announcement of ours when its turn comes, often after we have heard
 //   it. News for it wait until it has said something to us: it would not heed them before, and asks for them
 //   then.
 // - All together stays within a rate, in the order in which it came due, but that heartbeats and
-//   acknowledgements for one alone, who waits for them, go before what came due up to Patience before them.
-//   What discovery says beside (of participants) goes at once, and what it takes of that is missing here.
-//   Where peers are listed an announcement goes to each of their ports, most of which nobody has: of a rate
-//   that was not set, but learned, such a round takes no more than one of them.
+//   acknowledgements, which are small and for which somebody waits, go before news that came due earlier, up
+//   to a datagram's size between two datagrams of those. What discovery says beside (of participants) goes at
+//   once, and what it takes of that is missing here. Where peers are listed an announcement goes to each of
+//   their ports, most of which nobody has: of a rate that was not set, but learned, such a round takes no
+//   more than one of them.
+// - A session that has just begun may say at once what it has: nobody can know less of it, and what is said
+//   once is needed whatever the rate. Not where a rate was set.
 // - The rate follows how soon heartbeats are answered, as the air's delay tells its load (RFC 6817): a quick
 //   answer raises it, a late one lowers it, but not twice for what went before it was lowered.
 // - Of who does not hear the group, and had never said anything to us when it was asked, the first answer is
@@ -52,16 +55,15 @@ public:
     static constexpr std::chrono::milliseconds FirstGap{100};
     static constexpr std::chrono::milliseconds FirstGapOfNews{200};
     static constexpr std::chrono::milliseconds LongestGap{4000};
-    // By that much what somebody alone waits for goes before its turn.
-    static constexpr std::chrono::milliseconds Patience{500};
     // What nobody wanted to say for so long is not said again, but anew.
     static constexpr std::chrono::milliseconds Rest{8000};
     static constexpr std::size_t MostSlots = 16384;
     // Bytes in a second, headers of IP and UDP included, and how many may go at once after a rest.
     static constexpr double FirstRate = 2000.0;
-    static constexpr double LeastRate = 300.0;
+    static constexpr double LeastRate = 400.0;
     static constexpr double MostRate = 20000.0;
     static constexpr double Burst = 1500.0;
+    static constexpr double FirstBurst = 6000.0;  // of a session that has just begun
     // Announcements that follow each other within that are of one round.
     static constexpr std::chrono::milliseconds Round{50};
     // Of answers. What is between quick and late changes nothing.
@@ -162,10 +164,11 @@ private:
     Duration _answerTime{0};               // the longest, by half less with each that is shorter
     std::map<Question, Asked> _questions;  // that are not answered yet
     std::map<DiscoveryPart::Prefix, TimePoint> _knowUs;  // and when they last said something to us
-    std::map<DiscoveryPart::Prefix, TimePoint> _heard;  // when they last said something
-    std::optional<TimePoint> _announcedAt;  // last
-    std::optional<TimePoint> _roundAt;      // that was missing last
-    double _left = Burst;
+    std::map<DiscoveryPart::Prefix, TimePoint> _heard;   // when they last said something
+    std::optional<TimePoint> _announcedAt;               // last
+    std::optional<TimePoint> _roundAt;                   // that was missing last
+    double _left = FirstBurst;
+    std::size_t _aheadOfNews = 0;  // bytes that have gone since before what had come due earlier
     TimePoint _filledAt{};
     std::array<std::uint8_t, 20> _header{};
     Slots _slots;

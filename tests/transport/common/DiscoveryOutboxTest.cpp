@@ -236,6 +236,72 @@ TEST_F(DiscoveryOutboxTest, AllTogetherStaysWithinItsRate)
     EXPECT_GE(bytes, 0.9 * 20 * Rate);
 }
 
+TEST_F(DiscoveryOutboxTest, ASessionThatHasJustBegunSaysAllThatItHasAtOnce)
+{
+    for (int number = 1; number <= 10; ++number)
+    {
+        Put(Message().News(static_cast<std::uint8_t>(number), 0, 500), 0ms);
+    }
+    const auto went = Run(10s);
+    EXPECT_GE(OnAir(went), 5000.0);
+    EXPECT_EQ(went.back().At, DiscoveryOutbox::Hold);
+}
+
+TEST_F(DiscoveryOutboxTest, ASessionThatHasJustBegunKeepsToARateThatWasSet)
+{
+    Outbox.SetRate(1000.0);
+    for (int number = 1; number <= 10; ++number)
+    {
+        Put(Message().News(static_cast<std::uint8_t>(number), 0, 500), 0ms);
+    }
+    EXPECT_LE(OnAir(Run(1s)), 2000.0 + DiscoveryOutbox::LargestDatagram);
+}
+
+TEST_F(DiscoveryOutboxTest, ARestDoesNotBringTheFirstBurstBack)
+{
+    Outbox.Sent(6000, Start);
+    for (int number = 1; number <= 10; ++number)
+    {
+        Put(Message().News(static_cast<std::uint8_t>(number), 0, 500), 1min);
+    }
+    EXPECT_LE(OnAir(Run(1min + DiscoveryOutbox::Hold)),
+              DiscoveryOutbox::Burst + DiscoveryOutbox::LargestDatagram);
+}
+
+TEST_F(DiscoveryOutboxTest, WhatWasSaidToAllIsNewForWhoeverNewlyComes)
+{
+    EXPECT_EQ(Repeat(Message().Beat(5, 1), 1000, 10), (std::vector{10, 110, 310, 710}));
+    Outbox.Received(AnswerFrom(7, 9).Datagram, Start + 1s);
+    Put(Message().Beat(5, 2), 1001ms);
+    auto went = Run(1s + 30ms);
+    ASSERT_EQ(went.size(), 1u);
+    EXPECT_LE(went[0].At, 1001ms + DiscoveryOutbox::Hold);
+    Outbox.Received(AnswerFrom(7, 9).Datagram, Start + 1040ms);
+    Put(Message().Beat(5, 3), 1041ms);
+    went = Run(2s);
+    ASSERT_EQ(went.size(), 1u);
+    EXPECT_GE(went[0].At, 1s + DiscoveryOutbox::FirstGap);
+}
+
+TEST_F(DiscoveryOutboxTest, WhatWaitsForAllGoesAtOnceWhenSomebodyNewlyComes)
+{
+    Repeat(Message().Beat(5, 1), 700, 10);  // the next at 710
+    Outbox.Received(AnswerFrom(7, 9).Datagram, Start + 700ms);
+    const auto went = Run(1s);
+    ASSERT_EQ(went.size(), 1u);
+    EXPECT_EQ(went[0].At, 700ms);
+}
+
+TEST_F(DiscoveryOutboxTest, WhatWasSaidBeforeAPeerKnewUsIsNewForIt)
+{
+    EXPECT_EQ(Repeat(Message().To(1).Beat(5, 1), 1000, 10), (std::vector{10, 110, 310, 710}));
+    Outbox.Received(Message(AnswerFrom(1)).Datagram, Start + 1s);
+    Put(Message().To(1).Beat(5, 2), 1100ms);
+    const auto went = Run(1200ms);
+    ASSERT_FALSE(went.empty());
+    EXPECT_LE(went.back().At, 1110ms);
+}
+
 TEST_F(DiscoveryOutboxTest, QuickAnswersRaiseTheRateUpToItsMost)
 {
     for (int at = 0; at < 2000; at += 20)
@@ -317,16 +383,16 @@ TEST_F(DiscoveryOutboxTest, ARoundOfAnnouncementsIsMissingOnceFromARateThatNobod
 TEST_F(DiscoveryOutboxTest, EachRoundOfAnnouncementsIsMissing)
 {
     Meet(1, 3);
-    for (int round = 0; round < 4; ++round)
+    for (int round = 0; round < 30; ++round)
     {
         Outbox.Announced(Message::Bytes(364, 0x52), Start + Milliseconds(100 * round));
     }
-    Put(Message().To(1).News(1, 4, 400), 301ms, 1, std::nullopt);
-    Put(Message().To(2).News(1, 4, 400), 301ms, 2, std::nullopt);
-    Put(Message().To(3).News(1, 4, 400), 301ms, 3, std::nullopt);
-    const auto went = Run(2s);
+    Put(Message().To(1).News(1, 4, 400), 2901ms, 1, std::nullopt);
+    Put(Message().To(2).News(1, 4, 400), 2901ms, 2, std::nullopt);
+    Put(Message().To(3).News(1, 4, 400), 2901ms, 3, std::nullopt);
+    const auto went = Run(5s);
     ASSERT_EQ(went.size(), 3u);
-    EXPECT_GT(went[2].At, 301ms + DiscoveryOutbox::Hold);
+    EXPECT_GT(went[2].At, 2901ms + DiscoveryOutbox::Hold);
 }
 
 TEST_F(DiscoveryOutboxTest, AllOfARoundOfAnnouncementsIsMissingFromARateThatWasSet)
@@ -454,6 +520,20 @@ TEST_F(DiscoveryOutboxTest, AnAnswerDoesNotWaitBehindNews)
     const auto went = Run(10s);
     ASSERT_FALSE(went.empty());
     EXPECT_EQ(went[0].Address, 9u);
+}
+
+TEST_F(DiscoveryOutboxTest, AnAnswerDoesNotWaitBehindNewsHoweverLongTheyHaveWaited)
+{
+    Outbox.SetRate(1000.0);
+    for (std::uint8_t number = 1; number <= 20; ++number)
+    {
+        Put(Message().News(number, 0, 1000), 0ms);
+    }
+    Run(10s);
+    Put(Message().To(1).Acknowledge(5, 1), 10s);
+    const auto went = Run(12s);
+    ASSERT_FALSE(went.empty());
+    EXPECT_LT(went[0].Bytes.size(), 100u);
 }
 
 TEST_F(DiscoveryOutboxTest, AnswersWithoutEndLetNewsPass)

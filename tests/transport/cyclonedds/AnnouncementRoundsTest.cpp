@@ -73,7 +73,7 @@ TEST_F(AnnouncementRoundsTest, WhoComesLaterIsAnsweredAsSoonAsTheFirst)
     EXPECT_EQ(Live(70s + 500ms, true), (std::vector{70100, 70300}));
 }
 
-TEST_F(AnnouncementRoundsTest, ThoseWhoComeOneAfterAnotherAreAnsweredMoreAndMoreSeldom)
+TEST_F(AnnouncementRoundsTest, ThoseWhoComeOneAfterAnotherAreAnsweredTogether)
 {
     Live(1min, false);
     std::vector<int> announced;
@@ -83,7 +83,25 @@ TEST_F(AnnouncementRoundsTest, ThoseWhoComeOneAfterAnotherAreAnsweredMoreAndMore
         const auto more = Live(at + 199ms, false);
         announced.insert(announced.end(), more.begin(), more.end());
     }
-    EXPECT_EQ(announced, (std::vector{60100, 60300, 60500, 60900, 61700, 63300}));
+    EXPECT_EQ(announced,
+              (std::vector{60100, 60300, 60500, 60900, 61300, 61700, 62100, 62500, 62900, 63300, 63700}));
+}
+
+// The first of a series alone is late by what lies between announcements.
+TEST_F(AnnouncementRoundsTest, WhoComesLastOfSeveralIsAnsweredAtTheUsualDistances)
+{
+    Live(1min, false);
+    for (auto at = 60000ms; at < 62000ms; at += 200ms)
+    {
+        Rounds.OnPeer(Start + at);
+        Live(at + 199ms, false);
+    }
+    Rounds.OnPeer(Start + 62s);
+    const auto answers = Live(65s, true);
+    ASSERT_GE(answers.size(), 4u);
+    EXPECT_LE(answers[0], 62000 + AnnouncementRounds::LongestSpacing / 1ms);
+    EXPECT_EQ(answers[1] - answers[0], 200);
+    EXPECT_EQ(answers[2] - answers[1], 400);
 }
 
 TEST_F(AnnouncementRoundsTest, WhatWasSaidToNewcomersJustBeforeNeedsNotBeSaidAgain)
