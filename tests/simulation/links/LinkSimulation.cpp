@@ -247,6 +247,8 @@ void Simulation::CheckBytes()
         static_cast<double>(_plan.Links.size()) * std::chrono::duration<double>(_world.Now).count() *
         (static_cast<double>(_plan.Settings.MaxDatagram + _plan.Settings.AirOverhead) + BytesOfAPart);
     const double bound = 2 * (sends * messages + asking);
+    _statistics.MostSent =
+        static_cast<std::uint64_t>(100 * static_cast<double>(_statistics.BytesSent) / bound);
     if (static_cast<double>(_statistics.BytesSent) > bound)
     {
         _oracle.Fail(15, std::to_string(_statistics.BytesSent) + " bytes were sent where " +
@@ -535,12 +537,12 @@ void Simulation::OnDatagram(std::size_t slot)
     {
         *_trace << Lead() << "came " << Describe(packet) << '\n';
     }
-    if (_nodes[packet.From]->IsAlive() &&
+    // A short frame tells nothing of its sender's life to who does not know that already.
+    if (node.Receive(packet) && _nodes[packet.From]->IsAlive() &&
         _nodes[packet.From]->Links().IncarnationTo(_plan.Nodes[packet.To].Name) == packet.SenderLife)
     {
         _oracle.Knows(packet.To, packet.From);
     }
-    node.Receive(packet);
     Pump(packet.To);
     if (_random.Chance(_plan.MalformedPart))
     {

@@ -36,6 +36,7 @@ struct SimStatistics
     std::uint64_t StoragesLost = 0;
     std::uint64_t Forgotten = 0;  // peers that a node forgot while it lived
     std::uint64_t Raises = 0;     // incarnations taken because a peer knew a higher one
+    std::uint64_t MostSent = 0;   // percent of the bytes that are enough
     LinkTime LongestDrain{0};
 };
 

@@ -47,7 +47,7 @@ public:
     // The node has forgotten the other one: between the two it is as if it were in a new incarnation, and it
     // does not know that of the other.
     void Forgets(std::size_t node, std::size_t peer);
-    // A node has heard of the present incarnation of another one.
+    // A node has taken a frame of the present incarnation of another one.
     void Knows(std::size_t node, std::size_t peer) { _knownEpoch[node][peer] = EpochTo(peer, node); }
 
     // The payload and type of the next message of a link.

@@ -113,16 +113,16 @@ bool SimNode::Forget(std::size_t node)
     return forgotten;
 }
 
-void SimNode::Receive(const Packet &packet)
+bool SimNode::Receive(const Packet &packet)
 {
     LinkFrame frame;
     if (!LinkFrameCodec::Decode(packet.Bytes, frame))
     {
         _world.Oracle.Fail(9, "a frame that a node sent cannot be decoded");
-        return;
+        return false;
     }
     frame.Source = _world.Plan.Nodes[packet.From].Name;
-    _links->OnFrame(frame, LocalNow());
+    return _links->OnFrame(frame, LocalNow());
 }
 
 void SimNode::ReceiveSpoiled(const Packet &packet)

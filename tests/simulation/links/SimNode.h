@@ -48,7 +48,8 @@ public:
     void Enqueue(std::size_t link);
     // Forgets another node, if nothing waits for it. Returns whether there was something to forget.
     bool Forget(std::size_t node);
-    void Receive(const Packet &packet);
+    // Returns whether it could make sense of it.
+    bool Receive(const Packet &packet);
     // Receives it once more, malformed.
     void ReceiveSpoiled(const Packet &packet);
     // A message is taken out of a queue, and local producers may put one in. Returns whether there are more.

@@ -37,6 +37,7 @@ Rabit::Sim::SeedResult Run(std::uint64_t seed, std::ostream *trace)
              {"storages lost", s.StoragesLost},
              {"incarnations raised", s.Raises},
              {"peers forgotten", s.Forgotten},
+             {"most bytes sent, of what would do", s.MostSent, Figure::Kind::LargestPercent},
              {"longest drain", static_cast<std::uint64_t>(s.LongestDrain.count()), Figure::Kind::Largest}}};
 }
 
