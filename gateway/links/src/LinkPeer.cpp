@@ -167,6 +167,7 @@ void LinkPeer::Measure(const LinkFrame &frame, LinkTime now)
 void LinkPeer::OnAcks(const LinkFrame &frame, LinkTime now)
 {
     const bool echoed = frame.Echo.Clock == _context.Clock && frame.Echo.Time <= now.count();
+    const LinkTime echo = echoed ? LinkTime(frame.Echo.Time) : LinkTime(0);
     for (const LinkAck &ack : frame.Acks)
     {
         if (ack.Link > _byNumber.size())
@@ -174,8 +175,11 @@ void LinkPeer::OnAcks(const LinkFrame &frame, LinkTime now)
             ++_context.Counters.NoSuchLink;
             continue;
         }
-        _byNumber[ack.Link - 1]->OnAck(ack, frame.Time, echoed ? LinkTime(frame.Echo.Time) : LinkTime(0),
-                                       now);
+        _byNumber[ack.Link - 1]->OnAck(ack, frame.Time, echo, now);
+    }
+    for (LinkSender *sender : _byNumber)
+    {
+        sender->OnEcho(echo);
     }
 }
 

@@ -107,16 +107,18 @@ bool LinkPeer::SendData(LinkSender &sender, std::size_t most, LinkTime now)
     }
     LinkFrame &frame = BeginFrame(true, now);
     AddAcks(frame);
-    const bool filled = sender.Fill(frame, most, now);
-    if (!filled && frame.Acks.empty())
+    const LinkSender::Filled filled = sender.Fill(frame, most, now);
+    const bool hasParts = filled == LinkSender::Filled::Parts;
+    if (filled == LinkSender::Filled::Nothing && frame.Acks.empty())
     {
         return false;
     }
-    frame.Ask = filled && (sender.WaitsForAck() || (sender.HasMore() && _path.TakeAsk(now)));
-    Send(frame, filled, now);
+    frame.Ask = filled == LinkSender::Filled::Question ||
+                (hasParts && (sender.WaitsForAck() || (sender.HasMore() && _path.TakeAsk(now))));
+    Send(frame, filled != LinkSender::Filled::Nothing, now);
     // The payloads are the outbox's: keep none of them.
     frame.Data.Items.clear();
-    return filled;
+    return filled != LinkSender::Filled::Nothing;
 }
 
 LinkFrame &LinkPeer::BeginFrame(bool mayBeShort, LinkTime now)

@@ -10,8 +10,8 @@ namespace Rabit
 namespace
 {
 
-// Something new is sent along with what was sent in vain so often; after that there is no path.
-constexpr int ProbesWithNew = 40;
+// After so many bytes of probes in vain, whether there is a path is found out with less: others need the air.
+constexpr std::size_t BytesInVain = 10'000;
 
 }  // namespace
 
@@ -53,7 +53,8 @@ LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkP
     {
         _probeAt = std::max(now, _lastSentAt + _path.ProbeTimeout());
     }
-    else if (_doublings > 0 && _doublings <= ProbesWithNew && now >= _lastSentAt + _path.ProbeTimeout())
+    else if (_doublings > 0 && _probesInVain < PathControl::ProbesInVain &&
+             now >= _lastSentAt + _path.ProbeTimeout())
     {
         _probe = true;  // something new need not wait for a timer that has backed off
     }
@@ -128,7 +129,7 @@ void LinkSender::OnProbeTimer()
     }
     else
     {
-        ++_doublings;
+        _doublings = std::max(_doublings + 1, std::min(_probesInVain, PathControl::ProbesInVain));
         ++_counters.Timeouts;
     }
 }
@@ -224,6 +225,23 @@ void LinkSender::OnPeerHeard(LinkTime now)
     }
 }
 
+bool LinkSender::IsInVain() const
+{
+    return _bytesInVain >= BytesInVain;
+}
+
+void LinkSender::OnEcho(LinkTime echo)
+{
+    if (IsInVain() && echo > _inVainSince)
+    {
+        // There is a path. Parts were in vain on it all the same: large ones may not get through.
+        _bytesInVain = 0;
+        _probesInVain = _partsInVain;
+        _doublings = std::min(_doublings, _partsInVain);
+        _probe = true;
+    }
+}
+
 // Rule S5: what was sent as a whole but not acknowledged is in doubt, or is sent again as redelivered; what
 // was sent in part or not at all continues after it, from its beginning. The credit is forgotten.
 void LinkSender::Restart()
@@ -264,6 +282,9 @@ void LinkSender::Restart()
     _ackTime = 0;
     _probe = true;
     _doublings = 0;
+    _probesInVain = 0;
+    _partsInVain = 0;
+    _bytesInVain = 0;
     _stalls = 0;
     _probeAt = LinkNever;
     _lostAt = LinkNever;
@@ -342,7 +363,8 @@ std::string LinkSender::Describe() const
         << _outbox.Count() << " bytes " << _outbox.Bytes() << " in flight " << _inFlight << " lost " << _lost
         << " held " << _held << " credit to " << _creditLimit << " of " << _ackTime
         << (_probe ? " probe" : "") << " probe at " << _probeAt.count() << " doublings " << _doublings
-        << " lost at " << _lostAt.count() << " echo " << _lastEcho.count();
+        << " in vain " << _probesInVain << ' ' << _partsInVain << ' ' << _bytesInVain << " since "
+        << _inVainSince.count() << " lost at " << _lostAt.count() << " echo " << _lastEcho.count();
     return out.str();
 }
 

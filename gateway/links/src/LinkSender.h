@@ -36,9 +36,15 @@ public:
     bool IsReady(LinkTime now) const;
     // Bytes of parts that the next datagram would carry, about and at most what one can.
     std::size_t NextBytes() const;
+    enum class Filled
+    {
+        Nothing,
+        Parts,
+        Question  // no parts: whether anybody hears it
+    };
     // Rule S2: puts the next datagram's parts into the frame, whose header is complete, such that it is not
-    // larger than `most` unless a single small part makes it so. False: there is nothing to send.
-    bool Fill(LinkFrame &frame, std::size_t most, LinkTime now);
+    // larger than `most` unless a single small part makes it so.
+    Filled Fill(LinkFrame &frame, std::size_t most, LinkTime now);
     // Whether there is more to send as soon as the path lets it.
     bool HasMore() const { return HasLost() || MayCut(); }
     // Whether there is more that may go only after an acknowledgement, whatever the path.
@@ -51,6 +57,8 @@ public:
     // Rule S4, for an acknowledgement of the present lives. `time`: the receiver's clock when it was sent.
     // `echo`: when the newest frame was sent that the receiver had then; 0: unknown.
     void OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, LinkTime now);
+    // The peer has a frame that was sent at that time.
+    void OnEcho(LinkTime echo);
     // Something came from the peer after a silence: what waits for the probe timer need not wait longer.
     void OnPeerHeard(LinkTime now);
     // Rules S5 and S6: the receiver, or this node, is in a new life. The stream starts anew.
@@ -70,6 +78,8 @@ private:
     void ExpireWaiting(LinkTime now);
     void ExpireSent(LinkTime now);
     void OnProbeTimer();
+    // So much was sent without an answer that more goes only to who shows that he hears.
+    bool IsInVain() const;
     LinkTime ReadyAt() const;
     // Whether there is credit for this sent message, or the first as a probe.
     bool HasCredit(std::uint64_t message) const;
@@ -81,6 +91,8 @@ private:
     bool Again(Filling &filling, std::uint64_t &sequence);
     void Describe(const SentPart &part, const OutboxMessage &message, std::uint64_t sequence, LinkItem &item,
                   LinkTime now) const;
+    bool IsProbeSmall(LinkTime now) const;
+    void OnSent(std::size_t bytes, bool hasParts, bool turnedAway, LinkTime now);
     void OnPartSent(Filling &filling, SentPart &part, std::size_t bytes);
 
     void TakeUpTo(const LinkAck &ack, LinkTime now);
@@ -117,7 +129,13 @@ private:
     // One datagram may go out although there is no credit or no room on the path.
     bool _probe = true;
     int _doublings = 0;  // probes since anything was heard of this stream
-    int _stalls = 0;     // the same since anything was acknowledged, while the receiver is what holds it up
+    // Probes sent since the first of these, those of them that carried parts, and their bytes; and since when
+    // these are too many.
+    int _probesInVain = 0;
+    int _partsInVain = 0;
+    std::size_t _bytesInVain = 0;
+    LinkTime _inVainSince{0};
+    int _stalls = 0;  // the same since anything was acknowledged, while the receiver is what holds it up
     LinkTime _probeAt = LinkNever;
     LinkTime _lostAt = LinkNever;  // when what was overtaken counts as lost
     LinkTime _lastEcho{0};

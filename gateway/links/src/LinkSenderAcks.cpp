@@ -66,6 +66,9 @@ void LinkSender::OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, Lin
         _creditLimit = _outbox.FirstMessage() + std::min<std::uint64_t>(ack.Credit, LinkMaxWindow);
         FindLost(echo, now);
         _doublings = 0;
+        _probesInVain = 0;
+        _partsInVain = 0;
+        _bytesInVain = 0;
     }
     const bool turnedAway = IsTurnedAway();
     _stalls = progress || !turnedAway ? 0 : _stalls;

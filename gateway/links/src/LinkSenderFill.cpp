@@ -18,6 +18,8 @@ constexpr std::size_t SmallestPiece = 128;
 constexpr double LossThatCalls = 0.02;
 constexpr std::size_t SmallPart = 256;
 constexpr std::size_t PartOfDatagram = 4;
+// What of parts a probe carries after others were in vain.
+constexpr std::size_t SmallProbe = 128;
 // What stands before a message in a datagram, names left out.
 constexpr std::size_t AboutAnItem = 12;
 constexpr std::size_t AboutNames = 64;
@@ -52,7 +54,7 @@ bool LinkSender::IsReady(LinkTime now) const
 
 std::size_t LinkSender::NextBytes() const
 {
-    const std::size_t most = _context.Settings.MaxDatagram;
+    const std::size_t most = _probe && IsInVain() ? SmallProbe : _context.Settings.MaxDatagram;
     std::size_t bytes = 0;
     if (_lost > 0 || _probe)
     {
@@ -76,7 +78,7 @@ std::size_t LinkSender::NextBytes() const
     return std::clamp<std::size_t>(bytes, 1, most);
 }
 
-bool LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
+LinkSender::Filled LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
 {
     ExpireWaiting(now);
     ExpireSent(now);
@@ -93,6 +95,16 @@ bool LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
         filling.Head += LinkFrameCodec::AckSize(ack);
     }
     const bool turnedAway = IsTurnedAway();
+    if (_probe && IsInVain())
+    {
+        if (!IsProbeSmall(now))
+        {
+            data.Items.clear();
+            OnSent(filling.Head, false, turnedAway, now);
+            return Filled::Question;
+        }
+        filling.Most = std::min(most, filling.Head + SmallProbe);
+    }
     FillAgain(filling);
     while (FillNew(filling))
     {
@@ -110,16 +122,52 @@ bool LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)
         else
         {
             _probe = false;
-            return false;
+            return Filled::Nothing;
         }
+    }
+    frame.HasData = true;
+    OnSent(filling.Head + filling.Used, true, turnedAway, now);
+    return Filled::Parts;
+}
+
+// A datagram of so many bytes is complete.
+void LinkSender::OnSent(std::size_t bytes, bool hasParts, bool turnedAway, LinkTime now)
+{
+    const std::size_t onAir = bytes + _context.Settings.AirOverhead;
+    if (_probe && _doublings > 0)
+    {
+        const bool wasInVain = IsInVain();
+        ++_probesInVain;
+        _partsInVain += hasParts ? 1 : 0;
+        _bytesInVain += onAir;
+        _inVainSince = IsInVain() && !wasInVain ? now : _inVainSince;
     }
     _probe = false;
     _lastSentAt = now;
     ++_counters.DatagramsSent;
-    _counters.BytesSent += filling.Head + filling.Used + _context.Settings.AirOverhead;
+    _counters.BytesSent += onAir;
     ArmProbe(turnedAway, now);
-    frame.HasData = true;
-    return true;
+}
+
+// Whether what a probe begins with is.
+bool LinkSender::IsProbeSmall(LinkTime now) const
+{
+    std::uint64_t sequence = _outbox.FirstSequence();
+    while (sequence < _outbox.NextSequence() && _outbox.Part(sequence).IsHeld)
+    {
+        ++sequence;
+    }
+    if (sequence == _outbox.NextSequence())
+    {
+        sequence = _outbox.FirstSequence();  // it has everything, and is asked to take it
+    }
+    if (sequence == _outbox.NextSequence())
+    {
+        return true;
+    }
+    const SentPart &part = _outbox.Part(sequence);
+    const OutboxMessage &message = _outbox.MessageOf(part);
+    return part.Length <= SmallProbe || message.IsSkipped || now >= message.ExpiresAt;
 }
 
 // What was lost, all of it that is not acknowledged if this is a probe, and what goes along once more.

@@ -25,10 +25,9 @@ constexpr std::size_t PartToAsk = 4;
 constexpr LinkTime LongestDatagramTime = 250ms;
 // The window grows to so many times what arrives in the round trip that is aimed at (BBR).
 constexpr double UsefulWindow = 2.0;
-// The probe timer doubles so many times at first: where much is lost, waiting longer does not help. After so
-// many probes in vain there is no path, and it goes on doubling.
+// The probe timer doubles so many times at first: where much is lost, waiting longer does not help. When
+// there is no path it goes on doubling.
 constexpr int FirstDoublings = 3;
-constexpr int ProbesInVain = 40;
 // A round trip that was once very long is no reason to wait for the next ones that long.
 constexpr LinkTime LongestProbe = 3s;
 

@@ -57,6 +57,8 @@ public:
     double DeliveryRate() const { return _rate; }
     // How long an acknowledgement may wait for others.
     LinkTime AckDelay() const;
+    // After so many probes in vain there is no path.
+    static constexpr int ProbesInVain = 40;
     // How long to wait for an answer before asking again, and the same after so many times in vain.
     LinkTime ProbeTimeout(int doublings = 0) const;
     // How much later than others of its time a frame may come and not count as lost.

@@ -488,7 +488,67 @@ TEST_F(LinkSenderRules, S2_resends_only_the_first_datagrams_worth_and_ever_more_
     a.Live(9s);
     const std::vector<std::string> resent = SentTexts();
     EXPECT_THAT(resent, testing::Each(Large(0)));
-    EXPECT_THAT(resent, SizeIs(10)) << "after 0.2, 0.4 and 0.8 s, then each second";
+    EXPECT_THAT(resent, SizeIs(8)) << "after 0.2, 0.4 and 0.8 s, then each second, 10 kB in all";
+}
+
+TEST_F(LinkSenderRules, S2_after_ten_kilobytes_in_vain_only_asks_whether_anybody_hears)
+{
+    Contact();
+    a.Enqueue(Large(0));
+    a.Pass(0ms);
+    a.Live(7s);
+    a.TakeDatas();
+    a.TakeHellos();
+    a.Live(2s);
+    EXPECT_THAT(a.TakeDatas(), IsEmpty());
+    const std::vector<StoredFrame> questions = a.TakeHellos();
+    ASSERT_THAT(questions, SizeIs(2)) << "as often as before";
+    EXPECT_TRUE(questions.back().Fields.Ask);
+}
+
+TEST_F(LinkSenderRules, S2_an_answer_to_such_a_question_brings_the_datagram_at_once)
+{
+    Contact();
+    a.Enqueue(Large(0));
+    a.Pass(0ms);
+    a.Live(9s);
+    a.TakeDatas();
+    StoredFrame answer = b.Hello();
+    answer.Fields.Echo = {PlayedPeer::ClockOfA, a.TakeHellos().back().Fields.Time, 0};
+    a.Hear(answer);
+    a.Pass(0ms);
+    EXPECT_THAT(SentTexts(), ElementsAre(Large(0)));
+}
+
+TEST_F(LinkSenderRules, S2_what_the_peer_had_before_is_no_answer_to_such_a_question)
+{
+    Contact();
+    const LinkTime before = a.Now;
+    a.Enqueue(Large(0));
+    a.Pass(0ms);
+    a.Live(9s);
+    a.TakeDatas();
+    StoredFrame frame = b.Hello();
+    frame.Fields.Echo = {PlayedPeer::ClockOfA, before.count(), 0};
+    a.Hear(frame);
+    a.Pass(0ms);
+    EXPECT_THAT(a.TakeDatas(), IsEmpty());
+}
+
+TEST_F(LinkSenderRules, S2_after_ten_kilobytes_in_vain_small_messages_still_go_a_few_at_a_time)
+{
+    Contact();
+    for (int i = 0; i < 100; ++i)
+    {
+        a.Enqueue(Numbered(i) + std::string(30, '.'));
+    }
+    a.Pass(0ms);
+    a.Live(9s);
+    a.TakeDatas();
+    a.Live(900ms);
+    const std::vector<StoredFrame> datas = a.TakeDatas();
+    ASSERT_THAT(datas, SizeIs(1));
+    EXPECT_THAT(datas.front().Items, SizeIs(3)) << "128 bytes";
 }
 
 TEST_F(LinkSenderRules, S2_after_the_resend_timer_new_messages_share_the_datagram_with_old_ones)

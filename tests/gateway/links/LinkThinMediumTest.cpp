@@ -188,6 +188,36 @@ TEST(ThinMedium, a_command_waits_for_no_picture_on_another_link)
     EXPECT_LE(medium.B.Percentile("commands", 0.99), 250ms);
 }
 
+// Bytes that a node puts on the air within nine seconds for one that nobody hears any more: it sends messages
+// of that size, so many a second.
+std::size_t BytesInVain(std::size_t size, int perSecond)
+{
+    ThinMedium medium;
+    medium.A.Enqueue("beta", "q", 32);
+    medium.Live(1s);
+    medium.Cut = true;
+    const std::size_t before = medium.BytesSent;
+    for (int i = 0; i < 9 * perSecond; ++i)
+    {
+        medium.A.Enqueue("beta", "q", size);
+        medium.Live(LinkTime(1s) / perSecond);
+    }
+    return medium.BytesSent - before;
+}
+
+// Others need the air.
+constexpr std::size_t MostInVain = 9 * 2 * (1312 + ThinMedium::Overhead);
+
+TEST(ThinMedium, a_large_message_to_who_is_gone_takes_at_most_two_datagrams_a_second)
+{
+    EXPECT_LE(BytesInVain(100'000, 1), MostInVain);
+}
+
+TEST(ThinMedium, many_commands_to_who_is_gone_take_at_most_two_datagrams_a_second)
+{
+    EXPECT_LE(BytesInVain(32, 100), MostInVain);
+}
+
 TEST(ThinMedium, nothing_that_expired_in_an_outage_is_sent_after_it)
 {
     ThinMedium medium;
