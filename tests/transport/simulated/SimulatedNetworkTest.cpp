@@ -327,6 +327,16 @@ TEST_F(SimulatedNetworkTest, ACrashedNodeIsLostAndItsWritesFail)
     EXPECT_EQ(AtUav.CountAll(), 1u);  // that ground appeared, long ago
 }
 
+TEST_F(SimulatedNetworkTest, NobodyHearsThatTheObjectsOfACrashedNodeAreDestroyed)
+{
+    Connect(Stream(10));
+    Net.Network().CrashNode("uav1");
+    Writer.reset();
+    Net.Pass(2900ms);
+    EXPECT_EQ(Reader->MatchedWriters(), 1) << "until the lease has run out";
+    EXPECT_TRUE(Net.Until([&] { return Reader->MatchedWriters() == 0; }));
+}
+
 TEST_F(SimulatedNetworkTest, AnAnnouncementOvertakenByTheGoodbyeRevivesNobody)
 {
     Net.Settle();

@@ -10,6 +10,10 @@ namespace Rabit::Simulated
 
 void NetworkCore::EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed)
 {
+    if (me.Gone)
+    {
+        return;  // it crashed: its objects are destroyed later, and nobody hears of it
+    }
     auto endpoints = std::make_shared<EndpointList>(*me.Endpoints);
     if (added != nullptr)
     {
