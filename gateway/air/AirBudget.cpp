@@ -100,6 +100,17 @@ Duration AirBudget::WhenFits(std::size_t bytes, Duration now)
     return std::max(paced, _second.When(fits, now));
 }
 
+std::size_t AirBudget::Room(std::size_t most, Duration now)
+{
+    const auto scheduled = static_cast<double>(_second.Scheduled(now));
+    if (_mode != Mode::Budget || scheduled == 0.0)
+    {
+        return most;
+    }
+    const double others = std::max(static_cast<double>(_second.Unscheduled(now)), Reserved());
+    return static_cast<std::size_t>(std::clamp(_rate - scheduled - others, 0.0, static_cast<double>(most)));
+}
+
 void AirBudget::Sent(std::size_t bytes, Duration now)
 {
     if (IsUnlimited())

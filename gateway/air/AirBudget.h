@@ -56,6 +56,8 @@ public:
     bool MaySend(std::size_t bytes, Duration now) { return IsUnlimited() || WhenFits(bytes, now) <= now; }
     // The first time, not before now, at which a datagram of this size may go if nothing else does.
     Duration WhenFits(std::size_t bytes, Duration now);
+    // How large a datagram may be that goes now, `most` at most. For who knows that a smaller one may.
+    std::size_t Room(std::size_t most, Duration now);
     // A datagram went. Also one that MaySend would not have let go.
     void Sent(std::size_t bytes, Duration now);
 

@@ -60,6 +60,8 @@ public:
     void Reserve(double bytesPerSecond);
     void Spent(std::size_t bytes, Duration now) { _budget.Spent(bytes, now); }
     const AirBudget &Budget() const { return _budget; }
+    // AirBudget::Room
+    std::size_t Room(std::size_t most, Duration now) { return _budget.Room(most, now); }
 
     // The weight holds among streams of its class, SmallestWeight to LargestWeight.
     StreamId AddStream(TrafficClass traffic, double weight = 1.0);

@@ -57,7 +57,8 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
       _unscheduled(TransportSettingsOf(config, 0).AnnouncementPeriod),
       _beat(_schedule.AddStream(TrafficClass::Presence)),
       _typeTexts(_schedule.AddStream(TrafficClass::Bulk)),
-      _linkStreams(config.Send, links, _schedule),
+      _linkStreams(config.Send, links, _schedule,
+                   [&presence](std::string_view node) { return presence.SessionsOf(node); }),
       _report(config, _cost)
 {
 }
@@ -219,9 +220,18 @@ void AirTraffic::LookAtBeat(Duration now)
     KeepPromise(now);
     if (now >= _presence.BeatDue() || IsBeatWorth(now))
     {
-        _schedule.Ready(_beat,
-                        std::min(static_cast<std::size_t>(_beatBytes), _cost.Of(_presence.BeatSize(now))));
+        _schedule.Ready(_beat, BeatBytes(now));
     }
+}
+
+// One of the usual size may go as soon as that fits: it says as much as there is room for, and what is left
+// goes with the next ones.
+std::size_t AirTraffic::BeatBytes(Duration now) const
+{
+    const AirCost::Readers readers{.Destinations = _presence.BeatCopies()};
+    const std::size_t least = _cost.Of(BeatFormat::Empty, readers);
+    return std::min(std::max(static_cast<std::size_t>(_beatBytes), least),
+                    _cost.Of(_presence.BeatSize(now), readers));
 }
 
 void AirTraffic::LookAt(std::size_t publisher, Duration now)
@@ -291,8 +301,8 @@ void AirTraffic::Send(StreamId id, Duration now)
     bool sent = true;
     if (id == _beat)
     {
-        const std::size_t body = _cost.BodyWithin(std::max(most, AirBudget::SmallestDatagram), false);
-        SendBeat(body, now);
+        const std::size_t room = _schedule.Room(std::max(most, AirBudget::SmallestDatagram), now);
+        SendBeat(_cost.BodyWithin(room / _presence.BeatCopies(), false), now);
     }
     else if (id == _typeTexts)
     {

@@ -74,6 +74,7 @@ private:
     Duration ServeUnlimited(Duration now);
     Duration ServeLimited();
     bool IsBeatWorth(Duration now) const;
+    std::size_t BeatBytes(Duration now) const;
     std::size_t SendBeat(std::size_t most, Duration now);
     void KeepPromise(Duration now);
     void LookAtBeat(Duration now);

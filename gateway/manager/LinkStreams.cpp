@@ -1,6 +1,7 @@
 #include "manager/LinkStreams.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "manager/ImportanceOf.h"
 
@@ -13,10 +14,12 @@ constexpr LinkStreams::Duration Unused = std::chrono::minutes(1);
 
 }  // namespace
 
-LinkStreams::LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule)
+LinkStreams::LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule,
+                         CopiesTo copies)
     : _rules(rules),
       _links(links),
       _schedule(schedule),
+      _copies(std::move(copies)),
       _visit([this](const LinkStream &link) { Visit(link); })
 {
 }
@@ -48,7 +51,7 @@ void LinkStreams::Visit(const LinkStream &link)
     stream.SeenIn = _looks;
     stream.ReadyAt = _now;
     stream.IsReady = true;
-    _schedule.Ready(stream.Id, std::min(link.Bytes, _most));
+    _schedule.Ready(stream.Id, std::min(link.Bytes, _most) * _copies(link.Destination));
 }
 
 LinkStreams::Stream &LinkStreams::StreamOf(const LinkStream &link)

@@ -26,8 +26,12 @@ class LinkStreams
 public:
     using Duration = std::chrono::nanoseconds;
 
+    // How many datagrams one to that node takes.
+    using CopiesTo = std::function<std::size_t(std::string_view node)>;
+
     // References must outlive the object.
-    LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule);
+    LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule,
+                CopiesTo copies);
 
     // Tells the schedule what the links could send now, in datagrams of at most so many bytes on the air.
     void Look(std::size_t most, Duration now);
@@ -53,6 +57,7 @@ private:
     const std::vector<SendRule> &_rules;
     LinkDriver &_links;
     AirSchedule &_schedule;
+    const CopiesTo _copies;
     const std::function<void(const LinkStream &)> _visit;
     std::map<std::string, Queues, std::less<>> _nodes;
     std::vector<Stream *> _byIndex;  // of the schedule's streams; null: not one of these

@@ -248,6 +248,7 @@ void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, S
 
 void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
 {
+    _sessions.On(event);
     if (event.What == PeerEvent::Kind::Left)
     {
         Note(_peers.OnLeft(event.Node, event.Incarnation), event.Node, served);
@@ -362,6 +363,11 @@ WriteResult Presence::Write(const Gateway::Beat &beat, const PostTime &time)
 {
     const MessageEncoder encoder(GatewayTopics::TypeOf<Gateway::Beat>(), beat);
     return _writer->Write(encoder, GpsTime::ToUtcNanoseconds(time.GpsTimeSeconds));
+}
+
+std::size_t Presence::BeatCopies() const
+{
+    return static_cast<std::size_t>(std::max(_writer ? _writer->Destinations() : 0, 1));
 }
 
 std::size_t Presence::SendBeat(Duration now, std::size_t most)

@@ -19,6 +19,7 @@
 #include "presence/BeatContents.h"
 #include "presence/BeatPace.h"
 #include "presence/Introductions.h"
+#include "presence/NodeSessions.h"
 #include "presence/OriginTable.h"
 #include "presence/OtherFormats.h"
 #include "presence/PeerTable.h"
@@ -97,6 +98,9 @@ public:
     Duration BeatPromised() const { return _pace.Promised(); }
     // What the next beat takes at most, as the bytes of its body (CDR without the encapsulation).
     std::size_t BeatSize(Duration now) const { return _contents.Size(now); }
+    // How many datagrams it takes, and what goes to that node alone.
+    std::size_t BeatCopies() const;
+    std::size_t SessionsOf(std::string_view node) const { return _sessions.Of(node); }
     // Sends exactly one beat, whose body takes at most so many bytes, but always what an empty one takes; the
     // rest of what is to be said follows in the next ones. Returns the bytes of its body; 0 before Open.
     std::size_t SendBeat(Duration now, std::size_t most = BeatFormat::Largest);
@@ -159,6 +163,7 @@ private:
     const std::function<void()> _wake;
 
     PeerTable _peers;
+    NodeSessions _sessions;
     Introductions _introductions;
     ReaderWatch _watch;
     Served _served;

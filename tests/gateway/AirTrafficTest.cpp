@@ -124,6 +124,61 @@ TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetHoweverMuchIsOffered)
     EXPECT_EQ(ground.StateOf("uav1"), "UP");
 }
 
+// What is sent to a node goes to the session of its earlier life, too, until the lease of that has run out.
+TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenANodeHasCrashedAndCameBack)
+{
+    AddAircraft(WithBudget(AircraftConfig("uav1"), 1500));
+    fleet.Add(GroundConfig()).AddIdleManager("Commands");
+    Fly(10s, 500ms, 1s);
+    fleet.Kill("ground");
+    Fly(1s, 500ms, 1s);
+    IdleManager &commands = fleet.Add(GroundConfig(), 1.4e9 + 100).AddIdleManager("Commands");
+    auto report = std::make_shared<Uav::CommandAck>();
+    report->reason = std::string(100, 'x');
+    Spending spending;
+    Fly(25s, 500ms, 1s,
+        [&](Duration)
+        {
+            const SimulatedSent all = fleet.Network.Sent("uav1");
+            spending.Add(all.Bytes - all.DiscoveryBytes);
+            aircraft->Workspace.AddMessageToQueue("ground/Commands", report);
+            std::shared_ptr<RabitMessage> message;
+            commands.GetManagerMessageQueue()->GetMessage(message);
+        });
+    EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * 1500);
+}
+
+// Each of them lacks the others' announcements, and all beats have much to say.
+TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenBeatsHaveMuchToSay)
+{
+    GatewayConfig config = WithBudget(AircraftConfig("uav1"), 1500);
+    for (int i = 0; i < 20; ++i)
+    {
+        config.Publish.push_back({.Message = "State" + std::to_string(i), .Type = "Uav::MissionState"});
+    }
+    AddAircraft(config);
+    Fly(5s, 100ms, 1s);
+    fleet.Add(GroundConfig()).AddIdleManager("Commands");
+    fleet.Add(AircraftConfig("uav2"));
+    Spending spending;
+    std::uint32_t sent = 0;
+    Fly(60s, 100ms, 1s,
+        [&](Duration passed)
+        {
+            if (passed == 20s)
+            {
+                fleet.Add(AircraftConfig("uav3"));
+            }
+            const SimulatedSent all = fleet.Network.Sent("uav1");
+            spending.Add(all.Bytes - all.DiscoveryBytes);
+            if (passed % 100ms == 0s)
+            {
+                SendReport(++sent);
+            }
+        });
+    EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * 1500);
+}
+
 TEST_F(AirTrafficTest, TheNewestPostIsSentAndTheOthersAreCounted)
 {
     AddAircraft(WithBudget(AircraftConfig("uav1")));

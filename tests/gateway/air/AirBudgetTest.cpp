@@ -314,5 +314,19 @@ TEST(AirBudget, WithAPaceDatagramsGrowMoreSlowlyThanTheRate)
     EXPECT_EQ(budget.LargestDatagram(), Largest);
 }
 
+TEST(AirBudget, TheRoomIsWhatMayGoNow)
+{
+    AirBudget budget(Largest);
+    EXPECT_EQ(budget.Room(500, 1s), 500U) << "without a limit";
+    budget.SetBudget(1500, 1s);
+    EXPECT_EQ(budget.Room(9000, 1s), 9000U) << "something always goes";
+    budget.Sent(1000, 1s);
+    budget.Spent(200, 1s);
+    EXPECT_EQ(budget.Room(500, 2s), 300U);
+    EXPECT_EQ(budget.Room(200, 2s), 200U);
+    budget.Sent(400, 2s);
+    EXPECT_EQ(budget.Room(500, 2s), 0U);
+}
+
 }  // namespace
 }  // namespace Rabit
