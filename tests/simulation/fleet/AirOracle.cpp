@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 // The gateway has found its pace so long after the medium has changed its rate, and after what had been sent
 // until then has gone: that is a queue of each node at the most, and nobody can take it back.
 constexpr Time Adapts = 5s;
+// It finds out once its queue holds so much, as when all send.
+constexpr Time Flood = 500ms;
 // DDS says what it has to say of a newcomer in this time, and it is so many bytes in all, which go before
 // tracks.
 constexpr Time Discovers = 20s;
@@ -81,7 +83,11 @@ void AirOracle::Restart(std::size_t node, Time since)
 void AirOracle::OnStarted(std::size_t node)
 {
     ++_starts;
-    _senders[node] = {.Alive = true, .Last = _network.Sent(_world.NameOf(node)), .Second = {}};
+    Sender &sender = _senders[node];
+    sender.Alive = true;
+    sender.Last = _network.Sent(_world.NameOf(node));
+    sender.Second.clear();
+    sender.Bytes = 0;
     _discoverySince = _world.DisturbedAt = _world.Now;
     Restart(node, _world.Now);
 }
@@ -120,10 +126,30 @@ void AirOracle::OnOutageEnd()
 
 void AirOracle::OnRate(std::uint64_t bytesPerSecond)
 {
+    const bool falls = bytesPerSecond < _rate;
     _rate = bytesPerSecond;
     _world.DisturbedAt = _world.Now;
-    const std::uint64_t queues = SimulatedMedium().QueueBytes * _senders.size();
-    _adaptedAt = _world.Now + Adapts + TimeOf(queues);
+    for (Sender &sender : _senders)
+    {
+        sender.MayFlood = falls;
+        sender.AdaptedAt = falls ? sender.AdaptedAt : WhenAdapted();
+    }
+}
+
+Time AirOracle::WhenAdapted() const
+{
+    return _world.Now + Adapts + TimeOf(SimulatedMedium().QueueBytes * _senders.size());
+}
+
+// That the medium carries less shows in what waits for it, and in nothing else: who sends little may learn of
+// it late.
+void AirOracle::LookForFlood(Sender &sender, const SimulatedSent &sent) const
+{
+    if (sender.MayFlood && TimeOf(sent.WaitingBytes * _senders.size()) > Flood)
+    {
+        sender.MayFlood = false;
+        sender.AdaptedAt = WhenAdapted();
+    }
 }
 
 // On the medium as it is.
@@ -144,6 +170,10 @@ void AirOracle::OnStep()
     }
     for (std::size_t node = 0; node < _senders.size(); ++node)
     {
+        if (_senders[node].MayFlood)
+        {
+            LookForFlood(_senders[node], _network.Sent(_world.NameOf(node)));
+        }
         if (_senders[node].Alive && _plan->Budget)
         {
             CheckBudget(node);
@@ -213,7 +243,8 @@ void AirOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet)
             {
                 continue;
             }
-            if (status.state == Gateway::NodeState::LOST && pair.WasUp && _world.Now >= _adaptedAt)
+            if (status.state == Gateway::NodeState::LOST && pair.WasUp &&
+                _world.Now >= _senders[node].AdaptedAt)
             {
                 _world.Fail(17, _world.NameOf(observer) + " shows " + status.node +
                                     " as LOST, and the medium carries what it says");
@@ -234,7 +265,7 @@ void AirOracle::OnTrack(std::size_t observerLife, std::size_t node, Time age)
         _world.Say("a track of " + _world.NameOf(node) + " comes to " +
                    _world.NameOf(_world.Lives[observerLife].Node) + ", " + Seconds(age) + " old");
     }
-    if (!_plan || _world.Now < _adaptedAt)
+    if (!_plan || _world.Now < _senders[node].AdaptedAt)
     {
         return;
     }
@@ -250,7 +281,7 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
 {
     const Pair &pair = PairOf(observer, node);
     if (!_plan || !pair.Counts || _world.Now < pair.Since + _plan->UpWithin + Adapts ||
-        _world.Now < _adaptedAt)
+        _world.Now < _senders[node].AdaptedAt)
     {
         return;
     }

@@ -64,6 +64,8 @@ private:
         SimulatedSent Last;
         std::deque<std::pair<Time, std::uint64_t>> Second;  // when, bytes
         std::uint64_t Bytes = 0;                            // of those
+        Time AdaptedAt{0};                                  // to the present rate of the medium
+        bool MayFlood = false;  // the medium has become slower, and this node could not see it yet
     };
 
     Pair &PairOf(std::size_t observer, std::size_t node) { return _pairs[observer * _senders.size() + node]; }
@@ -71,6 +73,8 @@ private:
     void Restart(std::size_t node, Time since);
     void CheckBudget(std::size_t node);
     Time TimeOf(std::uint64_t bytes) const;
+    void LookForFlood(Sender &sender, const SimulatedSent &sent) const;
+    Time WhenAdapted() const;
     std::uint64_t Total() const;
     void SayWhatIsSent();
 
@@ -81,7 +85,6 @@ private:
     std::vector<Sender> _senders;
     bool _outage = false;
     std::uint64_t _rate = 0;
-    Time _adaptedAt{0};       // to that rate
     Time _discoverySince{0};  // something made DDS find somebody
     Time _outageSince{0};
     std::uint64_t _starts = 0;

@@ -67,4 +67,10 @@ Packet Medium::Pass(std::chrono::nanoseconds now)
     return passed;
 }
 
+std::uint64_t Medium::WaitingBytes(std::uint32_t node) const
+{
+    const auto queue = _queues.find(node);
+    return queue == _queues.end() ? 0 : queue->second.Bytes;
+}
+
 }  // namespace Rabit::Simulated

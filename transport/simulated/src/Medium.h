@@ -39,6 +39,8 @@ public:
     // It has. The next one begins.
     Packet Pass(std::chrono::nanoseconds now);
 
+    // In a node's queue.
+    std::uint64_t WaitingBytes(std::uint32_t node) const;
     // So far.
     const SimulatedAir &Air() const { return _air; }
 

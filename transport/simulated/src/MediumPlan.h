@@ -22,6 +22,7 @@ public:
     void AddNode(const std::string &node);
     // The medium made last that the node fits; nullptr if there is none.
     Medium *Of(std::uint32_t node) { return _of[node]; }
+    const Medium *Of(std::uint32_t node) const { return _of[node]; }
     std::size_t NumberOf(const Medium &medium) const;
     Medium &ByNumber(std::size_t number) { return _media[number].Medium; }
     // What the medium of that pattern has done; nothing if none was made.

@@ -34,7 +34,14 @@ SimulatedSent NetworkCore::Sent(const std::string &node) const
 {
     const std::lock_guard lock(_mutex);
     const auto number = _faults.Find(node);
-    return number ? _sent[*number] : SimulatedSent();
+    if (!number)
+    {
+        return {};
+    }
+    SimulatedSent sent = _sent[*number];
+    const Medium *medium = _media.Of(*number);
+    sent.WaitingBytes = medium == nullptr ? 0 : medium->WaitingBytes(*number);
+    return sent;
 }
 
 Time NetworkCore::Now() const

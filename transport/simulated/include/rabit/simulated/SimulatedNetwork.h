@@ -84,6 +84,7 @@ struct SimulatedSent
     std::uint64_t Datagrams = 0;
     std::uint64_t Bytes = 0;
     std::uint64_t DiscoveryBytes = 0;  // of those: of participants and endpoints
+    std::uint64_t WaitingBytes = 0;    // of those: in the queue before its medium now
 };
 
 // What the network did so far.
