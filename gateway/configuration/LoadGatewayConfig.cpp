@@ -161,17 +161,18 @@ void ReadSend(const YamlMap &map, GatewayConfig &config)
     }
 }
 
-}  // namespace
-
-GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride)
+YamlMap OpenFile(const std::string &file)
 {
-    const YAML::Node root = Parse(file, ReadFile(file));
-    const YamlMap map(file, root, "the configuration",
-                      {"node", "name", "domain", "transport", "interfaces", "peers", "multicast",
-                       "max_datagram", "shared_memory", "lease", "backend_config", "state_dir", "radio",
-                       "publish", "subscribe", "accept", "send"});
-    GatewayConfig config;
-    config.File = file;
+    return {file,
+            Parse(file, ReadFile(file)),
+            "the configuration",
+            {"node", "name", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram",
+             "shared_memory", "lease", "backend_config", "state_dir", "radio", "publish", "subscribe",
+             "accept", "send"}};
+}
+
+void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
+{
     config.Lines = map.Lines();
     map.Read("node", config.Node);
     map.Read("name", config.Name);
@@ -183,6 +184,29 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     {
         map.Require("node");
     }
+}
+
+}  // namespace
+
+GatewayConfig LoadNetworkConfig(const std::string &file)
+{
+    const YamlMap map = OpenFile(file);
+    GatewayConfig config;
+    config.File = file;
+    ReadName(map, "any", config);  // which node it would be does not matter
+    ReadNetwork(map, config);
+    ReadRadio(map, config);
+    ValidateGatewayConfig(config);
+    config.Node.clear();
+    return config;
+}
+
+GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride)
+{
+    const YamlMap map = OpenFile(file);
+    GatewayConfig config;
+    config.File = file;
+    ReadName(map, nodeOverride, config);
     ReadNetwork(map, config);
     ReadRadio(map, config);
     ReadPublish(map, config);

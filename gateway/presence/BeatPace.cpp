@@ -43,7 +43,7 @@ void BeatPace::Sent(Duration now)
 {
     if (now < Due())
     {
-        _gap = std::min(2 * _gap, _period);
+        _gap = std::min({2 * _gap, _period, _longestGap});
         _broughtForward = now;
     }
     else if (!_broughtForward || now - *_broughtForward >= Quiet)

@@ -34,6 +34,9 @@ public:
     static constexpr Duration GapForStates = std::chrono::milliseconds(200);
 
     Duration Period() const { return _period; }
+    // Beats that are brought forward follow each other after so long at the latest, if that is less than a
+    // period: for who beats seldom and wants answers. A ShortestGap at least.
+    void SetLongestGap(Duration gap) { _longestGap = std::max(gap, ShortestGap); }
     // Raised or lowered to what is possible. A longer one holds from the next beat on, which is the first to
     // tell the others of it.
     void SetPeriod(Duration period);
@@ -61,6 +64,7 @@ private:
     Duration _due{0};
     Duration _step = Duration::max();  // to the beat after the next one; more than the period: the period
     Duration _gap = ShortestGap;
+    Duration _longestGap = LongestPeriod;
     Duration _series = ShortestGap;  // first step of the last introduction
     std::optional<Duration> _introduced;
     std::optional<Duration> _last;

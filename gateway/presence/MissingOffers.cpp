@@ -68,7 +68,8 @@ std::vector<MissingOffers::Question> MissingOffers::Take(Duration now, std::size
                   }
                   questions.push_back({node, entry.Collected.FirstLacking(entry.Digest)});
                   entry.AskAt = now + entry.Gap;
-                  entry.Gap = std::min(2 * entry.Gap, LongestGap);
+                  const bool quick = ++entry.Asked < _quickQuestions;
+                  entry.Gap = std::min(2 * entry.Gap, quick ? _quickGap : LongestGap);
                   return true;
               });
     return questions;

@@ -29,6 +29,13 @@ public:
     // From one question to the next at most; at first AskAfter, then twice as long each time.
     static constexpr Duration LongestGap = std::chrono::seconds(2);
 
+    // A short one, for who looks and goes: for that many questions the gap is no longer than that.
+    void BeQuick(Duration gap, int questions)
+    {
+        _quickGap = gap;
+        _quickQuestions = questions;
+    }
+
     // The node's beats mean an announcement with that digest, which this node has not.
     void Lacks(const std::string &node, std::uint32_t digest, Duration now);
     // Nothing is lacking of the node, or it is not there to be asked.
@@ -58,11 +65,14 @@ private:
         std::uint32_t Digest = 0;
         Duration AskAt{0};
         Duration Gap = 2 * AskAfter;
+        int Asked = 0;
         OffersCollector Collected;
     };
 
     std::map<std::string, Entry> _lacking;
     std::string _lastAsked;
+    Duration _quickGap{0};
+    int _quickQuestions = 0;
     std::uint64_t _wrong = 0;
 };
 

@@ -54,6 +54,8 @@ void Presence::BeTool(PeerTable::IsAsked asksOf)
     _isTool = true;
     _contents.BeTool();
     _peers.SetIsAsked(std::move(asksOf));
+    _peers.Missing().BeQuick(ToolGap, ToolQuestions);
+    _pace.SetLongestGap(ToolGap);
     SetBeatPeriod(BeatPeriod());
 }
 

@@ -107,6 +107,9 @@ public:
     static constexpr std::size_t LargestBeat = BeatFormat::Largest;
     // Of a tool, at least: nobody waits to learn that it has gone.
     static constexpr Duration ToolPeriod = std::chrono::seconds(2);
+    // While a tool lacks something it asks so often, so often.
+    static constexpr Duration ToolGap = std::chrono::milliseconds(250);
+    static constexpr int ToolQuestions = 12;
     // How often this node beats when nothing is the matter (BeatPace).
     void SetBeatPeriod(Duration period)
     {

@@ -199,5 +199,20 @@ TEST(BeatPace, APeriodThatIsImpossibleBecomesTheNearestThatIs)
     EXPECT_EQ(pace.Period(), BeatPace::LongestPeriod);
 }
 
+TEST(BeatPaceOfATool, BroughtForwardBeatsComeNoMoreSeldomThanItWantsAnswers)
+{
+    BeatPace pace;
+    pace.SetPeriod(std::chrono::seconds(2));
+    pace.SetLongestGap(std::chrono::milliseconds(250));
+    BeatPace::Duration now{0};
+    for (int i = 0; i < 20; ++i)
+    {
+        pace.Sent(now);
+        now = pace.EarliestToAsk();
+    }
+    pace.Sent(now);
+    EXPECT_EQ(pace.EarliestToAsk() - now, std::chrono::milliseconds(250));
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -1,5 +1,6 @@
 #include "presence/MissingOffers.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "wire/Announcements.h"
@@ -105,6 +106,22 @@ TEST(MissingOffers, PartsOfWhatIsNotLackingAreNotCollected)
     part.bytes = {7};
     EXPECT_EQ(missing.Add("a", part), std::nullopt);
     EXPECT_EQ(missing.Wrong(), 0u);
+}
+
+TEST(QuickMissingOffers, AreAskedForEvenlyAtFirstAndThenLessAndLess)
+{
+    using namespace std::chrono_literals;
+    MissingOffers missing;
+    missing.BeQuick(250ms, 5);
+    missing.Lacks("uav1", 1, 0s);
+    std::vector<MissingOffers::Duration> gaps;
+    for (auto last = *missing.NextDue(); gaps.size() < 9;)
+    {
+        missing.Take(last, 8);
+        gaps.push_back(*missing.NextDue() - last);
+        last = *missing.NextDue();
+    }
+    EXPECT_THAT(gaps, ::testing::ElementsAre(120ms, 240ms, 250ms, 250ms, 250ms, 500ms, 1s, 2s, 2s));
 }
 
 }  // namespace

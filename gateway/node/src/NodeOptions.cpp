@@ -10,20 +10,11 @@
 namespace Rabit
 {
 
-void AddNodeOptions(CLI::App &app, NodeOptions &options)
+namespace
 {
-    app.add_option("--config", options.ConfigFile,
-                   "The gateway's configuration file (default: " + options.ConfigFile + ")");
-    app.add_option("--node", options.Node, "Name of this node, in place of the file's");
-    app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
-        ->check(CLI::Range(0, 232));
-    app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
-    app.add_flag("--check", options.Check, "Check the options and files, start nothing");
-}
 
-GatewayConfig LoadNodeConfig(const NodeOptions &options)
+void Override(GatewayConfig &config, const NodeOptions &options)
 {
-    GatewayConfig config = LoadGatewayConfig(options.ConfigFile, options.Node);
     if (options.Domain >= 0)
     {
         config.Domain = options.Domain;
@@ -33,6 +24,43 @@ GatewayConfig LoadNodeConfig(const NodeOptions &options)
         config.Transport = options.Transport;
     }
     ValidateTransportName(config, AvailableTransports(), KnownTransports());
+}
+
+}  // namespace
+
+void AddNetworkOptions(CLI::App &app, NodeOptions &options)
+{
+    app.add_option("--config", options.ConfigFile,
+                   "The gateway's configuration file" +
+                       (options.ConfigFile.empty() ? "" : " (default: " + options.ConfigFile + ")"));
+    app.add_option("--node", options.Node, "Name of this node, in place of the file's");
+    app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
+        ->check(CLI::Range(0, 232));
+    app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
+}
+
+GatewayConfig LoadNetworkConfig(const NodeOptions &options)
+{
+    GatewayConfig config;
+    if (!options.ConfigFile.empty())
+    {
+        config = LoadNetworkConfig(options.ConfigFile);
+    }
+    config.Node = options.Node;
+    Override(config, options);
+    return config;
+}
+
+void AddNodeOptions(CLI::App &app, NodeOptions &options)
+{
+    AddNetworkOptions(app, options);
+    app.add_flag("--check", options.Check, "Check the options and files, start nothing");
+}
+
+GatewayConfig LoadNodeConfig(const NodeOptions &options)
+{
+    GatewayConfig config = LoadGatewayConfig(options.ConfigFile, options.Node);
+    Override(config, options);
     if (options.Check)
     {
         for (const std::string &missing : CheckTransportSettings(config, *MakeTransport(config.Transport)))

@@ -15,4 +15,8 @@ namespace Rabit
 // file, line and the nearest right word.
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride = "");
 
+// The same for a program that is another node in that network, perhaps one that knows none of the types: the
+// file's publish, subscribe, accept and send are passed over.
+GatewayConfig LoadNetworkConfig(const std::string &file);
+
 }  // namespace Rabit

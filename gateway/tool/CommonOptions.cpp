@@ -1,0 +1,64 @@
+#include "CommonOptions.h"
+
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/LoadGatewayConfig.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+// Nobody else has it: two tools on one machine are two nodes.
+std::string OwnName()
+{
+    constexpr std::size_t longestHost = 40;
+    std::array<char, 256> host{};
+    static_cast<void>(::gethostname(host.data(), host.size() - 1));
+    std::string name = std::string(host.data()).substr(0, longestHost);
+    std::replace_if(
+        name.begin(), name.end(),
+        [](char c)
+        { return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-'); },
+        '-');
+    return "rabit." + name + "." + std::to_string(::getpid());
+}
+
+}  // namespace
+
+void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait)
+{
+    options.Wait = wait;
+    AddNetworkOptions(app, options.Node);
+    app.add_option("--interface", options.Interfaces,
+                   "Network interface to use, by name or address, in place of the file's; may be repeated");
+    app.add_option("--wait", options.Wait, "Seconds to wait for an answer")
+        ->check(CLI::Range(0.1, 86400.0))
+        ->capture_default_str();
+    app.add_flag("--json", options.Json, "One JSON object a line");
+    app.add_flag("-v,--verbose", options.Verbose, "Tell more on standard error");
+}
+
+GatewayConfig ConfigOf(const CommonOptions &options)
+{
+    GatewayConfig config = LoadNetworkConfig(options.Node);
+    if (options.Node.Node.empty())
+    {
+        config.Node = OwnName();
+    }
+    if (!options.Interfaces.empty())
+    {
+        config.Interfaces = options.Interfaces;
+    }
+    config.StateDir.clear();
+    config.Tool.emplace();
+    ValidateGatewayConfig(config);
+    return config;
+}
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/node/NodeOptions.h>
+
+#include <string>
+#include <vector>
+
+namespace CLI
+{
+class App;
+}
+
+namespace Rabit::Tool
+{
+
+// Exit codes.
+inline constexpr int Good = 0;
+inline constexpr int ProblemFound = 1;
+inline constexpr int Usage = 2;
+inline constexpr int NoNetwork = 3;  // it could not be joined, or nobody was heard
+
+// The options that every command has which looks at a network.
+struct CommonOptions
+{
+    NodeOptions Node;
+    std::vector<std::string> Interfaces;
+    double Wait = 0.0;  // seconds
+    bool Json = false;
+    bool Verbose = false;
+};
+
+// Adds --config, --node, --domain, --transport, --interface, --wait, --json and --verbose. `wait`: what
+// --wait is unless it is given.
+void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait);
+
+// The configuration of this program as a tool. Throws ConfigError.
+GatewayConfig ConfigOf(const CommonOptions &options);
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,70 @@
+#include "FleetSession.h"
+
+#include <rabit/RabitLog.h>
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include "Output.h"
+
+namespace Rabit::Tool
+{
+
+FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup)
+    : _config(config), _wakeup(wakeup)
+{
+    // What the gateway would log, the commands tell where it is of use.
+    RabitLog::SetLevel(options.Verbose ? RabitLogLevel::Warning : RabitLogLevel::Error);
+    try
+    {
+        auto gateway = std::make_unique<GatewayManager>(config, MakeTransport(config.Transport), _workspace);
+        _explorer = &gateway->Explorer();
+        _reactor.AddManager(std::move(gateway));
+    }
+    catch (const ConfigError &error)
+    {
+        throw NetworkError(error.what());
+    }
+    _explorer->SetOnChange([this] { _wakeup.Notify(); });
+    _workspace.AddPublishSubscribeMessage(FleetMessageNameOf(config), _fleet);
+    _fleet->Register_SomethingPublished([this] { _wakeup.Notify(); });
+    _reactor.SetHandleSignals(false);
+    _runner = std::thread([this] { _reactor.Run(); });
+}
+
+FleetSession::~FleetSession()
+{
+    _reactor.ShutdownAllManagers();
+    _runner.join();
+}
+
+Gateway::Fleet FleetSession::Fleet() const
+{
+    _fleet->FetchMessage();
+    return *_fleet;
+}
+
+bool FleetSession::WaitUntil(double seconds, const std::function<bool()> &holds)
+{
+    const auto length = std::chrono::duration<double>(seconds);
+    return _wakeup.WaitUntil(_start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(length),
+                             holds);
+}
+
+double FleetSession::Seconds() const
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count();
+}
+
+int FleetSession::NobodyThere() const
+{
+    for (const Gateway::Problem &problem : Fleet().problems)
+    {
+        Output::Talk(problem.subject + ": " + problem.reason);
+    }
+    Output::Talk("nobody was heard in domain " + std::to_string(_config.Domain) + " over " +
+                 _config.Transport + " (--domain, --interface, --wait; gateway/CONNECTING.md)");
+    return NoNetwork;
+}
+
+}  // namespace Rabit::Tool

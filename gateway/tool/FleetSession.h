@@ -1,0 +1,67 @@
+#pragma once
+
+#include <rabit/RabitReactor.h>
+#include <rabit/RabitWorkspace.h>
+#include <rabit/gateway/Fleet.h>
+#include <rabit/gateway/FleetExplorer.h>
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "CommonOptions.h"
+#include "Wakeup.h"
+
+namespace Rabit::Tool
+{
+
+// The network could not be joined.
+class NetworkError : public std::runtime_error
+{
+public:
+    using std::runtime_error::runtime_error;
+};
+
+// This program in the network, as long as the object lives. Main thread only.
+class FleetSession
+{
+public:
+    using Node = FleetExplorer::Node;
+
+    // Throws NetworkError.
+    FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup);
+    ~FleetSession();
+
+    FleetExplorer &Explorer() { return *_explorer; }
+    RabitWorkspace &Workspace() { return _workspace; }
+    std::vector<Node> Nodes() const { return _explorer->Nodes(); }
+    Gateway::Fleet Fleet() const;
+
+    // Waits so many seconds from the start of the session at most, until that holds.
+    bool WaitUntil(double seconds, const std::function<bool()> &holds);
+    // Has WaitUntil ask again; any thread.
+    void Notify() { _wakeup.Notify(); }
+    // Since the start of the session. Any thread.
+    double Seconds() const;
+    // Whether somebody was heard.
+    bool IsAnybodyThere() const { return !_explorer->Nodes().empty(); }
+    // Says that nobody was, and why as far as that is known; returns the exit code.
+    int NobodyThere() const;
+
+private:
+    const GatewayConfig _config;
+    Wakeup &_wakeup;
+    RabitWorkspace _workspace;
+    RabitReactor _reactor{_workspace};
+    FleetExplorer *_explorer = nullptr;
+    std::shared_ptr<Gateway::Fleet> _fleet = std::make_shared<Gateway::Fleet>();
+    std::chrono::steady_clock::time_point _start = std::chrono::steady_clock::now();
+    std::thread _runner;
+};
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,243 @@
+// rabit nodes: who is there.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "Offers.h"
+#include "Output.h"
+#include "SafeText.h"
+#include "Table.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+struct Options
+{
+    CommonOptions Common;
+    bool Watch = false;
+};
+
+std::string Milliseconds(double seconds)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f ms", 1000.0 * seconds);
+    return std::isfinite(seconds) ? text : "-";
+}
+
+std::string Rate(double bytesPerSecond)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0f B/s", bytesPerSecond);
+    return bytesPerSecond > 0.0 ? text : "-";
+}
+
+Json NumberOrNull(double number, bool isKnown)
+{
+    return isKnown && std::isfinite(number) ? Json(number) : Json(nullptr);
+}
+
+template <typename Items, typename NameOf>
+std::string Names(const Items &items, NameOf nameOf)
+{
+    std::string text;
+    for (const auto &item : items)
+    {
+        text += (text.empty() ? "" : " ") + SafeText(nameOf(item));
+    }
+    return text.empty() ? "-" : text;
+}
+
+const FleetSession::Node *Find(const std::vector<FleetSession::Node> &nodes, const std::string &name)
+{
+    const auto found = std::find_if(nodes.begin(), nodes.end(),
+                                    [&name](const FleetSession::Node &node) { return node.Name == name; });
+    return found == nodes.end() ? nullptr : &*found;
+}
+
+// Everything that is wrong, in lines.
+std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
+                                         const std::vector<FleetSession::Node> &nodes)
+{
+    std::vector<Gateway::Problem> problems(fleet.problems.begin(), fleet.problems.end());
+    for (const Gateway::NodeStatus &node : fleet.nodes)
+    {
+        if (node.state != Gateway::NodeState::UP && node.reason != "left")
+        {
+            Gateway::Problem &problem = problems.emplace_back();
+            problem.subject = "node " + node.node;
+            problem.node = node.node;
+            problem.reason = node.reason;
+        }
+    }
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (!node.Offers && node.State != Gateway::NodeState::LOST)
+        {
+            Gateway::Problem &problem = problems.emplace_back();
+            problem.subject = "node " + node.Name;
+            problem.node = node.Name;
+            problem.reason = "its announcement has not come";
+        }
+    }
+    for (const std::string &line : Offers::Differences(nodes))
+    {
+        Gateway::Problem &problem = problems.emplace_back();
+        problem.subject = "types";
+        problem.reason = line;
+    }
+    return problems;
+}
+
+Json JsonOf(const Gateway::NodeStatus &status, const FleetSession::Node *node)
+{
+    Json object;
+    object["node"] = status.node;
+    object["state"] = ToString(status.state);
+    object["reason"] = status.reason;
+    object["incarnation"] = status.incarnation;
+    object["last_heard_s"] = status.last_heard_s;
+    object["round_trip_s"] = NumberOrNull(status.round_trip_s, true);
+    object["delivery_rate"] = NumberOrNull(status.delivery_rate, status.delivery_rate > 0.0);
+    object["publishes"] = Json::array();
+    object["accepts"] = Json::array();
+    if (node != nullptr && node->Offers)
+    {
+        for (const auto &published : node->Offers->publishes)
+        {
+            object["publishes"].push_back({{"message", published.message},
+                                           {"type", published.type},
+                                           {"qos", published.qos},
+                                           {"definition", Offers::HashText(published.definition)}});
+        }
+        for (const auto &accepted : node->Offers->accepts)
+        {
+            Json types = Json::array();
+            for (const auto &type : accepted.types)
+            {
+                types.push_back({{"type", type.type}, {"definition", Offers::HashText(type.definition)}});
+            }
+            object["accepts"].push_back(
+                {{"queue", accepted.queue}, {"types", types}, {"from", accepted.from}});
+        }
+    }
+    return object;
+}
+
+bool ShowJson(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node> &nodes,
+              const std::vector<Gateway::Problem> &problems)
+{
+    bool good = true;
+    for (const Gateway::NodeStatus &status : fleet.nodes)
+    {
+        good = good && Output::Object(JsonOf(status, Find(nodes, status.node)));
+    }
+    for (const Gateway::Problem &problem : problems)
+    {
+        const Json node = problem.node.empty() ? Json(nullptr) : Json(problem.node);
+        good = good &&
+               Output::Object(Json{{"problem", problem.subject}, {"node", node}, {"reason", problem.reason}});
+    }
+    return good;
+}
+
+bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node> &nodes,
+               const std::vector<Gateway::Problem> &problems)
+{
+    std::vector<std::vector<std::string>> rows{
+        {"NODE", "STATE", "HEARD", "ROUND TRIP", "DELIVERY", "PUBLISHES", "ACCEPTS"}};
+    for (const Gateway::NodeStatus &status : fleet.nodes)
+    {
+        const FleetSession::Node *node = Find(nodes, status.node);
+        const bool known = node != nullptr && node->Offers;
+        char heard[32];
+        std::snprintf(heard, sizeof heard, "%.1f s", status.last_heard_s);
+        rows.push_back(
+            {SafeText(status.node), ToString(status.state), heard, Milliseconds(status.round_trip_s),
+             Rate(status.delivery_rate),
+             known ? Names(node->Offers->publishes, [](const auto &item) { return item.message; }) : "?",
+             known ? Names(node->Offers->accepts, [](const auto &item) { return item.queue; }) : "?"});
+    }
+    bool good = true;
+    for (const std::string &line : TableLines(rows))
+    {
+        good = good && Output::Line(line);
+    }
+    for (const Gateway::Problem &problem : problems)
+    {
+        good = good && Output::Line(SafeText("! " + problem.subject + ": " + problem.reason));
+    }
+    return good;
+}
+
+// All that has to be there for a first answer that lacks nothing.
+bool IsWhole(FleetSession &session)
+{
+    const Gateway::Fleet fleet = session.Fleet();
+    return !fleet.nodes.empty() && Offers::AreComplete(session.Nodes()) &&
+           std::all_of(fleet.nodes.begin(), fleet.nodes.end(),
+                       [](const Gateway::NodeStatus &node) {
+                           return node.state == Gateway::NodeState::LOST || std::isfinite(node.round_trip_s);
+                       });
+}
+
+int Show(FleetSession &session, const Options &options, bool &stillRead)
+{
+    const Gateway::Fleet fleet = session.Fleet();
+    const std::vector<FleetSession::Node> nodes = session.Nodes();
+    const std::vector<Gateway::Problem> problems = ProblemsOf(fleet, nodes);
+    stillRead = options.Common.Json ? ShowJson(fleet, nodes, problems) : ShowTable(fleet, nodes, problems);
+    return problems.empty() ? Good : ProblemFound;
+}
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    // Who has not been heard within this time beats seldom; --wait is for them.
+    constexpr double everybody = 1.5;
+    FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
+    session.WaitUntil(std::min(everybody, options.Common.Wait), [] { return false; });
+    session.WaitUntil(options.Common.Wait, [&session] { return IsWhole(session); });
+    if (!session.IsAnybodyThere() && !options.Watch)
+    {
+        return session.NobodyThere();
+    }
+    bool stillRead = true;
+    int code = Good;
+    for (double second = options.Common.Wait;; second += 1.0)
+    {
+        if (options.Watch && !options.Common.Json)
+        {
+            Output::BeginScreen();
+        }
+        code = Show(session, options, stillRead);
+        if (!options.Watch || !stillRead || wakeup.IsInterrupted())
+        {
+            return stillRead ? code : Good;
+        }
+        session.WaitUntil(second + 1.0, [] { return false; });
+    }
+}
+
+}  // namespace
+
+void AddNodesCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand("nodes", "Who is there, what each has, and what is wrong");
+    AddCommonOptions(*command, options->Common, 1.8);
+    command->add_flag("--watch", options->Watch, "Show it again each second until Ctrl-C");
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool

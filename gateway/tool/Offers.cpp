@@ -1,0 +1,110 @@
+#include "Offers.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <tuple>
+
+namespace Rabit::Tool::Offers
+{
+namespace
+{
+
+std::string Listed(const std::set<std::string> &names)
+{
+    std::string text;
+    for (const std::string &name : names)
+    {
+        text += (text.empty() ? "" : ", ") + name;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::vector<Message> MessagesOf(const std::vector<FleetSession::Node> &nodes)
+{
+    std::map<std::tuple<std::string, std::string, std::uint64_t, std::string>, Message> messages;
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (!node.Offers || node.State == Gateway::NodeState::LOST)
+        {
+            continue;
+        }
+        for (const Gateway::PublishedMessage &published : node.Offers->publishes)
+        {
+            Message &message =
+                messages[{published.message, published.type, published.definition, published.qos}];
+            message.Name = published.message;
+            message.Type = published.type;
+            message.Qos = published.qos;
+            message.Definition = published.definition;
+            message.Publishers.push_back(node.Name);
+        }
+    }
+    std::vector<Message> list;
+    for (auto &[key, message] : messages)
+    {
+        list.push_back(std::move(message));
+    }
+    return list;
+}
+
+std::map<std::string, Definitions> TypesOf(const std::vector<FleetSession::Node> &nodes)
+{
+    std::map<std::string, Definitions> types;
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (!node.Offers || node.State == Gateway::NodeState::LOST)
+        {
+            continue;
+        }
+        for (const Gateway::PublishedMessage &published : node.Offers->publishes)
+        {
+            types[published.type][published.definition].insert(node.Name);
+        }
+        for (const Gateway::AcceptedQueue &accepted : node.Offers->accepts)
+        {
+            for (const Gateway::QueueType &type : accepted.types)
+            {
+                types[type.type][type.definition].insert(node.Name);
+            }
+        }
+    }
+    return types;
+}
+
+std::vector<std::string> Differences(const std::vector<FleetSession::Node> &nodes)
+{
+    std::vector<std::string> lines;
+    for (const auto &[type, definitions] : TypesOf(nodes))
+    {
+        if (definitions.size() < 2)
+        {
+            continue;
+        }
+        std::string line = "nodes were built with different definitions of `" + type + "`: ";
+        for (const auto &[definition, names] : definitions)
+        {
+            line += (definition == definitions.begin()->first ? "" : "; ") + Listed(names) + " with " +
+                    HashText(definition);
+        }
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+bool AreComplete(const std::vector<FleetSession::Node> &nodes)
+{
+    return std::all_of(nodes.begin(), nodes.end(),
+                       [](const FleetSession::Node &node)
+                       { return node.Offers || node.State == Gateway::NodeState::LOST; });
+}
+
+std::string HashText(std::uint64_t definition)
+{
+    char text[20];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(definition));
+    return text;
+}
+
+}  // namespace Rabit::Tool::Offers

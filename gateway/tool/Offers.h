@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "FleetSession.h"
+
+// What the nodes announce, put together by messages and types.
+namespace Rabit::Tool::Offers
+{
+
+// One message name with one type in one definition.
+struct Message
+{
+    std::string Name;
+    std::string Type;
+    std::string Qos;
+    std::uint64_t Definition = 0;
+    std::vector<std::string> Publishers;  // nodes
+};
+std::vector<Message> MessagesOf(const std::vector<FleetSession::Node> &nodes);
+
+// Which nodes have which definition of a type, by its name; published or accepted.
+using Definitions = std::map<std::uint64_t, std::set<std::string>>;
+std::map<std::string, Definitions> TypesOf(const std::vector<FleetSession::Node> &nodes);
+
+// A line for each type of which there is more than one definition.
+std::vector<std::string> Differences(const std::vector<FleetSession::Node> &nodes);
+
+// Whether every node that is there has announced itself.
+bool AreComplete(const std::vector<FleetSession::Node> &nodes);
+
+// Sixteen hexadecimal digits.
+std::string HashText(std::uint64_t definition);
+
+}  // namespace Rabit::Tool::Offers

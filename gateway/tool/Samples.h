@@ -1,0 +1,79 @@
+#pragma once
+
+#include <rabit/dynamic/DynamicMessage.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "FleetType.h"
+
+namespace Rabit::Tool
+{
+
+// One value of a message, as it came.
+struct Sample
+{
+    std::string Node;
+    std::vector<std::uint8_t> Bytes;  // CDR with its encapsulation
+    double Age = 0.0;                 // seconds, when it came
+    double Stamp = 0.0;               // of its post, by the wall clock of its node; GPS seconds
+    double At = 0.0;                  // when it came, seconds since the start of the session
+};
+
+// The values of a message of one or several nodes, each once, as they come. The type is had from the nodes.
+class Samples
+{
+public:
+    // `what`: `uav1/Pose`; the node may be a pattern; `Pose` alone is of all nodes.
+    Samples(FleetSession &session, const std::string &what);
+
+    // Whose announcements are needed for that.
+    static std::vector<std::string> NodesOf(const std::string &what);
+
+    // Waits so many seconds from the start of the session at most until somebody publishes it and its type is
+    // here; then subscribes. Returns Good, or says why not and returns the exit code.
+    int Open(double until);
+    const DynamicType &Type() const { return *_type.Type; }
+    const std::string &Message() const { return _message; }
+
+    // Waits until a value is there or until so many seconds from the start of the session; takes all that
+    // are.
+    std::vector<Sample> Take(double until);
+    // Values that came faster than they were taken.
+    std::uint64_t Missed() const;
+
+private:
+    // What is kept for Take at most.
+    static constexpr std::size_t MostBytes = 16u << 20;
+
+    struct Inbox
+    {
+        std::mutex Mutex;
+        std::vector<Sample> Waiting;
+        std::size_t Bytes = 0;
+        std::uint64_t Missed = 0;
+    };
+
+    std::vector<const FleetSession::Node *> Publishers(const std::vector<FleetSession::Node> &nodes) const;
+    int NobodyPublishes(const std::vector<FleetSession::Node> &nodes) const;
+    void Follow(const std::string &node);
+    void FollowNew();
+
+    FleetSession &_session;
+    std::string _pattern;  // of nodes
+    std::string _message;
+    std::string _typeName;
+    std::uint64_t _definition = 0;
+    FleetType _type;
+    std::shared_ptr<Inbox> _inbox = std::make_shared<Inbox>();
+    std::map<std::string, std::shared_ptr<DynamicMessage>> _followed;
+};
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,122 @@
+// rabit type: the IDL of a type.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+#include <rabit/idl/NearestWord.h>
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "FleetType.h"
+#include "Offers.h"
+#include "Output.h"
+#include "SafeText.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+struct Options
+{
+    CommonOptions Common;
+    std::string Name;
+};
+
+// The type of that name, or of the message of that name.
+std::string TypeNamed(const std::string &name, const std::vector<FleetSession::Node> &nodes)
+{
+    const std::string message = name.substr(name.find('/') == std::string::npos ? 0 : name.find('/') + 1);
+    for (const Offers::Message &published : Offers::MessagesOf(nodes))
+    {
+        if (published.Name == message)
+        {
+            return published.Type;
+        }
+    }
+    return name;
+}
+
+std::vector<std::string> NamesIn(const std::vector<FleetSession::Node> &nodes)
+{
+    std::vector<std::string> names;
+    for (const auto &[type, definitions] : Offers::TypesOf(nodes))
+    {
+        names.push_back(type);
+    }
+    for (const Offers::Message &message : Offers::MessagesOf(nodes))
+    {
+        names.push_back(message.Name);
+    }
+    return names;
+}
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
+    const auto definitions = [&]
+    {
+        const auto nodes = session.Nodes();
+        const auto types = Offers::TypesOf(nodes);
+        const auto found = types.find(TypeNamed(options.Name, nodes));
+        return found == types.end() ? Offers::Definitions() : found->second;
+    };
+    session.WaitUntil(options.Common.Wait, [&] { return !definitions().empty(); });
+    const auto nodes = session.Nodes();
+    if (nodes.empty())
+    {
+        return session.NobodyThere();
+    }
+    const Offers::Definitions found = definitions();
+    if (found.empty())
+    {
+        Output::Talk("nobody announces a type or message `" + options.Name + "`" +
+                     NearestWordHint(options.Name, NamesIn(nodes)));
+        return ProblemFound;
+    }
+    const std::string name = TypeNamed(options.Name, nodes);
+    bool good = found.size() == 1;
+    for (const auto &[definition, holders] : found)
+    {
+        const FleetType type = FetchType(session, {holders.begin(), holders.end()}, name, definition,
+                                         session.Seconds() + options.Common.Wait);
+        if (type.Text.empty())
+        {
+            Output::Talk(type.Reason);
+            good = false;
+            continue;
+        }
+        const bool isRead =
+            options.Common.Json
+                ? Output::Object(nlohmann::ordered_json{{"type", name},
+                                                        {"definition", Offers::HashText(definition)},
+                                                        {"nodes", holders},
+                                                        {"idl", type.Text}})
+                : Output::Line(SafeLines(type.Text.substr(0, type.Text.find_last_not_of('\n') + 1)));
+        if (!isRead)
+        {
+            return Good;
+        }
+    }
+    for (const std::string &line : Offers::Differences(nodes))
+    {
+        Output::Talk(line);
+    }
+    return good ? Good : ProblemFound;
+}
+
+}  // namespace
+
+void AddTypeCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand("type", "The IDL of a type, from a node that has it");
+    command->add_option("NAME", options->Name, "Of a type, as Uav::Pose, or of a message, as Pose")
+        ->required();
+    AddCommonOptions(*command, options->Common, 3.0);
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool

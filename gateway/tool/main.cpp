@@ -1,0 +1,53 @@
+// The program `rabit`: looks at a fleet, and speaks to it. README.md shows it.
+#include <rabit/RabitVersion.h>
+#include <rabit/gateway/ConfigError.h>
+
+#include <CLI/CLI.hpp>
+
+#include <exception>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "Output.h"
+
+using namespace Rabit;
+using namespace Rabit::Tool;
+
+int main(int argc, char **argv)
+{
+    CLI::App app("Looks at a fleet of Rabit nodes, and speaks to it.");
+    app.set_version_flag("--version", "rabit " RABIT_VERSION_STRING);
+    app.require_subcommand(1);
+    app.footer("Exit code: 0 good, 1 a problem was found, 2 wrong usage, 3 no network or nobody in it.");
+    Chosen chosen;
+    AddNodesCommand(app, chosen);
+    AddMessagesCommand(app, chosen);
+    AddTypeCommand(app, chosen);
+    AddEchoCommand(app, chosen);
+    try
+    {
+        app.parse(argc, argv);
+        Wakeup wakeup;
+        return chosen.Run(wakeup);
+    }
+    catch (const CLI::ParseError &error)
+    {
+        return app.exit(error) == 0 ? Good : Usage;
+    }
+    catch (const NetworkError &error)
+    {
+        Output::Talk(error.what());
+        return NoNetwork;
+    }
+    catch (const ConfigError &error)
+    {
+        Output::Talk(error.what());
+        return Usage;
+    }
+    catch (const std::exception &error)
+    {
+        Output::Talk(error.what());
+        return ProblemFound;
+    }
+}

@@ -1,0 +1,75 @@
+#include "Offers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+FleetSession::Node NodeOf(const std::string &name, const std::string &message, const std::string &type,
+                          std::uint64_t definition)
+{
+    FleetSession::Node node;
+    node.Name = name;
+    node.State = Gateway::NodeState::UP;
+    node.Offers.emplace();
+    Gateway::PublishedMessage published;
+    published.message = message;
+    published.type = type;
+    published.qos = "state";
+    published.definition = definition;
+    node.Offers->publishes.push_back(published);
+    return node;
+}
+
+TEST(Offers, AMessageOfSeveralNodesIsOne)
+{
+    const auto messages =
+        Offers::MessagesOf({NodeOf("uav1", "Pose", "Uav::Pose", 1), NodeOf("uav2", "Pose", "Uav::Pose", 1)});
+    ASSERT_THAT(messages, SizeIs(1));
+    EXPECT_THAT(messages[0].Publishers, ElementsAre("uav1", "uav2"));
+}
+
+TEST(Offers, AMessageOfTwoTypesOrDefinitionsIsTwo)
+{
+    EXPECT_THAT(
+        Offers::MessagesOf({NodeOf("uav1", "Pose", "Uav::Pose", 1), NodeOf("uav2", "Pose", "Uav::Pose", 2),
+                            NodeOf("uav3", "Pose", "Uav::Other", 1)}),
+        SizeIs(3));
+}
+
+TEST(Offers, DefinitionsThatDifferAreToldWithWhoHasWhich)
+{
+    EXPECT_THAT(
+        Offers::Differences({NodeOf("uav1", "Pose", "Uav::Pose", 1), NodeOf("uav2", "Pose", "Uav::Pose", 1)}),
+        IsEmpty());
+    EXPECT_THAT(
+        Offers::Differences({NodeOf("uav1", "Pose", "Uav::Pose", 1), NodeOf("uav2", "A", "Uav::Pose", 0xab)}),
+        ElementsAre("nodes were built with different definitions of `Uav::Pose`: uav1 with "
+                    "0000000000000001; uav2 with 00000000000000ab"));
+}
+
+TEST(Offers, WhoIsLostOffersNothing)
+{
+    FleetSession::Node lost = NodeOf("uav1", "Pose", "Uav::Pose", 1);
+    lost.State = Gateway::NodeState::LOST;
+    EXPECT_THAT(Offers::MessagesOf({lost}), IsEmpty());
+    EXPECT_THAT(Offers::TypesOf({lost}), IsEmpty());
+    EXPECT_TRUE(Offers::AreComplete({lost}));
+}
+
+TEST(Offers, AreNotCompleteWhileSomebodyHasNotAnnouncedItself)
+{
+    FleetSession::Node silent = NodeOf("uav1", "Pose", "Uav::Pose", 1);
+    silent.Offers.reset();
+    EXPECT_FALSE(Offers::AreComplete({silent}));
+}
+
+}  // namespace
+}  // namespace Rabit::Tool

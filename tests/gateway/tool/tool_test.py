@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+"""The program `rabit` from the shell, against real nodes: two aircraft, one on each DDS implementation.
+
+Usage: tool_test.py RABIT UAV TRANSPORT[,TRANSPORT]..."""
+
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
+import harness  # noqa: E402
+
+# Only keeps a broken program from hanging.
+LIMIT = 120
+HASH = re.compile(r"^[0-9a-f]{16}$")
+
+
+class Rabit:
+    """Runs the program as one who types it."""
+
+    def __init__(self, program, transport, domain):
+        self.program = program
+        self.transport = transport
+        self._network = ["--interface", "127.0.0.1", "--domain", str(domain), "--transport", transport]
+
+    def argv(self, command, *arguments):
+        return [self.program, command, *self._network, *arguments]
+
+    def run(self, command, *arguments, text=None):
+        return subprocess.run(self.argv(command, *arguments), input=text, capture_output=True, text=True,
+                              timeout=LIMIT, check=False)
+
+    def objects(self, command, *arguments):
+        done = self.run(command, "--json", *arguments)
+        return [json.loads(line) for line in done.stdout.splitlines()], done
+
+
+def until(holds):
+    """What `holds` returns once it is true."""
+    end = time.monotonic() + LIMIT
+    while True:
+        result = holds()
+        if result:
+            return result
+        assert time.monotonic() < end, f"{holds.__name__} did not come true"
+
+
+def keys(thing):
+    return list(thing.keys())
+
+
+def nodes_are_listed_with_what_they_have(rabit):
+    def both():
+        listed, done = rabit.objects("nodes", "--wait", "10")
+        rows = {row["node"]: row for row in listed if "node" in row and "problem" not in row}
+        return (rows, done) if {"uav1", "uav2"} <= set(rows) and done.returncode == 0 else None
+
+    rows, done = until(both)
+    assert set(rows) == {"uav1", "uav2"}, "a tool is listed"
+    assert done.stderr == "", done.stderr
+    row = rows["uav1"]
+    assert keys(row) == ["node", "state", "reason", "incarnation", "last_heard_s", "round_trip_s", "delivery_rate",
+                         "publishes", "accepts"], keys(row)
+    assert row["state"] == "UP" and 0 < row["round_trip_s"] < LIMIT
+    pose = next(item for item in row["publishes"] if item["message"] == "Pose")
+    assert keys(pose) == ["message", "type", "qos", "definition"]
+    assert pose["type"] == "Uav::Pose" and pose["qos"] == "telemetry" and HASH.match(pose["definition"])
+    queue = next(item for item in row["accepts"] if item["queue"] == "MissionControl")
+    assert keys(queue) == ["queue", "types", "from"] and queue["from"] == ["*"]
+    assert "Uav::Goto" in [item["type"] for item in queue["types"]]
+
+
+def nodes_is_a_table_for_people(rabit):
+    done = until(lambda: (lambda d: d if "uav1" in d.stdout and "uav2" in d.stdout else None)(rabit.run("nodes")))
+    lines = done.stdout.splitlines()
+    assert lines[0].split() == ["NODE", "STATE", "HEARD", "ROUND", "TRIP", "DELIVERY", "PUBLISHES", "ACCEPTS"], lines
+    assert "\x1b" not in done.stdout, "escape sequences in a pipe"
+
+
+def messages_are_listed_with_their_types_and_publishers(rabit):
+    def both():
+        listed, done = rabit.objects("messages", "--wait", "10")
+        return listed if done.returncode == 0 and any(row["publishers"] == ["uav1", "uav2"] for row in listed) else None
+
+    listed = until(both)
+    assert keys(listed[0]) == ["message", "type", "qos", "definition", "publishers"]
+    assert {"Pose", "MissionState", "Health"} <= {row["message"] for row in listed}
+
+
+def the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name(rabit):
+    by_type = rabit.run("type", "Uav::Pose", "--wait", "30")
+    by_message = rabit.run("type", "Pose", "--wait", "30")
+    assert by_type.returncode == by_message.returncode == 0, by_type.stderr + by_message.stderr
+    assert by_type.stdout == by_message.stdout
+    assert "double latitude_deg;" in by_type.stdout
+    (row,), _ = rabit.objects("type", "Uav::Goto", "--wait", "30")
+    assert keys(row) == ["type", "definition", "nodes", "idl"] and "struct Goto" in row["idl"]
+
+
+def a_name_that_is_wrong_is_answered_with_the_nearest(rabit):
+    for arguments, hint in ((("type", "Uav::Poze"), "did you mean `Uav::Pose`?"),
+                            (("echo", "uav1/Poze"), "did you mean `Pose`?"),
+                            (("echo", "uaw1/Pose"), "did you mean `uav1`?")):
+        done = rabit.run(*arguments, "--wait", "4")
+        assert done.returncode == 1 and hint in done.stderr and done.stdout == "", done
+
+
+def a_value_is_echoed_as_text_as_json_and_in_part(rabit):
+    done = rabit.run("echo", "uav1/Pose", "--once", "--wait", "30")
+    assert done.returncode == 0 and re.match(r"uav1/Pose  age \d+\.\d{3} s  Uav::Pose \{latitude_deg: ", done.stdout)
+    assert len(done.stdout.splitlines()) == 1
+    (value,), _ = rabit.objects("echo", "uav2/Pose", "--once", "--wait", "30")
+    assert keys(value) == ["node", "message", "type", "age_s", "posted_gps_s", "value"]
+    assert value["node"] == "uav2" and 0 <= value["age_s"] < LIMIT and 40 < value["value"]["latitude_deg"] < 60
+    part = rabit.run("echo", "uav1/Pose", "--once", "--field", "latitude_deg", "--wait", "30")
+    assert 40 < float(part.stdout) < 60
+    wrong = rabit.run("echo", "uav1/Pose", "--once", "--field", "latitude_dex", "--wait", "30")
+    assert wrong.returncode == 1 and "did you mean `latitude_deg`?" in wrong.stderr
+
+
+def a_state_that_was_posted_before_is_echoed_at_once(rabit):
+    (value,), done = rabit.objects("echo", "uav1/MissionState", "--once", "--wait", "30")
+    assert done.returncode == 0 and value["value"]["mode"].startswith("MISSION_")
+
+
+def values_of_several_nodes_are_echoed_together(rabit):
+    with harness.Processes() as processes:
+        both = processes.start(rabit.argv("echo", "uav*/Pose", "--wait", "30"))
+        for node in ("uav1", "uav2"):
+            both.wait_for(lambda text, node=node: text.startswith(node + "/Pose"), LIMIT)
+        assert both.terminate() == 0
+
+
+def ctrl_c_ends_it_well(rabit):
+    with harness.Processes() as processes:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            echo = processes.start(rabit.argv("echo", "uav1/Pose", "--wait", "30"))
+            echo.wait_for(lambda text: text.startswith("uav1/Pose"), LIMIT)
+            os.kill(echo.pid, number)
+            assert echo.exit_code(LIMIT) == 0
+
+
+def a_pipe_that_is_closed_ends_it_well(rabit):
+    with subprocess.Popen(rabit.argv("echo", "uav1/Pose", "--wait", "30"), stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE) as echo:
+        assert echo.stdout.readline().startswith(b"uav1/Pose")
+        echo.stdout.close()
+        assert echo.wait(LIMIT) == 0
+        assert echo.stderr.read() == b""
+
+
+def wrong_usage_is_2(rabit):
+    for arguments in (["nodes", "--interfase", "lo"], ["nose"], [], ["echo"], ["nodes", "--domain", "233"],
+                      ["nodes", "--transport", "fastdss"], ["nodes", "--config", "/no/such/file"]):
+        done = subprocess.run([rabit.program, *arguments], capture_output=True, text=True, timeout=LIMIT,
+                              check=False)
+        assert done.returncode == 2, (arguments, done)
+        assert done.stdout == "" and done.stderr != "", (arguments, done)
+
+
+def nobody_in_the_domain_is_3(rabit):
+    for command in (["nodes"], ["messages"], ["type", "X"], ["echo", "X"]):
+        done = Rabit(rabit.program, rabit.transport, harness.domain() + 1).run(*command, "--wait", "1")
+        assert done.returncode == 3 and "nobody was heard in domain" in done.stderr and done.stdout == "", done
+
+
+def a_configuration_of_a_node_serves_for_its_network_alone(rabit):
+    done = subprocess.run([rabit.program, "echo", "uav1/Pose", "--once", "--wait", "30",
+                           "--config", str(harness.ROOT / "examples/swarm/uav.yaml"),
+                           "--domain", str(harness.domain())], capture_output=True, text=True, timeout=LIMIT,
+                          check=False)
+    assert done.returncode == 0, done.stderr
+
+
+TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
+         messages_are_listed_with_their_types_and_publishers,
+         the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
+         a_name_that_is_wrong_is_answered_with_the_nearest, a_value_is_echoed_as_text_as_json_and_in_part,
+         a_state_that_was_posted_before_is_echoed_at_once, values_of_several_nodes_are_echoed_together,
+         ctrl_c_ends_it_well, a_pipe_that_is_closed_ends_it_well, wrong_usage_is_2, nobody_in_the_domain_is_3,
+         a_configuration_of_a_node_serves_for_its_network_alone]
+
+
+def main():
+    harness.enter_namespace()
+    program, uav, transports = sys.argv[1], sys.argv[2], sys.argv[3].split(",")
+    failed = []
+    with harness.Processes() as processes:
+        for number, transport in enumerate((transports * 2)[:2], 1):
+            processes.start([uav, "--config", harness.ROOT / "examples/swarm/uav.yaml", "--node", f"uav{number}",
+                             "--domain", harness.domain(), "--transport", transport])
+        for transport in transports:
+            for test in TESTS:
+                try:
+                    test(Rabit(program, transport, harness.domain()))
+                    print(f"ok      {transport} {test.__name__}", flush=True)
+                except Exception as error:  # pylint: disable=broad-except
+                    failed.append(test.__name__)
+                    print(f"FAILED  {transport} {test.__name__}: {type(error).__name__} {error}", flush=True)
+    sys.exit(f"{len(failed)} failed" if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
