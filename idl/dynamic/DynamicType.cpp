@@ -154,10 +154,10 @@ std::optional<std::string> DynamicType::ToText(std::span<const std::uint8_t> sam
 EncodedSample DynamicType::FromJson(std::string_view json) const
 {
     const JsonText text(json);
-    return text.Reason.empty() ? FromJson(text.Value) : EncodedSample{std::nullopt, text.Reason};
+    return text.Reason.empty() ? FromJsonValue(text.Value) : EncodedSample{std::nullopt, text.Reason};
 }
 
-EncodedSample DynamicType::FromJson(const nlohmann::ordered_json &json) const
+EncodedSample DynamicType::FromJsonValue(const nlohmann::ordered_json &json) const
 {
     Dynamic::CdrBuilder out;
     Dynamic::JsonEncoder encoder(out);

@@ -18,7 +18,7 @@ inline constexpr std::size_t MaxBrackets = 32;
 inline constexpr unsigned MaxDepth = 64;
 // Definitions, and members, cases, enumerators and bits of all together.
 inline constexpr std::size_t MaxDefinitions = 1000;
-inline constexpr std::size_t MaxParts = 4000;
+inline constexpr std::size_t MaxParts = 2000;
 // Bytes of a new value of any type in the text: bounds products of array dimensions, also of structs in
 // structs.
 inline constexpr std::uint64_t MaxFreshSize = 8 * 1024 * 1024;

@@ -1,311 +1,559 @@
 #include "dynamic/TextGuard.h"
 
+#include "dynamic/IdlTokens.h"
 #include "dynamic/Limits.h"
+#include "model/Names.h"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cstdint>
-#include <optional>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace Rabit::Dynamic
 {
 namespace
 {
 
-bool IsDigit(char letter)
+// Leaves the guard from any depth; caught where it is run.
+struct NotGrammatical : std::runtime_error
 {
-    return letter >= '0' && letter <= '9';
-}
-bool IsOctal(char letter)
+    using std::runtime_error::runtime_error;
+};
+
+// Names are the same in either case.
+std::string Lower(std::string_view name)
 {
-    return letter >= '0' && letter <= '7';
-}
-bool IsNameStart(char letter)
-{
-    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || letter == '_';
+    std::string lower(name.substr(name[0] == '_' ? 1 : 0));
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char letter) { return std::tolower(letter); });
+    return lower;
 }
 
-template <std::size_t Count>
-bool IsOneOf(std::string_view word, const std::array<std::string_view, Count> &words)
-{
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
+constexpr std::uint64_t Max32 = std::numeric_limits<std::uint32_t>::max();
 
-// What definitions begin with, and what would make them another language.
-constexpr std::array<std::string_view, 5> Definitions{"struct", "union", "enum", "bitmask", "typedef"};
-constexpr std::array<std::string_view, 11> Annotations{
-    "final", "appendable", "nested", "key",  "default",  "default_literal",
-    "value", "position",   "id",     "unit", "bit_bound"};
-
+// Follows the grammar of IDL (OMG IDL 4.2, 7.4, and XTypes 7.3.1), and builds nothing.
 class Guard
 {
 public:
-    explicit Guard(std::string_view text) : _text(text) {}
+    explicit Guard(const std::vector<Token> &tokens) : _tokens(tokens) {}
 
-    std::string Run()
+    void Text()
     {
-        if (_text.size() > MaxTextSize)
+        while (Now().What != Token::Kind::End)
         {
-            return "the text has more than " + std::to_string(MaxTextSize) + " bytes";
+            Definition(0);
         }
-        while (_reason.empty() && _at < _text.size())
-        {
-            Token();
-            if (_reason.empty() && _tokens > MaxTokens)
-            {
-                Refuse("the text has more than " + std::to_string(MaxTokens) + " words and signs");
-            }
-        }
-        if (_reason.empty() && _depth != 0)
-        {
-            Refuse("a bracket is not closed");
-        }
-        return _reason;
     }
 
 private:
-    char Peek(std::size_t ahead) const { return _at + ahead < _text.size() ? _text[_at + ahead] : '\0'; }
+    const Token &Now() const { return _tokens[_at]; }
 
-    void Refuse(const std::string &reason) { _reason = "line " + std::to_string(_line) + ": " + reason; }
-
-    void Token()
+    [[noreturn]] void Refuse(const std::string &reason) const
     {
-        const char letter = _text[_at];
-        if (letter == '\n' || letter == ' ' || letter == '\t')
+        throw NotGrammatical("line " + std::to_string(Now().Line) + ": " + reason);
+    }
+    [[noreturn]] void Expected(const std::string &what) const
+    {
+        Refuse(
+            "expected " + what +
+            (Now().What == Token::Kind::End ? ", not the end" : ", not '" + std::string(Now().Text) + "'"));
+    }
+
+    bool Is(char sign) const { return Now().What == Token::Kind::Sign && Now().Text[0] == sign; }
+    bool IsWord(std::string_view word) const { return Now().What == Token::Kind::Word && Now().Text == word; }
+    // An annotation behind a type of that name, seen from there, is what the parser crashes on: it takes the
+    // type for it.
+    bool IsAnnotation() const
+    {
+        if (Now().What != Token::Kind::Annotation)
         {
-            _line += letter == '\n' ? 1 : 0;
+            return false;
+        }
+        const std::string name = Lower(Now().Text);
+        for (const auto &[scope, types] : _types)
+        {
+            if (_scope.compare(0, scope.size(), scope) == 0 && types.count(name) != 0)
+            {
+                Refuse("annotation '@" + std::string(Now().Text) + "' behind a type of that name");
+            }
+        }
+        return true;
+    }
+    bool IsAnnotation(std::string_view name) const
+    {
+        return Now().What == Token::Kind::Annotation && Now().Text == name;
+    }
+    // The name of a type that the parser looks up among others.
+    void TypeName()
+    {
+        static const std::set<std::string> annotations{"final", "appendable",      "nested",  "bit_bound",
+                                                       "key",   "default",         "id",      "unit",
+                                                       "value", "default_literal", "position"};
+        const std::string name = Lower(Now().Text);
+        if (annotations.count(name) != 0)
+        {
+            _types[_scope].insert(name);
+        }
+        Name();
+    }
+    void Sign(char sign)
+    {
+        if (!Is(sign))
+        {
+            Expected("'" + std::string(1, sign) + "'");
+        }
+        ++_at;
+    }
+    bool TakeWord(std::string_view word)
+    {
+        const bool is = IsWord(word);
+        _at += is ? 1 : 0;
+        return is;
+    }
+
+    void Count(std::size_t &count, std::size_t most, const char *what)
+    {
+        if (++count > most)
+        {
+            Refuse("more than " + std::to_string(most) + " " + what);
+        }
+    }
+
+    // A name that is declared, or a part of one: no word of IDL, unless an underscore stands before it.
+    void Name()
+    {
+        if (Now().What != Token::Kind::Word)
+        {
+            Expected("a name");
+        }
+        const std::string name(Now().Text);
+        const bool isEscaped = name[0] == '_';
+        const char first = name.size() > (isEscaped ? 1U : 0U) ? name[isEscaped ? 1 : 0] : '_';
+        if ((!isEscaped && RabitIdl::IsIdlKeyword(name)) || first == '_' || (first >= '0' && first <= '9'))
+        {
+            Expected("a name");
+        }
+        ++_at;
+    }
+    void ScopedName()
+    {
+        if (Now().What == Token::Kind::Scope)
+        {
             ++_at;
-            return;
         }
-        if (letter == '/')
+        Name();
+        while (Now().What == Token::Kind::Scope)
         {
-            Comment();
-            return;
-        }
-        ++_tokens;
-        if (IsNameStart(letter))
-        {
+            ++_at;
             Name();
         }
-        else if (IsDigit(letter))
+    }
+    std::uint64_t Number(std::uint64_t least, std::uint64_t most)
+    {
+        std::uint64_t value = 0;
+        const std::string_view text = Now().Text;
+        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (Now().What != Token::Kind::Integer || result.ec != std::errc() || value < least || value > most)
         {
-            Number();
+            Expected("a number from " + std::to_string(least) + " to " + std::to_string(most));
         }
-        else if (letter == '"' || letter == '\'')
+        ++_at;
+        return value;
+    }
+
+    // A value as a label or @default has it. withTexts: also real numbers and texts.
+    void Literal(bool withTexts)
+    {
+        const Token::Kind kind = Now().What;
+        if (kind == Token::Kind::Character ||
+            (withTexts && (kind == Token::Kind::Real || kind == Token::Kind::Text)) || IsWord("TRUE") ||
+            IsWord("FALSE"))
         {
-            Quoted(letter);
+            ++_at;
         }
-        else if (letter == '@')
+        else if (Is('-'))
         {
-            Annotation();
+            ++_at;
+            if (withTexts && Now().What == Token::Kind::Real)
+            {
+                ++_at;
+                return;
+            }
+            Number(0, std::uint64_t{1} << 63);
         }
         else
         {
-            Sign(letter);
+            Number(0, std::numeric_limits<std::uint64_t>::max());
         }
     }
 
-    void Comment()
+    void Definition(std::size_t depth)
     {
-        const bool isBlock = Peek(1) == '*';
-        if (!isBlock && Peek(1) != '/')
+        Count(_definitions, MaxDefinitions, "definitions");
+        if (TakeWord("module"))
         {
-            Refuse("unexpected '/'");
+            if (depth == MaxBrackets)
+            {
+                Refuse("more than " + std::to_string(MaxBrackets) + " modules within each other");
+            }
+            const std::size_t outside = _scope.size();
+            _scope += "::" + Lower(Now().Text);
+            Name();
+            Sign('{');
+            do
+            {
+                Definition(depth + 1);
+            } while (!Is('}'));
+            _scope.resize(outside);
+        }
+        else if (TakeWord("typedef"))
+        {
+            Type(0);
+            Declarator();
+            Sign(';');
             return;
         }
-        const std::size_t end = _text.find(isBlock ? "*/" : "\n", _at + 2);
-        const std::size_t stop = end == _text.npos ? _text.size() : end + (isBlock ? 2 : 0);
-        if (isBlock && end == _text.npos)
+        else
         {
-            Refuse("a comment is not closed");
-            return;
+            Annotated();
         }
-        for (; _at < stop; ++_at)
+        Sign('}');
+        Sign(';');
+    }
+
+    void Annotated()
+    {
+        const std::size_t first = _at;
+        bool isStructured = false;  // has what only a struct or union may have
+        bool isNested = false;
+        bool hasBound = false;
+        while (IsAnnotation())
         {
-            const auto code = static_cast<unsigned char>(_text[_at]);
-            if (code == '\\' || code == 0x7f || (code < 0x20 && code != '\n' && code != '\t'))
+            if (IsAnnotation("final") || IsAnnotation("appendable"))
             {
-                Refuse("a comment has a character that is not supported");
-                return;
-            }
-            _line += _text[_at] == '\n' ? 1 : 0;
-        }
-    }
-
-    std::string_view Word()
-    {
-        const std::size_t begin = _at;
-        while (_at < _text.size() && (IsNameStart(_text[_at]) || IsDigit(_text[_at])))
-        {
-            ++_at;
-        }
-        if (_at - begin > MaxNameLength)
-        {
-            Refuse("a name has more than " + std::to_string(MaxNameLength) + " letters");
-        }
-        return _text.substr(begin, _at - begin);
-    }
-
-    void Name()
-    {
-        const std::string_view word = Word();
-        _definitions += IsOneOf(word, Definitions) ? 1 : 0;
-        _modules += word == "module" ? 1 : 0;
-        if (_definitions > MaxDefinitions || _modules > 8 * MaxDefinitions)
-        {
-            Refuse("more than " + std::to_string(MaxDefinitions) + " definitions");
-        }
-    }
-
-    // Decimal, without leading zeros, with which others begin octal and hexadecimal.
-    void Number()
-    {
-        const std::size_t begin = _at;
-        const auto digits = [&]
-        {
-            while (IsDigit(Peek(0)))
-            {
+                isStructured = isStructured || IsAnnotation("final");
                 ++_at;
             }
-        };
-        digits();
-        const bool isWhole = Peek(0) != '.' && Peek(0) != 'e' && Peek(0) != 'E';
-        if (Peek(0) == '.')
-        {
-            ++_at;
-            digits();
-        }
-        if (Peek(0) == 'e' || Peek(0) == 'E')
-        {
-            _at += Peek(1) == '-' || Peek(1) == '+' ? 2 : 1;
-            if (!IsDigit(Peek(0)))
+            else if (IsAnnotation("nested"))
             {
-                Refuse("a number ends in its exponent");
-            }
-            digits();
-        }
-        const std::size_t size = _at - begin;
-        if (IsNameStart(Peek(0)) || Peek(0) == '.' || size > (isWhole ? 20U : 40U) ||
-            (isWhole && size > 1 && _text[begin] == '0'))
-        {
-            Refuse("a number is not a plain decimal one");
-        }
-    }
-
-    // Printable ASCII on one line; escapes are quotes, the backslash and three octal digits.
-    void Quoted(char quote)
-    {
-        std::size_t count = 0;
-        for (++_at; Peek(0) != quote; ++count)
-        {
-            const char letter = Peek(0);
-            if (letter < 0x20 || letter == 0x7f)
-            {
-                Refuse("a text or character is not closed, or not printable");
-                return;
-            }
-            if (letter != '\\')
-            {
+                isNested = true;
                 ++_at;
             }
-            else if (Peek(1) == '\\' || Peek(1) == '"' || Peek(1) == '\'')
+            else if (IsAnnotation("bit_bound"))
             {
-                _at += 2;
-            }
-            else if (Peek(1) >= '0' && Peek(1) <= '3' && IsOctal(Peek(2)) && IsOctal(Peek(3)) &&
-                     _text.substr(_at + 1, 3) != "000")
-            {
-                _at += 4;
+                hasBound = true;
+                ++_at;
+                Sign('(');
+                Number(1, 64);
+                Sign(')');
             }
             else
             {
-                Refuse("an escape is not supported");
-                return;
+                Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
+            }
+            if (_at - first > 12)
+            {
+                Refuse("too many annotations");
             }
         }
-        ++_at;
-        if ((quote == '\'' && count != 1) || count > MaxStringLength)
+        if (TakeWord("struct"))
         {
-            Refuse(quote == '\'' ? "a character is not one"
-                                 : "a text has more than " + std::to_string(MaxStringLength) + " bytes");
+            CheckAnnotations(!hasBound);
+            Struct();
+        }
+        else if (TakeWord("union"))
+        {
+            CheckAnnotations(!hasBound);
+            Union();
+        }
+        else if (TakeWord("enum"))
+        {
+            CheckAnnotations(!isStructured && !isNested);
+            Enum();
+        }
+        else if (TakeWord("bitmask"))
+        {
+            CheckAnnotations(!isStructured && !isNested);
+            Bitmask();
+        }
+        else
+        {
+            Expected("a definition");
         }
     }
 
-    void Annotation()
+    void CheckAnnotations(bool good)
     {
-        ++_at;
-        const std::string word(Word());
-        if (!IsOneOf(word, Annotations))
+        if (!good)
         {
-            Refuse("annotation '@" + word + "' is not supported in a text to be read at run time");
+            Refuse("an annotation does not belong here");
         }
     }
 
-    void Sign(char letter)
+    void Type(std::size_t depth)
     {
-        static constexpr std::string_view opening = "({[<";
-        static constexpr std::string_view closing = ")}]>";
-        const std::size_t closes = closing.find(letter);
-        if (opening.find(letter) != opening.npos)
+        static constexpr std::array<std::string_view, 14> single{
+            "boolean", "char",   "octet", "int8",   "uint8", "int16", "uint16",
+            "int32",   "uint32", "int64", "uint64", "short", "float", "double"};
+        if (depth == MaxBrackets)
         {
-            if (_depth == MaxBrackets)
-            {
-                Refuse("more than " + std::to_string(MaxBrackets) + " brackets within each other");
-                return;
-            }
-            _open[_depth++] = closing[opening.find(letter)];
+            Refuse("more than " + std::to_string(MaxBrackets) + " types within each other");
         }
-        else if (closes != closing.npos)
+        if (Now().What == Token::Kind::Word &&
+            std::find(single.begin(), single.end(), Now().Text) != single.end())
         {
-            if (_depth == 0 || _open[_depth - 1] != letter)
-            {
-                Refuse("unexpected '" + std::string(1, letter) + "'");
-                return;
-            }
-            --_depth;
+            ++_at;
         }
-        else if (letter == ';' || letter == ',')
+        else if (TakeWord("unsigned"))
         {
-            if (++_parts > MaxParts)
+            if (!TakeWord("short"))
             {
-                Refuse("more than " + std::to_string(MaxParts) + " members, values and definitions");
-                return;
+                Long();
             }
         }
-        else if (letter == '-')
+        else if (IsWord("long"))
         {
-            if (!IsDigit(Peek(1)))
+            Long();
+        }
+        else if (TakeWord("string"))
+        {
+            if (Is('<'))
             {
-                Refuse("unexpected '-'");
-                return;
+                ++_at;
+                Number(1, Max32);
+                Sign('>');
             }
         }
-        else if (letter != ':')
+        else if (TakeWord("sequence"))
         {
-            Refuse(letter > 0x20 && letter < 0x7f ? "unexpected '" + std::string(1, letter) + "'"
-                                                  : "a character is not printable ASCII");
-            return;
+            Sign('<');
+            Type(depth + 1);
+            if (Is(','))
+            {
+                ++_at;
+                Number(1, Max32);
+            }
+            Sign('>');
         }
-        ++_at;
+        else
+        {
+            ScopedName();
+        }
     }
 
-    std::string_view _text;
-    std::string _reason;
+    void Long()
+    {
+        if (!TakeWord("long"))
+        {
+            Expected("'long'");
+        }
+        TakeWord("long");
+    }
+
+    void Declarator()
+    {
+        Count(_parts, MaxParts, "members, cases, values and bits");
+        Name();
+        for (std::size_t dimensions = 0; Is('['); ++dimensions)
+        {
+            if (dimensions == MaxBrackets)
+            {
+                Refuse("more than " + std::to_string(MaxBrackets) + " dimensions");
+            }
+            ++_at;
+            Number(1, Max32);
+            Sign(']');
+        }
+    }
+
+    void Struct()
+    {
+        TypeName();
+        if (Is(':'))
+        {
+            ++_at;
+            ScopedName();
+        }
+        Sign('{');
+        do
+        {
+            MemberAnnotations();
+            Type(0);
+            Declarator();
+            Sign(';');
+        } while (!Is('}'));
+    }
+
+    void MemberAnnotations()
+    {
+        for (std::size_t count = 0; IsAnnotation(); ++count)
+        {
+            const bool isKey = IsAnnotation("key");
+            const bool isDefault = IsAnnotation("default");
+            const bool isId = IsAnnotation("id");
+            if ((!isKey && !isDefault && !isId && !IsAnnotation("unit")) || count == 4)
+            {
+                Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
+            }
+            ++_at;
+            if (isKey)
+            {
+                continue;
+            }
+            Sign('(');
+            if (isDefault)
+            {
+                Literal(true);
+            }
+            else if (isId)
+            {
+                Number(0, Max32);
+            }
+            else if (Now().What == Token::Kind::Text)
+            {
+                ++_at;
+            }
+            else
+            {
+                Expected("a text");
+            }
+            Sign(')');
+        }
+    }
+
+    void Union()
+    {
+        TypeName();
+        if (!TakeWord("switch"))
+        {
+            Expected("'switch'");
+        }
+        Sign('(');
+        Type(0);
+        Sign(')');
+        Sign('{');
+        do
+        {
+            Labels();
+            Type(0);
+            Declarator();
+            Sign(';');
+        } while (!Is('}'));
+    }
+
+    void Labels()
+    {
+        if (!IsWord("case") && !IsWord("default"))
+        {
+            Expected("'case' or 'default'");
+        }
+        while (IsWord("case") || IsWord("default"))
+        {
+            Count(_parts, MaxParts, "members, cases, values and bits");
+            if (!TakeWord("default"))
+            {
+                ++_at;
+                const bool isName = Now().What == Token::Kind::Scope ||
+                                    (Now().What == Token::Kind::Word && !IsWord("TRUE") && !IsWord("FALSE"));
+                isName ? ScopedName() : Literal(false);
+            }
+            Sign(':');
+        }
+    }
+
+    void Enum()
+    {
+        TypeName();
+        Sign('{');
+        while (true)
+        {
+            for (std::size_t count = 0; IsAnnotation(); ++count)
+            {
+                if ((!IsAnnotation("value") && !IsAnnotation("default_literal")) || count == 2)
+                {
+                    Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
+                }
+                const bool isValue = IsAnnotation("value");
+                ++_at;
+                if (isValue)
+                {
+                    Sign('(');
+                    Number(0, Max32);
+                    Sign(')');
+                }
+            }
+            Count(_parts, MaxParts, "members, cases, values and bits");
+            Name();
+            if (!Is(','))
+            {
+                return;
+            }
+            ++_at;
+        }
+    }
+
+    void Bitmask()
+    {
+        TypeName();
+        Sign('{');
+        while (true)
+        {
+            if (IsAnnotation())
+            {
+                if (!IsAnnotation("position"))
+                {
+                    Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
+                }
+                ++_at;
+                Sign('(');
+                Number(0, 63);
+                Sign(')');
+            }
+            Count(_parts, MaxParts, "members, cases, values and bits");
+            Name();
+            if (!Is(','))
+            {
+                return;
+            }
+            ++_at;
+        }
+    }
+
+    const std::vector<Token> &_tokens;  // the last one is End
     std::size_t _at = 0;
-    std::size_t _line = 1;
-    std::size_t _tokens = 0;
     std::size_t _definitions = 0;
-    std::size_t _modules = 0;
     std::size_t _parts = 0;
-    std::array<char, MaxBrackets> _open{};
-    std::size_t _depth = 0;
+    std::string _scope;  // the modules around, `::a::b`
+    std::map<std::string, std::set<std::string>>
+        _types;  // by scope; those that have the name of an annotation
 };
 
 }  // namespace
 
 std::string WhyNotParsed(std::string_view idlText)
 {
-    return Guard(idlText).Run();
+    std::string reason;
+    const std::vector<Token> tokens = TokensOf(idlText, reason);
+    if (!reason.empty())
+    {
+        return reason;
+    }
+    try
+    {
+        Guard(tokens).Text();
+        return "";
+    }
+    catch (const NotGrammatical &error)
+    {
+        return error.what();
+    }
 }
 
 }  // namespace Rabit::Dynamic

@@ -118,6 +118,13 @@ bool ModelReader::IsAppendable(TreeNode node)
 
 void ModelReader::CheckKey(TreeNode place, const Type &type)
 {
+    std::set<const Definition *> seen;
+    CheckKey(place, type, seen);
+}
+
+// Each struct once: one may hold another many times, and that one a third.
+void ModelReader::CheckKey(TreeNode place, const Type &type, std::set<const Definition *> &seen)
+{
     const Type &real = Unalias(type);
     switch (real.What)
     {
@@ -125,13 +132,17 @@ void ModelReader::CheckKey(TreeNode place, const Type &type)
         case Type::Kind::String:
             return;
         case Type::Kind::Array:
-            CheckKey(place, *real.Element);
+            CheckKey(place, *real.Element, seen);
             return;
         case Type::Kind::Sequence:
             Refuse(place, "a key that is or contains a sequence is not supported");
             return;
         case Type::Kind::Named:
             break;
+    }
+    if (!seen.insert(real.Named).second)
+    {
+        return;
     }
     if (dynamic_cast<const UnionDefinition *>(real.Named) != nullptr)
     {
@@ -147,7 +158,7 @@ void ModelReader::CheckKey(TreeNode place, const Type &type)
         }
         for (const Member *member : members)
         {
-            CheckKey(place, member->Type);
+            CheckKey(place, member->Type, seen);
         }
     }
 }

@@ -41,6 +41,7 @@ private:
     void CheckIds(const StructDefinition &definition);
     bool IsAppendable(TreeNode node);
     void CheckKey(TreeNode place, const Type &type);
+    void CheckKey(TreeNode place, const Type &type, std::set<const Definition *> &seen);
     void CheckKeyInComment(TreeNode place, const Member &member);
     void CheckDefault(TreeNode place, const Member &member);
 

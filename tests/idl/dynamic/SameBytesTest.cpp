@@ -5,8 +5,6 @@
 namespace
 {
 
-constexpr int Rounds = 200;
-
 TEST_EACH_TYPE(SameBytes, NewMessagesAreAlike)
 {
     EXPECT_EQ(dynamic.DefaultSample(), SampleOf(generated, *generated.Create()));
@@ -17,7 +15,7 @@ TEST_EACH_TYPE(SameBytes, EverySampleOfEitherByteOrderIsReadAlike)
 {
     const auto shapes = ShapesOf(generated);
     std::mt19937 random(1U);
-    for (int round = 0; round < Rounds; ++round)
+    for (int round = 0; round < RoundsFor(dynamic, 200); ++round)
     {
         const Bytes sample = RandomSample(*shapes->Root, round % 2 == 0, random);
         const Bytes expected = ByGeneratedCode(generated, sample);
@@ -30,7 +28,7 @@ TEST_EACH_TYPE(SameBytes, ComeBackFromJson)
 {
     const auto shapes = ShapesOf(generated);
     std::mt19937 random(2U);
-    for (int round = 0; round < Rounds; ++round)
+    for (int round = 0; round < RoundsFor(dynamic, 200); ++round)
     {
         const Bytes sample = RandomSample(*shapes->Root, round % 2 == 0, random);
         const auto json = dynamic.ToJson(sample);
@@ -46,7 +44,7 @@ TEST_EACH_TYPE(SameBytes, GiveTheSameText)
     const auto shapes = ShapesOf(generated);
     std::mt19937 random(3U);
     const auto message = generated.Create();
-    for (int round = 0; round < Rounds; ++round)
+    for (int round = 0; round < RoundsFor(dynamic, 200); ++round)
     {
         const Bytes sample = RandomSample(*shapes->Root, round % 2 == 0, random);
         ASSERT_TRUE(generated.Deserialize(sample, *message)) << "round " << round;
@@ -59,7 +57,7 @@ TEST_EACH_TYPE(SameBytes, GiveTheSameKeyHash)
     ASSERT_EQ(dynamic.HasKey(), generated.HasKey());
     const auto shapes = ShapesOf(generated);
     std::mt19937 random(4U);
-    for (int round = 0; round < Rounds; ++round)
+    for (int round = 0; round < RoundsFor(dynamic, 200); ++round)
     {
         const Bytes sample = RandomSample(*shapes->Root, round % 2 == 0, random);
         std::array<std::uint8_t, 16> expected{};

@@ -81,7 +81,7 @@ TEST_EACH_TYPE(SameRefusals, OfGarbledSamples)
     const auto shapes = ShapesOf(generated);
     std::mt19937 random(6U);
     const auto below = [&](std::size_t limit) { return random() % limit; };
-    for (int round = 0; round < 1500; ++round)
+    for (int round = 0; round < RoundsFor(dynamic, 1000); ++round)
     {
         Bytes sample = RandomSample(*shapes->Root, round % 2 == 0, random);
         for (std::size_t i = 1 + below(4); i > 0; --i)

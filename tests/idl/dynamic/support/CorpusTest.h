@@ -47,6 +47,14 @@ inline Bytes SampleOf(const Rabit::MessageType &type, const Rabit::RabitMessage 
     return bytes;
 }
 
+// Fewer for types with pages of octets, which take long.
+inline int RoundsFor(const Rabit::DynamicType &type, int rounds)
+{
+    const bool isLarge =
+        type.DefaultSample().size() > 2000 || type.IdlText().find("octet page[") != std::string::npos;
+    return isLarge ? rounds / 20 : rounds;
+}
+
 // What the room knows of the type.
 inline std::unique_ptr<const Rabit::Dynamic::Shapes> ShapesOf(const Rabit::MessageType &type)
 {

@@ -65,7 +65,7 @@ public:
     // path and what was expected, and for an unknown name the nearest one. Never throws on account of the
     // JSON.
     EncodedSample FromJson(std::string_view json) const;
-    EncodedSample FromJson(const nlohmann::ordered_json &json) const;
+    EncodedSample FromJsonValue(const nlohmann::ordered_json &json) const;
     // The sample of a new message.
     const std::vector<std::uint8_t> &DefaultSample() const;
 
