@@ -4,6 +4,8 @@
 #include "TextBuilder.h"
 #include "model/Names.h"
 
+#include <algorithm>
+#include <cctype>
 #include <set>
 
 namespace RabitIdl
@@ -16,14 +18,72 @@ std::string IdlName(const std::string &name)
     return IsIdlKeyword(name) ? "_" + name : name;
 }
 
-std::string IdlScopedName(const Definition &definition)
+std::string Lower(std::string text)
 {
-    std::string text;
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return text;
+}
+
+// Names that are declared anywhere but outermost, in lower case. A scoped name whose first part is among them
+// could be taken for one of those, and gets `::` before it; others do without, which readers that know no
+// `::` understand.
+using Inner = std::set<std::string>;
+
+void AddNames(const Definition &definition, Inner &inner)
+{
+    const bool isOutermost = definition.Scope.empty();
+    for (std::size_t i = 1; i < definition.Scope.size(); ++i)
+    {
+        inner.insert(Lower(definition.Scope[i]));
+    }
+    const auto add = [&](const std::string &name, bool always)
+    {
+        if (always || !isOutermost)
+        {
+            inner.insert(Lower(name));
+        }
+    };
+    add(definition.Name, false);
+    if (const auto *structure = dynamic_cast<const StructDefinition *>(&definition))
+    {
+        for (const Member *member : AllMembers(*structure))
+        {
+            add(member->Name, true);
+        }
+    }
+    else if (const auto *choice = dynamic_cast<const UnionDefinition *>(&definition))
+    {
+        for (const Case &item : choice->Cases)
+        {
+            add(item.Content.Name, true);
+        }
+    }
+    else if (const auto *enumeration = dynamic_cast<const EnumDefinition *>(&definition))
+    {
+        for (const auto &enumerator : enumeration->Enumerators)
+        {
+            add(enumerator.Name, false);
+        }
+    }
+    else if (const auto *bitmask = dynamic_cast<const BitmaskDefinition *>(&definition))
+    {
+        for (const auto &bit : bitmask->Bits)
+        {
+            add(bit.Name, true);
+        }
+    }
+}
+
+std::string IdlScopedName(const Definition &definition, const Inner &inner)
+{
+    const std::string &first = definition.Scope.empty() ? definition.Name : definition.Scope.front();
+    std::string text = inner.count(Lower(first)) != 0 ? "::" : "";
     for (const std::string &part : definition.Scope)
     {
-        text += "::" + IdlName(part);
+        text += IdlName(part) + "::";
     }
-    return text + "::" + IdlName(definition.Name);
+    return text + IdlName(definition.Name);
 }
 
 std::string IdlPrimitive(Primitive primitive)
@@ -73,7 +133,7 @@ std::string Dimensions(const Type &type)
                : "";
 }
 
-std::string IdlType(const Type &type)
+std::string IdlType(const Type &type, const Inner &inner)
 {
     switch (type.What)
     {
@@ -83,19 +143,19 @@ std::string IdlType(const Type &type)
             return type.Bound == 0 ? "string" : "string<" + std::to_string(type.Bound) + ">";
         case Type::Kind::Sequence:
             // The blank keeps two closing brackets apart.
-            return "sequence<" + IdlType(*type.Element) +
+            return "sequence<" + IdlType(*type.Element, inner) +
                    (type.Bound == 0 ? " >" : ", " + std::to_string(type.Bound) + ">");
         case Type::Kind::Array:
             return "";
         case Type::Kind::Named:
-            return IdlScopedName(*type.Named);
+            return IdlScopedName(*type.Named, inner);
     }
     return "";
 }
 
-std::string Declaration(const Type &type, const std::string &name)
+std::string Declaration(const Type &type, const std::string &name, const Inner &inner)
 {
-    return IdlType(WithoutDimensions(type)) + " " + IdlName(name) + Dimensions(type) + ";";
+    return IdlType(WithoutDimensions(type), inner) + " " + IdlName(name) + Dimensions(type) + ";";
 }
 
 std::string IdlLiteral(const Literal &value)
@@ -124,7 +184,7 @@ std::string IdlLiteral(const Literal &value)
     return Quote(std::get<std::string>(value));
 }
 
-std::string IdlLabel(std::int64_t value, const Type &alias)
+std::string IdlLabel(std::int64_t value, const Type &alias, const Inner &inner)
 {
     const Type &type = Unalias(alias);
     if (type.What == Type::Kind::Named)
@@ -137,7 +197,7 @@ std::string IdlLabel(std::int64_t value, const Type &alias)
                 Definition place;
                 place.Scope = definition.Scope;
                 place.Name = enumerator.Name;
-                return IdlScopedName(place);
+                return IdlScopedName(place, inner);
             }
         }
     }
@@ -176,13 +236,9 @@ void Collect(const Definition &definition, std::set<const Definition *> &used)
     }
     if (const auto *structure = dynamic_cast<const StructDefinition *>(&definition))
     {
-        if (structure->Base != nullptr)
+        for (const Member *member : AllMembers(*structure))
         {
-            Collect(*structure->Base, used);
-        }
-        for (const Member &member : structure->Members)
-        {
-            Collect(member.Type, used);
+            Collect(member->Type, used);
         }
     }
     else if (const auto *choice = dynamic_cast<const UnionDefinition *>(&definition))
@@ -199,39 +255,39 @@ void Collect(const Definition &definition, std::set<const Definition *> &used)
     }
 }
 
-void EmitStruct(TextBuilder &out, const StructDefinition &definition)
+void EmitStruct(TextBuilder &out, const StructDefinition &definition, const Inner &inner)
 {
     out.Line(std::string(definition.Appendable ? "@appendable" : "@final") +
              (definition.Nested ? " @nested" : ""));
-    out.Line("struct " + IdlName(definition.Name) +
-             (definition.Base != nullptr ? " : " + IdlScopedName(*definition.Base) : "") + " {");
+    out.Line("struct " + IdlName(definition.Name) + " {");
     out.Indent();
-    for (const Member &member : definition.Members)
+    for (const Member *member : AllMembers(definition))
     {
-        out.Line((member.Key ? "@key " : "") +
-                 (member.Default ? "@default(" + IdlLiteral(*member.Default) + ") " : "") +
-                 Declaration(member.Type, member.Name));
+        out.Line((member->Key ? "@key " : "") +
+                 (member->Default ? "@default(" + IdlLiteral(*member->Default) + ") " : "") +
+                 Declaration(member->Type, member->Name, inner));
     }
     out.Outdent();
     out.Line("};");
 }
 
-void EmitUnion(TextBuilder &out, const UnionDefinition &definition)
+void EmitUnion(TextBuilder &out, const UnionDefinition &definition, const Inner &inner)
 {
     out.Line(definition.Appendable ? "@appendable" : "@final");
-    out.Line("union " + IdlName(definition.Name) + " switch (" + IdlType(definition.Discriminator) + ") {");
+    out.Line("union " + IdlName(definition.Name) + " switch (" + IdlType(definition.Discriminator, inner) +
+             ") {");
     for (const Case &item : definition.Cases)
     {
         for (const std::int64_t label : item.Labels)
         {
-            out.Line("case " + IdlLabel(label, definition.Discriminator) + ":");
+            out.Line("case " + IdlLabel(label, definition.Discriminator, inner) + ":");
         }
         if (item.Default)
         {
             out.Line("default:");
         }
         out.Indent();
-        out.Line(Declaration(item.Content.Type, item.Content.Name));
+        out.Line(Declaration(item.Content.Type, item.Content.Name, inner));
         out.Outdent();
     }
     out.Line("};");
@@ -247,7 +303,9 @@ void EmitEnum(TextBuilder &out, const EnumDefinition &definition)
     out.Indent();
     for (std::size_t i = 0; i < definition.Enumerators.size(); ++i)
     {
-        out.Line("@value(" + std::to_string(definition.Enumerators[i].Value) + ") " +
+        const std::uint32_t value = definition.Enumerators[i].Value;
+        const bool follows = value == (i == 0 ? 0 : definition.Enumerators[i - 1].Value + 1);
+        out.Line((follows ? "" : "@value(" + std::to_string(value) + ") ") +
                  (i == definition.Default && i != 0 ? "@default_literal " : "") +
                  IdlName(definition.Enumerators[i].Name) +
                  (i + 1 == definition.Enumerators.size() ? "" : ","));
@@ -263,22 +321,24 @@ void EmitBitmask(TextBuilder &out, const BitmaskDefinition &definition)
     out.Indent();
     for (std::size_t i = 0; i < definition.Bits.size(); ++i)
     {
-        out.Line("@position(" + std::to_string(definition.Bits[i].Position) + ") " +
+        const unsigned position = definition.Bits[i].Position;
+        const bool follows = position == (i == 0 ? 0 : definition.Bits[i - 1].Position + 1);
+        out.Line((follows ? "" : "@position(" + std::to_string(position) + ") ") +
                  IdlName(definition.Bits[i].Name) + (i + 1 == definition.Bits.size() ? "" : ","));
     }
     out.Outdent();
     out.Line("};");
 }
 
-void EmitDefinition(TextBuilder &out, const Definition &definition)
+void EmitDefinition(TextBuilder &out, const Definition &definition, const Inner &inner)
 {
     if (const auto *structure = dynamic_cast<const StructDefinition *>(&definition))
     {
-        EmitStruct(out, *structure);
+        EmitStruct(out, *structure, inner);
     }
     else if (const auto *choice = dynamic_cast<const UnionDefinition *>(&definition))
     {
-        EmitUnion(out, *choice);
+        EmitUnion(out, *choice, inner);
     }
     else if (const auto *enumeration = dynamic_cast<const EnumDefinition *>(&definition))
     {
@@ -290,7 +350,7 @@ void EmitDefinition(TextBuilder &out, const Definition &definition)
     }
     else if (const auto *alias = dynamic_cast<const TypedefDefinition *>(&definition))
     {
-        out.Line("typedef " + Declaration(alias->Type, alias->Name));
+        out.Line("typedef " + Declaration(alias->Type, alias->Name, inner));
     }
 }
 
@@ -300,6 +360,11 @@ std::string EmitIdlText(const Model &model, const StructDefinition &definition)
 {
     std::set<const Definition *> used;
     Collect(definition, used);
+    Inner inner;
+    for (const Definition *item : used)
+    {
+        AddNames(*item, inner);
+    }
     TextBuilder out;
     for (const auto &item : model.Definitions)
     {
@@ -318,7 +383,7 @@ std::string EmitIdlText(const Model &model, const StructDefinition &definition)
         {
             out.Line(opening);
         }
-        EmitDefinition(out, *item);
+        EmitDefinition(out, *item, inner);
         if (!closing.empty())
         {
             out.Line(closing);

@@ -9,7 +9,9 @@
 namespace RabitIdl
 {
 
-// IDL that compiles by itself. Depends on the definitions alone, not on comments, layout, constants or files.
+// IDL that compiles by itself, in as few words as it can: members of bases are the struct's own, constants
+// are their values, names have `::` before them and enumerators and bits a number only where it is needed.
+// Depends on the definitions alone, not on comments, layout, constants or files.
 std::string EmitIdlText(const Model &model, const StructDefinition &definition);
 
 }  // namespace RabitIdl

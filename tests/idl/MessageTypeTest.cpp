@@ -1,6 +1,7 @@
 #include "SampleTest.h"
 
 #include "constructs.idl.h"
+#include "flat.idl.h"
 #include "uav.idl.h"
 
 #include <rabit/idl/MessageType.h>
@@ -16,7 +17,8 @@ TEST_EACH_SAMPLE(MessageType, IsTypeOfItsOwnMessagesAlone)
     const Rabit::MessageType *type = Rabit::MessageTypeRegistry::Of(message);
     for (const Sample &other : AllSamples())
     {
-        EXPECT_EQ(type->IsTypeOf(*other.Message), other.Message->GetTypeIndex() == typeid(message)) << other.Name;
+        EXPECT_EQ(type->IsTypeOf(*other.Message), other.Message->GetTypeIndex() == typeid(message))
+            << other.Name;
     }
 }
 
@@ -50,9 +52,9 @@ TEST(MessageType, IdlTextHoldsTheTypeAndAllThatItUses)
     EXPECT_EQ(Global::IdlType().IdlText(),
               "module Constructs {\n"
               "enum Mode {\n"
-              "    @value(0) IDLE,\n"
+              "    IDLE,\n"
               "    @value(100) BUSY,\n"
-              "    @value(101) @default_literal GONE\n"
+              "    @default_literal GONE\n"
               "};\n"
               "};\n"
               "module Constructs { module Inner {\n"
@@ -63,9 +65,45 @@ TEST(MessageType, IdlTextHoldsTheTypeAndAllThatItUses)
               "}; };\n"
               "@final\n"
               "struct Global {\n"
-              "    ::Constructs::Mode m;\n"
-              "    ::Constructs::Inner::Empty empty;\n"
+              "    Constructs::Mode m;\n"
+              "    Constructs::Inner::Empty empty;\n"
               "};\n");
+}
+
+// Readers of other makers know neither struct inheritance nor names that begin with `::`.
+TEST(MessageType, IdlTextIsFlat)
+{
+    EXPECT_EQ(Flat::Highest::IdlType().IdlText(),
+              "module Flat {\n"
+              "@final @nested\n"
+              "struct Value {\n"
+              "    long number;\n"
+              "};\n"
+              "};\n"
+              "module Flat {\n"
+              "enum Following {\n"
+              "    FIRST,\n"
+              "    SECOND\n"
+              "};\n"
+              "};\n"
+              "module Flat {\n"
+              "@final\n"
+              "struct Highest {\n"
+              "    @key long id;\n"
+              "    string<3> text;\n"
+              "    Flat::Value val;\n"
+              "    Flat::Following kind;\n"
+              "    octet list[3];\n"
+              "};\n"
+              "};\n");
+}
+
+TEST(MessageType, IdlTextTellsANameFromOneThatHidesIt)
+{
+    const std::string &text = Shadow::Both::IdlType().IdlText();
+    EXPECT_NE(text.find("    ::Shadow::Point first;\n    long shadow;\n    ::Shadow::Point second;\n"),
+              std::string::npos)
+        << text;
 }
 
 TEST(MessageType, DerivedMessageIsNotOfItsBasesType)
