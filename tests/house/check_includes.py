@@ -85,7 +85,7 @@ ALLOWED = {
     "gateway/node": {"core", "factory", "gateway", "node", "CLI11"},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.
-    "tests/bench": {"core", "idl", "transport", "factory", "simulated backend", "gateway", "gateway messages",
+    "tests/bench": {"core", "idl", "idl dynamic", "transport", "factory", "simulated backend", "gateway", "gateway messages",
                     "user messages", "CLI11"},
     "tests/bench/raw": {"CLI11"},
     "tests/bench/raw/fastdds": {"Fast DDS", "Fast-CDR"},
