@@ -1,6 +1,6 @@
 #include "dynamic/JsonText.h"
 
-#include <array>
+#include <rabit/idl/Utf8.h>
 
 namespace Rabit::Dynamic
 {
@@ -12,33 +12,6 @@ constexpr std::string_view Base64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopq
 std::uint8_t At(std::string_view text, std::size_t at)
 {
     return at < text.size() ? static_cast<std::uint8_t>(text[at]) : 0;
-}
-
-// Bytes of the UTF-8 character that begins there, 0 if none does (RFC 3629, the table of section 4).
-std::size_t CharacterSize(std::string_view text, std::size_t at)
-{
-    const auto isTail = [&](std::size_t ahead) { return (At(text, at + ahead) & 0xc0) == 0x80; };
-    const std::uint8_t first = At(text, at);
-    const std::uint8_t second = At(text, at + 1);
-    if (first < 0x80)
-    {
-        return 1;
-    }
-    if (first >= 0xc2 && first <= 0xdf)
-    {
-        return isTail(1) ? 2 : 0;
-    }
-    if (first >= 0xe0 && first <= 0xef)
-    {
-        const bool isProper = (first != 0xe0 || second >= 0xa0) && (first != 0xed || second <= 0x9f);
-        return isProper && isTail(1) && isTail(2) ? 3 : 0;
-    }
-    if (first >= 0xf0 && first <= 0xf4)
-    {
-        const bool isProper = (first != 0xf0 || second >= 0x90) && (first != 0xf4 || second <= 0x8f);
-        return isProper && isTail(1) && isTail(2) && isTail(3) ? 4 : 0;
-    }
-    return 0;
 }
 
 void AppendEscape(std::string &out, unsigned code)
@@ -55,7 +28,7 @@ bool IsUtf8(std::string_view text)
 {
     for (std::size_t at = 0; at < text.size();)
     {
-        const std::size_t size = CharacterSize(text, at);
+        const std::size_t size = Idl::Utf8CharacterSize(text, at);
         if (size == 0)
         {
             return false;

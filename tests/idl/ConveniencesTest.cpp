@@ -3,6 +3,7 @@
 #define linux 1
 #define unix 1
 
+#include "constructs.idl.h"
 #include "conveniences.idl.h"
 
 #include "Samples.h"
@@ -122,6 +123,23 @@ TEST(Appendable, IsPartOfTheTypesText)
                   Open::Closed::IdlType().IdlText().find("@appendable\nstruct Closed") == std::string::npos,
               true)
         << Open::Closed::IdlType().IdlText();
+}
+
+// Messages from elsewhere are shown on terminals.
+TEST(Conveniences, TextForPeopleHasNothingThatCommandsATerminal)
+{
+    Constructs::Texts message;
+    message.free =
+        "\x1b[2J\x7f\xc2\x9b"
+        "31m gr\xc3\xbc\xc3\x9f \xff\xe2\x82";
+    EXPECT_NE(message.ToString().find(R"(free: "\x1b[2J\x7f\xc2\x9b31m gr)"
+                                      "\xc3\xbc\xc3\x9f"
+                                      R"( \xff\xe2\x82")"),
+              std::string::npos)
+        << message.ToString();
+    Constructs::Numbers numbers;
+    numbers.letter = static_cast<char>(0x9b);
+    EXPECT_NE(numbers.ToString().find(R"(letter: '\x9b')"), std::string::npos) << numbers.ToString();
 }
 
 }  // namespace

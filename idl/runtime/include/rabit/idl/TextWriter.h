@@ -38,32 +38,9 @@ public:
     void Raw(std::string_view text) { _text += text; }
 
 private:
-    // Control characters, the quote and the backslash are escaped; all else is left as it is, as UTF-8 needs.
-    void Quoted(std::string_view text, char quote)
-    {
-        static constexpr char hex[] = "0123456789abcdef";
-        _text += quote;
-        for (const char letter : text)
-        {
-            const auto code = static_cast<std::uint8_t>(letter);
-            if (letter == quote || letter == '\\')
-            {
-                _text += '\\';
-                _text += letter;
-            }
-            else if (code < 0x20 || code == 0x7f)
-            {
-                _text += "\\x";
-                _text += hex[code >> 4];
-                _text += hex[code & 15];
-            }
-            else
-            {
-                _text += letter;
-            }
-        }
-        _text += quote;
-    }
+    // The quote and the backslash are escaped, and what could command a terminal: control characters (C0,
+    // DEL, C1) and bytes that are not UTF-8. All else is left as it is.
+    void Quoted(std::string_view text, char quote);
 
     std::string _text;
 };
