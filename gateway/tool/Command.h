@@ -23,5 +23,9 @@ void AddNodesCommand(CLI::App &app, Chosen &chosen);
 void AddMessagesCommand(CLI::App &app, Chosen &chosen);
 void AddTypeCommand(CLI::App &app, Chosen &chosen);
 void AddEchoCommand(CLI::App &app, Chosen &chosen);
+void AddHzCommand(CLI::App &app, Chosen &chosen);
+void AddBytesCommand(CLI::App &app, Chosen &chosen);
+void AddAgeCommand(CLI::App &app, Chosen &chosen);
+void AddSendCommand(CLI::App &app, Chosen &chosen);
 
 }  // namespace Rabit::Tool

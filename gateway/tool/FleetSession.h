@@ -42,6 +42,7 @@ public:
     std::vector<Node> Nodes() const { return _explorer->Nodes(); }
     Gateway::Fleet Fleet() const;
 
+    static constexpr double Forever = 1e8;
     // Waits so many seconds from the start of the session at most, until that holds.
     bool WaitUntil(double seconds, const std::function<bool()> &holds);
     // Has WaitUntil ask again; any thread.

@@ -10,6 +10,7 @@
 #include "Command.h"
 #include "CommonOptions.h"
 #include "FleetSession.h"
+#include "JsonNumber.h"
 #include "Offers.h"
 #include "Output.h"
 #include "SafeText.h"
@@ -40,11 +41,6 @@ std::string Rate(double bytesPerSecond)
     char text[32];
     std::snprintf(text, sizeof text, "%.0f B/s", bytesPerSecond);
     return bytesPerSecond > 0.0 ? text : "-";
-}
-
-Json NumberOrNull(double number, bool isKnown)
-{
-    return isKnown && std::isfinite(number) ? Json(number) : Json(nullptr);
 }
 
 template <typename Items, typename NameOf>
@@ -107,8 +103,8 @@ Json JsonOf(const Gateway::NodeStatus &status, const FleetSession::Node *node)
     object["reason"] = status.reason;
     object["incarnation"] = status.incarnation;
     object["last_heard_s"] = status.last_heard_s;
-    object["round_trip_s"] = NumberOrNull(status.round_trip_s, true);
-    object["delivery_rate"] = NumberOrNull(status.delivery_rate, status.delivery_rate > 0.0);
+    object["round_trip_s"] = JsonNumber(status.round_trip_s);
+    object["delivery_rate"] = status.delivery_rate > 0.0 ? JsonNumber(status.delivery_rate) : Json(nullptr);
     object["publishes"] = Json::array();
     object["accepts"] = Json::array();
     if (node != nullptr && node->Offers)

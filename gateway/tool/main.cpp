@@ -25,6 +25,10 @@ int main(int argc, char **argv)
     AddMessagesCommand(app, chosen);
     AddTypeCommand(app, chosen);
     AddEchoCommand(app, chosen);
+    AddHzCommand(app, chosen);
+    AddBytesCommand(app, chosen);
+    AddAgeCommand(app, chosen);
+    AddSendCommand(app, chosen);
     try
     {
         app.parse(argc, argv);

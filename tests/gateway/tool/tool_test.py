@@ -136,8 +136,53 @@ def values_of_several_nodes_are_echoed_together(rabit):
         assert both.terminate() == 0
 
 
+def rate_size_and_age_of_a_message_are_measured(rabit):
+    (rate,), _ = rabit.objects("hz", "uav1/Pose", "--for", "2", "--wait", "30")
+    assert keys(rate) == ["node", "message", "values", "rate_hz", "jitter_s", "shortest_s", "longest_s"]
+    assert rate["values"] > 2 and 1 < rate["rate_hz"] < 100
+    assert rate["shortest_s"] <= 1 / rate["rate_hz"] <= rate["longest_s"]
+    (size,), _ = rabit.objects("bytes", "uav1/Pose", "--for", "2", "--wait", "30")
+    assert keys(size) == ["node", "message", "values", "bytes", "air_bytes", "air_bytes_per_s"]
+    assert 4 < size["bytes"] < size["air_bytes"] < size["air_bytes_per_s"]
+    (age,), _ = rabit.objects("age", "uav1/Pose", "--for", "2", "--wait", "30")
+    assert keys(age) == ["node", "message", "values", "p50_s", "p90_s", "p99_s", "oldest_s", "uncertainty_s"]
+    assert 0 <= age["p50_s"] <= age["p90_s"] <= age["p99_s"] <= age["oldest_s"] < LIMIT
+    table = rabit.run("hz", "uav*/Pose", "--for", "2", "--wait", "30")
+    assert table.stdout.split()[0] == "NODE" and " Hz" in table.stdout, table
+
+
+def a_message_is_sent_and_its_outcome_is_the_exit_code(rabit):
+    done = rabit.run("send", "uav1/MissionControl", "Uav::GoHome", "{}", "--wait", "60")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "delivered\n", ""), done
+    (row,), done = rabit.objects("send", "*/MissionControl", "Uav::GoHome", "{}", "--wait", "60")
+    assert keys(row) == ["to", "type", "outcome", "reason"] and row["outcome"] == "delivered", row
+
+
+def lines_of_standard_input_are_sent_each(rabit):
+    done = rabit.run("send", "uav2/MissionControl", "Uav::GoHome", "-", "--json", "--wait", "60",
+                     text='{"id": 1}\n\n{"ix": 2}\n{"id": 3}\n')
+    outcomes = [json.loads(line)["outcome"] for line in done.stdout.splitlines()]
+    assert outcomes == ["delivered", "refused", "delivered"], done
+    assert done.returncode == 1 and "did you mean `id`?" in done.stderr, done
+
+
+def what_cannot_be_sent_is_told_with_the_nearest_right_word(rabit):
+    for arguments, reason in ((("uav1/MissionControl", "Uav::GoHom", "{}"), "did you mean `Uav::GoHome`?"),
+                              (("uav1/MissionContro", "Uav::GoHome", "{}"), "did you mean `MissionControl`?"),
+                              (("uaw1/MissionControl", "Uav::GoHome", "{}"), "did you mean `uav1`?"),
+                              (("uav1/MissionControl", "Uav::GoHome", "{"), "")):
+        done = rabit.run("send", *arguments, "--wait", "4")
+        assert done.returncode == 1 and reason in done.stderr and done.stderr.count("\n") == 1, done
+    assert rabit.run("send", "MissionControl", "Uav::GoHome", "{}").returncode == 2
+
+
 def ctrl_c_ends_it_well(rabit):
     with harness.Processes() as processes:
+        waiting = processes.start(rabit.argv("send", "uav1/MissionControl", "Uav::GoHome", "-", "--wait", "30"))
+        waiting.tell("{}")
+        waiting.wait_for(lambda text: text == "delivered", LIMIT)
+        os.kill(waiting.pid, signal.SIGINT)
+        assert waiting.exit_code(LIMIT) == 0
         for number in (signal.SIGINT, signal.SIGTERM):
             echo = processes.start(rabit.argv("echo", "uav1/Pose", "--wait", "30"))
             echo.wait_for(lambda text: text.startswith("uav1/Pose"), LIMIT)
@@ -182,6 +227,8 @@ TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
          a_name_that_is_wrong_is_answered_with_the_nearest, a_value_is_echoed_as_text_as_json_and_in_part,
          a_state_that_was_posted_before_is_echoed_at_once, values_of_several_nodes_are_echoed_together,
+         rate_size_and_age_of_a_message_are_measured, a_message_is_sent_and_its_outcome_is_the_exit_code,
+         lines_of_standard_input_are_sent_each, what_cannot_be_sent_is_told_with_the_nearest_right_word,
          ctrl_c_ends_it_well, a_pipe_that_is_closed_ends_it_well, wrong_usage_is_2, nobody_in_the_domain_is_3,
          a_configuration_of_a_node_serves_for_its_network_alone]
 

@@ -1,0 +1,58 @@
+// rabit age: how old values are when they come.
+#include <nlohmann/json.hpp>
+
+#include <limits>
+
+#include "JsonNumber.h"
+#include "MeterCommand.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+// The clocks of the two are related by beats that were on their way for half a round trip, or for any part of
+// it.
+double Uncertainty(const std::string &node, FleetSession &session)
+{
+    for (const Gateway::NodeStatus &status : session.Fleet().nodes)
+    {
+        if (status.node == node)
+        {
+            return status.round_trip_s / 2.0;
+        }
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+void AddAgeCommand(CLI::App &app, Chosen &chosen)
+{
+    MeterCommand what;
+    what.Name = "age";
+    what.Help = "How old values are when they come, and how sure that is";
+    what.Columns = {"VALUES", "50 %", "90 %", "99 %", "OLDEST", "UNCERTAIN BY"};
+    what.Cells = [](const Meter &meter, const std::string &node, FleetSession &session)
+    {
+        return std::vector<std::string>{std::to_string(meter.Count()),
+                                        NumberText(1000.0 * meter.Age(0.5), 2, " ms"),
+                                        NumberText(1000.0 * meter.Age(0.9), 2, " ms"),
+                                        NumberText(1000.0 * meter.Age(0.99), 2, " ms"),
+                                        NumberText(1000.0 * meter.Age(1.0), 2, " ms"),
+                                        NumberText(1000.0 * Uncertainty(node, session), 2, " ms")};
+    };
+    what.Members =
+        [](const Meter &meter, const std::string &node, FleetSession &session, nlohmann::ordered_json &object)
+    {
+        object["values"] = meter.Count();
+        object["p50_s"] = JsonNumber(meter.Age(0.5));
+        object["p90_s"] = JsonNumber(meter.Age(0.9));
+        object["p99_s"] = JsonNumber(meter.Age(0.99));
+        object["oldest_s"] = JsonNumber(meter.Age(1.0));
+        object["uncertainty_s"] = JsonNumber(Uncertainty(node, session));
+    };
+    AddMeterCommand(app, chosen, std::move(what));
+}
+
+}  // namespace Rabit::Tool

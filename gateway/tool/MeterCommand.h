@@ -1,0 +1,35 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "Meter.h"
+
+namespace Rabit::Tool
+{
+
+// What one of the commands that measure a message shows of it.
+struct MeterCommand
+{
+    const char *Name = nullptr;
+    const char *Help = nullptr;
+    std::vector<std::string> Columns;  // behind NODE
+    // Cells of one node, and the members of its JSON object behind `node` and `message`.
+    std::function<std::vector<std::string>(const Meter &, const std::string &node, FleetSession &)> Cells;
+    std::function<void(const Meter &, const std::string &node, FleetSession &, nlohmann::ordered_json &)>
+        Members;
+};
+
+// Adds such a command: it listens for --for seconds, or until Ctrl-C, and then tells of each node in a line.
+void AddMeterCommand(CLI::App &app, Chosen &chosen, MeterCommand what);
+
+// A number for people with so many digits behind the point, `-` if it is not known.
+std::string NumberText(double number, int digits, const char *unit = "");
+
+}  // namespace Rabit::Tool
