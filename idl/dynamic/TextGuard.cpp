@@ -1,18 +1,15 @@
 #include "dynamic/TextGuard.h"
 
-#include "dynamic/IdlTokens.h"
 #include "dynamic/Limits.h"
-#include "model/Names.h"
+#include "dynamic/TokenCursor.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,16 +18,10 @@ namespace Rabit::Dynamic
 namespace
 {
 
-// Leaves the guard from any depth; caught where it is run.
-struct NotGrammatical : std::runtime_error
-{
-    using std::runtime_error::runtime_error;
-};
-
 // Names are the same in either case.
 std::string Lower(std::string_view name)
 {
-    std::string lower(name.substr(name[0] == '_' ? 1 : 0));
+    std::string lower(name.substr(name.starts_with('_') ? 1 : 0));
     std::transform(lower.begin(), lower.end(), lower.begin(),
                    [](unsigned char letter) { return std::tolower(letter); });
     return lower;
@@ -39,10 +30,10 @@ std::string Lower(std::string_view name)
 constexpr std::uint64_t Max32 = std::numeric_limits<std::uint32_t>::max();
 
 // Follows the grammar of IDL (OMG IDL 4.2, 7.4, and XTypes 7.3.1), and builds nothing.
-class Guard
+class Guard : private TokenCursor
 {
 public:
-    explicit Guard(const std::vector<Token> &tokens) : _tokens(tokens) {}
+    using TokenCursor::TokenCursor;
 
     void Text()
     {
@@ -53,21 +44,6 @@ public:
     }
 
 private:
-    const Token &Now() const { return _tokens[_at]; }
-
-    [[noreturn]] void Refuse(const std::string &reason) const
-    {
-        throw NotGrammatical("line " + std::to_string(Now().Line) + ": " + reason);
-    }
-    [[noreturn]] void Expected(const std::string &what) const
-    {
-        Refuse(
-            "expected " + what +
-            (Now().What == Token::Kind::End ? ", not the end" : ", not '" + std::string(Now().Text) + "'"));
-    }
-
-    bool Is(char sign) const { return Now().What == Token::Kind::Sign && Now().Text[0] == sign; }
-    bool IsWord(std::string_view word) const { return Now().What == Token::Kind::Word && Now().Text == word; }
     // An annotation behind a type of that name, seen from there, is what the parser crashes on: it takes the
     // type for it.
     bool IsAnnotation() const
@@ -86,10 +62,7 @@ private:
         }
         return true;
     }
-    bool IsAnnotation(std::string_view name) const
-    {
-        return Now().What == Token::Kind::Annotation && Now().Text == name;
-    }
+    using TokenCursor::IsAnnotation;
     // The name of a type that the parser looks up among others.
     void TypeName()
     {
@@ -103,94 +76,11 @@ private:
         }
         Name();
     }
-    void Sign(char sign)
-    {
-        if (!Is(sign))
-        {
-            Expected("'" + std::string(1, sign) + "'");
-        }
-        ++_at;
-    }
-    bool TakeWord(std::string_view word)
-    {
-        const bool is = IsWord(word);
-        _at += is ? 1 : 0;
-        return is;
-    }
-
     void Count(std::size_t &count, std::size_t most, const char *what)
     {
         if (++count > most)
         {
             Refuse("more than " + std::to_string(most) + " " + what);
-        }
-    }
-
-    // A name that is declared, or a part of one: no word of IDL, unless an underscore stands before it.
-    void Name()
-    {
-        if (Now().What != Token::Kind::Word)
-        {
-            Expected("a name");
-        }
-        const std::string name(Now().Text);
-        const bool isEscaped = name[0] == '_';
-        const char first = name.size() > (isEscaped ? 1U : 0U) ? name[isEscaped ? 1 : 0] : '_';
-        if ((!isEscaped && RabitIdl::IsIdlKeyword(name)) || first == '_' || (first >= '0' && first <= '9'))
-        {
-            Expected("a name");
-        }
-        ++_at;
-    }
-    void ScopedName()
-    {
-        if (Now().What == Token::Kind::Scope)
-        {
-            ++_at;
-        }
-        Name();
-        while (Now().What == Token::Kind::Scope)
-        {
-            ++_at;
-            Name();
-        }
-    }
-    std::uint64_t Number(std::uint64_t least, std::uint64_t most)
-    {
-        std::uint64_t value = 0;
-        const std::string_view text = Now().Text;
-        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (Now().What != Token::Kind::Integer || result.ec != std::errc() || value < least || value > most)
-        {
-            Expected("a number from " + std::to_string(least) + " to " + std::to_string(most));
-        }
-        ++_at;
-        return value;
-    }
-
-    // A value as a label or @default has it. withTexts: also real numbers and texts.
-    void Literal(bool withTexts)
-    {
-        const Token::Kind kind = Now().What;
-        if (kind == Token::Kind::Character ||
-            (withTexts && (kind == Token::Kind::Real || kind == Token::Kind::Text)) || IsWord("TRUE") ||
-            IsWord("FALSE"))
-        {
-            ++_at;
-        }
-        else if (Is('-'))
-        {
-            ++_at;
-            if (withTexts && Now().What == Token::Kind::Real)
-            {
-                ++_at;
-                return;
-            }
-            Number(0, std::uint64_t{1} << 63);
-        }
-        else
-        {
-            Number(0, std::numeric_limits<std::uint64_t>::max());
         }
     }
 
@@ -230,7 +120,7 @@ private:
 
     void Annotated()
     {
-        const std::size_t first = _at;
+        std::size_t count = 0;
         bool isStructured = false;  // has what only a struct or union may have
         bool isNested = false;
         bool hasBound = false;
@@ -239,17 +129,17 @@ private:
             if (IsAnnotation("final") || IsAnnotation("appendable"))
             {
                 isStructured = isStructured || IsAnnotation("final");
-                ++_at;
+                Step();
             }
             else if (IsAnnotation("nested"))
             {
                 isNested = true;
-                ++_at;
+                Step();
             }
             else if (IsAnnotation("bit_bound"))
             {
                 hasBound = true;
-                ++_at;
+                Step();
                 Sign('(');
                 Number(1, 64);
                 Sign(')');
@@ -258,7 +148,7 @@ private:
             {
                 Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
             }
-            if (_at - first > 12)
+            if (++count > 3)
             {
                 Refuse("too many annotations");
             }
@@ -309,7 +199,7 @@ private:
         if (Now().What == Token::Kind::Word &&
             std::find(single.begin(), single.end(), Now().Text) != single.end())
         {
-            ++_at;
+            Step();
         }
         else if (TakeWord("unsigned"))
         {
@@ -326,7 +216,7 @@ private:
         {
             if (Is('<'))
             {
-                ++_at;
+                Step();
                 Number(1, Max32);
                 Sign('>');
             }
@@ -337,7 +227,7 @@ private:
             Type(depth + 1);
             if (Is(','))
             {
-                ++_at;
+                Step();
                 Number(1, Max32);
             }
             Sign('>');
@@ -367,7 +257,7 @@ private:
             {
                 Refuse("more than " + std::to_string(MaxBrackets) + " dimensions");
             }
-            ++_at;
+            Step();
             Number(1, Max32);
             Sign(']');
         }
@@ -378,7 +268,7 @@ private:
         TypeName();
         if (Is(':'))
         {
-            ++_at;
+            Step();
             ScopedName();
         }
         Sign('{');
@@ -402,7 +292,7 @@ private:
             {
                 Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
             }
-            ++_at;
+            Step();
             if (isKey)
             {
                 continue;
@@ -418,7 +308,7 @@ private:
             }
             else if (Now().What == Token::Kind::Text)
             {
-                ++_at;
+                Step();
             }
             else
             {
@@ -459,7 +349,7 @@ private:
             Count(_parts, MaxParts, "members, cases, values and bits");
             if (!TakeWord("default"))
             {
-                ++_at;
+                Step();
                 const bool isName = Now().What == Token::Kind::Scope ||
                                     (Now().What == Token::Kind::Word && !IsWord("TRUE") && !IsWord("FALSE"));
                 isName ? ScopedName() : Literal(false);
@@ -481,7 +371,7 @@ private:
                     Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
                 }
                 const bool isValue = IsAnnotation("value");
-                ++_at;
+                Step();
                 if (isValue)
                 {
                     Sign('(');
@@ -495,7 +385,7 @@ private:
             {
                 return;
             }
-            ++_at;
+            Step();
         }
     }
 
@@ -511,7 +401,7 @@ private:
                 {
                     Refuse("annotation '@" + std::string(Now().Text) + "' is not supported here");
                 }
-                ++_at;
+                Step();
                 Sign('(');
                 Number(0, 63);
                 Sign(')');
@@ -522,12 +412,10 @@ private:
             {
                 return;
             }
-            ++_at;
+            Step();
         }
     }
 
-    const std::vector<Token> &_tokens;  // the last one is End
-    std::size_t _at = 0;
     std::size_t _definitions = 0;
     std::size_t _parts = 0;
     std::string _scope;  // the modules around, `::a::b`

@@ -1,0 +1,55 @@
+// Goes over tokens and refuses what is not expected there.
+#pragma once
+
+#include "dynamic/IdlTokens.h"
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace Rabit::Dynamic
+{
+
+// Leaves a cursor's user from any depth: the reason, with its line.
+struct NotGrammatical : std::runtime_error
+{
+    using std::runtime_error::runtime_error;
+};
+
+class TokenCursor
+{
+public:
+    // The last token is End; they must outlive the cursor.
+    explicit TokenCursor(const std::vector<Token> &tokens) : _tokens(tokens) {}
+
+    const Token &Now() const { return _tokens[_at]; }
+    bool Is(char sign) const { return Now().What == Token::Kind::Sign && Now().Text[0] == sign; }
+    bool IsWord(std::string_view word) const { return Now().What == Token::Kind::Word && Now().Text == word; }
+    bool IsAnnotation(std::string_view name) const
+    {
+        return Now().What == Token::Kind::Annotation && Now().Text == name;
+    }
+
+    [[noreturn]] void Refuse(const std::string &reason) const;
+    [[noreturn]] void Expected(const std::string &what) const;
+
+    // On to the next token; not at the end.
+    void Step() { ++_at; }
+    void Sign(char sign);
+    // Whether it is that word; then past it.
+    bool TakeWord(std::string_view word);
+    // A name that is declared, or a part of one: no word of IDL, unless an underscore stands before it.
+    void Name();
+    void ScopedName();
+    std::uint64_t Number(std::uint64_t least, std::uint64_t most);
+    // A value as a label or @default has it. withTexts: also real numbers and texts.
+    void Literal(bool withTexts);
+
+private:
+    const std::vector<Token> &_tokens;
+    std::size_t _at = 0;
+};
+
+}  // namespace Rabit::Dynamic
