@@ -48,6 +48,14 @@ def run_two_managers(program):
     print("ok: two managers")
 
 
+def run_types(program):
+    """Also that the parser of IDL tells its reason to the program, and nothing to the terminal."""
+    said = run(program)
+    if said != '{"number":7}\nline 1: Scoped name \'Unknown\' cannot be resolved\n':
+        sys.exit(f"types said: {said}")
+    print("ok: types known at run time")
+
+
 def exchange(node, first, second):
     """Runs two nodes against each other, each over its backend."""
     with harness.Processes() as processes:

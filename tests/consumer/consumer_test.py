@@ -17,6 +17,7 @@ def main():
         consumer.run(cmake, "--install", build, "--prefix", folder / "prefix")
         programs = consumer.build(cmake, "programs", folder, folder / "prefix")
         consumer.run_two_managers(programs / "two_managers")
+        consumer.run_types(programs / "types")
         for first in transports:
             for second in transports:
                 consumer.exchange(programs / "node", first, second)

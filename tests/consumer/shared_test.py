@@ -9,7 +9,7 @@ import tempfile
 
 import consumer
 
-SHARED = ["core", "gateway", "idl", "links"]
+SHARED = ["core", "gateway", "idl", "idl_dynamic", "links"]
 
 
 def check_names(folder, version):
@@ -46,6 +46,7 @@ def main():
         print("ok: the installed programs start")
         programs = consumer.build(cmake, "programs", folder, prefix)
         consumer.run_two_managers(programs / "two_managers")
+        consumer.run_types(programs / "types")
         for transport in transports:
             consumer.exchange(programs / "node", transport, transport)
         consumer.build_template(cmake, folder, prefix)
