@@ -37,6 +37,16 @@ public:
                 return;
             }
         }
+        if constexpr (std::is_same_v<T, float>)
+        {
+            // The one float whose fewest digits, read as a double as JSON is, are halfway to the next one and
+            // become that. All were tried.
+            if (std::fabs(value) == 0x1.5c87fap-84F)
+            {
+                Number(static_cast<double>(value));
+                return;
+            }
+        }
         char digits[32];
         const auto result = std::to_chars(digits, digits + sizeof digits, value);
         _out.append(digits, result.ptr);

@@ -129,6 +129,10 @@ TEST(Json, OfFloatsIsTheShortestThatGivesTheSameBack)
 {
     EXPECT_EQ(Through("real", "0.1"), "0.1");
     EXPECT_EQ(Through("real", "16777217"), "16777216");
+    const EncodedSample sample = All().FromJson(R"({"real": 7.038530691851209e-26})");
+    ASSERT_TRUE(sample.Sample);
+    EXPECT_EQ(All().FromJson(All().ToJson(*sample.Sample).value()).Sample, sample.Sample)
+        << "7.0385307e-26 as a double is halfway to the next float";
 }
 
 TEST(Json, ThatDoesNotFitIsToldByItsPath)
