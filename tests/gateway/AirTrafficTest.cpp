@@ -428,6 +428,38 @@ TEST_F(ThinAirTest, WhereTheAirCarriesLittleBeatsComeSeldomAndSayIt)
     EXPECT_EQ(lost, 0);
 }
 
+TEST_F(ThinAirTest, WhereTheAirCarriesLittleBeatsTakeLittleOfIt)
+{
+    SetRate(1'000);
+    Fly(30s, 20ms, 1s);
+    double presence = 0.0;  // bytes a second, summed up over a minute
+    Fly(60s, 20ms, 1s,
+        [&](Duration passed) { presence += passed % 1s == 0s ? aircraft->Fleet().air.presence : 0.0; });
+    EXPECT_GT(aircraft->Fleet().air.capacity, 0.0);
+    EXPECT_LE(presence / 60, 200.0);
+}
+
+TEST_F(ThinAirTest, WhatTheAirSeemedToCarryWhileDdsHadItIsForgotten)
+{
+    SetRate(7'000);
+    Fly(10s, 100ms, 1s);
+    for (const char *node : {"uav2", "uav3", "uav4"})
+    {
+        fleet.Add(AircraftConfig(node));
+    }
+    int longest = 0;  // seconds in a row in which it seems to carry next to nothing
+    int inARow = 0;
+    for (int i = 0; i < 60; ++i)
+    {
+        Fly(1s, 100ms, 1s);
+        const double capacity = aircraft->Fleet().air.capacity;
+        inARow = capacity > 0.0 && capacity < 500.0 ? inARow + 1 : 0;
+        longest = std::max(longest, inARow);
+    }
+    EXPECT_GT(longest, 0) << "or there is nothing to forget";
+    EXPECT_LE(longest, 10);
+}
+
 TEST_F(ThinAirTest, BeatsAreSaidAsPromisedHoweverMuchOfDdsGoesBeside)
 {
     SetRate(12'500);

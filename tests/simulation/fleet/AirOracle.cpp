@@ -20,21 +20,24 @@ constexpr Time Flood = 500ms;
 // DDS says what it has to say of a newcomer in this time, and it is so many bytes in all, which go before
 // tracks.
 constexpr Time Discovers = 20s;
-constexpr std::uint64_t Discovery = 30'000;
+constexpr std::uint64_t Discovery = 20'000;
 // A node whose rate is limited sees so long after it that it is over (air/DiscoveryBurst).
 constexpr Time DiscoveryIsOver = 2s;
-// Of a medium that carries less than in the plan as of the slowest one.
-constexpr Time SlowPoseAge = 3s;
-// What may be lost in a row of what is said once.
-constexpr int InARow = 6;
+// Of the time in which the radios of the plans are to have all UP; in the simulation it takes a third.
+constexpr int PartOfWait = 2;
+// How old a track may be that comes, when the newest is looked at, at least.
+constexpr Time OnTheWay = 1s;
+// What may be lost in a row of what is said once, and when the medium carries less than in the plan.
+constexpr int InARow = 5;
+constexpr int InARowWhenItDoesNotFit = 6;
 // What part of the medium tracks are to have at the least: a quarter, as the plans have it. When the medium
 // carries less than in the plan, notes take all that their class may have: telemetry has 3 parts of 43, and a
 // quarter of all goes to presence first (gateway/RADIO.md).
 constexpr double ShareOfTracks = 1.0 / 4;
 constexpr double ShareWhenItDoesNotFit = 3.0 / 43 * 3 / 4;
 // All that is said for each byte that was to be said, and for each start and each other node.
-constexpr std::uint64_t MostForWork = 2;
-constexpr std::uint64_t MostForStart = 12'000;
+constexpr double MostForWork = 1.5;
+constexpr std::uint64_t MostForStart = 9'000;
 
 std::string Seconds(Time time)
 {
@@ -181,11 +184,11 @@ void AirOracle::OnStep()
     }
     for (std::size_t i = 0; i < _pairs.size(); ++i)
     {
-        if (_pairs[i].Counts && !_pairs[i].WasUp && _world.Now > _pairs[i].Since + _plan->UpWithin)
+        const Time within = _plan->UpWithin / PartOfWait;
+        if (_pairs[i].Counts && !_pairs[i].WasUp && _world.Now > _pairs[i].Since + within)
         {
             _world.Fail(16, _world.NameOf(i / _senders.size()) + " has not shown " +
-                                _world.NameOf(i % _senders.size()) + " as UP for " +
-                                Seconds(_plan->UpWithin));
+                                _world.NameOf(i % _senders.size()) + " as UP for " + Seconds(within));
         }
     }
 }
@@ -270,7 +273,7 @@ void AirOracle::OnTrack(std::size_t observerLife, std::size_t node, Time age)
         return;
     }
     _longestAge = std::max(_longestAge, age);
-    if (age > (_rate < _plan->BytesPerSecond ? std::max(_plan->PoseAge, SlowPoseAge) : _plan->PoseAge))
+    if (age > (_rate < _plan->BytesPerSecond ? _plan->SlowPoseAge : _plan->PoseAge))
     {
         _world.Fail(19, "a track of " + _world.NameOf(node) + " that comes to " +
                             _world.NameOf(_world.Lives[observerLife].Node) + " is " + Seconds(age) + " old");
@@ -280,20 +283,22 @@ void AirOracle::OnTrack(std::size_t observerLife, std::size_t node, Time age)
 void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
 {
     const Pair &pair = PairOf(observer, node);
-    if (!_plan || !pair.Counts || _world.Now < pair.Since + _plan->UpWithin + Adapts ||
-        _world.Now < _senders[node].AdaptedAt)
+    if (!_plan || !pair.Counts)
     {
         return;
     }
-    const double share = _rate < _plan->BytesPerSecond ? ShareWhenItDoesNotFit : ShareOfTracks;
+    const Time since = std::max(pair.Since + _plan->UpWithin + Adapts, _senders[node].AdaptedAt);
+    const bool fits = _rate >= _plan->BytesPerSecond;
+    const double share = fits ? ShareOfTracks : ShareWhenItDoesNotFit;
     const double carried = static_cast<double>(_rate) / static_cast<double>(_senders.size());
     const double ofNode = std::min(carried, _plan->Budget ? static_cast<double>(*_plan->Budget) : carried);
     const double seconds = static_cast<double>(TrackOnAir) / share / ofNode;
     const Time pause = std::max(_world.Plan.Machines[node].TrackPeriod, Time(std::llround(seconds * 1e9)));
     const bool discovers = _world.Now <= _discoverySince + Discovers;
-    const Time most =
-        _plan->PoseAge + InARow * pause + (discovers ? TimeOf(Discovery) + DiscoveryIsOver : Time(0));
-    if (age > most)
+    const Time most = std::max(_plan->PoseAge, OnTheWay) + (fits ? InARow : InARowWhenItDoesNotFit) * pause +
+                      (discovers ? TimeOf(Discovery) + DiscoveryIsOver : Time(0));
+    // What was before is not promised.
+    if (age > most && _world.Now - since > most)
     {
         _world.Fail(20, "the newest track that " + _world.NameOf(observer) + " has of " +
                             _world.NameOf(node) + " is " +
@@ -330,7 +335,8 @@ std::uint64_t AirOracle::Total() const
 void AirOracle::BeginIdle()
 {
     const std::uint64_t count = _senders.size();
-    const std::uint64_t most = MostForWork * _work + MostForStart * _starts * count +
+    const std::uint64_t most = static_cast<std::uint64_t>(MostForWork * static_cast<double>(_work)) +
+                               MostForStart * _starts * count +
                                static_cast<std::uint64_t>(_world.Now / 1s) * IdleLaw(count, {});
     _sentBeforeIdle = Total();
     _idleSince = _world.Now;

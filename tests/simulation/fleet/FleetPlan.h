@@ -83,6 +83,7 @@ struct ThinPlan
     std::optional<std::uint64_t> Budget;  // of each node
     Time UpWithin{0};                     // all are UP so long after a start, or after an outage
     Time PoseAge{0};                      // no track is older when it comes, besides the pause between two
+    Time SlowPoseAge{0};                  // the same while the medium carries less than that
 };
 
 // Everything about a run of the fleet that is decided beforehand. The same seed always gives the same plan.

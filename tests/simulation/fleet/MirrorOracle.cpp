@@ -49,12 +49,18 @@ void MirrorOracle::OnFetched(Topic topic, std::size_t observerLife, std::size_t 
 Time MirrorOracle::Tolerance() const
 {
     const std::optional<ThinPlan> &thin = _world.Plan.Thin;
-    if (!thin || _world.Now > _world.DisturbedAt + Settles)
+    if (!thin)
     {
         return AgeTolerance;
     }
+    const bool isSlowest = thin->BytesPerSecond < 10'000;
+    const Time settled = isSlowest ? AgeTolerance : ThinAgeTolerance;
+    if (_world.Now > _world.DisturbedAt + Settles)
+    {
+        return settled;
+    }
     const std::uint64_t queues = SimulatedMedium().QueueBytes * _world.Plan.Machines.size();
-    return AgeTolerance + Time(std::chrono::seconds(1)) * queues / thin->BytesPerSecond / 2;
+    return settled + Time(std::chrono::seconds(1)) * queues / thin->BytesPerSecond / 4;
 }
 
 bool MirrorOracle::IsUpToDate(Topic topic, std::size_t observerLife, std::size_t life) const

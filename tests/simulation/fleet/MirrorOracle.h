@@ -22,9 +22,12 @@ public:
     // What an age may be wrong by: half the round trip, for nobody can tell the delays of the two directions
     // apart.
     static constexpr Time AgeTolerance = std::chrono::milliseconds(1300);
-    // Over a thin medium by half of what a full queue of each node takes in addition, until so long after
-    // somebody came or the medium changed: all beats may have waited in queues for some seconds then, and a
-    // gateway forgets the quickest of before after 15 to 30 seconds.
+    // Over a thin medium the paths are short, and without a budget of the smallest, with which round trips
+    // are measured seldom, it is no more than the wait for the medium. Until so long after somebody came or
+    // the medium changed, a quarter of what a full queue of each node takes in addition: all beats may have
+    // waited in queues for some seconds then, and a gateway forgets the quickest of before after 15 to 30
+    // seconds.
+    static constexpr Time ThinAgeTolerance = std::chrono::milliseconds(300);
     static constexpr Time Settles = std::chrono::seconds(45);
 
     enum class Topic

@@ -1,5 +1,6 @@
 #include "PresenceOracle.h"
 
+#include <algorithm>
 #include <string>
 
 namespace Rabit::Sim
@@ -15,11 +16,20 @@ using namespace std::chrono_literals;
 constexpr int StaleAfter = 3;
 constexpr int LostAfter = 7;
 
-// The longest that a node lets pass between two beats: with a budget, and where datagrams come late, which
-// may be the weather's fault.
+// What a beat takes at most with a small budget.
+constexpr double LargestBeat = 400;
+
+// The longest that a node lets pass between two beats: with a budget what a twentieth of it allows, without
+// one a second where datagrams come late, which may be the weather's fault.
 Time LongestPause(const FleetPlan &plan)
 {
-    return plan.Thin && plan.Thin->Budget ? Time(GatewayConfig().Radio.SlowestBeat) : Time(1s);
+    if (!plan.Thin || !plan.Thin->Budget)
+    {
+        return 1s;
+    }
+    const std::chrono::duration<double> pause(LargestBeat * 20 / static_cast<double>(*plan.Thin->Budget));
+    return std::clamp<Time>(std::chrono::duration_cast<Time>(pause), 500ms,
+                            GatewayConfig().Radio.SlowestBeat);
 }
 
 }  // namespace

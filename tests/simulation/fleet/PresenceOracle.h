@@ -16,7 +16,7 @@ class PresenceOracle
 public:
     // How much later than it should a state may change: the delays of both directions, which nobody can tell
     // apart, and the sampling of the state.
-    static constexpr Time Tolerance = std::chrono::milliseconds(1500);
+    static constexpr Time Tolerance = std::chrono::milliseconds(500);
 
     explicit PresenceOracle(FleetWorld &world);
 

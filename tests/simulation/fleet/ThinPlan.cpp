@@ -20,8 +20,9 @@ struct Radio
     std::int64_t MostNodes;
     Time UpWithin;
     Time PoseAge;
+    Time SlowPoseAge;
 };
-constexpr Radio Radios[] = {{125'000, 6, 10s, 1s}, {31'250, 5, 20s, 1s}, {7'200, 3, 60s, 3s}};
+constexpr Radio Radios[] = {{125'000, 6, 10s, 500ms, 1s}, {31'250, 5, 20s, 1s, 3s}, {7'200, 3, 60s, 3s, 3s}};
 constexpr std::uint64_t SmallBudget = 1'500;
 
 SimulatedFaults DrawThinWeather(SimRandom &random)
@@ -66,7 +67,7 @@ SendRule DrawThinRule(SimRandom &random, const std::string &destination)
 void FleetPlan::DrawThin(SimRandom &random)
 {
     const Radio &radio = Radios[random.Index(std::size(Radios))];
-    Thin = ThinPlan{radio.BytesPerSecond, {}, radio.UpWithin, radio.PoseAge};
+    Thin = ThinPlan{radio.BytesPerSecond, {}, radio.UpWithin, radio.PoseAge, radio.SlowPoseAge};
     Lease = GatewayConfig().Lease;
     const auto count = static_cast<std::size_t>(random.Between(2, radio.MostNodes));
     if (radio.BytesPerSecond < 10'000)
