@@ -44,9 +44,10 @@ public:
     // A datagram of so many bytes on the air went out, scheduled or not.
     void Sent(std::size_t bytes, Duration now) { _sent.Add(bytes, now); }
     // A peer says that a datagram of ours came so much later than the quickest of ours that it knows. Each
-    // report is about a newer datagram than the one before. arrivedAt: when that datagram arrived there, by
-    // our clock: now, less the time for which the peer has held the report, and less by how much the report
-    // itself came later than the peer's quickest.
+    // report is about a newer datagram than the one before. arrivedAt: when that datagram would have arrived
+    // there, by our clock, if the way took no time, only the delay: now, less the time for which the peer has
+    // held the report, less by how much the report itself came later than the peer's quickest, and less the
+    // shortest round trip, where it is known. So it was sent at arrivedAt - delay.
     void Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now);
 
     // What was learned says nothing any more, as when DDS has had the air for itself: unlimited until peers

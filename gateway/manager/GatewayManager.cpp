@@ -42,6 +42,8 @@ constexpr std::int64_t NanosecondsInSecond = 1000000000;
 constexpr Duration FleetPeriod = std::chrono::seconds(1);
 // Less than this is not worth a sleep of its own.
 constexpr Duration ShortestSleep = std::chrono::microseconds(200);
+// There and back, on a radio that is only thin: a datagram and its answer may take that long.
+constexpr Duration ShortWays = std::chrono::milliseconds(100);
 
 // Of the file that counts the lives of this node. Two gateways of one node count for themselves.
 std::string CounterName(const GatewayConfig &config)
@@ -154,7 +156,10 @@ public:
         }
         for (const Presence::DelayHeard &delay : served.Delays)
         {
-            _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt, now);
+            // What was sent while a report was under way on a long path is not what it is about.
+            const Duration ways = _links.ShortestRoundTrip(delay.Node);
+            const Duration known = std::max(ways - ShortWays, Duration(0));
+            _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt - known, now);
         }
         if (_links.HasDelays())
         {

@@ -241,6 +241,7 @@ void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, S
         {
             const Duration held = std::chrono::milliseconds(report.held_ms);
             served.Delays.push_back({.Peer = peer.Tag,
+                                     .Node = peer.Node,
                                      .Delay = std::chrono::milliseconds(report.delay_ms),
                                      .ArrivedAt = heard.Arrival - held - peer.Clock.LastDelay()});
             return;

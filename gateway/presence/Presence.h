@@ -63,8 +63,9 @@ public:
     struct DelayHeard
     {
         std::uint32_t Peer = 0;  // its tag (names/NodeTag.h)
+        std::string Node;
         Duration Delay{0};       // of the newest that had come, against the quickest
-        Duration ArrivedAt{0};   // when it came there, by this node's monotonic clock
+        Duration ArrivedAt{0};   // when it came there, and the way back, by this node's monotonic clock
     };
 
     struct Served

@@ -245,6 +245,20 @@ void LinkDriver::VisitPaths(const std::function<void(std::string_view, const Lin
     _links->VisitPaths(visit);
 }
 
+LinkDriver::Duration LinkDriver::ShortestRoundTrip(std::string_view node) const
+{
+    Duration shortest{0};
+    VisitPaths(
+        [&](std::string_view name, const LinkPathState &path)
+        {
+            if (name == node)
+            {
+                shortest = path.Shortest;
+            }
+        });
+    return shortest;
+}
+
 void LinkDriver::HeardOf(const std::string &node, std::uint64_t incarnation)
 {
     News news;

@@ -83,6 +83,8 @@ public:
         Duration now,
         const std::function<void(const std::string &node, Duration delay, Duration arrivedAt)> &take);
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
+    // To that node and back, with nothing waiting; 0: not known.
+    Duration ShortestRoundTrip(std::string_view node) const;
 
     // A node is in that life. The links may learn it later, and send what is accepted meanwhile to the life
     // before, which puts it in doubt.

@@ -88,6 +88,7 @@ void LinkNode::VisitPaths(
         if (!peer->AllSenders().empty())
         {
             visit(name, {.RoundTrip = path.Times().Smoothed(),
+                         .Shortest = path.Shortest(),
                          .QueueingDelay = path.QueueingDelay(),
                          .Window = path.Window(),
                          .InFlight = path.InFlight(),

@@ -25,6 +25,14 @@ constexpr std::size_t PartToAsk = 4;
 constexpr LinkTime LongestDatagramTime = 250ms;
 // The window grows to so many times what arrives in the round trip that is aimed at (BBR).
 constexpr double UsefulWindow = 2.0;
+constexpr double SlowStartPace = 2.0;
+constexpr double PaceGain = 1.25;
+constexpr double MostLossToPace = 0.75;
+// A pace is used up if so much of it was sent.
+constexpr double UsedPace = 0.8;
+// Slow start ends when something was lost and what arrives has not grown by this, for so many round trips.
+constexpr double Growth = 1.25;
+constexpr int StalledRounds = 2;
 // The probe timer doubles so many times at first: where much is lost, waiting longer does not help. When
 // there is no path it goes on doubling.
 constexpr int FirstDoublings = 3;
@@ -77,12 +85,27 @@ void PathControl::Sent(std::size_t bytes, LinkTime now)
     {
         return;
     }
-    // A quarter faster than the window would go by itself, so that it is the window that limits.
-    const double rate = (_slowStart ? 2.0 : 1.25) * static_cast<double>(_window) /
-                        std::chrono::duration_cast<Seconds>(_times.Smoothed()).count();
+    _roundSent += bytes;
+    const double rate = Pace();
     const auto timeOf = [rate](std::size_t size)
     { return std::chrono::duration_cast<LinkTime>(Seconds(static_cast<double>(size) / rate)); };
     _pacedUntil = std::max(_pacedUntil, now - timeOf(Datagram())) + timeOf(bytes);
+}
+
+// A quarter faster than the window would go by itself, so that it is the window that limits. But not faster
+// than what arrives calls for: what is sent in bursts overflows the buffers in front of a slow medium, and
+// leaves them empty in between, so that no round trip tells.
+double PathControl::Pace() const
+{
+    const double roundTrip = Seconds(_times.Smoothed()).count();
+    const double byWindow =
+        (_slowStart ? SlowStartPace : PaceGain) * static_cast<double>(_window) / roundTrip;
+    if (_slowStart || _rate <= 0)
+    {
+        return byWindow;
+    }
+    const double byRate = PaceGain * _rate / (1 - std::min(_lossRate, MostLossToPace));
+    return std::min(byWindow, std::max(byRate, static_cast<double>(FirstWindow()) / roundTrip));
 }
 
 void PathControl::Acknowledged(std::size_t bytes, LinkTime now)
@@ -140,11 +163,14 @@ void PathControl::EndRound(LinkTime now)
     RememberShortest(_roundShortest, now);
     _queueingDelay = std::max(_roundShortest - _shortest, LinkTime(0));
     const Seconds duration = now - _roundStart;
-    if (_roundStart > LinkTime(0) && duration.count() > 0 && _wasFull)
+    if (_roundStart > LinkTime(0) && duration.count() > 0)
     {
-        // The last few rounds count: the newest most, the best of them if it is falling.
         const double rate = static_cast<double>(_roundAcknowledged) / duration.count();
-        _rate = std::max(rate, _rate * 0.75);
+        LookForEndOfSlowStart(rate);
+        // The last few rounds count: the newest most, the best of them if it is falling.
+        const bool wasUsed =
+            _wasFull || static_cast<double>(_roundSent) >= UsedPace * Pace() * duration.count();
+        _rate = std::max(rate, wasUsed ? _rate * 0.75 : _rate);
     }
     if (!_draining)
     {
@@ -154,7 +180,19 @@ void PathControl::EndRound(LinkTime now)
     _roundShortest = LinkNever;
     _roundAcknowledged = 0;
     _roundLost = 0;
+    _roundSent = 0;
     _wasFull = _inFlight + Datagram() >= Window();
+}
+
+// Some is lost, and more does not arrive however much is sent (BBR's full pipe).
+void PathControl::LookForEndOfSlowStart(double rate)
+{
+    if (!_slowStart || _roundAcknowledged + _roundLost < FirstWindow())
+    {
+        return;
+    }
+    _stalled = _roundLost > 0 && rate < Growth * _rate ? _stalled + 1 : 0;
+    _slowStart = _stalled < StalledRounds;
 }
 
 // Without a full window nothing of ours waits anywhere, and what was measured is what the path takes.
@@ -233,6 +271,7 @@ void PathControl::Restart()
     _draining = false;
     _pacedUntil = LinkTime(0);
     _rate = 0;
+    _stalled = 0;
 }
 
 LinkTime PathControl::AckDelay() const

@@ -71,6 +71,8 @@ private:
     std::size_t FirstWindow() const { return 4 * Datagram(); }
     LinkTime Target() const;
     double WeightOf(std::size_t bytes) const;
+    double Pace() const;  // bytes per second
+    void LookForEndOfSlowStart(double rate);
     void EndRound(LinkTime now);
     void Decide(LinkTime roundTrip);
     void RememberShortest(LinkTime roundTrip, LinkTime now);
@@ -80,6 +82,7 @@ private:
     std::size_t _inFlight = 0;
     std::size_t _window;
     bool _slowStart = true;
+    int _stalled = 0;  // round trips in which slow start came no further
     LinkTime _pacedUntil{0};
     std::size_t _sinceAsked = 0;
     LinkTime _askedAt{0};
@@ -97,6 +100,7 @@ private:
     LinkTime _roundShortest = LinkNever;
     std::size_t _roundAcknowledged = 0;
     std::size_t _roundLost = 0;
+    std::size_t _roundSent = 0;  // as far as it was paced
     bool _wasFull = false;  // the window was used up in this round
 
     double _rate = 0;

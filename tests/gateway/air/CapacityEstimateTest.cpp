@@ -155,6 +155,27 @@ TEST_F(CapacityEstimateTest, ABurstOfWhoWasNearlySilentTellsWhatWasCarriedOfTheB
     EXPECT_TRUE(!rate || *rate >= 0.6 * Carries) << *rate;
 }
 
+// A queue before a pause and one after it are two.
+TEST_F(CapacityEstimateTest, APauseBetweenTwoQueuesSaysNothingOfWhatIsCarried)
+{
+    Offered = 10.5e3;
+    RunUntil(2s);
+    EXPECT_FALSE(Estimate.Rate(2s));
+    Offered = 0.0;
+    Reports = [](Duration) { return false; };
+    RunUntil(6s);
+    Offered = 12e3;
+    Reports = [](Duration) { return true; };
+    double least = 1e9;
+    for (Duration now = 6s; now < 12s; now += 100ms)
+    {
+        RunUntil(now);
+        least = std::min(least, Estimate.Rate(now).value_or(1e9));
+    }
+    EXPECT_LT(least, 1e9);
+    EXPECT_GE(least, 0.5 * Carries);
+}
+
 TEST_F(CapacityEstimateTest, WhatIsForgottenLimitsNoMoreUntilPeersAgreeAnew)
 {
     RunUntil(5s);

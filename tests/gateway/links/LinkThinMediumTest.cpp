@@ -125,6 +125,22 @@ TEST(ThinMedium, a_satellites_round_trip_leaves_most_of_the_medium_usable)
     }
 }
 
+// What limits the link is how many messages may be under way, not the window; sent in bursts, as the window
+// allowed, they would overflow the buffer and leave it empty in between.
+TEST(ThinMedium, small_messages_on_a_far_and_wide_medium_are_spread_over_the_round_trip)
+{
+    ThinMedium medium;
+    medium.BitsPerSecond = 5e6;
+    medium.Delay = 300ms;
+    FeedSmall(medium, 20s);
+    medium.B.DeliveredBytes = 0;
+    medium.Overflows = 0;
+    medium.Datagrams = 0;
+    FeedSmall(medium, 60s);
+    EXPECT_LE(static_cast<double>(medium.Overflows), 0.02 * static_cast<double>(medium.Datagrams));
+    EXPECT_GE(static_cast<double>(medium.B.DeliveredBytes) * 8, 0.5 * 5e6 * 60);
+}
+
 TEST(ThinMedium, small_messages_have_most_of_what_a_satellite_carries)
 {
     for (const double rate : {250e3, 1e6})

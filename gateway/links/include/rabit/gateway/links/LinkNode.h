@@ -35,6 +35,7 @@ struct LinkStream
 struct LinkPathState
 {
     LinkTime RoundTrip{0};      // smoothed; 0: not measured yet
+    LinkTime Shortest{0};       // round trip, measured anew now and then with nothing waiting; 0: not yet
     LinkTime QueueingDelay{0};  // of it, what waits in buffers on the way, in the last round trip
     std::size_t Window = 0;     // bytes that may be under way, as on the air
     std::size_t InFlight = 0;   // bytes that are
