@@ -27,5 +27,6 @@ void AddHzCommand(CLI::App &app, Chosen &chosen);
 void AddBytesCommand(CLI::App &app, Chosen &chosen);
 void AddAgeCommand(CLI::App &app, Chosen &chosen);
 void AddSendCommand(CLI::App &app, Chosen &chosen);
+void AddPostCommand(CLI::App &app, Chosen &chosen);
 
 }  // namespace Rabit::Tool

@@ -29,6 +29,7 @@ int main(int argc, char **argv)
     AddBytesCommand(app, chosen);
     AddAgeCommand(app, chosen);
     AddSendCommand(app, chosen);
+    AddPostCommand(app, chosen);
     try
     {
         app.parse(argc, argv);

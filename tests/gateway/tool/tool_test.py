@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The program `rabit` from the shell, against real nodes: two aircraft, one on each DDS implementation.
 
-Usage: tool_test.py RABIT UAV TRANSPORT[,TRANSPORT]..."""
+Usage: tool_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 
 import json
 import os
@@ -176,6 +176,27 @@ def what_cannot_be_sent_is_told_with_the_nearest_right_word(rabit):
     assert rabit.run("send", "MissionControl", "Uav::GoHome", "{}").returncode == 2
 
 
+def a_message_is_posted_as_a_node_of_the_given_name(rabit):
+    with harness.Processes() as processes:
+        post = processes.start(rabit.argv("post", "uav9/Pose", "Uav::Pose", '{"latitude_deg": 12.5}', "--rate", "10",
+                                          "--qos", "telemetry", "--wait", "10"))
+        part = rabit.run("echo", "uav9/Pose", "--once", "--field", "latitude_deg", "--wait", "60")
+        assert (part.returncode, part.stdout) == (0, "12.5\n"), part
+        os.kill(post.pid, signal.SIGINT)
+        assert post.exit_code(LIMIT) == 0, post.lines
+        assert re.match(r"\d+ posts, [1-9]\d* readers?$", post.lines[-1][1]), post.lines
+
+
+def what_cannot_be_posted_is_told(rabit):
+    done = rabit.run("post", "uav1/Pose", "Uav::Pose", "{}", "--wait", "60")
+    assert done.returncode == 1 and "there is a node `uav1`" in done.stderr and done.stdout == "", done
+    for arguments, code, reason in ((("uav9/Pose", "Uav::Poze", "{}"), 1, "did you mean `Uav::Pose`?"),
+                                    (("uav9/Pose", "Uav::Pose", '{"latitude": 1}'), 1, "did you mean `latitude_deg`?"),
+                                    (("Pose", "Uav::Pose", "{}"), 2, "expected NODE/MESSAGE")):
+        done = rabit.run("post", *arguments, "--wait", "10")
+        assert done.returncode == code and reason in done.stderr and done.stdout == "", done
+
+
 def ctrl_c_ends_it_well(rabit):
     with harness.Processes() as processes:
         waiting = processes.start(rabit.argv("send", "uav1/MissionControl", "Uav::GoHome", "-", "--wait", "30"))
@@ -229,6 +250,7 @@ TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          a_state_that_was_posted_before_is_echoed_at_once, values_of_several_nodes_are_echoed_together,
          rate_size_and_age_of_a_message_are_measured, a_message_is_sent_and_its_outcome_is_the_exit_code,
          lines_of_standard_input_are_sent_each, what_cannot_be_sent_is_told_with_the_nearest_right_word,
+         a_message_is_posted_as_a_node_of_the_given_name, what_cannot_be_posted_is_told,
          ctrl_c_ends_it_well, a_pipe_that_is_closed_ends_it_well, wrong_usage_is_2, nobody_in_the_domain_is_3,
          a_configuration_of_a_node_serves_for_its_network_alone]
 
@@ -242,7 +264,7 @@ def main():
             processes.start([uav, "--config", harness.ROOT / "examples/swarm/uav.yaml", "--node", f"uav{number}",
                              "--domain", harness.domain(), "--transport", transport])
         for transport in transports:
-            for test in TESTS:
+            for test in [test for test in TESTS if not sys.argv[4:] or test.__name__ in sys.argv[4:]]:
                 try:
                     test(Rabit(program, transport, harness.domain()))
                     print(f"ok      {transport} {test.__name__}", flush=True)

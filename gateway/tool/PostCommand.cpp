@@ -1,0 +1,229 @@
+// rabit post: a message, as if a node of that name posted it.
+#include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/idl/NearestWord.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <sstream>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "FleetType.h"
+#include "Offers.h"
+#include "Output.h"
+#include "names/NamePattern.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+struct Options
+{
+    CommonOptions Common;
+    std::string What;
+    std::string Type;
+    std::string Value;
+    std::string Idl;
+    std::string Qos = "state";
+    double Rate = 0.0;
+    double For = 0.0;
+};
+
+// The type, or nothing and why with the exit code.
+struct Had
+{
+    std::shared_ptr<const DynamicType> Type;
+    int Code = Good;
+};
+
+Had FromFile(const Options &options)
+{
+    std::ostringstream text;
+    if (std::ifstream file(options.Idl, std::ios::binary); !file || !(text << file.rdbuf()))
+    {
+        Output::Talk("cannot read " + options.Idl);
+        return {nullptr, Usage};
+    }
+    ParsedType parsed = DynamicType::Parse(text.str(), options.Type);
+    if (!parsed.Type)
+    {
+        Output::Talk(options.Idl + ": " + parsed.Reason);
+    }
+    return {parsed.Type, parsed.Type ? Good : Usage};
+}
+
+// Also makes sure that nobody has the name.
+Had FromFleet(const Options &options, const std::string &node, Wakeup &wakeup)
+{
+    FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
+    const auto definitions = [&]
+    {
+        const auto types = Offers::TypesOf(session.Nodes());
+        const auto found = types.find(options.Type);
+        return found == types.end() ? Offers::Definitions() : found->second;
+    };
+    // As long as --wait says for who has the name already: to take it would do harm.
+    const auto isTaken = [&]
+    {
+        const auto nodes = session.Nodes();
+        return std::any_of(nodes.begin(), nodes.end(),
+                           [&node](const FleetSession::Node &other)
+                           { return other.Name == node && other.State != Gateway::NodeState::LOST; });
+    };
+    if (session.WaitUntil(options.Common.Wait, isTaken))
+    {
+        Output::Talk("there is a node `" + node + "`; two of one name would disturb each other");
+        return {nullptr, ProblemFound};
+    }
+    if (!options.Idl.empty())
+    {
+        return FromFile(options);
+    }
+    if (!session.IsAnybodyThere())
+    {
+        return {nullptr, session.NobodyThere()};
+    }
+    const Offers::Definitions found = definitions();
+    if (found.size() != 1)
+    {
+        std::vector<std::string> names;
+        for (const auto &[type, holders] : Offers::TypesOf(session.Nodes()))
+        {
+            names.push_back(type);
+        }
+        Output::Talk(found.empty()
+                         ? "nobody announces a type `" + options.Type + "`" +
+                               NearestWordHint(options.Type, names) + " (--idl FILE names a text of it)"
+                         : "nodes were built with different definitions of `" + options.Type +
+                               "` (--idl FILE says which is meant)");
+        return {nullptr, ProblemFound};
+    }
+    const auto &[definition, holders] = *found.begin();
+    const FleetType type = FetchType(session, {holders.begin(), holders.end()}, options.Type, definition,
+                                     session.Seconds() + options.Common.Wait);
+    if (!type.Type)
+    {
+        Output::Talk(type.Reason);
+    }
+    return {type.Type, type.Type ? Good : ProblemFound};
+}
+
+int Post(const Options &options, const std::string &node, const std::string &name, DynamicMessage &message,
+         Wakeup &wakeup)
+{
+    GatewayConfig config = ConfigOf(options.Common);
+    config.Tool.reset();
+    config.Node = node;
+    PublishRule rule;
+    rule.Message = name;
+    rule.Type = options.Type;
+    rule.Qos = options.Qos == "state" ? QosProfile::State : QosProfile::Telemetry;
+    config.Publish.push_back(rule);
+    FleetSession session(config, options.Common, wakeup);
+    auto posted = std::make_shared<DynamicMessage>(message);
+    if (!session.Workspace().AddPublishSubscribeMessage(name, posted))
+    {
+        Output::Talk("`" + name + "` is a message of this program's own");
+        return Usage;
+    }
+    const auto status = [&session]
+    {
+        const auto publications = session.Fleet().publications;
+        return publications.empty() ? Gateway::PublicationStatus() : publications.front();
+    };
+    const auto isRead = [&status] { return status().readers > 0; };
+    const auto isTwice = [&session, &node]
+    {
+        const auto problems = session.Fleet().problems;
+        return std::any_of(problems.begin(), problems.end(),
+                           [&node](const Gateway::Problem &problem)
+                           { return problem.subject == "node " + node; });
+    };
+    // One value is for who is there already: they know this node once they have heard it.
+    session.WaitUntil(options.Common.Wait, isRead);
+    const double begin = session.Seconds();
+    const double end = options.For > 0.0    ? begin + options.For
+                       : options.Rate > 0.0 ? FleetSession::Forever
+                                            : begin + 2.0;
+    std::uint64_t posts = 0;
+    while (!wakeup.IsInterrupted() && (posts == 0 || session.Seconds() < end))
+    {
+        posted->PostMessage();
+        ++posts;
+        const double next = options.Rate > 0.0 ? begin + static_cast<double>(posts) / options.Rate : end;
+        if (session.WaitUntil(std::min(next, end), isTwice))
+        {
+            Output::Talk("there is a node `" + node + "`; two of one name would disturb each other");
+            return ProblemFound;
+        }
+    }
+    const bool anybody = isRead();
+    Output::Line(std::to_string(posts) + (posts == 1 ? " post, " : " posts, ") +
+                 std::to_string(status().readers) + (status().readers == 1 ? " reader" : " readers"));
+    if (!anybody)
+    {
+        Output::Talk("nobody subscribes to `" + name + "`, or nobody from `" + node + "`");
+    }
+    return anybody ? Good : ProblemFound;
+}
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    const std::size_t slash = options.What.find('/');
+    const std::string node = options.What.substr(0, slash);
+    const std::string name = slash == std::string::npos ? "" : options.What.substr(slash + 1);
+    if (!IsNodeName(node) || !IsMessageName(name) || name.find('/') != std::string::npos)
+    {
+        Output::Talk("`" + options.What + "` is no message of a node; expected NODE/MESSAGE, as sim1/Pose");
+        return Usage;
+    }
+    const Had had = FromFleet(options, node, wakeup);
+    if (!had.Type)
+    {
+        return had.Code;
+    }
+    DynamicMessage message(had.Type);
+    if (const std::string misfit = message.SetJson(options.Value); !misfit.empty())
+    {
+        Output::Talk(misfit);
+        return ProblemFound;
+    }
+    if (DynamicType::Register(had.Type) == nullptr)
+    {
+        Output::Talk("this program has another definition of `" + options.Type + "`");
+        return ProblemFound;
+    }
+    return wakeup.IsInterrupted() ? Good : Post(options, node, name, message, wakeup);
+}
+
+}  // namespace
+
+void AddPostCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command =
+        app.add_subcommand("post", "Posts a message as a node of that name, once or at a rate");
+    command->add_option("MESSAGE", options->What, "As sim1/Pose: node sim1 posts its Pose")->required();
+    command->add_option("TYPE", options->Type, "As Uav::Pose")->required();
+    command->add_option("JSON", options->Value, "The value; what it leaves out has its default")->required();
+    AddCommonOptions(*command, options->Common, 3.0);
+    command->add_option("--qos", options->Qos, "state or telemetry")
+        ->check(CLI::IsMember({"state", "telemetry"}))
+        ->capture_default_str();
+    command->add_option("--rate", options->Rate, "Posts a second, until Ctrl-C; without it one")
+        ->check(CLI::Range(0.001, 1000.0));
+    command
+        ->add_option("--for", options->For, "Seconds after which the node leaves (default: 2 with one post)")
+        ->check(CLI::Range(0.1, 86400.0));
+    command->add_option("--idl", options->Idl, "A file with the type's IDL, in place of asking for it");
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool
