@@ -13,6 +13,13 @@
 namespace
 {
 
+// Sanitizers take some tens of milliseconds for a text.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr unsigned UsualRounds = 300;
+#else
+constexpr unsigned UsualRounds = 5000;
+#endif
+
 unsigned FromEnvironment(const char *name, unsigned otherwise)
 {
     const char *value = std::getenv(name);
@@ -72,7 +79,7 @@ TEST(TextFuzz, EveryTextIsATypeThatWorksOrIsRefusedWithAReason)
         texts.push_back(Rabit::MessageTypeRegistry::Find(name)->IdlText());
     }
     const unsigned seed = FromEnvironment("RABIT_FUZZ_SEED", 1);
-    const unsigned rounds = FromEnvironment("RABIT_FUZZ_ROUNDS", 5000);
+    const unsigned rounds = FromEnvironment("RABIT_FUZZ_ROUNDS", UsualRounds);
     TextMutator mutator(texts, seed);
     std::mt19937 random(seed);
     unsigned types = 0;
