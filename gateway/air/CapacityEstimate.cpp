@@ -58,9 +58,9 @@ std::optional<double> CapacityEstimate::Carried(const DelayReports::Report &from
     return _sent.Between(from.SentAt(), to.SentAt()) / Seconds(to.ArrivedAt - from.ArrivedAt);
 }
 
-// The same where the queue came about in between, or there was none at first, or none for a while: who says
-// little and then much at once, or pauses, had nothing to be carried for some of the time; and of what went
-// at once it is not known which of it a report is about.
+// The same where the queue came about in between, or there was none at first, or none for a while, since
+// nothing was sent for longer than it takes to empty it: who says little and then much at once had nothing to
+// be carried for some of the time; and of what went at once it is not known which of it a report is about.
 std::optional<double> CapacityEstimate::CarriedOfBurst(const DelayReports::Report &from,
                                                        const DelayReports::Report &to) const
 {
@@ -70,7 +70,9 @@ std::optional<double> CapacityEstimate::CarriedOfBurst(const DelayReports::Repor
     }
     const Duration sentAt = to.SentAt() + KnownTo;
     const double all = _sent.Between(from.SentAt(), sentAt) / Seconds(to.ArrivedAt - from.ArrivedAt);
-    return std::max(all, _sent.CarriedAtLeast(from.SentAt(), sentAt, to.ArrivedAt));
+    return from.Delay > Goal && _sent.LongestPause(from.SentAt(), sentAt) <= from.Delay
+               ? all
+               : std::max(all, _sent.CarriedAtLeast(from.SentAt(), sentAt, to.ArrivedAt));
 }
 
 // The least that some of a peer's reports tell: those before a radio's buffer was full. What did not fit into

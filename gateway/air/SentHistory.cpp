@@ -45,6 +45,18 @@ double SentHistory::CarriedAtLeast(Duration from, Duration to, Duration arrived)
     return most;
 }
 
+SentHistory::Duration SentHistory::LongestPause(Duration from, Duration to) const
+{
+    Duration longest{0};
+    Duration since = from;
+    for (std::size_t i = FirstAfter(from); i < _count && Nth(i).At < to; ++i)
+    {
+        longest = std::max(longest, Nth(i).At - since);
+        since = Nth(i).At + Step;
+    }
+    return std::max(longest, to - since);
+}
+
 // The number of the first mark behind it.
 std::size_t SentHistory::FirstAfter(Duration time) const
 {

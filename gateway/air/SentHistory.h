@@ -28,6 +28,8 @@ public:
     // from then to `arrived`, which is later than `to`. What carried all this until then, carried so much at
     // least; and no more, if it always had something to carry since that time.
     double CarriedAtLeast(Duration from, Duration to, Duration arrived) const;
+    // The longest time between those two in which nothing was sent, to within two steps.
+    Duration LongestPause(Duration from, Duration to) const;
 
 private:
     static constexpr Duration Step = std::chrono::milliseconds(20);

@@ -58,6 +58,18 @@ TEST(SentHistory, WhatIsAlwaysSentWasCarriedFromTheFirst)
     EXPECT_NEAR(sent.CarriedAtLeast(2s, 4s, 5s), 20'000.0 / 3.0, 100.0);
 }
 
+TEST(SentHistory, APauseIsTheLongestTimeWithoutADatagram)
+{
+    SentHistory sent;
+    sent.Add(100, 1s);
+    sent.Add(100, 1100ms);
+    sent.Add(100, 1600ms);
+    sent.Add(100, 1700ms);
+    EXPECT_NEAR(std::chrono::duration<double>(sent.LongestPause(1s, 1700ms)).count(), 0.5, 0.04);
+    EXPECT_NEAR(std::chrono::duration<double>(sent.LongestPause(1s, 1150ms)).count(), 0.1, 0.04);
+    EXPECT_NEAR(std::chrono::duration<double>(sent.LongestPause(1650ms, 2700ms)).count(), 1.0, 0.04);
+}
+
 TEST(SentHistory, TwentySecondsAreRemembered)
 {
     SentHistory sent;
