@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace CLI
 {
@@ -28,5 +30,10 @@ void AddBytesCommand(CLI::App &app, Chosen &chosen);
 void AddAgeCommand(CLI::App &app, Chosen &chosen);
 void AddSendCommand(CLI::App &app, Chosen &chosen);
 void AddPostCommand(CLI::App &app, Chosen &chosen);
+
+// For the shells: writes what the last word of a line can be, one a line; the line is without the program's
+// name. Looks into the network that the line names where that is wanted. Returns the exit code; may throw
+// NetworkError.
+int Complete(const CLI::App &app, const std::vector<std::string> &line, Wakeup &wakeup);
 
 }  // namespace Rabit::Tool

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "Command.h"
 #include "CommonOptions.h"
@@ -30,8 +32,16 @@ int main(int argc, char **argv)
     AddAgeCommand(app, chosen);
     AddSendCommand(app, chosen);
     AddPostCommand(app, chosen);
+    // A line that is being written is none that can be parsed.
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    const bool completes = words.size() > 1 && words[0] == "complete" && words[1] == "--";
     try
     {
+        if (completes)
+        {
+            Wakeup wakeup;
+            return Complete(app, {words.begin() + 2, words.end()}, wakeup);
+        }
         app.parse(argc, argv);
         Wakeup wakeup;
         return chosen.Run(wakeup);

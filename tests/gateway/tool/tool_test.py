@@ -243,6 +243,65 @@ def a_configuration_of_a_node_serves_for_its_network_alone(rabit):
     assert done.returncode == 0, done.stderr
 
 
+COMPLETION = harness.ROOT / "gateway/tool/completion"
+# Each reads the project's file, and then does what it does when one types the words and presses the tabulator.
+SHELLS = {
+    "bash": ["bash", "-c", """
+        . /usr/share/bash-completion/bash_completion; . "$0/rabit.bash"
+        COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMP_LINE="$*"; COMP_POINT=${#COMP_LINE}
+        _rabit; printf '%s\n' "${COMPREPLY[@]}" """],
+    "zsh": ["zsh", "-f", "-c", """
+        compadd() { print -l -- "${found[@]}" }
+        completion=$0/_rabit; words=("$@"); CURRENT=$#; . "$completion" """],
+    "fish": ["fish", "--no-config", "-c", """
+        source "$argv[1]/rabit.fish"; complete -C (string join ' ' -- $argv[2..-1])"""],
+}
+
+
+def completed(shell, rabit, command, *words):
+    """What that shell offers for the last word."""
+    line = rabit.argv(command, *words) if words else [rabit.program, command]
+    done = subprocess.run([*SHELLS[shell], COMPLETION, *line], capture_output=True, text=True, timeout=LIMIT, check=False)
+    return [offer.split("\t")[0] for offer in done.stdout.splitlines() if offer]
+
+
+def shells_complete_commands_and_options(rabit):
+    for shell in SHELLS:
+        assert completed(shell, rabit, "e") == ["echo"], shell
+        assert completed(shell, rabit, "post", "--q") == ["--qos"], shell
+        assert completed(shell, rabit, "nodes", "--transport", "c") == ["cyclonedds"], shell
+
+
+def shells_complete_what_the_fleet_has(rabit):
+    for shell in SHELLS:
+        def offers(*words, shell=shell):
+            return completed(shell, rabit, *words)
+
+        def poses():
+            return set(offers("echo", "uav")) >= {"uav1/Pose", "uav2/Pose"}
+        until(poses)
+
+        def queues():
+            return set(offers("send", "uav1/")) == {"uav1/MissionControl"}
+        until(queues)
+
+        def types():
+            # bash completes what stands behind the last colon.
+            return {offer.removeprefix("Uav::") for offer in offers("type", "Uav::Po")} == {"Pose"}
+        until(types)
+
+
+def the_manual_tells_of_every_command_and_every_common_option(rabit):
+    manual = (harness.ROOT / "gateway/tool/rabit.1").read_text().replace("\\-", "-")
+    commands = subprocess.run([rabit.program, "complete", "--", ""], capture_output=True, text=True, timeout=LIMIT,
+                              check=True).stdout.split()
+    assert len(commands) >= 9, commands
+    for command in commands:
+        assert re.search(rf"^\.BI? {command}\b", manual, re.MULTILINE), command
+    for option in ("--config", "--domain", "--transport", "--interface", "--node", "--wait", "--json", "--verbose"):
+        assert option in manual, option
+
+
 TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          messages_are_listed_with_their_types_and_publishers,
          the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
@@ -252,7 +311,9 @@ TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          lines_of_standard_input_are_sent_each, what_cannot_be_sent_is_told_with_the_nearest_right_word,
          a_message_is_posted_as_a_node_of_the_given_name, what_cannot_be_posted_is_told,
          ctrl_c_ends_it_well, a_pipe_that_is_closed_ends_it_well, wrong_usage_is_2, nobody_in_the_domain_is_3,
-         a_configuration_of_a_node_serves_for_its_network_alone]
+         a_configuration_of_a_node_serves_for_its_network_alone,
+         shells_complete_commands_and_options, shells_complete_what_the_fleet_has,
+         the_manual_tells_of_every_command_and_every_common_option]
 
 
 def main():

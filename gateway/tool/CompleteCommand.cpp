@@ -1,0 +1,254 @@
+// rabit complete -- WORD...: what can stand in place of the last of the words, for the shells (completion/).
+#include <rabit/gateway/ConfigError.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "Offers.h"
+#include "Output.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Words = std::vector<std::string>;
+using Candidates = std::set<std::string>;
+
+// The shell is to offer its files.
+constexpr const char *Files = ":files";
+
+bool IsOption(const std::string &word)
+{
+    return word.size() > 1 && word.front() == '-';
+}
+
+// Empty: it takes none.
+const CLI::Option *OptionWithValue(const CLI::App &command, const std::string &word)
+{
+    const CLI::Option *option = IsOption(word) ? command.get_option_no_throw(word) : nullptr;
+    return option != nullptr && option->get_items_expected_max() > 0 ? option : nullptr;
+}
+
+Candidates CommandsOf(const CLI::App &app)
+{
+    Candidates found;
+    for (const CLI::App *command : app.get_subcommands({}))
+    {
+        found.insert(command->get_name());
+    }
+    return found;
+}
+
+Candidates OptionsOf(const CLI::App &command)
+{
+    Candidates found;
+    for (const CLI::Option *option : command.get_options())
+    {
+        for (const std::string &name : option->get_lnames())
+        {
+            found.insert("--" + name);
+        }
+    }
+    return found;
+}
+
+Candidates ValuesOf(const CLI::Option &option)
+{
+    const std::string &name = option.get_lnames().empty() ? option.get_name() : option.get_lnames().front();
+    if (name == "transport")
+    {
+        return {"cyclonedds", "fastdds"};
+    }
+    if (name == "qos")
+    {
+        return {"state", "telemetry"};
+    }
+    if (name == "config" || name == "idl")
+    {
+        return {Files};
+    }
+    Candidates found;
+    if (name == "interface")
+    {
+        std::error_code failed;
+        for (const auto &entry : std::filesystem::directory_iterator("/sys/class/net", failed))
+        {
+            found.insert(entry.path().filename().string());
+        }
+    }
+    return found;
+}
+
+// What a stranger calls a type must not do anything in a shell.
+bool IsTypeName(const std::string &text)
+{
+    return std::all_of(text.begin(), text.end(),
+                       [](char c)
+                       {
+                           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                                  (c >= '0' && c <= '9') || c == '_' || c == ':';
+                       });
+}
+
+// What the fleet has for an argument, by those before it.
+Candidates ArgumentsIn(const std::vector<FleetSession::Node> &nodes, const std::string &command,
+                       const Words &before)
+{
+    Candidates found;
+    const bool isListening = command == "echo" || command == "hz" || command == "bytes" || command == "age";
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (!node.Offers)
+        {
+            continue;
+        }
+        const auto addType = [&found](const std::string &type)
+        {
+            if (IsTypeName(type))
+            {
+                found.insert(type);
+            }
+        };
+        const auto addTypes = [&addType](const auto &types)
+        {
+            for (const auto &type : types)
+            {
+                addType(type.type);
+            }
+        };
+        for (const auto &message : node.Offers->publishes)
+        {
+            if (before.empty() && (isListening || command == "type"))
+            {
+                found.insert(node.Name + "/" + message.message);
+            }
+            if ((before.empty() && command == "type") || (before.size() == 1 && command == "post"))
+            {
+                addType(message.type);
+            }
+        }
+        for (const auto &queue : node.Offers->accepts)
+        {
+            const std::string address = node.Name + "/" + queue.queue;
+            if (before.empty() && command == "send")
+            {
+                found.insert({address, "*/" + queue.queue});
+            }
+            if (before.size() == 1 && command == "send" &&
+                (before.front() == address || before.front() == "*/" + queue.queue))
+            {
+                addTypes(queue.types);
+            }
+            if (before.empty() && command == "type")
+            {
+                addTypes(queue.types);
+            }
+        }
+    }
+    return found;
+}
+
+// The network that the line names, as far as it is written. Empty: it names none that can be joined.
+std::optional<GatewayConfig> NetworkOf(Words line, CommonOptions &options)
+{
+    CLI::App app;
+    app.allow_extras();
+    AddCommonOptions(app, options, 0.0);
+    std::reverse(line.begin(), line.end());
+    try
+    {
+        app.parse(line);
+        options.Verbose = false;
+        return ConfigOf(options);
+    }
+    catch (const CLI::ParseError &)
+    {
+        return std::nullopt;
+    }
+    catch (const ConfigError &)
+    {
+        return std::nullopt;
+    }
+}
+
+// Whoever has announced itself within a second and a half at most; a shell waits for it.
+Candidates FromFleet(const Words &line, const std::string &command, const Words &before, Wakeup &wakeup)
+{
+    constexpr double everybody = 0.8;
+    constexpr double longest = 1.5;
+    CommonOptions options;
+    const auto config = NetworkOf(line, options);
+    if (!config)
+    {
+        return {};
+    }
+    FleetSession session(*config, options, wakeup);
+    session.WaitUntil(everybody, [] { return false; });
+    session.WaitUntil(
+        longest, [&session] { return session.IsAnybodyThere() && Offers::AreComplete(session.Nodes()); });
+    return ArgumentsIn(session.Nodes(), command, before);
+}
+
+// Of all that can stand there, whatever is written of it already.
+Candidates CandidatesFor(const CLI::App &app, const Words &line, Wakeup &wakeup)
+{
+    const std::string last = line.empty() ? "" : line.back();
+    const Words before(line.begin(), line.empty() ? line.end() : std::prev(line.end()));
+    const Candidates commands = CommandsOf(app);
+    const auto named = std::find_if(before.begin(), before.end(),
+                                    [&commands](const std::string &word) { return commands.contains(word); });
+    if (named == before.end())
+    {
+        return IsOption(last) ? OptionsOf(app) : commands;
+    }
+    const CLI::App &command = *app.get_subcommand(*named);
+    Words arguments;
+    const CLI::Option *open = nullptr;
+    for (auto word = std::next(named); word != before.end(); ++word)
+    {
+        const bool isValue = open != nullptr;
+        open = isValue ? nullptr : OptionWithValue(command, *word);
+        if (!isValue && !IsOption(*word))
+        {
+            arguments.push_back(*word);
+        }
+    }
+    if (open != nullptr)
+    {
+        return ValuesOf(*open);
+    }
+    if (last.starts_with('-'))
+    {
+        return OptionsOf(command);
+    }
+    return FromFleet(Words(std::next(named), before.end()), command.get_name(), arguments, wakeup);
+}
+
+}  // namespace
+
+int Complete(const CLI::App &app, const Words &line, Wakeup &wakeup)
+{
+    const std::string last = line.empty() ? "" : line.back();
+    for (const std::string &candidate : CandidatesFor(app, line, wakeup))
+    {
+        if ((candidate == Files || candidate.starts_with(last)) && !Output::Line(candidate))
+        {
+            break;
+        }
+    }
+    return Good;
+}
+
+}  // namespace Rabit::Tool
