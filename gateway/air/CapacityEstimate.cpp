@@ -27,6 +27,7 @@ constexpr double Gain = 0.3;
 // Rise, by second, and after a quiet time.
 constexpr double GentleRise = 0.05;
 constexpr double QuickRise = 0.5;
+constexpr double CalmRise = 1.0;
 constexpr Duration QuietTime = 3s;
 // A rate is used if so much of it is sent.
 constexpr double Used = 0.7;
@@ -37,6 +38,8 @@ constexpr double Fairness = 200.0;
 // Without reports.
 constexpr Duration SilentAfter = 3s;
 constexpr double FallInSilence = 0.1;
+// For so long at most a beat has no room for a report that there is.
+constexpr Duration NotCrowdedOut = 1s;
 constexpr double LeastInSilence = 0.5;
 
 double Seconds(Duration time)
@@ -115,13 +118,33 @@ void CapacityEstimate::Reported(Peer peer, Duration delay, Duration arrivedAt, D
     {
         Correct(*_reports.Of(peer));
     }
-    if (latest > Standing || _sent.Between(now - 1s, now) >= Used * _carried)
+    if (latest > Standing)
     {
-        Rise(latest, now);
+        Rise(0.0, now);
+    }
+    else if (IsUsed(now))
+    {
+        Rise(now - _quietSince >= QuietTime ? QuickRise : GentleRise, now);
     }
     _carried = std::max(_carried, Floor);
     _reportedAt = now;
     _limited = _limited && !IsUnused(now);
+}
+
+void CapacityEstimate::NothingLate(Peer peer, Duration now)
+{
+    const DelayReports::Reports *const said = _reports.Of(peer);
+    if (!_limited || said == nullptr || said->back().Delay > Standing ||
+        now - said->back().CameAt < NotCrowdedOut)
+    {
+        return;
+    }
+    if (IsUsed(now))
+    {
+        Rise(CalmRise, now);
+    }
+    _reportedAt = now;
+    _limited = !IsUnused(now);
 }
 
 void CapacityEstimate::Forget()
@@ -155,13 +178,17 @@ void CapacityEstimate::Correct(const DelayReports::Reports &said)
     }
 }
 
-// By as much for every node, so that in the end all have as much: the queue takes in proportion. And by a
-// share of the rate where there is no queue.
-void CapacityEstimate::Rise(Duration delay, Duration now)
+// By as much for every node, so that in the end all have as much: the queue takes in proportion. And by that
+// share of the rate in each second.
+void CapacityEstimate::Rise(double share, Duration now)
 {
     const double passed = std::min(Seconds(now - _reportedAt), 1.0);
-    const double share = now - _quietSince >= QuietTime ? QuickRise : GentleRise;
-    _carried += passed * (Fairness + (delay > Standing ? 0.0 : share * _carried));
+    _carried += passed * (Fairness + share * _carried);
+}
+
+bool CapacityEstimate::IsUsed(Duration now) const
+{
+    return _sent.Between(now - 1s, now) >= Used * _carried;
 }
 
 bool CapacityEstimate::IsUnused(Duration now) const

@@ -23,8 +23,10 @@ namespace Rabit
 // - Never below Floor. Unlimited again when it was not used by half for 20 s, without delays.
 // - Without reports: what was unlimited stays so, since a node that hears nobody knows nothing of the air,
 //   and to guess would cost every silent wire its speed. A rate falls after three seconds, by a tenth each
-//   second and to a half at most (reports may be missing because of the queue), and does not rise without a
-//   report.
+//   second and to a half at most (reports may be missing because of the queue), and does not rise. But if a
+//   peer's last report said that nothing is late, and its beats go on to come without one, nothing is: a rate
+//   that is used then doubles each second. What looked like a queue may have been a computer that stood
+//   still.
 //
 // Taken from others: the rate is that of delivery and the queue is emptied once rather than shared (BBR,
 // Cardwell et al. 2016); a target for the delay above the least one, approached in proportion (LEDBAT, RFC
@@ -50,6 +52,10 @@ public:
     // shortest round trip, where it is known. So it was sent at arrivedAt - delay.
     void Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now);
 
+    // A beat of a peer came that says nothing of how late our datagrams are: it would, for three seconds
+    // after the last that was late.
+    void NothingLate(Peer peer, Duration now);
+
     // What was learned says nothing any more, as when DDS has had the air for itself: unlimited until peers
     // agree on a delay anew.
     void Forget();
@@ -66,7 +72,8 @@ private:
     std::optional<double> CarriedWhileRising(const DelayReports::Reports &said) const;
     void Congested(Duration now);
     void Correct(const DelayReports::Reports &said);
-    void Rise(Duration delay, Duration now);
+    void Rise(double share, Duration now);
+    bool IsUsed(Duration now) const;
     bool IsUnused(Duration now) const;
 
     SentHistory _sent;

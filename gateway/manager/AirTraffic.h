@@ -59,6 +59,7 @@ public:
     Duration Serve(Duration now);
     // A peer said how late a datagram of this node came.
     void Reported(CapacityEstimate::Peer peer, Duration delay, Duration arrivedAt, Duration now);
+    void NothingLate(CapacityEstimate::Peer peer, Duration now) { _estimate.NothingLate(peer, now); }
 
     // Fills what is said of the air, of links and of publications, which are in the message already.
     void Report(Gateway::Fleet &fleet, Duration now);

@@ -161,6 +161,10 @@ public:
             const Duration known = std::max(ways - ShortWays, Duration(0));
             _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt - known, now);
         }
+        for (const std::uint32_t peer : served.NothingLate)
+        {
+            _air.NothingLate(peer, now);
+        }
         if (_links.HasDelays())
         {
             _links.TakeDelays(now, [this](const std::string &node, Duration delay, Duration arrivedAt)

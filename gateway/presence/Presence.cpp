@@ -111,6 +111,7 @@ void Presence::Served::Clear()
     StatesTold.clear();
     StatesAsked.clear();
     Delays.clear();
+    NothingLate.clear();
     TypesAsked.clear();
 }
 
@@ -247,6 +248,7 @@ void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, S
             return;
         }
     }
+    served.NothingLate.push_back(peer.Tag);
 }
 
 void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)

@@ -76,13 +76,15 @@ public:
         // States of this node that others have asked for, by their places (Announcements::StateIndexOf).
         std::vector<std::size_t> StatesAsked;
         std::vector<DelayHeard> Delays;
+        // Tags of those whose beats say nothing of how late this node's datagrams come.
+        std::vector<std::uint32_t> NothingLate;
         // Who asks for which text of a type.
         std::vector<std::pair<std::string, BeatExtensions::TypeQuestion>> TypesAsked;
 
         bool Any() const
         {
             return Change.Any() || !StatesTold.empty() || !StatesAsked.empty() || !Delays.empty() ||
-                   !TypesAsked.empty();
+                   !NothingLate.empty() || !TypesAsked.empty();
         }
         void Clear();
     };

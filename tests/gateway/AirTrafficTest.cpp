@@ -359,6 +359,36 @@ TEST_F(AirTrafficTest, APictureGoesThroughASmallBudgetBesidePosesWithinThreeMinu
     EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * 1500);
 }
 
+// A standstill of a computer looks like a radio that is full, but it passes at once.
+TEST_F(AirTrafficTest, WhatAStandstillHasTaughtIsForgottenSoonAfter)
+{
+    AddAircraft(AircraftConfig("uav1"));
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    ground.AddIdleManager("Commands");
+    std::uint32_t number = 0;
+    const auto send = [&](Duration period)
+    {
+        return [&, period](Duration passed)
+        {
+            if (passed % period == 0s)
+            {
+                SendReport(++number);
+            }
+        };
+    };
+    Fly(10s, 1s, 1s, send(500ms));
+    fleet.Network.SetFaults("*", "*", {.Delay = 400ms});
+    Fly(3s, 1s, 1s, send(100ms));
+    EXPECT_GT(aircraft->Fleet().air.capacity, 0.0) << "or there is nothing to forget";
+    fleet.Network.SetFaults("*", "*", {});
+    Fly(6s, 1s, 1s, send(500ms));
+    Fly(4600ms, 1s, 1s, send(5ms));
+    const auto status = aircraft->Fleet().links;
+    ASSERT_EQ(status.size(), 1u);
+    EXPECT_LE(status[0].outbox, 50u);
+    EXPECT_EQ(status[0].refused_full, 0u);
+}
+
 class ThinAirTest : public AirTrafficTest
 {
 protected:

@@ -299,6 +299,37 @@ TEST_F(CapacityEstimateTest, FallsCautiouslyWithoutReportsAndNotBelowHalf)
     EXPECT_LE(Rate(), 0.6 * before);
 }
 
+TEST_F(CapacityEstimateTest, WhereNobodySaysAnyMoreThatSomethingIsLateAUsedRateDoublesEachSecond)
+{
+    RunUntil(20s);
+    Carries = 1e6;
+    RunUntil(22s);
+    Reports = [](Duration) { return false; };
+    const double before = Rate();
+    for (Duration now = 22s; now < 26s; now += 500ms)
+    {
+        RunUntil(now);
+        Estimate.NothingLate(0, now);
+    }
+    EXPECT_GE(Rate(), 4.0 * before);
+}
+
+TEST_F(CapacityEstimateTest, SilenceAfterALateDatagramIsNoGoodNews)
+{
+    RunUntil(20s);
+    Estimate.Reported(0, 200ms, 20s, 20s);
+    Estimate.Reported(1, 200ms, 20s, 20s);
+    Reports = [](Duration) { return false; };
+    const double before = Rate();
+    for (Duration now = 20s; now < 30s; now += 500ms)
+    {
+        RunUntil(now);
+        Estimate.NothingLate(0, now);
+        Estimate.NothingLate(1, now);
+    }
+    EXPECT_LE(Rate(), 1.1 * before);
+}
+
 TEST_F(CapacityEstimateTest, HoldsWithAFifthOfTheReportsLost)
 {
     int count = 0;
