@@ -38,9 +38,9 @@ constexpr double Fairness = 200.0;
 // Without reports.
 constexpr Duration SilentAfter = 3s;
 constexpr double FallInSilence = 0.1;
+constexpr double LeastInSilence = 0.5;
 // For so long at most a beat has no room for a report that there is.
 constexpr Duration NotCrowdedOut = 1s;
-constexpr double LeastInSilence = 0.5;
 
 double Seconds(Duration time)
 {

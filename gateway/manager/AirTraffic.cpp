@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "air/BeatShare.h"
 #include "manager/ImportanceOf.h"
 #include "manager/TransportSettingsOf.h"
 #include "wire/BeatFormat.h"
@@ -17,21 +18,20 @@ using Duration = AirTraffic::Duration;
 // Between looks at what went, and at what the air carries. What went within is taken to have gone at its end.
 constexpr Duration WatchPeriod = std::chrono::milliseconds(10);
 constexpr Duration LimitPeriod = std::chrono::milliseconds(100);
+// Between looks at whether discovery waits for the air, which has patience for six of them.
+constexpr Duration YieldPeriod = std::chrono::milliseconds(50);
 // Links wait for their turn: when to see again whether one of them has something to do meanwhile, such as to
 // let a message expire.
 constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 
-// Part of a budget that beats take.
-constexpr double BeatShare = 0.05;
-// Of a pace: half of what presence may take where others want to send. The other nodes' reports, by which it
-// is known, come with their beats; so not less.
+// Part of a pace that beats take: half of what presence may take where others want to send. The other nodes'
+// reports, by which it is known, come with their beats; so not less.
 constexpr double BeatShareOfPace = 0.125;
 // Nobody has asked for seldom beats, and a pace may come of bad weather alone.
 constexpr Duration SlowestBeatOfPace = std::chrono::seconds(1);
 // Part of a budget that discovery may take, so that beats get through while nodes find each other.
 constexpr double DiscoveryShare = 0.5;
 constexpr double SmallestBeat = 100.0;  // on the air
-constexpr Duration QuickestBeat = std::chrono::milliseconds(500);
 // Without a budget the others learn by the beats how late datagrams come, so who sends much beats more often:
 // one for so many times its bytes, but not before this time.
 constexpr double BytesForABeat = 20.0;
@@ -99,6 +99,7 @@ void AirTraffic::Reported(CapacityEstimate::Peer peer, Duration delay, Duration 
 {
     Watch(now);
     _estimate.Reported(peer, delay, arrivedAt, now);
+    _session->CameLate(delay);
     SetLimit(now);
 }
 
@@ -122,10 +123,31 @@ void AirTraffic::LookAtDiscovery(std::uint64_t sent)
     }
 }
 
+void AirTraffic::YieldToDiscovery(Duration now)
+{
+    _yieldedAt = now;
+    const Duration gap = _yield.LeastGap(_session->DiscoveryHeldUp(), now);
+    if (gap == std::exchange(_heldBack, gap))
+    {
+        return;
+    }
+    for (TopicPublisher &publisher : _publishers)
+    {
+        if (ImportanceOf(publisher.Rule()) > TrafficClass::Command)
+        {
+            publisher.HoldBack(gap);
+        }
+    }
+}
+
 // What went since the last look, and was not paid for.
 void AirTraffic::Watch(Duration now)
 {
     const Duration before = std::exchange(_watchedAt, now);
+    if (now - _yieldedAt >= YieldPeriod)
+    {
+        YieldToDiscovery(now);
+    }
     const std::size_t bytes = TakeSent();
     if (bytes == 0)
     {
@@ -157,9 +179,7 @@ std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
 // So that beats take so many bytes a second.
 void AirTraffic::SetBeatPeriod(double bytesPerSecond, Duration slowest)
 {
-    const auto period =
-        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(_beatBytes / bytesPerSecond));
-    _presence.SetBeatPeriod(std::clamp(period, QuickestBeat, std::max(QuickestBeat, slowest)));
+    _presence.SetBeatPeriod(BeatShare::PeriodOf(_beatBytes, bytesPerSecond, slowest));
 }
 
 void AirTraffic::SetLimit(Duration now)
@@ -171,7 +191,7 @@ void AirTraffic::SetLimit(Duration now)
     {
         _schedule.Reserve(_unscheduled.Rate(now));
         _schedule.SetBudget(std::min(*budget, carried.value_or(*budget)), now);
-        SetBeatPeriod(BeatShare * *budget, _config.Radio.SlowestBeat);
+        SetBeatPeriod(BeatShare::OfBudget * *budget, _config.Radio.SlowestBeat);
     }
     else if (carried)
     {
@@ -181,7 +201,7 @@ void AirTraffic::SetLimit(Duration now)
     else
     {
         _schedule.SetUnlimited();
-        _presence.SetBeatPeriod(QuickestBeat);
+        _presence.SetBeatPeriod(BeatShare::Quickest);
     }
 }
 

@@ -146,6 +146,12 @@ std::optional<DiscoveryOutbox::TimePoint> DiscoveryOutbox::Due() const
     return _due.empty() ? std::nullopt : std::optional(std::max(_due.begin()->first.first, Free()));
 }
 
+std::optional<DiscoveryOutbox::TimePoint> DiscoveryOutbox::HeldUpSince() const
+{
+    const bool isHeldUp = !_due.empty() && Free() > _due.begin()->first.first && _rate < FirstRate && !_isSet;
+    return isHeldUp ? std::optional(_due.begin()->first.first) : std::nullopt;
+}
+
 std::vector<DiscoveryOutbox::Datagram> DiscoveryOutbox::TakeDue(TimePoint now)
 {
     std::vector<Datagram> taken;
@@ -405,13 +411,37 @@ void DiscoveryOutbox::Answered(const Question &question, TimePoint now)
     _answerTime = std::max(isLate ? whole : sinceHeard, _answerTime / 2);
     if (sinceAsked <= Quick)
     {
-        _rate = std::min(_rate * (_loweredAt == TimePoint{} ? FirstRaise : Raise), MostRate);
+        RaiseRate(now);
     }
     else if (isLate && asked.First >= _loweredAt)
     {
-        _rate = std::max(_rate * Lower, LeastRate);
-        _loweredAt = now;
+        LowerRate(now);
     }
+}
+
+void DiscoveryOutbox::CameLate(Duration delay, TimePoint now)
+{
+    Fill(now);
+    if (delay <= Quick && now - std::max(_raisedAt, _loweredAt) >= RaiseGap)
+    {
+        RaiseRate(now);
+    }
+    else if (delay > Late && now - _loweredAt >= LowerGap)
+    {
+        LowerRate(now);
+    }
+}
+
+void DiscoveryOutbox::RaiseRate(TimePoint now)
+{
+    _rate = std::min(_rate * (_loweredAt == TimePoint{} ? FirstRaise : Raise), MostRate);
+    _raisedAt = now;
+}
+
+void DiscoveryOutbox::LowerRate(TimePoint now)
+{
+    _rate = std::max(_rate * Lower, LeastRate);
+    _loweredAt = now;
 }
 
 }  // namespace Rabit

@@ -38,7 +38,8 @@ namespace Rabit
 // - A session that has just begun may say at once what it has: nobody can know less of it, and what is said
 //   once is needed whatever the rate. Not where a rate was set.
 // - The rate follows how soon heartbeats are answered, as the air's delay tells its load (RFC 6817): a quick
-//   answer raises it, a late one lowers it, but not twice for what went before it was lowered.
+//   answer raises it, a late one lowers it, but not twice for what went before it was lowered. Once the first
+//   heartbeats were answered there are few; what a peer says of how late our datagrams come does the same.
 // - Of who does not hear the group, and had never said anything to us when it was asked, the first answer is
 //   quick if it is so after the last time that it was asked, and late only if it is so after our last
 //   announcement, too. If it is neither, the next one counts.
@@ -72,6 +73,9 @@ public:
     static constexpr double FirstRaise = 2.0;  // until it was lowered
     static constexpr double Raise = 1.25;
     static constexpr double Lower = 0.5;
+    // Between two of each for what others say of the air.
+    static constexpr std::chrono::milliseconds RaiseGap{500};
+    static constexpr std::chrono::milliseconds LowerGap{1000};
     static constexpr std::size_t Headers = 20 + 8;  // IPv4, UDP
     // A datagram with several parts is not larger.
     static constexpr std::size_t LargestDatagram = 1100;
@@ -97,6 +101,8 @@ public:
     Duration AnswerTime() const { return _answerTime; }
     // `message`: the one that it was in. They all begin alike.
     void Put(std::span<const std::uint8_t> message, DiscoveryPart part, const Route &route, TimePoint now);
+    // A peer says that a datagram of ours came so much later than the quickest.
+    void CameLate(Duration delay, TimePoint now);
     // A message of somebody's that came; it must be sound.
     void Received(std::span<const std::uint8_t> message, TimePoint now);
     // So many bytes of discovery have gone past this.
@@ -105,6 +111,8 @@ public:
     void Announced(std::span<const std::uint8_t> message, TimePoint now);
     // When TakeDue has something.
     std::optional<TimePoint> Due() const;
+    // Since when the next one has been held up, by now or later, because answers come late; empty: it is not.
+    std::optional<TimePoint> HeldUpSince() const;
     // What is to go now.
     std::vector<Datagram> TakeDue(TimePoint now);
     // Subjects, or heartbeats that nobody has answered, whichever are more.
@@ -156,10 +164,13 @@ private:
     void KnowsUs(const DiscoveryPart::Prefix &peer, TimePoint now);
     Slots::iterator First(TimePoint now) const;
     void Answered(const Question &question, TimePoint now);
+    void RaiseRate(TimePoint now);
+    void LowerRate(TimePoint now);
 
     double _rate = FirstRate;
     double _most = MostRate;
     bool _isSet = false;
+    TimePoint _raisedAt{};
     TimePoint _loweredAt{};
     Duration _answerTime{0};               // the longest, by half less with each that is shorter
     std::map<Question, Asked> _questions;  // that are not answered yet

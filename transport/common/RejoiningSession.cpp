@@ -170,6 +170,20 @@ TransportCounters RejoiningSession::Counters() const
     return _lastCounters = counters;
 }
 
+std::vector<RemoteEndpoint> RejoiningSession::RemoteEndpointsOn(const std::string &topic) const
+{
+    const std::unique_lock structure(_shared->Structure, std::try_to_lock);
+    return structure && _shared->Inner != nullptr ? _shared->Inner->RemoteEndpointsOn(topic)
+                                                  : std::vector<RemoteEndpoint>();
+}
+
+std::vector<std::string> RejoiningSession::RemoteTopics() const
+{
+    const std::unique_lock structure(_shared->Structure, std::try_to_lock);
+    return structure && _shared->Inner != nullptr ? _shared->Inner->RemoteTopics()
+                                                  : std::vector<std::string>();
+}
+
 std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
 {
     const std::lock_guard lock(_mutex);
@@ -282,7 +296,7 @@ void RejoiningSession::OnPeer(const PeerEvent &event)
 void RejoiningSession::Open(const Current &current)
 {
     _shared->Inner = _backend->Open(
-        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _rate);
+        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _pace);
     _openedPeers = current.Settings.Peers;
     try
     {

@@ -1,5 +1,6 @@
 #include "common/TopicRegistry.h"
 
+#include <set>
 #include <vector>
 
 namespace Rabit
@@ -67,23 +68,47 @@ void TopicRegistry::Close(const std::string &topic)
     }
 }
 
-void TopicRegistry::RemoteAppeared(const WriterId &endpoint, std::string topic, std::string type,
-                                   std::string node)
+void TopicRegistry::RemoteAppeared(const RemoteEndpoint &endpoint)
 {
     std::string ours;
     {
         const std::lock_guard lock(_mutex);
-        const bool isNew = _remote.insert_or_assign(endpoint, RemoteEndpoint{topic, type, node}).second;
-        const auto open = _open.find(topic);
-        if (isNew && open != _open.end() && open->second.Type != type)
+        const bool isNew = _remote.insert_or_assign(endpoint.Id, endpoint).second;
+        const auto open = _open.find(endpoint.Topic);
+        if (isNew && open != _open.end() && open->second.Type != endpoint.Type)
         {
             ours = open->second.Type;
         }
     }
     if (!ours.empty())
     {
-        _log->InconsistentType(topic, ours, type, node);
+        _log->InconsistentType(endpoint.Topic, ours, endpoint.Type, endpoint.Node);
     }
+}
+
+std::vector<RemoteEndpoint> TopicRegistry::RemoteOn(const std::string &topic) const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<RemoteEndpoint> found;
+    for (const auto &[id, remote] : _remote)
+    {
+        if (remote.Topic == topic)
+        {
+            found.push_back(remote);
+        }
+    }
+    return found;
+}
+
+std::vector<std::string> TopicRegistry::RemoteTopics() const
+{
+    const std::lock_guard lock(_mutex);
+    std::set<std::string> topics;
+    for (const auto &[id, remote] : _remote)
+    {
+        topics.insert(remote.Topic);
+    }
+    return {topics.begin(), topics.end()};
 }
 
 void TopicRegistry::RemoteGone(const WriterId &endpoint)

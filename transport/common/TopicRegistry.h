@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <rabit/transport/Transport.h>
 #include "common/SessionLog.h"
@@ -36,9 +37,11 @@ public:
 
     // An endpoint of another session came (or told its topic anew) or went. Types that differ from ours are
     // counted and logged, whichever of the two was there first.
-    // `node` is whose it is; empty if that is unknown or no Rabit node.
-    void RemoteAppeared(const WriterId &endpoint, std::string topic, std::string type, std::string node);
+    void RemoteAppeared(const RemoteEndpoint &endpoint);
     void RemoteGone(const WriterId &endpoint);
+    // As TransportSession has them.
+    std::vector<RemoteEndpoint> RemoteOn(const std::string &topic) const;
+    std::vector<std::string> RemoteTopics() const;
 
 private:
     void Open(const TopicDescription &topic);
@@ -49,15 +52,8 @@ private:
         std::string Type;
         int Count = 0;
     };
-    struct RemoteEndpoint
-    {
-        std::string Topic;
-        std::string Type;
-        std::string Node;
-    };
-
     const std::shared_ptr<SessionLog> _log;
-    std::mutex _mutex;
+    mutable std::mutex _mutex;
     std::map<std::string, OpenTopic> _open;      // guarded by _mutex
     std::map<WriterId, RemoteEndpoint> _remote;  // guarded by _mutex
 };

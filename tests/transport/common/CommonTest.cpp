@@ -183,12 +183,12 @@ TEST(TopicRegistry, CountsATypeThatDiffersElsewhereWhicheverCameFirst)
     std::vector<std::string> lines;
     const auto log = std::make_shared<SessionLog>(SettingsThatLogTo(lines));
     TopicRegistry topics(log);
-    topics.RemoteAppeared({1}, "Pose", "Uav::Goto", "uav1");
+    topics.RemoteAppeared({.Id = {1}, .Topic = "Pose", .Type = "Uav::Goto", .Node = "uav1"});
     EXPECT_EQ(log->Read().InconsistentTypes, 0u);
     const TopicRegistry::Use use(topics, {"Pose", "Uav::Pose", {}});
     EXPECT_EQ(log->Read().InconsistentTypes, 1u);
-    topics.RemoteAppeared({2}, "Pose", "Uav::Pose", "");
-    topics.RemoteAppeared({3}, "Pose", "Uav::State", "");
+    topics.RemoteAppeared({.Id = {2}, .Topic = "Pose", .Type = "Uav::Pose"});
+    topics.RemoteAppeared({.Id = {3}, .Topic = "Pose", .Type = "Uav::State"});
     EXPECT_EQ(log->Read().InconsistentTypes, 2u);
     EXPECT_THAT(lines.back(), HasSubstr("topic Pose has type Uav::Pose here, but Uav::State elsewhere"));
 }

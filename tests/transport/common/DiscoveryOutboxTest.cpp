@@ -91,6 +91,15 @@ protected:
             Outbox.Received(AnswerFrom(peer).Datagram, Start - 1min);
         }
     }
+    // More than may go at once; that has gone.
+    void PutMuch()
+    {
+        for (int number = 1; number <= 30; ++number)
+        {
+            Put(Message().News(static_cast<std::uint8_t>(number), 0, 500), 0ms);
+        }
+        Run(DiscoveryOutbox::Hold);
+    }
     static double OnAir(const std::vector<Went> &all)
     {
         double bytes = 0.0;
@@ -336,6 +345,61 @@ TEST_F(DiscoveryOutboxTest, LateAnswersWithoutEndLeaveTheLeast)
         Outbox.Received(AnswerFrom(1).Datagram, Start + Milliseconds(at + 900));
     }
     EXPECT_EQ(Outbox.Rate(), DiscoveryOutbox::LeastRate);
+}
+
+TEST_F(DiscoveryOutboxTest, WhatPeersSayToHaveComeInTimeRaisesTheRateUpToItsMost)
+{
+    for (int at = 0; at < 60; ++at)
+    {
+        Outbox.CameLate(0ms, Start + DiscoveryOutbox::RaiseGap * at);
+    }
+    EXPECT_EQ(Outbox.Rate(), DiscoveryOutbox::MostRate);
+}
+
+TEST_F(DiscoveryOutboxTest, ManyPeersWhoSayItAtOnceRaiseItOnce)
+{
+    for (int peer = 0; peer < 10; ++peer)
+    {
+        Outbox.CameLate(DiscoveryOutbox::Quick, Start + Milliseconds(peer));
+    }
+    EXPECT_EQ(Outbox.Rate(), DiscoveryOutbox::FirstRate * DiscoveryOutbox::FirstRaise);
+}
+
+TEST_F(DiscoveryOutboxTest, WhatPeersSayToHaveComeLateLowersTheRateOnceForEachGap)
+{
+    for (int peer = 0; peer < 10; ++peer)
+    {
+        Outbox.CameLate(DiscoveryOutbox::Late + 1ms, Start + Milliseconds(peer));
+    }
+    EXPECT_EQ(Outbox.Rate(), DiscoveryOutbox::FirstRate * DiscoveryOutbox::Lower);
+    Outbox.CameLate(1s, Start + DiscoveryOutbox::LowerGap);
+    EXPECT_EQ(Outbox.Rate(), DiscoveryOutbox::FirstRate * DiscoveryOutbox::Lower * DiscoveryOutbox::Lower);
+}
+
+TEST_F(DiscoveryOutboxTest, ADelayThatIsNeitherQuickNorLateChangesNothing)
+{
+    Outbox.CameLate(DiscoveryOutbox::Late, Start);
+    EXPECT_EQ(Outbox.Rate(), DiscoveryOutbox::FirstRate);
+}
+
+// As long as nobody says that the air is full, it is its own burst that it waits for.
+TEST_F(DiscoveryOutboxTest, IsHeldUpOnlyWhereTheRateHasComeDown)
+{
+    PutMuch();
+    EXPECT_FALSE(Outbox.HeldUpSince().has_value());
+    Outbox.CameLate(1s, Start);
+    EXPECT_EQ(Outbox.HeldUpSince(), Start + DiscoveryOutbox::Hold);
+    Run(1min);
+    EXPECT_FALSE(Outbox.HeldUpSince().has_value());
+}
+
+TEST_F(DiscoveryOutboxTest, IsNotHeldUpByARateThatWasSet)
+{
+    Outbox.SetRate(500.0);
+    PutMuch();
+    Outbox.CameLate(1s, Start);
+    ASSERT_GT(Outbox.Due(), Start + 100ms);
+    EXPECT_FALSE(Outbox.HeldUpSince().has_value());
 }
 
 TEST_F(DiscoveryOutboxTest, AnAnswerCountsOnceAndOnlyIfItIsForUs)

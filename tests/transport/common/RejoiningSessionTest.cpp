@@ -129,7 +129,7 @@ class ScriptedBackend final : public RejoiningBackend
 public:
     explicit ScriptedBackend(Script &script) : _script(script) {}
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<const DiscoveryRate> /*rate*/) override
+                                         std::shared_ptr<DiscoveryPace> /*pace*/) override
     {
         EXPECT_FALSE(_script.IsOpen);
         if (_script.InOpen)

@@ -134,6 +134,39 @@ TEST_P(Conformance, TheReportOfAnotherTypeNamesBothSides)
         }));
 }
 
+TEST_P(Conformance, TellsOfTheEndpointsThatOthersHaveWhateverTheirTypeAndQos)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    auto writer = writing->CreateWriter(TextTopic(), State(), {"", "uav1"});
+    TopicDescription other = TextTopic();
+    other.Name = "Other";
+    other.TypeName = "Other::Type";
+    const auto reader = writing->CreateReader(other, Telemetry(), {}, [](SampleBytes, const SampleInfo &) {});
+    ASSERT_TRUE(Until(
+        [&]
+        {
+            return reading->RemoteEndpointsOn(TextTopic().Name).size() == 1 &&
+                   reading->RemoteEndpointsOn("Other").size() == 1;
+        }));
+    const RemoteEndpoint written = reading->RemoteEndpointsOn(TextTopic().Name).front();
+    EXPECT_TRUE(written.IsWriter);
+    EXPECT_EQ(written.Type, TextTopic().TypeName);
+    EXPECT_EQ(written.Node, "uav1");
+    EXPECT_EQ(written.Reliability, Reliability::Reliable);
+    EXPECT_EQ(written.Durability, Durability::TransientLocal);
+    EXPECT_THAT(written.Partitions, testing::ElementsAre("", "uav1"));
+    const RemoteEndpoint read = reading->RemoteEndpointsOn("Other").front();
+    EXPECT_FALSE(read.IsWriter);
+    EXPECT_EQ(read.Type, "Other::Type");
+    EXPECT_EQ(read.Reliability, Reliability::BestEffort);
+    EXPECT_EQ(read.Durability, Durability::Volatile);
+    EXPECT_THAT(reading->RemoteTopics(), testing::IsSupersetOf({TextTopic().Name, std::string("Other")}));
+    writer.reset();
+    EXPECT_TRUE(Until([&] { return reading->RemoteEndpointsOn(TextTopic().Name).empty(); }));
+    EXPECT_THAT(writing->RemoteEndpointsOn("Other"), IsEmpty());  // its own
+}
+
 TEST_P(Conformance, OneSessionCannotOpenATopicWithTwoTypes)
 {
     const auto session = Open("uav1");

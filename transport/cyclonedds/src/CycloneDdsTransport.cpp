@@ -25,9 +25,8 @@ using namespace Cyclone;
 class CycloneSession final : public BackendSession
 {
 public:
-    CycloneSession(const TransportSettings &settings, PeerHandler onPeer,
-                   std::shared_ptr<const DiscoveryRate> rate)
-        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer), std::move(rate)))
+    CycloneSession(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryPace> pace)
+        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer), std::move(pace)))
     {
     }
     ~CycloneSession() override { _core->Close(); }
@@ -46,6 +45,11 @@ public:
         return std::make_unique<CycloneReader>(_core, topic, qos, partitions, std::move(handler));
     }
     TransportCounters Counters() const override { return _core->Log()->Read(); }
+    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
+    {
+        return _core->Topics().RemoteOn(topic);
+    }
+    std::vector<std::string> RemoteTopics() const override { return _core->Topics().RemoteTopics(); }
     std::vector<PeerPlace> PeerPlaces() const override { return _core->PeerPlaces(); }
 
 private:
@@ -56,9 +60,9 @@ class CycloneBackend final : public RejoiningBackend
 {
 public:
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<const DiscoveryRate> rate) override
+                                         std::shared_ptr<DiscoveryPace> pace) override
     {
-        return std::make_unique<CycloneSession>(settings, std::move(onPeer), std::move(rate));
+        return std::make_unique<CycloneSession>(settings, std::move(onPeer), std::move(pace));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {
@@ -91,7 +95,7 @@ private:
         settings.Interfaces = {network->Address};
         settings.Peers.clear();
         const VendorDomain domain(settings, std::make_shared<SessionLog>(settings),
-                                  std::make_shared<DiscoveryRate>());
+                                  std::make_shared<DiscoveryPace>());
     }
 };
 

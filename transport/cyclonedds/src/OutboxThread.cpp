@@ -6,8 +6,8 @@
 namespace Rabit::Cyclone
 {
 
-OutboxThread::OutboxThread(std::shared_ptr<const DiscoveryRate> rate, Send send)
-    : _rate(std::move(rate)), _send(std::move(send)), _thread([this] { Run(); })
+OutboxThread::OutboxThread(std::shared_ptr<DiscoveryPace> pace, Send send)
+    : _pace(std::move(pace)), _send(std::move(send)), _thread([this] { Run(); })
 {
 }
 
@@ -49,12 +49,13 @@ bool OutboxThread::Put(std::span<const std::uint8_t> message, std::vector<Discov
         {
             way.Group = reinterpret_cast<std::uintptr_t>(route.connection);
         }
-        _outbox.SetRate(_rate->Get());
+        _outbox.SetRate(_pace->Get());
         const auto now = Clock::now();
         for (DiscoveryPart &part : parts)
         {
             _outbox.Put(message, std::move(part), way, now);
         }
+        _pace->SetHeldUpSince(_outbox.HeldUpSince());
     }
     _changed.notify_one();
     return true;
@@ -111,6 +112,10 @@ void OutboxThread::Run()
             _changed.wait_until(lock, *due);
             continue;
         }
+        for (const auto delay : _pace->TakeLate())
+        {
+            _outbox.CameLate(delay, Clock::now());
+        }
         for (const DiscoveryOutbox::Datagram &datagram : _outbox.TakeDue(Clock::now()))
         {
             const RabitCycloneRoute route = _routes.at(datagram.Address);
@@ -118,6 +123,7 @@ void OutboxThread::Run()
             _send(route, datagram.ToGroup, datagram.Bytes);
             lock.lock();
         }
+        _pace->SetHeldUpSince(_outbox.HeldUpSince());
     }
 }
 

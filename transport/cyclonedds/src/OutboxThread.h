@@ -11,7 +11,7 @@
 
 #include "VendorTraffic.h"
 #include "common/DiscoveryOutbox.h"
-#include "common/DiscoveryRate.h"
+#include "common/DiscoveryPace.h"
 
 namespace Rabit::Cyclone
 {
@@ -24,7 +24,7 @@ public:
     using Send = std::function<void(const RabitCycloneRoute &route, bool toGroup,
                                     std::span<const std::uint8_t> datagram)>;
 
-    OutboxThread(std::shared_ptr<const DiscoveryRate> rate, Send send);
+    OutboxThread(std::shared_ptr<DiscoveryPace> pace, Send send);
     ~OutboxThread();
     OutboxThread(const OutboxThread &) = delete;
     OutboxThread &operator=(const OutboxThread &) = delete;
@@ -53,7 +53,7 @@ private:
     std::uint64_t NumberOf(const RabitCycloneRoute &route);
     void Run();
 
-    const std::shared_ptr<const DiscoveryRate> _rate;
+    const std::shared_ptr<DiscoveryPace> _pace;
     const Send _send;
     std::mutex _mutex;
     std::condition_variable _changed;

@@ -73,15 +73,47 @@ void TakeAll(dds_entity_t reader, const Work &work)
     }
 }
 
+RemoteEndpoint Described(const dds_builtintopic_endpoint_t &announced, const WriterId &id, bool isWriter,
+                         const std::string &node)
+{
+    RemoteEndpoint endpoint{.Id = id,
+                            .IsWriter = isWriter,
+                            .Topic = announced.topic_name,
+                            .Type = announced.type_name,
+                            .Node = node};
+    dds_reliability_kind_t reliability = DDS_RELIABILITY_BEST_EFFORT;
+    if (dds_qget_reliability(announced.qos, &reliability, nullptr) && reliability == DDS_RELIABILITY_RELIABLE)
+    {
+        endpoint.Reliability = Reliability::Reliable;
+    }
+    dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
+    if (dds_qget_durability(announced.qos, &durability) && durability != DDS_DURABILITY_VOLATILE)
+    {
+        endpoint.Durability = Durability::TransientLocal;
+    }
+    std::uint32_t count = 0;
+    char **names = nullptr;
+    if (dds_qget_partition(announced.qos, &count, &names))
+    {
+        for (std::uint32_t i = 0; i < count; ++i)
+        {
+            endpoint.Partitions.emplace_back(names[i]);
+            dds_free(names[i]);
+        }
+        dds_free(names);
+    }
+    return endpoint;
+}
+
 }  // namespace
 
 SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<const DiscoveryRate> rate)
+                         std::shared_ptr<DiscoveryPace> pace)
     : _log(std::make_shared<SessionLog>(Checked(settings))),
       _topics(_log),
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer)),
-      _domain(settings, _log, std::move(rate)),
+      _domain(settings, _log, std::move(pace)),
       _announcements(AnswerGap(settings)),
       _participant(MakeParticipant(settings, _domain.Id()))
 {
@@ -105,8 +137,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
         }
     };
     watch(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, &OnParticipants);
-    watch(DDS_BUILTIN_TOPIC_DCPSPUBLICATION, &OnEndpoints);
-    watch(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, &OnEndpoints);
+    watch(DDS_BUILTIN_TOPIC_DCPSPUBLICATION, &OnEndpoints<true>);
+    watch(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, &OnEndpoints<false>);
     const ddsi_guid_t own = ParticipantOf(_own);
     _announcements.Start({.IsUnheard = [this, own] { return _domain.IsUnheard(own); },
                           .Announce = [this, own] { _domain.Announce(own); }});
@@ -179,25 +211,26 @@ void SessionCore::OnParticipants(dds_entity_t reader, void *self)
                                             });
 }
 
+template <bool isWriter>
 void SessionCore::OnEndpoints(dds_entity_t reader, void *self)
 {
     auto &core = *static_cast<SessionCore *>(self);
-    TakeAll<dds_builtintopic_endpoint_t>(reader,
-                                         [&](const auto &endpoint, const dds_sample_info_t &info)
-                                         {
-                                             const WriterId id = ToWriterId(endpoint.key);
-                                             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
-                                             {
-                                                 core._topics.RemoteGone(id);
-                                             }
-                                             else if (info.valid_data && PrefixOf(id) != core._own)
-                                             {
-                                                 const auto identity = core.IdentityOf(id);
-                                                 core._topics.RemoteAppeared(
-                                                     id, endpoint.topic_name, endpoint.type_name,
-                                                     identity != nullptr ? identity->Node : "");
-                                             }
-                                         });
+    TakeAll<dds_builtintopic_endpoint_t>(
+        reader,
+        [&](const auto &endpoint, const dds_sample_info_t &info)
+        {
+            const WriterId id = ToWriterId(endpoint.key);
+            if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+            {
+                core._topics.RemoteGone(id);
+            }
+            else if (info.valid_data && PrefixOf(id) != core._own)
+            {
+                const auto identity = core.IdentityOf(id);
+                core._topics.RemoteAppeared(
+                    Described(endpoint, id, isWriter, identity != nullptr ? identity->Node : ""));
+            }
+        });
 }
 
 void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)

@@ -15,7 +15,7 @@
 #include "Guid.h"
 #include "VendorDomain.h"
 #include "Worker.h"
-#include "common/DiscoveryRate.h"
+#include "common/DiscoveryPace.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -32,8 +32,7 @@ class SessionCore
 {
 public:
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                std::shared_ptr<const DiscoveryRate> rate);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryPace> pace);
     // Leaves it.
     ~SessionCore();
     SessionCore(const SessionCore &) = delete;
@@ -63,6 +62,7 @@ private:
     };
 
     static void OnParticipants(dds_entity_t reader, void *self);
+    template <bool isWriter>
     static void OnEndpoints(dds_entity_t reader, void *self);
     void PeerAppeared(const Prefix &prefix, const dds_qos_t *qos);
     void PeerGone(const Prefix &prefix);

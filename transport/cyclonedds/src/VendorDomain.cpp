@@ -146,12 +146,12 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
 }
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                           std::shared_ptr<const DiscoveryRate> rate)
+                           std::shared_ptr<DiscoveryPace> pace)
     : _log(log),
       _multicast(IsMulticastForData(settings)),
       // The vendor knows by itself which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
-      _outbox(std::move(rate), [this](const auto &route, bool toGroup, auto datagram)
+      _outbox(std::move(pace), [this](const auto &route, bool toGroup, auto datagram)
               { RabitCycloneSend(_watch, &route, toGroup, datagram.data(), datagram.size()); })
 {
     const std::string config = MakeDomainConfig(settings);

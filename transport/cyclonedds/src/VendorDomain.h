@@ -8,7 +8,7 @@
 #include "DirectAnnouncements.h"
 #include "Entity.h"
 #include "OutboxThread.h"
-#include "common/DiscoveryRate.h"
+#include "common/DiscoveryPace.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsGuard.h"
 
@@ -20,9 +20,9 @@ class VendorDomain
 {
 public:
     // Throws TransportError. What the vendor says of the domain goes to the log.
-    // What discovery says of endpoints stays within `rate`.
+    // What discovery says of endpoints stays within `pace`.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                 std::shared_ptr<const DiscoveryRate> rate);
+                 std::shared_ptr<DiscoveryPace> pace);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;

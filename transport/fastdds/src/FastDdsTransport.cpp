@@ -20,9 +20,8 @@ namespace
 class FastDdsSession final : public BackendSession
 {
 public:
-    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer,
-                   std::shared_ptr<const DiscoveryRate> rate)
-        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(rate)))
+    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryPace> pace)
+        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(pace)))
     {
     }
     ~FastDdsSession() override { _core->Close(); }
@@ -44,6 +43,11 @@ public:
 
     TransportCounters Counters() const override { return _core->Log()->Read(); }
 
+    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
+    {
+        return _core->Topics().RemoteOn(topic);
+    }
+    std::vector<std::string> RemoteTopics() const override { return _core->Topics().RemoteTopics(); }
     std::vector<PeerPlace> PeerPlaces() const override { return _core->PeerPlaces(); }
 
 private:
@@ -54,9 +58,9 @@ class FastDdsBackend final : public RejoiningBackend
 {
 public:
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<const DiscoveryRate> rate) override
+                                         std::shared_ptr<DiscoveryPace> pace) override
     {
-        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(rate));
+        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(pace));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {

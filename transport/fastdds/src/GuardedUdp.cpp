@@ -175,13 +175,14 @@ private:
         constexpr std::uint64_t Groups = 0;  // all of them
         const auto route = static_cast<std::uint64_t>(NumberOf(sender)) << 32 | NumberOf(destination);
         _routes.insert_or_assign(route, std::pair(sender, destination));
-        _outbox.SetRate(_descriptor.Chosen().Rate->Get());
+        _outbox.SetRate(_descriptor.Chosen().Pace->Get());
         for (const DiscoveryPart &part : parts)
         {
             const bool hears = toGroup || (!_groups.empty() && _descriptor.Chosen().IsInGroup(part.About.To));
             _outbox.Put(datagram, part,
                         {.Address = route, .Group = hears ? std::optional(Groups) : std::nullopt}, now);
         }
+        _descriptor.Chosen().Pace->SetHeldUpSince(_outbox.HeldUpSince());
         return true;
     }
     std::size_t DatagramsTo(rtps::SenderResource *sender)
@@ -216,6 +217,10 @@ private:
         constexpr std::chrono::milliseconds LongestWait{100};
         const std::lock_guard lock(_sending);
         const auto now = std::chrono::steady_clock::now();
+        for (const auto delay : _descriptor.Chosen().Pace->TakeLate())
+        {
+            _outbox.CameLate(delay, now);
+        }
         for (const DiscoveryOutbox::Datagram &owed : _outbox.TakeDue(now))
         {
             if (!owed.ToGroup)
@@ -231,6 +236,7 @@ private:
                 SendChosen(sender, owed.Bytes, false, now + LongestWait);
             }
         }
+        _descriptor.Chosen().Pace->SetHeldUpSince(_outbox.HeldUpSince());
         if (const auto due = _outbox.Due())
         {
             _descriptor.Chosen().SendOwedAt(*due);

@@ -15,7 +15,7 @@
 #include <memory>
 
 #include "DeferredCall.h"
-#include "common/DiscoveryRate.h"
+#include "common/DiscoveryPace.h"
 #include "guard/RtpsGuard.h"
 
 namespace Rabit::FastDds
@@ -54,7 +54,7 @@ public:
         // was named, on a thread without locks.
         std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
         std::shared_ptr<DeferredCall> Owed;
-        std::shared_ptr<const DiscoveryRate> Rate;
+        std::shared_ptr<DiscoveryPace> Pace;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

@@ -117,7 +117,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.IsInGroup = std::move(calls.IsInGroup);
     guarded.SendOwedAt = std::move(calls.SendOwedAt);
     guarded.Owed = std::move(calls.Owed);
-    guarded.Rate = std::move(calls.Rate);
+    guarded.Pace = std::move(calls.Pace);
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
     // GuardedUdp asks for the first announcements after the very first, at growing distances.
     attributes.builtin.discovery_config.initial_announcements.count = 0;

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "DeferredCall.h"
-#include "common/DiscoveryRate.h"
+#include "common/DiscoveryPace.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsMessage.h"
 
@@ -29,7 +29,7 @@ struct NetworkCalls
     // Has Owed run.
     std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
     std::shared_ptr<DeferredCall> Owed;
-    std::shared_ptr<const DiscoveryRate> Rate;
+    std::shared_ptr<DiscoveryPace> Pace;
 };
 
 // Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws

@@ -8,6 +8,7 @@
 #include <fastrtps/utils/IPLocator.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "EndpointSettings.h"
@@ -48,10 +49,31 @@ PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
     return place;
 }
 
+// A writer's or a reader's announcement.
+template <typename Proxy>
+RemoteEndpoint Described(const Proxy &proxy, const std::string &node)
+{
+    RemoteEndpoint endpoint;
+    endpoint.Id = ToWriterId(proxy.guid());
+    endpoint.IsWriter = std::is_same_v<Proxy, rtps::WriterProxyData>;
+    endpoint.Topic = proxy.topicName().to_string();
+    endpoint.Type = proxy.typeName().to_string();
+    const auto &qos = proxy.m_qos;
+    endpoint.Reliability = qos.m_reliability.kind == eprosima::fastdds::dds::RELIABLE_RELIABILITY_QOS
+                               ? Reliability::Reliable
+                               : Reliability::BestEffort;
+    endpoint.Durability = qos.m_durability.kind == eprosima::fastdds::dds::VOLATILE_DURABILITY_QOS
+                              ? Durability::Volatile
+                              : Durability::TransientLocal;
+    endpoint.Partitions = qos.m_partition.getNames();
+    endpoint.Node = node;
+    return endpoint;
+}
+
 }  // namespace
 
 SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<const DiscoveryRate> rate)
+                         std::shared_ptr<DiscoveryPace> pace)
     : _log(std::make_shared<SessionLog>(settings)),
       _topics(_log),
       _peerGate(_log, "peer events"),
@@ -66,7 +88,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
          .IsInGroup = [this](const auto &prefix) { return IsInGroup(ToVendorPrefix(prefix)); },
          .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
          .Owed = _owed,
-         .Rate = std::move(rate)});
+         .Pace = std::move(pace)});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
@@ -258,26 +280,29 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
 
 void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::ReaderDiscoveryInfo &&info)
 {
-    const WriterId endpoint = ToWriterId(info.info.guid());
     if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER)
     {
-        _topics.RemoteGone(endpoint);
+        _topics.RemoteGone(ToWriterId(info.info.guid()));
         return;
     }
-    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string(),
-                           NodeOf(info.info.guid().guidPrefix));
+    // The vendor tells of the own ones, too.
+    if (!IsOwn(info.info.guid().guidPrefix))
+    {
+        _topics.RemoteAppeared(Described(info.info, NodeOf(info.info.guid().guidPrefix)));
+    }
 }
 
 void SessionCore::onWriterDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::WriterDiscoveryInfo &&info)
 {
-    const WriterId endpoint = ToWriterId(info.info.guid());
     if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER)
     {
-        _topics.RemoteGone(endpoint);
+        _topics.RemoteGone(ToWriterId(info.info.guid()));
         return;
     }
-    _topics.RemoteAppeared(endpoint, info.info.topicName().to_string(), info.info.typeName().to_string(),
-                           NodeOf(info.info.guid().guidPrefix));
+    if (!IsOwn(info.info.guid().guidPrefix))
+    {
+        _topics.RemoteAppeared(Described(info.info, NodeOf(info.info.guid().guidPrefix)));
+    }
 }
 
 }  // namespace Rabit::FastDds

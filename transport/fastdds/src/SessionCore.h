@@ -17,7 +17,7 @@
 #include "DeferredCall.h"
 #include "ParticipantNumber.h"
 #include "ParticipantTimer.h"
-#include "common/DiscoveryRate.h"
+#include "common/DiscoveryPace.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -35,8 +35,7 @@ public:
     using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                std::shared_ptr<const DiscoveryRate> rate);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryPace> pace);
     // Leaves it.
     ~SessionCore() override;
     SessionCore(const SessionCore &) = delete;

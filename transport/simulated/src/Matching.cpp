@@ -20,12 +20,18 @@ bool IsTransientLocal(const EndpointInfo &endpoint)
     return endpoint.Qos.Durability == Durability::TransientLocal;
 }
 
+RemoteEndpoint Described(const EndpointInfo &endpoint, const std::string &node)
+{
+    return {ToWriterId(endpoint.Id),  endpoint.IsWriter,       endpoint.Topic,      endpoint.Type,
+            endpoint.Qos.Reliability, endpoint.Qos.Durability, endpoint.Partitions, node};
+}
+
 }  // namespace
 
 void NetworkCore::EndpointAppeared(const ParticipantPtr &me, const Peer &peer, const EndpointInfo &remote)
 {
-    _calls.push_back([me, id = ToWriterId(remote.Id), topic = remote.Topic, type = remote.Type,
-                      node = peer.Who->Node] { me->Topics.RemoteAppeared(id, topic, type, node); });
+    _calls.push_back([me, endpoint = Described(remote, peer.Who->Node)]
+                     { me->Topics.RemoteAppeared(endpoint); });
     if (remote.IsWriter)
     {
         for (const auto &[id, reader] : me->Readers)

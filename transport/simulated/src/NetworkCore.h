@@ -44,6 +44,7 @@ public:
     Time Now() const;
     std::optional<Time> NextEvent() const;
     void AdvanceTo(Time time);
+    void PretendDiscoveryIsHeldUp(const std::string &node, Time time);
     void CrashNode(const std::string &node);
     SimulatedTraffic Traffic() const;
 
@@ -63,6 +64,7 @@ public:
     int MatchedReaders(const WriterState &writer) const;
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
+    Time DiscoveryHeldUp(const std::string &node) const;
 
 private:
     // What goes together, in packets of one size.
@@ -169,6 +171,7 @@ private:
     Random _random;
     Time _now{0};
     EventQueue<Event> _events;
+    std::map<std::string, Time> _discoveryHeldUp;  // as pretended
     FaultPlan _faults;
     MediumPlan _media;
     std::vector<SimulatedSent> _sent;  // by number of the node

@@ -22,6 +22,12 @@ public:
                                                   const std::vector<std::string> &partitions,
                                                   SampleHandler handler) override;
     TransportCounters Counters() const override;
+    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
+    {
+        return _participant->Topics.RemoteOn(topic);
+    }
+    std::vector<std::string> RemoteTopics() const override { return _participant->Topics.RemoteTopics(); }
+    std::chrono::nanoseconds DiscoveryHeldUp() const override;
 
 private:
     const std::shared_ptr<NetworkCore> _core;

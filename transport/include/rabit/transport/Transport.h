@@ -280,6 +280,21 @@ struct PeerEvent
 // handlers above.
 using PeerHandler = std::function<void(const PeerEvent &)>;
 
+// A writer or reader of another session or another program, as its discovery tells of it.
+struct RemoteEndpoint
+{
+    WriterId Id{};
+    bool IsWriter = false;
+    std::string Topic{};
+    std::string Type{};
+    Rabit::Reliability Reliability = Rabit::Reliability::BestEffort;
+    // Of a writer what it keeps, of a reader what it asks for; what is more durable than TransientLocal is
+    // TransientLocal here.
+    Rabit::Durability Durability = Rabit::Durability::Volatile;
+    std::vector<std::string> Partitions{};  // as CreateWriter takes them
+    std::string Node{};                     // empty if it is not of a Rabit node
+};
+
 // Things that went wrong below the cut since the session was opened. They only rise.
 struct TransportCounters
 {
@@ -326,6 +341,11 @@ public:
                                                           const std::vector<std::string> &partitions,
                                                           SampleHandler handler) = 0;
     virtual TransportCounters Counters() const = 0;
+    // The endpoints on a topic of that name that are known now, whatever their type, QoS and partitions; and
+    // the names of all topics that others have endpoints on, each once. For looking at now and then: takes a
+    // time that grows with all that is known. Empty while the session joins the network.
+    virtual std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string & /*topic*/) const { return {}; }
+    virtual std::vector<std::string> RemoteTopics() const { return {}; }
     // What of the network that the settings ask for is missing now: interfaces that do not exist or have no
     // carrier or address, peers' names without an address; and why it could not be joined. None of them
     // Impossible, and none is logged: whoever holds the session tells people. Empty if all is well.
@@ -335,6 +355,13 @@ public:
     // back, but what that takes is missing for the rest. Nodes take longer to find each other with less, but
     // do. Any thread; does not wait. The simulated network does not heed it.
     virtual void SetDiscoveryRate(double /*bytesPerSecond*/) {}
+    // A peer says that a datagram of this session came so much later than the quickest that it knows, from
+    // which discovery learns how much it may say, as from answers. Any thread; does not wait.
+    virtual void CameLate(std::chrono::nanoseconds /*delay*/) {}
+    // For how long what discovery has to say of endpoints next has been held up by a rate that has come down
+    // because answers come late: the air is full, and endpoints do not find each other yet. 0: it is not. Any
+    // thread; does not wait.
+    virtual std::chrono::nanoseconds DiscoveryHeldUp() const { return std::chrono::nanoseconds(0); }
 };
 
 // A backend.
