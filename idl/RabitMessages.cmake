@@ -1,8 +1,10 @@
-# rabit_add_messages(<target> <file.idl>... [DEPENDS <target>...])
+# rabit_add_messages(<target> <file.idl>... [DEPENDS <target>...] [BASE <directory>] [CASE_SENSITIVE])
 #
 # Makes a library target from IDL files: for each `name.idl` the header `name.idl.h` and its implementation.
 # Linking the target gives its headers and puts all of its types into the program, so that they can be found by name
 # even if no code mentions them. DEPENDS names other targets made by this function whose IDL files these include.
+# BASE: files below this folder are included by their path from there, and so are their headers (`pkg/msg/Name.idl.h`).
+# CASE_SENSITIVE: names may differ in case alone, which IDL forbids and ROS 2 allows.
 #
 # Works in Rabit's own build and from an installed package; needs idlc (Debian: cyclonedds-tools).
 include_guard(GLOBAL)
@@ -11,7 +13,7 @@ find_program(RABIT_IDLC idlc REQUIRED)
 mark_as_advanced(RABIT_IDLC)
 
 function(rabit_add_messages target)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "CASE_SENSITIVE" "BASE" "DEPENDS")
   if(NOT ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "rabit_add_messages(${target}): no IDL files given")
   endif()
@@ -24,6 +26,15 @@ function(rabit_add_messages target)
   endforeach()
   set(include_options "$<FILTER:${include_options},INCLUDE,.>")
 
+  set(options -W no-implicit-extensibility -W no-enum-consecutive)
+  if(ARG_CASE_SENSITIVE)
+    list(APPEND options -f case-sensitive)
+  endif()
+  if(ARG_BASE)
+    cmake_path(ABSOLUTE_PATH ARG_BASE BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+    list(APPEND options -b ${ARG_BASE})
+  endif()
+
   set(sources)
   set(idl_directories)
   set(idl_files)
@@ -31,13 +42,21 @@ function(rabit_add_messages target)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
     cmake_path(GET file FILENAME name)
     cmake_path(GET file PARENT_PATH idl_directory)
+    if(ARG_BASE)
+      cmake_path(IS_PREFIX ARG_BASE ${file} NORMALIZE is_below)
+      if(NOT is_below)
+        message(FATAL_ERROR "rabit_add_messages(${target}): ${file} is not below BASE ${ARG_BASE}")
+      endif()
+      cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${ARG_BASE} OUTPUT_VARIABLE name)
+      set(idl_directory ${ARG_BASE})
+    endif()
     list(APPEND idl_directories ${idl_directory})
     list(APPEND idl_files ${file})
     set(header ${directory}/${name}.h)
     set(source ${directory}/${name}.cpp)
     add_custom_command(
       OUTPUT ${header} ${source}
-      COMMAND ${RABIT_IDLC} -W no-implicit-extensibility -W no-enum-consecutive -I "$<JOIN:${include_options},;-I;>"
+      COMMAND ${RABIT_IDLC} ${options} -I "$<JOIN:${include_options},;-I;>"
               -l $<TARGET_FILE:Rabit::IdlcPlugin> -o ${directory} ${file}
       DEPENDS ${file} Rabit::IdlcPlugin $<TARGET_FILE:Rabit::IdlcPlugin>
       DEPFILE ${directory}/${name}.d

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
 #include "dynamic/CdrBuilder.h"
 #include "dynamic/FreshValue.h"
@@ -35,6 +36,35 @@ void Keep(const std::shared_ptr<const DynamicType> &type)
     static auto &kept = *new std::vector<std::shared_ptr<const DynamicType>>;
     const std::lock_guard lock(mutex);
     kept.push_back(type);
+}
+
+bool IsFixed(const Dynamic::Shape &root)
+{
+    std::set<const Dynamic::Shape *> seen{&root};
+    std::vector<const Dynamic::Shape *> left{&root};
+    while (!left.empty())
+    {
+        const Dynamic::Shape &shape = *left.back();
+        left.pop_back();
+        if (shape.What == Dynamic::Kind::String || shape.What == Dynamic::Kind::Sequence ||
+            shape.What == Dynamic::Kind::Union)
+        {
+            return false;
+        }
+        const auto add = [&](const Dynamic::Shape *other)
+        {
+            if (other != nullptr && seen.insert(other).second)
+            {
+                left.push_back(other);
+            }
+        };
+        add(shape.Element);
+        for (const Dynamic::Part &part : shape.Parts)
+        {
+            add(part.Type);
+        }
+    }
+    return true;
 }
 
 const DynamicMessage &Concrete(const DynamicType &type, const RabitMessage &message)
@@ -175,6 +205,12 @@ const std::vector<std::uint8_t> &DynamicType::DefaultSample() const
                        _default = out.Finish();
                    });
     return _default;
+}
+
+std::optional<std::size_t> DynamicType::FixedSize() const
+{
+    constexpr std::size_t encapsulation = 4;
+    return IsFixed(*_shapes->Root) ? std::optional(DefaultSample().size() - encapsulation) : std::nullopt;
 }
 
 std::optional<std::vector<std::uint8_t>> DynamicType::Normalized(std::span<const std::uint8_t> sample) const

@@ -57,8 +57,9 @@ const void *RabitParseIdl(const char *text, char *reason, size_t reasonSize)
     CollectedReason = reason;
     CollectedSize = reasonSize;
     Collecting = true;
-    idl_retcode_t result = idl_create_pstate(
-        IDL_FLAG_EXTENDED_DATA_TYPES | IDL_FLAG_ANONYMOUS_TYPES | IDL_FLAG_ANNOTATIONS, NULL, &state);
+    idl_retcode_t result = idl_create_pstate(IDL_FLAG_EXTENDED_DATA_TYPES | IDL_FLAG_ANONYMOUS_TYPES |
+                                                 IDL_FLAG_ANNOTATIONS | IDL_FLAG_CASE_SENSITIVE,
+                                             NULL, &state);
     if (result == IDL_RETCODE_OK)
     {
         state->config.default_extensibility = IDL_DEFAULT_EXTENSIBILITY_UNDEFINED;

@@ -1,11 +1,15 @@
 #include "dynamic/ShapeBuilder.h"
 
+#include <rabit/idl/NearestWord.h>
+
 #include "dynamic/Limits.h"
 #include "model/Names.h"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <set>
+#include <string_view>
 
 namespace Rabit::Dynamic
 {
@@ -44,6 +48,20 @@ Shape OfPrimitive(RabitIdl::Primitive primitive)
     shape.MinSize = shape.Size;
     shape.FreshSize = 2 * shape.Size - 1;
     return shape;
+}
+
+// JSON could not tell the two apart. The parser misses a member whose name is that of a module around it.
+template <typename Named>
+void RefuseTwice(const std::vector<Named> &all)
+{
+    std::set<std::string_view> names;
+    for (const Named &one : all)
+    {
+        if (!names.insert(one.Name).second)
+        {
+            throw Refused("'" + one.Name + "' is there twice");
+        }
+    }
 }
 
 Shape OfEnum(const RabitIdl::EnumDefinition &definition)
@@ -161,6 +179,7 @@ std::uint64_t KeyEnd(const Shape &type, std::uint64_t start)
 
 std::unique_ptr<const Shapes> ShapeBuilder::Build(const std::string &name)
 {
+    std::vector<std::string> messages;
     for (const auto &definition : _model.Definitions)
     {
         if (dynamic_cast<const RabitIdl::ConstDefinition *>(definition.get()) == nullptr &&
@@ -169,6 +188,10 @@ std::unique_ptr<const Shapes> ShapeBuilder::Build(const std::string &name)
             _known[definition.get()] = Keep(OfDefinition(*definition));
         }
         const auto *structure = dynamic_cast<const RabitIdl::StructDefinition *>(definition.get());
+        if (structure != nullptr && RabitIdl::IsMessage(*structure))
+        {
+            messages.push_back(RabitIdl::ScopedName(structure->Scope, structure->Name));
+        }
         if (structure != nullptr && RabitIdl::ScopedName(structure->Scope, structure->Name) == name)
         {
             if (!RabitIdl::IsMessage(*structure))
@@ -180,7 +203,7 @@ std::unique_ptr<const Shapes> ShapeBuilder::Build(const std::string &name)
     }
     if (_shapes->Root == nullptr)
     {
-        throw Refused("the text defines no message '" + name + "'");
+        throw Refused("the text defines no message '" + name + "'" + NearestWordHint(name, messages));
     }
     _shapes->KeyFitsHash = _shapes->Root->HasKey && KeyEnd(*_shapes->Root, 0) <= 16;
     return std::move(_shapes);
@@ -257,6 +280,8 @@ Shape ShapeBuilder::OfDefinition(const RabitIdl::Definition &definition)
     {
         shape = OfStruct(dynamic_cast<const RabitIdl::StructDefinition &>(definition));
     }
+    RefuseTwice(shape.Parts);
+    RefuseTwice(shape.Names);
     shape.Name = RabitIdl::ScopedName(definition.Scope, definition.Name);
     if (shape.What == Kind::Enum || shape.What == Kind::Bitmask)
     {

@@ -44,6 +44,23 @@ public:
     }
 
 private:
+    using NamesOfScopes = std::map<std::string, std::set<std::string>>;
+
+    static bool IsOfAnnotation(const std::string &name)
+    {
+        static const std::set<std::string> annotations{"final", "appendable",      "nested",  "bit_bound",
+                                                       "key",   "default",         "id",      "unit",
+                                                       "value", "default_literal", "position"};
+        return annotations.count(name) != 0;
+    }
+    // Seen from here.
+    bool IsAmong(const NamesOfScopes &names, const std::string &name) const
+    {
+        return std::any_of(
+            names.begin(), names.end(),
+            [&](const auto &of)
+            { return _scope.compare(0, of.first.size(), of.first) == 0 && of.second.count(name) != 0; });
+    }
     // An annotation behind a type of that name, seen from there, is what the parser crashes on: it takes the
     // type for it.
     bool IsAnnotation() const
@@ -53,24 +70,34 @@ private:
             return false;
         }
         const std::string name = Lower(Now().Text);
-        for (const auto &[scope, types] : _types)
+        if (IsAmong(_types, name))
         {
-            if (_scope.compare(0, scope.size(), scope) == 0 && types.count(name) != 0)
-            {
-                Refuse("annotation '@" + std::string(Now().Text) + "' behind a type of that name");
-            }
+            Refuse("annotation '@" + std::string(Now().Text) + "' behind a type of that name");
+        }
+        if (IsAmong(_alike, name))
+        {
+            Refuse("annotation '@" + std::string(Now().Text) +
+                   "' behind a name that differs from it in case alone");
         }
         return true;
     }
     using TokenCursor::IsAnnotation;
+    // A name that is declared. One that differs from an annotation's in case alone has the parser crash on
+    // it, too.
+    void Name()
+    {
+        const std::string name = Lower(Now().Text);
+        if (IsOfAnnotation(name) && name != Now().Text)
+        {
+            _alike[_scope].insert(name);
+        }
+        TokenCursor::Name();
+    }
     // The name of a type that the parser looks up among others.
     void TypeName()
     {
-        static const std::set<std::string> annotations{"final", "appendable",      "nested",  "bit_bound",
-                                                       "key",   "default",         "id",      "unit",
-                                                       "value", "default_literal", "position"};
         const std::string name = Lower(Now().Text);
-        if (annotations.count(name) != 0)
+        if (IsOfAnnotation(name))
         {
             _types[_scope].insert(name);
         }
@@ -358,6 +385,19 @@ private:
         }
     }
 
+    // Whether another one follows.
+    bool NamedPart()
+    {
+        Count(_parts, MaxParts, "members, cases, values and bits");
+        Name();
+        const bool another = Is(',');
+        if (another)
+        {
+            Step();
+        }
+        return another;
+    }
+
     void Enum()
     {
         TypeName();
@@ -379,13 +419,10 @@ private:
                     Sign(')');
                 }
             }
-            Count(_parts, MaxParts, "members, cases, values and bits");
-            Name();
-            if (!Is(','))
+            if (!NamedPart())
             {
                 return;
             }
-            Step();
         }
     }
 
@@ -406,21 +443,18 @@ private:
                 Number(0, 63);
                 Sign(')');
             }
-            Count(_parts, MaxParts, "members, cases, values and bits");
-            Name();
-            if (!Is(','))
+            if (!NamedPart())
             {
                 return;
             }
-            Step();
         }
     }
 
     std::size_t _definitions = 0;
     std::size_t _parts = 0;
-    std::string _scope;  // the modules around, `::a::b`
-    std::map<std::string, std::set<std::string>>
-        _types;  // by scope; those that have the name of an annotation
+    std::string _scope;    // the modules around, `::a::b`
+    NamesOfScopes _types;  // those that have the name of an annotation
+    NamesOfScopes _alike;  // of annotations that something else is called, but for the case
 };
 
 }  // namespace

@@ -116,7 +116,11 @@ std::string CppType(const Type &type)
         case Type::Kind::Array:
             return "::std::array<" + CppType(*type.Element) + ", " + std::to_string(type.Length) + ">";
         case Type::Kind::Named:
-            return CppScopedName(type.Named->Scope, type.Named->Name);
+        {
+            const auto *alias = dynamic_cast<const TypedefDefinition *>(type.Named);
+            return alias != nullptr && alias->InIdlOnly ? CppType(alias->Type)
+                                                        : CppScopedName(type.Named->Scope, type.Named->Name);
+        }
     }
     return "";
 }

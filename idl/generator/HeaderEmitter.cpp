@@ -248,6 +248,10 @@ void EmitDefinition(TextBuilder &out, const Definition &definition)
     }
     else if (const auto *alias = dynamic_cast<const TypedefDefinition *>(&definition))
     {
+        if (alias->InIdlOnly)
+        {
+            return;
+        }
         out.Line("using " + alias->Name + " = " + CppType(alias->Type) + ";");
         if (BoundOf(alias->Type) != 0)
         {

@@ -51,8 +51,8 @@ std::string DependencyFile(const std::filesystem::path &target, const std::vecto
 
 void Generate(const RabitIdl::Model &model, const std::filesystem::path &directory)
 {
-    std::filesystem::create_directories(directory);
     const std::filesystem::path header = directory / (model.MainFile + ".h");
+    std::filesystem::create_directories(header.parent_path());
     WriteFile(directory / (model.MainFile + ".d"), DependencyFile(header, model.AllPaths));
     WriteFile(directory / (model.MainFile + ".cpp"), RabitIdl::EmitSource(model));
     WriteFile(header, RabitIdl::EmitHeader(model));
@@ -66,7 +66,8 @@ extern "C" __attribute__((visibility("default"))) int generate(const void *state
     try
     {
         RabitIdl::Refusals refusals;
-        RabitIdl::ModelReader reader(state, refusals);
+        const char *base = TreeBaseDirectory(config);
+        RabitIdl::ModelReader reader(state, refusals, base != nullptr ? base : "");
         const RabitIdl::Model model = reader.Read();
         if (!refusals.Empty())
         {

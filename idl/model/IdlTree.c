@@ -444,3 +444,8 @@ const char *TreeOutputDirectory(const void *config)
 {
     return ((const idlc_generator_config_t *)config)->output_dir;
 }
+
+const char *TreeBaseDirectory(const void *config)
+{
+    return ((const idlc_generator_config_t *)config)->base_dir;
+}

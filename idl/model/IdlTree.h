@@ -151,6 +151,8 @@ extern "C"
 
     // The output directory given with -o, or null.
     const char *TreeOutputDirectory(const void *config);
+    // The directory given with -b, or null.
+    const char *TreeBaseDirectory(const void *config);
 
 #ifdef __cplusplus
 }

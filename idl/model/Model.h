@@ -141,6 +141,7 @@ struct BitmaskDefinition : Definition
 struct TypedefDefinition : Definition
 {
     RabitIdl::Type Type;
+    bool InIdlOnly = false;  // its name is reserved in C++: what it names stands for it there
 };
 
 struct ConstDefinition : Definition
@@ -151,8 +152,9 @@ struct ConstDefinition : Definition
 
 struct Model
 {
-    std::string MainFile;               // its name without directories, for instance `uav.idl`
-    std::vector<std::string> Includes;  // files that the main file includes itself, without directories
+    std::string MainFile;               // its name, for instance `uav.idl`; with directories if it is below
+                                        // the reader's base
+    std::vector<std::string> Includes;  // files that the main file includes itself, likewise
     std::vector<std::string> AllPaths;  // every file read, with its path
     std::vector<std::unique_ptr<Definition>> Definitions;
 };

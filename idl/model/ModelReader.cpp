@@ -37,6 +37,14 @@ Model ModelReader::Read()
     return std::move(_model);
 }
 
+std::string ModelReader::NameOf(TreeNode source) const
+{
+    const std::string path = TreeSourcePath(source);
+    const std::string folder = _base + "/";
+    return !_base.empty() && path.compare(0, folder.size(), folder) == 0 ? path.substr(folder.size())
+                                                                         : WithoutDirectories(path);
+}
+
 void ModelReader::ReadFiles()
 {
     const TreeNode main = TreeFirstSource(_state);
@@ -44,10 +52,10 @@ void ModelReader::ReadFiles()
     {
         return;  // a text that is in no file
     }
-    _model.MainFile = WithoutDirectories(TreeSourcePath(main));
+    _model.MainFile = NameOf(main);
     for (TreeNode include = TreeIncludes(main); include != nullptr; include = TreeNextSource(include))
     {
-        const std::string name = WithoutDirectories(TreeSourcePath(include));
+        const std::string name = NameOf(include);
         if (std::find(_model.Includes.begin(), _model.Includes.end(), name) == _model.Includes.end())
         {
             _model.Includes.push_back(name);
@@ -142,7 +150,10 @@ std::unique_ptr<T> ModelReader::Begin(TreeNode node)
     definition->Line = TreeLineOf(node);
     definition->InMainFile = TreeInMainFile(_state, node);
     definition->Comment = CommentOn(node);
-    CheckTypeName(node, definition->Name);
+    if (!std::is_same_v<T, TypedefDefinition> || !IsTypedefOfRos(definition->Name))
+    {
+        CheckTypeName(node, definition->Name);
+    }
     CheckAnnotations(node);
     return definition;
 }
@@ -303,6 +314,7 @@ void ModelReader::ReadTypedef(TreeNode node)
          declarator = TreeNext(declarator))
     {
         auto definition = Begin<TypedefDefinition>(declarator);
+        definition->InIdlOnly = IsTypedefOfRos(definition->Name);
         definition->Type = ReadDeclaredType(TreeTypeSpec(node), declarator);
         Finish(declarator, std::move(definition));
     }

@@ -8,6 +8,7 @@
 
 #include <map>
 #include <set>
+#include <utility>
 
 namespace RabitIdl
 {
@@ -15,13 +16,18 @@ namespace RabitIdl
 class ModelReader
 {
 public:
-    // state: idlc's const idl_pstate_t *.
-    ModelReader(const void *state, Refusals &refusals) : _state(state), _refusals(refusals) {}
+    // state: idlc's const idl_pstate_t *. The model names the files below `base` by their path from there,
+    // all others without a path.
+    ModelReader(const void *state, Refusals &refusals, std::string base = "")
+        : _state(state), _refusals(refusals), _base(std::move(base))
+    {
+    }
     // The model is usable only if nothing was refused.
     Model Read();
 
 private:
     void ReadFiles();
+    std::string NameOf(TreeNode source) const;
     void ReadDefinitions(TreeNode first);
     void ReadStruct(TreeNode node);
     void ReadUnion(TreeNode node);
@@ -57,6 +63,7 @@ private:
 
     const void *_state;
     Refusals &_refusals;
+    const std::string _base;
     Model _model;
     std::vector<std::string> _scope;
     std::map<std::string, SourceComments> _comments;                                  // by file

@@ -108,6 +108,11 @@ bool IsGeneratorName(const std::string &name)
     return name == "ToString" || name == "FromText" || name == "Has";
 }
 
+bool IsTypedefOfRos(const std::string &name)
+{
+    return name[0] != '_' && name.find("__") != std::string::npos;
+}
+
 bool IsIdlKeyword(const std::string &name)
 {
     // OMG IDL 4.2, 7.2.4.

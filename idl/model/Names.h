@@ -14,6 +14,8 @@ std::string WhyNotCpp(const std::string &name);
 bool IsMessageMember(const std::string &name);
 // Whether the generator itself declares that name beside each type (`ToString`).
 bool IsGeneratorName(const std::string &name);
+// Whether a typedef has a name like those that ROS 2 gives to arrays, as `double__36`, which C++ reserves.
+bool IsTypedefOfRos(const std::string &name);
 // Whether a name is a keyword of IDL, in any case, and must be written with a leading underscore in IDL.
 bool IsIdlKeyword(const std::string &name);
 // `A::B::Name`, and `::A::B::Name`.

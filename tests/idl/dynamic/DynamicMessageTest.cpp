@@ -41,6 +41,24 @@ TEST(DynamicMessage, StartsWithDefaults)
     EXPECT_EQ(message.ToString(), R"(Late::Report {number: 7, words: ""})");
 }
 
+TEST(DynamicType, TellsTheSizeThatAllItsSamplesHave)
+{
+    const auto sizeOf = [](const char *members)
+    {
+        return DynamicType::Parse(
+                   "module M {\nunion U switch (long) { case 1: long a; };\n"
+                   "struct Part { octet o; double d; };\nstruct T { " +
+                       std::string(members) + " };\n};\n",
+                   "M::T")
+            .Type->FixedSize();
+    };
+    EXPECT_EQ(sizeOf("octet a; long b;"), 8u);
+    EXPECT_EQ(sizeOf("Part parts[2]; octet last;"), 36u) << "filled up to a multiple of four";
+    EXPECT_EQ(sizeOf("long a; string b;"), std::nullopt);
+    EXPECT_EQ(sizeOf("sequence<octet> a;"), std::nullopt);
+    EXPECT_EQ(sizeOf("U a;"), std::nullopt);
+}
+
 TEST(DynamicMessage, TakesOverJsonOrTellsWhyNot)
 {
     DynamicMessage message(TypeNamed("Late::Report"));

@@ -47,9 +47,32 @@ TEST(HostileText, OfAnotherLanguageIsRefused)
 
 TEST(HostileText, WithoutTheMessageIsRefused)
 {
-    EXPECT_EQ(WhyNot("struct T { long a; };"), "the text defines no message 'S'");
+    EXPECT_EQ(WhyNot("struct T { long a; };"), "the text defines no message 'S'; did you mean `T`?");
     EXPECT_EQ(WhyNot("@nested struct S { long a; };"), "'S' is @nested: no message");
     EXPECT_EQ(WhyNot("enum S { A };"), "the text defines no message 'S'");
+}
+
+// The parser takes any name for the annotation's, and goes down where they differ in case.
+TEST(HostileText, WithAnAnnotationBehindANameThatIsTheSameButForItsCaseIsRefused)
+{
+    const char *const reason = "line 1: annotation '@key' behind a name that differs from it in case alone";
+    EXPECT_EQ(WhyNot("module Key { struct S { @key octet a; }; };", "Key::S"), reason);
+    EXPECT_EQ(WhyNot("module M { module KEY { struct S { @key octet a; }; }; };", "M::KEY::S"), reason);
+    EXPECT_EQ(WhyNot("struct S { octet Key; @key octet a; };"), reason);
+    EXPECT_EQ(WhyNot("struct S { octet KEY[2]; @key octet a; };"), reason);
+    EXPECT_EQ(WhyNot("enum E { Key }; struct S { @key octet a; };"), reason);
+    EXPECT_EQ(WhyNot("bitmask B { Key }; struct S { @key octet a; };"), reason);
+    EXPECT_EQ(WhyNot("module Final { @final struct S { octet a; }; };", "Final::S"),
+              "line 1: annotation '@final' behind a name that differs from it in case alone");
+    EXPECT_EQ(WhyNot("struct S { octet key; @key octet a; octet Id; };"), "");
+}
+
+// The parser looks a name up where it means something else first, and misses that it is there twice.
+TEST(HostileText, WithANameTwiceInOnePlaceIsRefused)
+{
+    EXPECT_EQ(
+        WhyNot("module A { struct P { long a; }; }; module A { struct S { A::P A; A::P A; }; };", "A::S"),
+        "'A' is there twice");
 }
 
 TEST(HostileText, ThatTheParserRefusesIsToldInItsWords)

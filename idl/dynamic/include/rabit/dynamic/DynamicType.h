@@ -68,6 +68,8 @@ public:
     EncodedSample FromJsonValue(const nlohmann::ordered_json &json) const;
     // The sample of a new message.
     const std::vector<std::uint8_t> &DefaultSample() const;
+    // Bytes that every sample has without its encapsulation; nothing if they differ.
+    std::optional<std::size_t> FixedSize() const;
 
     // The sample's value in the one form that equal values have (little endian, zeros in gaps). Nothing if it
     // is refused.

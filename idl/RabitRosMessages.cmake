@@ -1,0 +1,110 @@
+# rabit_add_ros_messages(<target> PACKAGES <directory>... [MESSAGES <package/Name>...] [DEPENDS <target>...])
+#
+# Makes a library target, as rabit_add_messages, from message packages of ROS 2: folders with `msg/*.msg`, or with the
+# `msg/*.idl` of rosidl where there are no `.msg`, such as a clone of px4_msgs or /opt/ros/humble/share/std_msgs. A package
+# is called as its package.xml says, or as its folder. What a package uses of others must be among the PACKAGES, or in a
+# target that this function made before and DEPENDS names. MESSAGES: only these, and what they are made of.
+#
+# The header of px4_msgs/VehicleOdometry is <px4_msgs/msg/VehicleOdometry.idl.h>, its class px4_msgs::msg::VehicleOdometry.
+include_guard(GLOBAL)
+include(${CMAKE_CURRENT_LIST_DIR}/RabitMessages.cmake)
+
+function(rabit_add_ros_messages target)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "PACKAGES;MESSAGES;DEPENDS")
+  if(ARG_UNPARSED_ARGUMENTS OR NOT ARG_PACKAGES)
+    message(FATAL_ERROR "rabit_add_ros_messages(${target}): expected PACKAGES <directory>..., found `${ARG_UNPARSED_ARGUMENTS}`")
+  endif()
+
+  # message <package>/<Name> is made from ${file_<package>/<Name>}
+  set(messages)
+  foreach(directory IN LISTS ARG_PACKAGES)
+    cmake_path(ABSOLUTE_PATH directory BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+    string(REGEX REPLACE "/$" "" directory "${directory}")
+    _rabit_ros_package_name(${directory} package)
+    file(GLOB msg_files CONFIGURE_DEPENDS ${directory}/msg/*.msg)
+    file(GLOB idl_files CONFIGURE_DEPENDS ${directory}/msg/*.idl)
+    if(NOT msg_files AND NOT idl_files)
+      message(FATAL_ERROR "rabit_add_ros_messages(${target}): no msg/*.msg and no msg/*.idl in ${directory}")
+    endif()
+    foreach(file IN LISTS idl_files msg_files)  # the later one, which says more, holds
+      cmake_path(GET file STEM name)
+      set(file_${package}/${name} ${file})
+      list(APPEND messages ${package}/${name})
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES messages)
+
+  if(ARG_MESSAGES)
+    set(wanted ${ARG_MESSAGES})
+    set(messages)
+    while(wanted)
+      list(POP_FRONT wanted message)
+      if(message IN_LIST messages)
+        continue()
+      endif()
+      if(NOT DEFINED file_${message})
+        if(message IN_LIST ARG_MESSAGES)
+          message(FATAL_ERROR "rabit_add_ros_messages(${target}): no message `${message}` in the PACKAGES")
+        endif()
+        continue()  # of a target among the DEPENDS, or the compiler says what lacks it
+      endif()
+      list(APPEND messages ${message})
+      _rabit_ros_parts(${file_${message}} ${message} parts)
+      list(APPEND wanted ${parts})
+    endwhile()
+  endif()
+
+  set(directory ${CMAKE_CURRENT_BINARY_DIR}/${target}_ros)
+  set(files)
+  foreach(message IN LISTS messages)
+    cmake_path(GET message PARENT_PATH package)
+    cmake_path(GET message FILENAME name)
+    set(file ${directory}/${package}/msg/${name}.idl)
+    add_custom_command(
+      OUTPUT ${file}
+      COMMAND Rabit::RosIdl ${package} ${file_${message}} ${file}
+      DEPENDS ${file_${message}} Rabit::RosIdl
+      VERBATIM)
+    list(APPEND files ${file})
+  endforeach()
+  # Each may include any other: all are there before the first is compiled, which then says what it needs.
+  add_custom_target(${target}_ros_idl DEPENDS ${files})
+  rabit_add_messages(${target} CASE_SENSITIVE BASE ${directory} ${files} DEPENDS ${ARG_DEPENDS})
+  add_dependencies(${target}_objects ${target}_ros_idl)
+  add_dependencies(${target} ${target}_ros_idl)
+endfunction()
+
+function(_rabit_ros_package_name directory result)
+  cmake_path(GET directory FILENAME name)
+  if(EXISTS ${directory}/package.xml)
+    file(READ ${directory}/package.xml text)
+    if(text MATCHES "<name>[ \t\r\n]*([A-Za-z0-9_]+)[ \t\r\n]*</name>")
+      set(name ${CMAKE_MATCH_1})
+    endif()
+  endif()
+  set(${result} ${name} PARENT_SCOPE)
+endfunction()
+
+# The messages, as package/Name, that the file of a message names as types.
+function(_rabit_ros_parts file message result)
+  cmake_path(GET message PARENT_PATH package)
+  set(parts)
+  if(file MATCHES "\\.msg$")
+    file(STRINGS ${file} lines REGEX "^[ \t]*[A-Za-z]")
+    foreach(line IN LISTS lines)
+      if(line MATCHES "^[ \t]*([a-z][a-z0-9_]*)/(msg/)?([A-Z][A-Za-z0-9_]*)")
+        list(APPEND parts ${CMAKE_MATCH_1}/${CMAKE_MATCH_3})
+      elseif(line MATCHES "^[ \t]*([A-Z][A-Za-z0-9_]*)")
+        list(APPEND parts ${package}/${CMAKE_MATCH_1})
+      endif()
+    endforeach()
+  else()
+    file(STRINGS ${file} lines REGEX "^[ \t]*#[ \t]*include")
+    foreach(line IN LISTS lines)
+      if(line MATCHES "[\"<]([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9_]*)\\.idl")
+        list(APPEND parts ${CMAKE_MATCH_1}/${CMAKE_MATCH_2})
+      endif()
+    endforeach()
+  endif()
+  set(${result} ${parts} PARENT_SCOPE)
+endfunction()

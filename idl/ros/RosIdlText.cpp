@@ -1,0 +1,161 @@
+#include "ros/RosIdlText.h"
+
+#include <algorithm>
+#include <regex>
+#include <vector>
+
+namespace RabitIdl
+{
+namespace
+{
+
+// Copies a text and leaves out what is not wanted of it; what is within quotes or comments stays as it is.
+class Copier
+{
+public:
+    explicit Copier(const std::string &text) : _text(text) {}
+
+    std::string Run()
+    {
+        while (_at < _text.size())
+        {
+            if (!CopyQuoted() && !SkipVerbatim())
+            {
+                CopyOne();
+            }
+        }
+        return std::move(_out);
+    }
+
+private:
+    bool StartsWith(const char *word) const
+    {
+        return _text.compare(_at, std::char_traits<char>::length(word), word) == 0;
+    }
+
+    // Where what begins here ends: a string, or a comment; the place itself if it is none.
+    std::size_t EndOfQuoted() const
+    {
+        if (StartsWith("//"))
+        {
+            return std::min(_text.find('\n', _at), _text.size());
+        }
+        if (StartsWith("/*"))
+        {
+            const std::size_t end = _text.find("*/", _at + 2);
+            return end == std::string::npos ? _text.size() : end + 2;
+        }
+        if (_text[_at] != '"')
+        {
+            return _at;
+        }
+        std::size_t end = _at + 1;
+        while (end < _text.size() && _text[end] != '"')
+        {
+            end += _text[end] == '\\' ? 2 : 1;
+        }
+        return std::min(end + 1, _text.size());
+    }
+
+    bool CopyQuoted()
+    {
+        const std::size_t end = EndOfQuoted();
+        if (end == _at)
+        {
+            return false;
+        }
+        _out.append(_text, _at, end - _at);
+        _at = end;
+        return true;
+    }
+
+    // Only its line breaks stay, so that all others keep their numbers.
+    bool SkipVerbatim()
+    {
+        if (!StartsWith("@verbatim"))
+        {
+            return false;
+        }
+        int depth = 0;
+        do
+        {
+            const std::size_t end = std::max(EndOfQuoted(), _at + 1);
+            depth += _text[_at] == '(' ? 1 : _text[_at] == ')' ? -1 : 0;
+            const bool closed = _text[_at] == ')' && depth == 0;
+            for (; _at < end; ++_at)
+            {
+                _out += _text[_at] == '\n' ? "\n" : "";
+            }
+            if (closed)
+            {
+                break;
+            }
+        } while (_at < _text.size());
+        return true;
+    }
+
+    void CopyOne()
+    {
+        _out += _text[_at];
+        _out += StartsWith(">>") ? " " : "";
+        ++_at;
+    }
+
+    const std::string &_text;
+    std::size_t _at = 0;
+    std::string _out;
+};
+
+std::string Joined(const std::vector<std::string> &modules)
+{
+    std::string text;
+    for (const std::string &module : modules)
+    {
+        text += module + "_";
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string RosIdlText(const std::string &text)
+{
+    static const std::regex module(R"(^\s*module\s+(\w+)\s*\{\s*$)");
+    static const std::regex opens(R"(^[^"]*\{\s*$)");
+    static const std::regex closes(R"(^\s*\}\s*;\s*$)");
+    static const std::regex alias(R"(^\s*typedef\s.*?(\w+)\s*(\[\d+\])?\s*;\s*$)");
+    const std::string copied = Copier(text).Run();
+    std::vector<std::string> scopes;
+    std::string out;
+    for (std::size_t at = 0; at < copied.size();)
+    {
+        const std::size_t end = std::min(copied.find('\n', at), copied.size());
+        const std::string line = copied.substr(at, end - at);
+        at = end + 1;
+        std::smatch found;
+        if (std::regex_match(line, found, module))
+        {
+            scopes.push_back(found[1]);
+        }
+        else if (std::regex_match(line, opens))
+        {
+            scopes.emplace_back();
+        }
+        else if (std::regex_match(line, closes) && !scopes.empty())
+        {
+            scopes.pop_back();
+        }
+        if (std::regex_match(line, found, alias) && found[1].str().find("__") != std::string::npos)
+        {
+            const std::string guard = "RABIT_TYPEDEF_" + Joined(scopes) + found[1].str();
+            out += "#ifndef " + guard + "\n#define " + guard + "\n" + line + "\n#endif\n";
+        }
+        else
+        {
+            out += line + "\n";
+        }
+    }
+    return out;
+}
+
+}  // namespace RabitIdl
