@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 namespace Rabit
 {
@@ -15,6 +16,7 @@ struct LogState
 {
     std::mutex Mutex;
     std::shared_ptr<const RabitLog::Sink> Sink;
+    std::vector<std::weak_ptr<const RabitLog::Sink>> Listeners;
     std::atomic<RabitLogLevel> Level{RabitLogLevel::Warning};
 };
 
@@ -46,7 +48,51 @@ void WriteToStderr(RabitLogLevel level, const std::string &text)
     std::fprintf(stderr, "rabit: %s: %s\n", NameOf(level), text.c_str());
 }
 
+// Those that still listen.
+std::vector<std::shared_ptr<const RabitLog::Sink>> ListenersNow()
+{
+    LogState &state = State();
+    std::vector<std::shared_ptr<const RabitLog::Sink>> listeners;
+    const std::lock_guard<std::mutex> lock(state.Mutex);
+    for (auto at = state.Listeners.begin(); at != state.Listeners.end();)
+    {
+        if (auto listener = at->lock())
+        {
+            listeners.push_back(std::move(listener));
+            ++at;
+        }
+        else
+        {
+            at = state.Listeners.erase(at);
+        }
+    }
+    return listeners;
+}
+
+void TellListeners(RabitLogLevel level, const std::string &text) noexcept
+{
+    try
+    {
+        for (const auto &listener : ListenersNow())
+        {
+            (*listener)(level, text);
+        }
+    }
+    catch (...)  // costs no line
+    {
+    }
+}
+
 }  // namespace
+
+std::shared_ptr<void> RabitLog::Listen(Sink listener)
+{
+    auto shared = std::make_shared<Sink>(std::move(listener));
+    LogState &state = State();
+    const std::lock_guard<std::mutex> lock(state.Mutex);
+    state.Listeners.push_back(shared);
+    return shared;
+}
 
 void RabitLog::SetSink(Sink sink)
 {
@@ -76,6 +122,7 @@ void RabitLog::Write(RabitLogLevel level, const std::string &text) noexcept
     {
         return;
     }
+    TellListeners(level, text);
     try
     {
         std::shared_ptr<const Sink> sink;

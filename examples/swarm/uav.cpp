@@ -11,6 +11,8 @@
 #include "Track.h"
 #include "mavlink/ByteChannel.h"
 #include "mavlink/MavlinkVehicle.h"
+#include "px4/Px4Topics.h"
+#include "px4/Px4Vehicle.h"
 #include "vision/World.h"
 
 #include <rabit/node/RunNode.h>
@@ -30,6 +32,7 @@ struct Options
 {
     std::string TrackFile;
     std::string Mavlink;
+    std::string Px4;
     std::string Ground = "ground";
     double EnduranceMinutes = 40;
     Swarm::Floor::Settings Floor;
@@ -51,6 +54,8 @@ Swarm::Circle PatternFor(const std::string &node)
 
 std::unique_ptr<Swarm::Vehicle> MakeVehicle(const Options &options, const std::string &node)
 {
+    if (!options.Px4.empty())
+        return std::make_unique<Swarm::Px4Vehicle>(*Rabit::RabitWorkspace::GetWorkspace());
     if (!options.Mavlink.empty())
         return std::make_unique<Swarm::MavlinkVehicle>(Swarm::OpenByteChannel(options.Mavlink));
     return std::make_unique<Swarm::SimulatedVehicle>(
@@ -62,7 +67,7 @@ Swarm::HealthMonitor::Options HealthOptions(const Options &options)
 {
     Swarm::HealthMonitor::Options health;
     health.Ground = options.Ground;
-    if (options.Mavlink.empty())
+    if (options.Mavlink.empty() && options.Px4.empty())
         health.EnduranceS = options.EnduranceMinutes * 60;
     return health;
 }
@@ -78,6 +83,8 @@ Swarm::Floor FloorOf(const Options &options)
 
 void AddManagers(Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config, const Options &options)
 {
+    if (!options.Px4.empty())
+        Swarm::AddPx4Topics(config, Swarm::Px4Namespace(options.Px4));
     Swarm::CompleteAircraftConfig(config, options.Ground);
     const Swarm::Names names(config.Node, config.Node);
     reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, MakeVehicle(options, config.Node)));
@@ -88,9 +95,15 @@ void AddManagers(Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config, con
 void AddOptions(CLI::App &app, Options &options)
 {
     app.add_option("--track", options.TrackFile, "CSV file of the track to fly (default: circles)");
+    auto *const px4 =
+        app.add_option("--px4", options.Px4,
+                       "A real PX4 in place of the simulated one, through its DDS agent: `dds`, or "
+                       "`dds:/px4_1` for one whose topics are below that")
+            ->check(Swarm::IsPx4);
     app.add_option("--mavlink", options.Mavlink,
                    "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
-                   "`serial:DEVICE:BAUD`");
+                   "`serial:DEVICE:BAUD`")
+        ->excludes(px4);
     app.add_option("--ground", options.Ground, "Name of the ground station's node (default: ground)");
     app.add_option("--endurance", options.EnduranceMinutes,
                    "Minutes that the simulated battery lasts (default: 40)")

@@ -8,6 +8,8 @@
 #include <system_error>
 
 #include "air/TrafficClassWords.h"
+#include "configuration/ForeignEntries.h"
+#include "configuration/ValidateGatewayConfig.h"
 #include "configuration/YamlMap.h"
 
 namespace Rabit
@@ -73,6 +75,52 @@ void ReadRadio(const YamlMap &map, GatewayConfig &config)
             config.Lines["radio." + key] = line;
         }
     }
+}
+
+constexpr std::uint64_t Megabyte = 1000 * 1000;
+constexpr std::uint64_t Terabyte = Megabyte * Megabyte;
+
+void ReadRecord(const YamlMap &map, GatewayConfig &config)
+{
+    const auto record = map.Map("record", "the section `record`",
+                                {"folder", "messages", "except", "queues", "split_size", "split_time", "keep",
+                                 "free", "memory", "black_box"});
+    if (!record)
+    {
+        return;
+    }
+    record->Require("folder");
+    RecordSettings settings;
+    settings.Line = map.Line("record");
+    record->Read("folder", settings.Folder);
+    record->Read("messages", settings.Messages);
+    record->Read("except", settings.Except);
+    record->Read("queues", settings.Queues);
+    record->ReadByteSize("split_size", settings.SplitSize, Megabyte, Terabyte);
+    record->Read("split_time", settings.SplitTime);
+    record->ReadByteSize("keep", settings.Keep, 0, 1000 * Terabyte);
+    record->ReadByteSize("free", settings.Free, 0, 1000 * Terabyte);
+    record->ReadByteSize("memory", settings.Memory, Megabyte, 64000 * Megabyte);
+    for (const auto &[key, line] : record->Lines())
+    {
+        config.Lines["record." + key] = line;
+    }
+    if (const auto box = record->Map("black_box", "the section `black_box`",
+                                     {"before", "after", "messages", "queues", "outcomes", "problems"}))
+    {
+        BlackBoxSettings &black = settings.BlackBox.emplace();
+        box->Read("before", black.Before);
+        box->Read("after", black.After);
+        box->Read("messages", black.Messages);
+        box->Read("queues", black.Queues);
+        box->Read("outcomes", black.Outcomes);
+        box->Read("problems", black.Problems);
+        for (const auto &[key, line] : box->Lines())
+        {
+            config.Lines["record.black_box." + key] = line;
+        }
+    }
+    config.Record = settings;
 }
 
 std::optional<TrafficClass> ReadClass(const YamlMap &entry)
@@ -167,8 +215,8 @@ YamlMap OpenFile(const std::string &file)
             Parse(file, ReadFile(file)),
             "the configuration",
             {"node", "name", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram",
-             "shared_memory", "lease", "backend_config", "state_dir", "radio", "publish", "subscribe",
-             "accept", "send"}};
+             "shared_memory", "lease", "backend_config", "state_dir", "radio", "record", "publish",
+             "subscribe", "accept", "send", "foreign"}};
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -203,17 +251,25 @@ GatewayConfig LoadNetworkConfig(const std::string &file)
 
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride)
 {
+    return LoadGatewayConfig(file, nodeOverride, WhyNotLinked);
+}
+
+GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride,
+                                const TypeCheck &whyNoType)
+{
     const YamlMap map = OpenFile(file);
     GatewayConfig config;
     config.File = file;
     ReadName(map, nodeOverride, config);
     ReadNetwork(map, config);
     ReadRadio(map, config);
+    ReadRecord(map, config);
     ReadPublish(map, config);
     ReadSubscribe(map, config);
     ReadAccept(map, config);
     ReadSend(map, config);
-    ValidateGatewayConfig(config);
+    ReadForeign(map, config);
+    ValidateGatewayConfig(config, whyNoType);
     return config;
 }
 

@@ -1,5 +1,6 @@
+#include "configuration/ValidateGatewayConfig.h"
+
 #include <rabit/gateway/ConfigError.h>
-#include <rabit/gateway/GatewayConfig.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 #include <rabit/idl/NearestWord.h>
 #include <rabit/transport/Transport.h>
@@ -8,8 +9,10 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "air/AirSchedule.h"
+#include "configuration/ForeignEntries.h"
 #include "names/NamePattern.h"
 #include "wire/Announcements.h"
 
@@ -25,7 +28,10 @@ constexpr double LargestBudget = 1e9;
 class Validator
 {
 public:
-    explicit Validator(const GatewayConfig &config) : _config(config) {}
+    Validator(const GatewayConfig &config, const TypeCheck &whyNoType)
+        : _config(config), _whyNoType(whyNoType)
+    {
+    }
 
     void Run() const
     {
@@ -33,11 +39,13 @@ public:
         CheckTool();
         CheckNetwork();
         CheckRadio();
+        CheckRecord();
         CheckPublish();
         CheckSubscribe();
         CheckTopicTypes();
         CheckAccept();
         CheckSend();
+        CheckForeign(_config, _whyNoType);
         CheckAnnouncement();
     }
 
@@ -131,6 +139,56 @@ private:
         }
     }
 
+    void CheckRecord() const
+    {
+        if (!_config.Record)
+        {
+            return;
+        }
+        const RecordSettings &record = *_config.Record;
+        if (record.Folder.empty())
+        {
+            Fail(LineOf("record.folder"), "no folder for recordings; expected `folder: <path>`");
+        }
+        if (record.SplitTime < std::chrono::seconds(1) || record.SplitTime > std::chrono::hours(24))
+        {
+            Fail(LineOf("record.split_time"), "`split_time` is out of range; expected 1s to 1440min");
+        }
+        CheckMessagePatterns(record.Messages, "messages", LineOf("record.messages"));
+        CheckMessagePatterns(record.Except, "except", LineOf("record.except"));
+        if (record.BlackBox)
+        {
+            CheckBlackBox(*record.BlackBox);
+        }
+    }
+
+    void CheckBlackBox(const BlackBoxSettings &box) const
+    {
+        for (const auto &[key, time] : {std::pair("before", box.Before), std::pair("after", box.After)})
+        {
+            if (time < std::chrono::seconds(1) || time > std::chrono::hours(1))
+            {
+                Fail(LineOf(std::string("record.black_box.") + key),
+                     std::string("`") + key + "` is out of range; expected 1s to 60min");
+            }
+        }
+        CheckMessagePatterns(box.Messages, "messages", LineOf("record.black_box.messages"));
+        CheckMessagePatterns(box.Queues, "queues", LineOf("record.black_box.queues"));
+    }
+
+    void CheckMessagePatterns(const std::vector<std::string> &patterns, const char *key, int line) const
+    {
+        for (const std::string &pattern : patterns)
+        {
+            if (!IsMessageName(WithoutWildcards(pattern)))
+            {
+                Fail(line, "`" + pattern + "` in `" + key +
+                               "` is no message name; `*` and `?` stand for any characters");
+            }
+        }
+        CheckNoneTwice(patterns, key, line);
+    }
+
     void CheckImportance(TrafficClass traffic, double weight, int line) const
     {
         if (traffic == TrafficClass::Presence)
@@ -157,10 +215,10 @@ private:
 
     void CheckType(const std::string &type, int line) const
     {
-        if (MessageTypeRegistry::Find(type) == nullptr)
+        const std::string why = _whyNoType(type);
+        if (!why.empty())
         {
-            Fail(line,
-                 "unknown IDL type `" + type + "`" + NearestWordHint(type, MessageTypeRegistry::Names()));
+            Fail(line, why);
         }
     }
 
@@ -356,6 +414,7 @@ private:
     }
 
     const GatewayConfig &_config;
+    const TypeCheck &_whyNoType;
 };
 
 }  // namespace
@@ -369,9 +428,21 @@ double SmallestBudget(std::chrono::milliseconds slowestBeat)
     return 100.0 * std::ceil((4.0 * beat / seconds + discovery) / 100.0);
 }
 
+std::string WhyNotLinked(const std::string &type)
+{
+    return MessageTypeRegistry::Find(type) != nullptr
+               ? ""
+               : "unknown IDL type `" + type + "`" + NearestWordHint(type, MessageTypeRegistry::Names());
+}
+
+void ValidateGatewayConfig(const GatewayConfig &config, const TypeCheck &whyNoType)
+{
+    Validator(config, whyNoType).Run();
+}
+
 void ValidateGatewayConfig(const GatewayConfig &config)
 {
-    Validator(config).Run();
+    ValidateGatewayConfig(config, WhyNotLinked);
 }
 
 void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available,

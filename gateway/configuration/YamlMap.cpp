@@ -25,6 +25,18 @@ bool ParseWhole(const std::string &text, Number &value)
     return error == std::errc() && end == text.data() + text.size() && !text.empty();
 }
 
+// In the largest unit that leaves a whole number.
+std::string SizeText(std::uint64_t bytes)
+{
+    const char *const units[] = {"B", "kB", "MB", "GB", "TB"};
+    std::size_t unit = 0;
+    for (; unit + 1 < std::size(units) && bytes != 0 && bytes % 1000 == 0; ++unit)
+    {
+        bytes /= 1000;
+    }
+    return std::to_string(bytes) + units[unit];
+}
+
 }  // namespace
 
 YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
@@ -211,6 +223,34 @@ void YamlMap::ReadByteRate(const std::string &key, std::optional<double> &value)
              "`" + key + "` is `" + text + "`; expected auto, or bytes a second such as 1500B/s or 5kB/s");
     }
     value = number * factor;
+}
+
+void YamlMap::ReadByteSize(const std::string &key, std::uint64_t &value, std::uint64_t least,
+                           std::uint64_t most) const
+{
+    const YAML::Node *node = Find(key);
+    if (node == nullptr)
+    {
+        return;
+    }
+    const std::string &text = Scalar(*node, key, "bytes such as 64MB or 1GB");
+    const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
+    const std::string unit = text.substr(unitAt);
+    const std::map<std::string, double> factors = {
+        {"B", 1.0}, {"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}};
+    const auto factor = factors.find(unit);
+    double number = 0.0;
+    if (factor == factors.end() || !ParseWhole(text.substr(0, unitAt), number) || !std::isfinite(number))
+    {
+        Fail(LineOf(*node), "`" + key + "` is `" + text + "`; expected bytes such as 64MB or 1GB");
+    }
+    const double bytes = number * factor->second;
+    if (!(bytes >= static_cast<double>(least) && bytes <= static_cast<double>(most)))
+    {
+        Fail(LineOf(*node),
+             "`" + key + "` is `" + text + "`; expected " + SizeText(least) + " to " + SizeText(most));
+    }
+    value = static_cast<std::uint64_t>(bytes);
 }
 
 void YamlMap::Read(const std::string &key, std::vector<std::string> &value) const

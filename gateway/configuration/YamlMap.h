@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,6 +40,9 @@ public:
     void Read(const std::string &key, std::chrono::milliseconds &value) const;
     // Bytes a second: `1500B/s`, `5kB/s`, `2MB/s` (of 1000 and 1000000 bytes), or `auto` for an empty value.
     void ReadByteRate(const std::string &key, std::optional<double> &value) const;
+    // `64MB`, `1GB`: of powers of 1000, from B to TB.
+    void ReadByteSize(const std::string &key, std::uint64_t &value, std::uint64_t least,
+                      std::uint64_t most) const;
     // A list of words, or one word alone.
     void Read(const std::string &key, std::vector<std::string> &value) const;
     // One of the words; returns its index, or -1 if the key is missing.

@@ -2,10 +2,30 @@
 
 #include <rabit/idl/MessageTypeRegistry.h>
 
+#include <chrono>
+#include <limits>
 #include <stdexcept>
+
+#include "clocks/GpsTime.h"
 
 namespace Rabit
 {
+namespace
+{
+
+double ClockAhead(const PeerTable::Peer &peer, const PostTime &now)
+{
+    const auto source = peer.Clock.Source();
+    if (!source)
+    {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    const auto wall = now.Monotonic - source->ToLocal + peer.Clock.SourceToWall();
+    const std::chrono::nanoseconds own(GpsTime::ToUtcNanoseconds(now.GpsTimeSeconds));
+    return std::chrono::duration<double>(wall - own).count();
+}
+
+}  // namespace
 
 std::vector<FleetExplorer::Node> Exploration::Nodes() const
 {
@@ -55,12 +75,13 @@ Exploration::Requests Exploration::TakeRequests()
     return std::exchange(_requests, {});
 }
 
-void Exploration::SetNodes(const PeerTable &peers)
+void Exploration::SetNodes(const PeerTable &peers, const PostTime &now)
 {
     std::vector<Node> nodes;
     for (const PeerTable::Peer *peer : peers.Heard())
     {
-        nodes.push_back({peer->Node, peer->State, peer->Incarnation, peer->Offers});
+        nodes.push_back({peer->Node, peer->State, peer->Incarnation, peer->Offers, peer->Twice,
+                         ClockAhead(*peer, now), peer->Beats.Heard(), peer->Beats.Missed()});
     }
     {
         const std::lock_guard lock(_mutex);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/RabitClock.h>
 #include <rabit/gateway/FleetExplorer.h>
 
 #include <atomic>
@@ -44,7 +45,7 @@ public:
     };
     // Gateway's thread only, as those that follow.
     Requests TakeRequests();
-    void SetNodes(const PeerTable &peers);
+    void SetNodes(const PeerTable &peers, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
 
 private:

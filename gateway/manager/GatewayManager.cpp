@@ -1,14 +1,17 @@
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
+#include <rabit/gateway/GatewayTap.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 
 #include "clocks/GpsTime.h"
 #include "clocks/SourceClock.h"
+#include "foreign/ForeignTopics.h"
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
 #include "manager/AirTraffic.h"
@@ -78,7 +81,7 @@ public:
               random),
           _remote(config.Node),
           _links(_config, _workspace, _incarnations, random(), manager.WakeUpHandler()),
-          _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links)),
+          _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links, _config.Tap)),
           _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),
           _presence(
@@ -124,6 +127,7 @@ public:
         ReportUndelivered();
         _presence.Close();
         _subscriptions.Close();
+        _foreign.Close();
         _links.Close();
         _air.Close();
         _publishers.clear();
@@ -139,7 +143,7 @@ public:
         _types.TakeIn(served, now);
         if (_exploration.IsWanted())
         {
-            Explore(change.State || change.Offers || change.NewLife, now);
+            Explore(change, now);
         }
         for (const std::string &node : change.Forgotten)
         {
@@ -172,14 +176,19 @@ public:
         }
         Duration next = std::min(_presence.NextDue(), _air.Serve(now));
         next = std::min(next, _states.Due().value_or(next));
+        next = std::min(next, _foreign.Service(now));
         if (_states.TellVersions(_publishers, now))
         {
             // One that is due already waits for its turn.
             const Duration beat = _presence.BeatDue();
             next = beat > now ? std::min(next, beat) : next;
         }
-        if (change.State || change.Offers || now >= _nextFleet)
+        if (change.State || change.Offers || _foreign.TakeChange() || now >= _nextFleet)
         {
+            if (_config.Tap)
+            {
+                TellClocks();
+            }
             PostFleet(now);
             _nextFleet = now + FleetPeriod;
         }
@@ -223,6 +232,7 @@ private:
                                      *_session);
             Attach(_publishers.back());
         }
+        _foreign.Open(*_session, _manager, _openedAt);
         _air.Open(*_session);
         _states.Open(_publishers);
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
@@ -234,11 +244,14 @@ private:
     }
 
     // What is asked for at run time.
-    void Explore(bool anyNews, Duration now)
+    void Explore(const PeerTable::Change &change, Duration now)
     {
-        if (anyNews || !std::exchange(_explored, true))
+        // Clocks and counts change with each beat.
+        if (change.State || change.Offers || change.NewLife || !_exploredAt ||
+            now - *_exploredAt >= FleetPeriod)
         {
-            _exploration.SetNodes(_presence.Peers());
+            _exploredAt = now;
+            _exploration.SetNodes(_presence.Peers(), _workspace.GetClock().Now());
         }
         const Exploration::Requests requests = _exploration.TakeRequests();
         for (const TypeQuestions::Wanted &wanted : requests.Types)
@@ -315,6 +328,19 @@ private:
         }
     }
 
+    void TellClocks() const
+    {
+        std::vector<GatewayTap::PeerClock> peers;
+        for (const PeerTable::Peer *peer : _presence.Peers().Heard())
+        {
+            if (const auto relation = peer->Clock.Source())
+            {
+                peers.push_back({peer->Node, peer->Incarnation, relation->ToLocal, peer->Clock.RoundTrip()});
+            }
+        }
+        _config.Tap->Clocks(_incarnation, Duration(_source.At(Duration(0))), peers);
+    }
+
     void PostFleet(Duration now)
     {
         Gateway::Fleet &fleet = *_fleet;
@@ -337,6 +363,7 @@ private:
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
         FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
         AddProblems(now, fleet);
+        _foreign.Report(now, fleet);
         OtherGateways::AddSharedNodes(_workspace, _config.Name, fleet);
         fleet.PostMessage();
         Log(_problemLog.Look(fleet.problems, now));
@@ -357,6 +384,13 @@ private:
                 problem.reason = "the local message `" + publisher.Rule().Message +
                                  "` is of another type than `" + publisher.Rule().Type + "`";
                 fleet.problems.push_back(problem);
+            }
+        }
+        if (_config.Tap)
+        {
+            for (Gateway::Problem &problem : _config.Tap->Problems())
+            {
+                fleet.problems.push_back(std::move(problem));
             }
         }
         for (const auto &problems :
@@ -381,9 +415,10 @@ private:
     Presence _presence;
     Subscriptions _subscriptions;
     StateExchange _states;
+    ForeignTopics _foreign{_config, _source};
     std::shared_ptr<Gateway::Fleet> _fleet;
     Exploration &_exploration;
-    bool _explored = false;
+    std::optional<Duration> _exploredAt;
     const std::string _logName =
         _config.Name == GatewayConfig().Name ? "gateway: " : "gateway " + _config.Name + ": ";
     ProblemLog _problemLog{FleetMessageNameOf(_config)};

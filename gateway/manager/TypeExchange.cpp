@@ -53,7 +53,7 @@ void TypeExchange::OnFrame(std::string_view node, std::span<const std::uint8_t> 
     _wake();
 }
 
-void TypeExchange::TakeIn(const Presence::Served &served, Duration now)
+void TypeExchange::TakeInNews(const Presence::Served &served, Duration now)
 {
     for (const auto &[node, question] : served.TypesAsked)
     {
@@ -112,11 +112,13 @@ void TypeExchange::SendOne(std::size_t mostBody, Duration now)
 
 TypeExchange::Duration TypeExchange::Service(Duration now)
 {
-    while (Due() && *Due() <= now)
+    std::optional<Duration> due = Due();
+    while (due && *due <= now)
     {
         SendOne(std::numeric_limits<std::size_t>::max(), now);
+        due = Due();
     }
-    return Due().value_or(Duration::max());
+    return due.value_or(Duration::max());
 }
 
 std::uint64_t TypeExchange::Malformed() const

@@ -42,7 +42,13 @@ public:
     // Asks for a text. False: too many are lacking.
     bool Want(const TypeQuestions::Wanted &wanted, Duration now);
     // What the others ask, and what has come.
-    void TakeIn(const Presence::Served &served, Duration now);
+    void TakeIn(const Presence::Served &served, Duration now)
+    {
+        if (!served.TypesAsked.empty() || _lacks)
+        {
+            TakeInNews(served, now);
+        }
+    }
 
     // When a part is to be sent; empty: none is. What that takes, as bytes of the body of a sample; and sends
     // it.
@@ -59,6 +65,7 @@ private:
     // What the inbox holds at most: more than one answerer sends within a second.
     static constexpr std::size_t LargestInbox = 512 * 1024;
 
+    void TakeInNews(const Presence::Served &served, Duration now);
     void OnFrame(std::string_view node, std::span<const std::uint8_t> frame);
     std::size_t LargestPart(std::size_t mostBody) const;
 

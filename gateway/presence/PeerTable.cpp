@@ -129,6 +129,7 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.Tag = NodeTagOf(heard.Node, heard.Incarnation);
     peer.FirstHeard = heard.Arrival;
     peer.Clock = PeerClock();
+    peer.Beats = BeatCount();
     peer.LastBeatSource = Duration(-1);
     peer.LastEchoed.reset();
     peer.States.clear();
@@ -217,6 +218,7 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
 void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
 {
     Measure(peer, heard);
+    peer.Beats.Add(heard.Sequence);
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
     {

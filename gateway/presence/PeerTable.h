@@ -12,6 +12,7 @@
 
 #include "clocks/PeerClock.h"
 #include "gateway.idl.h"
+#include "presence/BeatCount.h"
 #include "presence/HeardBeat.h"
 #include "presence/MissingOffers.h"
 #include "presence/SentBeats.h"
@@ -60,6 +61,7 @@ public:
         Duration LastHeard{0};  // when its newest beat was sent, by this node's clock
         Duration Period{0};     // how long after that the next one is due at the latest
         PeerClock Clock;
+        BeatCount Beats;  // of this life
         // The newest announcement that came of it. One of an earlier life is kept if its beats mean the same.
         std::optional<Gateway::Announcement> Offers;
         Duration OffersSince{0};

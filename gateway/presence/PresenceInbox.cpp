@@ -77,6 +77,7 @@ bool PresenceInbox::AddBeat(SampleBytes bytes, const SampleInfo &info, Duration 
     heard.Node = info.Node;
     heard.Incarnation = info.Incarnation;
     heard.Utc = info.SourceTime;
+    heard.Sequence = info.Sequence;
     heard.Arrival = arrival;
     _contents.Beats.push_back(std::move(heard));
     return true;

@@ -7,8 +7,9 @@ namespace Rabit
 {
 
 IncomingQueues::IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorkspace &workspace,
-                               const std::function<void()> &wake, std::size_t quicklyDecoded)
-    : _quicklyDecoded(quicklyDecoded)
+                               const std::function<void()> &wake, std::size_t quicklyDecoded,
+                               bool keepsReceived)
+    : _quicklyDecoded(quicklyDecoded), _keepsReceived(keepsReceived)
 {
     for (const AcceptRule &rule : rules)
     {
@@ -52,6 +53,11 @@ LocalQueueResult IncomingQueues::Deliver(std::string_view source, std::string_vi
         _undecoded.push_back({std::string(source), std::string(queue), std::string(type),
                               owner ? owner : LinkBytes::CopyOf(payload), payload.size()});
         return LocalQueueResult::Later;
+    }
+    if (result == LocalQueueResult::Ok && _keepsReceived)
+    {
+        _received.push_back(
+            {std::string(source), std::string(queue), std::string(type), LinkBytes::CopyOf(payload)});
     }
     if (result == LocalQueueResult::Ok &&
         std::find(_delivered.begin(), _delivered.end(), accepted.Local()) == _delivered.end())

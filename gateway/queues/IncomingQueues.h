@@ -50,9 +50,17 @@ public:
         AcceptedQueue::Decoded What;
     };
 
+    // A message that was put into a queue, for who records.
+    struct Received
+    {
+        std::string Source, Queue, Type;
+        LinkPayload Payload;
+    };
+
     // `wake` is called when there is room in a queue that had none: on the thread of who took a message.
     IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorkspace &workspace,
-                   const std::function<void()> &wake, std::size_t quicklyDecoded = QuicklyDecoded);
+                   const std::function<void()> &wake, std::size_t quicklyDecoded = QuicklyDecoded,
+                   bool keepsReceived = false);
 
     // Makes a message of what was put off, or says why there is none. Any thread.
     Decoded Decode(const Undecoded &message) const;
@@ -69,6 +77,9 @@ public:
     void TakeDelivered(std::vector<std::shared_ptr<Queue>> &queues) { queues.swap(_delivered); }
     bool AnyDelivered() const { return !_delivered.empty(); }
 
+    // What was put into queues since the last call, if it is kept; into the empty list.
+    void TakeReceived(std::vector<Received> &messages) { messages.swap(_received); }
+
     // LocalQueues
     LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
                              std::span<const std::uint8_t> payload, const LinkPayload &owner,
@@ -80,10 +91,12 @@ public:
 
 private:
     const std::size_t _quicklyDecoded;
+    const bool _keepsReceived;
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;  // the names: unchanged after construction
     const Decoded *_offered = nullptr;
     std::vector<Undecoded> _undecoded;
     std::vector<std::shared_ptr<Queue>> _delivered;
+    std::vector<Received> _received;
 };
 
 }  // namespace Rabit

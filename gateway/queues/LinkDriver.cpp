@@ -49,7 +49,7 @@ LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, I
       _workspace(workspace),
       _incarnations(incarnations),
       _wake(std::move(wake)),
-      _incoming(config.Accept, workspace, _wake),
+      _incoming(config.Accept, workspace, _wake, IncomingQueues::QuicklyDecoded, config.Tap != nullptr),
       _links(std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
                                         static_cast<LocalQueues &>(_incoming), incarnations))
 {
@@ -216,8 +216,12 @@ bool LinkDriver::ServeBy(LinkTime due)
     return true;
 }
 
-void LinkDriver::Tell(const News &news)
+void LinkDriver::TellAll(const News &news)
 {
+    if (_config.Tap)
+    {
+        TellTap();
+    }
     for (const auto &queue : news.Delivered)
     {
         queue->NotifyEnqueued();
@@ -225,6 +229,25 @@ void LinkDriver::Tell(const News &news)
     for (const auto &[receipt, outcome] : news.Settled)
     {
         receipt->Settle(outcome);
+    }
+}
+
+void LinkDriver::TellTap()
+{
+    std::vector<IncomingQueues::Received> received;
+    std::vector<Outcome> outcomes;
+    {
+        const std::lock_guard lock(_mutex);
+        _incoming.TakeReceived(received);
+        outcomes.swap(_outcomes);
+    }
+    for (const IncomingQueues::Received &message : received)
+    {
+        _config.Tap->Received({message.Source, message.Queue, message.Type, 0, message.Payload->View()});
+    }
+    for (const Outcome &outcome : outcomes)
+    {
+        _config.Tap->Settled(outcome.Node, outcome.Queue, outcome.Id, outcome.What);
     }
 }
 
@@ -247,16 +270,8 @@ void LinkDriver::VisitPaths(const std::function<void(std::string_view, const Lin
 
 LinkDriver::Duration LinkDriver::ShortestRoundTrip(std::string_view node) const
 {
-    Duration shortest{0};
-    VisitPaths(
-        [&](std::string_view name, const LinkPathState &path)
-        {
-            if (name == node)
-            {
-                shortest = path.Shortest;
-            }
-        });
-    return shortest;
+    const std::lock_guard lock(_mutex);
+    return _links->ShortestRoundTrip(node);
 }
 
 void LinkDriver::HeardOf(const std::string &node, std::uint64_t incarnation)
@@ -306,6 +321,10 @@ bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, cons
         }
         TakeNews(news);
     }
+    if (_config.Tap && enqueued.Accepted())
+    {
+        _config.Tap->Sent({node, queue, type, enqueued.Id, payload->View()});
+    }
     Tell(news);  // to accept one may mean to find that others have expired
     if (sooner)
     {
@@ -319,9 +338,13 @@ void LinkDriver::Send(const LinkFrame &frame)
     _outbox.Add(frame);
 }
 
-void LinkDriver::OnOutcome(std::uint64_t id, std::string_view /*destination*/, std::string_view /*queue*/,
+void LinkDriver::OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                            LinkOutcome outcome)
 {
+    if (_config.Tap)
+    {
+        _outcomes.push_back({std::string(destination), std::string(queue), id, OutcomeOf(outcome)});
+    }
     // LinkNode counts them by link; here it is only about those that somebody wants to know of.
     const auto found = _receipts.find(id);
     if (found != _receipts.end())

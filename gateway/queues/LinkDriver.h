@@ -3,6 +3,7 @@
 #include <rabit/RabitQueueReceipt.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/GatewayTap.h>
 #include <rabit/gateway/links/LinkNode.h>
 #include <rabit/transport/Transport.h>
 
@@ -114,6 +115,13 @@ private:
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
 
+    // What became of a message.
+    struct Outcome
+    {
+        std::string Node, Queue;
+        std::uint64_t Id = 0;
+        QueueOutcome What = QueueOutcome::Pending;
+    };
     // What somebody outside is to be told once the mutex is free.
     struct News
     {
@@ -138,7 +146,16 @@ private:
     // come later, and was not woken for anything as early.
     bool ServeBy(LinkTime due);
     // Without the mutex.
-    static void Tell(const News &news);
+    void Tell(const News &news)
+    {
+        if (_config.Tap || !news.Delivered.empty() || !news.Settled.empty())
+        {
+            TellAll(news);
+        }
+    }
+    void TellAll(const News &news);
+    // The same: what came and what became of messages, before anybody else is told.
+    void TellTap();
 
     // Handler of the transport.
     void OnFrame(SampleBytes bytes, const SampleInfo &info);
@@ -158,6 +175,7 @@ private:
     IncomingQueues _incoming;                              // guarded, but for Decode
     std::unordered_map<std::uint64_t, Receipt> _receipts;  // of messages without an outcome, by their ids
     std::vector<std::pair<Receipt, QueueOutcome>> _settled;
+    std::vector<Outcome> _outcomes;  // for the tap
     LinkDatagrams _outbox;
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest

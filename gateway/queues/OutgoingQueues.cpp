@@ -39,8 +39,8 @@ bool Settle(const std::shared_ptr<RabitQueueReceipt> &receipt, QueueOutcome outc
 }  // namespace
 
 OutgoingQueues::OutgoingQueues(const std::string &ownNode, RabitWorkspace &workspace,
-                               const RemoteQueues &remote, LinkDriver &links)
-    : _ownNode(ownNode), _workspace(workspace), _remote(remote), _links(links)
+                               const RemoteQueues &remote, LinkDriver &links, std::shared_ptr<GatewayTap> tap)
+    : _ownNode(ownNode), _workspace(workspace), _remote(remote), _links(links), _tap(std::move(tap))
 {
 }
 
@@ -126,8 +126,9 @@ bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &t
     if (nodes.empty())
     {
         Begin(receipt, 1);
-        return Refuse("*", queue, QueueAcceptance::UnknownNode,
-                      "no live node accepts `" + type.Name() + "` for `" + queue + "`", receipt);
+        const std::string reason = "no live node accepts `" + type.Name() + "` for `" + queue + "`";
+        TellRefused("*", queue, type, payload, reason);
+        return Refuse("*", queue, QueueAcceptance::UnknownNode, reason, receipt);
     }
     _refusals.Forgive("*", queue);
     Begin(receipt, nodes.size());
@@ -145,14 +146,25 @@ bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue
     const RemoteQueues::Answer answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
     if (answer.What != QueueAcceptance::Accepted)
     {
+        TellRefused(node, queue, type, payload, answer.Reason);
         return Refuse(node, queue, answer.What, answer.Reason, receipt);
     }
     if (!_links.Enqueue(node, queue, type.Name(), payload, receipt))
     {
+        TellRefused(node, queue, type, payload, "too many messages for it wait here");
         return Settle(receipt, QueueOutcome::Refused);  // counted by the link
     }
     _refusals.Forgive(node, queue);
     return true;
+}
+
+void OutgoingQueues::TellRefused(const std::string &node, const std::string &queue, const MessageType &type,
+                                 const LinkPayload &payload, const std::string &reason) const
+{
+    if (_tap)
+    {
+        _tap->Refused({node, queue, type.Name(), 0, payload->View()}, reason);
+    }
 }
 
 bool OutgoingQueues::Refuse(const std::string &node, const std::string &queue, QueueAcceptance acceptance,

@@ -3,6 +3,7 @@
 #include <rabit/QueueForwarder.h>
 #include <rabit/RabitQueueReceipt.h>
 #include <rabit/RabitWorkspace.h>
+#include <rabit/gateway/GatewayTap.h>
 #include <rabit/gateway/links/LinkPayload.h>
 #include <rabit/idl/MessageType.h>
 
@@ -26,9 +27,9 @@ namespace Rabit
 class OutgoingQueues final : public QueueForwarder
 {
 public:
-    // References must outlive the object.
+    // References must outlive the object. The tap, if there is one, is told of what is refused here.
     OutgoingQueues(const std::string &ownNode, RabitWorkspace &workspace, const RemoteQueues &remote,
-                   LinkDriver &links);
+                   LinkDriver &links, std::shared_ptr<GatewayTap> tap = nullptr);
 
     bool Handles(const std::string &queueName) const override;
     bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
@@ -53,6 +54,8 @@ private:
                    const LinkPayload &payload, const Receipt &receipt);
     bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
                       const Receipt &receipt);
+    void TellRefused(const std::string &node, const std::string &queue, const MessageType &type,
+                     const LinkPayload &payload, const std::string &reason) const;
     // Returns false.
     bool Refuse(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
                 const std::string &reason, const Receipt &receipt);
@@ -63,6 +66,7 @@ private:
     LinkDriver &_links;
     const std::shared_ptr<LinkPayloadPool> _payloads = std::make_shared<LinkPayloadPool>();
     RefusalCounts _refusals;
+    const std::shared_ptr<GatewayTap> _tap;
 };
 
 }  // namespace Rabit

@@ -30,6 +30,11 @@ void AddBytesCommand(CLI::App &app, Chosen &chosen);
 void AddAgeCommand(CLI::App &app, Chosen &chosen);
 void AddSendCommand(CLI::App &app, Chosen &chosen);
 void AddPostCommand(CLI::App &app, Chosen &chosen);
+void AddRecordCommand(CLI::App &app, Chosen &chosen);
+void AddInfoCommand(CLI::App &app, Chosen &chosen);
+void AddRecoverCommand(CLI::App &app, Chosen &chosen);
+void AddCheckCommand(CLI::App &app, Chosen &chosen);
+void AddDoctorCommand(CLI::App &app, Chosen &chosen);
 
 // For the shells: writes what the last word of a line can be, one a line; the line is without the program's
 // name. Looks into the network that the line names where that is wanted. Returns the exit code; may throw

@@ -75,7 +75,7 @@ Candidates ValuesOf(const CLI::Option &option)
     {
         return {"state", "telemetry"};
     }
-    if (name == "config" || name == "idl")
+    if (name == "config" || name == "idl" || name == "to")
     {
         return {Files};
     }
@@ -107,53 +107,56 @@ Candidates ArgumentsIn(const std::vector<FleetSession::Node> &nodes, const std::
                        const Words &before)
 {
     Candidates found;
-    const bool isListening = command == "echo" || command == "hz" || command == "bytes" || command == "age";
+    const auto addType = [&found](const std::string &type)
+    {
+        if (IsTypeName(type))
+        {
+            found.insert(type);
+        }
+    };
+    const bool isListening =
+        command == "echo" || command == "hz" || command == "bytes" || command == "age" || command == "record";
+    const bool isType = before.empty() && command == "type";
+    for (const Offers::Message &message : Offers::MessagesOf(nodes))
+    {
+        if ((before.empty() && isListening) || isType)
+        {
+            for (const std::string &node : message.Publishers)
+            {
+                found.insert(node + "/" + message.Name);
+            }
+        }
+        if (before.size() == 1 && command == "post")
+        {
+            addType(message.Type);
+        }
+    }
+    if (isType)
+    {
+        for (const auto &[type, definitions] : Offers::TypesOf(nodes))
+        {
+            addType(type);
+        }
+    }
+    if (command != "send" || before.size() > 1)
+    {
+        return found;
+    }
     for (const FleetSession::Node &node : nodes)
     {
-        if (!node.Offers)
+        for (const auto &queue : node.Offers ? node.Offers->accepts : std::vector<Gateway::AcceptedQueue>())
         {
-            continue;
-        }
-        const auto addType = [&found](const std::string &type)
-        {
-            if (IsTypeName(type))
+            const Candidates addresses{node.Name + "/" + queue.queue, "*/" + queue.queue};
+            if (before.empty())
             {
-                found.insert(type);
+                found.insert(addresses.begin(), addresses.end());
             }
-        };
-        const auto addTypes = [&addType](const auto &types)
-        {
-            for (const auto &type : types)
+            else if (addresses.contains(before.front()))
             {
-                addType(type.type);
-            }
-        };
-        for (const auto &message : node.Offers->publishes)
-        {
-            if (before.empty() && (isListening || command == "type"))
-            {
-                found.insert(node.Name + "/" + message.message);
-            }
-            if ((before.empty() && command == "type") || (before.size() == 1 && command == "post"))
-            {
-                addType(message.type);
-            }
-        }
-        for (const auto &queue : node.Offers->accepts)
-        {
-            const std::string address = node.Name + "/" + queue.queue;
-            if (before.empty() && command == "send")
-            {
-                found.insert({address, "*/" + queue.queue});
-            }
-            if (before.size() == 1 && command == "send" &&
-                (before.front() == address || before.front() == "*/" + queue.queue))
-            {
-                addTypes(queue.types);
-            }
-            if (before.empty() && command == "type")
-            {
-                addTypes(queue.types);
+                for (const auto &type : queue.types)
+                {
+                    addType(type.type);
+                }
             }
         }
     }
@@ -232,6 +235,14 @@ Candidates CandidatesFor(const CLI::App &app, const Words &line, Wakeup &wakeup)
     if (last.starts_with('-'))
     {
         return OptionsOf(command);
+    }
+    if (command.get_name() == "check" || command.get_name() == "info" || command.get_name() == "recover")
+    {
+        return {Files};
+    }
+    if (command.get_name() == "doctor")
+    {
+        return {};
     }
     return FromFleet(Words(std::next(named), before.end()), command.get_name(), arguments, wakeup);
 }

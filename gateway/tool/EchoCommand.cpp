@@ -146,16 +146,8 @@ private:
     std::map<std::string, double> _printed;
 };
 
-int Run(const Options &options, Wakeup &wakeup)
+int Show(const Options &options, FleetSession &session, Samples &samples, Wakeup &wakeup)
 {
-    GatewayConfig config = ConfigOf(options.Common);
-    config.Tool->AsksOf = Samples::NodesOf(options.What);
-    FleetSession session(config, options.Common, wakeup);
-    Samples samples(session, options.What);
-    if (const int code = samples.Open(options.Common.Wait); code != Good)
-    {
-        return code;
-    }
     Printer printer(options, samples);
     const double patience = session.Seconds() + options.Common.Wait;
     bool any = false;
@@ -189,6 +181,13 @@ int Run(const Options &options, Wakeup &wakeup)
         Output::Talk(std::to_string(samples.Missed()) + " values came faster than they were written");
     }
     return Good;
+}
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    return ListenTo(options.Common, options.What, wakeup,
+                    [&](FleetSession &session, Samples &samples)
+                    { return Show(options, session, samples, wakeup); });
 }
 
 }  // namespace

@@ -3,14 +3,21 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
 
 #include "Command.h"
 #include "CommonOptions.h"
 #include "FleetSession.h"
+#include "JsonNumber.h"
+#include "Meter.h"
+#include "MeterCommand.h"
 #include "Offers.h"
 #include "Output.h"
 #include "SafeText.h"
+#include "Samples.h"
 #include "Table.h"
 
 namespace Rabit::Tool
@@ -20,9 +27,64 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-int Run(const CommonOptions &options, Wakeup &wakeup)
+struct Options
+{
+    CommonOptions Common;
+    double For = 0.0;
+};
+
+// Values a second of each message, all its publishers together, as they come within that time. Of those of
+// which two or more came of one node.
+std::map<std::string, double> RatesOf(const std::vector<Offers::Message> &messages, double seconds,
+                                      FleetSession &session, Wakeup &wakeup)
+{
+    constexpr double look = 0.1;
+    std::map<std::string, std::unique_ptr<Samples>> all;
+    for (const Offers::Message &message : messages)
+    {
+        auto samples = std::make_unique<Samples>(session, message.Name);
+        if (all.count(message.Name) == 0 && samples->Open(session.Seconds()) == Good)
+        {
+            all[message.Name] = std::move(samples);
+        }
+    }
+    std::map<std::string, std::map<std::string, Meter>> meters;
+    const double end = session.Seconds() + seconds;
+    while (!wakeup.IsInterrupted() && session.Seconds() < end)
+    {
+        session.WaitUntil(std::min(end, session.Seconds() + look), [] { return false; });
+        for (const auto &[name, samples] : all)
+        {
+            for (const Sample &sample : samples->Take(session.Seconds()))
+            {
+                meters[name][sample.Node].Add(sample.At, sample.Bytes.size(), sample.Age);
+            }
+        }
+    }
+    std::map<std::string, double> rates;
+    for (const auto &[name, nodes] : meters)
+    {
+        for (const auto &[node, meter] : nodes)
+        {
+            if (std::isfinite(meter.Rate()))
+            {
+                rates[name] += meter.Rate();
+            }
+        }
+    }
+    return rates;
+}
+
+double RateOf(const Offers::Message &message, const std::map<std::string, double> &rates)
+{
+    const auto found = rates.find(message.Name);
+    return found == rates.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+}
+
+int Run(const Options &all, Wakeup &wakeup)
 {
     constexpr double everybody = 1.5;
+    const CommonOptions &options = all.Common;
     FleetSession session(ConfigOf(options), options, wakeup);
     session.WaitUntil(std::min(everybody, options.Wait), [] { return false; });
     session.WaitUntil(options.Wait, [&session]
@@ -32,8 +94,16 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         return session.NobodyThere();
     }
     const std::vector<FleetSession::Node> nodes = session.Nodes();
-    std::vector<std::vector<std::string>> rows{{"MESSAGE", "TYPE", "QOS", "PUBLISHED BY"}};
-    for (const Offers::Message &message : Offers::MessagesOf(nodes))
+    const std::vector<Offers::Message> messages = Offers::MessagesOf(nodes);
+    const auto rates =
+        all.For > 0.0 ? RatesOf(messages, all.For, session, wakeup) : std::map<std::string, double>();
+    std::vector<std::vector<std::string>> rows{{"MESSAGE", "TYPE", "QOS"}};
+    if (all.For > 0.0)
+    {
+        rows[0].emplace_back("RATE");
+    }
+    rows[0].emplace_back("PUBLISHED BY");
+    for (const Offers::Message &message : messages)
     {
         if (options.Json)
         {
@@ -41,7 +111,8 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
                                      {"type", message.Type},
                                      {"qos", message.Qos},
                                      {"definition", Offers::HashText(message.Definition)},
-                                     {"publishers", message.Publishers}}))
+                                     {"publishers", message.Publishers},
+                                     {"rate_hz", JsonNumber(RateOf(message, rates))}}))
             {
                 return Good;
             }
@@ -52,7 +123,12 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         {
             publishers += (publishers.empty() ? "" : " ") + node;
         }
-        rows.push_back({message.Name, SafeText(message.Type), message.Qos, publishers});
+        rows.push_back({message.Name, SafeText(message.Type), message.Qos});
+        if (all.For > 0.0)
+        {
+            rows.back().push_back(NumberText(RateOf(message, rates), 2, " Hz"));
+        }
+        rows.back().push_back(publishers);
     }
     if (!options.Json)
     {
@@ -80,9 +156,13 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
 
 void AddMessagesCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<CommonOptions>();
+    auto options = std::make_shared<Options>();
     CLI::App *command = app.add_subcommand("messages", "All messages, their types, and who publishes them");
-    AddCommonOptions(*command, *options, 1.8);
+    AddCommonOptions(*command, options->Common, 1.8);
+    command
+        ->add_option("--for", options->For,
+                     "Listen to all of them for so many seconds, and tell how often they come")
+        ->check(CLI::Range(0.1, 86400.0));
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

@@ -25,16 +25,9 @@ struct Options
     double For = 5.0;
 };
 
-int Run(const MeterCommand &what, const Options &options, Wakeup &wakeup)
+int Measure(const MeterCommand &what, const Options &options, FleetSession &session, Samples &samples,
+            Wakeup &wakeup)
 {
-    GatewayConfig config = ConfigOf(options.Common);
-    config.Tool->AsksOf = Samples::NodesOf(options.What);
-    FleetSession session(config, options.Common, wakeup);
-    Samples samples(session, options.What);
-    if (const int code = samples.Open(options.Common.Wait); code != Good)
-    {
-        return code;
-    }
     std::map<std::string, Meter> meters;
     const double end = session.Seconds() + options.For;
     while (!wakeup.IsInterrupted() && session.Seconds() < end)
@@ -83,6 +76,13 @@ int Run(const MeterCommand &what, const Options &options, Wakeup &wakeup)
         Output::Talk(std::to_string(samples.Missed()) + " values came faster than they were counted");
     }
     return Good;
+}
+
+int Run(const MeterCommand &what, const Options &options, Wakeup &wakeup)
+{
+    return ListenTo(options.Common, options.What, wakeup,
+                    [&](FleetSession &session, Samples &samples)
+                    { return Measure(what, options, session, samples, wakeup); });
 }
 
 }  // namespace

@@ -5,15 +5,14 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include "Command.h"
 #include "CommonOptions.h"
 #include "FleetSession.h"
 #include "FleetType.h"
+#include "IdlFiles.h"
 #include "Offers.h"
 #include "Output.h"
 #include "names/NamePattern.h"
@@ -44,16 +43,10 @@ struct Had
 
 Had FromFile(const Options &options)
 {
-    std::ostringstream text;
-    if (std::ifstream file(options.Idl, std::ios::binary); !file || !(text << file.rdbuf()))
-    {
-        Output::Talk("cannot read " + options.Idl);
-        return {nullptr, Usage};
-    }
-    ParsedType parsed = DynamicType::Parse(text.str(), options.Type);
+    const ParsedType parsed = IdlFiles({options.Idl}).Find(options.Type);
     if (!parsed.Type)
     {
-        Output::Talk(options.Idl + ": " + parsed.Reason);
+        Output::Talk(parsed.Reason);
     }
     return {parsed.Type, parsed.Type ? Good : Usage};
 }

@@ -42,11 +42,6 @@ Samples::Samples(FleetSession &session, const std::string &what) : _session(sess
     std::tie(_pattern, _message) = Split(what);
 }
 
-std::vector<std::string> Samples::NodesOf(const std::string &what)
-{
-    return {Split(what).first};
-}
-
 std::vector<const FleetSession::Node *> Samples::Publishers(
     const std::vector<FleetSession::Node> &nodes) const
 {
@@ -220,6 +215,17 @@ std::uint64_t Samples::Missed() const
 {
     const std::lock_guard lock(_inbox->Mutex);
     return _inbox->Missed;
+}
+
+int ListenTo(const CommonOptions &options, const std::string &what, Wakeup &wakeup,
+             const std::function<int(FleetSession &session, Samples &samples)> &body)
+{
+    GatewayConfig config = ConfigOf(options);
+    config.Tool->AsksOf = {Split(what).first};  // no other announcements are needed
+    FleetSession session(config, options, wakeup);
+    Samples samples(session, what);
+    const int code = samples.Open(options.Wait);
+    return code == Good ? body(session, samples) : code;
 }
 
 }  // namespace Rabit::Tool

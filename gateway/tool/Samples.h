@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -33,9 +34,6 @@ class Samples
 public:
     // `what`: `uav1/Pose`; the node may be a pattern; `Pose` alone is of all nodes.
     Samples(FleetSession &session, const std::string &what);
-
-    // Whose announcements are needed for that.
-    static std::vector<std::string> NodesOf(const std::string &what);
 
     // Waits so many seconds from the start of the session at most until somebody publishes it and its type is
     // here; then subscribes. Returns Good, or says why not and returns the exit code.
@@ -75,5 +73,10 @@ private:
     std::shared_ptr<Inbox> _inbox = std::make_shared<Inbox>();
     std::map<std::string, std::shared_ptr<DynamicMessage>> _followed;
 };
+
+// Joins the network for the values of `what` alone, and has the body take them once somebody publishes it.
+// Returns what the body returns, or says why it was not called and returns the exit code.
+int ListenTo(const CommonOptions &options, const std::string &what, Wakeup &wakeup,
+             const std::function<int(FleetSession &session, Samples &samples)> &body);
 
 }  // namespace Rabit::Tool

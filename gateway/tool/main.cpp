@@ -32,6 +32,11 @@ int main(int argc, char **argv)
     AddAgeCommand(app, chosen);
     AddSendCommand(app, chosen);
     AddPostCommand(app, chosen);
+    AddRecordCommand(app, chosen);
+    AddInfoCommand(app, chosen);
+    AddRecoverCommand(app, chosen);
+    AddCheckCommand(app, chosen);
+    AddDoctorCommand(app, chosen);
     // A line that is being written is none that can be parsed.
     const std::vector<std::string> words(argv + 1, argv + argc);
     const bool completes = words.size() > 1 && words[0] == "complete" && words[1] == "--";

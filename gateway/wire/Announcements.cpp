@@ -38,6 +38,12 @@ bool IsType(const std::string &name)
     return !name.empty() && name.size() <= LongestType;
 }
 
+std::uint64_t DefinitionOf(const std::string &name)
+{
+    const MessageType *type = MessageTypeRegistry::Find(name);
+    return type == nullptr ? 0 : DefinitionHash(*type);
+}
+
 bool IsPlausible(const Gateway::PublishedMessage &published)
 {
     return IsMessageName(published.message) && IsType(published.type) &&
@@ -64,7 +70,7 @@ Gateway::Announcement Of(const GatewayConfig &config)
         published.message = rule.Message;
         published.type = rule.Type;
         published.qos = GatewayTopics::NameOf(rule.Qos);
-        published.definition = DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
+        published.definition = DefinitionOf(rule.Type);
         announcement.publishes.push_back(published);
     }
     for (const AcceptRule &rule : config.Accept)
@@ -76,7 +82,7 @@ Gateway::Announcement Of(const GatewayConfig &config)
         {
             Gateway::QueueType type;
             type.type = name;
-            type.definition = DefinitionHash(*MessageTypeRegistry::Find(name));
+            type.definition = DefinitionOf(name);
             accepted.types.push_back(type);
         }
         announcement.accepts.push_back(accepted);

@@ -26,7 +26,8 @@ inline constexpr std::size_t MostTypes = 1024;
 // Bytes of the name of a type. Those of nodes, messages and queues are in names/NamePattern.h.
 inline constexpr std::size_t LongestType = 255;
 
-// What a node with that configuration says of itself. Its types must be known in this process.
+// What a node with that configuration says of itself. Types that this process does not know have the
+// definition 0.
 Gateway::Announcement Of(const GatewayConfig &config);
 
 // As it is on the wire.

@@ -37,6 +37,26 @@ TEST(RabitLog, GivesLinesToTheSinkOfTheProgramAndNotToStderr)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(RabitLog, TellsListenersBesideTheSinkForAsLongAsTheyAreKept)
+{
+    const CapturedLog log;
+    std::vector<std::string> heard;
+    {
+        const std::shared_ptr<void> listener = RabitLog::Listen(
+            [&heard](RabitLogLevel level, const std::string &text)
+            {
+                heard.push_back(text);
+                EXPECT_EQ(level, RabitLogLevel::Error);
+                throw std::runtime_error("no matter");
+            });
+        RabitLog::Write(RabitLogLevel::Error, "one");
+        RabitLog::Write(RabitLogLevel::Debug, "below the level");
+    }
+    RabitLog::Write(RabitLogLevel::Error, "two");
+    EXPECT_EQ(heard, std::vector<std::string>{"one"});
+    EXPECT_EQ(log.Lines(), (std::vector<std::string>{"one", "two"}));
+}
+
 TEST(RabitLog, TheLevelIsAThreshold)
 {
     const CapturedLog log;

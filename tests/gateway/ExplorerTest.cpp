@@ -71,6 +71,33 @@ TEST_F(ExplorerTest, TellsWhatEachNodeAnnounces)
     EXPECT_EQ(node.Offers->accepts[0].queue, "MissionControl");
 }
 
+TEST_F(ExplorerTest, TellsHowFarTheWallClocksOfOthersAreAhead)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    ASSERT_THAT(explorer.Nodes(), SizeIs(1));
+    const double ahead = uav.Clock->GpsTimeSeconds() - tool->Clock->GpsTimeSeconds();
+    ASSERT_GT(std::abs(ahead), 1.0) << "no two clocks agree";
+    EXPECT_NEAR(explorer.Nodes().front().ClockAhead, ahead, 0.1);
+}
+
+TEST_F(ExplorerTest, CountsBeatsThatWereLost)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(20s);
+    const FleetExplorer::Node good = explorer.Nodes().front();
+    EXPECT_GE(good.BeatsHeard, 30u);
+    EXPECT_EQ(good.BeatsMissed, 0u);
+    SimulatedFaults faults;
+    faults.Loss = 0.5;
+    fleet.Network.SetFaults("*", "*", faults);
+    fleet.RunFor(20s);
+    const FleetExplorer::Node bad = explorer.Nodes().front();
+    const double lost = static_cast<double>(bad.BeatsMissed);
+    const double heard = static_cast<double>(bad.BeatsHeard - good.BeatsHeard);
+    EXPECT_NEAR(lost / (lost + heard), 0.5, 0.3);
+}
+
 TEST_F(ExplorerTest, GetsTheTextOfATypeThatANodePublishesAcceptsOrKnows)
 {
     FleetExplorer &explorer = AddTool();

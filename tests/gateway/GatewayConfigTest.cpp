@@ -58,6 +58,73 @@ protected:
     std::filesystem::path _folder;
 };
 
+TEST_F(GatewayConfigTest, TakesTypesThatOnlySomebodyElseKnowsAsThatOneSays)
+{
+    const std::string file = (_folder / "node.yaml").string();
+    std::ofstream(file) << "node: a\npublish:\n  - {message: Pose, type: My::Pose}\n"
+                           "accept:\n  - {queue: Q, types: [My::Command]}\n";
+    const GatewayConfig config =
+        LoadGatewayConfig(file, "b", [](const std::string &) { return std::string(); });
+    EXPECT_EQ(config.Node, "b");
+    EXPECT_EQ(config.Publish.at(0).Type, "My::Pose");
+    EXPECT_EQ(config.Accept.at(0).Types.at(0), "My::Command");
+    try
+    {
+        LoadGatewayConfig(file, "b",
+                          [](const std::string &type)
+                          { return type == "My::Pose" ? "" : "no type `" + type + "`"; });
+        FAIL() << "it was taken";
+    }
+    catch (const ConfigError &error)
+    {
+        EXPECT_EQ(error.what(), file + ":5: no type `My::Command`");
+    }
+}
+
+TEST_F(GatewayConfigTest, ReadsWhatIsRecorded)
+{
+    EXPECT_FALSE(Load("node: a\n").Record);
+    const RecordSettings least = *Load("node: a\nrecord: {folder: /var/lib/rabit/recordings}\n").Record;
+    EXPECT_EQ(least.Folder, "/var/lib/rabit/recordings");
+    EXPECT_EQ(least.Messages, std::vector<std::string>{"*"});
+    const RecordSettings all = *Load(R"(
+node: a
+record:
+  folder: x
+  messages: [Pose, "uav*/Pose"]
+  except: "*/CameraView"
+  queues: off
+  split_size: 256MB
+  split_time: 2min
+  keep: 1.5GB
+  free: 0B
+  memory: 10MB
+)")
+                                    .Record;
+    EXPECT_EQ(all.Messages, (std::vector<std::string>{"Pose", "uav*/Pose"}));
+    EXPECT_EQ(all.Except, std::vector<std::string>{"*/CameraView"});
+    EXPECT_FALSE(all.Queues);
+    EXPECT_EQ(all.SplitSize, 256000000U);
+    EXPECT_EQ(all.SplitTime, 120s);
+    EXPECT_EQ(all.Keep, 1500000000U);
+    EXPECT_EQ(all.Free, 0U);
+    EXPECT_EQ(all.Memory, 10000000U);
+    EXPECT_FALSE(all.BlackBox);
+    const BlackBoxSettings box = *Load(R"(
+node: a
+record:
+  folder: x
+  black_box: {before: 2min, after: 5s, messages: [Alarm], queues: MissionControl, outcomes: off, problems: on}
+)")
+                                      .Record->BlackBox;
+    EXPECT_EQ(box.Before, 120s);
+    EXPECT_EQ(box.After, 5s);
+    EXPECT_EQ(box.Messages, std::vector<std::string>{"Alarm"});
+    EXPECT_EQ(box.Queues, std::vector<std::string>{"MissionControl"});
+    EXPECT_FALSE(box.Outcomes);
+    EXPECT_TRUE(box.Problems);
+}
+
 TEST_F(GatewayConfigTest, ReadsEveryKey)
 {
     const GatewayConfig config = Load(R"(
@@ -313,6 +380,23 @@ const BadConfig BadConfigs[] = {
      "node.yaml:3: `slowest_beat` is out of range; expected 500ms to 60s"},
     {"UnknownKeyOfTheRadio", "node: a\nradio:\n  buget: 5kB/s\n",
      "node.yaml:3: unknown key `buget` in the section `radio`; did you mean `budget`?"},
+    {"RecordWithoutFolder", "node: a\nrecord:\n  keep: 1GB\n",
+     "node.yaml:3: the section `record` needs the key `folder`"},
+    {"RecordIntoNothing", "node: a\nrecord:\n  folder: \"\"\n", "node.yaml:3: `folder` must be a word"},
+    {"UnknownKeyOfTheRecording", "node: a\nrecord:\n  folder: x\n  split_siz: 1GB\n",
+     "node.yaml:4: unknown key `split_siz` in the section `record`; did you mean `split_size`?"},
+    {"SizeWithoutUnit", "node: a\nrecord:\n  folder: x\n  keep: 1000\n",
+     "node.yaml:4: `keep` is `1000`; expected bytes such as 64MB or 1GB"},
+    {"SplitTooSmall", "node: a\nrecord:\n  folder: x\n  split_size: 10kB\n",
+     "node.yaml:4: `split_size` is `10kB`; expected 1MB to 1TB"},
+    {"SplitTooLong", "node: a\nrecord:\n  folder: x\n  split_time: 1441min\n",
+     "node.yaml:4: `split_time` is out of range; expected 1s to 1440min"},
+    {"BlackBoxTooLong", "node: a\nrecord:\n  folder: x\n  black_box:\n    before: 2s\n    after: 61min\n",
+     "node.yaml:6: `after` is out of range; expected 1s to 60min"},
+    {"NoNameOfAMessageForTheBlackBox", "node: a\nrecord:\n  folder: x\n  black_box: {messages: [\"a b\"]}\n",
+     "node.yaml:4: `a b` in `messages` is no message name; `*` and `?` stand for any characters"},
+    {"NoNameOfAMessageToRecord", "node: a\nrecord:\n  folder: x\n  except: [\"a b\"]\n",
+     "node.yaml:4: `a b` in `except` is no message name; `*` and `?` stand for any characters"},
     {"WordForRadio", "node: a\nradio: auto\n",
      "node.yaml:2: the section `radio` must be a mapping of keys to values"},
     {"UnknownClass", "node: a\npublish:\n  - {message: Pose, type: Uav::Pose, class: telemetri}\n",

@@ -36,14 +36,21 @@ public:
 class SimulatedNode
 {
 public:
+    // What is added to the reactor before the gateway, and may complete its configuration.
+    using AddFirst = std::function<void(SimulatedNode &node, GatewayConfig &config)>;
+
     // The monotonic clock is ahead of the network's by `monotonic`; the wall clock shows `gps` at the start.
-    SimulatedNode(const GatewayConfig &config, SimulatedNetwork &network, std::chrono::nanoseconds monotonic,
-                  double gps)
+    SimulatedNode(GatewayConfig config, SimulatedNetwork &network, std::chrono::nanoseconds monotonic,
+                  double gps, const AddFirst &addFirst = {})
         : Ahead(monotonic),
           Clock(std::make_shared<ManualClock>(gps, network.Now() + monotonic)),
           Workspace(Clock),
           Reactor(Workspace)
     {
+        if (addFirst)
+        {
+            addFirst(*this, config);
+        }
         auto gateway = std::make_unique<GatewayManager>(
             config, std::make_shared<SimulatedTransport>(network), Workspace,
             [engine = std::mt19937_64(static_cast<std::uint64_t>(monotonic.count()))]() mutable
@@ -142,10 +149,11 @@ public:
     }
 
     // Adds and starts a node. No two nodes' clocks agree. A second node of one name needs a key of its own.
-    SimulatedNode &Add(const GatewayConfig &config, double gps = 1.4e9, const std::string &key = "")
+    SimulatedNode &Add(const GatewayConfig &config, double gps = 1.4e9, const std::string &key = "",
+                       const SimulatedNode::AddFirst &addFirst = {})
     {
         _ahead += std::chrono::seconds(1000);
-        auto node = std::make_unique<SimulatedNode>(config, Network, _ahead, gps);
+        auto node = std::make_unique<SimulatedNode>(config, Network, _ahead, gps, addFirst);
         SimulatedNode &added = *node;
         _nodes[key.empty() ? config.Node : key] = std::move(node);
         added.Reactor.Start();

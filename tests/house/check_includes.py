@@ -25,19 +25,23 @@ ROOMS = {
     "presence": ["names", "clocks", "wire", "types"],
     "mirrors": ["air", "names", "clocks", "wire", "presence"],
     "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
+    "foreign": ["names", "clocks", "mirrors", "queues"],
     "report": ["names", "wire", "presence", "mirrors", "queues"],
     "manager": ["air", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "mirrors",
-                "queues", "report"],
+                "queues", "foreign", "report"],
 }
 
 # What a header's path says about where it belongs. The first pattern that fits holds.
 OWNERS = [
+    (r"recording/mcap/", "room mcap"),
+    (r"recording/", "room recording"),
     *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"guard/", "guard"),
     (r"rabit/idl/", "idl"),
     (r"rabit/dynamic/", "idl dynamic"),
     (r"model/", "idl model"),
     (r"dynamic/", "room idl dynamic"),
+    (r"ros/", "room idl ros"),
     (r"rabit/transport/TransportFactory\.h", "factory"),
     (r"rabit/transport/", "transport"),
     (r"rabit/fastdds/", "fastdds backend"),
@@ -46,6 +50,7 @@ OWNERS = [
     (r"rabit/gateway/links/", "links"),
     (r"rabit/gateway/", "gateway"),
     (r"rabit/node/", "node"),
+    (r"rabit/recording/", "recording"),
     (r"rabit/", "core"),
     (r"gateway\.idl\.h", "gateway messages"),
     (r".*\.idl\.h", "user messages"),
@@ -53,6 +58,7 @@ OWNERS = [
     (r"fastcdr/", "Fast-CDR"),
     (r"dds/|ddsc/|idlc/|idl/", "Cyclone DDS"),
     (r"yaml-cpp/", "yaml-cpp"),
+    (r"zstd\.h", "zstd"),
     (r"CLI/", "CLI11"),
     (r"boost/asio|boost/beast", "network"),
     (r"sys/socket\.h|netinet/|arpa/|netdb\.h", "network"),
@@ -65,6 +71,7 @@ ALLOWED = {
     "idl/runtime": {"core", "idl", "Fast-CDR"},
     "idl/model": {"idl model", "Cyclone DDS"},
     "idl/generator": {"idl model"},
+    "idl/ros": {"idl model", "room idl ros"},
     "idl/dynamic": {"core", "idl", "Fast-CDR", "idl model", "idl dynamic", "room idl dynamic"},
     "idl/dynamic/include": {"core", "idl", "idl dynamic"},
     "idl/dynamic/IdlParser.c": {"room idl dynamic", "Cyclone DDS"},
@@ -80,13 +87,16 @@ ALLOWED = {
     **{f"gateway/{room}": {"core", "idl", "transport", "gateway", "gateway messages", f"room {room}"}
        | ({"yaml-cpp"} if room == "configuration" else set())
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
-    "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "gateway messages", "room names", "room air",
-                     "CLI11"},
-    "gateway/node": {"core", "factory", "gateway", "node", "CLI11"},
+    # Files alone: no network, no messages.
+    "gateway/recording/mcap": {"room mcap", "zstd"},
+    "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room recording"},
+    "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
+                     "network", "guard", "CLI11", "room names", "room air", "room wire", "room manager", "room mcap", "room recording"},
+    "gateway/node": {"core", "factory", "gateway", "node", "recording", "CLI11"},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.
     "tests/bench": {"core", "idl", "idl dynamic", "transport", "factory", "simulated backend", "gateway", "gateway messages",
-                    "user messages", "CLI11"},
+                    "user messages", "room recording", "room mcap", "CLI11"},
     "tests/bench/raw": {"CLI11"},
     "tests/bench/raw/fastdds": {"Fast DDS", "Fast-CDR"},
     "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
@@ -109,7 +119,7 @@ def upward_rooms():
 def rooms_unknown(root):
     """Folders of the gateway that are no rooms, and so are not checked."""
     for folder in sorted((root / "gateway").glob("*/")):
-        if folder.name not in {"include", "links", "node", "tool", *ROOMS} and any(folder.rglob("*.h")):
+        if folder.name not in {"include", "links", "node", "recording", "tool", *ROOMS} and any(folder.rglob("*.h")):
             yield f"gateway/{folder.name}: no room that the house knows"
 
 

@@ -57,6 +57,11 @@ class CheckIncludes(unittest.TestCase):
             (root / "gateway/attic/A.h").write_text("")
             self.assertEqual(len(list(check_includes.rooms_unknown(root))), 1)
 
+    def test_files_of_recordings_know_nothing_but_themselves(self):
+        self.assertEqual(self.violations("gateway/recording/mcap/A.cpp", '#include "recording/mcap/Zstd.h"\n#include <zstd.h>\n'), [])
+        self.assertEqual(len(self.violations("gateway/recording/mcap/A.cpp", '#include <rabit/RabitMessage.h>\n')), 1)
+        self.assertEqual(len(self.violations("gateway/manager/A.cpp", '#include "recording/mcap/Zstd.h"\n')), 1)
+
     def test_standard_headers_are_for_everybody(self):
         self.assertEqual(self.violations("core/src/A.cpp", "#include <vector>\n#include <boost/bind/bind.hpp>\n"), [])
 

@@ -89,6 +89,9 @@ class Process:
         self._popen.stdin.write(line + "\n")
         self._popen.stdin.flush()
 
+    def signal(self, number):
+        self._popen.send_signal(number)
+
     def kill(self):
         self._popen.kill()
         return self._popen.wait()

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -102,6 +103,26 @@ TEST_F(RunNodeTest, ACheckMakesTheManagersAndRunsNothing)
     EXPECT_EQ(Run({"--check"}), 0);
     EXPECT_EQ(_node, "one");
     EXPECT_EQ(_passes, 0);
+}
+
+TEST_F(RunNodeTest, RecordsTheNodeIfTheConfigurationSaysSo)
+{
+    const auto folder =
+        std::filesystem::path(::testing::TempDir()) / ("rabit_run_node_" + std::to_string(::getpid()));
+    std::ofstream(_file, std::ios::app) << "record: {folder: " << folder.string() << ", free: 0B}\n";
+    EXPECT_EQ(Run({}), 0);
+    std::string content;
+    int files = 0;
+    for (const auto &entry : std::filesystem::directory_iterator(folder))
+    {
+        std::ifstream stream(entry.path(), std::ios::binary);
+        content.assign(std::istreambuf_iterator<char>(stream), {});
+        ++files;
+    }
+    std::filesystem::remove_all(folder);
+    EXPECT_EQ(files, 1);
+    EXPECT_THAT(content, HasSubstr("record: {folder: ")) << "the configuration";
+    EXPECT_TRUE(content.ends_with("MCAP0\r\n")) << "it was not ended in order";
 }
 
 TEST_F(RunNodeTest, AWrongConfigurationIsOneLineAndNothingIsMade)

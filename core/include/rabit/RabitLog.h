@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace Rabit
@@ -29,6 +30,9 @@ public:
     // Replaces the sink; an empty one restores stderr. A call of the former sink may still be running on
     // another thread when this returns.
     static void SetSink(Sink sink);
+    // Has each line told to somebody besides the sink, who is called as it is, for as long as what this
+    // returns is kept. A call may still be running when that is dropped.
+    [[nodiscard]] static std::shared_ptr<void> Listen(Sink listener);
     // Lines below this level are dropped. The default is Warning.
     static void SetLevel(RabitLogLevel level);
     static RabitLogLevel GetLevel();

@@ -88,7 +88,6 @@ void LinkNode::VisitPaths(
         if (!peer->AllSenders().empty())
         {
             visit(name, {.RoundTrip = path.Times().Smoothed(),
-                         .Shortest = path.Shortest(),
                          .QueueingDelay = path.QueueingDelay(),
                          .Window = path.Window(),
                          .InFlight = path.InFlight(),
@@ -96,6 +95,13 @@ void LinkNode::VisitPaths(
                          .LossRate = path.LossRate()});
         }
     }
+}
+
+LinkTime LinkNode::ShortestRoundTrip(std::string_view node) const
+{
+    const auto peer = _peers.find(node);
+    const bool isKnown = peer != _peers.end() && !peer->second->AllSenders().empty();
+    return isKnown ? peer->second->Path().Shortest() : LinkTime(0);
 }
 
 std::string LinkNode::Describe() const

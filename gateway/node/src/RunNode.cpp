@@ -1,5 +1,6 @@
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/node/RunNode.h>
+#include <rabit/recording/RecorderManager.h>
 #include <rabit/transport/TransportFactory.h>
 
 #include <CLI/CLI.hpp>
@@ -29,6 +30,11 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
             if (options.Check)
             {
                 return 0;
+            }
+            // Before the gateway, which tells it what goes through queues.
+            if (config.Record)
+            {
+                reactor.AddManager(std::make_unique<RecorderManager>(config));
             }
             reactor.AddManager(std::make_unique<GatewayManager>(config, MakeTransport(config.Transport)));
             reactor.Run();  // until SIGINT or SIGTERM

@@ -14,11 +14,14 @@
 #include <string>
 
 #include "consumer.idl.h"
+#include "wind_msgs/msg/Wind.idl.h"
 
 namespace
 {
 
 constexpr std::uint32_t Readings = 200;
+// Of a package of ROS 2.
+static_assert(wind_msgs::msg::Wind_Constants::CALM == 0);
 
 class Exchange : public Rabit::RabitManager
 {

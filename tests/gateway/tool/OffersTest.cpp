@@ -36,6 +36,19 @@ TEST(Offers, AMessageOfSeveralNodesIsOne)
     EXPECT_THAT(messages[0].Publishers, ElementsAre("uav1", "uav2"));
 }
 
+TEST(Offers, AHundredNodesAreOneLineForEachMessage)
+{
+    std::vector<FleetSession::Node> nodes;
+    for (int i = 1; i <= 100; ++i)
+    {
+        nodes.push_back(NodeOf("uav" + std::to_string(i), "Pose", "Uav::Pose", i == 100 ? 2 : 1));
+    }
+    const auto messages = Offers::MessagesOf(nodes);
+    ASSERT_THAT(messages, SizeIs(2));
+    EXPECT_THAT(messages[0].Publishers, SizeIs(99));
+    EXPECT_THAT(Offers::Differences(nodes), SizeIs(1));
+}
+
 TEST(Offers, AMessageOfTwoTypesOrDefinitionsIsTwo)
 {
     EXPECT_THAT(

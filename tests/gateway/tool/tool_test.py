@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
@@ -23,9 +24,11 @@ HASH = re.compile(r"^[0-9a-f]{16}$")
 class Rabit:
     """Runs the program as one who types it."""
 
-    def __init__(self, program, transport, domain):
+    def __init__(self, program, transport, domain, uav=None):
         self.program = program
         self.transport = transport
+        self.domain = domain
+        self.uav = uav
         self._network = ["--interface", "127.0.0.1", "--domain", str(domain), "--transport", transport]
 
     def argv(self, command, *arguments):
@@ -88,7 +91,7 @@ def messages_are_listed_with_their_types_and_publishers(rabit):
         return listed if done.returncode == 0 and any(row["publishers"] == ["uav1", "uav2"] for row in listed) else None
 
     listed = until(both)
-    assert keys(listed[0]) == ["message", "type", "qos", "definition", "publishers"]
+    assert keys(listed[0]) == ["message", "type", "qos", "definition", "publishers", "rate_hz"]
     assert {"Pose", "MissionState", "Health"} <= {row["message"] for row in listed}
 
 
@@ -222,7 +225,8 @@ def a_pipe_that_is_closed_ends_it_well(rabit):
 
 def wrong_usage_is_2(rabit):
     for arguments in (["nodes", "--interfase", "lo"], ["nose"], [], ["echo"], ["nodes", "--domain", "233"],
-                      ["nodes", "--transport", "fastdss"], ["nodes", "--config", "/no/such/file"]):
+                      ["nodes", "--transport", "fastdss"], ["nodes", "--config", "/no/such/file"], ["check"],
+                      ["check", "/no/such/file"], ["check", "--rate", "Pose", __file__]):
         done = subprocess.run([rabit.program, *arguments], capture_output=True, text=True, timeout=LIMIT,
                               check=False)
         assert done.returncode == 2, (arguments, done)
@@ -241,6 +245,137 @@ def a_configuration_of_a_node_serves_for_its_network_alone(rabit):
                            "--domain", str(harness.domain())], capture_output=True, text=True, timeout=LIMIT,
                           check=False)
     assert done.returncode == 0, done.stderr
+
+
+SWARM = harness.ROOT / "examples/swarm"
+FLEET = [f"uav1,uav2={SWARM}/uav.yaml", f"uav1.vision,uav2.vision={SWARM}/vision.yaml",
+         str(harness.ROOT / "examples/ground_station/ground.yaml")]
+
+
+def check(rabit, *arguments):
+    return subprocess.run([rabit.program, "check", *arguments], capture_output=True, text=True, timeout=LIMIT,
+                          check=False)
+
+
+def configurations_of_a_fleet_are_checked_against_each_other(rabit):
+    good = check(rabit, *FLEET)
+    assert good.returncode == 0 and good.stderr == "" and good.stdout.startswith("NODE"), good
+    with tempfile.TemporaryDirectory() as folder:
+        wrong = pathlib.Path(folder) / "ground.yaml"
+        wrong.write_text((harness.ROOT / "examples/ground_station/ground.yaml").read_text()
+                         .replace("message: Health", "message: Helth"))
+        done = check(rabit, *FLEET[:2], str(wrong))
+        assert done.returncode == 1, done
+        assert f"{wrong}:11: subscribe Helth: nobody publishes it; did you mean `Health`?\n" in done.stdout, done
+        wrong.write_text("node: ground\ndomian: 7\n")
+        done = check(rabit, *FLEET[:2], str(wrong))
+        assert done.returncode == 1, done
+        assert done.stdout.startswith(f"{wrong}:2: unknown key `domian` in the configuration; did you mean `domain`?\n")
+
+
+def what_a_fleet_puts_on_the_air_is_checked_against_its_budgets(rabit):
+    idl = str(harness.ROOT / "idl/messages/uav.idl")
+    with tempfile.TemporaryDirectory() as folder:
+        thin = pathlib.Path(folder) / "uav.yaml"
+        thin.write_text((SWARM / "uav.yaml").read_text() + "radio:\n  budget: 1kB/s\n")
+        fleet = [f"uav1,uav2={thin}", *FLEET[1:], "--idl", idl, "--json"]
+        done = check(rabit, *fleet, "--rate", "Pose=5")
+        assert done.returncode == 0, done
+        plan = next(row for row in map(json.loads, done.stdout.splitlines()) if row.get("node") == "uav1")
+        assert keys(plan) == ["node", "file", "air_bytes_per_s", "budget_bytes_per_s", "not_known", "items"], plan
+        assert plan["budget_bytes_per_s"] == 1000 and 740 < plan["air_bytes_per_s"] < 1000, plan
+        assert "rate of Pose" not in plan["not_known"] and "rate and size of Findings" in plan["not_known"], plan
+        pose = next(item for item in plan["items"] if item["what"] == "Pose")
+        assert pose == {"what": "Pose", "bytes": 148, "rate_hz": 5, "copies": 1, "bytes_per_s": 740}, pose
+        done = check(rabit, *fleet, "--rate", "Pose=10")
+        problem = json.loads(done.stdout.splitlines()[0])
+        assert done.returncode == 1 and keys(problem) == ["problem", "file", "line", "nodes"], done
+        assert problem["line"] == len(thin.read_text().splitlines()) and problem["nodes"] == ["uav1", "uav2"], problem
+        assert "1000 B/s" in problem["problem"] and "Pose" in problem["problem"], problem
+
+
+def how_often_all_messages_come_is_measured_together(rabit):
+    listed, done = rabit.objects("messages", "--for", "3", "--wait", "10")
+    rates = {row["message"]: row["rate_hz"] for row in listed}
+    assert done.returncode == 0 and 2 < rates["Pose"] < 200, done
+    table = rabit.run("messages", "--for", "1")
+    assert table.stdout.split()[:4] == ["MESSAGE", "TYPE", "QOS", "RATE"], table
+
+
+def a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well(rabit):
+    def well():
+        findings, done = rabit.objects("doctor", "--wait", "4")
+        return findings if done.returncode == 0 else None
+
+    findings = until(well)
+    assert all(keys(finding) == ["level", "subject", "text", "advice"] for finding in findings), findings
+    said = {finding["subject"]: finding["text"] for finding in findings}
+    assert {"interface lo", "nodes", "clocks", "multicast on lo"} <= set(said), findings
+    assert {"uav1", "uav2"} <= set(said["nodes"].split()), said
+    assert "answered by 127.0.0.1" in said["multicast on lo"], said
+
+
+def a_doctor_tells_of_the_domain_that_the_others_are_in(rabit):
+    other = (rabit.domain + 100) % 200
+
+    def named():
+        done = Rabit(rabit.program, rabit.transport, other).run("doctor", "--wait", "4")
+        assert done.returncode == 3 and "nobody was heard" in done.stderr, done
+        return re.search(rf"^! domain {rabit.domain}: .*uav1.*--domain {rabit.domain}", done.stdout, re.MULTILINE)
+    until(named)
+
+
+def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there(rabit):
+    with harness.Processes() as processes:
+        for _ in range(2):
+            processes.start([rabit.uav, "--config", SWARM / "uav.yaml", "--node", "twin", "--domain", rabit.domain,
+                             "--transport", rabit.transport])
+
+        def twice():
+            done = rabit.run("doctor", "--wait", "6")
+            return "! node twin: two live nodes have this name. Do: give one of them another one" in done.stdout
+        until(twice)
+    done = subprocess.run([rabit.program, "doctor", "--interface", "nosuch0", "--wait", "1"], capture_output=True,
+                          text=True, timeout=LIMIT, check=False)
+    assert done.returncode == 3 and "! interface nosuch0: this machine has none. Do: name one of " in done.stdout, done
+
+
+def a_node_that_vanishes_meanwhile_is_waited_for_and_what_is_sent_to_it_is_not_delivered(rabit):
+    with harness.Processes() as processes:
+        gone = processes.start([rabit.uav, "--config", SWARM / "uav.yaml", "--node", "uav7", "--domain", rabit.domain,
+                                "--transport", rabit.transport])
+        echo = processes.start(rabit.argv("echo", "uav7/Pose", "--wait", "60"))
+        send = processes.start(rabit.argv("send", "uav7/MissionControl", "Uav::GoHome", "-", "--expire", "3", "--json",
+                                          "--wait", "60"))
+        echo.wait_for(lambda text: text.startswith("uav7/Pose"), LIMIT)
+        send.tell("{}")
+        send.wait_for(lambda text: '"outcome":"delivered"' in text, LIMIT)
+        gone.kill()
+        send.tell("{}")
+        # Whether it got there before the end came nobody can know.
+        send.wait_for(lambda text: '"outcome":"expired"' in text or '"outcome":"in doubt"' in text, LIMIT)
+        os.kill(send.pid, signal.SIGINT)
+        assert send.exit_code(LIMIT) == 1
+        os.kill(echo.pid, signal.SIGINT)
+        assert echo.exit_code(LIMIT) == 0, echo.lines
+
+
+def no_text_of_a_stranger_commands_the_terminal(rabit):
+    hostile = "\\u001b[2J\\u0007\\u009b31m\\r\\u001b]0;x\\u0007"
+    with harness.Processes() as processes:
+        post = processes.start(rabit.argv("post", "evil/MissionState", "Uav::MissionState", '{"text": "' + hostile + '"}',
+                                          "--rate", "5", "--wait", "10"))
+        for arguments in (("echo", "evil/MissionState", "--once"), ("echo", "evil/MissionState", "--once", "--json"),
+                          ("echo", "evil/MissionState", "--once", "--field", "text"), ("nodes",), ("messages",)):
+            done = rabit.run(*arguments, "--wait", "60" if arguments[0] == "echo" else "3")
+            assert done.returncode in (0, 1) and done.stdout, done
+            text = done.stdout + done.stderr
+            assert all(" " <= c <= "~" or c == "\n" for c in text), (arguments, text)
+        os.kill(post.pid, signal.SIGINT)
+        assert post.exit_code(LIMIT) in (0, 1), post.lines
+    for bad in ("uav1/Po\x1b[2Jse", "\x1b]0;x\x07/Pose"):
+        done = rabit.run("echo", bad, "--wait", "2")
+        assert done.returncode != 0 and "\x1b" not in done.stdout + done.stderr, done
 
 
 COMPLETION = harness.ROOT / "gateway/tool/completion"
@@ -297,7 +432,7 @@ def the_manual_tells_of_every_command_and_every_common_option(rabit):
                               check=True).stdout.split()
     assert len(commands) >= 9, commands
     for command in commands:
-        assert re.search(rf"^\.BI? {command}\b", manual, re.MULTILINE), command
+        assert re.search(rf"^\.B[IR]? {command}\b", manual, re.MULTILINE), command
     for option in ("--config", "--domain", "--transport", "--interface", "--node", "--wait", "--json", "--verbose"):
         assert option in manual, option
 
@@ -312,6 +447,14 @@ TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          a_message_is_posted_as_a_node_of_the_given_name, what_cannot_be_posted_is_told,
          ctrl_c_ends_it_well, a_pipe_that_is_closed_ends_it_well, wrong_usage_is_2, nobody_in_the_domain_is_3,
          a_configuration_of_a_node_serves_for_its_network_alone,
+         how_often_all_messages_come_is_measured_together,
+         a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well,
+         a_doctor_tells_of_the_domain_that_the_others_are_in,
+         a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there,
+         a_node_that_vanishes_meanwhile_is_waited_for_and_what_is_sent_to_it_is_not_delivered,
+         no_text_of_a_stranger_commands_the_terminal,
+         configurations_of_a_fleet_are_checked_against_each_other,
+         what_a_fleet_puts_on_the_air_is_checked_against_its_budgets,
          shells_complete_commands_and_options, shells_complete_what_the_fleet_has,
          the_manual_tells_of_every_command_and_every_common_option]
 
@@ -327,7 +470,7 @@ def main():
         for transport in transports:
             for test in [test for test in TESTS if not sys.argv[4:] or test.__name__ in sys.argv[4:]]:
                 try:
-                    test(Rabit(program, transport, harness.domain()))
+                    test(Rabit(program, transport, harness.domain(), uav))
                     print(f"ok      {transport} {test.__name__}", flush=True)
                 except Exception as error:  # pylint: disable=broad-except
                     failed.append(test.__name__)

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,13 @@ public:
         // Empty: its announcement has not come. Names in it are valid ones, but for the types', which may be
         // any text.
         std::optional<Gateway::Announcement> Offers;
+        bool IsTwice = false;  // another live node has the same name
+        // How far its wall clock is ahead of this node's, in seconds; half a round trip more or less. NaN:
+        // not known.
+        double ClockAhead = std::numeric_limits<double>::quiet_NaN();
+        // Beats of its present life since it was first heard: that came, and that did not.
+        std::uint64_t BeatsHeard = 0;
+        std::uint64_t BeatsMissed = 0;
     };
     // The other nodes, by name.
     virtual std::vector<Node> Nodes() const = 0;

@@ -1,17 +1,20 @@
 #pragma once
 
+#include <rabit/gateway/ForeignRule.h>
 #include <rabit/gateway/TrafficClass.h>
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace Rabit
 {
+class GatewayTap;
 
 // How a mirrored message travels. Both ends of a message must agree; a subscription takes over what the
 // publisher announces unless it names one itself.
@@ -97,6 +100,38 @@ struct ToolSettings
     std::vector<std::string> AsksOf = {"*"};
 };
 
+// A recording that is written only when something happens: then what was there in the time before, and all
+// until that time after it. What happens meanwhile prolongs it.
+struct BlackBoxSettings
+{
+    std::chrono::milliseconds Before{60'000};  // 1 s to 1 h; as much of it as RecordSettings::Memory holds
+    std::chrono::milliseconds After{10'000};   // likewise
+    // What has it written, besides RecorderManager::WriteBlackBox.
+    std::vector<std::string>
+        Messages{};  // a post of one of these local messages; patterns, as all that follows
+    std::vector<std::string> Queues{};  // a message that is put into one of these queues from elsewhere
+    bool Outcomes = true;               // a message for a queue elsewhere that is not delivered
+    bool Problems = false;              // a problem in Gateway/Fleet that was not there before
+};
+
+// What of this process is recorded, and where to (recording/README.md). It is for the program's
+// RecorderManager: Rabit::RunNode makes one.
+struct RecordSettings
+{
+    std::string Folder;
+    // Local messages, by name or pattern with `*` and `?`; what both lists name is not recorded.
+    std::vector<std::string> Messages = {"*"};
+    std::vector<std::string> Except{};
+    bool Queues = true;                                // messages to and from queues of other nodes
+    std::uint64_t SplitSize = std::uint64_t{1} << 30;  // a file is ended at so many bytes, 1 MB to 1 TB
+    std::chrono::milliseconds SplitTime{600'000};      // or after so long, 1 s to 24 h
+    std::uint64_t Keep = 0;                       // bytes of this node's files that are kept; 0: all that fit
+    std::uint64_t Free = std::uint64_t{1} << 30;  // bytes of the disk that stay free
+    std::uint64_t Memory = 64U << 20;             // bytes that may wait for the disk, 1 MB to 64 GB
+    std::optional<BlackBoxSettings> BlackBox{};   // set: only when something happens
+    int Line = 0;
+};
+
 // Everything a gateway is told. Fill it in code, or load it with LoadGatewayConfig.
 struct GatewayConfig
 {
@@ -125,12 +160,18 @@ struct GatewayConfig
     std::vector<SubscribeRule> Subscribe;
     std::vector<AcceptRule> Accept;
     std::vector<SendRule> Send;
+    std::vector<ForeignRule> Foreign;
+
+    // Set: this is recorded.
+    std::optional<RecordSettings> Record{};
+    // Is told of queue messages and clocks; null: nobody is. Only in code.
+    std::shared_ptr<GatewayTap> Tap{};
 
     // Set: this node is a tool. Only in code.
     std::optional<ToolSettings> Tool{};
 
     // For error messages: the file it came from and the line of each of its top-level keys, and of those of
-    // the section `radio` (`radio.budget`); empty: made in code.
+    // the sections `radio` and `record` (`radio.budget`); empty: made in code.
     std::string File;
     std::map<std::string, int> Lines;
 };

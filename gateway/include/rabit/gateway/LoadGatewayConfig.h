@@ -3,6 +3,7 @@
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayConfig.h>
 
+#include <functional>
 #include <string>
 
 namespace Rabit
@@ -15,8 +16,15 @@ namespace Rabit
 // file, line and the nearest right word.
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride = "");
 
+// Says why there is no such IDL type, for the message; empty if there is one.
+using TypeCheck = std::function<std::string(const std::string &type)>;
+
+// The same for a program that was not built with the types of that node: `whyNoType` tells which there are.
+GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride,
+                                const TypeCheck &whyNoType);
+
 // The same for a program that is another node in that network, perhaps one that knows none of the types: the
-// file's publish, subscribe, accept and send are passed over.
+// file's publish, subscribe, accept, send and foreign are passed over.
 GatewayConfig LoadNetworkConfig(const std::string &file);
 
 }  // namespace Rabit

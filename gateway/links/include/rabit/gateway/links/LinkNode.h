@@ -35,7 +35,6 @@ struct LinkStream
 struct LinkPathState
 {
     LinkTime RoundTrip{0};      // smoothed; 0: not measured yet
-    LinkTime Shortest{0};       // round trip, measured anew now and then with nothing waiting; 0: not yet
     LinkTime QueueingDelay{0};  // of it, what waits in buffers on the way, in the last round trip
     std::size_t Window = 0;     // bytes that may be under way, as on the air
     std::size_t InFlight = 0;   // bytes that are
@@ -139,6 +138,9 @@ public:
                                                  const LinkReceiverCounters &)> &visit) const;
     // The same for the path to each node that there is a link to.
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
+    // To that node and back, measured anew now and then with nothing waiting; 0: not known, or
+    // nothing was ever sent there.
+    LinkTime ShortestRoundTrip(std::string_view node) const;
     // The whole state except the counters as text, one line per peer and link: for logs, and for tests that
     // state did not change.
     std::string Describe() const;

@@ -1,0 +1,84 @@
+#pragma once
+
+#include "../Schedule.h"
+#include "../Vehicle.h"
+
+#include <rabit/RabitWorkspace.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "px4_msgs/msg/VehicleAttitude.idl.h"
+#include "px4_msgs/msg/VehicleCommand.idl.h"
+#include "px4_msgs/msg/VehicleCommandAck.idl.h"
+#include "px4_msgs/msg/VehicleGlobalPosition.idl.h"
+#include "px4_msgs/msg/VehicleLocalPosition.idl.h"
+#include "px4_msgs/msg/VehicleStatus.idl.h"
+
+namespace Swarm
+{
+
+// An aircraft whose PX4 speaks DDS, through its agent (uXRCE-DDS). It knows local messages alone, which the
+// gateway's section `foreign` joins to PX4's topics (uav_px4.yaml): reads Px4/Status, Px4/Position,
+// Px4/LocalPosition, Px4/Attitude and Px4/Ack, posts Px4/Command.
+//
+// Each position is told once, with the velocity and attitude that came before it. A point to fly to is the
+// command DO_REPOSITION, which has PX4 hold there in its own mode for that; it is sent again each second
+// until PX4 answers, three times at most. PX4 must be armed and in the air.
+class Px4Vehicle final : public Vehicle
+{
+public:
+    // After this long without a status PX4 counts as gone.
+    static constexpr double SilentAfterS = 3;
+    // So long it is said that, and why, PX4 refused a point.
+    static constexpr std::chrono::seconds RefusalShown{5};
+    // Nearer than this to the point it holds there.
+    static constexpr double ArrivedM = 25;
+    static constexpr int MostAttempts = 3;
+
+    // The workspace must outlive the object.
+    explicit Px4Vehicle(Rabit::RabitWorkspace &workspace);
+
+    void Start(Time /*now*/) override {}
+    std::optional<Motion> Update(Time now) override;
+    // Not while PX4 is not heard, not armed, or without a position, nor for a while after it refused a point.
+    std::string NotReady(Time now) const override;
+    void FlyTo(const GeoPoint &point, double speedMps, Time now) override;
+    // Sends nothing more: PX4 flies on to the last point, and holds there.
+    void Release(Time /*now*/) override;
+    FlightPhase Phase() const override;
+    int DelayMSec(Time now) const override;
+
+private:
+    bool IsHeard() const;
+    bool IsArmed() const;
+    void TakeMotion();
+    void TakeAnswer(Time now);
+    void SendCommand(Time now);
+
+    const std::shared_ptr<px4_msgs::msg::VehicleStatus> _status =
+        std::make_shared<px4_msgs::msg::VehicleStatus>();
+    const std::shared_ptr<px4_msgs::msg::VehicleGlobalPosition> _position =
+        std::make_shared<px4_msgs::msg::VehicleGlobalPosition>();
+    const std::shared_ptr<px4_msgs::msg::VehicleLocalPosition> _local =
+        std::make_shared<px4_msgs::msg::VehicleLocalPosition>();
+    const std::shared_ptr<px4_msgs::msg::VehicleAttitude> _attitude =
+        std::make_shared<px4_msgs::msg::VehicleAttitude>();
+    const std::shared_ptr<px4_msgs::msg::VehicleCommandAck> _answer =
+        std::make_shared<px4_msgs::msg::VehicleCommandAck>();
+    const std::shared_ptr<px4_msgs::msg::VehicleCommand> _command =
+        std::make_shared<px4_msgs::msg::VehicleCommand>();
+
+    Motion _motion;
+    std::optional<GeoPoint> _target;
+    double _speedMps = 0;
+    bool _awaitsAnswer = false;
+    int _attempts = 0;  // that are left of the command
+    Schedule _repeats{std::chrono::seconds(1)};
+    std::string _refusal;
+    Time _refusedAt{0};
+};
+
+}  // namespace Swarm

@@ -1,0 +1,134 @@
+#include "foreign/ForeignPublisher.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "foreign/ForeignMatch.h"
+#include "names/ForeignNames.h"
+
+namespace Rabit
+{
+namespace
+{
+
+std::unique_ptr<TransportWriter> MakeWriter(const ForeignRule &rule, const MessageType &type,
+                                            TransportSession &session)
+{
+    TopicDescription topic{.Name = WireTopicOf(rule), .TypeName = WireTypeOf(rule), .KeyOf = {}};
+    if (type.HasKey())
+    {
+        topic.KeyOf = [&type](SampleBytes bytes, KeyHash &key) { return type.KeyHashOf(bytes, key); };
+    }
+    return session.CreateWriter(topic, ForeignMatch::WriterQos(rule), {""});
+}
+
+}  // namespace
+
+ForeignPublisher::ForeignPublisher(const ForeignRule &rule, const MessageType &type, int domain,
+                                   const SourceClock &source, TransportSession &session)
+    : _rule(rule),
+      _domain(domain),
+      _source(source),
+      _session(session),
+      _qos(ForeignMatch::WriterQos(rule)),
+      _writer(type, MakeWriter(rule, type, session)),
+      _local(type.CreateShared())
+{
+    _status.topic = WireTopicOf(rule);
+    _status.type = WireTypeOf(rule);
+    _status.local = rule.Local;
+    _status.written = true;
+    _status.state = Gateway::NodeState::UP;
+    _status.qos = ForeignMatch::QosText(_qos.Reliability, _qos.Durability);
+}
+
+ForeignPublisher::Duration ForeignPublisher::Gap() const
+{
+    const Duration gap =
+        _rule.MaxRate > 0.0
+            ? std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / _rule.MaxRate))
+            : Duration(0);
+    return _timedOut ? std::max(gap, RetryGap) : gap;
+}
+
+ForeignPublisher::Duration ForeignPublisher::Service(Duration now)
+{
+    if (_attached && _local->FetchMessage() && _local->WasPosted())
+    {
+        _pending = true;
+    }
+    if (!_nextLook || now >= *_nextLook)
+    {
+        Look(now);
+    }
+    const bool owes = _pending || _writer.OwesDisposal();
+    if (owes && (!_lastWrite || now >= *_lastWrite + Gap()))
+    {
+        Write(now);
+    }
+    return _pending || _writer.OwesDisposal() ? std::min(*_nextLook, *_lastWrite + Gap()) : *_nextLook;
+}
+
+// A value that the network did not take in time is tried again; one that can never be sent would only fail
+// again.
+void ForeignPublisher::Write(Duration now)
+{
+    WriteResult result = WriteResult::Ok;
+    if (_pending)
+    {
+        result = _writer.Write(*_local, _source.At(_local->GetPostTime().Monotonic));
+        _pending = result == WriteResult::TimedOut;
+        _status.samples += result == WriteResult::Ok ? 1 : 0;
+    }
+    if (!_pending && _writer.OwesDisposal())
+    {
+        result = _writer.DisposeFormer();
+    }
+    _timedOut = result == WriteResult::TimedOut;
+    _status.write_failures += result == WriteResult::Ok ? 0 : 1;
+    _lastWrite = now;
+}
+
+void ForeignPublisher::Look(Duration now)
+{
+    _nextLook = now + LookPeriod;
+    const std::vector<RemoteEndpoint> endpoints = _session.RemoteEndpointsOn(_status.topic);
+    const bool any = !ForeignMatch::Matching(_rule, _qos, endpoints).empty();
+    _isMismatch = false;
+    std::string reason =
+        any ? ""
+            : ForeignMatch::WhyNone(_rule, _qos, endpoints, _session.RemoteTopics(), _domain, _isMismatch);
+    if (!_attached)
+    {
+        reason = "the local message `" + _rule.Local + "` is of another type than `" + _rule.Type + "`";
+    }
+    _changed |= reason != _status.reason;
+    _status.reason = std::move(reason);
+}
+
+bool ForeignPublisher::TakeChange()
+{
+    return std::exchange(_changed, false);
+}
+
+const Gateway::ForeignTopic &ForeignPublisher::Status()
+{
+    _status.readers = static_cast<std::uint32_t>(std::max(0, _writer.MatchedReaders()));
+    return _status;
+}
+
+// That nobody reads it is none: who wants it may come.
+std::optional<Gateway::Problem> ForeignPublisher::Problem() const
+{
+    if (_attached && !_isMismatch)
+    {
+        return std::nullopt;
+    }
+    Gateway::Problem problem;
+    problem.subject = "foreign " + _status.topic;
+    problem.reason = _status.reason;
+    problem.certain = _isMismatch;
+    return problem;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <rabit/RabitManager.h>
+#include <rabit/gateway/GatewayConfig.h>
+#include <rabit/transport/Transport.h>
+
+#include <chrono>
+#include <deque>
+#include <vector>
+
+#include "clocks/SourceClock.h"
+#include "foreign/ForeignPublisher.h"
+#include "foreign/ForeignReader.h"
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+// All topics of programs that are no nodes, that this node reads or writes. Gateway's thread only.
+class ForeignTopics
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // The configuration, the clock and the workspace of the manager must outlive the object.
+    ForeignTopics(const GatewayConfig &config, const SourceClock &source) : _config(config), _source(source)
+    {
+    }
+
+    // Throws TransportError. Messages that are written wake the manager.
+    void Open(TransportSession &session, RabitManager &manager, Duration now);
+    void Close();
+    // Returns when to be called again at the latest.
+    Duration Service(Duration now) { return IsEmpty() ? Duration::max() : ServiceAll(now); }
+    // Whether something that people should know has changed since this was asked last.
+    bool TakeChange() { return !IsEmpty() && TakeAnyChange(); }
+    // Their rows, and what is wrong with them.
+    void Report(Duration now, Gateway::Fleet &fleet);
+
+private:
+    bool IsEmpty() const { return _readers.empty() && _publishers.empty(); }
+    Duration ServiceAll(Duration now);
+    bool TakeAnyChange();
+
+    const GatewayConfig &_config;
+    const SourceClock &_source;
+    std::deque<ForeignReader> _readers;
+    std::deque<ForeignPublisher> _publishers;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "recording/RecordingDisk.h"
+
+namespace Rabit
+{
+
+// A folder of the file system. It is made if it is missing.
+class FolderDisk final : public RecordingDisk
+{
+public:
+    explicit FolderDisk(std::string folder);
+
+    std::unique_ptr<File> Create(const std::string &name, std::string &reason) override;
+    std::vector<Entry> List() override;
+    bool Remove(const std::string &name) override;
+    std::optional<std::uint64_t> FreeBytes() override;
+
+private:
+    void SyncFolder() const;
+
+    const std::string _folder;
+};
+
+}  // namespace Rabit

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "recording/RecordingItem.h"
+
+namespace Rabit
+{
+
+// What the recorder tells of its own accord: streams of JSON, `<node>/Recorder/<name>`. The log has the
+// schema that Foxglove's panel for logs looks for.
+namespace JsonStreams
+{
+RecordingStream Log(const std::string &node);
+RecordingStream Managers(const std::string &node);
+RecordingStream Clocks(const std::string &node);
+RecordingStream Outcomes(const std::string &node);
+RecordingStream Events(const std::string &node);
+}  // namespace JsonStreams
+
+}  // namespace Rabit

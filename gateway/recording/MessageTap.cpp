@@ -1,0 +1,80 @@
+#include "recording/MessageTap.h"
+
+#include <utility>
+
+namespace Rabit
+{
+
+MessageTap::MessageTap(std::shared_ptr<PublishSubscribeMessage> global,
+                       std::shared_ptr<RecordingTarget> target, std::uint32_t stream, Encode encode,
+                       std::string event)
+    : _global(std::move(global)),
+      _target(std::move(target)),
+      _stream(stream),
+      _encode(std::move(encode)),
+      _event(std::move(event))
+{
+}
+
+MessageTap::~MessageTap() = default;
+
+void MessageTap::Begin()
+{
+    const std::lock_guard lock(_mutex);
+    _seen = _global->GetNumberOfPosts();
+    _postsBefore = _seen;
+    _copy = _global->GetCopyOfMessage();
+    _connection = RabitScopedConnection(_global->ConnectSomethingPublished(
+        [weak = weak_from_this()]
+        {
+            if (const auto tap = weak.lock())
+            {
+                tap->OnPost();
+            }
+        }));
+    if (_copy->WasPosted())
+    {
+        Record();
+    }
+}
+
+void MessageTap::OnPost()
+{
+    const std::lock_guard lock(_mutex);
+    if (_global->FetchMessage(_copy.get()))
+    {
+        ++_seen;
+        Record();
+    }
+}
+
+void MessageTap::Record()
+{
+    Mcap::Bytes bytes;
+    if (_encode(*_copy, bytes))
+    {
+        _target->Put(_stream, _target->At(_copy->GetPostTime().Monotonic), std::move(bytes));
+    }
+    else
+    {
+        _target->Inbox().AddLost(_stream, 1);
+    }
+    if (!_event.empty())
+    {
+        _target->Happened(_event);
+    }
+}
+
+// One that was posted before the last count has had its handler called by now, if it was seen at all.
+void MessageTap::CountMissed()
+{
+    const std::lock_guard lock(_mutex);
+    if (_postsBefore > _seen)
+    {
+        _target->Inbox().AddLost(_stream, _postsBefore - _seen);
+        _seen = _postsBefore;
+    }
+    _postsBefore = _global->GetNumberOfPosts();
+}
+
+}  // namespace Rabit

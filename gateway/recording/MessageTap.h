@@ -1,0 +1,49 @@
+#pragma once
+
+#include <rabit/PublishSubscribeClass.h>
+#include <rabit/RabitMessage.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "recording/RecordingTarget.h"
+
+namespace Rabit
+{
+
+// Records each post of one local message, on the thread that posts it.
+class MessageTap : public std::enable_shared_from_this<MessageTap>
+{
+public:
+    // The bytes of a message; false if it cannot be expressed.
+    using Encode = std::function<bool(const RabitMessage &message, Mcap::Bytes &bytes)>;
+
+    // `event`: what each post is for a black box; empty: nothing.
+    MessageTap(std::shared_ptr<PublishSubscribeMessage> global, std::shared_ptr<RecordingTarget> target,
+               std::uint32_t stream, Encode encode, std::string event = "");
+    ~MessageTap();
+    // What was posted last, if anything was, and then all posts. Once.
+    void Begin();
+    // Counts posts that were not seen because another thread posted at the same time; now and then.
+    void CountMissed();
+
+private:
+    void OnPost();
+    void Record();
+
+    const std::shared_ptr<PublishSubscribeMessage> _global;
+    const std::shared_ptr<RecordingTarget> _target;
+    const std::uint32_t _stream;
+    const Encode _encode;
+    const std::string _event;
+    RabitScopedConnection _connection;
+    std::mutex _mutex;  // of what follows: several threads may post
+    std::unique_ptr<RabitMessage> _copy;
+    std::uint64_t _seen = 0;  // posts that were recorded, or counted as missed, or before the beginning
+    std::uint64_t _postsBefore = 0;  // at the last count
+};
+
+}  // namespace Rabit

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <rabit/RabitWorkspace.h>
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "recording/MessageTap.h"
+
+namespace Rabit
+{
+
+// Finds the local messages that are to be recorded, and taps each. One manager's.
+class MessageTaps
+{
+public:
+    // The workspace and the configuration must outlive it; config.Record is set.
+    MessageTaps(const GatewayConfig &config, RabitWorkspace &workspace,
+                std::shared_ptr<RecordingTarget> target);
+    ~MessageTaps();
+    // Taps what is new.
+    void Look();
+
+private:
+    bool IsWanted(const std::string &name) const;
+    // The node that posts it, and how it is called there.
+    struct Origin
+    {
+        std::string Node;
+        std::string Message;
+        bool IsMirrored = false;
+        bool IsState = true;
+    };
+    Origin OriginOf(const std::string &name) const;
+    std::shared_ptr<MessageTap> Tap(const std::string &name,
+                                    const std::shared_ptr<PublishSubscribeMessage> &global);
+    std::shared_ptr<MessageTap> TapManager(const std::shared_ptr<PublishSubscribeMessage> &global);
+
+    const GatewayConfig &_config;
+    RabitWorkspace &_workspace;
+    const std::shared_ptr<RecordingTarget> _target;
+    struct Known
+    {
+        std::shared_ptr<PublishSubscribeMessage> Global;
+        std::shared_ptr<MessageTap> Tap;  // null: it is not recorded
+    };
+    std::map<std::string, Known> _known;  // by name
+    std::map<std::string, std::string> _notRecorded;
+    std::uint32_t _managers;
+};
+
+}  // namespace Rabit

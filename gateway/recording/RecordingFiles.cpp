@@ -1,0 +1,426 @@
+#include "recording/RecordingFiles.h"
+
+#include <rabit/RabitVersion.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <utility>
+
+namespace Rabit
+{
+namespace
+{
+
+constexpr std::uint64_t Second = 1000000000;
+constexpr std::size_t NumberDigits = 6;
+constexpr std::size_t DateLetters = 16;  // 20261123T024640Z
+const std::string NoMore = "the disk takes no more";
+
+std::uint64_t Nanoseconds(std::chrono::nanoseconds duration)
+{
+    return static_cast<std::uint64_t>(duration.count());
+}
+
+std::string DateOf(std::uint64_t time)
+{
+    const auto seconds = static_cast<std::time_t>(time / Second);
+    std::tm parts{};
+    gmtime_r(&seconds, &parts);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &parts);
+    return text.data();
+}
+
+std::string Padded(std::uint64_t number)
+{
+    std::string text = std::to_string(number);
+    return text.size() >= NumberDigits ? text : std::string(NumberDigits - text.size(), '0') + text;
+}
+
+// The number of one of the files of that name; empty: it is none.
+std::optional<std::uint64_t> NumberOf(const std::string &file, const std::string &name)
+{
+    const std::string begin = name + "_";
+    const std::string end = ".mcap";
+    if (file.size() < begin.size() + end.size() || file.compare(0, begin.size(), begin) != 0 ||
+        file.compare(file.size() - end.size(), end.size(), end) != 0)
+    {
+        return std::nullopt;
+    }
+    const std::size_t after = file.find('_', begin.size());
+    const std::string digits =
+        after == std::string::npos ? "" : file.substr(begin.size(), after - begin.size());
+    // What somebody made of one of them, as `rabit recover` does, is not ours.
+    const bool isWhole = after != std::string::npos && file.size() == after + 1 + DateLetters + end.size();
+    const bool isNumber =
+        isWhole && digits.size() >= NumberDigits && digits.size() <= 18 &&
+        std::all_of(digits.begin(), digits.end(), [](char letter) { return letter >= '0' && letter <= '9'; });
+    return isNumber ? std::optional(std::uint64_t{std::stoull(digits)}) : std::nullopt;
+}
+
+}  // namespace
+
+RecordingFiles::RecordingFiles(RecordingDisk &disk, const RecordingSettings &settings)
+    : _disk(disk), _settings(settings)
+{
+}
+
+void RecordingFiles::Take(const RecordingInbox::Batch &batch, Time now)
+{
+    AddNewStreams(batch);
+    for (const Mcap::Metadata &metadata : batch.Metadata)
+    {
+        _metadata[metadata.Name] = metadata.Values;
+        if (_writer)
+        {
+            _writer->AddMetadata(metadata);
+        }
+    }
+    for (std::size_t stream = 0; stream < batch.Lost.size(); ++stream)
+    {
+        const std::uint64_t before = std::exchange(_streams[stream].LostBefore, batch.Lost[stream]);
+        if (batch.Lost[stream] > before)
+        {
+            _status.Lost[_streams[stream].Info->Topic] += batch.Lost[stream] - before;
+            _lossesChanged = true;
+        }
+    }
+    for (const RecordingItem &item : batch.Items)
+    {
+        Stream &stream = _streams[item.Stream];
+        const bool isOpen = _writer || (now >= _notBefore && Open(now, item.LogTime));
+        if (!isOpen || !Write(stream, item, item.LogTime))
+        {
+            Lose(stream, 1);
+        }
+        KeepLast(stream, item);
+        if (_writer && !_writer->IsGood())
+        {
+            GiveUp(now, NoMore);
+        }
+        else if (_writer && _writer->BytesToWrite() >= _settings.SplitBytes)
+        {
+            Finish();
+        }
+    }
+}
+
+// Those of a batch once, whoever asks for it first.
+void RecordingFiles::AddNewStreams(const RecordingInbox::Batch &batch)
+{
+    for (std::size_t at = _streams.size(); at < batch.FirstNewStream + batch.NewStreams.size(); ++at)
+    {
+        _streams.push_back({batch.NewStreams[at - batch.FirstNewStream], std::nullopt, 0, 0, std::nullopt});
+    }
+}
+
+void RecordingFiles::Remember(const RecordingInbox::Batch &batch, const std::vector<RecordingItem> &items)
+{
+    AddNewStreams(batch);
+    for (const RecordingItem &item : items)
+    {
+        KeepLast(_streams[item.Stream], item);
+    }
+}
+
+void RecordingFiles::KeepLast(Stream &stream, const RecordingItem &item)
+{
+    if (stream.Info->IsState && item.Data.size() <= LargestRepeated)
+    {
+        stream.Last = item;
+    }
+}
+
+void RecordingFiles::Service(Time now)
+{
+    if (_writer && now >= _openedAt + Nanoseconds(_settings.SplitTime))
+    {
+        Finish();
+    }
+    if (now >= _nextLook)
+    {
+        _nextLook = now + Nanoseconds(LookPeriod);
+        if (_writer && !MakeRoom(Margin()))
+        {
+            WriteLosses();
+            Finish();
+            _notBefore = now + Nanoseconds(LookPeriod);
+        }
+        else if (_writer)
+        {
+            WriteLosses();
+        }
+    }
+    if (_writer && now >= _flushedAt + Nanoseconds(FlushPeriod))
+    {
+        Flush(now);
+    }
+    _status.Bytes = _bytesBefore + (_writer ? _writer->BytesWritten() : 0);
+}
+
+void RecordingFiles::Abandon(const std::string &problem, Time now)
+{
+    if (_writer)
+    {
+        GiveUp(now, problem);
+    }
+    _status.Problem = problem;
+}
+
+std::uint64_t RecordingFiles::Margin() const
+{
+    return std::max(_settings.FreeBytes, LeastMargin);
+}
+
+void RecordingFiles::Close(Time now)
+{
+    // What was lost while there was no file is said in one that holds nothing else.
+    if (!_writer && _lossesChanged)
+    {
+        Open(now, now);
+    }
+    if (_writer)
+    {
+        WriteLosses();
+        Finish();
+    }
+}
+
+bool RecordingFiles::Open(Time now, Time firstLogTime)
+{
+    _notBefore = now + Nanoseconds(LookPeriod);  // if it fails
+    // Not for a moment, once there was too little.
+    if (!MakeRoom(_status.Problem.empty() ? Margin() : Margin() + Margin() / 10))
+    {
+        return false;
+    }
+    if (!_number)
+    {
+        const auto own = OwnFiles();
+        _number = own.empty() ? 1 : *NumberOf(own.back().first, _settings.Name) + 1;
+    }
+    const std::string name = _settings.Name + "_" + Padded(*_number) + "_" + DateOf(now) + ".mcap";
+    std::string reason;
+    _file = _disk.Create(name, reason);
+    if (!_file)
+    {
+        _status.Problem = reason;
+        _number.reset();  // somebody else may have taken it
+        return false;
+    }
+    _status.File = name;
+    _status.LastFile = name;
+    ++_status.Files;
+    _writer = std::make_unique<Mcap::McapWriter>(
+        *_file, Mcap::McapWriter::Options{"rabit " RABIT_VERSION_STRING, "rabit", _settings.Compresses});
+    _writer->AddMetadata(
+        {"rabit.file",
+         {{"node", _settings.Name}, {"number", std::to_string(*_number)}, {"begun", DateOf(now)}}});
+    for (const auto &[key, values] : _metadata)
+    {
+        _writer->AddMetadata({key, values});
+    }
+    ++*_number;
+    _openedAt = now;
+    _flushedAt = now;
+    _lossesChanged = _lossesChanged || !_status.Lost.empty();
+    RepeatStates(firstLogTime);
+    if (!_writer->IsGood())
+    {
+        GiveUp(now, NoMore);
+        return false;
+    }
+    _notBefore = now;
+    _status.Problem.clear();
+    return true;
+}
+
+void RecordingFiles::RepeatStates(Time logTime)
+{
+    for (Stream &stream : _streams)
+    {
+        if (stream.Last)
+        {
+            Write(stream, *stream.Last, logTime);
+        }
+    }
+}
+
+bool RecordingFiles::Write(Stream &stream, const RecordingItem &item, Time logTime)
+{
+    const auto channel = ChannelOf(stream);
+    if (!channel || !_writer->Add({*channel, item.Sequence, logTime, item.PublishTime, item.Data}))
+    {
+        return false;
+    }
+    ++stream.Unsaved;
+    ++_status.Messages;
+    return true;
+}
+
+std::optional<std::uint16_t> RecordingFiles::ChannelOf(Stream &stream)
+{
+    if (stream.Channel)
+    {
+        return stream.Channel;
+    }
+    const RecordingStream &info = *stream.Info;
+    std::uint16_t schema = 0;
+    if (!info.SchemaName.empty())
+    {
+        const auto [known, isNew] = _schemas.try_emplace({info.SchemaName, info.SchemaText});
+        if (isNew)
+        {
+            known->second = _writer->AddSchema(info.SchemaName, info.SchemaEncoding, info.SchemaText);
+        }
+        schema = known->second;
+    }
+    stream.Channel = _writer->AddChannel(schema, info.Topic, info.Encoding, info.Metadata);
+    return stream.Channel;
+}
+
+void RecordingFiles::Flush(Time now)
+{
+    _flushedAt = now;
+    if (!_writer->FinishChunks() || !_file->Sync())
+    {
+        GiveUp(now, NoMore);
+        return;
+    }
+    for (Stream &stream : _streams)
+    {
+        stream.Unsaved = 0;
+    }
+}
+
+void RecordingFiles::GiveUp(Time now, const std::string &problem)
+{
+    _status.Problem = problem;
+    _notBefore = now + Nanoseconds(LookPeriod);
+    for (Stream &stream : _streams)
+    {
+        _status.Messages -= stream.Unsaved;
+        Lose(stream, stream.Unsaved);
+    }
+    Forget();
+}
+
+void RecordingFiles::Finish()
+{
+    const bool good = _writer->Finish() && _file->Sync();
+    for (Stream &stream : _streams)
+    {
+        if (!good)
+        {
+            _status.Messages -= stream.Unsaved;
+            Lose(stream, stream.Unsaved);
+        }
+    }
+    Forget();
+}
+
+void RecordingFiles::Forget()
+{
+    _bytesBefore += _writer->BytesWritten();
+    _writer.reset();
+    _file.reset();
+    _status.File.clear();
+    _schemas.clear();
+    for (Stream &stream : _streams)
+    {
+        stream.Channel.reset();
+        stream.Unsaved = 0;
+    }
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> RecordingFiles::OwnFiles()
+{
+    std::vector<std::pair<std::string, std::uint64_t>> own;
+    for (const RecordingDisk::Entry &entry : _disk.List())
+    {
+        if (NumberOf(entry.Name, _settings.Name))
+        {
+            own.emplace_back(entry.Name, entry.Bytes);
+        }
+    }
+    std::sort(own.begin(), own.end(),
+              [this](const auto &left, const auto &right)
+              {
+                  return std::pair(*NumberOf(left.first, _settings.Name), left.first) <
+                         std::pair(*NumberOf(right.first, _settings.Name), right.first);
+              });
+    return own;
+}
+
+bool RecordingFiles::RemoveOldest(std::vector<std::pair<std::string, std::uint64_t>> &own)
+{
+    while (!own.empty() && own.front().first != _status.File)
+    {
+        const std::string name = own.front().first;
+        own.erase(own.begin());
+        if (_disk.Remove(name))
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool RecordingFiles::MakeRoom(std::uint64_t margin)
+{
+    auto own = OwnFiles();
+    std::uint64_t total = 0;
+    for (const auto &[name, bytes] : own)
+    {
+        total += bytes;
+    }
+    while (_settings.KeepBytes != 0 && total > _settings.KeepBytes && !own.empty())
+    {
+        const std::uint64_t bytes = own.front().second;
+        if (!RemoveOldest(own))
+        {
+            break;
+        }
+        total -= bytes;
+    }
+    std::optional<std::uint64_t> free = _disk.FreeBytes();
+    while (free && *free < margin && RemoveOldest(own))
+    {
+        free = _disk.FreeBytes();
+    }
+    if (free && *free < margin)
+    {
+        _status.Problem = "only " + std::to_string(*free >> 20) + " MiB are free in " + _settings.Folder +
+                          ", and " + std::to_string(Margin() >> 20) + " are to stay free";
+        return false;
+    }
+    return true;
+}
+
+void RecordingFiles::WriteLosses()
+{
+    if (!std::exchange(_lossesChanged, false))
+    {
+        return;
+    }
+    Mcap::Metadata losses;
+    losses.Name = "rabit.losses";
+    for (const auto &[topic, count] : _status.Lost)
+    {
+        losses.Values[topic] = std::to_string(count);
+    }
+    _writer->AddMetadata(losses);
+}
+
+void RecordingFiles::Lose(Stream &stream, std::uint64_t count)
+{
+    if (count > 0)
+    {
+        _status.Lost[stream.Info->Topic] += count;
+        _lossesChanged = true;
+    }
+}
+
+}  // namespace Rabit

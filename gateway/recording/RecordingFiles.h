@@ -1,0 +1,112 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recording/RecordingDisk.h"
+#include "recording/RecordingInbox.h"
+#include "recording/RecordingSettings.h"
+#include "recording/mcap/McapWriter.h"
+
+namespace Rabit
+{
+
+// How a recording goes.
+struct RecordingStatus
+{
+    std::string File;            // that is being written; empty: none
+    std::string LastFile;        // that was begun last
+    std::uint64_t Files = 0;     // that were begun
+    std::uint64_t Messages = 0;  // that were written since the beginning, to all files
+    std::uint64_t Bytes = 0;
+    std::map<std::string, std::uint64_t> Lost;  // by topic, what was not kept
+    std::string Problem;                        // why nothing is being recorded; empty: it is
+};
+
+// Writes the files of a recording: begins, splits and ends them, keeps within the disk, and counts what it
+// could not keep. What was taken is on the disk after a second at most, if that is quick enough: then neither
+// a kill nor a loss of power costs more.
+//
+// `now` is UTC, nanoseconds since 1970, and never goes back. Not thread-safe.
+class RecordingFiles
+{
+public:
+    using Time = std::uint64_t;
+
+    // How long what was taken waits in a chunk.
+    static constexpr std::chrono::nanoseconds FlushPeriod = std::chrono::milliseconds(400);
+    // How often free space, and what was lost, is looked at; and how long after a failure nothing is tried.
+    static constexpr std::chrono::nanoseconds LookPeriod = std::chrono::seconds(1);
+    // States up to this size are repeated at the beginning of a file.
+    static constexpr std::size_t LargestRepeated = 256U << 10;
+    // So much of the disk stays free whatever the settings say.
+    static constexpr std::uint64_t LeastMargin = 16U << 20;
+
+    // The disk must outlive it.
+    RecordingFiles(RecordingDisk &disk, const RecordingSettings &settings);
+
+    void Take(const RecordingInbox::Batch &batch, Time now);
+    // Items that are not written: of states the last value is repeated in the next file.
+    // The batch is that which is taken next.
+    void Remember(const RecordingInbox::Batch &batch, const std::vector<RecordingItem> &items);
+    // Does what is due; to be called every 100 ms or so.
+    void Service(Time now);
+    // Ends the file.
+    void Close(Time now);
+    // Lets go of the file as it is; the next one is begun later.
+    void Abandon(const std::string &problem, Time now);
+    const RecordingStatus &Status() const { return _status; }
+
+private:
+    struct Stream
+    {
+        std::shared_ptr<const RecordingStream> Info;
+        std::optional<std::uint16_t> Channel;  // in the file that is being written
+        std::uint64_t LostBefore = 0;          // before it came here, in all
+        std::uint64_t Unsaved = 0;             // that are not on the disk yet
+        std::optional<RecordingItem> Last;
+    };
+
+    void AddNewStreams(const RecordingInbox::Batch &batch);
+    bool Open(Time now, Time firstLogTime);
+    void RepeatStates(Time logTime);
+    void KeepLast(Stream &stream, const RecordingItem &item);
+    bool Write(Stream &stream, const RecordingItem &item, Time logTime);
+    std::optional<std::uint16_t> ChannelOf(Stream &stream);
+    void Flush(Time now);
+    // The file cannot be written any more.
+    void GiveUp(Time now, const std::string &problem);
+    void Finish();
+    void Forget();
+    // Removes old files until the disk has room; false if it has none even so.
+    std::uint64_t Margin() const;
+    bool MakeRoom(std::uint64_t margin);
+    bool RemoveOldest(std::vector<std::pair<std::string, std::uint64_t>> &own);
+    // Own files, the oldest first.
+    std::vector<std::pair<std::string, std::uint64_t>> OwnFiles();
+    void WriteLosses();
+    void Lose(Stream &stream, std::uint64_t count);
+
+    RecordingDisk &_disk;
+    const RecordingSettings _settings;
+    std::vector<Stream> _streams;
+    std::map<std::string, Mcap::TextMap> _metadata;
+    std::map<std::pair<std::string, std::string>, std::uint16_t> _schemas;  // of the file: name and text
+    std::unique_ptr<RecordingDisk::File> _file;
+    std::unique_ptr<Mcap::McapWriter> _writer;
+    std::optional<std::uint64_t> _number;  // of the next file
+    Time _openedAt = 0;
+    Time _flushedAt = 0;
+    Time _nextLook = 0;
+    Time _notBefore = 0;
+    std::uint64_t _bytesBefore = 0;  // of files that are ended
+    bool _lossesChanged = false;
+    RecordingStatus _status;
+};
+
+}  // namespace Rabit

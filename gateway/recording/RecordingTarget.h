@@ -1,0 +1,85 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "clocks/SourceClock.h"
+#include "recording/JsonStreams.h"
+#include "recording/Recorder.h"
+
+namespace Rabit
+{
+
+// Where the streams of a node go, and the time that they are recorded at: the wall clock as it stood when the
+// recording began, and from then on the monotonic clock, so that it never steps. Shared by all that record.
+class RecordingTarget
+{
+public:
+    RecordingTarget(std::string node, const RabitClock &clock, std::unique_ptr<RecordingDisk> disk,
+                    const RecordingSettings &settings)
+        : _node(std::move(node)),
+          _clock(clock),
+          _logClock(clock),
+          _recorder(std::move(disk), settings, [this] { return Now(); })
+    {
+        if (settings.BlackBox)
+        {
+            _events = Inbox().AddStream(JsonStreams::Events(_node));
+        }
+    }
+
+    const std::string &Node() const { return _node; }
+    RecordingInbox &Inbox() { return _recorder.Inbox(); }
+    RecordingStatus Status() const { return _recorder.Status(); }
+
+    // Log time now, or when the monotonic clock shows that.
+    std::uint64_t Now() const { return At(_clock.Monotonic()); }
+    std::uint64_t At(std::chrono::nanoseconds monotonic) const
+    {
+        const std::int64_t time = _logClock.At(monotonic);
+        return time < 0 ? 0 : static_cast<std::uint64_t>(time);
+    }
+
+    // To be added to the monotonic clock to get log time.
+    std::chrono::nanoseconds MonotonicToLog() const
+    {
+        return std::chrono::nanoseconds(_logClock.At(std::chrono::nanoseconds(0)));
+    }
+    // Ends the recording. What is put in afterwards is not kept.
+    void End() { _recorder.End(); }
+
+    // A message that is recorded now, and was posted when the log clock showed that.
+    bool Put(std::uint32_t stream, std::uint64_t postedAt, Mcap::Bytes data, std::uint32_t sequence = 0)
+    {
+        return _recorder.Inbox().Put({stream, sequence, Now(), postedAt, std::move(data)});
+    }
+    void PutJson(std::uint32_t stream, const std::string &json)
+    {
+        Put(stream, Now(), {json.begin(), json.end()});
+    }
+
+    // Something happened; without a black box that does not matter.
+    void Happened(const std::string &what)
+    {
+        if (_events)
+        {
+            const nlohmann::ordered_json json = {{"event", what}};
+            PutJson(*_events, json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
+            Inbox().Happened(Now());
+        }
+    }
+
+private:
+    const std::string _node;
+    const RabitClock &_clock;
+    const SourceClock _logClock;
+    std::optional<std::uint32_t> _events;
+    Recorder _recorder;  // last: its thread uses the others
+};
+
+}  // namespace Rabit

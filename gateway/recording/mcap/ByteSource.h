@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace Rabit::Mcap
+{
+
+// Where the bytes of a file come from.
+class ByteSource
+{
+public:
+    virtual ~ByteSource() = default;
+    virtual std::uint64_t Size() = 0;
+    // Fills all of `to` with what stands from that offset on; false if it cannot be read.
+    virtual bool Read(std::uint64_t offset, std::span<std::uint8_t> to) = 0;
+};
+
+}  // namespace Rabit::Mcap

@@ -1,0 +1,87 @@
+#pragma once
+
+#include "recording/mcap/McapRecords.h"
+
+namespace Rabit::Mcap
+{
+
+// The fields of one record, from bytes of unknown origin. After the first that does not fit nothing fits any
+// more: all that is read then is empty, and IsGood is false.
+class FieldReader
+{
+public:
+    explicit FieldReader(ByteView bytes) : _left(bytes) {}
+
+    bool IsGood() const { return _good; }
+    bool IsEnd() const { return _left.empty(); }
+
+    template <typename T>
+    T Number()
+    {
+        const ByteView bytes = Raw(sizeof(T));
+        T value = 0;
+        for (std::size_t at = 0; at < bytes.size(); ++at)
+        {
+            value = static_cast<T>(value | static_cast<T>(static_cast<T>(bytes[at]) << (8 * at)));
+        }
+        return value;
+    }
+    ByteView Raw(std::uint64_t size)
+    {
+        if (!_good || size > _left.size())
+        {
+            _good = false;
+            _left = {};
+            return {};
+        }
+        const ByteView bytes = _left.first(static_cast<std::size_t>(size));
+        _left = _left.subspan(bytes.size());
+        return bytes;
+    }
+    std::string Text()
+    {
+        const ByteView bytes = Raw(Number<std::uint32_t>());
+        return {bytes.begin(), bytes.end()};
+    }
+    TextMap Texts()
+    {
+        FieldReader entries(Raw(Number<std::uint32_t>()));
+        TextMap texts;
+        while (entries.IsGood() && !entries.IsEnd())
+        {
+            std::string key = entries.Text();
+            std::string value = entries.Text();
+            if (entries.IsGood())
+            {
+                texts.insert_or_assign(std::move(key), std::move(value));
+            }
+        }
+        Join(entries);
+        return texts;
+    }
+    // Calls take(first, second) for each pair of an array.
+    template <typename First, typename Second, typename Take>
+    void NumberPairs(Take take)
+    {
+        FieldReader entries(Raw(Number<std::uint32_t>()));
+        while (entries.IsGood() && !entries.IsEnd())
+        {
+            const auto first = entries.Number<First>();
+            const auto second = entries.Number<Second>();
+            if (entries.IsGood())
+            {
+                take(first, second);
+            }
+        }
+        Join(entries);
+    }
+    ByteView Rest() { return Raw(_left.size()); }
+
+private:
+    void Join(const FieldReader &other) { _good = _good && other._good; }
+
+    ByteView _left;
+    bool _good = true;
+};
+
+}  // namespace Rabit::Mcap

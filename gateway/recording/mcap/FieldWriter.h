@@ -1,0 +1,96 @@
+#pragma once
+
+#include <bit>
+#include <cstring>
+
+#include "recording/mcap/McapRecords.h"
+
+namespace Rabit::Mcap
+{
+
+// The fields of one record, appended to bytes: little endian, lengths before what they are of. The record is
+// whole when the writer goes.
+class FieldWriter
+{
+public:
+    FieldWriter(Bytes &to, Opcode opcode) : _to(to)
+    {
+        Number(static_cast<std::uint8_t>(opcode));
+        Number(std::uint64_t{0});
+        _begin = _to.size();
+    }
+    ~FieldWriter() { Put(_begin - sizeof(std::uint64_t), static_cast<std::uint64_t>(Size() + _beyond)); }
+    FieldWriter(const FieldWriter &) = delete;
+    FieldWriter &operator=(const FieldWriter &) = delete;
+
+    template <typename T>
+    void Number(T value)
+    {
+        _to.resize(_to.size() + sizeof value);
+        Put(_to.size() - sizeof value, value);
+    }
+    void Raw(ByteView bytes) { _to.insert(_to.end(), bytes.begin(), bytes.end()); }
+    void Text(const std::string &text)
+    {
+        Number(static_cast<std::uint32_t>(text.size()));
+        _to.insert(_to.end(), text.begin(), text.end());
+    }
+    void Texts(const TextMap &texts)
+    {
+        const std::size_t length = BeginArray();
+        for (const auto &[key, value] : texts)
+        {
+            Text(key);
+            Text(value);
+        }
+        EndArray(length);
+    }
+    template <typename Pairs>
+    void NumberPairs(const Pairs &pairs)
+    {
+        const std::size_t length = BeginArray();
+        for (const auto &[first, second] : pairs)
+        {
+            Number(first);
+            Number(second);
+        }
+        EndArray(length);
+    }
+    // So many bytes of the record are written by somebody else.
+    void Beyond(std::size_t bytes) { _beyond = bytes; }
+    // What was written of the record's content.
+    std::size_t Size() const { return _to.size() - _begin; }
+    ByteView Content() const { return ByteView(_to).subspan(_begin); }
+
+private:
+    std::size_t BeginArray()
+    {
+        Number(std::uint32_t{0});
+        return _to.size();
+    }
+    void EndArray(std::size_t begin)
+    {
+        Put(begin - sizeof(std::uint32_t), static_cast<std::uint32_t>(_to.size() - begin));
+    }
+    template <typename T>
+    void Put(std::size_t at, T value)
+    {
+        if constexpr (std::endian::native == std::endian::little)
+        {
+            std::memcpy(_to.data() + at, &value, sizeof value);
+        }
+        else
+        {
+            for (std::size_t byte = 0; byte < sizeof value; ++byte)
+            {
+                _to[at + byte] = static_cast<std::uint8_t>(value >> (8 * byte));
+            }
+        }
+    }
+
+    Bytes &_to;
+    std::size_t _begin = 0;
+    std::size_t _beyond = 0;
+};
+
+}  // namespace Rabit::Mcap

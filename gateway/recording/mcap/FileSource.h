@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "recording/mcap/ByteSource.h"
+
+namespace Rabit::Mcap
+{
+
+// A file of the file system, which may be growing: its size is that of the beginning.
+class FileSource final : public ByteSource
+{
+public:
+    // Throws std::runtime_error, with a line for people, if it cannot be read.
+    explicit FileSource(const std::string &path);
+    ~FileSource() override;
+    FileSource(const FileSource &) = delete;
+    FileSource &operator=(const FileSource &) = delete;
+
+    std::uint64_t Size() override { return _size; }
+    bool Read(std::uint64_t offset, std::span<std::uint8_t> to) override;
+
+private:
+    int _descriptor = -1;
+    std::uint64_t _size = 0;
+};
+
+}  // namespace Rabit::Mcap

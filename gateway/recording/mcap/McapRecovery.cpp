@@ -1,0 +1,156 @@
+#include "recording/mcap/McapRecovery.h"
+
+#include <map>
+
+#include "recording/mcap/ChunkReader.h"
+#include "recording/mcap/RecordCodec.h"
+#include "recording/mcap/RecordScanner.h"
+
+namespace Rabit::Mcap
+{
+namespace
+{
+
+class Recovery
+{
+public:
+    Recovery(ByteSource &source, McapWriter &writer)
+        : _source(source), _writer(writer), _contents(ScanContents(source))
+    {
+    }
+
+    Recovered Run()
+    {
+        _recovered.Problems = _contents.Problems;
+        RecordScanner scanner(_source);
+        while (const auto record = scanner.Next())
+        {
+            const auto code = static_cast<Opcode>(record->Code);
+            if (code == Opcode::DataEnd)
+            {
+                break;
+            }
+            if (!record->IsPassedOver)
+            {
+                Take(code, record->Content);
+            }
+        }
+        _recovered.IsWritten = _writer.Finish();
+        return _recovered;
+    }
+
+private:
+    void Take(Opcode code, ByteView content)
+    {
+        if (code == Opcode::Message)
+        {
+            TakeMessage(content);
+        }
+        else if (code == Opcode::Chunk)
+        {
+            const auto chunk = ReadChunk(content);
+            ByteView records;
+            if (!chunk || !OpenChunk(*chunk, _room, records).empty())
+            {
+                return;
+            }
+            RecordIterator inner(records);
+            while (const auto next = inner.Next())
+            {
+                if (next->Code == static_cast<std::uint8_t>(Opcode::Message))
+                {
+                    TakeMessage(next->Content);
+                }
+            }
+        }
+        else if (code == Opcode::Metadata)
+        {
+            if (const auto metadata = ReadMetadata(content))
+            {
+                _writer.AddMetadata(*metadata);
+            }
+        }
+        else if (code == Opcode::Attachment)
+        {
+            if (const auto attachment = ReadAttachment(content))
+            {
+                _writer.AddAttachment(*attachment);
+            }
+        }
+    }
+
+    void TakeMessage(ByteView content)
+    {
+        auto message = ReadMessage(content);
+        const auto channel = message ? ChannelOf(message->ChannelId) : std::nullopt;
+        if (!channel)
+        {
+            ++_recovered.LostMessages;
+            return;
+        }
+        message->ChannelId = *channel;
+        if (_writer.Add(*message))
+        {
+            ++_recovered.Messages;
+        }
+        else
+        {
+            ++_recovered.LostMessages;
+        }
+    }
+
+    // The number of a channel in the other file.
+    std::optional<std::uint16_t> ChannelOf(std::uint16_t id)
+    {
+        if (const auto known = _channels.find(id); known != _channels.end())
+        {
+            return known->second;
+        }
+        const auto found = _contents.Channels.find(id);
+        if (found == _contents.Channels.end())
+        {
+            return std::nullopt;
+        }
+        const Channel &channel = found->second;
+        const auto made = _writer.AddChannel(SchemaOf(channel.SchemaId), channel.Topic,
+                                             channel.MessageEncoding, channel.Metadata);
+        if (made)
+        {
+            _channels.emplace(id, *made);
+        }
+        return made;
+    }
+
+    std::uint16_t SchemaOf(std::uint16_t id)
+    {
+        const auto found = _contents.Schemas.find(id);
+        if (found == _contents.Schemas.end())
+        {
+            return 0;
+        }
+        const auto [known, isNew] = _schemas.try_emplace(id);
+        if (isNew)
+        {
+            const Schema &schema = found->second;
+            known->second = _writer.AddSchema(schema.Name, schema.Encoding, schema.Data);
+        }
+        return known->second;
+    }
+
+    ByteSource &_source;
+    McapWriter &_writer;
+    const Contents _contents;
+    Recovered _recovered;
+    std::map<std::uint16_t, std::uint16_t> _channels;
+    std::map<std::uint16_t, std::uint16_t> _schemas;
+    Bytes _room;
+};
+
+}  // namespace
+
+Recovered Recover(ByteSource &source, McapWriter &writer)
+{
+    return Recovery(source, writer).Run();
+}
+
+}  // namespace Rabit::Mcap

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <queue>
+
+#include "recording/mcap/McapContents.h"
+
+namespace Rabit::Mcap
+{
+
+// The messages of a file by the time at which they were recorded; those of the same time in the order of the
+// file. Loads chunks as it comes to them. Not thread-safe.
+class MessageCursor
+{
+public:
+    struct Selection
+    {
+        std::uint64_t From = 0;
+        std::uint64_t To = std::numeric_limits<std::uint64_t>::max();  // included
+        std::function<bool(std::uint16_t channel)> Wants{};            // null: all
+    };
+    // Chunks that overlap in time are held together. More than this of them are not read, and a problem.
+    static constexpr std::size_t MostBytes = 1U << 30;
+
+    // Both must outlive it, and the file must not become shorter.
+    MessageCursor(ByteSource &source, const Contents &contents, Selection selection);
+    ~MessageCursor();
+    // Nothing at the end. Valid until the next call.
+    std::optional<Message> Next();
+    // What could not be read, one line each.
+    const std::vector<std::string> &Problems() const { return _problems; }
+
+private:
+    struct Entry
+    {
+        std::uint64_t Time;
+        std::size_t Offset;
+    };
+    struct Loaded;
+    struct Later
+    {
+        bool operator()(const std::shared_ptr<Loaded> &left, const std::shared_ptr<Loaded> &right) const;
+    };
+
+    void Load(const ChunkIndex &index);
+    std::string LoadInto(const ChunkIndex &index, Loaded &loaded);
+
+    ByteSource &_source;
+    const Selection _selection;
+    std::vector<const ChunkIndex *> _chunks;  // by their beginning
+    std::size_t _next = 0;                    // of _chunks
+    std::priority_queue<std::shared_ptr<Loaded>, std::vector<std::shared_ptr<Loaded>>, Later> _loaded;
+    std::shared_ptr<Loaded> _current;  // holds what was returned last
+    std::size_t _bytes = 0;
+    std::vector<std::string> _problems;
+};
+
+}  // namespace Rabit::Mcap

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+
+#include "recording/mcap/ByteSource.h"
+#include "recording/mcap/McapRecords.h"
+
+namespace Rabit::Mcap
+{
+
+// The records of a file one after the other, from its beginning, whatever the file holds. Not thread-safe.
+class RecordScanner
+{
+public:
+    // The content of a larger record is passed over.
+    static constexpr std::uint64_t LargestRecord = 256U << 20;
+
+    enum class End
+    {
+        NotYet,
+        Whole,      // the magic number, behind a footer
+        Truncated,  // a record, or what would tell that it was the last one, is not whole
+        Damaged     // what stands there is no record
+    };
+    struct Record
+    {
+        std::uint8_t Code = 0;
+        std::uint64_t Offset = 0;
+        std::uint64_t Length = 0;  // its head included
+        ByteView Content;          // valid until the next record is read
+        bool IsPassedOver = false;
+    };
+
+    // The source must outlive it.
+    explicit RecordScanner(ByteSource &source);
+    // Nothing at the end.
+    std::optional<Record> Next();
+    End HowItEnded() const { return _end; }
+    // All before it are whole records.
+    std::uint64_t GoodUntil() const { return _offset; }
+
+private:
+    std::optional<Record> EndAs(End end);
+
+    ByteSource &_source;
+    const std::uint64_t _size;
+    std::uint64_t _offset = 0;
+    bool _afterFooter = false;
+    End _end = End::NotYet;
+    Bytes _content;
+};
+
+// The records within bytes, a chunk's for instance, one after the other.
+class RecordIterator
+{
+public:
+    explicit RecordIterator(ByteView bytes) : _bytes(bytes) {}
+    struct Record
+    {
+        std::uint8_t Code = 0;
+        std::size_t Offset = 0;
+        ByteView Content;
+    };
+    std::optional<Record> Next();
+    // Whether all bytes were records.
+    bool WasGood() const { return _offset == _bytes.size(); }
+
+private:
+    ByteView _bytes;
+    std::size_t _offset = 0;
+};
+
+}  // namespace Rabit::Mcap

@@ -1,0 +1,280 @@
+#include "AirPlan.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "air/AirCost.h"
+#include "air/BeatShare.h"
+#include "manager/TransportSettingsOf.h"
+#include "names/NamePattern.h"
+#include "wire/BeatFormat.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+// Most of what a participant's announcement was measured to take, on the air (gateway/RADIO.md).
+constexpr double Announcement = 510.0;
+// What is around a queue message, and an acknowledgement: a sample of the gateways' with a frame of this many
+// bytes (gateway/RADIO.md).
+constexpr std::size_t LinkFrame = 36;
+
+double Seconds(std::chrono::nanoseconds time)
+{
+    return std::chrono::duration<double>(time).count();
+}
+
+class Planner
+{
+public:
+    Planner(const GatewayConfig &config, const std::vector<GatewayConfig> &fleet, const AirPlanInput &input)
+        : _config(config), _input(input), _cost(config.MaxDatagram)
+    {
+        for (const GatewayConfig &other : fleet)
+        {
+            if (other.Domain == config.Domain && other.Node != config.Node)
+            {
+                _others.push_back(&other);
+            }
+        }
+    }
+
+    AirPlan Plan()
+    {
+        _plan.Config = &_config;
+        AddPresence();
+        for (const PublishRule &rule : _config.Publish)
+        {
+            AddMessage(rule);
+        }
+        for (const ForeignRule &rule : _config.Foreign)
+        {
+            AddForeign(rule);
+        }
+        for (const GatewayConfig *other : _others)
+        {
+            AddSent(*other);
+            AddAcknowledged(*other);
+        }
+        AddUnstatedQueues();
+        return std::move(_plan);
+    }
+
+private:
+    // One for all by multicast; each peer has one of its own without.
+    std::size_t Copies(std::size_t readers) const
+    {
+        const bool once = _config.Multicast && _config.Peers.empty();
+        return once ? std::min<std::size_t>(readers, 1) : readers;
+    }
+
+    void AddPresence()
+    {
+        const auto states = static_cast<std::size_t>(
+            std::count_if(_config.Publish.begin(), _config.Publish.end(),
+                          [](const PublishRule &rule) { return rule.Qos == QosProfile::State; }));
+        const std::size_t copies = std::max<std::size_t>(1, Copies(_others.size()));
+        const auto beat = static_cast<double>(
+            _cost.Of(BeatFormat::Empty + BeatFormat::State * std::min(states, BeatFormat::MostStates)));
+        const auto period =
+            _config.Radio.Budget
+                ? BeatShare::PeriodOf(beat * static_cast<double>(copies),
+                                      BeatShare::OfBudget * *_config.Radio.Budget, _config.Radio.SlowestBeat)
+                : BeatShare::Quickest;
+        _plan.Items.push_back({"beats", beat, 1.0 / Seconds(period), copies});
+        _plan.Items.push_back({"discovery", Announcement,
+                               1.0 / Seconds(TransportSettingsOf(_config, 0).AnnouncementPeriod), copies});
+    }
+
+    std::optional<double> SizeOf(const std::string &node, const std::string &name,
+                                 const std::vector<std::string> &types) const
+    {
+        if (const auto stated = _input.Sizes.Of(node, name))
+        {
+            return stated;
+        }
+        // Of several types the largest counts.
+        double largest = 0.0;
+        for (const std::string &type : types)
+        {
+            const auto stated = _input.Sizes.Of(node, type);
+            const auto fixed = _input.SizeOfType ? _input.SizeOfType(type) : std::nullopt;
+            if (!stated && !fixed)
+            {
+                return std::nullopt;
+            }
+            largest = std::max(largest, stated ? *stated : static_cast<double>(*fixed));
+        }
+        return largest;
+    }
+
+    double OnAir(double body, bool directed) const
+    {
+        return static_cast<double>(_cost.Of(static_cast<std::size_t>(std::llround(body)),
+                                            {.Destinations = 1, .Directed = directed}));
+    }
+
+    void AddMessage(const PublishRule &rule)
+    {
+        const auto readers = static_cast<std::size_t>(std::count_if(
+            _others.begin(), _others.end(),
+            [&](const GatewayConfig *other)
+            {
+                return std::any_of(
+                    other->Subscribe.begin(), other->Subscribe.end(),
+                    [&](const SubscribeRule &wanted)
+                    { return wanted.Message == rule.Message && MatchesAny(wanted.From, _config.Node); });
+            }));
+        const auto size = SizeOf(_config.Node, rule.Message, {rule.Type});
+        _plan.Items.push_back({rule.Message, OnAir(size.value_or(0.0), false),
+                               RateOf(rule.Message, rule.MaxRate), _others.empty() ? 1 : Copies(readers),
+                               size.has_value()});
+    }
+
+    // For programs that are no nodes: one reads it, as far as anybody knows.
+    void AddForeign(const ForeignRule &rule)
+    {
+        if (rule.Way == ForeignRule::Direction::Publish)
+        {
+            const auto size = SizeOf(_config.Node, rule.Local, {rule.Type});
+            _plan.Items.push_back({rule.Topic, OnAir(size.value_or(0.0), false),
+                                   RateOf(rule.Local, rule.MaxRate), 1, size.has_value()});
+        }
+    }
+
+    // As stated, and no more than the file allows; 0: it allows any.
+    std::optional<double> RateOf(const std::string &message, double maxRate) const
+    {
+        const std::optional<double> stated = _input.Rates.Of(_config.Node, message);
+        return maxRate > 0.0 ? std::min(stated.value_or(maxRate), maxRate) : stated;
+    }
+
+    // Queue messages of `from` into a queue of `to`, if `from` is said to send any.
+    static std::optional<double> Sent(const Stated &rates, const GatewayConfig &from, const AcceptRule &queue)
+    {
+        return MatchesAny(queue.From, from.Node) ? rates.Of(from.Node, queue.Queue) : std::nullopt;
+    }
+
+    void AddSent(const GatewayConfig &other)
+    {
+        for (const AcceptRule &queue : other.Accept)
+        {
+            if (const auto rate = Sent(_input.Rates, _config, queue))
+            {
+                const auto size = SizeOf(_config.Node, queue.Queue, queue.Types);
+                _plan.Items.push_back({queue.Queue + " of " + other.Node,
+                                       OnAir(static_cast<double>(LinkFrame) + size.value_or(0.0), true), rate,
+                                       1, size.has_value()});
+            }
+        }
+    }
+
+    void AddAcknowledged(const GatewayConfig &other)
+    {
+        for (const AcceptRule &queue : _config.Accept)
+        {
+            if (const auto rate = Sent(_input.Rates, other, queue))
+            {
+                _plan.Items.push_back({"acknowledgements to " + other.Node,
+                                       OnAir(static_cast<double>(LinkFrame), true), rate, 1});
+            }
+        }
+    }
+
+    // Whoever has a rule for a queue sends to it, at a rate that no file tells.
+    void AddUnstatedQueues()
+    {
+        for (const SendRule &rule : _config.Send)
+        {
+            const bool isPattern = rule.Queue.find_first_of("*?") != std::string::npos;
+            const bool isAdded =
+                std::any_of(_plan.Items.begin(), _plan.Items.end(),
+                            [&rule](const AirItem &item) { return item.What == rule.Queue; });
+            if (!isPattern && !isAdded && !_input.Rates.Of(_config.Node, rule.Queue))
+            {
+                _plan.Items.push_back(
+                    {rule.Queue, OnAir(static_cast<double>(LinkFrame), true), std::nullopt, 1, false});
+            }
+        }
+    }
+
+    const GatewayConfig &_config;
+    const AirPlanInput &_input;
+    const AirCost _cost;
+    std::vector<const GatewayConfig *> _others;
+    AirPlan _plan;
+};
+
+}  // namespace
+
+void Stated::Add(const std::string &what, double number)
+{
+    _stated.emplace_back(what.find('/') == std::string::npos ? "*/" + what : what, number);
+}
+
+std::optional<double> Stated::Of(const std::string &node, const std::string &name) const
+{
+    for (const auto &[what, number] : _stated)
+    {
+        const std::size_t slash = what.find('/');
+        if (MatchesPattern(what.substr(0, slash), node) && MatchesPattern(what.substr(slash + 1), name))
+        {
+            return number;
+        }
+    }
+    return std::nullopt;
+}
+
+double AirPlan::BytesPerSecond() const
+{
+    return std::accumulate(Items.begin(), Items.end(), 0.0,
+                           [](double sum, const AirItem &item) { return sum + item.BytesPerSecond(); });
+}
+
+std::vector<std::string> AirPlan::NotKnown() const
+{
+    std::vector<std::string> list;
+    for (const AirItem &item : Items)
+    {
+        // What nobody reads does not go.
+        if (item.Copies > 0 && (!item.Rate || (!item.SizeKnown && *item.Rate > 0.0)))
+        {
+            const std::string what = !item.Rate && !item.SizeKnown ? "rate and size of "
+                                     : !item.Rate                  ? "rate of "
+                                                                   : "size of ";
+            list.push_back(what + item.What);
+        }
+    }
+    return list;
+}
+
+std::vector<AirPlan> AirPlansOf(const std::vector<GatewayConfig> &fleet, const AirPlanInput &input)
+{
+    std::vector<AirPlan> plans;
+    for (const GatewayConfig &config : fleet)
+    {
+        plans.push_back(Planner(config, fleet, input).Plan());
+    }
+    return plans;
+}
+
+std::string WhyAboveBudget(const AirPlan &plan)
+{
+    const std::optional<double> budget = plan.Config->Radio.Budget;
+    if (!budget || plan.BytesPerSecond() <= *budget)
+    {
+        return "";
+    }
+    const auto most = std::max_element(plan.Items.begin(), plan.Items.end(),
+                                       [](const AirItem &one, const AirItem &other)
+                                       { return one.BytesPerSecond() < other.BytesPerSecond(); });
+    const auto text = [](double bytes) { return std::to_string(std::llround(bytes)) + " B/s"; };
+    return "the budget is " + text(*budget) + ", and " + text(plan.BytesPerSecond()) +
+           " would go on the air, most of it " + most->What + " with " + text(most->BytesPerSecond()) +
+           "; a max_rate, or a larger budget";
+}
+
+}  // namespace Rabit::Tool

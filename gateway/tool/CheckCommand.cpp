@@ -1,0 +1,250 @@
+// rabit check: configurations of a fleet, against each other and against their budgets of the air. Joins no
+// network.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include "AirPlan.h"
+#include "CheckedFiles.h"
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetCheck.h"
+#include "IdlFiles.h"
+#include "JsonNumber.h"
+#include "MeterCommand.h"
+#include "Output.h"
+#include "SafeText.h"
+#include "Table.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+struct Options
+{
+    std::vector<std::string> Files;
+    std::vector<std::string> Idl;
+    std::vector<std::string> Rates;
+    std::vector<std::string> Sizes;
+    bool Json = false;
+    bool Verbose = false;
+};
+
+double Number(const std::optional<double> &number)
+{
+    return number.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+// `Pose=10`; throws CLI::ValidationError.
+Stated StatedIn(const std::vector<std::string> &list, const std::string &option)
+{
+    Stated stated;
+    for (const std::string &text : list)
+    {
+        const std::size_t equals = text.find('=');
+        double number = -1.0;
+        if (equals == std::string::npos || equals == 0 ||
+            !CLI::detail::lexical_cast(text.substr(equals + 1), number) || !(number >= 0.0 && number <= 1e9))
+        {
+            throw CLI::ValidationError(option, "`" + text + "`; expected NAME=NUMBER or NODE/NAME=NUMBER");
+        }
+        stated.Add(text.substr(0, equals), number);
+    }
+    return stated;
+}
+
+bool ShowFindings(const std::vector<FleetCheck::Finding> &findings, bool json)
+{
+    bool isRead = true;
+    for (const FleetCheck::Finding &finding : findings)
+    {
+        isRead = isRead && (json ? Output::Object(Json{{finding.IsProblem ? "problem" : "note", finding.Text},
+                                                       {"file", finding.File},
+                                                       {"line", finding.Line},
+                                                       {"nodes", finding.Nodes}})
+                                 : Output::Line(SafeText(FleetCheck::LineOf(finding))));
+    }
+    return isRead;
+}
+
+bool ShowJson(const AirPlan &plan)
+{
+    Json items = Json::array();
+    for (const AirItem &item : plan.Items)
+    {
+        items.push_back(Json{{"what", item.What},
+                             {"bytes", item.SizeKnown ? JsonNumber(item.Bytes) : Json(nullptr)},
+                             {"rate_hz", JsonNumber(Number(item.Rate))},
+                             {"copies", item.Copies},
+                             {"bytes_per_s", item.BytesPerSecond()}});
+    }
+    return Output::Object(Json{{"node", plan.Config->Node},
+                               {"file", plan.Config->File},
+                               {"air_bytes_per_s", plan.BytesPerSecond()},
+                               {"budget_bytes_per_s", JsonNumber(Number(plan.Config->Radio.Budget))},
+                               {"not_known", plan.NotKnown()},
+                               {"items", items}});
+}
+
+bool ShowTable(const std::vector<std::vector<std::string>> &rows)
+{
+    bool isRead = true;
+    for (const std::string &line : TableLines(rows))
+    {
+        isRead = isRead && Output::Line(SafeText(line));
+    }
+    return isRead;
+}
+
+// `rate and size of Findings Health, rate of Pose`.
+std::string NotKnown(const AirPlan &plan)
+{
+    std::map<std::string, std::string> names;
+    for (const std::string &entry : plan.NotKnown())
+    {
+        const std::size_t name = entry.find(" of ") + 4;
+        names[entry.substr(0, name)] +=
+            (names[entry.substr(0, name)].empty() ? "" : " ") + entry.substr(name);
+    }
+    std::string text;
+    for (const auto &[what, of] : names)
+    {
+        text += (text.empty() ? "" : ", ") + what + of;
+    }
+    return text.empty() ? "-" : text;
+}
+
+std::vector<std::vector<std::string>> Summary(const std::vector<AirPlan> &plans)
+{
+    std::vector<std::vector<std::string>> rows{{"NODE", "ON THE AIR", "BUDGET", "OF IT", "NOT KNOWN"}};
+    double sum = 0.0;
+    for (const AirPlan &plan : plans)
+    {
+        const double budget = Number(plan.Config->Radio.Budget);
+        sum += plan.BytesPerSecond();
+        rows.push_back({plan.Config->Node, NumberText(plan.BytesPerSecond(), 0, " B/s"),
+                        NumberText(budget, 0, " B/s"),
+                        NumberText(100.0 * plan.BytesPerSecond() / budget, 0, " %"), NotKnown(plan)});
+    }
+    if (plans.size() > 1)
+    {
+        rows.push_back({"in all", NumberText(sum, 0, " B/s")});
+    }
+    return rows;
+}
+
+std::vector<std::vector<std::string>> Details(const std::vector<AirPlan> &plans)
+{
+    std::vector<std::vector<std::string>> rows{{"NODE", "WHAT", "EACH", "RATE", "COPIES", "ON THE AIR"}};
+    for (const AirPlan &plan : plans)
+    {
+        for (const AirItem &item : plan.Items)
+        {
+            rows.push_back({plan.Config->Node, item.What,
+                            NumberText(item.Bytes, 0, item.SizeKnown ? " B" : " B and more"),
+                            NumberText(Number(item.Rate), 2, " Hz"), std::to_string(item.Copies),
+                            NumberText(item.Rate ? item.BytesPerSecond() : Number({}), 0, " B/s")});
+        }
+    }
+    return rows;
+}
+
+int Run(const Options &options)
+{
+    const IdlFiles types(options.Idl);
+    std::vector<FleetCheck::Finding> findings;
+    std::vector<CheckedFiles::Argument> arguments;
+    for (const std::string &file : options.Files)
+    {
+        arguments.push_back(CheckedFiles::Parse(file));
+    }
+    const std::vector<GatewayConfig> fleet = CheckedFiles::Load(arguments, types, findings);
+    const bool allGood = findings.empty();
+    AirPlanInput input;
+    input.Rates = StatedIn(options.Rates, "--rate");
+    input.Sizes = StatedIn(options.Sizes, "--size");
+    input.SizeOfType = [&types](const std::string &name)
+    {
+        const ParsedType parsed = types.Find(name);
+        return parsed.Type ? parsed.Type->FixedSize() : std::nullopt;
+    };
+    // What one that could not be read would have offered is not known.
+    if (allGood)
+    {
+        findings = FleetCheck::FindingsOf(fleet);
+    }
+    const std::vector<AirPlan> plans = AirPlansOf(fleet, input);
+    for (const AirPlan &plan : plans)
+    {
+        if (const std::string why = WhyAboveBudget(plan); !why.empty())
+        {
+            FleetCheck::Add(findings, {.File = plan.Config->File,
+                                       .Line = FleetCheck::LineIn(*plan.Config, "radio.budget"),
+                                       .Nodes = {plan.Config->Node},
+                                       .Text = why});
+        }
+    }
+    bool isRead = ShowFindings(findings, options.Json);
+    if (options.Json)
+    {
+        for (const AirPlan &plan : plans)
+        {
+            isRead = isRead && ShowJson(plan);
+        }
+    }
+    else if (!plans.empty())
+    {
+        isRead = isRead && ShowTable(options.Verbose ? Details(plans) : Summary(plans));
+    }
+    if (!allGood && fleet.size() > 1)
+    {
+        Output::Talk("the files are not compared with each other until each is good alone");
+    }
+    const bool isGood = std::none_of(findings.begin(), findings.end(),
+                                     [](const FleetCheck::Finding &finding) { return finding.IsProblem; });
+    return isGood || !isRead ? Good : ProblemFound;
+}
+
+}  // namespace
+
+void AddCheckCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand(
+        "check", "What is wrong with configurations, alone and together, and what they put on the air");
+    const auto addList = [command](const char *name, std::vector<std::string> &list, const char *help)
+    { return command->add_option(name, list, help)->allow_extra_args(false); };
+    command
+        ->add_option("FILE", options->Files,
+                     "Configurations of all nodes of a fleet; uav1,uav2=uav.yaml: of several nodes")
+        ->required();
+    addList("--rate", options->Rates,
+            "NAME=HZ or NODE/NAME=HZ: how often a message is posted, or sent to each queue of that name");
+    addList("--size", options->Sizes, "NAME=BYTES, of a message, a queue or a type: its CDR");
+    addList("--idl", options->Idl, "IDL file with the types: which there are, and how large");
+    command->add_flag("--json", options->Json, "One JSON object a line");
+    command->add_flag("-v,--verbose", options->Verbose, "Each thing that goes on the air");
+    command->callback(
+        [options, &chosen]
+        {
+            static_cast<void>(StatedIn(options->Rates, "--rate"));
+            static_cast<void>(StatedIn(options->Sizes, "--size"));
+            for (const std::string &file : options->Files)
+            {
+                if (const std::string why = CLI::ExistingFile(CheckedFiles::Parse(file).File); !why.empty())
+                {
+                    throw CLI::ValidationError("FILE", why);
+                }
+            }
+            chosen.Run = [options](Wakeup &) { return Run(*options); };
+        });
+}
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <string>
+#include <vector>
+
+#include "FleetCheck.h"
+#include "IdlFiles.h"
+
+// The configurations that a command line names.
+namespace Rabit::Tool::CheckedFiles
+{
+
+// A file, and the nodes that it is for: `uav.yaml`, `uav1=uav.yaml`, `uav1,uav2=uav.yaml`.
+struct Argument
+{
+    std::string File;
+    std::vector<std::string> Nodes;  // empty: the one that the file names
+};
+// A file of that whole name is one, whatever is in the name.
+Argument Parse(const std::string &text);
+
+// Loads them all. One that is bad is a finding, the only one of its file, and is left out.
+std::vector<GatewayConfig> Load(const std::vector<Argument> &arguments, const IdlFiles &types,
+                                std::vector<FleetCheck::Finding> &findings);
+
+}  // namespace Rabit::Tool::CheckedFiles

@@ -1,0 +1,130 @@
+// rabit doctor: what is wrong with this machine, the network and the fleet, and what to do.
+#include <rabit/RabitLog.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "Output.h"
+#include "SafeText.h"
+#include "doctor/MachineChecks.h"
+#include "doctor/NetworkChecks.h"
+#include "doctor/NetworkTrial.h"
+#include "doctor/NodeChecks.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Doctor::Finding;
+using Doctor::Level;
+
+// Where participants are asked to announce themselves, besides the domain that is meant: each costs some 180
+// bytes on the air.
+constexpr int CommonDomains = 10;
+
+void Append(std::vector<Finding> &all, std::vector<Finding> more)
+{
+    std::move(more.begin(), more.end(), std::back_inserter(all));
+}
+
+const char *WordOf(Level level)
+{
+    return level == Level::Problem ? "problem" : level == Level::Note ? "note" : "good";
+}
+
+bool Show(const Finding &finding, bool json)
+{
+    if (json)
+    {
+        return Output::Object(nlohmann::ordered_json{{"level", WordOf(finding.How)},
+                                                     {"subject", finding.Subject},
+                                                     {"text", finding.Text},
+                                                     {"advice", finding.Advice}});
+    }
+    const char *mark = finding.How == Level::Problem ? "! " : finding.How == Level::Note ? "- " : "  ";
+    return Output::Line(SafeText(mark + finding.Subject + ": " + finding.Text +
+                                 (finding.Advice.empty() ? "" : ". Do: " + finding.Advice)));
+}
+
+int Run(const CommonOptions &options, Wakeup &wakeup)
+{
+    const GatewayConfig config = ConfigOf(options);
+    const Doctor::MachineFacts before = Doctor::LookAtMachine();
+    const std::vector<Doctor::Interface> used = Doctor::UsedBy(config, before.Interfaces);
+    std::vector<int> domains{config.Domain};
+    for (int domain = 0; domain < CommonDomains; ++domain)
+    {
+        if (domain != config.Domain)
+        {
+            domains.push_back(domain);
+        }
+    }
+    std::vector<Finding> findings = Doctor::OfInterfaces(config, before.Interfaces);
+    Append(findings, Doctor::OfMtu(config, used));
+    bool anyNode = false;
+    int code = Good;
+    try
+    {
+        // Listens before DDS does, so that no answer is missed.
+        const Doctor::NetworkTrial trial(used, config.Node, domains);
+        FleetSession session(config, options, wakeup);
+        session.WaitUntil(options.Wait, [] { return false; });
+        const std::vector<FleetSession::Node> nodes = session.Nodes();
+        const Gateway::Fleet fleet = session.Fleet();
+        const Doctor::NetworkFacts network = trial.Facts();
+        anyNode = session.IsAnybodyThere();
+        Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
+        Append(findings, Doctor::OfMulticast(config, used, network));
+        Append(findings, Doctor::OfDomains(config, network, anyNode));
+        Append(findings, Doctor::OfNodes(nodes, fleet));
+        Append(findings, Doctor::OfTypes(nodes));
+        Append(findings, Doctor::OfClocks(nodes, fleet));
+        Append(findings, Doctor::OfLosses(nodes));
+    }
+    catch (const NetworkError &error)
+    {
+        findings.push_back({Level::Problem, "network", error.what(), "gateway/CONNECTING.md"});
+        code = NoNetwork;
+    }
+    const auto rank = [](const Finding &finding) { return static_cast<int>(finding.How); };
+    std::stable_sort(findings.begin(), findings.end(),
+                     [&rank](const Finding &one, const Finding &other) { return rank(one) > rank(other); });
+    for (const Finding &finding : findings)
+    {
+        if (!Show(finding, options.Json))
+        {
+            return Good;
+        }
+    }
+    if (code == Good && !anyNode)
+    {
+        Output::Talk("nobody was heard in domain " + std::to_string(config.Domain) + " over " +
+                     config.Transport);
+        return NoNetwork;
+    }
+    const bool isGood = std::none_of(findings.begin(), findings.end(),
+                                     [](const Finding &finding) { return finding.How == Level::Problem; });
+    return code != Good ? code : isGood ? Good : ProblemFound;
+}
+
+}  // namespace
+
+void AddDoctorCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<CommonOptions>();
+    CLI::App *command = app.add_subcommand(
+        "doctor", "What is wrong with this machine, the network and the fleet, and what to do");
+    AddCommonOptions(*command, *options, 6.0);
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,210 @@
+// rabit info: what recordings hold.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <map>
+#include <memory>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "Output.h"
+#include "SafeText.h"
+#include "Table.h"
+#include "recording/mcap/FileSource.h"
+#include "recording/mcap/McapContents.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+using Mcap::Contents;
+
+struct Options
+{
+    std::vector<std::string> Files;
+    bool Scan = false;
+    bool Json = false;
+};
+
+// What a file says under that name, the last time.
+Mcap::TextMap MetadataOf(const Contents &contents, const std::string &name)
+{
+    Mcap::TextMap values;
+    for (const Mcap::Metadata &metadata : contents.MetadataRecords)
+    {
+        values = metadata.Name == name ? metadata.Values : values;
+    }
+    return values;
+}
+
+std::string ValueOf(const Mcap::TextMap &values, const std::string &key)
+{
+    const auto found = values.find(key);
+    return found == values.end() ? "" : found->second;
+}
+
+double SecondsOf(const Contents &contents)
+{
+    return 1e-9 * static_cast<double>(contents.Statistics.EndTime - contents.Statistics.StartTime);
+}
+
+std::string DateOf(std::uint64_t time)
+{
+    const auto seconds = static_cast<std::time_t>(time / 1000000000);
+    std::tm parts{};
+    std::array<char, 40> text{};
+    if (gmtime_r(&seconds, &parts) == nullptr ||
+        std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S UTC", &parts) == 0)
+    {
+        return "?";
+    }
+    return text.data();
+}
+
+std::string Formatted(const char *format, double value)
+{
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
+std::string RateOf(std::uint64_t messages, double seconds)
+{
+    return messages < 2 || seconds <= 0 ? "-" : Formatted("%.2f Hz", static_cast<double>(messages) / seconds);
+}
+
+struct Topic
+{
+    std::string Name;
+    std::string Type;
+    std::string Encoding;
+    std::uint64_t Messages = 0;
+};
+
+std::vector<Topic> TopicsOf(const Contents &contents)
+{
+    std::vector<Topic> topics;
+    for (const auto &[id, channel] : contents.Channels)
+    {
+        const auto schema = contents.Schemas.find(channel.SchemaId);
+        const auto count = contents.Statistics.ChannelMessageCounts.find(id);
+        topics.push_back({channel.Topic, schema == contents.Schemas.end() ? "" : schema->second.Name,
+                          channel.MessageEncoding,
+                          count == contents.Statistics.ChannelMessageCounts.end() ? 0 : count->second});
+    }
+    std::sort(topics.begin(), topics.end(),
+              [](const Topic &left, const Topic &right) { return left.Name < right.Name; });
+    return topics;
+}
+
+bool ShowJson(const std::string &file, std::uint64_t size, const Contents &contents)
+{
+    Json topics = Json::array();
+    for (const Topic &topic : TopicsOf(contents))
+    {
+        topics.push_back({{"topic", topic.Name},
+                          {"type", topic.Type},
+                          {"encoding", topic.Encoding},
+                          {"messages", topic.Messages}});
+    }
+    Json lost = Json::object();
+    for (const auto &[topic, count] : MetadataOf(contents, "rabit.losses"))
+    {
+        lost[topic] = count;
+    }
+    return Output::Object({{"file", file},
+                           {"bytes", size},
+                           {"ended", contents.IsIndexed},
+                           {"node", ValueOf(MetadataOf(contents, "rabit.node"), "node")},
+                           {"begin_ns", contents.Statistics.StartTime},
+                           {"end_ns", contents.Statistics.EndTime},
+                           {"messages", contents.Statistics.MessageCount},
+                           {"chunks", contents.Chunks.size()},
+                           {"topics", topics},
+                           {"lost", lost},
+                           {"problems", contents.Problems}});
+}
+
+bool ShowText(const std::string &file, std::uint64_t size, const Contents &contents)
+{
+    const double seconds = SecondsOf(contents);
+    const Mcap::TextMap node = MetadataOf(contents, "rabit.node");
+    std::vector<std::vector<std::string>> head;
+    head.push_back({"file", SafeText(file)});
+    head.push_back({"size", Formatted("%.3f MB", 1e-6 * static_cast<double>(size))});
+    if (!node.empty())
+    {
+        std::string text = ValueOf(node, "node");
+        for (const char *key : {"host", "process", "version"})
+        {
+            text += node.count(key) == 0 ? "" : std::string(", ") + key + " " + node.at(key);
+        }
+        head.push_back({"node", SafeText(text)});
+    }
+    if (contents.Statistics.MessageCount > 0)
+    {
+        head.push_back({"begins", DateOf(contents.Statistics.StartTime)});
+        head.push_back({"lasts", Formatted("%.1f s", seconds)});
+    }
+    head.push_back({"messages", std::to_string(contents.Statistics.MessageCount) + " in " +
+                                    std::to_string(contents.Chunks.size()) + " chunks"});
+    std::vector<std::string> lines = TableLines(head);
+    for (const auto &[topic, count] : MetadataOf(contents, "rabit.losses"))
+    {
+        lines.push_back("! " + SafeText(topic) + ": " + SafeText(count) + " messages were not recorded");
+    }
+    for (const std::string &problem : contents.Problems)
+    {
+        lines.push_back("! " + SafeText(problem));
+    }
+    lines.emplace_back();
+    std::vector<std::vector<std::string>> table = {{"TOPIC", "TYPE", "MESSAGES", "RATE"}};
+    for (const Topic &topic : TopicsOf(contents))
+    {
+        table.push_back({SafeText(topic.Name), SafeText(topic.Type), std::to_string(topic.Messages),
+                         RateOf(topic.Messages, seconds)});
+    }
+    for (std::string &line : TableLines(table))
+    {
+        lines.push_back(std::move(line));
+    }
+    return std::all_of(lines.begin(), lines.end(),
+                       [](const std::string &line) { return Output::Line(line); });
+}
+
+int Run(const Options &options)
+{
+    bool good = true;
+    for (const std::string &file : options.Files)
+    {
+        Mcap::FileSource source(file);
+        const Contents contents = options.Scan ? Mcap::ScanContents(source) : Mcap::ReadContents(source);
+        good = good && contents.Problems.empty() && MetadataOf(contents, "rabit.losses").empty();
+        if (!(options.Json ? ShowJson(file, source.Size(), contents)
+                           : ShowText(file, source.Size(), contents)))
+        {
+            return Good;
+        }
+    }
+    return good ? Good : ProblemFound;
+}
+
+}  // namespace
+
+void AddInfoCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand("info", "What recordings hold");
+    command->add_option("FILE", options->Files, "Recordings (MCAP)")->required();
+    command->add_flag("--scan", options->Scan, "Read all of it, whatever its index says");
+    command->add_flag("--json", options->Json, "One object a line");
+    command->callback([options, &chosen] { chosen.Run = [options](Wakeup &) { return Run(*options); }; });
+}
+
+}  // namespace Rabit::Tool

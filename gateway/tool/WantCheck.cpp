@@ -1,0 +1,260 @@
+#include "WantCheck.h"
+
+#include <rabit/idl/NearestWord.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "names/ListedNames.h"
+#include "names/NamePattern.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+const PublishRule *Offered(const GatewayConfig &config, const std::string &message)
+{
+    const auto found = std::find_if(config.Publish.begin(), config.Publish.end(),
+                                    [&message](const PublishRule &rule) { return rule.Message == message; });
+    return found == config.Publish.end() ? nullptr : &*found;
+}
+
+bool IsPattern(const std::string &text)
+{
+    return text.find_first_of("*?") != std::string::npos;
+}
+
+bool IsEverybody(const std::vector<std::string> &patterns)
+{
+    return std::find(patterns.begin(), patterns.end(), "*") != patterns.end();
+}
+
+std::vector<std::string> NamesOf(const std::vector<const GatewayConfig *> &nodes)
+{
+    std::vector<std::string> names;
+    for (const GatewayConfig *node : nodes)
+    {
+        names.push_back(node->Node);
+    }
+    return names;
+}
+
+std::string Listed(const std::vector<std::string> &names)
+{
+    return ListedNames(names, [](const std::string &name) { return name; });
+}
+
+std::vector<std::string> MessagesOf(const std::vector<const GatewayConfig *> &nodes)
+{
+    std::set<std::string> names;
+    for (const GatewayConfig *node : nodes)
+    {
+        for (const PublishRule &rule : node->Publish)
+        {
+            names.insert(rule.Message);
+        }
+    }
+    return {names.begin(), names.end()};
+}
+
+std::vector<std::string> QueuesOf(const std::vector<const GatewayConfig *> &nodes)
+{
+    std::set<std::string> names;
+    for (const GatewayConfig *node : nodes)
+    {
+        for (const AcceptRule &rule : node->Accept)
+        {
+            names.insert(rule.Queue);
+        }
+    }
+    return {names.begin(), names.end()};
+}
+
+}  // namespace
+
+WantCheck::WantCheck(const GatewayConfig &config, const std::vector<GatewayConfig> &fleet,
+                     std::vector<FleetCheck::Finding> &findings)
+    : _config(config), _fleet(fleet), _findings(findings)
+{
+    for (const GatewayConfig &other : fleet)
+    {
+        if (other.Domain == config.Domain && other.Node != config.Node)
+        {
+            _others.push_back(&other);
+        }
+    }
+}
+
+void WantCheck::Run()
+{
+    if (_others.empty())
+    {
+        return;
+    }
+    for (const PublishRule &rule : _config.Publish)
+    {
+        CheckPublication(rule);
+    }
+    for (const SubscribeRule &rule : _config.Subscribe)
+    {
+        CheckSubscription(rule);
+    }
+    for (const AcceptRule &rule : _config.Accept)
+    {
+        CheckAcceptance(rule);
+    }
+    for (const SendRule &rule : _config.Send)
+    {
+        CheckSending(rule);
+    }
+}
+
+void WantCheck::Fail(int line, const std::string &text)
+{
+    FleetCheck::Add(_findings, {.File = _config.File, .Line = line, .Nodes = {_config.Node}, .Text = text});
+}
+
+void WantCheck::TellNobody(const std::string &pattern, const std::string &what, int line)
+{
+    for (const GatewayConfig &other : _fleet)
+    {
+        if (other.Domain != _config.Domain && MatchesPattern(pattern, other.Node))
+        {
+            Fail(line, what + ": " + other.Node + " is in domain " + std::to_string(other.Domain) +
+                           ", this node in " + std::to_string(_config.Domain));
+            return;
+        }
+    }
+    Fail(line, what + ": no other node " +
+                   (IsPattern(pattern)
+                        ? "fits `" + pattern + "`"
+                        : "is called `" + pattern + "`" + NearestWordHint(pattern, NamesOf(_others))));
+}
+
+// A name means somebody. Of several patterns it is enough that one does.
+WantCheck::Nodes WantCheck::Meant(const std::vector<std::string> &patterns, const std::string &what, int line)
+{
+    Nodes meant;
+    std::copy_if(_others.begin(), _others.end(), std::back_inserter(meant),
+                 [&patterns](const GatewayConfig *other) { return MatchesAny(patterns, other->Node); });
+    for (const std::string &pattern : patterns)
+    {
+        const bool isThere = pattern == _config.Node ||  // in a file that serves several nodes
+                             std::any_of(meant.begin(), meant.end(),
+                                         [&pattern](const GatewayConfig *other)
+                                         { return MatchesPattern(pattern, other->Node); });
+        if (!isThere && (meant.empty() || !IsPattern(pattern)))
+        {
+            TellNobody(pattern, what, line);
+        }
+        if (meant.empty())
+        {
+            break;
+        }
+    }
+    return meant;
+}
+
+// One topic of DDS has one type, whoever publishes it.
+void WantCheck::CheckPublication(const PublishRule &rule)
+{
+    for (const GatewayConfig *other : _others)
+    {
+        const PublishRule *published = Offered(*other, rule.Message);
+        // Told of the one that stands later among the files.
+        if (published != nullptr && published->Type != rule.Type && other < &_config)
+        {
+            Fail(rule.Line, "`" + rule.Message + "` is published as `" + rule.Type + "`, by " + other->Node +
+                                " as `" + published->Type + "`");
+            return;
+        }
+    }
+}
+
+void WantCheck::CheckSubscription(const SubscribeRule &rule)
+{
+    const std::string what = "subscribe " + rule.Message;
+    const Nodes meant = Meant(rule.From, what, rule.Line);
+    const bool somebodyHasIt =
+        std::any_of(meant.begin(), meant.end(),
+                    [&rule](const GatewayConfig *other) { return Offered(*other, rule.Message) != nullptr; });
+    if (!somebodyHasIt && !meant.empty())
+    {
+        Fail(rule.Line, what + ": " +
+                            (IsEverybody(rule.From) ? "nobody publishes it"
+                             : meant.size() == 1    ? meant.front()->Node + " does not publish it"
+                                                    : "none of " + Listed(NamesOf(meant)) + " publishes it") +
+                            NearestWordHint(rule.Message, MessagesOf(meant)));
+        return;
+    }
+    for (const GatewayConfig *other : meant)
+    {
+        const PublishRule *published = Offered(*other, rule.Message);
+        if (published == nullptr && !IsEverybody(rule.From))
+        {
+            Fail(rule.Line, what + ": " + other->Node + " does not publish it" +
+                                NearestWordHint(rule.Message, MessagesOf({other})));
+        }
+        else if (published != nullptr && published->Type != rule.Type)
+        {
+            Fail(rule.Line, what + ": " + other->Node + " publishes it as `" + published->Type +
+                                "`, this node wants `" + rule.Type + "`");
+        }
+        else if (published != nullptr && rule.Qos == QosProfile::State &&
+                 published->Qos == QosProfile::Telemetry)
+        {
+            Fail(rule.Line,
+                 what + ": " + other->Node + " publishes it with qos telemetry, this node wants qos state");
+        }
+    }
+}
+
+void WantCheck::CheckAcceptance(const AcceptRule &rule)
+{
+    if (!IsEverybody(rule.From))
+    {
+        static_cast<void>(Meant(rule.From, "accept " + rule.Queue, rule.Line));
+    }
+}
+
+void WantCheck::CheckSending(const SendRule &rule)
+{
+    const std::string what = "send " + rule.To + "/" + rule.Queue;
+    if (rule.To == "*" && rule.Queue == "*")
+    {
+        return;
+    }
+    const Nodes meant = Meant({rule.To}, what, rule.Line);
+    std::vector<std::string> refusing;
+    bool isTaken = false;
+    for (const GatewayConfig *other : meant)
+    {
+        for (const AcceptRule &accepted : other->Accept)
+        {
+            if (MatchesPattern(rule.Queue, accepted.Queue))
+            {
+                isTaken = isTaken || MatchesAny(accepted.From, _config.Node);
+                refusing.push_back(other->Node);
+            }
+        }
+    }
+    if (meant.empty() || isTaken)
+    {
+        return;
+    }
+    if (refusing.empty())
+    {
+        Fail(rule.Line, what + ": " +
+                            (rule.To == "*"      ? std::string("nobody accepts")
+                             : meant.size() == 1 ? meant.front()->Node + " does not accept"
+                                                 : "none of " + Listed(NamesOf(meant)) + " accepts") +
+                            " such a queue" + NearestWordHint(rule.Queue, QueuesOf(meant)));
+        return;
+    }
+    Fail(rule.Line, what + ": " + Listed(refusing) + (refusing.size() == 1 ? " accepts" : " accept") +
+                        " it from others only, not from " + _config.Node);
+}
+
+}  // namespace Rabit::Tool

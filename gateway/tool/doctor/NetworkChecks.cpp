@@ -1,0 +1,118 @@
+#include "doctor/NetworkChecks.h"
+
+#include <algorithm>
+
+namespace Rabit::Tool::Doctor
+{
+namespace
+{
+
+std::string Listed(const std::set<std::string> &list)
+{
+    constexpr std::size_t most = 8;
+    std::string text;
+    std::size_t count = 0;
+    for (const std::string &entry : list)
+    {
+        if (++count <= most)
+        {
+            text += (text.empty() ? "" : ", ") + (entry.empty() ? "one without a name" : entry);
+        }
+    }
+    return text + (count > most ? " and " + std::to_string(count - most) + " more" : "");
+}
+
+}  // namespace
+
+std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<Interface> &used,
+                                 const NetworkFacts &facts)
+{
+    std::vector<Finding> findings;
+    if (!config.Multicast)
+    {
+        return findings;
+    }
+    for (const Interface &one : used)
+    {
+        const auto found = facts.Trials.find(one.Name);
+        if (found == facts.Trials.end())
+        {
+            continue;
+        }
+        const MulticastTrial &trial = found->second;
+        const std::string subject = "multicast on " + one.Name;
+        if (!trial.Error.empty())
+        {
+            findings.push_back({one.IsLoopback && used.size() > 1 ? Level::Note : Level::Problem, subject,
+                                "it cannot be sent: " + trial.Error,
+                                one.HasMulticast ? "ip route add 224.0.0.0/4 dev " + one.Name
+                                                 : "ip link set " + one.Name + " multicast on"});
+            continue;
+        }
+        if (!trial.HeardOn.contains(one.Name))
+        {
+            findings.push_back({Level::Problem, subject,
+                                "what is sent there does not come back to this machine",
+                                "let UDP to 239.255.0.1 through the firewall (nft list ruleset)"});
+            continue;
+        }
+        std::set<std::string> silent;
+        std::set_difference(trial.HeardFrom.begin(), trial.HeardFrom.end(), trial.AnsweredFrom.begin(),
+                            trial.AnsweredFrom.end(), std::inserter(silent, silent.begin()));
+        if (!silent.empty())
+        {
+            findings.push_back(
+                {Level::Problem, subject,
+                 Listed(silent) + (silent.size() == 1 ? " is" : " are") +
+                     " heard, and did not answer: multicast from here does not get there, or the answer "
+                     "does not get back",
+                 "look at the firewalls of both and at the access point; or list peers in both"});
+        }
+        std::set<std::string> others = trial.HeardOn;
+        others.erase(one.Name);
+        findings.push_back({trial.AnsweredFrom.empty() ? Level::Note : Level::Good, subject,
+                            "it goes out" + (others.empty() ? "" : ", and comes in on " + Listed(others)) +
+                                (trial.AnsweredFrom.empty() ? std::string("; nobody answered")
+                                                            : "; answered by " + Listed(trial.AnsweredFrom)) +
+                                (trial.HeardFrom.empty() ? "" : "; heard from " + Listed(trial.HeardFrom)),
+                            trial.AnsweredFrom.empty() && trial.HeardFrom.empty()
+                                ? "if others should be there: gateway/CONNECTING.md"
+                                : ""});
+    }
+    return findings;
+}
+
+std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)
+{
+    std::vector<Finding> findings;
+    for (const auto &[domain, voices] : facts.Domains)
+    {
+        if (domain == config.Domain)
+        {
+            continue;
+        }
+        std::set<std::string> names;
+        std::set<std::string> addresses;
+        bool areNodes = false;
+        for (const auto &[address, of] : voices)
+        {
+            names.insert(of.Names.begin(), of.Names.end());
+            addresses.insert(address);
+            areNodes = areNodes || of.AreNodes;
+        }
+        if (names.empty())
+        {
+            continue;
+        }
+        const bool isMeant = areNodes && !anyNode;
+        findings.push_back(
+            {isMeant ? Level::Problem : Level::Note, "domain " + std::to_string(domain),
+             Listed(names) + (names.size() == 1 ? " is" : " are") + " in it, at " + Listed(addresses) +
+                 (isMeant ? ", and nobody in domain " + std::to_string(config.Domain) : ""),
+             isMeant ? "--domain " + std::to_string(domain) + ", or the same `domain` in all files"
+                     : "the same `domain` in all files, if they belong to this fleet"});
+    }
+    return findings;
+}
+
+}  // namespace Rabit::Tool::Doctor

@@ -1,0 +1,339 @@
+#include "doctor/NetworkTrial.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "doctor/RtpsCall.h"
+#include "doctor/UdpSocket.h"
+
+namespace Rabit::Tool::Doctor
+{
+namespace
+{
+
+// What anybody can have us remember.
+constexpr std::size_t MostAddresses = 256;
+constexpr std::size_t MostNames = 64;
+
+sockaddr_in AddressOf(const std::string &address, int port)
+{
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(port));
+    ::inet_pton(AF_INET, address.c_str(), &to.sin_addr);
+    return to;
+}
+
+std::string TextOf(const in_addr &address)
+{
+    char text[INET_ADDRSTRLEN] = "";
+    ::inet_ntop(AF_INET, &address, text, sizeof text);
+    return text;
+}
+
+UdpSocket OpenSocket(const std::string &address, int port)
+{
+    UdpSocket socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    const int on = 1;
+    // Beside the participants that listen there.
+    socket.Set(SOL_SOCKET, SO_REUSEADDR, on);
+    socket.Set(SOL_SOCKET, SO_REUSEPORT, on);
+    socket.Set(IPPROTO_IP, IP_PKTINFO, on);
+    const sockaddr_in own = AddressOf(address, port);
+    if (socket.IsOpen() && ::bind(socket.Get(), reinterpret_cast<const sockaddr *>(&own), sizeof own) == 0)
+    {
+        return socket;
+    }
+    return UdpSocket(-1);
+}
+
+int PortOf(const UdpSocket &socket)
+{
+    sockaddr_in own{};
+    socklen_t size = sizeof own;
+    ::getsockname(socket.Get(), reinterpret_cast<sockaddr *>(&own), &size);
+    return ntohs(own.sin_port);
+}
+
+ip_mreqn OnInterface(int index)
+{
+    ip_mreqn request{};
+    ::inet_pton(AF_INET, CallGroup, &request.imr_multiaddr);
+    request.imr_ifindex = index;
+    return request;
+}
+
+void Join(const UdpSocket &socket, const std::vector<Interface> &interfaces)
+{
+    const int off = 0;
+    socket.Set(IPPROTO_IP, IP_MULTICAST_ALL, off);
+    for (const Interface &one : interfaces)
+    {
+        socket.Set(IPPROTO_IP, IP_ADD_MEMBERSHIP, OnInterface(one.Index));
+    }
+}
+
+// Why it was not sent; empty: it was.
+std::string SendToGroup(const UdpSocket &socket, int port, const std::vector<std::uint8_t> &bytes)
+{
+    const sockaddr_in group = AddressOf(CallGroup, port);
+    const bool sent =
+        ::sendto(socket.Get(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr *>(&group),
+                 sizeof group) == static_cast<ssize_t>(bytes.size());
+    return sent ? "" : std::generic_category().message(errno);
+}
+
+struct Datagram
+{
+    std::vector<std::uint8_t> Bytes;
+    std::string From;
+    int Interface = 0;  // on which it came in
+};
+
+std::optional<Datagram> Receive(const UdpSocket &socket)
+{
+    std::array<std::uint8_t, 65536> bytes;
+    alignas(cmsghdr) std::array<char, 256> control{};
+    sockaddr_in from{};
+    iovec part{bytes.data(), bytes.size()};
+    msghdr message{};
+    message.msg_name = &from;
+    message.msg_namelen = sizeof from;
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    const ssize_t size = ::recvmsg(socket.Get(), &message, 0);
+    if (size < 0)
+    {
+        return std::nullopt;
+    }
+    Datagram datagram{{bytes.begin(), bytes.begin() + size}, TextOf(from.sin_addr), 0};
+    for (cmsghdr *header = CMSG_FIRSTHDR(&message); header != nullptr; header = CMSG_NXTHDR(&message, header))
+    {
+        if (header->cmsg_level == IPPROTO_IP && header->cmsg_type == IP_PKTINFO)
+        {
+            in_pktinfo info{};
+            std::memcpy(&info, CMSG_DATA(header), sizeof info);
+            datagram.Interface = info.ipi_ifindex;
+        }
+    }
+    return datagram;
+}
+
+}  // namespace
+
+class NetworkTrial::Work
+{
+public:
+    Work(const std::vector<Interface> &interfaces, std::string ownName, const std::vector<int> &callIn)
+        : _interfaces(interfaces), _ownName(std::move(ownName)), _end(::eventfd(0, EFD_CLOEXEC))
+    {
+        std::random_device random;
+        std::generate(_id.begin(), _id.end(), [&random] { return static_cast<std::uint8_t>(random()); });
+        for (const Interface &one : _interfaces)
+        {
+            _facts.Trials[one.Name];
+        }
+        AddEars();
+        Call(callIn);
+        _thread = std::thread([this] { Listen(); });
+    }
+
+    ~Work()
+    {
+        const std::uint64_t one = 1;
+        static_cast<void>(::write(_end.Get(), &one, sizeof one));
+        _thread.join();
+    }
+
+    NetworkFacts Facts() const
+    {
+        const std::lock_guard lock(_mutex);
+        return _facts;
+    }
+
+private:
+    // A socket, and what comes there.
+    struct Ear
+    {
+        UdpSocket Where;
+        int Domain = -1;  // announcements of that domain
+        std::string
+            Interface{};  // answers to what was sent there; both empty: what this machine sends itself
+    };
+
+    void AddEars()
+    {
+        _ears.push_back({OpenSocket("0.0.0.0", 0)});
+        Join(_ears.back().Where, _interfaces);
+        _trialPort = PortOf(_ears.back().Where);
+        for (int domain = 0; domain <= LastDomain; ++domain)
+        {
+            UdpSocket socket = OpenSocket("0.0.0.0", CallPort(domain));
+            if (socket.IsOpen())
+            {
+                Join(socket, _interfaces);
+                _ears.push_back({std::move(socket), domain});
+            }
+        }
+    }
+
+    // One participant for each interface: what answers tells on which it was heard.
+    void Call(const std::vector<int> &domains)
+    {
+        for (std::size_t i = 0; i < _interfaces.size(); ++i)
+        {
+            const Interface &one = _interfaces[i];
+            if (one.Addresses.empty())
+            {
+                continue;
+            }
+            UdpSocket socket = OpenSocket(one.Addresses.front(), 0);
+            std::string &error = _facts.Trials[one.Name].Error;
+            if (!socket.IsOpen() || !socket.Set(IPPROTO_IP, IP_MULTICAST_IF, OnInterface(one.Index)))
+            {
+                error = std::generic_category().message(errno);
+                continue;
+            }
+            const auto name = one.Name;
+            error = SendToGroup(socket, _trialPort, TrialOn(i));
+            ParticipantId id = _id;
+            id.back() = static_cast<std::uint8_t>(i);
+            std::array<std::uint8_t, 4> address{};
+            ::inet_pton(AF_INET, one.Addresses.front().c_str(), address.data());
+            const auto call = MakeCall(id, address, static_cast<std::uint16_t>(PortOf(socket)));
+            for (const int domain : domains)
+            {
+                if (error.empty())
+                {
+                    error = SendToGroup(socket, CallPort(domain), call);
+                }
+            }
+            _ears.push_back({std::move(socket), -1, name});
+        }
+    }
+
+    std::vector<std::uint8_t> TrialOn(std::size_t interface) const
+    {
+        std::vector<std::uint8_t> bytes(_id.begin(), _id.end());
+        bytes.push_back(static_cast<std::uint8_t>(interface));
+        return bytes;
+    }
+
+    void Listen()
+    {
+        std::vector<pollfd> waits{{_end.Get(), POLLIN, 0}};
+        for (const Ear &ear : _ears)
+        {
+            waits.push_back({ear.Where.Get(), POLLIN, 0});
+        }
+        while (::poll(waits.data(), waits.size(), -1) >= 0 || errno == EINTR)
+        {
+            if (waits.front().revents != 0)
+            {
+                return;
+            }
+            for (std::size_t i = 0; i < _ears.size(); ++i)
+            {
+                if (waits[i + 1].revents == 0)
+                {
+                    continue;
+                }
+                if (const auto datagram = Receive(_ears[i].Where))
+                {
+                    const std::lock_guard lock(_mutex);
+                    Take(_ears[i], *datagram);
+                }
+            }
+        }
+    }
+
+    void Take(const Ear &ear, const Datagram &datagram)
+    {
+        const auto on =
+            std::find_if(_interfaces.begin(), _interfaces.end(),
+                         [&datagram](const Interface &one) { return one.Index == datagram.Interface; });
+        if (ear.Domain < 0 && ear.Interface.empty())
+        {
+            for (std::size_t i = 0; i < _interfaces.size(); ++i)
+            {
+                if (datagram.Bytes == TrialOn(i) && on != _interfaces.end())
+                {
+                    _facts.Trials[_interfaces[i].Name].HeardOn.insert(on->Name);
+                }
+            }
+            return;
+        }
+        const auto heard = HeardIn(datagram.Bytes);
+        // Those that this program makes itself, here and with DDS, are passed over.
+        if (!heard || !heard->Announces || heard->Name == _ownName ||
+            std::equal(_id.begin(), _id.end() - 1, heard->Sender.begin()))
+        {
+            return;
+        }
+        if (ear.Domain < 0)
+        {
+            AddTo(_facts.Trials[ear.Interface].AnsweredFrom, datagram.From, MostAddresses);
+            return;
+        }
+        if (on != _interfaces.end())
+        {
+            AddTo(_facts.Trials[on->Name].HeardFrom, datagram.From, MostAddresses);
+        }
+        auto &voices = _facts.Domains[ear.Domain];
+        if (voices.size() < MostAddresses || voices.contains(datagram.From))
+        {
+            Voices &from = voices[datagram.From];
+            from.AreNodes = from.AreNodes || heard->IsNode;
+            AddTo(from.Names, heard->Name, MostNames);
+        }
+    }
+
+    static void AddTo(std::set<std::string> &set, const std::string &text, std::size_t most)
+    {
+        if (set.size() < most)
+        {
+            set.insert(text);
+        }
+    }
+
+    const std::vector<Interface> _interfaces;
+    const std::string _ownName;
+    ParticipantId _id{};
+    const UdpSocket _end;
+    int _trialPort = 0;
+    std::vector<Ear> _ears;
+    mutable std::mutex _mutex;
+    NetworkFacts _facts;
+    std::thread _thread;
+};
+
+NetworkTrial::NetworkTrial(const std::vector<Interface> &interfaces, std::string ownName,
+                           const std::vector<int> &callIn)
+    : _work(std::make_unique<Work>(interfaces, std::move(ownName), callIn))
+{
+}
+
+NetworkTrial::~NetworkTrial() = default;
+
+NetworkFacts NetworkTrial::Facts() const
+{
+    return _work->Facts();
+}
+
+}  // namespace Rabit::Tool::Doctor

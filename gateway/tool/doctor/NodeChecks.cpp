@@ -1,0 +1,161 @@
+#include "doctor/NodeChecks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "Offers.h"
+
+namespace Rabit::Tool::Doctor
+{
+namespace
+{
+
+// Differences that people notice in logs and recordings, and that one round trip does not explain.
+constexpr double ClockTolerance = 1.0;
+// Of beats: fewer are chance.
+constexpr std::uint64_t FewBeats = 10;
+constexpr double MuchLost = 0.1;
+
+std::string Text(const char *format, double number)
+{
+    char text[64];
+    std::snprintf(text, sizeof text, format, number);
+    return text;
+}
+
+std::string Seconds(double seconds)
+{
+    return Text("%.1f s", std::abs(seconds));
+}
+
+double RoundTripOf(const std::string &node, const Gateway::Fleet &fleet)
+{
+    const auto found =
+        std::find_if(fleet.nodes.begin(), fleet.nodes.end(),
+                     [&node](const Gateway::NodeStatus &status) { return status.node == node; });
+    return found == fleet.nodes.end() || !std::isfinite(found->round_trip_s) ? 0.0 : found->round_trip_s;
+}
+
+}  // namespace
+
+std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet)
+{
+    std::vector<Finding> findings;
+    std::string up;
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (node.State == Gateway::NodeState::LOST)
+        {
+            continue;
+        }
+        up += (up.empty() ? "" : " ") + node.Name;
+        if (node.IsTwice)
+        {
+            findings.push_back(
+                {Level::Problem, "node " + node.Name, "two live nodes have this name",
+                 "give one of them another one (`node:`); both say in their log where they run"});
+        }
+        if (!node.Offers)
+        {
+            findings.push_back({Level::Problem, "node " + node.Name,
+                                "it beats, and its announcement does not come",
+                                "wait longer (--wait), or look whether what this machine sends gets there"});
+        }
+    }
+    for (const Gateway::Problem &problem : fleet.problems)
+    {
+        findings.push_back({Level::Problem, problem.subject, problem.reason, "gateway/CONNECTING.md"});
+    }
+    if (!up.empty())
+    {
+        findings.push_back({Level::Good, "nodes", up});
+    }
+    if (fleet.malformed > 0)
+    {
+        findings.push_back({Level::Problem, "gateways",
+                            std::to_string(fleet.malformed) + " samples made no sense",
+                            "look for programs of another version, or for somebody who means harm"});
+    }
+    return findings;
+}
+
+std::vector<Finding> OfTypes(const std::vector<FleetSession::Node> &nodes)
+{
+    std::vector<Finding> findings;
+    for (const std::string &line : Offers::Differences(nodes))
+    {
+        findings.push_back({Level::Problem, "types", line, "build them from the same IDL"});
+    }
+    return findings;
+}
+
+std::vector<Finding> OfClocks(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet)
+{
+    std::vector<Finding> findings;
+    std::size_t known = 0;
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (!std::isfinite(node.ClockAhead) || node.State == Gateway::NodeState::LOST)
+        {
+            continue;
+        }
+        ++known;
+        least = std::min(least, node.ClockAhead);
+        most = std::max(most, node.ClockAhead);
+        if (std::abs(node.ClockAhead) > ClockTolerance + RoundTripOf(node.Name, fleet))
+        {
+            findings.push_back(
+                {Level::Problem, "clock of " + node.Name,
+                 Seconds(node.ClockAhead) + (node.ClockAhead < 0 ? " behind" : " ahead of") +
+                     " this machine's; ages are right all the same, logs and recordings do not match",
+                 "set it (chrony, or GPS)"});
+        }
+    }
+    // All others agree.
+    if (findings.size() > 1 && findings.size() == known && most - least < ClockTolerance)
+    {
+        return {{Level::Problem, "clock of this machine",
+                 Seconds(most) + (most < 0 ? " ahead of" : " behind") + " those of all " +
+                     std::to_string(known) + " nodes",
+                 "set it (chrony)"}};
+    }
+    if (findings.empty() && known > 0)
+    {
+        findings.push_back({Level::Good, "clocks",
+                            "those of " + std::to_string(known) + " nodes differ by " +
+                                Seconds(std::max(std::abs(least), std::abs(most))) + " at most"});
+    }
+    return findings;
+}
+
+std::vector<Finding> OfLosses(const std::vector<FleetSession::Node> &nodes)
+{
+    std::vector<Finding> findings;
+    std::uint64_t heard = 0;
+    for (const FleetSession::Node &node : nodes)
+    {
+        const std::uint64_t all = node.BeatsHeard + node.BeatsMissed;
+        heard += node.BeatsHeard;
+        if (node.BeatsMissed == 0)
+        {
+            continue;
+        }
+        const bool isMuch =
+            all >= FewBeats && static_cast<double>(node.BeatsMissed) > MuchLost * static_cast<double>(all);
+        findings.push_back(
+            {isMuch ? Level::Problem : Level::Note, "loss from " + node.Name,
+             std::to_string(node.BeatsMissed) + " of " + std::to_string(all) + " beats did not come",
+             "rabit check, rabit bytes: whether the radio is full (gateway/RADIO.md); else a better signal"});
+    }
+    if (findings.empty() && heard > 0)
+    {
+        findings.push_back({Level::Good, "loss", "all of " + std::to_string(heard) + " beats came"});
+    }
+    return findings;
+}
+
+}  // namespace Rabit::Tool::Doctor

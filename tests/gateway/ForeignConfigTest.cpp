@@ -1,0 +1,195 @@
+// The section `foreign` of a configuration.
+#include <gtest/gtest.h>
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/LoadGatewayConfig.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "names/ForeignNames.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+class ForeignConfigTest : public ::testing::Test
+{
+protected:
+    ~ForeignConfigTest() override { std::filesystem::remove(_file); }
+
+    GatewayConfig Load(const std::string &entries) const
+    {
+        std::ofstream(_file) << "node: uav1\n" << entries;
+        return LoadGatewayConfig(_file.string(), "");
+    }
+
+    std::string ErrorOf(const std::string &entries) const
+    {
+        try
+        {
+            Load(entries);
+        }
+        catch (const ConfigError &error)
+        {
+            return std::string(error.what()).substr(_file.parent_path().string().size() + 1);
+        }
+        return "no error";
+    }
+
+    // Of an entry in line 3.
+    std::string Refusal(const std::string &entry) const
+    {
+        const std::string error = ErrorOf("foreign:\n  - {" + entry + "}\n");
+        const std::string place = _file.filename().string() + ":3: ";
+        return error.rfind(place, 0) == 0 ? error.substr(place.size()) : error;
+    }
+
+    const std::filesystem::path _file = std::filesystem::path(::testing::TempDir()) /
+                                        ("rabit-foreign-" + std::to_string(::getpid()) + ".yaml");
+};
+
+TEST_F(ForeignConfigTest, ReadsEveryKeyOfATopicThatIsRead)
+{
+    const ForeignRule rule =
+        Load(
+            "foreign:\n  - {subscribe: rt/odometry, type: Uav::Pose, as: Autopilot/Odometry, "
+            "names: ros2, each: latest, stale_after: 500ms, age: source_time, capacity: 7, "
+            "reliability: best_effort, durability: transient_local}\n")
+            .Foreign.at(0);
+    EXPECT_EQ(rule.Way, ForeignRule::Direction::Subscribe);
+    EXPECT_EQ(rule.Topic, "rt/odometry");
+    EXPECT_EQ(rule.Type, "Uav::Pose");
+    EXPECT_EQ(rule.Local, "Autopilot/Odometry");
+    EXPECT_EQ(rule.Names, ForeignRule::WireNames::Ros2);
+    EXPECT_EQ(rule.Each, ForeignRule::Delivery::Latest);
+    EXPECT_EQ(rule.StaleAfter, 500ms);
+    EXPECT_TRUE(rule.SourceTimeIsTrusted);
+    EXPECT_EQ(rule.Capacity, 7u);
+    EXPECT_EQ(rule.Reliability, Reliability::BestEffort);
+    EXPECT_EQ(rule.Durability, Durability::TransientLocal);
+    EXPECT_EQ(rule.Line, 3);
+    EXPECT_EQ(WireTypeOf(rule), "Uav::dds_::Pose_");
+    EXPECT_EQ(WireTopicOf(rule), "rt/odometry");
+}
+
+TEST_F(ForeignConfigTest, ReadsEveryKeyOfATopicThatIsWritten)
+{
+    const ForeignRule rule =
+        Load(
+            "foreign:\n  - {publish: Setpoint, topic: setpoint, type: Uav::Pose, names: plain, "
+            "reliability: reliable, durability: volatile, depth: 3, max_rate: 20}\n")
+            .Foreign.at(0);
+    EXPECT_EQ(rule.Way, ForeignRule::Direction::Publish);
+    EXPECT_EQ(rule.Local, "Setpoint");
+    EXPECT_EQ(rule.Reliability, Reliability::Reliable);
+    EXPECT_EQ(rule.Durability, Durability::Volatile);
+    EXPECT_EQ(rule.Depth, 3u);
+    EXPECT_EQ(rule.MaxRate, 20.0);
+    EXPECT_EQ(WireTopicOf(rule), "setpoint");
+    EXPECT_EQ(WireTypeOf(rule), "Uav::Pose");
+}
+
+TEST_F(ForeignConfigTest, TakesQosAsItIsFoundUnlessItIsGiven)
+{
+    const ForeignRule rule =
+        Load("foreign:\n  - {subscribe: a, type: Uav::Pose, as: A, each: queue, reliability: as_found}\n")
+            .Foreign.at(0);
+    EXPECT_EQ(rule.Reliability, std::nullopt);
+    EXPECT_EQ(rule.Durability, std::nullopt);
+    EXPECT_EQ(rule.Each, ForeignRule::Delivery::Queue);
+    EXPECT_FALSE(rule.SourceTimeIsTrusted);
+}
+
+TEST_F(ForeignConfigTest, WritesAMessageToTheTopicOfItsNameIfThereIsNoOther)
+{
+    EXPECT_EQ(
+        WireTopicOf(Load("foreign:\n  - {publish: Pose, type: Uav::Pose, names: ros2}\n").Foreign.at(0)),
+        "rt/Pose");
+}
+
+TEST_F(ForeignConfigTest, RefusesWhatItDoesNotKnowWithTheNearestWord)
+{
+    EXPECT_EQ(Refusal("subscribe: a, type: Uav::Poze, as: A"),
+              "unknown IDL type `Uav::Poze`; did you mean `Uav::Pose`?");
+    EXPECT_EQ(Refusal("subscribe: a, type: Uav::Pose, as: A, stale_afer: 1s"),
+              "unknown key `stale_afer` in a `foreign` entry; did you mean `stale_after`?");
+    EXPECT_EQ(Refusal("subscribe: a, type: Uav::Pose, as: A, names: ros"),
+              "`names` is `ros`; did you mean `ros2`?");
+    EXPECT_EQ(Refusal("subscribe: a, type: Uav::Pose, as: A, reliability: besteffort"),
+              "`reliability` is `besteffort`; did you mean `best_effort`?");
+}
+
+TEST_F(ForeignConfigTest, RefusesKeysOfTheOtherDirection)
+{
+    EXPECT_EQ(Refusal("subscribe: a, type: Uav::Pose, as: A, max_rate: 1"),
+              "`max_rate` is not for an entry that subscribes");
+    EXPECT_EQ(Refusal("publish: A, type: Uav::Pose, stale_after: 1s"),
+              "`stale_after` is not for an entry that publishes");
+    EXPECT_EQ(Refusal("publish: A, type: Uav::Pose, durability: as_found"),
+              "`as_found` is not for an entry that publishes");
+    EXPECT_EQ(Refusal("publish: A, subscribe: a, type: Uav::Pose"),
+              "a `foreign` entry has either `subscribe` or `publish`");
+    EXPECT_EQ(Refusal("type: Uav::Pose"), "a `foreign` entry has either `subscribe` or `publish`");
+}
+
+TEST_F(ForeignConfigTest, RefusesNamesAndRangesThatCannotBe)
+{
+    EXPECT_EQ(Refusal("subscribe: 'a b', type: Uav::Pose, as: A"),
+              "`a b` is no topic name; expected 1 to 255 letters without blanks");
+    EXPECT_EQ(Refusal("subscribe: rabit/Beat, type: Uav::Pose, as: A"),
+              "`rabit/Beat` is a topic of the gateways themselves");
+    EXPECT_EQ(Refusal("subscribe: a, type: Uav::Pose, as: Gateway/Fleet"),
+              "`Gateway/Fleet` belongs to the gateway; expected another name");
+    EXPECT_EQ(Refusal("publish: 'A//B', type: Uav::Pose").substr(0, 37),
+              "`A//B` is no name of a message or que");
+    EXPECT_EQ(Refusal("publish: A, type: Uav::Pose, max_rate: -1"),
+              "max_rate is out of range; expected 0 (no limit) to 1000000 a second");
+}
+
+TEST_F(ForeignConfigTest, RefusesATopicOrMessageOfTwoTypes)
+{
+    const std::string file = _file.filename().string();
+    EXPECT_EQ(ErrorOf("foreign:\n  - {subscribe: a, type: Uav::Pose, as: A}\n  - {publish: B, topic: a, "
+                      "type: Uav::Goto}\n"),
+              file + ":4: the topic `a` is of type `Uav::Goto` here and `Uav::Pose` in line 3");
+    EXPECT_EQ(ErrorOf("publish:\n  - {message: A, type: Uav::Pose}\nforeign:\n  - {subscribe: a, type: "
+                      "Uav::Goto, as: A}\n"),
+              file + ":5: the message `A` is of type `Uav::Goto` here and `Uav::Pose` in line 3");
+    EXPECT_EQ(ErrorOf("subscribe:\n  - {message: a, type: Uav::Pose}\nforeign:\n  - {subscribe: a, type: "
+                      "Uav::Goto, as: A}\n"),
+              file + ":5: the topic `a` is of type `Uav::Goto` here and `Uav::Pose` in line 3");
+}
+
+TEST_F(ForeignConfigTest, RefusesWhatStandsTwice)
+{
+    const std::string file = _file.filename().string();
+    EXPECT_EQ(ErrorOf("foreign:\n  - {subscribe: a, type: Uav::Pose, as: A}\n  - {subscribe: a, type: "
+                      "Uav::Pose, as: B}\n"),
+              file + ":4: `a` stands twice under `foreign` (first in line 3)");
+    EXPECT_EQ(ErrorOf("foreign:\n  - {subscribe: a, type: Uav::Pose, as: A}\n  - {subscribe: b, type: "
+                      "Uav::Pose, as: A}\n"),
+              file + ":4: `A` stands twice under `foreign` (first in line 3)");
+}
+
+TEST_F(ForeignConfigTest, RefusesToWriteATopicsSamplesBackToIt)
+{
+    EXPECT_EQ(ErrorOf("foreign:\n  - {subscribe: rt/a, type: Uav::Pose, as: A, names: ros2}\n"
+                      "  - {publish: A, topic: a, type: Uav::Pose, names: ros2}\n"),
+              _file.filename().string() + ":4: `A` would be written back to the topic that it comes from");
+}
+
+TEST_F(ForeignConfigTest, MayMirrorATopicOnToOtherNodesUnderTheNameOfThisOne)
+{
+    const GatewayConfig config = Load(
+        "publish:\n  - {message: A, type: Uav::Pose}\nforeign:\n  - {subscribe: a, type: Uav::Pose, as: "
+        "A}\n");
+    EXPECT_EQ(config.Foreign.size(), 1u);
+}
+
+}  // namespace
+}  // namespace Rabit

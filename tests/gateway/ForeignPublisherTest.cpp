@@ -1,0 +1,143 @@
+// What is written to a topic of programs that are no nodes.
+#include "foreign/ForeignPublisher.h"
+
+#include <gtest/gtest.h>
+#include <rabit/ManualClock.h>
+#include <rabit/RabitWorkspace.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include "ForeignNetwork.h"
+#include "keyed.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using GatewayTest::Contact;
+
+class ForeignPublisherTest : public testing::Test
+{
+protected:
+    ForeignPublisherTest()
+    {
+        rule.Way = ForeignRule::Direction::Publish;
+        rule.Topic = "contacts";
+        rule.Type = "GatewayTest::Contact";
+        rule.Local = "Contact";
+        rule.Names = ForeignRule::WireNames::Ros2;
+        workspace.AddPublishSubscribeMessage("Contact", local);
+        network.Endpoints = {{.Topic = "rt/contacts", .Type = "GatewayTest::dds_::Contact_"}};
+    }
+
+    ForeignPublisher &Publisher()
+    {
+        if (!publisher)
+        {
+            publisher = std::make_unique<ForeignPublisher>(rule, type, 7, source, session);
+            workspace.AddPublishSubscribeMessage("Contact", publisher->Local());
+            publisher->SetAttached();
+        }
+        return *publisher;
+    }
+    void Post(std::uint32_t id)
+    {
+        local->number = id;
+        local->PostMessage();
+    }
+    std::chrono::nanoseconds Service() { return Publisher().Service(clock->Monotonic()); }
+
+    std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>(1.4e9, 100s);
+    RabitWorkspace workspace{clock};
+    const SourceClock source{*clock};
+    const MessageType &type = *MessageTypeRegistry::Find("GatewayTest::Contact");
+    std::shared_ptr<Contact> local = std::make_shared<Contact>();
+    Foreign::Network network;
+    Foreign::Session session{network};
+    ForeignRule rule;
+    std::unique_ptr<ForeignPublisher> publisher;
+};
+
+TEST_F(ForeignPublisherTest, WritesUnderTheNamesOfTheWire)
+{
+    Publisher();
+    EXPECT_EQ(network.Topic.Name, "rt/contacts");
+    EXPECT_EQ(network.Topic.TypeName, "GatewayTest::dds_::Contact_");
+    EXPECT_EQ(network.WriterQos.Reliability, Reliability::Reliable);
+    EXPECT_EQ(network.WriterQos.Durability, Durability::Volatile);
+    EXPECT_EQ(network.WriterQos.Depth, 10);
+}
+
+TEST_F(ForeignPublisherTest, WritesEachPostOnce)
+{
+    Publisher();
+    Service();
+    EXPECT_TRUE(network.Written.empty());
+    Post(3);
+    Service();
+    Service();
+    ASSERT_EQ(network.Written.size(), 1u);
+    Contact written;
+    ASSERT_TRUE(type.Deserialize(network.Written[0], written));
+    EXPECT_EQ(written.number, 3u);
+    EXPECT_EQ(Publisher().Status().samples, 1u);
+    EXPECT_EQ(Publisher().Status().readers, 1u);
+}
+
+TEST_F(ForeignPublisherTest, WritesNoMoreOftenThanTheRuleAllows)
+{
+    rule.MaxRate = 10;
+    Publisher();
+    Post(3);
+    Service();
+    Post(4);
+    EXPECT_EQ(Service(), clock->Monotonic() + 100ms);
+    EXPECT_EQ(network.Written.size(), 1u);
+    clock->Advance(100ms);
+    Service();
+    EXPECT_EQ(network.Written.size(), 2u);
+}
+
+TEST_F(ForeignPublisherTest, TriesAgainWhatTheNetworkDidNotTake)
+{
+    Publisher();
+    network.Result = WriteResult::TimedOut;
+    Post(3);
+    EXPECT_EQ(Service(), clock->Monotonic() + ForeignPublisher::RetryGap);
+    network.Result = WriteResult::Ok;
+    clock->Advance(ForeignPublisher::RetryGap);
+    Service();
+    EXPECT_EQ(network.Written.size(), 1u);
+    EXPECT_EQ(Publisher().Status().write_failures, 1u);
+}
+
+TEST_F(ForeignPublisherTest, DisposesOfTheFormerInstanceWhenTheKeyChanges)
+{
+    Publisher();
+    Post(3);
+    Service();
+    Post(4);
+    Service();
+    EXPECT_EQ(network.Disposals, 1);
+}
+
+TEST_F(ForeignPublisherTest, SaysWhyNothingGoesAndThatAnotherTypeIsAProblem)
+{
+    network.Endpoints.clear();
+    Publisher();
+    Service();
+    EXPECT_EQ(Publisher().Status().reason, "no program reads `rt/contacts` in domain 7");
+    EXPECT_FALSE(Publisher().Problem());
+    network.Endpoints = {{.Topic = "rt/contacts", .Type = "GatewayTest::Contact"}};
+    clock->Advance(ForeignPublisher::LookPeriod);
+    Service();
+    ASSERT_TRUE(Publisher().Problem());
+    EXPECT_EQ(Publisher().Problem()->reason,
+              "a program reads `rt/contacts` as `GatewayTest::Contact`, this node writes it as "
+              "`GatewayTest::dds_::Contact_`");
+    EXPECT_TRUE(Publisher().TakeChange());
+}
+
+}  // namespace
+}  // namespace Rabit

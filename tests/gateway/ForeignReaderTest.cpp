@@ -1,0 +1,350 @@
+// What becomes of the samples of programs that are no nodes.
+#include "foreign/ForeignReader.h"
+
+#include <gtest/gtest.h>
+#include <rabit/ManualClock.h>
+#include <rabit/RabitMessageQueue.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include "ForeignNetwork.h"
+#include "clocks/GpsTime.h"
+#include "keyed.idl.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using GatewayTest::Contact;
+using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
+
+constexpr double Gps = 1.4e9;
+
+RemoteEndpoint Program(std::uint8_t id = 1, Reliability reliability = Reliability::BestEffort,
+                       Durability durability = Durability::Volatile)
+{
+    return {.Id = {id},
+            .IsWriter = true,
+            .Topic = "contacts",
+            .Type = "GatewayTest::Contact",
+            .Reliability = reliability,
+            .Durability = durability};
+}
+
+Contact Of(std::uint32_t id)
+{
+    Contact contact;
+    contact.number = id;
+    return contact;
+}
+
+class ForeignReaderTest : public testing::Test
+{
+protected:
+    ForeignReaderTest()
+    {
+        rule.Topic = "contacts";
+        rule.Type = "GatewayTest::Contact";
+        rule.Local = "Contact";
+        workspace.AddPublishSubscribeMessage("Contact", local);
+        network.Endpoints = {Program()};
+    }
+
+    ForeignReader &Reader()
+    {
+        if (!reader)
+        {
+            reader = std::make_unique<ForeignReader>(rule, type, 7, workspace, [this] { ++wakes; });
+            reader->Open(session, Now());
+            reader->Service(Now());
+        }
+        return *reader;
+    }
+    std::chrono::nanoseconds Now() const { return clock->Monotonic(); }
+    void Advance(std::chrono::nanoseconds time)
+    {
+        clock->Advance(time);
+        Reader().Service(Now());
+    }
+    // State and reason.
+    std::string Judgement()
+    {
+        Reader().Service(Now());
+        const Gateway::ForeignTopic &status = Reader().Status(Now());
+        return std::string(ToString(status.state)) + (status.reason.empty() ? "" : ": ") + status.reason;
+    }
+    std::string ProblemText()
+    {
+        Reader().Service(Now());
+        const auto problem = Reader().Problem();
+        return problem ? problem->subject + ": " + problem->reason : "";
+    }
+    std::shared_ptr<Queue> QueueOf(int most)
+    {
+        rule.Each = ForeignRule::Delivery::Queue;
+        rule.Local = "Contacts";
+        auto queue = std::make_shared<Queue>(most, "Contacts");
+        workspace.AddManagerMessageQueue("Contacts", queue);
+        return queue;
+    }
+
+    std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>(Gps, 100s);
+    RabitWorkspace workspace{clock};
+    const MessageType &type = *MessageTypeRegistry::Find("GatewayTest::Contact");
+    std::shared_ptr<Contact> local = std::make_shared<Contact>();
+    Foreign::Network network;
+    Foreign::Session session{network};
+    ForeignRule rule;
+    int wakes = 0;
+    std::unique_ptr<ForeignReader> reader;
+};
+
+TEST_F(ForeignReaderTest, PostsTheNewestSampleWithTheTimeOfItsArrival)
+{
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    ASSERT_TRUE(local->FetchMessage());
+    EXPECT_EQ(local->number, 3u);
+    EXPECT_EQ(local->GetAgeSeconds(*clock), 0.0);
+    Advance(2s);
+    EXPECT_EQ(local->GetAgeSeconds(*clock), 2.0);
+    EXPECT_EQ(local->GetTimeStamp(), Gps);
+    EXPECT_EQ(Judgement(), "UP");
+    EXPECT_EQ(Reader().Status(Now()).samples, 1u);
+}
+
+TEST_F(ForeignReaderTest, CountsTheAgeFromTheSourceTimeIfThatIsTrusted)
+{
+    rule.SourceTimeIsTrusted = true;
+    Reader();
+    network.Deliver(type, Of(3), 1, 1, GpsTime::ToUtcNanoseconds(Gps - 4));
+    ASSERT_TRUE(local->FetchMessage());
+    EXPECT_NEAR(local->GetAgeSeconds(*clock), 4.0, 1e-6);
+    EXPECT_NEAR(local->GetTimeStamp(), Gps - 4, 1e-6);
+}
+
+TEST_F(ForeignReaderTest, TakesNoSourceTimeOfTheFutureNorOfAClockThatWasNeverSet)
+{
+    rule.SourceTimeIsTrusted = true;
+    Reader();
+    network.Deliver(type, Of(3), 1, 1, GpsTime::ToUtcNanoseconds(Gps + 100));
+    ASSERT_TRUE(local->FetchMessage());
+    EXPECT_EQ(local->GetAgeSeconds(*clock), 0.0);
+    network.Deliver(type, Of(4), 2, 1, 1234567);
+    ASSERT_TRUE(local->FetchMessage());
+    EXPECT_EQ(local->GetAgeSeconds(*clock), 0.0);
+}
+
+TEST_F(ForeignReaderTest, IsStaleWhenNothingCame)
+{
+    rule.StaleAfter = 500ms;
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    EXPECT_EQ(Judgement(), "UP");
+    EXPECT_LE(Reader().Service(Now()), Now() + 501ms);
+    Advance(501ms);
+    EXPECT_EQ(Judgement(), "STALE: nothing newer than 0.5 s");
+    EXPECT_EQ(ProblemText(), "foreign contacts: nothing newer than 0.5 s");
+    network.Deliver(type, Of(4), 2);
+    EXPECT_EQ(Judgement(), "UP");
+    EXPECT_TRUE(Reader().TakeChange());
+    EXPECT_FALSE(Reader().TakeChange());
+}
+
+TEST_F(ForeignReaderTest, IsLostWhenItsWriterIsGone)
+{
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    EXPECT_EQ(Judgement(), "UP");
+    network.Endpoints.clear();
+    Advance(ForeignReader::LookPeriod);
+    EXPECT_EQ(Judgement(), "LOST: no program writes `contacts` in domain 7");
+}
+
+TEST_F(ForeignReaderTest, IsLostWhenItsWriterDisposesOfWhatItShows)
+{
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    network.End();
+    EXPECT_EQ(Judgement(), "LOST: its writer has disposed of what it shows");
+    network.Deliver(type, Of(4), 2);
+    EXPECT_EQ(Judgement(), "UP");
+}
+
+TEST_F(ForeignReaderTest, GoesOnWhenAnotherInstanceIsDisposed)
+{
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    const KeyHash former = network.LastKey;
+    network.Deliver(type, Of(4), 2);
+    network.LastKey = former;
+    network.End();
+    EXPECT_EQ(Judgement(), "UP");
+}
+
+TEST_F(ForeignReaderTest, SaysThatNothingCameYetAndThatThatIsNoProblem)
+{
+    EXPECT_EQ(Judgement(), "LOST: the program that writes it has sent nothing that was received");
+    EXPECT_EQ(ProblemText(), "");
+}
+
+TEST_F(ForeignReaderTest, DropsWhatIsOlderThanWhatItsWriterSentBefore)
+{
+    Reader();
+    network.Deliver(type, Of(3), 5);
+    network.Deliver(type, Of(4), 4);
+    network.Deliver(type, Of(5), 5);
+    ASSERT_TRUE(local->FetchMessage());
+    EXPECT_EQ(local->number, 3u);
+    EXPECT_EQ(Reader().Status(Now()).overtaken, 2u);
+}
+
+TEST_F(ForeignReaderTest, CountsTheNumbersThatNeverCameForEachWriter)
+{
+    network.Endpoints = {Program(1), Program(2)};
+    Reader();
+    network.Deliver(type, Of(3), 5, 1);
+    network.Deliver(type, Of(3), 9, 1);
+    network.Deliver(type, Of(4), 1, 2);
+    Advance(ForeignReader::LookPeriod);
+    const Gateway::ForeignTopic &status = Reader().Status(Now());
+    EXPECT_EQ(status.missed, 3u);
+    ASSERT_EQ(status.writers.size(), 2u);
+    EXPECT_EQ(status.writers[0].received, 2u);
+    EXPECT_EQ(status.writers[0].missed, 3u);
+    EXPECT_EQ(status.writers[1].received, 1u);
+    EXPECT_EQ(status.writers[0].id.substr(0, 4), "0100");
+    EXPECT_EQ(status.writers[0].qos, "best effort, volatile");
+}
+
+TEST_F(ForeignReaderTest, OfSeveralWritersTheLastSampleHolds)
+{
+    Reader();
+    network.Deliver(type, Of(3), 100, 1);
+    network.Deliver(type, Of(4), 1, 2);
+    ASSERT_TRUE(local->FetchMessage());
+    EXPECT_EQ(local->number, 4u);
+}
+
+TEST_F(ForeignReaderTest, TakesNothingOfNodes)
+{
+    Reader();
+    network.Deliver(type, Of(3), 1, 1, 0, "uav2");
+    EXPECT_FALSE(local->FetchMessage());
+    EXPECT_EQ(Reader().Status(Now()).of_nodes, 1u);
+}
+
+TEST_F(ForeignReaderTest, SaysThatSamplesDoNotDecode)
+{
+    Reader();
+    network.DeliverBytes({0, 1, 0, 0, 1}, 1);
+    EXPECT_FALSE(local->FetchMessage());
+    EXPECT_EQ(Reader().Status(Now()).undecodable, 1u);
+    EXPECT_EQ(ProblemText(),
+              "foreign contacts: its samples do not decode as `GatewayTest::Contact`: its program was built "
+              "with another version of the type");
+    network.Deliver(type, Of(4), 2);
+    EXPECT_EQ(ProblemText(), "");
+}
+
+TEST_F(ForeignReaderTest, SaysThatTheLocalMessageIsOfAnotherType)
+{
+    rule.Local = "Other";
+    workspace.AddPublishSubscribeMessage("Other", std::make_shared<Gateway::Fleet>());
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    EXPECT_EQ(ProblemText(),
+              "foreign contacts: the local message `Other` is of another type than `GatewayTest::Contact`");
+    EXPECT_EQ(Reader().Status(Now()).samples, 0u);
+}
+
+TEST_F(ForeignReaderTest, AsksForWhatTheWritersOfferOnceTheyAreThere)
+{
+    network.Endpoints.clear();
+    Reader();
+    ASSERT_EQ(network.Readers.size(), 1u);
+    EXPECT_EQ(network.Readers[0].Reliability, Reliability::BestEffort);
+    network.Endpoints = {Program(1, Reliability::Reliable, Durability::TransientLocal)};
+    Advance(ForeignReader::LookPeriod);
+    ASSERT_EQ(network.Readers.size(), 2u);
+    EXPECT_EQ(network.Readers[1].Reliability, Reliability::Reliable);
+    EXPECT_EQ(network.Readers[1].Durability, Durability::TransientLocal);
+    network.Endpoints.clear();
+    Advance(ForeignReader::LookPeriod);
+    EXPECT_EQ(network.Readers.size(), 2u) << "who comes back should find what it left";
+}
+
+TEST_F(ForeignReaderTest, PutsEachSampleIntoTheQueue)
+{
+    const auto queue = QueueOf(10);
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    network.Deliver(type, Of(4), 2);
+    EXPECT_EQ(wakes, 1);
+    Reader().Service(Now());
+    std::shared_ptr<RabitMessage> message;
+    for (const std::uint32_t id : {3u, 4u})
+    {
+        ASSERT_TRUE(queue->GetMessage(message));
+        EXPECT_EQ(dynamic_cast<Contact &>(*message).number, id);
+    }
+    EXPECT_EQ(Reader().Status(Now()).samples, 2u);
+    EXPECT_EQ(Judgement(), "UP");
+}
+
+TEST_F(ForeignReaderTest, HoldsSamplesBackWhileTheQueueIsFullAndDropsWhatItCannotHold)
+{
+    rule.Capacity = 2;
+    const auto queue = QueueOf(1);
+    Reader();
+    for (std::uint32_t i = 1; i <= 4; ++i)
+    {
+        network.Deliver(type, Of(i), i);
+        Reader().Service(Now());
+    }
+    EXPECT_EQ(Reader().Status(Now()).waiting, 2u);
+    EXPECT_EQ(Reader().Status(Now()).overflowed, 1u);
+    EXPECT_EQ(ProblemText(), "foreign contacts: the local queue `Contacts` is full; samples are dropped");
+    const int before = wakes;
+    std::shared_ptr<RabitMessage> message;
+    ASSERT_TRUE(queue->GetMessage(message));
+    EXPECT_GT(wakes, before) << "room wakes the gateway";
+    Reader().Service(Now());
+    ASSERT_TRUE(queue->GetMessage(message));
+    EXPECT_EQ(dynamic_cast<Contact &>(*message).number, 2u);
+    Reader().Service(Now());
+    ASSERT_TRUE(queue->GetMessage(message));
+    EXPECT_EQ(dynamic_cast<Contact &>(*message).number, 3u);
+    EXPECT_EQ(ProblemText(), "");
+}
+
+TEST_F(ForeignReaderTest, KeepsSamplesForAQueueThatIsNotThereYet)
+{
+    rule.Each = ForeignRule::Delivery::Queue;
+    rule.Local = "Contacts";
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    EXPECT_EQ(ProblemText(), "foreign contacts: there is no local queue `Contacts`");
+    const auto queue = QueueOf(3);
+    Reader().Service(Now());
+    EXPECT_EQ(queue->NoMessagesInQueue(), 1);
+    EXPECT_EQ(ProblemText(), "");
+}
+
+TEST_F(ForeignReaderTest, DoesNotTakeASampleTwiceThatAWriterSendsAgainToANewReader)
+{
+    const auto queue = QueueOf(10);
+    network.Endpoints.clear();
+    Reader();
+    network.Deliver(type, Of(3), 1);
+    network.Endpoints = {Program(1, Reliability::Reliable, Durability::TransientLocal)};
+    Advance(ForeignReader::LookPeriod);
+    network.Deliver(type, Of(3), 1);
+    network.Deliver(type, Of(4), 2);
+    Reader().Service(Now());
+    EXPECT_EQ(queue->NoMessagesInQueue(), 2);
+}
+
+}  // namespace
+}  // namespace Rabit

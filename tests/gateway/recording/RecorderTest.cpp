@@ -1,0 +1,90 @@
+#include "recording/Recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <future>
+
+#include "FakeDisk.h"
+#include "recording/FolderDisk.h"
+
+namespace Rabit
+{
+namespace
+{
+
+RecordingSettings SettingsOf(const std::string &folder)
+{
+    RecordingSettings settings;
+    settings.Name = "uav1";
+    settings.Folder = folder;
+    settings.FreeBytes = 0;
+    settings.MemoryBytes = 1U << 20;
+    return settings;
+}
+
+// Whoever has something to record goes on while the disk does not.
+TEST(Recorder, WaitsForTheDiskAlone)
+{
+    auto disk = std::make_unique<FakeDisk>();
+    FakeDisk &files = *disk;
+    std::promise<void> release;
+    const std::shared_future<void> released = release.get_future().share();
+    files.BeforeWrite = [released] { released.wait(); };
+    constexpr std::uint64_t count = 100000;
+    std::uint64_t kept = 0;
+    RecordingStatus status;
+    std::map<std::string, std::shared_ptr<FakeDisk::Content>> written;
+    {
+        Recorder recorder(std::move(disk), SettingsOf("x"), [] { return std::uint64_t{1000}; });
+        const std::uint32_t stream = recorder.Inbox().AddStream({.Topic = "a", .SchemaName = ""});
+        for (std::uint64_t at = 0; at < count; ++at)
+        {
+            kept += recorder.Inbox().Put({stream, 0, at, at, Mcap::Bytes(100)}) ? 1 : 0;
+        }
+        EXPECT_LT(kept, count);
+        release.set_value();
+        recorder.Inbox().Close();
+        while (recorder.Status().Messages < kept)
+        {
+            std::this_thread::yield();
+        }
+        status = recorder.Status();
+        written = files.Files;
+    }
+    EXPECT_EQ(status.Messages, kept);
+    ASSERT_EQ(written.size(), 1U);
+    const MemoryFile file(written.begin()->second->Bytes);
+    EXPECT_EQ(LogTimesOf(file).size(), kept);
+    EXPECT_EQ(MetadataOf(file, "rabit.losses").at("a"), std::to_string(count - kept));
+}
+
+TEST(Recorder, LeavesAWholeFileInAFolderThatItMakes)
+{
+    const auto folder =
+        std::filesystem::path(testing::TempDir()) / ("rabit_recorder_" + std::to_string(::getpid()));
+    {
+        Recorder recorder(std::make_unique<FolderDisk>(folder / "deep"), SettingsOf(folder),
+                          [] { return std::uint64_t{1000}; });
+        const std::uint32_t stream = recorder.Inbox().AddStream({.Topic = "a", .SchemaName = ""});
+        EXPECT_TRUE(recorder.Inbox().Put({stream, 0, 5, 5, Mcap::Bytes(100)}));
+    }
+    const auto path = folder / "deep" / "uav1_000001_19700101T000000Z.mcap";
+    std::ifstream stream(path, std::ios::binary);
+    const MemoryFile file(Mcap::Bytes(std::istreambuf_iterator<char>(stream), {}));
+    EXPECT_EQ(LogTimesOf(file), std::vector<std::uint64_t>{5});
+    FolderDisk disk(folder / "deep");
+    ASSERT_EQ(disk.List().size(), 1U);
+    EXPECT_EQ(disk.List()[0].Bytes, file.Content.size());
+    EXPECT_GT(*disk.FreeBytes(), 0U);
+    std::string reason;
+    EXPECT_EQ(disk.Create(disk.List()[0].Name, reason), nullptr);
+    EXPECT_EQ(reason, path.string() + ": File exists");
+    EXPECT_TRUE(disk.Remove(disk.List()[0].Name));
+    EXPECT_TRUE(disk.List().empty());
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace Rabit

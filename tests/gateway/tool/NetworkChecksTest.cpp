@@ -1,0 +1,121 @@
+#include "doctor/NetworkChecks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace Rabit::Tool::Doctor
+{
+namespace
+{
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class NetworkChecks : public ::testing::Test
+{
+protected:
+    NetworkChecks()
+    {
+        Interface wlan;
+        wlan.Name = "wlan0";
+        wlan.Addresses = {"10.0.0.2"};
+        wlan.IsUp = wlan.HasMulticast = true;
+        used.push_back(wlan);
+        facts.Trials["wlan0"].HeardOn = {"wlan0"};
+        facts.Trials["wlan0"].HeardFrom = {"10.0.0.3"};
+        facts.Trials["wlan0"].AnsweredFrom = {"10.0.0.3"};
+    }
+
+    Finding Multicast() const
+    {
+        const auto findings = OfMulticast(config, used, facts);
+        EXPECT_THAT(findings, ::testing::Not(IsEmpty()));
+        return findings.empty() ? Finding() : findings.front();
+    }
+
+    MulticastTrial &Trial() { return facts.Trials["wlan0"]; }
+
+    GatewayConfig config;
+    std::vector<Interface> used;
+    NetworkFacts facts;
+};
+
+TEST_F(NetworkChecks, MulticastThatGoesEachWayIsGood)
+{
+    EXPECT_EQ(Multicast().How, Level::Good);
+    EXPECT_EQ(Multicast().Text, "it goes out; answered by 10.0.0.3; heard from 10.0.0.3");
+}
+
+TEST_F(NetworkChecks, WhatCannotBeSentIsAProblemWithTheRouteThatLacks)
+{
+    Trial() = {};
+    Trial().Error = "Network is unreachable";
+    EXPECT_EQ(Multicast().How, Level::Problem);
+    EXPECT_THAT(Multicast().Text, HasSubstr("Network is unreachable"));
+    EXPECT_EQ(Multicast().Advice, "ip route add 224.0.0.0/4 dev wlan0");
+    used[0].HasMulticast = false;
+    EXPECT_EQ(Multicast().Advice, "ip link set wlan0 multicast on");
+}
+
+TEST_F(NetworkChecks, WhatDoesNotComeBackIsStoppedHere)
+{
+    Trial() = {};
+    EXPECT_EQ(Multicast().How, Level::Problem);
+    EXPECT_THAT(Multicast().Advice, HasSubstr("firewall"));
+}
+
+TEST_F(NetworkChecks, WhoIsHeardAndDoesNotAnswerIsHeardOneWay)
+{
+    Trial().AnsweredFrom.clear();
+    EXPECT_EQ(Multicast().How, Level::Problem);
+    EXPECT_THAT(Multicast().Text, HasSubstr("10.0.0.3 is heard, and did not answer"));
+}
+
+TEST_F(NetworkChecks, WhoAnswersAndAnnouncedNothingMeanwhileIsGood)
+{
+    Trial().HeardFrom.clear();
+    EXPECT_EQ(Multicast().How, Level::Good);
+}
+
+TEST_F(NetworkChecks, NobodyAtAllIsWorthKnowing)
+{
+    Trial().HeardFrom.clear();
+    Trial().AnsweredFrom.clear();
+    EXPECT_EQ(Multicast().How, Level::Note);
+}
+
+TEST_F(NetworkChecks, OneInterfaceThatHearsTheOtherIsTold)
+{
+    Trial().HeardOn.insert("eth1");
+    EXPECT_THAT(Multicast().Text, HasSubstr("comes in on eth1"));
+}
+
+TEST_F(NetworkChecks, WithoutMulticastNothingIsSaidOfIt)
+{
+    config.Multicast = false;
+    EXPECT_THAT(OfMulticast(config, used, facts), IsEmpty());
+}
+
+TEST_F(NetworkChecks, NodesOfAnotherDomainAreAProblemIfNobodyIsInOurs)
+{
+    config.Domain = 7;
+    facts.Domains[7]["10.0.0.3"] = {{"uav1"}, true};
+    facts.Domains[8]["10.0.0.4"] = {{"uav2"}, true};
+    const auto findings = OfDomains(config, facts, true);
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Note);
+    EXPECT_EQ(findings[0].Text, "uav2 is in it, at 10.0.0.4");
+    EXPECT_EQ(OfDomains(config, facts, false)[0].How, Level::Problem);
+    EXPECT_THAT(OfDomains(config, facts, false)[0].Advice, HasSubstr("--domain 8"));
+}
+
+TEST_F(NetworkChecks, ProgramsThatAreNoNodesAreNeverAProblem)
+{
+    facts.Domains[8]["10.0.0.4"] = {{""}, false};
+    EXPECT_EQ(OfDomains(config, facts, false)[0].How, Level::Note);
+    EXPECT_THAT(OfDomains(config, facts, false)[0].Text, HasSubstr("one without a name is in it"));
+}
+
+}  // namespace
+}  // namespace Rabit::Tool::Doctor

@@ -1,0 +1,99 @@
+#include "doctor/NodeChecks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace Rabit::Tool::Doctor
+{
+namespace
+{
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+FleetSession::Node NodeOf(const std::string &name, double clockAhead = 0.0)
+{
+    FleetSession::Node node;
+    node.Name = name;
+    node.State = Gateway::NodeState::UP;
+    node.Offers.emplace();
+    node.ClockAhead = clockAhead;
+    return node;
+}
+
+std::vector<std::string> ProblemLinesOf(const std::vector<Finding> &findings)
+{
+    std::vector<std::string> lines;
+    for (const Finding &finding : findings)
+    {
+        if (finding.How == Level::Problem)
+        {
+            EXPECT_NE(finding.Advice, "") << finding.Text;
+            lines.push_back(finding.Subject + ": " + finding.Text);
+        }
+    }
+    return lines;
+}
+
+TEST(NodeChecks, TwoNodesOfOneNameAreTold)
+{
+    auto node = NodeOf("uav1");
+    EXPECT_THAT(ProblemLinesOf(OfNodes({node}, {})), IsEmpty());
+    node.IsTwice = true;
+    EXPECT_THAT(ProblemLinesOf(OfNodes({node}, {})), ElementsAre("node uav1: two live nodes have this name"));
+}
+
+TEST(NodeChecks, ANodeWhoseAnnouncementDoesNotComeIsTold)
+{
+    auto node = NodeOf("uav1");
+    node.Offers.reset();
+    EXPECT_THAT(ProblemLinesOf(OfNodes({node}, {})), SizeIs(1));
+    node.State = Gateway::NodeState::LOST;
+    EXPECT_THAT(ProblemLinesOf(OfNodes({node}, {})), IsEmpty());
+}
+
+TEST(NodeChecks, WhatTheGatewayLacksIsTold)
+{
+    Gateway::Fleet fleet;
+    fleet.problems.emplace_back();
+    fleet.problems[0].subject = "uav1";
+    fleet.problems[0].reason = "its gateway speaks another version of presence";
+    fleet.malformed = 3;
+    EXPECT_THAT(ProblemLinesOf(OfNodes({}, fleet)),
+                ElementsAre("uav1: its gateway speaks another version of presence",
+                            "gateways: 3 samples made no sense"));
+}
+
+TEST(NodeChecks, AClockThatDiffersByMoreThanTheWayExplainsIsTold)
+{
+    EXPECT_THAT(ProblemLinesOf(OfClocks({NodeOf("uav1", 0.4), NodeOf("uav2", -0.4)}, {})), IsEmpty());
+    EXPECT_THAT(ProblemLinesOf(OfClocks({NodeOf("uav1", 0.0), NodeOf("uav2", -37.0)}, {})),
+                ElementsAre(HasSubstr("clock of uav2: 37.0 s behind this machine's")));
+    Gateway::Fleet slow;
+    slow.nodes.emplace_back();
+    slow.nodes[0].node = "uav1";
+    slow.nodes[0].round_trip_s = 5.0;
+    EXPECT_THAT(ProblemLinesOf(OfClocks({NodeOf("uav1", 3.0)}, slow)), IsEmpty());
+}
+
+TEST(NodeChecks, WhereAllOthersAgreeThisMachinesClockIsWrong)
+{
+    EXPECT_THAT(ProblemLinesOf(OfClocks({NodeOf("uav1", 60.1), NodeOf("uav2", 60.2)}, {})),
+                ElementsAre("clock of this machine: 60.2 s behind those of all 2 nodes"));
+}
+
+TEST(NodeChecks, ManyBeatsThatDidNotComeAreAProblemAndFewAreNot)
+{
+    auto node = NodeOf("uav1");
+    node.BeatsHeard = 20;
+    EXPECT_EQ(OfLosses({node}).front().How, Level::Good);
+    node.BeatsMissed = 1;
+    EXPECT_EQ(OfLosses({node}).front().How, Level::Note);
+    node.BeatsMissed = 5;
+    EXPECT_THAT(ProblemLinesOf(OfLosses({node})), ElementsAre("loss from uav1: 5 of 25 beats did not come"));
+}
+
+}  // namespace
+}  // namespace Rabit::Tool::Doctor

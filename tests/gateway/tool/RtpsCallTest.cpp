@@ -1,0 +1,99 @@
+#include "doctor/RtpsCall.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iterator>
+#include <random>
+
+#include "common/ParticipantIdentity.h"
+
+namespace Rabit::Tool::Doctor
+{
+namespace
+{
+
+const ParticipantId Id{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+
+// With parameters before those that are there.
+std::vector<std::uint8_t> CallWith(const std::vector<std::uint8_t> &parameters)
+{
+    const std::vector<std::uint8_t> plain = MakeCall(Id, {10, 0, 0, 2}, 7411);
+    constexpr std::ptrdiff_t firstParameter = 20 + 4 + 20 + 4;
+    std::vector<std::uint8_t> call(plain.begin(), plain.begin() + firstParameter);
+    std::copy(parameters.begin(), parameters.end(), std::back_inserter(call));
+    std::copy(plain.begin() + firstParameter, plain.end(), std::back_inserter(call));
+    const std::size_t length = call.size() - 24;
+    call[22] = static_cast<std::uint8_t>(length);
+    call[23] = static_cast<std::uint8_t>(length >> 8);
+    return call;
+}
+
+std::vector<std::uint8_t> Parameter(std::uint8_t id, const std::string &text)
+{
+    std::string padded = text;
+    padded.resize((text.size() + 4) / 4 * 4);
+    std::vector<std::uint8_t> bytes{
+        id, 0, static_cast<std::uint8_t>(padded.size() + 4), 0, static_cast<std::uint8_t>(text.size() + 1), 0,
+        0,  0};
+    std::copy(padded.begin(), padded.end(), std::back_inserter(bytes));
+    return bytes;
+}
+
+TEST(RtpsCall, IsHeardAsAnAnnouncement)
+{
+    const auto heard = HeardIn(MakeCall(Id, {10, 0, 0, 2}, 7411));
+    ASSERT_TRUE(heard);
+    EXPECT_EQ(heard->Sender, Id);
+    EXPECT_TRUE(heard->Announces);
+    EXPECT_EQ(heard->Name, "");
+    EXPECT_FALSE(heard->IsNode);
+}
+
+TEST(RtpsCall, IsSmall)
+{
+    EXPECT_LE(MakeCall(Id, {10, 0, 0, 2}, 7411).size() + 28, 220u);
+}
+
+TEST(RtpsCall, TellsANodeByItsNameAndWhatItSaysOfItself)
+{
+    auto parameters = Parameter(0x62, "uav1");
+    const auto data = Parameter(0x2c, MakeUserData(7));
+    std::copy(data.begin(), data.end(), std::back_inserter(parameters));
+    const auto heard = HeardIn(CallWith(parameters));
+    ASSERT_TRUE(heard);
+    EXPECT_EQ(heard->Name, "uav1");
+    EXPECT_TRUE(heard->IsNode);
+}
+
+TEST(RtpsCall, ANameCannotCommandATerminal)
+{
+    EXPECT_EQ(HeardIn(CallWith(Parameter(0x62, "a\x1b[2J\n")))->Name, "a?[2J?");
+    EXPECT_EQ(HeardIn(CallWith(Parameter(0x62, std::string(200, 'x'))))->Name, std::string(64, 'x'));
+}
+
+TEST(RtpsCall, WhatIsNotOfRtpsIsNothing)
+{
+    EXPECT_FALSE(HeardIn({}));
+    EXPECT_FALSE(HeardIn(std::vector<std::uint8_t>(100, 'R')));
+}
+
+TEST(RtpsCall, DamagedOnesAreReadWithinTheirBytes)
+{
+    const auto good = CallWith(Parameter(0x62, "uav1"));
+    std::mt19937 random(1);
+    for (int round = 0; round < 20000; ++round)
+    {
+        auto bad = good;
+        for (int i = 0; i < 3; ++i)
+        {
+            bad[random() % bad.size()] = static_cast<std::uint8_t>(random());
+        }
+        bad.resize(random() % 4 == 0 ? random() % bad.size() : bad.size());
+        const auto heard = HeardIn(bad);
+        EXPECT_TRUE(!heard || heard->Name.size() <= 64);
+    }
+}
+
+}  // namespace
+}  // namespace Rabit::Tool::Doctor
