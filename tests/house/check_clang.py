@@ -53,20 +53,29 @@ def options_of(command):
     return kept
 
 
+def sources_of(path):
+    """The source, or those that the build compiles as one by a file of its own, which includes them."""
+    if pathlib.Path(path).parent.name != "Unity":
+        return [path]
+    return re.findall(r'^#include "(.*)"$', pathlib.Path(path).read_text(), re.M)
+
+
 def units_by_options(build, folders):
     """The units to check, each once for each language standard, as lists of paths by their options."""
     seen = set()
     by_options = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        path = entry["file"]
         options = options_of(entry["command"])
         standard = next((o for o in options if o.startswith("-std")), "")
-        if "-Wall" not in options or (path, standard) in seen:
+        if "-Wall" not in options:
             continue
-        if folders and not any(pathlib.Path(path).is_relative_to(folder) for folder in folders):
-            continue
-        seen.add((path, standard))
-        by_options.setdefault((path.endswith(".c"), *options), []).append(path)
+        for path in sources_of(entry["file"]):
+            if (path, standard) in seen:
+                continue
+            if folders and not any(pathlib.Path(path).is_relative_to(folder) for folder in folders):
+                continue
+            seen.add((path, standard))
+            by_options.setdefault((path.endswith(".c"), *options), []).append(path)
     return by_options
 
 

@@ -18,16 +18,17 @@ CLANG = "clang"
 
 
 class CheckClang(unittest.TestCase):
-    def check(self, files, options="-Wall -Wextra", standard="-std=c++20"):
-        """What is said of these files, as a list of (name, text), and how many were checked."""
+    def check(self, files, options="-Wall -Wextra", standard="-std=c++20", compiled=None):
+        """What is said of these files, as a list of (name, text), and how many were checked. All are compiled, or some."""
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             for name, text in files.items():
-                (folder / name).write_text(text)
+                (folder / name).parent.mkdir(exist_ok=True)
+                (folder / name).write_text(text.replace("FOLDER", str(folder)))
             (folder / "compile_commands.json").write_text(json.dumps([
                 {"directory": str(folder), "file": str(folder / name),
                  "command": f"ccache c++ -I {folder} {options} -O3 {standard} -o {name}.o -c {folder / name}"}
-                for name in files if name.endswith((".c", ".cpp"))]))
+                for name in compiled or [name for name in files if name.endswith((".c", ".cpp"))]]))
             failures, units = check_clang.check(CLANG, folder, [], 1)
             return [(pathlib.Path(unit).name, said) for unit, said in failures], units
 
@@ -62,6 +63,12 @@ class CheckClang(unittest.TestCase):
         text = {"A.cpp": "int A(int unused) { return 1; }\n"}
         self.assertEqual(self.check(text, options="-Wall -Wextra -Wno-unused-parameter"), ([], 1))
         self.assertEqual(self.check(text, options="-w"), ([], 0))
+
+    def test_units_that_the_build_compiles_as_one_are_read_by_themselves(self):
+        files = {"A.cpp": "int A(int unused) { return 1; }\n", "B.cpp": "int B() { return 1; }\n",
+                 "Unity/unity_0_cxx.cxx": '/* generated */\n\n#include "FOLDER/A.cpp"\n\n#include "FOLDER/B.cpp"\n'}
+        failures, units = self.check(files, compiled=["Unity/unity_0_cxx.cxx"])
+        self.assertEqual(([unit for unit, _ in failures], units), (["A.cpp"], 2))
 
     def test_c_is_read_as_c(self):
         self.assertEqual(self.check({"A.c": "int class = 0;\n", "B.c": "int class = 0;\n"}, standard="-std=gnu11"), ([], 2))

@@ -14,9 +14,9 @@ class LinkCheck
 public:
     LinkCheck &Add(std::string_view bytes)
     {
-        for (const char byte : bytes)
+        for (const char each : bytes)
         {
-            AddByte(static_cast<std::uint8_t>(byte));
+            AddByte(static_cast<std::uint8_t>(each));
         }
         return *this;
     }
@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    void AddByte(std::uint8_t byte) { _hash = (_hash ^ byte) * 0x100000001b3ULL; }
+    void AddByte(std::uint8_t value) { _hash = (_hash ^ value) * 0x100000001b3ULL; }
 
     std::uint64_t _hash = 0xcbf29ce484222325ULL;
 };

@@ -1,0 +1,51 @@
+# rabit_compile_together() has the sources of all targets in the folders of RABIT_UNITY, and below, compiled in batches:
+# most of the time of one file goes into what it includes, and a batch includes it once. batches.py says which go together.
+# To be called last, when all targets are there. Configuring decides: when two files of a batch get names alike later, the
+# compiler says "redefinition", and cmake is to be run again.
+set(RABIT_UNITY "" CACHE STRING "Folders, relative to the project's, in which several files of a target are compiled as one")
+set(RABIT_UNITY_MOST 12 CACHE STRING "How many files are compiled as one, at most")
+mark_as_advanced(RABIT_UNITY_MOST)
+set(RABIT_UNITY_FOLDER ${CMAKE_CURRENT_LIST_DIR})
+
+# rabit_list_units(<folder> <list>) appends the sources of all targets in the folders asked for to a file.
+function(rabit_list_units folder list)
+  set(targets "")
+  foreach(asked IN LISTS RABIT_UNITY)
+    get_filename_component(asked ${asked} ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
+    cmake_path(IS_PREFIX asked ${folder} is_asked)
+    if(is_asked)
+      get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+      break()
+    endif()
+  endforeach()
+  foreach(target IN LISTS targets)
+    get_target_property(type ${target} TYPE)
+    if(NOT type MATCHES "^(EXECUTABLE|(STATIC|SHARED|MODULE|OBJECT)_LIBRARY)$")
+      continue()
+    endif()
+    get_target_property(sources ${target} SOURCES)
+    foreach(source IN LISTS sources)
+      # Not what is generated, which may not be there yet, nor other targets' objects.
+      if(source MATCHES "\\.cpp$" AND NOT IS_ABSOLUTE ${source})
+        file(APPEND ${list} "${target}\t${folder}\t${source}\n")
+      endif()
+    endforeach()
+  endforeach()
+  get_property(below DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
+  foreach(directory IN LISTS below)
+    rabit_list_units(${directory} ${list})
+  endforeach()
+endfunction()
+
+function(rabit_compile_together)
+  if(NOT RABIT_UNITY)
+    return()
+  endif()
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  set(list ${PROJECT_BINARY_DIR}/units.txt)
+  file(WRITE ${list} "")
+  rabit_list_units(${PROJECT_SOURCE_DIR} ${list})
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${RABIT_UNITY_FOLDER}/batches.py ${RABIT_UNITY_MOST} ${list}
+                  OUTPUT_FILE ${PROJECT_BINARY_DIR}/batches.cmake COMMAND_ERROR_IS_FATAL ANY)
+  include(${PROJECT_BINARY_DIR}/batches.cmake)
+endfunction()
