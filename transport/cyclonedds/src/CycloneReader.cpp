@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "EndpointSettings.h"
+#include "InStep.h"
 
 namespace Rabit::Cyclone
 {
@@ -121,6 +122,7 @@ const dds_rhc_ops &CycloneReader::CacheOps()
 
 void CycloneReader::HandOver(const OpaqueSample &sample, const WriterId &writer)
 {
+    Follow(writer);
     SampleInfo info = InfoFor(writer);
     info.SourceTime = sample.Header.timestamp.v;
     info.Sequence = sample.Sequence;
@@ -136,6 +138,19 @@ void CycloneReader::HandOver(const OpaqueSample &sample, const WriterId &writer)
         _instances.Alive(info.Key, writer);
     }
     _handler(WithoutPadding(sample), info);
+}
+
+void CycloneReader::Follow(const WriterId &writer)
+{
+    if (_inStep.contains(writer))
+    {
+        return;
+    }
+    const ddsi_guid_t guid = ToVendorGuid(writer);
+    if (RabitCycloneFollow(&guid))
+    {
+        _inStep.insert(writer);
+    }
 }
 
 void CycloneReader::HandOverEnd(const OpaqueSample &sample, SampleInfo &info)
@@ -162,6 +177,7 @@ void CycloneReader::HandOverEnd(const OpaqueSample &sample, SampleInfo &info)
 
 void CycloneReader::WriterGone(const WriterId &writer)
 {
+    _inStep.erase(writer);
     for (const KeyHash &key : _instances.WriterGone(writer))
     {
         SampleInfo info = InfoFor(writer);

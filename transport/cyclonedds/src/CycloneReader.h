@@ -6,6 +6,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ private:
 
     // These run under the gate.
     void HandOver(const OpaqueSample &sample, const WriterId &writer);
+    // So that nothing is lost with a sample that is lost.
+    void Follow(const WriterId &writer);
     void HandOverEnd(const OpaqueSample &sample, SampleInfo &info);
     void WriterGone(const WriterId &writer);
     SampleInfo InfoFor(const WriterId &writer);
@@ -56,6 +59,7 @@ private:
     const SampleHandler _handler;
     HandlerGate _gate;
     InstanceTable _instances;                              // under the gate
+    std::set<WriterId> _inStep;                            // with this reader; under the gate
     WriterId _lastWriter{};                                // under the gate
     std::shared_ptr<const ParticipantIdentity> _lastNode;  // of _lastWriter; under the gate
     Cache _cache{};
