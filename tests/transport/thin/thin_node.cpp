@@ -1,5 +1,6 @@
 // What a node of a fleet opens, without a gateway, for thin_test.py: what is on the air is the backend's own.
-// Prints
+// It tells the backend how late the others' beats come, as a gateway does with what the others say of its
+// own. Prints
 //   matched after_s=S    all endpoints have matched those of all others
 //   heard after_s=S      a beat of each other one came
 // S from its start. Runs until it is killed.
@@ -13,6 +14,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -36,17 +38,19 @@ struct Options
     int PeriodMs = 10000;
 };
 
+std::int64_t Now()
+{
+    return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
+}
+
 // Who was heard. Thread-safe.
 class Heard
 {
 public:
-    Rabit::SampleHandler Handler()
+    void Add(std::string_view node)
     {
-        return [this](Rabit::SampleBytes, const Rabit::SampleInfo &info)
-        {
-            const std::lock_guard lock(_mutex);
-            _nodes.insert(std::string(info.Node));
-        };
+        const std::lock_guard lock(_mutex);
+        _nodes.insert(std::string(node));
     }
     int Count() const
     {
@@ -63,7 +67,8 @@ class Node
 {
 public:
     explicit Node(const Options &options)
-        : _others(options.Others), _session(Rabit::MakeTransport(options.Transport)->Open(options.Settings, {}))
+        : _others(options.Others),
+          _session(Rabit::MakeTransport(options.Transport)->Open(options.Settings, {}))
     {
         for (const char *topic : {"rabit/Beat", "rabit/Link", "Pose"})
         {
@@ -79,7 +84,8 @@ public:
         bool heard = false;
         for (auto next = begin;; next += BeatPeriod)
         {
-            const auto after = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+            const auto after = [begin]
+            { return std::chrono::duration<double>(Clock::now() - begin).count(); };
             if (!matched && IsMatched())
             {
                 matched = true;
@@ -90,7 +96,7 @@ public:
                 heard = true;
                 std::cout << "heard after_s=" << after() << std::endl;
             }
-            _writers.front()->Write(RawSample(std::vector<std::uint8_t>(BeatSize)), 1);
+            _writers.front()->Write(RawSample(std::vector<std::uint8_t>(BeatSize)), Now());
             std::this_thread::sleep_until(next + BeatPeriod);
         }
     }
@@ -100,7 +106,15 @@ private:
     void Add(const std::string &topic, const Rabit::TopicQos &qos)
     {
         _writers.push_back(_session->CreateWriter(TextTopic(topic), qos, {}));
-        _readers.push_back(_session->CreateReader(TextTopic(topic), Telemetry(), {}, _heard.Handler()));
+        _readers.push_back(_session->CreateReader(TextTopic(topic), Telemetry(), {},
+                                                  [this](Rabit::SampleBytes, const Rabit::SampleInfo &info)
+                                                  { Came(info); }));
+    }
+    // All nodes are on one machine, and have one clock.
+    void Came(const Rabit::SampleInfo &info)
+    {
+        _heard.Add(info.Node);
+        _session->CameLate(std::chrono::nanoseconds(Now() - info.SourceTime));
     }
     bool IsMatched() const
     {

@@ -56,8 +56,8 @@ def late(ground, program, transport, period_s, limit_s):
     return f"{seconds:.1f} s", seconds <= limit_s
 
 
-# What, nodes, medium, how, limits. Measured when this was written, with Fast DDS and Cyclone DDS: 150 and 100 kB; 2 s;
-# 15 and 8 s; 1 to 5 s.
+# What, nodes, medium, how, limits. Measured when this was written, with Fast DDS and Cyclone DDS: 114 and 97 kB; 1.5 and
+# 1 s; 17 and 14 to 18 s; 1 to 13 s.
 CASES = [
     ("ten at once, wide", 10, {"kbit": 100_000}, at_once, {"limit_s": LIMIT_S, "limit_kb": 200}),
     ("five at once, 250 kbit/s", 5, {"kbit": 250}, at_once, {"limit_s": 10, "limit_kb": 0}),
