@@ -1,12 +1,11 @@
 /* A plain Cyclone DDS program, with types that Cyclone's own compiler made, that writes or reads topics as ROS 2 and PX4's
  * agent do. Writes a number each 50 ms, which rises by one; says `got TOPIC NUMBER` for each that it reads.
  * Usage: plain_cyclone DOMAIN write|read:TOPIC:string|setpoint:reliable|best_effort:volatile|transient_local..., until SIGTERM */
-#include <dds/dds.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../integration/plain_program.h"
 #include "wire.h"
 
 enum { MOST = 16 };
@@ -17,24 +16,6 @@ struct Endpoint {
     int is_setpoint;
     dds_entity_t entity;
 };
-
-static volatile sig_atomic_t ended = 0;
-
-static void End(int number)
-{
-    (void)number;
-    ended = 1;
-}
-
-static dds_entity_t Check(dds_entity_t result, const char *what)
-{
-    if (result < 0)
-    {
-        fprintf(stderr, "plain_cyclone: %s: %s\n", what, dds_strretcode(-result));
-        exit(1);
-    }
-    return result;
-}
 
 static void Open(dds_entity_t participant, char *description, struct Endpoint *endpoint)
 {
@@ -110,7 +91,7 @@ int main(int argc, char **argv)
         return 2;
     }
     setvbuf(stdout, NULL, _IOLBF, 0);
-    signal(SIGTERM, End);
+    EndBySignal();
     const dds_entity_t participant = Check(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
     struct Endpoint endpoints[MOST];
     for (int i = 2; i < argc; ++i)

@@ -3,31 +3,12 @@
  * With `changing`, only in the first one, and after it has changed the user data of another writer twice: as DDS tells
  * of one endpoint after the other, whoever does not take the change does not hear of the writer either.
  * Usage: foreign_publisher DOMAIN [changing], until SIGTERM */
-#include <dds/dds.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "foreign.h"
-
-static volatile sig_atomic_t ended = 0;
-
-static void End(int number)
-{
-    (void)number;
-    ended = 1;
-}
-
-static dds_entity_t Check(dds_entity_t result, const char *what)
-{
-    if (result < 0)
-    {
-        fprintf(stderr, "foreign_publisher: %s: %s\n", what, dds_strretcode(-result));
-        exit(1);
-    }
-    return result;
-}
+#include "plain_program.h"
 
 static void ChangeAWriter(dds_entity_t participant)
 {
@@ -69,7 +50,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: foreign_publisher DOMAIN [changing]\n");
         return 2;
     }
-    signal(SIGTERM, End);
+    EndBySignal();
     const dds_domainid_t domain = (dds_domainid_t)atoi(argv[1]);
     const dds_entity_t same = MakeWriter(domain, &Ledger_Tick_desc, changing);
     const dds_entity_t other = changing ? 0 : MakeWriter(domain, &Foreign_Tick_desc, 0);

@@ -6,14 +6,6 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 peer=$1
 work=$2
-if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
-    echo "skipped: neither node nor npm is installed"
-    exit 77
-fi
-mkdir -p "$work"
-cp "$here/package.json" "$here/package-lock.json" "$work/"
-if [ ! -d "$work/node_modules/node-mavlink" ]; then
-    (cd "$work" && timeout 200 npm ci --silent --no-audit --no-fund --ignore-scripts) ||
-        { echo "skipped: npm could not fetch node-mavlink"; exit 77; }
-fi
+. "$here/../../npm_packages.sh"
+fetch_npm_packages "$here" node-mavlink "$work"
 exec node "$here/mavlink_interop_test.mjs" "$peer" "$work"

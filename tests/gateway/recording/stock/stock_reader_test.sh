@@ -7,16 +7,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 case=$1
 samples=$2
 work=$3
-if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
-    echo "skipped: neither node nor npm is installed"
-    exit 77
-fi
-mkdir -p "$work"
-cp "$here/package.json" "$here/package-lock.json" "$work/"
-if [ ! -d "$work/node_modules/@mcap/core" ]; then
-    (cd "$work" && timeout 200 npm ci --silent --no-audit --no-fund --ignore-scripts) ||
-        { echo "skipped: npm could not fetch @mcap/core"; exit 77; }
-fi
+. "$here/../../../npm_packages.sh"
+fetch_npm_packages "$here" @mcap/core "$work"
 cp "$here"/*.mjs "$work/"
 "$samples" "$work"
 exec node "$work/stock_reader_test.mjs" "$case" "$work"
