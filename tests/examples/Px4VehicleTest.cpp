@@ -5,6 +5,7 @@
 #include <rabit/ManualClock.h>
 
 #include <cmath>
+#include <limits>
 
 #include "px4/Px4Topics.h"
 
@@ -44,6 +45,8 @@ protected:
         position->lat = latitude;
         position->lon = 8.5;
         position->alt = 510;
+        position->lat_lon_valid = true;
+        position->alt_valid = true;
         position->PostMessage();
     }
     void PostAnswer(std::uint8_t result)
@@ -112,6 +115,31 @@ TEST_F(Px4VehicleTest, SaysWhyItWouldNotFly)
     EXPECT_EQ(vehicle.NotReady(Now()), "");
     clock->Advance(4s);
     EXPECT_EQ(vehicle.NotReady(Now()), "no PX4 is heard on DDS");
+}
+
+TEST_F(Px4VehicleTest, TellsNoPositionThatPx4DoesNotKnow)
+{
+    PostStatus();
+    PostPosition(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_FALSE(vehicle.Update(Now()));
+    PostPosition();
+    EXPECT_TRUE(vehicle.Update(Now()));
+    position->lat_lon_valid = false;
+    position->PostMessage();
+    EXPECT_FALSE(vehicle.Update(Now()));
+    EXPECT_EQ(vehicle.NotReady(Now()), "PX4 has no position");
+}
+
+TEST_F(Px4VehicleTest, KeepsTheVelocityThatItKnewWhilePx4DoesNot)
+{
+    local->vx = 1;
+    local->PostMessage();
+    PostPosition();
+    vehicle.Update(Now());
+    local->vx = std::numeric_limits<float>::quiet_NaN();
+    local->PostMessage();
+    PostPosition();
+    EXPECT_EQ(vehicle.Update(Now())->NorthMps, 1);
 }
 
 TEST_F(Px4VehicleTest, CommandsAPointAndSaysWhatItFlies)

@@ -1,15 +1,14 @@
 /* A small PX4 behind its agent, as DDS sees it, in plain Cyclone DDS: says ten times a second where it is and how it does,
  * flies to where DO_REPOSITION sends it, and refuses what is below 450 m. Armed after `arm` on its standard input.
  * Usage: simulated_px4 DOMAIN, until SIGTERM */
-#include <dds/dds.h>
 #include <fcntl.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "../integration/plain_program.h"
 #include "VehicleAttitude.h"
 #include "VehicleCommand.h"
 #include "VehicleCommandAck.h"
@@ -20,24 +19,6 @@
 static const double Period = 0.1;
 static const double LowestM = 450;
 static const double MetresInDegree = 111320;
-
-static volatile sig_atomic_t ended = 0;
-
-static void End(int number)
-{
-    (void)number;
-    ended = 1;
-}
-
-static dds_entity_t Check(dds_entity_t result, const char *what)
-{
-    if (result < 0)
-    {
-        fprintf(stderr, "simulated_px4: %s: %s\n", what, dds_strretcode(-result));
-        exit(1);
-    }
-    return result;
-}
 
 static dds_qos_t *Qos(dds_durability_kind_t durability)
 {
@@ -118,7 +99,7 @@ int main(int argc, char **argv)
         return 2;
     }
     setvbuf(stdout, NULL, _IOLBF, 0);
-    signal(SIGTERM, End);
+    EndBySignal();
     fcntl(STDIN_FILENO, F_SETFL, O_NONBLOCK);
     const dds_entity_t participant = Check(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
     const dds_entity_t statuses = Writer(participant, &px4_msgs_msg_dds__VehicleStatus__desc, "rt/fmu/out/vehicle_status");
@@ -176,6 +157,8 @@ int main(int argc, char **argv)
         position.lat = aircraft.latitude;
         position.lon = aircraft.longitude;
         position.alt = (float)aircraft.altitude;
+        position.lat_lon_valid = true;
+        position.alt_valid = true;
         Check(dds_write(positions, &position), "write");
         dds_sleepfor(DDS_MSECS(100));
     }

@@ -39,6 +39,23 @@ std::string NameOf(std::uint8_t result)
     }
 }
 
+// PX4 publishes before it knows where it is. Older ones have no flags for that.
+template <typename GlobalPosition>
+bool IsKnown(const GlobalPosition &position)
+{
+    bool known = std::isfinite(position.lat) && std::isfinite(position.lon) && std::isfinite(position.alt);
+    if constexpr (requires { position.lat_lon_valid &&position.alt_valid; })
+    {
+        known = known && position.lat_lon_valid && position.alt_valid;
+    }
+    return known;
+}
+
+bool IsVelocityKnown(const px4_msgs::msg::VehicleLocalPosition &local)
+{
+    return std::isfinite(local.vx) && std::isfinite(local.vy) && std::isfinite(local.vz);
+}
+
 void Register(Rabit::RabitWorkspace &workspace, const std::string &name,
               std::shared_ptr<Rabit::RabitMessage> message)
 {
@@ -78,15 +95,22 @@ std::optional<Motion> Px4Vehicle::Update(Time now)
     {
         SendCommand(now);
     }
-    const bool moved = _position->FetchMessage() && _position->WasPosted();
+    const bool came = _position->FetchMessage() && _position->WasPosted();
+    if (came)
+    {
+        _hasPosition = IsKnown(*_position);
+    }
     TakeMotion();
-    return moved ? std::optional(_motion) : std::nullopt;
+    return came && _hasPosition ? std::optional(_motion) : std::nullopt;
 }
 
 void Px4Vehicle::TakeMotion()
 {
-    _motion.Position = {_position->lat, _position->lon, static_cast<double>(_position->alt)};
-    if (_local->FetchMessage())
+    if (_hasPosition)
+    {
+        _motion.Position = {_position->lat, _position->lon, static_cast<double>(_position->alt)};
+    }
+    if (_local->FetchMessage() && IsVelocityKnown(*_local))
     {
         _motion.NorthMps = static_cast<double>(_local->vx);
         _motion.EastMps = static_cast<double>(_local->vy);
@@ -131,7 +155,7 @@ std::string Px4Vehicle::NotReady(Time now) const
     {
         return "PX4 is not armed";
     }
-    if (_position->GetAgeSeconds() > SilentAfterS)
+    if (!_hasPosition || _position->GetAgeSeconds() > SilentAfterS)
     {
         return "PX4 has no position";
     }

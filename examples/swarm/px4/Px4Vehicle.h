@@ -72,6 +72,7 @@ private:
         std::make_shared<px4_msgs::msg::VehicleCommand>();
 
     Motion _motion;
+    bool _hasPosition = false;  // in what PX4 said last
     std::optional<GeoPoint> _target;
     double _speedMps = 0;
     bool _awaitsAnswer = false;
