@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "clocks/GpsTime.h"
@@ -47,6 +48,50 @@ std::optional<std::string> Exploration::TypeText(std::uint64_t definition) const
     const std::lock_guard lock(_mutex);
     const auto found = _texts.find(definition);
     return found == _texts.end() ? std::nullopt : std::optional(found->second);
+}
+
+void Exploration::LookForSubscribers(const std::vector<std::string> &messages)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        _requests.LookedFor = messages;
+    }
+    _wake();
+}
+
+std::optional<std::map<std::string, FleetExplorer::Subscribers>> Exploration::FoundSubscribers() const
+{
+    const std::lock_guard lock(_mutex);
+    return _subscribers;
+}
+
+void Exploration::FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session)
+{
+    std::set<std::string> nodes;
+    for (const Node &node : Nodes())
+    {
+        nodes.insert(node.Name);
+    }
+    std::map<std::string, Subscribers> all;
+    for (const std::string &message : messages)
+    {
+        std::set<std::string> reading;
+        Subscribers &subscribers = all[message];
+        for (const RemoteEndpoint &endpoint : session.RemoteEndpointsOn(message))
+        {
+            if (nodes.contains(endpoint.Node) && !endpoint.IsWriter)
+            {
+                reading.insert(endpoint.Node);
+            }
+            subscribers.Others += endpoint.Node.empty() && !endpoint.IsWriter ? 1 : 0;
+        }
+        subscribers.Nodes.assign(reading.begin(), reading.end());
+    }
+    {
+        const std::lock_guard lock(_mutex);
+        _subscribers = std::move(all);
+    }
+    Tell();
 }
 
 void Exploration::Subscribe(const SubscribeRule &rule)

@@ -2,6 +2,7 @@
 
 #include <rabit/RabitClock.h>
 #include <rabit/gateway/FleetExplorer.h>
+#include <rabit/transport/Transport.h>
 
 #include <atomic>
 #include <cstdint>
@@ -33,6 +34,8 @@ public:
     std::vector<Node> Nodes() const override;
     void AskForType(const std::string &node, const std::string &type, std::uint64_t definition) override;
     std::optional<std::string> TypeText(std::uint64_t definition) const override;
+    void LookForSubscribers(const std::vector<std::string> &messages) override;
+    std::optional<std::map<std::string, Subscribers>> FoundSubscribers() const override;
     void Subscribe(const SubscribeRule &rule) override;
     void SetOnChange(std::function<void()> onChange) override;
 
@@ -40,13 +43,13 @@ public:
     {
         std::vector<TypeQuestions::Wanted> Types;
         std::vector<SubscribeRule> Subscriptions;
-
-        bool Any() const { return !Types.empty() || !Subscriptions.empty(); }
+        std::optional<std::vector<std::string>> LookedFor;  // whose subscribers
     };
     // Gateway's thread only, as those that follow.
     Requests TakeRequests();
     void SetNodes(const PeerTable &peers, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
+    void FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session);
 
 private:
     void Tell();
@@ -56,6 +59,7 @@ private:
     mutable std::mutex _mutex;
     std::vector<Node> _nodes;
     std::map<std::uint64_t, std::string> _texts;
+    std::optional<std::map<std::string, Subscribers>> _subscribers;
     Requests _requests;
     std::function<void()> _onChange;
 };

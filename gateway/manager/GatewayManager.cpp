@@ -274,6 +274,10 @@ private:
         {
             _states.SubscriptionsAdded(now);
         }
+        if (requests.LookedFor)
+        {
+            _exploration.FindSubscribers(*requests.LookedFor, *_session);
+        }
     }
 
     ConfigError NameTaken() const

@@ -81,6 +81,42 @@ double RateOf(const Offers::Message &message, const std::map<std::string, double
     return found == rates.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
 }
 
+using Subscribers = std::map<std::string, FleetExplorer::Subscribers>;
+
+Subscribers SubscribersOf(const std::vector<Offers::Message> &messages, FleetSession &session)
+{
+    constexpr double limit = 2.0;  // the gateway answers at once, unless something is wrong with it
+    std::vector<std::string> names;
+    for (const Offers::Message &message : messages)
+    {
+        names.push_back(message.Name);
+    }
+    FleetExplorer &explorer = session.Explorer();
+    explorer.LookForSubscribers(names);
+    session.WaitUntil(session.Seconds() + limit, [&] { return explorer.FoundSubscribers().has_value(); });
+    return explorer.FoundSubscribers().value_or(Subscribers());
+}
+
+std::string Joined(const std::vector<std::string> &words)
+{
+    std::string text;
+    for (const std::string &word : words)
+    {
+        text += (text.empty() ? "" : " ") + word;
+    }
+    return text;
+}
+
+std::string TextOf(const FleetExplorer::Subscribers &subscribers)
+{
+    std::vector<std::string> words = subscribers.Nodes;
+    if (subscribers.Others > 0)
+    {
+        words.push_back("+" + std::to_string(subscribers.Others) + " no node");
+    }
+    return words.empty() ? "-" : Joined(words);
+}
+
 int Run(const Options &all, Wakeup &wakeup)
 {
     constexpr double everybody = 1.5;
@@ -95,6 +131,8 @@ int Run(const Options &all, Wakeup &wakeup)
     }
     const std::vector<FleetSession::Node> nodes = session.Nodes();
     const std::vector<Offers::Message> messages = Offers::MessagesOf(nodes);
+    // Before this program reads them itself.
+    Subscribers subscribers = SubscribersOf(messages, session);
     const auto rates =
         all.For > 0.0 ? RatesOf(messages, all.For, session, wakeup) : std::map<std::string, double>();
     std::vector<std::vector<std::string>> rows{{"MESSAGE", "TYPE", "QOS"}};
@@ -102,7 +140,7 @@ int Run(const Options &all, Wakeup &wakeup)
     {
         rows[0].emplace_back("RATE");
     }
-    rows[0].emplace_back("PUBLISHED BY");
+    rows[0].insert(rows[0].end(), {"PUBLISHED BY", "READ BY"});
     for (const Offers::Message &message : messages)
     {
         if (options.Json)
@@ -112,23 +150,21 @@ int Run(const Options &all, Wakeup &wakeup)
                                      {"qos", message.Qos},
                                      {"definition", Offers::HashText(message.Definition)},
                                      {"publishers", message.Publishers},
+                                     {"subscribers", subscribers[message.Name].Nodes},
+                                     {"other_subscribers", subscribers[message.Name].Others},
                                      {"rate_hz", JsonNumber(RateOf(message, rates))}}))
             {
                 return Good;
             }
             continue;
         }
-        std::string publishers;
-        for (const std::string &node : message.Publishers)
-        {
-            publishers += (publishers.empty() ? "" : " ") + node;
-        }
         rows.push_back({message.Name, SafeText(message.Type), message.Qos});
         if (all.For > 0.0)
         {
             rows.back().push_back(NumberText(RateOf(message, rates), 2, " Hz"));
         }
-        rows.back().push_back(publishers);
+        rows.back().push_back(Joined(message.Publishers));
+        rows.back().push_back(TextOf(subscribers[message.Name]));
     }
     if (!options.Json)
     {
@@ -157,7 +193,8 @@ int Run(const Options &all, Wakeup &wakeup)
 void AddMessagesCommand(CLI::App &app, Chosen &chosen)
 {
     auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("messages", "All messages, their types, and who publishes them");
+    CLI::App *command =
+        app.add_subcommand("messages", "All messages, their types, who publishes and who reads them");
     AddCommonOptions(*command, options->Common, 1.8);
     command
         ->add_option("--for", options->For,

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "ForeignNetwork.h"
 #include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "manager/Exploration.h"
 #include "names/TypeDefinition.h"
 #include "wire/BeatExtensions.h"
 #include "wire/LinkSampleCodec.h"
@@ -69,6 +71,39 @@ TEST_F(ExplorerTest, TellsWhatEachNodeAnnounces)
     ASSERT_TRUE(node.Offers.has_value());
     EXPECT_EQ(node.Offers->publishes[0].message, "Pose");
     EXPECT_EQ(node.Offers->accepts[0].queue, "MissionControl");
+}
+
+TEST_F(ExplorerTest, TellsWhichNodesReadAMessage)
+{
+    fleet.Add(GroundConfig());
+    FleetExplorer &explorer = AddTool(
+        [](GatewayConfig &config) { config.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose"}); });
+    fleet.RunFor(3s);
+    EXPECT_FALSE(explorer.FoundSubscribers().has_value());
+    explorer.LookForSubscribers({"Pose", "Nothing"});
+    ASSERT_TRUE(fleet.RunUntil([&] { return explorer.FoundSubscribers().has_value(); }, 1s));
+    const auto found = *explorer.FoundSubscribers();
+    EXPECT_THAT(found.at("Pose").Nodes, ::testing::ElementsAre("ground"));
+    EXPECT_EQ(found.at("Pose").Others, 0u);
+    EXPECT_THAT(found.at("Nothing").Nodes, ::testing::IsEmpty());
+}
+
+TEST_F(ExplorerTest, CountsReadersThatAreNoNodesAndNoToolsAmongThem)
+{
+    Foreign::Network network;
+    RemoteEndpoint reader;
+    reader.Topic = "Pose";
+    network.Endpoints = {reader, reader};  // of no node
+    reader.Node = "rabit.host.7";          // nobody knows that node
+    network.Endpoints.push_back(reader);
+    reader.IsWriter = true;
+    reader.Node.clear();
+    network.Endpoints.push_back(reader);
+    Exploration exploration([] {});
+    exploration.FindSubscribers({"Pose"}, Foreign::Session(network));
+    const auto found = exploration.FoundSubscribers();
+    EXPECT_EQ(found->at("Pose").Others, 2u);
+    EXPECT_THAT(found->at("Pose").Nodes, ::testing::IsEmpty());
 }
 
 TEST_F(ExplorerTest, TellsHowFarTheWallClocksOfOthersAreAhead)

@@ -85,14 +85,21 @@ def nodes_is_a_table_for_people(rabit):
     assert "\x1b" not in done.stdout, "escape sequences in a pipe"
 
 
-def messages_are_listed_with_their_types_and_publishers(rabit):
+def messages_are_listed_with_their_types_and_who_publishes_and_reads_them(rabit):
+    aircraft = ["uav1", "uav2"]
+
     def both():
         listed, done = rabit.objects("messages", "--wait", "10")
-        return listed if done.returncode == 0 and any(row["publishers"] == ["uav1", "uav2"] for row in listed) else None
+        rows = {row["message"]: row for row in listed}
+        poses = rows.get("Pose")
+        return rows if done.returncode == 0 and poses and poses["publishers"] == poses["subscribers"] == aircraft else None
 
-    listed = until(both)
-    assert keys(listed[0]) == ["message", "type", "qos", "definition", "publishers", "rate_hz"]
-    assert {"Pose", "MissionState", "Health"} <= {row["message"] for row in listed}
+    rows = until(both)
+    assert keys(rows["Pose"]) == ["message", "type", "qos", "definition", "publishers", "subscribers", "other_subscribers",
+                                  "rate_hz"]
+    assert rows["Pose"]["other_subscribers"] == 0
+    assert rows["Health"]["publishers"] == aircraft and rows["Health"]["subscribers"] == [], rows["Health"]
+    assert "MissionState" in rows
 
 
 def the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name(rabit):
@@ -299,7 +306,7 @@ def how_often_all_messages_come_is_measured_together(rabit):
     rates = {row["message"]: row["rate_hz"] for row in listed}
     assert done.returncode == 0 and 2 < rates["Pose"] < 200, done
     table = rabit.run("messages", "--for", "1")
-    assert table.stdout.split()[:4] == ["MESSAGE", "TYPE", "QOS", "RATE"], table
+    assert table.stdout.split("\n")[0].split() == "MESSAGE TYPE QOS RATE PUBLISHED BY READ BY".split(), table
 
 
 def a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well(rabit):
@@ -438,7 +445,7 @@ def the_manual_tells_of_every_command_and_every_common_option(rabit):
 
 
 TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
-         messages_are_listed_with_their_types_and_publishers,
+         messages_are_listed_with_their_types_and_who_publishes_and_reads_them,
          the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
          a_name_that_is_wrong_is_answered_with_the_nearest, a_value_is_echoed_as_text_as_json_and_in_part,
          a_state_that_was_posted_before_is_echoed_at_once, values_of_several_nodes_are_echoed_together,

@@ -3,9 +3,11 @@
 #include <rabit/gateway/Fleet.h>
 #include <rabit/gateway/GatewayConfig.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +48,18 @@ public:
     virtual void AskForType(const std::string &node, const std::string &type, std::uint64_t definition) = 0;
     // The text of that hash, once it has come.
     virtual std::optional<std::string> TypeText(std::uint64_t definition) const = 0;
+
+    // Who reads a message, whichever node's: nodes, by name and each once, and of what else there is how much.
+    // Tools are no nodes.
+    struct Subscribers
+    {
+        std::vector<std::string> Nodes;
+        std::size_t Others = 0;
+    };
+    // Has the gateway look who reads these messages, as far as discovery has told by then.
+    virtual void LookForSubscribers(const std::vector<std::string> &messages) = 0;
+    // What it found, by message, when it looked last; empty: it has not looked yet.
+    virtual std::optional<std::map<std::string, Subscribers>> FoundSubscribers() const = 0;
 
     // As if the rule stood in the configuration. Its type must be in the MessageTypeRegistry
     // (std::invalid_argument if not). A message that is subscribed to already stays as it is.
