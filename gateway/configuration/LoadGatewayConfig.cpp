@@ -9,6 +9,7 @@
 
 #include "air/TrafficClassWords.h"
 #include "configuration/ForeignEntries.h"
+#include "configuration/PanelEntries.h"
 #include "configuration/ValidateGatewayConfig.h"
 #include "configuration/YamlMap.h"
 
@@ -216,7 +217,7 @@ YamlMap OpenFile(const std::string &file)
             "the configuration",
             {"node", "name", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram",
              "shared_memory", "lease", "backend_config", "state_dir", "radio", "record", "publish",
-             "subscribe", "accept", "send", "foreign"}};
+             "subscribe", "accept", "send", "foreign", "foxglove"}};
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -244,6 +245,7 @@ GatewayConfig LoadNetworkConfig(const std::string &file)
     ReadName(map, "any", config);  // which node it would be does not matter
     ReadNetwork(map, config);
     ReadRadio(map, config);
+    ReadPanels(map, config);
     ValidateGatewayConfig(config);
     config.Node.clear();
     return config;
@@ -269,6 +271,7 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     ReadAccept(map, config);
     ReadSend(map, config);
     ReadForeign(map, config);
+    ReadPanels(map, config);
     ValidateGatewayConfig(config, whyNoType);
     return config;
 }

@@ -33,6 +33,7 @@ void AddPostCommand(CLI::App &app, Chosen &chosen);
 void AddRecordCommand(CLI::App &app, Chosen &chosen);
 void AddInfoCommand(CLI::App &app, Chosen &chosen);
 void AddRecoverCommand(CLI::App &app, Chosen &chosen);
+void AddFoxgloveCommand(CLI::App &app, Chosen &chosen);
 void AddCheckCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);
 

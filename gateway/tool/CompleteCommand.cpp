@@ -114,8 +114,8 @@ Candidates ArgumentsIn(const std::vector<FleetSession::Node> &nodes, const std::
             found.insert(type);
         }
     };
-    const bool isListening =
-        command == "echo" || command == "hz" || command == "bytes" || command == "age" || command == "record";
+    const bool isListening = command == "echo" || command == "hz" || command == "bytes" || command == "age" ||
+                             command == "record" || command == "foxglove";
     const bool isType = before.empty() && command == "type";
     for (const Offers::Message &message : Offers::MessagesOf(nodes))
     {

@@ -18,8 +18,8 @@ constexpr double Pause = 5.0;
 }  // namespace
 
 FleetFollower::FleetFollower(FleetSession &session, const std::vector<std::string> &what,
-                             GatewayConfig &config)
-    : _session(session), _config(config)
+                             GatewayConfig &config, std::vector<std::string> &except)
+    : _session(session), _config(config), _except(except)
 {
     for (const std::string &one : what)
     {
@@ -79,7 +79,7 @@ void FleetFollower::FollowNew()
         {
             const std::string name = node.Name + "/" + published.message;
             if (_seen.count(name) == 0 && IsWanted(node.Name, published.message) &&
-                !MatchesAny(_config.Record->Except, name) && Follow(node.Name, published))
+                !MatchesAny(_except, name) && Follow(node.Name, published))
             {
                 _seen.insert(name);
             }
@@ -135,7 +135,7 @@ bool FleetFollower::Follow(const std::string &node, const Gateway::PublishedMess
 
 void FleetFollower::LeaveOut(const std::string &node, const std::string &message, const std::string &reason)
 {
-    _config.Record->Except.push_back(node + "/" + message);
+    _except.push_back(node + "/" + message);
     Output::Talk(node + " publishes `" + message + "` " + reason + "; it is left out");
 }
 

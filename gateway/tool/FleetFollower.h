@@ -18,10 +18,11 @@ namespace Rabit::Tool
 class FleetFollower
 {
 public:
-    // `what`: `uav1/Pose`, `*/Pose`, `uav1/*`. What is subscribed to is noted in config.Subscribe; of nodes
-    // that were built with another definition of a type nothing is taken, and so they are noted in
-    // config.Record->Except.
-    FleetFollower(FleetSession &session, const std::vector<std::string> &what, GatewayConfig &config);
+    // `what`: `uav1/Pose`, `*/Pose`, `uav1/*`; `except`, likewise, is left out. What is subscribed to is noted
+    // in config.Subscribe; of nodes that were built with another definition of a type nothing is taken, and so
+    // they are added to `except`. All must outlive it.
+    FleetFollower(FleetSession &session, const std::vector<std::string> &what, GatewayConfig &config,
+                  std::vector<std::string> &except);
 
     // Whose announcements are needed for that.
     static std::vector<std::string> NodesOf(const std::vector<std::string> &what);
@@ -51,6 +52,7 @@ private:
 
     FleetSession &_session;
     GatewayConfig &_config;
+    std::vector<std::string> &_except;
     std::vector<Pattern> _patterns;
     std::map<std::string, Followed> _followed;  // by message
     std::set<std::string> _seen;                // node/message

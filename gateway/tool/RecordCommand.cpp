@@ -83,7 +83,7 @@ int Run(const Options &options, Wakeup &wakeup)
     bool anything = false;
     {
         FleetSession session(config, options.Common, wakeup);
-        FleetFollower follower(session, options.What, config);
+        FleetFollower follower(session, options.What, config, config.Record->Except);
         MessageTaps taps(config, session.Workspace(), target);
         while (!wakeup.IsInterrupted() && session.Seconds() < options.For)
         {

@@ -35,6 +35,7 @@ int main(int argc, char **argv)
     AddRecordCommand(app, chosen);
     AddInfoCommand(app, chosen);
     AddRecoverCommand(app, chosen);
+    AddFoxgloveCommand(app, chosen);
     AddCheckCommand(app, chosen);
     AddDoctorCommand(app, chosen);
     // A line that is being written is none that can be parsed.

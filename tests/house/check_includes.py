@@ -91,7 +91,7 @@ ALLOWED = {
     "gateway/recording/mcap": {"room mcap", "zstd"},
     "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room recording"},
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
-                     "network", "guard", "CLI11", "room names", "room air", "room wire", "room manager", "room mcap", "room recording"},
+                     "network", "guard", "CLI11", "room names", "room clocks", "room air", "room wire", "room manager", "room mcap", "room recording"},
     "gateway/node": {"core", "factory", "gateway", "node", "recording", "CLI11"},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.

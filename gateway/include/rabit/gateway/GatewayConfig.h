@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/gateway/ForeignRule.h>
+#include <rabit/gateway/PanelRule.h>
 #include <rabit/gateway/TrafficClass.h>
 
 #include <chrono>
@@ -161,6 +162,7 @@ struct GatewayConfig
     std::vector<AcceptRule> Accept;
     std::vector<SendRule> Send;
     std::vector<ForeignRule> Foreign;
+    std::vector<PanelRule> Panels{};  // for `rabit foxglove`
 
     // Set: this is recorded.
     std::optional<RecordSettings> Record{};

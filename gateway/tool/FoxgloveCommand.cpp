@@ -1,0 +1,107 @@
+// rabit foxglove: what is on the network, live in Foxglove.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetFollower.h"
+#include "FleetSession.h"
+#include "Output.h"
+#include "live/LiveServer.h"
+#include "live/LiveTaps.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+struct Options
+{
+    CommonOptions Common;
+    std::vector<std::string> What = {"*/*"};
+    std::vector<std::string> Except;
+    std::string Address = "127.0.0.1";
+    std::uint16_t Port = 8765;
+    std::vector<std::string> Origins;
+};
+
+LiveServer::Settings SettingsOf(const Options &options)
+{
+    LiveServer::Settings settings;
+    boost::system::error_code error;
+    const auto address = boost::asio::ip::make_address(options.Address, error);
+    if (error)
+    {
+        throw NetworkError("--listen: `" + options.Address + "` is no address");
+    }
+    settings.Endpoint = {address, options.Port};
+    settings.Origins = options.Origins;
+    return settings;
+}
+
+std::string UrlOf(const boost::asio::ip::tcp::endpoint &endpoint)
+{
+    const std::string host = endpoint.address().to_string();
+    return "ws://" + (endpoint.address().is_v6() ? "[" + host + "]" : host) + ":" +
+           std::to_string(endpoint.port());
+}
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    GatewayConfig config = ConfigOf(options.Common);
+    std::vector<std::string> except = options.Except;
+    config.Tool->AsksOf = FleetFollower::NodesOf(options.What);
+    LiveServer server(SettingsOf(options));
+    const std::string url = UrlOf(server.Endpoint());
+    if (options.Common.Json ? !Output::Object({{"url", url}}) : !Output::Line(url))
+    {
+        return Good;
+    }
+    FleetSession session(config, options.Common, wakeup);
+    FleetFollower follower(session, options.What, config, except);
+    LiveTaps taps(session, config, except, server);
+    bool lonely = false;
+    while (!wakeup.IsInterrupted())
+    {
+        follower.FollowNew();
+        taps.Look();
+        if (!lonely && !session.IsAnybodyThere() && session.Seconds() >= options.Common.Wait)
+        {
+            lonely = true;
+            static_cast<void>(session.NobodyThere());
+        }
+        session.WaitUntil(session.Seconds() + 0.1, [] { return false; });
+    }
+    const LiveServer::Counters counters = server.Count();
+    if (counters.Dropped > 0)
+    {
+        Output::Talk(std::to_string(counters.Dropped) +
+                     " values were not shown to viewers that were too slow");
+    }
+    return Good;
+}
+
+}  // namespace
+
+void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command =
+        app.add_subcommand("foxglove", "What is on the network, live in Foxglove or Lichtblick");
+    command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any; without: all messages");
+    AddCommonOptions(*command, options->Common, 5.0);
+    command->add_option("--except", options->Except, "Messages to leave out, as */CameraView");
+    command->add_option("--listen", options->Address,
+                        "Address to listen at; everybody who reaches it sees all (default: 127.0.0.1)");
+    command->add_option("--port", options->Port, "Port to listen at (default: 8765; 0: any)");
+    command->add_option("--origin", options->Origins,
+                        "A site whose pages may look, besides Foxglove's, Lichtblick's and this machine's");
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool

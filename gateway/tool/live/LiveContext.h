@@ -1,0 +1,38 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "live/LiveProtocol.h"
+#include "live/LiveQueue.h"
+#include "live/LiveServer.h"
+
+namespace Rabit::Tool
+{
+
+class LiveSession;
+
+// What the sessions of a LiveServer share; of the server's thread, but for the counters.
+struct LiveContext
+{
+    struct Offered
+    {
+        LiveProtocol::Channel Channel;
+        bool IsState = false;
+        std::shared_ptr<const LiveValue> Last;  // of a state
+    };
+
+    LiveServer::Settings Settings;
+    std::string SessionId;  // of this run of the server
+    std::map<std::uint32_t, Offered> Channels;
+    std::set<LiveSession *> Sessions;  // those with a viewer
+    std::atomic<std::uint64_t> Viewers{0};
+    std::atomic<std::uint64_t> Shown{0};
+    std::atomic<std::uint64_t> Dropped{0};
+};
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Rabit::Tool
+{
+
+// A value of a channel, shared by all that it is sent to.
+struct LiveValue
+{
+    std::uint32_t Channel = 0;
+    std::uint64_t Time = 0;  // when it came, UTC in nanoseconds since 1970
+    std::vector<std::uint8_t> Bytes;
+};
+
+// What waits for one viewer. Texts go first. Values take so many bytes at most: where one has no room the
+// oldest of its channel make it, so that a slow viewer sees less of what is said often, and never a State
+// that is not the newest. What is not shown is counted by channel. Not thread-safe.
+class LiveQueue
+{
+public:
+    static constexpr std::size_t MostTexts = 1000;
+
+    explicit LiveQueue(std::size_t mostBytes) : _most(mostBytes) {}
+
+    // False: too many wait, so that nobody reads them.
+    bool AddText(std::string text);
+    void AddValue(std::uint32_t subscription, std::shared_ptr<const LiveValue> value);
+    // What waits for that subscription is not wanted any more.
+    void Remove(std::uint32_t subscription);
+
+    struct Value
+    {
+        std::uint32_t Subscription = 0;
+        std::shared_ptr<const LiveValue> What;
+    };
+    std::optional<std::string> TakeText();
+    // In the order in which they came.
+    std::optional<Value> TakeValue();
+    bool IsEmpty() const { return _texts.empty() && _values.empty(); }
+    std::size_t Bytes() const { return _bytes; }
+
+    // Values that were dropped since this was asked last, by channel.
+    std::map<std::uint32_t, std::uint64_t> TakeDropped();
+
+private:
+    struct Waiting
+    {
+        std::uint64_t Turn = 0;  // rises with each that is added
+        Value What;
+    };
+    static std::size_t SizeOf(const LiveValue &value);
+    Value TakeFirstOf(std::map<std::uint32_t, std::deque<Waiting>>::iterator channel);
+
+    const std::size_t _most;
+    std::deque<std::string> _texts;
+    std::map<std::uint32_t, std::deque<Waiting>> _values;  // by channel; none is empty
+    std::uint64_t _turn = 0;
+    std::size_t _bytes = 0;  // of the values
+    std::map<std::uint32_t, std::uint64_t> _dropped;
+};
+
+}  // namespace Rabit::Tool

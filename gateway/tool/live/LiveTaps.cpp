@@ -1,0 +1,246 @@
+#include "live/LiveTaps.h"
+
+#include <rabit/dynamic/DynamicType.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <mutex>
+#include <utility>
+
+#include "Output.h"
+#include "clocks/GpsTime.h"
+#include "names/NamePattern.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+std::uint64_t Nanoseconds(double gpsSeconds)
+{
+    const std::int64_t time = GpsTime::ToUtcNanoseconds(gpsSeconds);
+    return time < 0 ? 0 : static_cast<std::uint64_t>(time);
+}
+
+}  // namespace
+
+// One local message. Several threads may post.
+class LiveTaps::Tap : public std::enable_shared_from_this<Tap>
+{
+public:
+    // What a panel makes of it, in a channel of its own.
+    struct Made
+    {
+        const PanelMapping *Panel = nullptr;
+        std::uint32_t Channel = 0;
+    };
+
+    Tap(std::shared_ptr<PublishSubscribeMessage> global, const MessageType &type, std::string node,
+        const RabitClock &clock, LiveServer &server)
+        : _global(std::move(global)),
+          _type(type),
+          _node(std::move(node)),
+          _clock(clock),
+          _server(server),
+          _copy(_global->GetCopyOfMessage())
+    {
+    }
+
+    void SetChannel(std::uint32_t channel) { _channel = channel; }
+    // `type` knows the message in JSON.
+    void SetPanels(std::vector<Made> panels, std::shared_ptr<const DynamicType> type)
+    {
+        _panels = std::move(panels);
+        _dynamic = std::move(type);
+    }
+
+    // What was posted last, if anything was, and then all posts.
+    void Begin()
+    {
+        const std::lock_guard lock(_mutex);
+        _connection = RabitScopedConnection(_global->ConnectSomethingPublished(
+            [weak = weak_from_this()]
+            {
+                if (const auto tap = weak.lock())
+                {
+                    tap->OnPost();
+                }
+            }));
+        if (_copy->WasPosted())
+        {
+            Show();
+        }
+    }
+
+private:
+    void OnPost()
+    {
+        const std::lock_guard lock(_mutex);
+        if (_global->FetchMessage(_copy.get()))
+        {
+            Show();
+        }
+    }
+
+    void Show()
+    {
+        std::vector<std::uint8_t> bytes(_type.SerializedSize(*_copy));
+        if (bytes.empty() || _type.Serialize(*_copy, bytes) != bytes.size())
+        {
+            return;
+        }
+        const std::uint64_t now = Nanoseconds(_clock.GpsTimeSeconds());
+        if (!_panels.empty() && _dynamic)
+        {
+            ShowInPanels(bytes, now);
+        }
+        _server.Show(_channel, now, std::move(bytes));
+    }
+
+    void ShowInPanels(const std::vector<std::uint8_t> &bytes, std::uint64_t now)
+    {
+        const auto value = _dynamic->ToJson(bytes);
+        for (const Made &made : _panels)
+        {
+            const auto text =
+                value ? made.Panel->Show(_node, *value, Nanoseconds(_copy->GetTimeStamp())) : std::nullopt;
+            if (text)
+            {
+                _server.Show(made.Channel, now, {text->begin(), text->end()});
+            }
+            else if (!std::exchange(_told, true))
+            {
+                Output::Talk(_node + "/" + made.Panel->Message() + ": " +
+                             (value ? made.Panel->WhyNot(*value) : "it is too large to show"));
+            }
+        }
+    }
+
+    const std::shared_ptr<PublishSubscribeMessage> _global;
+    const MessageType &_type;
+    const std::string _node;
+    const RabitClock &_clock;
+    LiveServer &_server;
+    std::uint32_t _channel = 0;
+    std::vector<Made> _panels;
+    std::shared_ptr<const DynamicType> _dynamic;
+    std::mutex _mutex;
+    std::unique_ptr<RabitMessage> _copy;  // guarded, as the next
+    bool _told = false;
+    RabitScopedConnection _connection;
+};
+
+LiveTaps::LiveTaps(FleetSession &session, const GatewayConfig &config, const std::vector<std::string> &except,
+                   LiveServer &server)
+    : _session(session), _except(except), _server(server), _log(server.AddChannel(PanelLog::Channel(), false))
+{
+    for (const PanelRule &rule : config.Panels)
+    {
+        _panels.emplace_back(rule);
+    }
+}
+
+LiveTaps::~LiveTaps() = default;
+
+void LiveTaps::Look()
+{
+    for (const MessageInfo &message : _session.Workspace().GetListOfMessages())
+    {
+        if (message.Name.find('/') != std::string::npos && _taps.count(message.Name) == 0 &&
+            !MatchesAny(_except, message.Name))
+        {
+            const std::shared_ptr<Tap> tap = MakeTap(message.Name);
+            _taps[message.Name] = tap;
+            if (tap)
+            {
+                tap->Begin();
+            }
+        }
+    }
+    TellProblems();
+}
+
+std::shared_ptr<LiveTaps::Tap> LiveTaps::MakeTap(const std::string &name)
+{
+    const auto global = _session.Workspace().FindGlobalMessage(name);
+    const auto copy = global ? global->GetCopyOfMessage() : nullptr;
+    const MessageType *type = copy ? MessageTypeRegistry::Of(*copy) : nullptr;
+    if (type == nullptr)
+    {
+        return nullptr;
+    }
+    const std::string node = name.substr(0, name.find('/'));
+    const std::string message = name.substr(name.find('/') + 1);
+    const bool isState = IsState(node, message);
+    auto tap = std::make_shared<Tap>(global, *type, node, _session.Workspace().GetClock(), _server);
+    LiveProtocol::Channel channel;
+    channel.Topic = name;
+    channel.SchemaName = type->Name();
+    channel.SchemaText = type->IdlText();
+    tap->SetChannel(_server.AddChannel(std::move(channel), isState));
+    std::vector<Tap::Made> made;
+    for (const PanelMapping &panel : _panels)
+    {
+        if (panel.Message() == message)
+        {
+            made.push_back({&panel, _server.AddChannel(panel.ChannelFor(node), isState)});
+        }
+    }
+    if (!made.empty())
+    {
+        tap->SetPanels(std::move(made), DynamicType::Parse(type->IdlText(), type->Name()).Type);
+    }
+    return tap;
+}
+
+bool LiveTaps::IsState(const std::string &node, const std::string &message) const
+{
+    for (const FleetSession::Node &one : _session.Nodes())
+    {
+        if (one.Name != node || !one.Offers)
+        {
+            continue;
+        }
+        for (const Gateway::PublishedMessage &published : one.Offers->publishes)
+        {
+            if (published.message == message)
+            {
+                return published.qos == "state";
+            }
+        }
+    }
+    return true;  // of this program: who is there
+}
+
+void LiveTaps::TellProblems()
+{
+    constexpr int info = 2;
+    constexpr int warning = 3;
+    std::set<std::string> problems;
+    for (const Gateway::Problem &problem : _session.Fleet().problems)
+    {
+        problems.insert(problem.subject + ": " + problem.reason);
+    }
+    const std::uint64_t now = Nanoseconds(_session.Workspace().GetClock().GpsTimeSeconds());
+    const auto tell = [&](int level, const std::string &text)
+    {
+        const std::string line = PanelLog::Line(now, level, "Gateway", text);
+        _server.Show(_log, now, {line.begin(), line.end()});
+    };
+    for (const std::string &text : problems)
+    {
+        if (_problems.count(text) == 0)
+        {
+            tell(warning, text);
+        }
+    }
+    for (const std::string &text : _problems)
+    {
+        if (problems.count(text) == 0)
+        {
+            tell(info, "no more: " + text);
+        }
+    }
+    _problems = std::move(problems);
+}
+
+}  // namespace Rabit::Tool

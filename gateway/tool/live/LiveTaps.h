@@ -1,0 +1,50 @@
+#pragma once
+
+#include <rabit/PublishSubscribeClass.h>
+#include <rabit/RabitClock.h>
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "FleetSession.h"
+#include "live/LiveServer.h"
+#include "live/PanelMapping.h"
+
+namespace Rabit::Tool
+{
+
+// Shows each post of the local messages that a FleetFollower has subscribed to, and what panels are to make
+// of it, on the thread that posts it; and problems of Gateway/Fleet as they come and go. Main thread only.
+class LiveTaps
+{
+public:
+    // `except`: names and patterns of messages that are not shown. All must outlive it.
+    LiveTaps(FleetSession &session, const GatewayConfig &config, const std::vector<std::string> &except,
+             LiveServer &server);
+    ~LiveTaps();
+
+    // Taps what is new.
+    void Look();
+    std::size_t Messages() const { return _taps.size(); }
+
+private:
+    class Tap;
+
+    std::shared_ptr<Tap> MakeTap(const std::string &name);
+    bool IsState(const std::string &node, const std::string &message) const;
+    void TellProblems();
+
+    FleetSession &_session;
+    const std::vector<std::string> &_except;
+    LiveServer &_server;
+    std::vector<PanelMapping> _panels;
+    std::map<std::string, std::shared_ptr<Tap>> _taps;  // by local name; null: it cannot be shown
+    std::uint32_t _log;
+    std::set<std::string> _problems;  // that were told
+};
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <rabit/gateway/PanelRule.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "live/LiveProtocol.h"
+
+namespace Rabit::Tool
+{
+
+// Values of messages as panels of viewers know them, in JSON. Pure.
+class PanelMapping
+{
+public:
+    explicit PanelMapping(PanelRule rule) : _rule(std::move(rule)) {}
+
+    const std::string &Message() const { return _rule.Message; }
+    // The channel for that message of a node.
+    LiveProtocol::Channel ChannelFor(const std::string &node) const;
+    // A value, as idl/dynamic has it in JSON, that was posted then (UTC, nanoseconds since 1970). Empty: a
+    // field is not in it, or is no number where one has to be.
+    std::optional<std::string> Show(const std::string &node, const std::string &value,
+                                    std::uint64_t postedAt) const;
+    // Why a value of that message cannot be shown, in one line.
+    std::string WhyNot(const std::string &value) const;
+
+private:
+    PanelRule _rule;
+};
+
+// A line for the log of a viewer; level: 1 (debug) to 5 (fatal).
+namespace PanelLog
+{
+LiveProtocol::Channel Channel();
+std::string Line(std::uint64_t time, int level, const std::string &name, const std::string &message);
+}  // namespace PanelLog
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,288 @@
+// Viewers over sockets of loopback.
+#include "live/LiveServer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+
+#include "FleetSession.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using nlohmann::json;
+using testing::HasSubstr;
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+
+LiveServer::Settings Anywhere()
+{
+    LiveServer::Settings settings;
+    settings.Endpoint.port(0);
+    return settings;
+}
+
+// What a viewer does. What it waits for never comes only if a test is broken: then ctest ends it.
+class Viewer
+{
+public:
+    explicit Viewer(const LiveServer &server, const std::string &protocol = "foxglove.websocket.v1",
+                    const std::string &origin = "")
+        : _stream(_io)
+    {
+        // Small, so that a viewer that does not read is one soon.
+        beast::get_lowest_layer(_stream).open(asio::ip::tcp::v4());
+        beast::get_lowest_layer(_stream).set_option(asio::socket_base::receive_buffer_size(4096));
+        beast::get_lowest_layer(_stream).connect(server.Endpoint());
+        _stream.set_option(websocket::stream_base::decorator(
+            [protocol, origin](websocket::request_type &request)
+            {
+                if (!protocol.empty())
+                {
+                    request.set(beast::http::field::sec_websocket_protocol, protocol);
+                }
+                if (!origin.empty())
+                {
+                    request.set(beast::http::field::origin, origin);
+                }
+            }));
+        websocket::response_type answer;
+        _stream.handshake(answer, "localhost", "/", Error);
+        Protocol = std::string(answer[beast::http::field::sec_websocket_protocol]);
+    }
+
+    void Send(const json &request)
+    {
+        _stream.text(true);
+        _stream.write(asio::buffer(request.dump()));
+    }
+    void Subscribe(std::uint32_t id, std::uint32_t channel)
+    {
+        Send({{"op", "subscribe"}, {"subscriptions", json::array({{{"id", id}, {"channelId", channel}}})}});
+    }
+    struct Frame
+    {
+        std::optional<json> Text;
+        std::string Value;  // its bytes, if it is no text
+    };
+    Frame Next()
+    {
+        beast::flat_buffer buffer;
+        _stream.read(buffer);
+        const std::string all = beast::buffers_to_string(buffer.data());
+        return _stream.got_text() ? Frame{json::parse(all), ""}
+                                  : Frame{std::nullopt, all.substr(LiveProtocol::MessageDataHeader)};
+    }
+    // The next text of that operation.
+    json Text(const std::string &op)
+    {
+        for (;;)
+        {
+            const Frame next = Next();
+            if (next.Text && (*next.Text)["op"] == op)
+            {
+                return *next.Text;
+            }
+        }
+    }
+    // The bytes of the next value.
+    std::string Value()
+    {
+        for (;;)
+        {
+            const Frame next = Next();
+            if (!next.Text)
+            {
+                return next.Value;
+            }
+        }
+    }
+
+    beast::error_code Error;
+    std::string Protocol;
+
+private:
+    asio::io_context _io;
+    websocket::stream<asio::ip::tcp::socket> _stream;
+};
+
+std::vector<std::uint8_t> Bytes(const std::string &text)
+{
+    return {text.begin(), text.end()};
+}
+
+LiveProtocol::Channel Named(const std::string &topic)
+{
+    LiveProtocol::Channel channel;
+    channel.Topic = topic;
+    return channel;
+}
+
+TEST(LiveServer, OffersWhatThereIsAndWhatComesLater)
+{
+    LiveServer server(Anywhere());
+    server.AddChannel(Named("uav1/Pose"), false);
+    Viewer viewer(server);
+    EXPECT_EQ(viewer.Protocol, "foxglove.websocket.v1");
+    EXPECT_EQ(viewer.Text("serverInfo")["name"], "rabit");
+    EXPECT_EQ(viewer.Text("advertise")["channels"][0]["topic"], "uav1/Pose");
+    server.AddChannel(Named("uav2/Pose"), false);
+    EXPECT_EQ(viewer.Text("advertise")["channels"][0]["topic"], "uav2/Pose");
+}
+
+TEST(LiveServer, ShowsAViewerWhatItSubscribesTo)
+{
+    LiveServer server(Anywhere());
+    const auto pose = server.AddChannel(Named("uav1/Pose"), false);
+    const auto other = server.AddChannel(Named("uav1/Other"), true);
+    server.Show(other, 1, Bytes("last"));
+    Viewer viewer(server);
+    viewer.Subscribe(5, pose);
+    viewer.Subscribe(6, other);
+    EXPECT_EQ(viewer.Value(), "last");  // so the subscriptions are known
+    server.Show(pose, 2, Bytes("moved"));
+    EXPECT_EQ(viewer.Value(), "moved");
+}
+
+TEST(LiveServer, AStateIsThereAtOnceAndWhatIsSaidOftenIsNot)
+{
+    LiveServer server(Anywhere());
+    const auto pose = server.AddChannel(Named("uav1/Pose"), false);
+    const auto state = server.AddChannel(Named("uav1/State"), true);
+    server.Show(pose, 1, Bytes("old"));
+    server.Show(state, 1, Bytes("replaced"));
+    server.Show(state, 2, Bytes("last"));
+    Viewer viewer(server);
+    viewer.Subscribe(1, pose);
+    viewer.Subscribe(2, state);
+    EXPECT_EQ(viewer.Value(), "last");
+}
+
+TEST(LiveServer, WhatIsNotWantedAnyMoreDoesNotCome)
+{
+    LiveServer server(Anywhere());
+    const auto first = server.AddChannel(Named("uav1/Pose"), true);
+    const auto second = server.AddChannel(Named("uav2/Pose"), true);
+    server.Show(second, 1, Bytes("here"));
+    Viewer viewer(server);
+    viewer.Subscribe(1, first);
+    viewer.Send({{"op", "unsubscribe"}, {"subscriptionIds", {1}}});
+    viewer.Subscribe(2, second);
+    EXPECT_EQ(viewer.Value(), "here");
+    server.Show(first, 2, Bytes("not wanted"));
+    server.Show(second, 3, Bytes("wanted"));
+    EXPECT_EQ(viewer.Value(), "wanted");
+}
+
+TEST(LiveServer, SaysWhatIsNotPossible)
+{
+    LiveServer server(Anywhere());
+    Viewer viewer(server);
+    viewer.Subscribe(1, 77);
+    EXPECT_THAT(std::string(viewer.Text("status")["message"]), HasSubstr("channel 77 is not possible"));
+    viewer.Send({{"op", "advertise"}, {"channels", json::array()}});
+    EXPECT_THAT(std::string(viewer.Text("status")["message"]), HasSubstr("nothing can be sent"));
+}
+
+// The first reads nothing, and the second everything.
+TEST(LiveServer, AViewerThatStallsIsToldWhatItMissedAndDelaysNobody)
+{
+    constexpr std::size_t size = 100'000;
+    constexpr int count = 300;
+    LiveServer::Settings settings = Anywhere();
+    settings.BytesOfViewer = 10 * size;
+    LiveServer server(settings);
+    const auto picture = server.AddChannel(Named("uav1/Picture"), true);
+    server.Show(picture, 1, Bytes("first"));
+    Viewer stalled(server);
+    stalled.Subscribe(1, picture);
+    EXPECT_EQ(stalled.Value(), "first");
+    Viewer quick(server);
+    quick.Subscribe(1, picture);
+    EXPECT_EQ(quick.Value(), "first");
+    for (int i = 0; i < count; ++i)
+    {
+        const std::string text = std::to_string(i);
+        server.Show(picture, 2, Bytes(text + std::string(size - text.size(), ' ')));
+        EXPECT_EQ(std::stoi(quick.Value()), i);
+    }
+    // It is told, and shown the newest.
+    bool told = false;
+    int shown = 0;
+    while (!told || shown < count - 1)
+    {
+        const Viewer::Frame next = stalled.Next();
+        told = told || (next.Text && std::string((*next.Text)["message"]).starts_with("uav1/Picture: "));
+        shown = next.Text ? shown : std::stoi(next.Value);
+    }
+    EXPECT_GT(server.Count().Dropped, 100u);
+}
+
+TEST(LiveServer, RefusesWhoSpeaksAnotherProtocol)
+{
+    LiveServer server(Anywhere());
+    EXPECT_TRUE(Viewer(server, "other").Error);
+    EXPECT_TRUE(Viewer(server, "").Error);
+}
+
+TEST(LiveServer, SaysInABrowserThatItIsNoPage)
+{
+    LiveServer server(Anywhere());
+    asio::io_context io;
+    asio::ip::tcp::socket socket(io);
+    socket.connect(server.Endpoint());
+    beast::http::request<beast::http::empty_body> request(beast::http::verb::get, "/", 11);
+    request.set(beast::http::field::host, "localhost");
+    beast::http::write(socket, request);
+    beast::flat_buffer buffer;
+    beast::http::response<beast::http::string_body> answer;
+    beast::http::read(socket, buffer, answer);
+    EXPECT_EQ(answer.result(), beast::http::status::forbidden);
+    EXPECT_THAT(answer.body(), HasSubstr("open it in Foxglove or Lichtblick"));
+}
+
+TEST(LiveServer, RefusesPagesOfOtherSites)
+{
+    LiveServer::Settings settings = Anywhere();
+    settings.Origins = {"https://viewer.example.org"};
+    LiveServer server(settings);
+    EXPECT_TRUE(Viewer(server, "foxglove.websocket.v1", "https://evil.example.org").Error);
+    EXPECT_TRUE(Viewer(server, "foxglove.websocket.v1", "http://localhost.evil.example.org").Error);
+    EXPECT_FALSE(Viewer(server, "foxglove.websocket.v1", "https://viewer.example.org").Error);
+    EXPECT_FALSE(Viewer(server, "foxglove.websocket.v1", "https://app.foxglove.dev").Error);
+    EXPECT_FALSE(Viewer(server, "foxglove.websocket.v1", "http://localhost:8080").Error);
+}
+
+TEST(LiveServer, TakesSoManyViewersAndNoMore)
+{
+    LiveServer::Settings settings = Anywhere();
+    settings.MostViewers = 1;
+    LiveServer server(settings);
+    Viewer first(server);
+    EXPECT_FALSE(first.Error);
+    first.Text("serverInfo");
+    EXPECT_TRUE(Viewer(server).Error);
+}
+
+TEST(LiveServer, APortThatIsTakenIsOneLine)
+{
+    LiveServer server(Anywhere());
+    LiveServer::Settings settings;
+    settings.Endpoint = server.Endpoint();
+    EXPECT_THROW(LiveServer second(settings), NetworkError);
+}
+
+}  // namespace
+}  // namespace Rabit::Tool
