@@ -201,7 +201,8 @@ bool RecordingFiles::Open(Time now, Time firstLogTime)
         const auto own = OwnFiles();
         _number = own.empty() ? 1 : *NumberOf(own.back().first, _settings.Name) + 1;
     }
-    const std::string name = _settings.Name + "_" + Padded(*_number) + "_" + DateOf(now) + ".mcap";
+    const std::string stem = _settings.Name + "_" + Padded(*_number) + "_" + DateOf(now);
+    const std::string name = stem + ".mcap";
     std::string reason;
     _file = _disk.Create(name, reason);
     if (!_file)
@@ -215,9 +216,12 @@ bool RecordingFiles::Open(Time now, Time firstLogTime)
     ++_status.Files;
     _writer = std::make_unique<Mcap::McapWriter>(
         *_file, Mcap::McapWriter::Options{"rabit " RABIT_VERSION_STRING, "rabit", _settings.Compresses});
-    _writer->AddMetadata(
-        {"rabit.file",
-         {{"node", _settings.Name}, {"number", std::to_string(*_number)}, {"begun", DateOf(now)}}});
+    _recording = _recording.empty() ? stem : _recording;
+    _writer->AddMetadata({"rabit.file",
+                          {{"node", _settings.Name},
+                           {"number", std::to_string(*_number)},
+                           {"begun", DateOf(now)},
+                           {"recording", _recording}}});
     for (const auto &[key, values] : _metadata)
     {
         _writer->AddMetadata({key, values});

@@ -100,6 +100,7 @@ private:
     std::unique_ptr<RecordingDisk::File> _file;
     std::unique_ptr<Mcap::McapWriter> _writer;
     std::optional<std::uint64_t> _number;  // of the next file
+    std::string _recording;                // the first file's name, in all of them: they belong together
     Time _openedAt = 0;
     Time _flushedAt = 0;
     Time _nextLook = 0;

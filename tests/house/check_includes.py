@@ -34,6 +34,7 @@ ROOMS = {
 # What a header's path says about where it belongs. The first pattern that fits holds.
 OWNERS = [
     (r"recording/mcap/", "room mcap"),
+    (r"recording/merge/", "room merge"),
     (r"recording/", "room recording"),
     *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"guard/", "guard"),
@@ -89,9 +90,11 @@ ALLOWED = {
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
     # Files alone: no network, no messages.
     "gateway/recording/mcap": {"room mcap", "zstd"},
+    "gateway/recording/merge": {"room mcap", "room merge"},
     "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room recording"},
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
-                     "network", "guard", "CLI11", "room names", "room clocks", "room air", "room wire", "room manager", "room mcap", "room recording"},
+                     "network", "guard", "CLI11", "room names", "room clocks", "room air", "room wire", "room manager", "room mcap",
+                     "room recording", "room merge"},
     "gateway/node": {"core", "factory", "gateway", "node", "recording", "CLI11"},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.

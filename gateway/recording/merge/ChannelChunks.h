@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <set>
+
+#include "recording/mcap/McapContents.h"
+#include "recording/mcap/MessageCursor.h"
+
+namespace Rabit::Merge
+{
+
+// Some channels of a file, and the chunks that hold them as far as the file's index tells, so that the others
+// need not be read.
+class ChannelChunks
+{
+public:
+    ChannelChunks(const Mcap::Contents &contents, const std::function<bool(const Mcap::Channel &)> &wants);
+
+    // For a MessageCursor, which this must outlive.
+    const Mcap::Contents &Contents() const { return _reduced; }
+    Mcap::MessageCursor::Selection Selection() const;
+    const std::set<std::uint16_t> &Channels() const { return _channels; }
+
+private:
+    Mcap::Contents _reduced;  // chunks alone
+    std::set<std::uint16_t> _channels;
+};
+
+}  // namespace Rabit::Merge

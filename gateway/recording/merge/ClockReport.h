@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recording/mcap/McapRecords.h"
+#include "recording/merge/Moment.h"
+
+namespace Rabit::Merge
+{
+
+// What a node tells of clocks in its recording once a second: a message of `<node>/Recorder/Clocks`.
+struct ClockReport
+{
+    struct Peer
+    {
+        std::string Node;
+        std::uint64_t Incarnation = 0;
+        Moment SourceToLog = 0;             // from its source clock to the log times of the file
+        std::optional<Moment> UncertainBy;  // half of the last round trip; empty: there was none
+    };
+    std::uint64_t Incarnation = 0;  // of the node itself
+    Moment SourceToLog = 0;         // from its own source clock
+    std::vector<Peer> Peers;
+};
+
+// Nothing if it is none. Peers that make no sense are left out.
+std::optional<ClockReport> ReadClockReport(Mcap::ByteView json);
+
+// The same report for a file whose log times are later by so much; nothing if it is none.
+std::optional<Mcap::Bytes> ShiftClockReport(Mcap::ByteView json, Moment later);
+
+}  // namespace Rabit::Merge

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "recording/mcap/McapWriter.h"
+#include "recording/merge/MergePlan.h"
+
+namespace Rabit::Merge
+{
+
+// The channels of a merged file. What a node posted keeps its topic. What it received of others is named as
+// what it knew: `uav2/Pose` in the recording of uav1 becomes `uav1/Recorder/knew/uav2/Pose`. Each life has
+// channels of its own, told apart by their metadata:
+//   rabit.recorded_by   the node whose recording it is from
+//   rabit.life          1, 2, ...; with rabit.incarnation
+//   rabit.kind          `knew` for what was received; else as in the recording
+//   rabit.node, rabit.message   of `knew`: who posted it, and its name there
+class MergedChannels
+{
+public:
+    // They must outlive it.
+    MergedChannels(const Lives &lives, const MergePlan &plan, Mcap::McapWriter &writer);
+
+    // What in a message must be put on the time line beside its times.
+    enum class Inside
+    {
+        Nothing,
+        Clocks,  // ClockReport
+        LogLine  // foxglove.Log
+    };
+    struct Made
+    {
+        std::uint16_t Number = 0;
+        Inside Times = Inside::Nothing;
+    };
+    // Of a channel in a file of that life; empty if there are too many.
+    std::optional<Made> Of(std::size_t life, const Mcap::Contents &contents, std::uint16_t channel);
+    // `uav1/Recorder/TimeLine`: how a life is put on the time line.
+    std::optional<std::uint16_t> TimeLineOf(std::size_t life);
+    // What becomes of a topic in the recording of that life.
+    std::string TopicOf(std::size_t life, const Mcap::Channel &channel) const;
+
+private:
+    std::uint16_t SchemaOf(const std::string &name, const std::string &encoding, const std::string &text);
+    std::optional<std::uint16_t> Make(std::size_t life, std::uint16_t schema, const std::string &topic,
+                                      const std::string &encoding, Mcap::TextMap metadata);
+
+    const Lives &_lives;
+    const MergePlan &_plan;
+    Mcap::McapWriter &_writer;
+    std::map<std::tuple<std::string, std::string, std::string>, std::uint16_t> _schemas;
+    std::map<std::tuple<std::size_t, std::uint16_t, std::string, std::string>, std::optional<std::uint16_t>>
+        _channels;  // life, schema, topic, encoding
+};
+
+}  // namespace Rabit::Merge
