@@ -34,6 +34,8 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen);
 void AddInfoCommand(CLI::App &app, Chosen &chosen);
 void AddRecoverCommand(CLI::App &app, Chosen &chosen);
 void AddFoxgloveCommand(CLI::App &app, Chosen &chosen);
+void AddMergeCommand(CLI::App &app, Chosen &chosen);
+void AddKnewCommand(CLI::App &app, Chosen &chosen);
 void AddCheckCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);
 

@@ -75,7 +75,7 @@ Candidates ValuesOf(const CLI::Option &option)
     {
         return {"state", "telemetry"};
     }
-    if (name == "config" || name == "idl" || name == "to")
+    if (name == "config" || name == "idl" || name == "to" || name == "plot")
     {
         return {Files};
     }
@@ -236,7 +236,8 @@ Candidates CandidatesFor(const CLI::App &app, const Words &line, Wakeup &wakeup)
     {
         return OptionsOf(command);
     }
-    if (command.get_name() == "check" || command.get_name() == "info" || command.get_name() == "recover")
+    static const Candidates ofFiles = {"check", "info", "recover", "merge", "knew"};
+    if (ofFiles.contains(command.get_name()))
     {
         return {Files};
     }

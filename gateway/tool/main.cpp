@@ -36,6 +36,8 @@ int main(int argc, char **argv)
     AddInfoCommand(app, chosen);
     AddRecoverCommand(app, chosen);
     AddFoxgloveCommand(app, chosen);
+    AddMergeCommand(app, chosen);
+    AddKnewCommand(app, chosen);
     AddCheckCommand(app, chosen);
     AddDoctorCommand(app, chosen);
     // A line that is being written is none that can be parsed.

@@ -1,20 +1,39 @@
 #include "recording/merge/ChannelChunks.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace Rabit::Merge
 {
 
-ChannelChunks::ChannelChunks(const Mcap::Contents &contents,
-                             const std::function<bool(const Mcap::Channel &)> &wants)
+namespace
 {
+
+std::set<std::uint16_t> ChannelsOf(const Mcap::Contents &contents,
+                                   const std::function<bool(const Mcap::Channel &)> &wants)
+{
+    std::set<std::uint16_t> channels;
     for (const auto &[id, channel] : contents.Channels)
     {
         if (wants(channel))
         {
-            _channels.insert(id);
+            channels.insert(id);
         }
     }
+    return channels;
+}
+
+}  // namespace
+
+ChannelChunks::ChannelChunks(const Mcap::Contents &contents,
+                             const std::function<bool(const Mcap::Channel &)> &wants)
+    : ChannelChunks(contents, ChannelsOf(contents, wants))
+{
+}
+
+ChannelChunks::ChannelChunks(const Mcap::Contents &contents, std::set<std::uint16_t> channels)
+    : _channels(std::move(channels))
+{
     for (const Mcap::ChunkIndex &chunk : contents.Chunks)
     {
         const bool isWanted =

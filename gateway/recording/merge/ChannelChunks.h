@@ -15,6 +15,7 @@ class ChannelChunks
 {
 public:
     ChannelChunks(const Mcap::Contents &contents, const std::function<bool(const Mcap::Channel &)> &wants);
+    ChannelChunks(const Mcap::Contents &contents, std::set<std::uint16_t> channels);
 
     // For a MessageCursor, which this must outlive.
     const Mcap::Contents &Contents() const { return _reduced; }

@@ -55,6 +55,13 @@ void ClockGraph::Finish()
     }
 }
 
+// Pairs that know nothing are no edges.
+ClockPair::Reading ClockGraph::ReadEdge(const Edge &edge, Moment time)
+{
+    const auto reading = edge.IsForward ? edge.Pair->ToSecond(time) : edge.Pair->ToFirst(time);
+    return reading.value_or(ClockPair::Reading());
+}
+
 // The way of the least sum of bounds (Dijkstra), with the time carried along.
 std::optional<ClockGraph::Reading> ClockGraph::Read(Clock clock, Clock other, Moment shows) const
 {
@@ -71,7 +78,7 @@ std::optional<ClockGraph::Reading> ClockGraph::Read(Clock clock, Clock other, Mo
     std::priority_queue<Next, std::vector<Next>, std::greater<>> next;
     reached[other] = {shows, 0, other, true, false};
     next.emplace(0, other);
-    while (!next.empty() && !reached[clock].Done)
+    while (!next.empty())
     {
         const Clock at = next.top().second;
         next.pop();
@@ -85,12 +92,11 @@ std::optional<ClockGraph::Reading> ClockGraph::Read(Clock clock, Clock other, Mo
             {
                 continue;
             }
-            const auto reading =
-                edge.IsForward ? edge.Pair->ToSecond(reached[at].Time) : edge.Pair->ToFirst(reached[at].Time);
-            const Moment bound = Within(reached[at].Bound + reading->Bound);
+            const auto reading = ReadEdge(edge, reached[at].Time);
+            const Moment bound = Within(reached[at].Bound + reading.Bound);
             if (!reached[edge.To].Known || bound < reached[edge.To].Bound)
             {
-                reached[edge.To] = {Within(reading->Time), bound, at, true, false};
+                reached[edge.To] = {reading.Time, bound, at, true, false};
                 next.emplace(bound, edge.To);
             }
         }
@@ -105,6 +111,26 @@ std::optional<ClockGraph::Reading> ClockGraph::Read(Clock clock, Clock other, Mo
         reading.By.push_back(reached[at].From);
     }
     std::reverse(reading.By.begin(), reading.By.end());
+    // Where two ways disagree by more than their bounds, a clock stood still and one of them does not know.
+    Moment disagreement = 0;
+    for (Clock at = clock;; at = reached[at].From)
+    {
+        for (const Edge &edge : _clocks[at].Edges)
+        {
+            const auto beside = ReadEdge(edge, reached[at].Time);
+            const Moment differ = Apart(beside.Time, reached[edge.To].Time);
+            const Moment explained = Within(reached[at].Bound + beside.Bound + reached[edge.To].Bound);
+            if (differ > explained)
+            {
+                disagreement = std::max(disagreement, Within(differ + explained));
+            }
+        }
+        if (at == other)
+        {
+            break;
+        }
+    }
+    reading.Bound = Within(reading.Bound + disagreement);
     return reading;
 }
 

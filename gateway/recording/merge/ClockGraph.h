@@ -15,7 +15,8 @@ namespace Rabit::Merge
 
 // The source clocks of the lives of nodes, and how they stand to each other: what all of them told. From one
 // clock to another it goes by whichever clocks between them make the bound of the error least, also by those
-// of nodes of which there is no recording. Not thread-safe; constant after Finish.
+// of nodes of which there is no recording. Where other ways beside it contradict it, that is part of the
+// bound. Not thread-safe; constant after Finish.
 class ClockGraph
 {
 public:
@@ -57,6 +58,7 @@ private:
     };
 
     ClockPair &PairOf(Clock teller, Clock peer);
+    static ClockPair::Reading ReadEdge(const Edge &edge, Moment time);
 
     std::map<std::pair<std::string, std::uint64_t>, Clock> _byLife;
     std::map<std::pair<Clock, Clock>, std::shared_ptr<ClockPair>> _pairs;  // who told, of whom

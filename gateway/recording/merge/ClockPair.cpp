@@ -12,7 +12,7 @@ namespace
 constexpr Moment LeastApart = OneSecond / 2;
 // Half of what the filter remembers at most, and all of what it does at least.
 constexpr Moment FilterPeriod = 15 * OneSecond;
-// So long before it is told an estimate was made.
+// So long before it is told a beat may have come.
 constexpr Moment ToldEvery = OneSecond;
 // What it takes for a step, beside what is uncertain: less passes for a delay in the estimate, too.
 constexpr Moment LeastStep = OneSecond / 10;
@@ -56,8 +56,12 @@ void ClockPair::Finish()
     Split();
     BoundByRoundTrips();
     MeasureDrift();
-    BoundByDrift();
-    WidenAtSteps();
+    DoubtByOthers();
+    DoubtAtSteps();
+    for (Entry &entry : _entries)
+    {
+        entry.Bound = Within(entry.RoundTripBound + std::max(entry.Doubt, PartOf(entry.Lag, _drift)));
+    }
     ChooseBest();
 }
 
@@ -77,35 +81,40 @@ void ClockPair::Split()
 // smallest round trip was subtracted, which may be from two periods ago.
 void ClockPair::BoundByRoundTrips()
 {
-    std::size_t recent = 0;  // the first within a period
-    std::size_t oldest = 0;  // the first that the filter may remember
+    std::size_t inPeriod = 0;  // the first whose beat is of the last period for sure
+    std::size_t recent = 0;    // the first whose beat may be
+    std::size_t oldest = 0;    // the first that the filter may remember
     for (std::size_t i = 0; i < _entries.size(); ++i)
     {
         Entry &entry = _entries[i];
-        while (_entries[recent].First <= entry.First - FilterPeriod)
+        const auto advance = [this](std::size_t &at, Moment to)
         {
-            ++recent;
-        }
+            while (_entries[at].First < to)
+            {
+                ++at;
+            }
+        };
+        advance(inPeriod, entry.First - FilterPeriod + ToldEvery);
+        advance(recent, entry.First - FilterPeriod - ToldEvery);
         Moment remembers = *_beganAt - ToldEvery;
         if (recent > 0)
         {
             remembers = std::max(remembers, _entries[recent - 1].First - FilterPeriod - ToldEvery);
         }
-        while (_entries[oldest].First < remembers)
-        {
-            ++oldest;
-        }
+        advance(oldest, remembers);
         Moment ofPeriod = entry.HalfRoundTrip;
         Moment ofAll = entry.HalfRoundTrip;
         for (std::size_t j = oldest; j < i; ++j)
         {
             ofAll = std::min(ofAll, _entries[j].HalfRoundTrip);
-            if (j >= recent && _entries[j].Segment == entry.Segment)
+            if (j >= inPeriod && _entries[j].Segment == entry.Segment)
             {
                 ofPeriod = std::min(ofPeriod, _entries[j].HalfRoundTrip);
             }
         }
-        entry.RoundTripBound = 2 * ofPeriod - ofAll;
+        // After a step the filter has forgotten differences, and no round trips, of which not all are told.
+        const bool isNewSegment = _entries[oldest].Segment != entry.Segment;
+        entry.RoundTripBound = 2 * ofPeriod - (isNewSegment ? 0 : ofAll);
         entry.Lag = entry.First - remembers;
     }
 }
@@ -159,7 +168,7 @@ void ClockPair::MeasureDrift()
     _drift = std::max({LeastDrift, std::min(MostDrift, most), least});
 }
 
-void ClockPair::BoundByDrift()
+void ClockPair::DoubtByOthers()
 {
     std::size_t from = 0;
     for (Entry &entry : _entries)
@@ -176,15 +185,13 @@ void ClockPair::BoundByDrift()
             const Moment time = Apart(entry.First, other.First) + std::max(entry.Lag, other.Lag);
             if (other.Segment == entry.Segment && differ > uncertain + PartOf(time, _drift))
             {
-                entry.Unexplained = std::max(entry.Unexplained, Within(differ + uncertain));
+                entry.Doubt = std::max(entry.Doubt, Within(differ + uncertain));
             }
         }
-        entry.Bound =
-            Within(entry.RoundTripBound + std::max(entry.Unexplained, PartOf(entry.Lag, _drift)));
     }
 }
 
-void ClockPair::WidenAtSteps()
+void ClockPair::DoubtAtSteps()
 {
     for (std::size_t i = 1; i < _entries.size(); ++i)
     {
@@ -194,14 +201,15 @@ void ClockPair::WidenAtSteps()
         }
         const Moment before = _entries[i - 1].First;
         const Moment after = _entries[i].First;
-        const Moment step = Apart(_entries[i].Offset(), _entries[i - 1].Offset());
+        const Moment step = Within(Apart(_entries[i].Offset(), _entries[i - 1].Offset()) +
+                                   _entries[i].RoundTripBound + _entries[i - 1].RoundTripBound);
         for (std::size_t j = i; j-- > 0 && before - _entries[j].First < StepMargin;)
         {
-            _entries[j].Bound = Within(_entries[j].Bound + step);
+            _entries[j].Doubt = Within(_entries[j].Doubt + step);
         }
         for (std::size_t j = i; j < _entries.size() && _entries[j].First - after < StepMargin; ++j)
         {
-            _entries[j].Bound = Within(_entries[j].Bound + step);
+            _entries[j].Doubt = Within(_entries[j].Doubt + step);
         }
     }
 }
@@ -220,7 +228,7 @@ void ClockPair::ChooseBest()
         entry.Best = i;
         for (std::size_t j = from; j < _entries.size() && _entries[j].First <= entry.First + Near; ++j)
         {
-            const Moment bound = Within(_entries[j].Bound + entry.Unexplained +
+            const Moment bound = Within(_entries[j].Bound + entry.Doubt +
                                         PartOf(Apart(_entries[j].First, entry.First), _drift));
             if (_entries[j].Segment == entry.Segment && bound < least)
             {
@@ -234,9 +242,9 @@ void ClockPair::ChooseBest()
 ClockPair::Reading ClockPair::Use(const Entry &entry, Moment time, Moment Entry::*from, Moment Entry::*to) const
 {
     const Entry &best = _entries[entry.Best];
-    const Moment unexplained = &best == &entry ? 0 : entry.Unexplained;
+    const Moment doubt = &best == &entry ? 0 : entry.Doubt;
     return {Within(time + best.*to - best.*from),
-            Within(best.Bound + unexplained + PartOf(Apart(time, best.*from), _drift))};
+            Within(best.Bound + doubt + PartOf(Apart(time, best.*from), _drift))};
 }
 
 std::optional<ClockPair::Reading> ClockPair::At(Moment time, Moment Entry::*from, Moment Entry::*to) const

@@ -57,7 +57,7 @@ private:
         Moment HalfRoundTrip = 0;
         Moment RoundTripBound = 0;  // without drift
         Moment Lag = 0;             // so old may be what the filter remembers
-        Moment Unexplained = 0;     // by which others near by differ more than drift explains
+        Moment Doubt = 0;  // by how much others near by differ, if drift does not explain it
         Moment Bound = 0;
         std::size_t Segment = 0;  // between steps
         std::size_t Best = 0;     // that is to be used at this moment
@@ -68,8 +68,8 @@ private:
     void Split();
     void BoundByRoundTrips();
     void MeasureDrift();
-    void BoundByDrift();
-    void WidenAtSteps();
+    void DoubtByOthers();
+    void DoubtAtSteps();
     void ChooseBest();
     std::optional<Reading> At(Moment time, Moment Entry::*from, Moment Entry::*to) const;
     Reading Use(const Entry &entry, Moment time, Moment Entry::*from, Moment Entry::*to) const;

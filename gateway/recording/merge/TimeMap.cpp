@@ -78,27 +78,35 @@ Moment TimeMap::At(Moment logTime) const
     return place.Left->To + PartOf(place.Right->To - place.Left->To, place.Part);
 }
 
+// What the two clocks differ by between knots may have come at once.
+Moment TimeMap::BoundOf(const Knot &left, const Knot &right)
+{
+    return Within(std::max(left.Bound, right.Bound) + Apart(right.To - left.To, right.From - left.From));
+}
+
 std::optional<Moment> TimeMap::BoundAt(Moment logTime) const
 {
     const Place place = Find(logTime);
-    return _hasBound ? std::optional(std::max(place.Left->Bound, place.Right->Bound)) : std::nullopt;
+    return _hasBound ? std::optional(BoundOf(*place.Left, *place.Right)) : std::nullopt;
 }
 
 std::optional<Moment> TimeMap::WorstBound() const
 {
-    const auto worst = std::max_element(_knots.begin(), _knots.end(),
-                                        [](const Knot &one, const Knot &other)
-                                        { return one.Bound < other.Bound; });
-    return _hasBound ? std::optional(worst->Bound) : std::nullopt;
+    Moment worst = _knots.front().Bound;
+    for (std::size_t i = 1; i < _knots.size(); ++i)
+    {
+        worst = std::max(worst, BoundOf(_knots[i - 1], _knots[i]));
+    }
+    return _hasBound ? std::optional(worst) : std::nullopt;
 }
 
 std::optional<Moment> TimeMap::MedianBound() const
 {
     std::vector<Moment> bounds;
     bounds.reserve(_knots.size());
-    for (const Knot &knot : _knots)
+    for (std::size_t i = 0; i < _knots.size(); ++i)
     {
-        bounds.push_back(knot.Bound);
+        bounds.push_back(BoundOf(_knots[i == 0 ? 0 : i - 1], _knots[i]));
     }
     const auto middle = bounds.begin() + static_cast<std::ptrdiff_t>((bounds.size() - 1) / 2);
     std::nth_element(bounds.begin(), middle, bounds.end());

@@ -50,6 +50,7 @@ private:
         double Part;
     };
     Place Find(Moment logTime) const;
+    static Moment BoundOf(const Knot &left, const Knot &right);
 
     std::vector<Knot> _knots;  // one at least
     bool _hasBound = true;

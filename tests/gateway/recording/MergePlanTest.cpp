@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "SyntheticFleet.h"
 #include "recording/mcap/MessageCursor.h"
 
@@ -257,6 +259,67 @@ TEST(MergePlan, StaysWithinTheBoundWhenAClockStoodStill)
         EXPECT_LT(*plans.Plan.Lives[isGround ? 1 : 0].Map.MedianBound(), 8 * Ms);
     }
 }
+
+// Three nodes with clocks, delays, jitter, losses and times without contact by chance.
+class AnyFleet : public testing::TestWithParam<unsigned>
+{
+};
+
+TEST_P(AnyFleet, StaysWithinTheBound)
+{
+    std::mt19937 random(GetParam());
+    std::vector<SyntheticFleet::Spec> specs;
+    struct Way
+    {
+        Time Least = 0;
+        Time Jitter = 0;
+        int Lost = 0;  // of a hundred
+        Time OutFrom = 0;
+        Time OutTo = 0;
+    };
+    std::array<std::array<Way, 3>, 3> ways;
+    for (std::size_t node = 0; node < 3; ++node)
+    {
+        const double rate = static_cast<double>(Uniform(random, -50, 50)) * 1e-6;
+        specs.push_back(Node("uav" + std::to_string(node), 6 * Minute, Uniform(random, -9, 9) * Minute, rate));
+        specs.back().Begin = Uniform(random, 0, Minute);
+        specs.back().End -= Uniform(random, 0, Minute);
+        for (Way &way : ways[node])
+        {
+            way.Least = Uniform(random, 0, 3) == 0 ? Uniform(random, 0, 300 * Ms) : Uniform(random, 0, 3 * Ms);
+            way.Jitter = 1000 + (Uniform(random, 0, 2) == 0 ? Uniform(random, 0, 900 * Ms) : Uniform(random, 0, Ms));
+            way.Lost = static_cast<int>(Uniform(random, 0, 2) == 0 ? Uniform(random, 0, 80) : 0);
+            way.OutFrom = Uniform(random, 0, 6 * Minute);
+            way.OutTo = way.OutFrom + Uniform(random, 0, 2 * Minute);
+        }
+    }
+    if (Uniform(random, 0, 4) == 0)
+    {
+        specs[1].Stands = {{Uniform(random, 2 * Minute, 3 * Minute), Uniform(random, 2 * OneSecond, Minute)}};
+    }
+    const SyntheticFleet fleet(specs,
+                               [&ways](std::size_t from, std::size_t to, Time at, std::mt19937 &chance) -> std::optional<Time>
+                               {
+                                   const Way &way = ways[from][to];
+                                   const bool isOut = at >= way.OutFrom && at < way.OutTo;
+                                   return isOut || Uniform(chance, 0, 99) < way.Lost
+                                              ? std::nullopt
+                                              : std::optional(way.Least + Uniform(chance, 0, way.Jitter));
+                               },
+                               GetParam());
+    const Plans plans(fleet, {"uav0"});
+    if (!plans.Plan.Problem.empty())
+    {
+        return;  // two never heard each other
+    }
+    for (std::size_t life = 1; life < 3; ++life)
+    {
+        const Errors errors = ErrorsOf(fleet, plans, life, 0);
+        EXPECT_EQ(errors.Beyond, 0U) << errors.Messages << " messages, wrong by " << errors.Worst << " of uav" << life;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(MergePlan, AnyFleet, testing::Range(1U, 61U));
 
 TEST(MergePlan, RefusesANodeWhoseClockNobodyRelates)
 {

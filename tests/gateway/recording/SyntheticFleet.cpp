@@ -10,6 +10,8 @@ namespace
 {
 
 constexpr SyntheticFleet::Time Second = 1000000000;
+// Who is not heard for so long is not answered any more.
+constexpr SyntheticFleet::Time Lost = 4 * Second;
 // A node's monotonic clock and its source clock begin anywhere.
 constexpr SyntheticFleet::Time Epoch = 1700000000 * Second;
 
@@ -119,7 +121,7 @@ void SyntheticFleet::Beat(std::size_t from, Time at)
         }
         // What the other one sent last, and for how long it has been here.
         std::optional<std::pair<Time, Time>> echo;
-        if (const Heard &heard = _nodes[from].Peers[to]; heard.HasBeat)
+        if (const Heard &heard = _nodes[from].Peers[to]; heard.HasBeat && now - heard.Arrival < Lost)
         {
             echo = {heard.BeatSource, now - heard.Arrival};
         }

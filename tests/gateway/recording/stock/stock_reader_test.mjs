@@ -79,6 +79,32 @@ const cases = {
         for await (const metadata of reader.readMetadata()) assert.equal(metadata.metadata.get("node"), "uav1");
     },
 
+    async reads_a_merged_file() {
+        const reader = await McapIndexedReader.Initialize({ readable: readable(read("merged.mcap")), decompressHandlers });
+        const channels = [...reader.channelsById.values()];
+        const lives = channels.filter((channel) => channel.topic === "sensor/Reading")
+            .map((channel) => channel.metadata.get("rabit.life"));
+        assert.deepEqual(lives.sort(), ["1", "2"]);
+        const knew = channels.find((channel) => channel.topic === "display/Recorder/knew/sensor/Reading");
+        assert.equal(knew.metadata.get("rabit.kind"), "knew");
+        const metadata = new Map();
+        for await (const record of reader.readMetadata()) metadata.set(record.name, record.metadata);
+        assert.ok(Number(metadata.get("rabit.merge").get("uncertain_by_ns")) < 5e7);
+        const schema = reader.schemasById.get(knew.schemaId);
+        const decoder = new MessageReader(schema.name, parseIDL(new TextDecoder().decode(schema.data)));
+        let last = 0n;
+        let numbers = 0;
+        for await (const message of reader.readMessages()) {
+            assert.ok(message.logTime >= last);
+            last = message.logTime;
+            if (message.channelId === knew.id) {
+                assert.ok(decoder.readMessage(message.data).number > 0);
+                numbers += 1;
+            }
+        }
+        assert.ok(numbers >= 8, `${numbers} readings`);
+    },
+
     async decodes_every_type() {
         const reader = await McapIndexedReader.Initialize({ readable: readable(read("corpus.mcap")), decompressHandlers });
         const values = read("corpus.jsonl").toString().trimEnd().split("\n");

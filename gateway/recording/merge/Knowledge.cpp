@@ -1,0 +1,205 @@
+#include "recording/merge/Knowledge.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <tuple>
+
+#include "recording/mcap/MessageCursor.h"
+#include "recording/merge/ChannelChunks.h"
+#include "recording/merge/ClockPair.h"
+#include "recording/merge/ClockReport.h"
+#include "recording/merge/Lives.h"
+
+namespace Rabit::Merge
+{
+namespace
+{
+
+// Around a moment, of what is told of clocks: what ClockPair looks at.
+constexpr Moment ClocksAround = 100 * OneSecond;
+
+template <typename Number>
+std::optional<Number> NumberIn(const Mcap::TextMap &values, const std::string &key)
+{
+    const std::string text = ValueOf(values, key);
+    Number number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+// `Pose` of `uav1/Pose`.
+std::string WithoutNode(const std::string &topic, const std::string &node)
+{
+    return topic.compare(0, node.size() + 1, node + "/") == 0 ? topic.substr(node.size() + 1) : topic;
+}
+
+std::vector<KnowerLife> LivesOf(const Mcap::Contents &contents)
+{
+    std::vector<KnowerLife> lives;
+    for (const Mcap::Metadata &metadata : contents.MetadataRecords)
+    {
+        const Mcap::TextMap &values = metadata.Values;
+        if (metadata.Name == "rabit.recording")
+        {
+            lives.push_back({ValueOf(values, "node"), NumberIn<unsigned>(values, "life").value_or(1),
+                             NumberIn<std::uint64_t>(values, "incarnation").value_or(0),
+                             Within(NumberIn<Moment>(values, "begin_ns").value_or(0)),
+                             Within(NumberIn<Moment>(values, "end_ns").value_or(0))});
+        }
+    }
+    if (lives.empty())
+    {
+        lives.push_back({ValueOf(MetadataOf(contents, "rabit.node"), "node"), 1, 0,
+                         FromFile(contents.Statistics.StartTime), FromFile(contents.Statistics.EndTime)});
+    }
+    return lives;
+}
+
+// In a recording that was not merged all is of its one life.
+bool IsOf(const Mcap::Channel &channel, const KnowerLife &life)
+{
+    return channel.Metadata.count("rabit.recorded_by") == 0 ||
+           (channel.Metadata.at("rabit.recorded_by") == life.Node &&
+            NumberIn<unsigned>(channel.Metadata, "rabit.life") == life.Number);
+}
+
+// The last message of some channels from `from` to `to`.
+struct Last
+{
+    Moment LogTime = 0;
+    Moment PublishTime = 0;
+    Mcap::Bytes Data;
+};
+
+std::optional<Last> LastOf(Mcap::ByteSource &source, const ChannelChunks &chunks, Moment from, Moment to,
+                           std::vector<std::string> &problems)
+{
+    Mcap::MessageCursor::Selection selection = chunks.Selection();
+    selection.From = ToFile(from);
+    selection.To = ToFile(to);
+    Mcap::MessageCursor cursor(source, chunks.Contents(), selection);
+    std::optional<Last> last;
+    while (const auto message = cursor.Next())
+    {
+        last = {FromFile(message->LogTime), FromFile(message->PublishTime),
+                {message->Data.begin(), message->Data.end()}};
+    }
+    problems.insert(problems.end(), cursor.Problems().begin(), cursor.Problems().end());
+    return last;
+}
+
+// How the knower stood to the one who posted when it received that.
+void AddUncertainty(Mcap::ByteSource &source, const Mcap::Contents &contents, const KnowerLife &knower,
+                    const std::string &node, KnownValue &value)
+{
+    const std::string topic = knower.Node + "/Recorder/Clocks";
+    const ChannelChunks chunks(contents, [&](const Mcap::Channel &channel)
+                               { return channel.Topic == topic && IsOf(channel, knower); });
+    Mcap::MessageCursor::Selection selection = chunks.Selection();
+    selection.From = ToFile(value.ReceivedAt - ClocksAround);
+    selection.To = ToFile(value.ReceivedAt + ClocksAround);
+    Mcap::MessageCursor cursor(source, chunks.Contents(), selection);
+    std::map<std::uint64_t, ClockPair> pairs;
+    while (const auto message = cursor.Next())
+    {
+        const auto report = ReadClockReport(message->Data);
+        const Moment at = FromFile(message->LogTime);
+        for (const ClockReport::Peer &peer : report ? report->Peers : std::vector<ClockReport::Peer>())
+        {
+            if (peer.Node != node)
+            {
+                continue;
+            }
+            pairs[peer.Incarnation].Add(at, Within(at - peer.SourceToLog), peer.UncertainBy);
+            // The life that was known then, or the first that became known.
+            const bool isKnown = value.Incarnation != 0 && at > value.ReceivedAt;
+            value.Incarnation = isKnown ? value.Incarnation : peer.Incarnation;
+        }
+    }
+    const auto pair = pairs.find(value.Incarnation);
+    if (pair == pairs.end())
+    {
+        return;
+    }
+    pair->second.Finish();
+    if (const auto reading = pair->second.ToSecond(value.ReceivedAt))
+    {
+        value.UncertainBy = reading->Bound;
+    }
+}
+
+}  // namespace
+
+Knowledge::Knowledge(const Mcap::Contents &contents)
+    : Lives(LivesOf(contents)), WorstBound(NumberIn<Moment>(MetadataOf(contents, "rabit.merge"), "uncertain_by_ns"))
+{
+    std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> known;
+    for (const auto &[id, channel] : contents.Channels)
+    {
+        const std::string kind = ValueOf(channel.Metadata, "rabit.kind");
+        const std::string node = ValueOf(channel.Metadata, "rabit.node");
+        const auto schema = contents.Schemas.find(channel.SchemaId);
+        const auto life = std::find_if(Lives.begin(), Lives.end(), [&channel = channel](const KnowerLife &one)
+                                       { return IsOf(channel, one); });
+        if ((kind != "knew" && kind != "mirrored" && kind != "posted") || node.empty() || life == Lives.end())
+        {
+            continue;
+        }
+        const std::string message =
+            kind == "knew" ? ValueOf(channel.Metadata, "rabit.message") : WithoutNode(channel.Topic, node);
+        const auto at = static_cast<std::size_t>(life - Lives.begin());
+        const std::string type = schema == contents.Schemas.end() ? "" : schema->second.Name;
+        const auto [stream, isNew] = known.try_emplace({at, node, message, type}, Streams.size());
+        if (isNew)
+        {
+            Streams.push_back({at, node, message, type,
+                               schema == contents.Schemas.end() ? "" : schema->second.Data, {}});
+        }
+        Streams[stream->second].Channels.insert(id);
+    }
+    const auto order = [this](const KnownStream &stream)
+    {
+        const KnowerLife &life = Lives[stream.Life];
+        return std::tie(life.Node, life.Number, stream.Node, stream.Message);
+    };
+    std::stable_sort(Streams.begin(), Streams.end(), [&order](const KnownStream &one, const KnownStream &other)
+                     { return order(one) < order(other); });
+}
+
+std::optional<KnownValue> ValueAt(Mcap::ByteSource &source, const Mcap::Contents &contents, const Knowledge &knowledge,
+                                  const KnownStream &stream, Moment at, std::vector<std::string> &problems)
+{
+    const KnowerLife &knower = knowledge.Lives[stream.Life];
+    const ChannelChunks chunks(contents, stream.Channels);
+    std::optional<Last> last;
+    // Further and further back, since most came lately.
+    for (Moment back = 10 * OneSecond; !last; back *= 8)
+    {
+        const Moment from = std::max(knower.Begin, at - back);
+        std::vector<std::string> found;
+        last = LastOf(source, chunks, from, at, found);
+        if (from == knower.Begin || last)
+        {
+            problems.insert(problems.end(), found.begin(), found.end());
+            break;
+        }
+    }
+    if (!last)
+    {
+        return std::nullopt;
+    }
+    KnownValue value{last->LogTime, last->PublishTime, std::move(last->Data), std::nullopt, 0};
+    if (stream.Node == knower.Node)
+    {
+        value.UncertainBy = 0;
+        value.Incarnation = knower.Incarnation;
+    }
+    else
+    {
+        AddUncertainty(source, contents, knower, stream.Node, value);
+    }
+    return value;
+}
+
+}  // namespace Rabit::Merge

@@ -1,0 +1,370 @@
+// rabit knew: what nodes knew of each other, and how old it was.
+#include <rabit/dynamic/DynamicType.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "Output.h"
+#include "SafeText.h"
+#include "Table.h"
+#include "names/NamePattern.h"
+#include "recording/FolderDisk.h"
+#include "recording/mcap/FileSource.h"
+#include "recording/mcap/MessageCursor.h"
+#include "recording/merge/AgePlot.h"
+#include "recording/merge/ChannelChunks.h"
+#include "recording/merge/Knowledge.h"
+#include "recording/merge/TimeText.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+using Merge::AgeHistory;
+using Merge::KnowerLife;
+using Merge::Knowledge;
+using Merge::KnownStream;
+using Merge::KnownValue;
+using Merge::Moment;
+
+struct Options
+{
+    std::string File;
+    std::string Knower = "*";
+    std::string What = "*/*";
+    std::string At;
+    std::string Plot;
+    bool Json = false;
+};
+
+double SecondsOf(Moment time)
+{
+    return 1e-9 * static_cast<double>(time);
+}
+
+std::string Formatted(const char *format, double value)
+{
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
+// The file, and those of its streams that are asked for.
+class Asked
+{
+public:
+    explicit Asked(const Options &options)
+        : Source(options.File), Contents(Mcap::ReadContents(Source)), Known(Contents), _options(options)
+    {
+        for (const std::string &problem : Contents.Problems)
+        {
+            Output::Talk(problem);
+        }
+        for (const KnownStream &stream : Known.Streams)
+        {
+            const bool isOwn = stream.Node == Known.Lives[stream.Life].Node;
+            // What a node has of itself, only if it is asked for by name.
+            if (MatchesAny({options.Knower}, Known.Lives[stream.Life].Node) &&
+                MatchesAny({options.What}, stream.Node + "/" + stream.Message) &&
+                (!isOwn || options.Knower == stream.Node))
+            {
+                Streams.push_back(&stream);
+            }
+        }
+    }
+
+    const KnowerLife &LifeOf(const KnownStream &stream) const { return Known.Lives[stream.Life]; }
+    Moment Begin() const { return Merge::FromFile(Contents.Statistics.StartTime); }
+    Moment End() const { return Merge::FromFile(Contents.Statistics.EndTime); }
+    // `uav1`, or `uav1 (life 2)`; empty if there is only one.
+    std::string LifeText(const std::string &node, unsigned number) const
+    {
+        const auto count = std::count_if(Known.Lives.begin(), Known.Lives.end(),
+                                         [&node](const KnowerLife &life) { return life.Node == node; });
+        return count > 1 ? " (life " + std::to_string(number) + ")" : "";
+    }
+    std::string LifeText(const std::string &node, std::uint64_t incarnation, const char *otherwise) const
+    {
+        const auto life = std::find_if(Known.Lives.begin(), Known.Lives.end(),
+                                       [&](const KnowerLife &one)
+                                       { return one.Node == node && one.Incarnation == incarnation; });
+        return life == Known.Lives.end() ? otherwise : LifeText(node, life->Number);
+    }
+    bool IsGood() const { return Contents.Problems.empty(); }
+    int NothingThere() const
+    {
+        Output::Talk(_options.Knower + " knew no " + _options.What + " in " + _options.File);
+        return ProblemFound;
+    }
+
+    Mcap::FileSource Source;
+    const Mcap::Contents Contents;
+    const Knowledge Known;
+    std::vector<const KnownStream *> Streams;
+
+private:
+    const Options &_options;
+};
+
+// Values as text or JSON; types are parsed once.
+class Decoder
+{
+public:
+    std::string Text(const KnownStream &stream, const KnownValue &value)
+    {
+        const ParsedType &type = TypeOf(stream);
+        return type.Type ? type.Type->ToText(value.Sample).value_or("(too large to show)") : "(" + type.Reason + ")";
+    }
+    Json Value(const KnownStream &stream, const KnownValue &value)
+    {
+        const ParsedType &type = TypeOf(stream);
+        const auto text = type.Type ? type.Type->ToJson(value.Sample) : std::nullopt;
+        return text ? Json::parse(*text, nullptr, false) : Json();
+    }
+
+private:
+    const ParsedType &TypeOf(const KnownStream &stream)
+    {
+        const auto [known, isNew] = _types.try_emplace({stream.Type, stream.Schema});
+        if (isNew)
+        {
+            known->second = DynamicType::Parse(stream.Schema, stream.Type);
+        }
+        return known->second;
+    }
+
+    std::map<std::pair<std::string, std::string>, ParsedType> _types;
+};
+
+bool Show(const Options &options, const Asked &asked, const KnownStream &stream, const KnownValue &value, Moment at,
+          Decoder &decoder)
+{
+    const KnowerLife &knower = asked.LifeOf(stream);
+    const double age = SecondsOf(at - value.PostedAt);
+    if (options.Json)
+    {
+        return Output::Object({{"knower", knower.Node},
+                               {"life", knower.Number},
+                               {"node", stream.Node},
+                               {"incarnation", std::to_string(value.Incarnation)},
+                               {"message", stream.Message},
+                               {"type", stream.Type},
+                               {"at_ns", at},
+                               {"received_ns", value.ReceivedAt},
+                               {"posted_ns", value.PostedAt},
+                               {"age_s", age},
+                               {"uncertainty_s", value.UncertainBy ? Json(SecondsOf(*value.UncertainBy)) : Json()},
+                               {"value", decoder.Value(stream, value)}});
+    }
+    const std::string bound = value.UncertainBy
+                                  ? Formatted("wrong by %.4f s at most", SecondsOf(*value.UncertainBy))
+                                  : std::string("how wrong is not known");
+    return Output::Line(SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number) + " knew " + stream.Node +
+                                 "/" + stream.Message + asked.LifeText(stream.Node, value.Incarnation, "")) +
+                        "  age " + Formatted("%.4f s", age) + " (" + bound + ")  came " +
+                        Formatted("%.4f s", SecondsOf(at - value.ReceivedAt)) + " before  " +
+                        decoder.Text(stream, value));
+}
+
+int ShowMoment(const Options &options, Asked &asked)
+{
+    const auto at = Merge::ParseMoment(options.At, asked.Begin());
+    if (!at)
+    {
+        Output::Talk("--at " + options.At + ": seconds since the beginning, or UTC as 2026-11-23T04:04:07.25Z");
+        return Usage;
+    }
+    if (*at < asked.Begin() || *at > asked.End())
+    {
+        Output::Talk(options.File + " is from " + Merge::DateOf(asked.Begin()) + " to " + Merge::DateOf(asked.End()));
+        return ProblemFound;
+    }
+    Decoder decoder;
+    bool isAlive = false;
+    bool isKnown = false;
+    std::vector<std::string> problems;
+    for (const KnownStream *stream : asked.Streams)
+    {
+        const KnowerLife &knower = asked.LifeOf(*stream);
+        if (*at < knower.Begin || *at > knower.End)
+        {
+            continue;
+        }
+        isAlive = true;
+        const auto value = ValueAt(asked.Source, asked.Contents, asked.Known, *stream, *at, problems);
+        isKnown = isKnown || value;
+        if (value && !Show(options, asked, *stream, *value, *at, decoder))
+        {
+            return Good;
+        }
+    }
+    for (const std::string &problem : problems)
+    {
+        Output::Talk(problem);
+    }
+    if (!isKnown)
+    {
+        Output::Talk(isAlive ? options.Knower + " had nothing of " + options.What + " yet"
+                             : options.Knower + " was not recorded at that moment, or never had " + options.What);
+    }
+    return isKnown && problems.empty() && asked.IsGood() ? Good : ProblemFound;
+}
+
+std::vector<AgeHistory> ReadHistories(Asked &asked, std::vector<std::string> &problems)
+{
+    std::vector<AgeHistory> histories;
+    std::map<std::uint16_t, std::size_t> byChannel;
+    std::set<std::uint16_t> channels;
+    for (std::size_t at = 0; at < asked.Streams.size(); ++at)
+    {
+        histories.emplace_back(asked.Begin(), asked.End(), Merge::AgePlot::Columns);
+        for (const std::uint16_t channel : asked.Streams[at]->Channels)
+        {
+            byChannel[channel] = at;
+            channels.insert(channel);
+        }
+    }
+    const Merge::ChannelChunks chunks(asked.Contents, channels);
+    Mcap::MessageCursor cursor(asked.Source, chunks.Contents(), chunks.Selection());
+    while (const auto message = cursor.Next())
+    {
+        histories[byChannel.at(message->ChannelId)].Receive(Merge::FromFile(message->LogTime),
+                                                            Merge::FromFile(message->PublishTime));
+    }
+    for (std::size_t at = 0; at < asked.Streams.size(); ++at)
+    {
+        histories[at].End(asked.LifeOf(*asked.Streams[at]).End);
+    }
+    problems = cursor.Problems();
+    return histories;
+}
+
+void ShowAges(const Options &options, const Asked &asked, const std::vector<AgeHistory> &histories)
+{
+    std::vector<std::vector<std::string>> table = {
+        {"NODE", "KNEW", "VALUES", "AGE 50 %", "90 %", "99 %", "OLDEST", "AT"}};
+    for (std::size_t at = 0; at < histories.size(); ++at)
+    {
+        const KnownStream &stream = *asked.Streams[at];
+        const KnowerLife &knower = asked.LifeOf(stream);
+        const AgeHistory &ages = histories[at];
+        if (options.Json)
+        {
+            Output::Object({{"knower", knower.Node},
+                            {"life", knower.Number},
+                            {"node", stream.Node},
+                            {"message", stream.Message},
+                            {"type", stream.Type},
+                            {"values", ages.Values()},
+                            {"p50_s", SecondsOf(ages.Percentile(0.5))},
+                            {"p90_s", SecondsOf(ages.Percentile(0.9))},
+                            {"p99_s", SecondsOf(ages.Percentile(0.99))},
+                            {"oldest_s", SecondsOf(ages.Oldest())},
+                            {"oldest_at_ns", ages.OldestAt()}});
+            continue;
+        }
+        table.push_back({SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number)),
+                         SafeText(stream.Node + "/" + stream.Message), std::to_string(ages.Values()),
+                         Formatted("%.3f s", SecondsOf(ages.Percentile(0.5))),
+                         Formatted("%.3f s", SecondsOf(ages.Percentile(0.9))),
+                         Formatted("%.3f s", SecondsOf(ages.Percentile(0.99))),
+                         Formatted("%.3f s", SecondsOf(ages.Oldest())),
+                         Formatted("%.1f s", ages.Values() == 0 ? 0.0 : SecondsOf(ages.OldestAt() - asked.Begin()))});
+    }
+    for (const std::string &line : options.Json ? std::vector<std::string>() : TableLines(table))
+    {
+        Output::Line(line);
+    }
+}
+
+std::string SvgOf(const Options &options, const Asked &asked, const std::vector<AgeHistory> &histories)
+{
+    Merge::AgePlot plot;
+    plot.Title = "How old it was what nodes knew of each other";
+    plot.Note = std::filesystem::path(options.File).filename().string() + ", from " + Merge::DateOf(asked.Begin()) +
+                (asked.Known.WorstBound
+                     ? Formatted(", times are wrong by %.2f ms at most", 1e3 * SecondsOf(*asked.Known.WorstBound))
+                     : "");
+    plot.Begin = asked.Begin();
+    plot.End = asked.End();
+    // Lives of one node share a panel: they are not at the same time.
+    std::map<std::string, std::size_t> panels;
+    for (std::size_t at = 0; at < histories.size(); ++at)
+    {
+        const KnownStream &stream = *asked.Streams[at];
+        const std::string title = "what " + asked.LifeOf(stream).Node + " knew of " + stream.Node;
+        const auto [panel, isNew] = panels.try_emplace(title, plot.Panels.size());
+        if (isNew)
+        {
+            plot.Panels.push_back({title, {}});
+        }
+        plot.Panels[panel->second].Lines.push_back({stream.Message, &histories[at]});
+    }
+    return plot.ToSvg();
+}
+
+bool Write(const std::string &path, const std::string &text)
+{
+    const std::filesystem::path target = path;
+    FolderDisk disk(target.has_parent_path() ? target.parent_path().string() : ".");
+    std::string reason;
+    const auto file = disk.Create(target.filename().string(), reason);
+    if (!file || !file->Write({reinterpret_cast<const std::uint8_t *>(text.data()), text.size()}) || !file->Sync())
+    {
+        Output::Talk(reason.empty() ? path + ": the disk takes no more" : reason);
+        return false;
+    }
+    return true;
+}
+
+int Run(const Options &options)
+{
+    Asked asked(options);
+    if (asked.Streams.empty())
+    {
+        return asked.NothingThere();
+    }
+    if (!options.At.empty())
+    {
+        return ShowMoment(options, asked);
+    }
+    std::vector<std::string> problems;
+    const std::vector<AgeHistory> histories = ReadHistories(asked, problems);
+    for (const std::string &problem : problems)
+    {
+        Output::Talk(problem);
+    }
+    ShowAges(options, asked, histories);
+    const bool isWritten = options.Plot.empty() || Write(options.Plot, SvgOf(options, asked, histories));
+    return isWritten && problems.empty() && asked.IsGood() ? Good : ProblemFound;
+}
+
+}  // namespace
+
+void AddKnewCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand("knew", "What nodes knew of each other, and how old it was");
+    command->add_option("FILE", options->File, "A merged recording, or that of one node")->required();
+    command->add_option("NODE", options->Knower, "Who knew; *, ? stand for any (default: all)");
+    command->add_option("MESSAGE", options->What, "What of whom: uav1/Pose; *, ? stand for any (default: all)");
+    CLI::Option *at = command->add_option("--at", options->At,
+                                          "That moment: seconds since the beginning, or UTC as 2026-11-23T04:04:07.25Z");
+    command->add_option("--plot", options->Plot, "Ages over time as a picture (SVG) into that file, which is made")
+        ->excludes(at);
+    command->add_flag("--json", options->Json, "One object a line");
+    command->callback([options, &chosen] { chosen.Run = [options](Wakeup &) { return Run(*options); }; });
+}
+
+}  // namespace Rabit::Tool
