@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <map>
 #include <memory>
@@ -79,6 +80,17 @@ std::string RateOf(std::uint64_t messages, double seconds)
     return messages < 2 || seconds <= 0 ? "-" : Formatted("%.2f Hz", static_cast<double>(messages) / seconds);
 }
 
+// Of a file that was merged.
+std::string MergeText(const Mcap::TextMap &merge)
+{
+    const std::string bound = ValueOf(merge, "uncertain_by_ns");
+    const bool isKnown = !bound.empty() && bound.find_first_not_of("0123456789") == std::string::npos;
+    return ValueOf(merge, "lives") + " recordings of " + ValueOf(merge, "files") + " files by the clock of " +
+           ValueOf(merge, "time_line") +
+           (isKnown ? Formatted(", wrong by %.2f ms at most", 1e-6 * std::strtod(bound.c_str(), nullptr))
+                    : ", how wrong is not known");
+}
+
 struct Topic
 {
     std::string Name;
@@ -146,6 +158,10 @@ bool ShowText(const std::string &file, std::uint64_t size, const Contents &conte
             text += node.count(key) == 0 ? "" : std::string(", ") + key + " " + node.at(key);
         }
         head.push_back({"node", SafeText(text)});
+    }
+    if (const Mcap::TextMap merge = MetadataOf(contents, "rabit.merge"); !merge.empty())
+    {
+        head.push_back({"merged", SafeText(MergeText(merge))});
     }
     if (contents.Statistics.MessageCount > 0)
     {

@@ -124,7 +124,8 @@ public:
     std::string Text(const KnownStream &stream, const KnownValue &value)
     {
         const ParsedType &type = TypeOf(stream);
-        return type.Type ? type.Type->ToText(value.Sample).value_or("(too large to show)") : "(" + type.Reason + ")";
+        return type.Type ? type.Type->ToText(value.Sample).value_or("(too large to show)")
+                         : "(" + type.Reason + ")";
     }
     Json Value(const KnownStream &stream, const KnownValue &value)
     {
@@ -147,34 +148,35 @@ private:
     std::map<std::pair<std::string, std::string>, ParsedType> _types;
 };
 
-bool Show(const Options &options, const Asked &asked, const KnownStream &stream, const KnownValue &value, Moment at,
-          Decoder &decoder)
+bool Show(const Options &options, const Asked &asked, const KnownStream &stream, const KnownValue &value,
+          Moment at, Decoder &decoder)
 {
     const KnowerLife &knower = asked.LifeOf(stream);
     const double age = SecondsOf(at - value.PostedAt);
     if (options.Json)
     {
-        return Output::Object({{"knower", knower.Node},
-                               {"life", knower.Number},
-                               {"node", stream.Node},
-                               {"incarnation", std::to_string(value.Incarnation)},
-                               {"message", stream.Message},
-                               {"type", stream.Type},
-                               {"at_ns", at},
-                               {"received_ns", value.ReceivedAt},
-                               {"posted_ns", value.PostedAt},
-                               {"age_s", age},
-                               {"uncertainty_s", value.UncertainBy ? Json(SecondsOf(*value.UncertainBy)) : Json()},
-                               {"value", decoder.Value(stream, value)}});
+        return Output::Object(
+            {{"knower", knower.Node},
+             {"life", knower.Number},
+             {"node", stream.Node},
+             {"incarnation", std::to_string(value.Incarnation)},
+             {"message", stream.Message},
+             {"type", stream.Type},
+             {"at_ns", at},
+             {"received_ns", value.ReceivedAt},
+             {"posted_ns", value.PostedAt},
+             {"age_s", age},
+             {"uncertainty_s", value.UncertainBy ? Json(SecondsOf(*value.UncertainBy)) : Json()},
+             {"value", decoder.Value(stream, value)}});
     }
     const std::string bound = value.UncertainBy
                                   ? Formatted("wrong by %.4f s at most", SecondsOf(*value.UncertainBy))
                                   : std::string("how wrong is not known");
-    return Output::Line(SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number) + " knew " + stream.Node +
-                                 "/" + stream.Message + asked.LifeText(stream.Node, value.Incarnation, "")) +
-                        "  age " + Formatted("%.4f s", age) + " (" + bound + ")  came " +
-                        Formatted("%.4f s", SecondsOf(at - value.ReceivedAt)) + " before  " +
-                        decoder.Text(stream, value));
+    return Output::Line(
+        SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number) + " knew " + stream.Node + "/" +
+                 stream.Message + asked.LifeText(stream.Node, value.Incarnation, "")) +
+        "  age " + Formatted("%.4f s", age) + " (" + bound + ")  came " +
+        Formatted("%.4f s", SecondsOf(at - value.ReceivedAt)) + " before  " + decoder.Text(stream, value));
 }
 
 int ShowMoment(const Options &options, Asked &asked)
@@ -182,12 +184,14 @@ int ShowMoment(const Options &options, Asked &asked)
     const auto at = Merge::ParseMoment(options.At, asked.Begin());
     if (!at)
     {
-        Output::Talk("--at " + options.At + ": seconds since the beginning, or UTC as 2026-11-23T04:04:07.25Z");
+        Output::Talk("--at " + options.At +
+                     ": seconds since the beginning, or UTC as 2026-11-23T04:04:07.25Z");
         return Usage;
     }
     if (*at < asked.Begin() || *at > asked.End())
     {
-        Output::Talk(options.File + " is from " + Merge::DateOf(asked.Begin()) + " to " + Merge::DateOf(asked.End()));
+        Output::Talk(options.File + " is from " + Merge::DateOf(asked.Begin()) + " to " +
+                     Merge::DateOf(asked.End()));
         return ProblemFound;
     }
     Decoder decoder;
@@ -215,8 +219,9 @@ int ShowMoment(const Options &options, Asked &asked)
     }
     if (!isKnown)
     {
-        Output::Talk(isAlive ? options.Knower + " had nothing of " + options.What + " yet"
-                             : options.Knower + " was not recorded at that moment, or never had " + options.What);
+        Output::Talk(isAlive
+                         ? options.Knower + " had nothing of " + options.What + " yet"
+                         : options.Knower + " was not recorded at that moment, or never had " + options.What);
     }
     return isKnown && problems.empty() && asked.IsGood() ? Good : ProblemFound;
 }
@@ -274,13 +279,14 @@ void ShowAges(const Options &options, const Asked &asked, const std::vector<AgeH
                             {"oldest_at_ns", ages.OldestAt()}});
             continue;
         }
-        table.push_back({SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number)),
-                         SafeText(stream.Node + "/" + stream.Message), std::to_string(ages.Values()),
-                         Formatted("%.3f s", SecondsOf(ages.Percentile(0.5))),
-                         Formatted("%.3f s", SecondsOf(ages.Percentile(0.9))),
-                         Formatted("%.3f s", SecondsOf(ages.Percentile(0.99))),
-                         Formatted("%.3f s", SecondsOf(ages.Oldest())),
-                         Formatted("%.1f s", ages.Values() == 0 ? 0.0 : SecondsOf(ages.OldestAt() - asked.Begin()))});
+        table.push_back(
+            {SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number)),
+             SafeText(stream.Node + "/" + stream.Message), std::to_string(ages.Values()),
+             Formatted("%.3f s", SecondsOf(ages.Percentile(0.5))),
+             Formatted("%.3f s", SecondsOf(ages.Percentile(0.9))),
+             Formatted("%.3f s", SecondsOf(ages.Percentile(0.99))),
+             Formatted("%.3f s", SecondsOf(ages.Oldest())),
+             Formatted("%.1f s", ages.Values() == 0 ? 0.0 : SecondsOf(ages.OldestAt() - asked.Begin()))});
     }
     for (const std::string &line : options.Json ? std::vector<std::string>() : TableLines(table))
     {
@@ -292,10 +298,11 @@ std::string SvgOf(const Options &options, const Asked &asked, const std::vector<
 {
     Merge::AgePlot plot;
     plot.Title = "How old it was what nodes knew of each other";
-    plot.Note = std::filesystem::path(options.File).filename().string() + ", from " + Merge::DateOf(asked.Begin()) +
-                (asked.Known.WorstBound
-                     ? Formatted(", times are wrong by %.2f ms at most", 1e3 * SecondsOf(*asked.Known.WorstBound))
-                     : "");
+    plot.Note =
+        std::filesystem::path(options.File).filename().string() + ", from " + Merge::DateOf(asked.Begin()) +
+        (asked.Known.WorstBound
+             ? Formatted(", times are wrong by %.2f ms at most", 1e3 * SecondsOf(*asked.Known.WorstBound))
+             : "");
     plot.Begin = asked.Begin();
     plot.End = asked.End();
     // Lives of one node share a panel: they are not at the same time.
@@ -320,7 +327,8 @@ bool Write(const std::string &path, const std::string &text)
     FolderDisk disk(target.has_parent_path() ? target.parent_path().string() : ".");
     std::string reason;
     const auto file = disk.Create(target.filename().string(), reason);
-    if (!file || !file->Write({reinterpret_cast<const std::uint8_t *>(text.data()), text.size()}) || !file->Sync())
+    if (!file || !file->Write({reinterpret_cast<const std::uint8_t *>(text.data()), text.size()}) ||
+        !file->Sync())
     {
         Output::Talk(reason.empty() ? path + ": the disk takes no more" : reason);
         return false;
@@ -358,10 +366,13 @@ void AddKnewCommand(CLI::App &app, Chosen &chosen)
     CLI::App *command = app.add_subcommand("knew", "What nodes knew of each other, and how old it was");
     command->add_option("FILE", options->File, "A merged recording, or that of one node")->required();
     command->add_option("NODE", options->Knower, "Who knew; *, ? stand for any (default: all)");
-    command->add_option("MESSAGE", options->What, "What of whom: uav1/Pose; *, ? stand for any (default: all)");
-    CLI::Option *at = command->add_option("--at", options->At,
-                                          "That moment: seconds since the beginning, or UTC as 2026-11-23T04:04:07.25Z");
-    command->add_option("--plot", options->Plot, "Ages over time as a picture (SVG) into that file, which is made")
+    command->add_option("MESSAGE", options->What,
+                        "What of whom: uav1/Pose; *, ? stand for any (default: all)");
+    CLI::Option *at = command->add_option(
+        "--at", options->At, "That moment: seconds since the beginning, or UTC as 2026-11-23T04:04:07.25Z");
+    command
+        ->add_option("--plot", options->Plot,
+                     "Ages over time as a picture (SVG) into that file, which is made")
         ->excludes(at);
     command->add_flag("--json", options->Json, "One object a line");
     command->callback([options, &chosen] { chosen.Run = [options](Wakeup &) { return Run(*options); }; });

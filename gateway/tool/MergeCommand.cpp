@@ -58,7 +58,8 @@ std::string Bound(std::optional<Moment> bound)
         return "not known";
     }
     const double milliseconds = 1e-6 * static_cast<double>(*bound);
-    return milliseconds < 10000 ? Formatted("%.2f ms", milliseconds) : Formatted("%.1f s", 1e-3 * milliseconds);
+    return milliseconds < 10000 ? Formatted("%.2f ms", milliseconds)
+                                : Formatted("%.1f s", 1e-3 * milliseconds);
 }
 
 // By which nodes, if not straight.
@@ -171,7 +172,8 @@ void Warn(const Lives &lives, const MergePlan &plan, const Merged &merged)
         if (plan.Lives[life].By == PlannedLife::Way::WallClock)
         {
             Output::Talk(NameOf(lives, plan, life) +
-                         ": nothing relates its clock, so its wall clock is taken; its times may be wrong by anything");
+                         ": nothing relates its clock, so its wall clock is taken; its times may be wrong by "
+                         "anything");
         }
     }
     for (const std::string &problem : merged.Problems)
@@ -186,7 +188,8 @@ void Warn(const Lives &lives, const MergePlan &plan, const Merged &merged)
 
 int Run(const Options &options, Wakeup &wakeup)
 {
-    const Merge::OpenFile open = [](const std::string &path) { return std::make_unique<Mcap::FileSource>(path); };
+    const Merge::OpenFile open = [](const std::string &path)
+    { return std::make_unique<Mcap::FileSource>(path); };
     const Lives lives = Merge::ReadLives(open, options.Files);
     for (const std::string &remark : lives.Remarks)
     {
@@ -200,9 +203,10 @@ int Run(const Options &options, Wakeup &wakeup)
     const MergePlan plan = MakePlan(lives, options.Wishes);
     if (!plan.Problem.empty())
     {
-        Output::Talk(plan.Problem + (options.Wishes.TakesWallClocks || plan.Lives.empty()
-                                         ? ""
-                                         : "; --wall-clock takes it by its wall clock, which may be wrong by anything"));
+        Output::Talk(plan.Problem +
+                     (options.Wishes.TakesWallClocks || plan.Lives.empty()
+                          ? ""
+                          : "; --wall-clock takes it by its wall clock, which may be wrong by anything"));
         return ProblemFound;
     }
     const std::filesystem::path target = options.To;
@@ -234,7 +238,8 @@ int Run(const Options &options, Wakeup &wakeup)
 void AddMergeCommand(CLI::App &app, Chosen &chosen)
 {
     auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("merge", "Recordings of several nodes, on one time line in one file");
+    CLI::App *command =
+        app.add_subcommand("merge", "Recordings of several nodes, on one time line in one file");
     command->add_option("OUT", options->To, "The file to be made; none is overwritten")->required();
     command->add_option("FILE", options->Files, "Recordings (MCAP), which stay as they are")->required();
     command->add_option("--reference", options->Wishes.Reference,

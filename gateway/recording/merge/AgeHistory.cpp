@@ -99,7 +99,8 @@ void AgeHistory::AddToBins(Moment youngest, Moment oldest)
     double from = static_cast<double>(youngest);
     for (std::size_t bin = first; bin <= last; ++bin)
     {
-        const double to = bin == last ? static_cast<double>(oldest) : std::min(EdgeOf(bin), static_cast<double>(oldest));
+        const double to =
+            bin == last ? static_cast<double>(oldest) : std::min(EdgeOf(bin), static_cast<double>(oldest));
         _bins[bin] += std::max(0.0, to - from);
         from = std::max(from, to);
     }

@@ -59,15 +59,17 @@ std::string Escaped(const std::string &text)
 
 std::string AgeText(int decade)
 {
-    static constexpr std::array<const char *, 9> texts = {"0.01 ms", "0.1 ms", "1 ms",  "10 ms",  "0.1 s",
+    static constexpr std::array<const char *, 9> texts = {"0.01 ms", "0.1 ms", "1 ms",  "10 ms", "0.1 s",
                                                           "1 s",     "10 s",   "100 s", "1000 s"};
-    return decade >= -5 && decade <= 3 ? texts[static_cast<std::size_t>(decade + 5)] : "1e" + std::to_string(decade) + " s";
+    return decade >= -5 && decade <= 3 ? texts[static_cast<std::size_t>(decade + 5)]
+                                       : "1e" + std::to_string(decade) + " s";
 }
 
 // The step of marks for some ten of them.
 double StepFor(double seconds)
 {
-    for (double step : {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0})
+    for (double step :
+         {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0})
     {
         if (seconds / step <= 12)
         {
@@ -91,9 +93,9 @@ public:
         const double height =
             Head + static_cast<double>(_plot.Panels.size()) * (PanelHead + PanelHeight + PanelFoot) + Foot;
         const std::string size = Number(Left + Width + Legend) + " " + Number(height);
-        _svg = R"(<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width=")" + Number(Left + Width + Legend) +
-               R"(" height=")" + Number(height) + R"(" viewBox="0 0 )" + size +
-               "\" font-family=\"DejaVu Sans, Arial, sans-serif\" font-size=\"12\" fill=\"#222\">\n" +
+        _svg = R"(<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width=")" +
+               Number(Left + Width + Legend) + R"(" height=")" + Number(height) + R"(" viewBox="0 0 )" +
+               size + "\" font-family=\"DejaVu Sans, Arial, sans-serif\" font-size=\"12\" fill=\"#222\">\n" +
                "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
         Text(Left, 26, _plot.Title, "font-size=\"16\" font-weight=\"bold\"");
         Text(Left, 46, _plot.Note, "fill=\"#666\"");
@@ -124,7 +126,8 @@ private:
             }
         }
         // From 0.1 ms up: what is below is no more than noise.
-        _least = static_cast<int>(std::floor(std::log10(std::max(1e-9 * static_cast<double>(youngest), 1e-4))));
+        _least =
+            static_cast<int>(std::floor(std::log10(std::max(1e-9 * static_cast<double>(youngest), 1e-4))));
         _most = static_cast<int>(std::ceil(std::log10(std::max(1e-9 * static_cast<double>(oldest), 1e-3))));
         _least = std::min(_least, 2);
         _most = std::max(_most, _least + 1);
@@ -165,10 +168,11 @@ private:
             Text(x, bottom + 15, step < 1 ? Number(mark * step) : std::to_string(std::lround(mark * step)),
                  "text-anchor=\"middle\" font-size=\"11\" fill=\"#666\"");
         }
-        _svg += "<rect x=\"" + Number(Left) + "\" y=\"" + Number(top) + "\" width=\"" + Number(Width) + "\" height=\"" +
-                Number(PanelHeight) + "\" fill=\"none\" stroke=\"#999\"/>\n";
+        _svg += "<rect x=\"" + Number(Left) + "\" y=\"" + Number(top) + "\" width=\"" + Number(Width) +
+                "\" height=\"" + Number(PanelHeight) + "\" fill=\"none\" stroke=\"#999\"/>\n";
         const std::string middle = Number(top + PanelHeight / 2);
-        Text(22, top + PanelHeight / 2, "age", "text-anchor=\"middle\" transform=\"rotate(-90 22 " + middle + ")\"");
+        Text(22, top + PanelHeight / 2, "age",
+             "text-anchor=\"middle\" transform=\"rotate(-90 22 " + middle + ")\"");
         double legend = top + 12;
         std::set<std::string> named;
         for (const AgePlot::Line &line : panel.Lines)
@@ -220,8 +224,10 @@ private:
             oldest += point(column, columns[column].Oldest);
             youngest += point(end - 1 - (column - begin), columns[end - 1 - (column - begin)].Youngest);
         }
-        _svg += "<polygon points=\"" + oldest + youngest + "\" fill=\"" + colour + "\" fill-opacity=\"0.25\"/>\n";
-        _svg += "<polyline points=\"" + oldest + "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"1.2\"/>\n";
+        _svg +=
+            "<polygon points=\"" + oldest + youngest + "\" fill=\"" + colour + "\" fill-opacity=\"0.25\"/>\n";
+        _svg += "<polyline points=\"" + oldest + "\" fill=\"none\" stroke=\"" + colour +
+                "\" stroke-width=\"1.2\"/>\n";
     }
 
     double Y(double top, double seconds) const
@@ -232,13 +238,15 @@ private:
 
     void Text(double x, double y, const std::string &text, const std::string &style)
     {
-        _svg += "<text x=\"" + Number(x) + "\" y=\"" + Number(y) + "\" " + style + ">" + Escaped(text) + "</text>\n";
+        _svg += "<text x=\"" + Number(x) + "\" y=\"" + Number(y) + "\" " + style + ">" + Escaped(text) +
+                "</text>\n";
     }
 
     void Rule(double fromX, double fromY, double toX, double toY, const char *colour, int width = 1)
     {
-        _svg += "<line x1=\"" + Number(fromX) + "\" y1=\"" + Number(fromY) + "\" x2=\"" + Number(toX) + "\" y2=\"" +
-                Number(toY) + "\" stroke=\"" + colour + "\" stroke-width=\"" + std::to_string(width) + "\"/>\n";
+        _svg += "<line x1=\"" + Number(fromX) + "\" y1=\"" + Number(fromY) + "\" x2=\"" + Number(toX) +
+                "\" y2=\"" + Number(toY) + "\" stroke=\"" + colour + "\" stroke-width=\"" +
+                std::to_string(width) + "\"/>\n";
     }
 
     const AgePlot &_plot;

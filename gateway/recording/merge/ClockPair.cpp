@@ -1,8 +1,6 @@
 #include "recording/merge/ClockPair.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace Rabit::Merge
 {
@@ -148,7 +146,8 @@ void ClockPair::MeasureDrift()
         {
             early = i;
         }
-        if (_entries[end].First - entry.First <= third && entry.RoundTripBound < _entries[late].RoundTripBound)
+        if (_entries[end].First - entry.First <= third &&
+            entry.RoundTripBound < _entries[late].RoundTripBound)
         {
             late = i;
         }
@@ -177,7 +176,8 @@ void ClockPair::DoubtByOthers()
         {
             ++from;
         }
-        for (std::size_t j = from; j < _entries.size() && _entries[j].First <= entry.First + Contradiction; ++j)
+        for (std::size_t j = from; j < _entries.size() && _entries[j].First <= entry.First + Contradiction;
+             ++j)
         {
             const Entry &other = _entries[j];
             const Moment uncertain = entry.RoundTripBound + other.RoundTripBound;
@@ -239,7 +239,8 @@ void ClockPair::ChooseBest()
     }
 }
 
-ClockPair::Reading ClockPair::Use(const Entry &entry, Moment time, Moment Entry::*from, Moment Entry::*to) const
+ClockPair::Reading ClockPair::Use(const Entry &entry, Moment time, Moment Entry::*from,
+                                  Moment Entry::*to) const
 {
     const Entry &best = _entries[entry.Best];
     const Moment doubt = &best == &entry ? 0 : entry.Doubt;

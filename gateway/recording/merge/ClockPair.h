@@ -57,7 +57,7 @@ private:
         Moment HalfRoundTrip = 0;
         Moment RoundTripBound = 0;  // without drift
         Moment Lag = 0;             // so old may be what the filter remembers
-        Moment Doubt = 0;  // by how much others near by differ, if drift does not explain it
+        Moment Doubt = 0;           // by how much others near by differ, if drift does not explain it
         Moment Bound = 0;
         std::size_t Segment = 0;  // between steps
         std::size_t Best = 0;     // that is to be used at this moment

@@ -82,7 +82,8 @@ std::optional<Last> LastOf(Mcap::ByteSource &source, const ChannelChunks &chunks
     std::optional<Last> last;
     while (const auto message = cursor.Next())
     {
-        last = {FromFile(message->LogTime), FromFile(message->PublishTime),
+        last = {FromFile(message->LogTime),
+                FromFile(message->PublishTime),
                 {message->Data.begin(), message->Data.end()}};
     }
     problems.insert(problems.end(), cursor.Problems().begin(), cursor.Problems().end());
@@ -132,7 +133,8 @@ void AddUncertainty(Mcap::ByteSource &source, const Mcap::Contents &contents, co
 }  // namespace
 
 Knowledge::Knowledge(const Mcap::Contents &contents)
-    : Lives(LivesOf(contents)), WorstBound(NumberIn<Moment>(MetadataOf(contents, "rabit.merge"), "uncertain_by_ns"))
+    : Lives(LivesOf(contents)),
+      WorstBound(NumberIn<Moment>(MetadataOf(contents, "rabit.merge"), "uncertain_by_ns"))
 {
     std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> known;
     for (const auto &[id, channel] : contents.Channels)
@@ -140,8 +142,9 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
         const std::string kind = ValueOf(channel.Metadata, "rabit.kind");
         const std::string node = ValueOf(channel.Metadata, "rabit.node");
         const auto schema = contents.Schemas.find(channel.SchemaId);
-        const auto life = std::find_if(Lives.begin(), Lives.end(), [&channel = channel](const KnowerLife &one)
-                                       { return IsOf(channel, one); });
+        const auto life =
+            std::find_if(Lives.begin(), Lives.end(),
+                         [&channel = channel](const KnowerLife &one) { return IsOf(channel, one); });
         if ((kind != "knew" && kind != "mirrored" && kind != "posted") || node.empty() || life == Lives.end())
         {
             continue;
@@ -153,8 +156,8 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
         const auto [stream, isNew] = known.try_emplace({at, node, message, type}, Streams.size());
         if (isNew)
         {
-            Streams.push_back({at, node, message, type,
-                               schema == contents.Schemas.end() ? "" : schema->second.Data, {}});
+            Streams.push_back(
+                {at, node, message, type, schema == contents.Schemas.end() ? "" : schema->second.Data, {}});
         }
         Streams[stream->second].Channels.insert(id);
     }
@@ -163,12 +166,14 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
         const KnowerLife &life = Lives[stream.Life];
         return std::tie(life.Node, life.Number, stream.Node, stream.Message);
     };
-    std::stable_sort(Streams.begin(), Streams.end(), [&order](const KnownStream &one, const KnownStream &other)
+    std::stable_sort(Streams.begin(), Streams.end(),
+                     [&order](const KnownStream &one, const KnownStream &other)
                      { return order(one) < order(other); });
 }
 
-std::optional<KnownValue> ValueAt(Mcap::ByteSource &source, const Mcap::Contents &contents, const Knowledge &knowledge,
-                                  const KnownStream &stream, Moment at, std::vector<std::string> &problems)
+std::optional<KnownValue> ValueAt(Mcap::ByteSource &source, const Mcap::Contents &contents,
+                                  const Knowledge &knowledge, const KnownStream &stream, Moment at,
+                                  std::vector<std::string> &problems)
 {
     const KnowerLife &knower = knowledge.Lives[stream.Life];
     const ChannelChunks chunks(contents, stream.Channels);

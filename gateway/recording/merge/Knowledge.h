@@ -56,7 +56,8 @@ struct KnownValue
 
 // What a stream had at that moment, which is within the knower's life; empty: nothing yet. What could not be
 // read is added to problems, one line each.
-std::optional<KnownValue> ValueAt(Mcap::ByteSource &source, const Mcap::Contents &contents, const Knowledge &knowledge,
-                                  const KnownStream &stream, Moment at, std::vector<std::string> &problems);
+std::optional<KnownValue> ValueAt(Mcap::ByteSource &source, const Mcap::Contents &contents,
+                                  const Knowledge &knowledge, const KnownStream &stream, Moment at,
+                                  std::vector<std::string> &problems);
 
 }  // namespace Rabit::Merge

@@ -188,7 +188,8 @@ private:
 
     static void TakeOver(const Found &from, Found &to)
     {
-        if (!to.Incarnation && !to.Recording.empty() && from.Node == to.Node && from.Recording == to.Recording)
+        if (!to.Incarnation && !to.Recording.empty() && from.Node == to.Node &&
+            from.Recording == to.Recording)
         {
             to.Incarnation = from.Incarnation;
         }

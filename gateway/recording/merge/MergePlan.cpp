@@ -122,8 +122,7 @@ private:
                 {
                     nearest = distance;
                     const Moment moment = std::clamp(life.Begin, known.Begin, known.End);
-                    planned.Map =
-                        TimeMap::Constant(_plan.Lives[other].Map.At(moment) - moment, std::nullopt);
+                    planned.Map = TimeMap::Constant(_plan.Lives[other].Map.At(moment) - moment, std::nullopt);
                 }
             }
         }
@@ -134,7 +133,8 @@ private:
         std::vector<std::size_t> order(_lives.All.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::stable_sort(order.begin(), order.end(),
-                         [this](std::size_t one, std::size_t other) { return BeginOf(one) < BeginOf(other); });
+                         [this](std::size_t one, std::size_t other)
+                         { return BeginOf(one) < BeginOf(other); });
         std::map<std::string, unsigned> numbers;
         for (const std::size_t at : order)
         {

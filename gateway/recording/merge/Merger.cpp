@@ -47,7 +47,8 @@ std::optional<Mcap::Bytes> ShiftLogLine(Mcap::ByteView bytes, const TimeMap &map
     Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
     const auto time = json.is_object() ? json.find("timestamp") : json.end();
     if (!json.is_object() || time == json.end() || !time->is_object() || !time->contains("sec") ||
-        !time->contains("nsec") || !(*time)["sec"].is_number_integer() || !(*time)["nsec"].is_number_integer())
+        !time->contains("nsec") || !(*time)["sec"].is_number_integer() ||
+        !(*time)["nsec"].is_number_integer())
     {
         return std::nullopt;
     }
@@ -76,7 +77,8 @@ struct Merger::Stream
     std::map<std::uint16_t, std::optional<MergedChannels::Made>> Channels;
 };
 
-bool Merger::Later::operator()(const std::unique_ptr<Stream> &left, const std::unique_ptr<Stream> &right) const
+bool Merger::Later::operator()(const std::unique_ptr<Stream> &left,
+                               const std::unique_ptr<Stream> &right) const
 {
     return std::pair(left->At, left->Order) > std::pair(right->At, right->Order);
 }

@@ -18,9 +18,9 @@ namespace Rabit::Merge
 struct Merged
 {
     std::vector<std::uint64_t> Messages;  // by life
-    std::uint64_t Repeated = 0;           // states that files of a recording repeat at their beginning, left out
-    std::uint64_t Lost = 0;               // without a channel, or too large
-    std::vector<std::string> Problems;    // what could not be read, one line each
+    std::uint64_t Repeated = 0;  // states that files of a recording repeat at their beginning, left out
+    std::uint64_t Lost = 0;      // without a channel, or too large
+    std::vector<std::string> Problems;  // what could not be read, one line each
     bool WasStopped = false;
     bool IsWritten = false;  // whether the file is whole
 };
@@ -69,7 +69,7 @@ private:
     Merged _merged;
     std::vector<std::unique_ptr<Stream>> _waiting;  // files that are not open yet, the last one first
     std::vector<std::unique_ptr<Stream>> _streams;  // that are open: a heap, the earliest first
-    std::vector<Moment> _tellAt;                              // by life
+    std::vector<Moment> _tellAt;                    // by life
     std::map<std::uint16_t, std::uint64_t> _lastPublishTime;  // by channel
 };
 

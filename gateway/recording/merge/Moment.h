@@ -34,8 +34,8 @@ inline std::uint64_t ToFile(Moment moment)
 inline Moment PartOf(Moment length, double part)
 {
     const double product = static_cast<double>(length) * part;
-    return static_cast<Moment>(std::clamp(product, static_cast<double>(-FarthestMoment),
-                                          static_cast<double>(FarthestMoment)));
+    return static_cast<Moment>(
+        std::clamp(product, static_cast<double>(-FarthestMoment), static_cast<double>(FarthestMoment)));
 }
 
 inline Moment Apart(Moment left, Moment right)

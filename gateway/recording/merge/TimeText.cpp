@@ -42,8 +42,9 @@ std::optional<Moment> ParseDate(const std::string &text)
     parts.tm_mon -= 1;
     const std::tm said = parts;
     const std::time_t seconds = timegm(&parts);
-    const bool isDate = parts.tm_mday == said.tm_mday && parts.tm_mon == said.tm_mon && parts.tm_hour == said.tm_hour &&
-                        parts.tm_min == said.tm_min && parts.tm_sec == said.tm_sec;
+    const bool isDate = parts.tm_mday == said.tm_mday && parts.tm_mon == said.tm_mon &&
+                        parts.tm_hour == said.tm_hour && parts.tm_min == said.tm_min &&
+                        parts.tm_sec == said.tm_sec;
     const auto fraction = ParseFraction(text.c_str() + length);
     return isDate && fraction ? std::optional(Within(Moment{seconds} * OneSecond + *fraction)) : std::nullopt;
 }

@@ -69,8 +69,9 @@ TEST(ClockPair, IsTheMoreUncertainTheFurtherAwayTheLastThatWasTold)
     ClockPair pair;
     Tell(pair, 0, 1000, 0, Ms);
     pair.Finish();
-    EXPECT_NEAR(static_cast<double>(pair.ToSecond(2000 * OneSecond)->Bound - pair.ToSecond(1000 * OneSecond)->Bound),
-                pair.Drift() * 1000 * OneSecond, 1000.0);
+    EXPECT_NEAR(
+        static_cast<double>(pair.ToSecond(2000 * OneSecond)->Bound - pair.ToSecond(1000 * OneSecond)->Bound),
+        pair.Drift() * 1000 * OneSecond, 1000.0);
 }
 
 TEST(ClockPair, UsesTheQuickRoundTripsNearASlowOne)

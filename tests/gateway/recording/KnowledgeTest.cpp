@@ -61,9 +61,8 @@ protected:
     std::optional<KnownValue> At(const std::string &knower, unsigned life, const std::string &node, Time at)
     {
         const KnownStream *stream = Find(knower, life, node);
-        return stream == nullptr
-                   ? std::nullopt
-                   : ValueAt(File, Contents, *Known, *stream, Fleet.LogAt(0, at), Problems);
+        return stream == nullptr ? std::nullopt
+                                 : ValueAt(File, Contents, *Known, *stream, Fleet.LogAt(0, at), Problems);
     }
 
     const SyntheticFleet Fleet;
@@ -76,7 +75,8 @@ protected:
 TEST_F(KnowledgeOfAFlight, ListsLivesAndWhatEachKnew)
 {
     ASSERT_EQ(Known->Lives.size(), 3U);
-    EXPECT_EQ(Known->Streams.size(), 6U);  // each its own, each of the other; ground of two lives in one stream
+    EXPECT_EQ(Known->Streams.size(),
+              6U);  // each its own, each of the other; ground of two lives in one stream
     EXPECT_NE(Find("uav1", 2, "ground"), nullptr);
     EXPECT_EQ(Find("ground", 1, "uav1")->Type, "Test::Pose");
     EXPECT_TRUE(Known->WorstBound.has_value());
@@ -101,7 +101,8 @@ TEST_F(KnowledgeOfAFlight, TellsTheValueThatANodeHadAndHowOldItWas)
 TEST_F(KnowledgeOfAFlight, KnowsOfALifeThatHasEndedUntilTheNextIsHeard)
 {
     const auto ended = At("ground", 1, "uav1", Minute + 15 * OneSecond);
-    EXPECT_NEAR(static_cast<double>(SyntheticFleet::PostedOf(ended->Sample)), static_cast<double>(Minute), 300.0 * Ms);
+    EXPECT_NEAR(static_cast<double>(SyntheticFleet::PostedOf(ended->Sample)), static_cast<double>(Minute),
+                300.0 * Ms);
     EXPECT_EQ(ended->Incarnation, 1U);
     EXPECT_EQ(At("ground", 1, "uav1", Minute + 40 * OneSecond)->Incarnation, 2U);
 }

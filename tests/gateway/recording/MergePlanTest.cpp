@@ -1,9 +1,11 @@
-// Recordings of nodes whose clocks are known: the times on the time line must be right within the stated bound.
+// Recordings of nodes whose clocks are known: the times on the time line must be right within the stated
+// bound.
 #include "recording/merge/MergePlan.h"
 
 #include <gmock/gmock.h>
 
 #include <array>
+#include <tuple>
 
 #include "SyntheticFleet.h"
 #include "recording/mcap/MessageCursor.h"
@@ -119,21 +121,26 @@ class AsymmetricDelays : public testing::TestWithParam<std::tuple<Time, Time, Ti
 
 TEST_P(AsymmetricDelays, StayWithinTheBound)
 {
-    const auto [there, back, jitter, rate] = GetParam();
-    const SyntheticFleet fleet({Node("ground", 5 * Minute), Node("uav1", 5 * Minute, -3 * Minute, rate)},
-                               [=](std::size_t from, std::size_t, Time, std::mt19937 &random)
-                               { return std::optional((from == 0 ? there : back) + Uniform(random, 0, jitter)); });
+    const Time there = std::get<0>(GetParam());
+    const Time back = std::get<1>(GetParam());
+    const Time jitter = std::get<2>(GetParam());
+    const double rate = std::get<3>(GetParam());
+    const SyntheticFleet fleet(
+        {Node("ground", 5 * Minute), Node("uav1", 5 * Minute, -3 * Minute, rate)},
+        [=](std::size_t from, std::size_t, Time, std::mt19937 &random)
+        { return std::optional((from == 0 ? there : back) + Uniform(random, 0, jitter)); });
     const Plans plans(fleet, {"ground"});
     const Errors errors = ErrorsOf(fleet, plans, 1, 0);
-    EXPECT_EQ(errors.Beyond, 0U) << "wrong by " << errors.Worst << " where " << errors.WorstBound << " was stated";
+    EXPECT_EQ(errors.Beyond, 0U) << "wrong by " << errors.Worst << " where " << errors.WorstBound
+                                 << " was stated";
     EXPECT_LT(errors.WorstBound, (there + back + 2 * jitter) / 2 + 10 * Ms);
 }
 
-INSTANTIATE_TEST_SUITE_P(MergePlan, AsymmetricDelays,
-                         testing::Values(std::tuple(0, 100 * Ms, 1000, 0.0), std::tuple(100 * Ms, 0, 1000, 50e-6),
-                                         std::tuple(Ms, 20 * Ms, 80 * Ms, -50e-6),
-                                         std::tuple(30 * Ms, 5 * Ms, 200 * Ms, 90e-6),
-                                         std::tuple(0, 0, Ms, -90e-6), std::tuple(400 * Ms, 300 * Ms, 900 * Ms, 20e-6)));
+INSTANTIATE_TEST_SUITE_P(
+    MergePlan, AsymmetricDelays,
+    testing::Values(std::tuple(0, 100 * Ms, 1000, 0.0), std::tuple(100 * Ms, 0, 1000, 50e-6),
+                    std::tuple(Ms, 20 * Ms, 80 * Ms, -50e-6), std::tuple(30 * Ms, 5 * Ms, 200 * Ms, 90e-6),
+                    std::tuple(0, 0, Ms, -90e-6), std::tuple(400 * Ms, 300 * Ms, 900 * Ms, 20e-6)));
 
 TEST(MergePlan, IsWrongByTenMillisecondsAtMostWhereRoundTripsOfAHundredVary)
 {
@@ -178,12 +185,10 @@ TEST(MergePlan, GoesByANodeThatBothHeardThoughThereIsNoRecordingOfIt)
 {
     auto between = Node("relay", 3 * Minute, 0, 20e-6);
     between.IsRecorded = false;
-    const SyntheticFleet fleet({Node("uav1", 3 * Minute, 2 * Minute, -20e-6), between, Node("uav2", 3 * Minute, 9 * Minute)},
-                               [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
-                               {
-                                   return from == 1 || to == 1 ? std::optional(Uniform(random, Ms, 3 * Ms))
-                                                               : std::nullopt;
-                               });
+    const SyntheticFleet fleet(
+        {Node("uav1", 3 * Minute, 2 * Minute, -20e-6), between, Node("uav2", 3 * Minute, 9 * Minute)},
+        [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
+        { return from == 1 || to == 1 ? std::optional(Uniform(random, Ms, 3 * Ms)) : std::nullopt; });
     const Plans plans(fleet, {"uav1"});
     ASSERT_EQ(plans.Plan.Problem, "");
     const Errors errors = ErrorsOf(fleet, plans, 1, 0);
@@ -195,12 +200,10 @@ TEST(MergePlan, GoesByANodeThatBothHeardThoughThereIsNoRecordingOfIt)
 
 TEST(MergePlan, GoesByANodeBetweenWhereTheStraightWayIsWorse)
 {
-    const SyntheticFleet fleet({Node("uav1", 3 * Minute), Node("ground", 3 * Minute), Node("uav2", 3 * Minute)},
-                               [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
-                               {
-                                   return from == 1 || to == 1 ? Uniform(random, Ms, 3 * Ms)
-                                                               : Uniform(random, 200 * Ms, 300 * Ms);
-                               });
+    const SyntheticFleet fleet(
+        {Node("uav1", 3 * Minute), Node("ground", 3 * Minute), Node("uav2", 3 * Minute)},
+        [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
+        { return from == 1 || to == 1 ? Uniform(random, Ms, 3 * Ms) : Uniform(random, 200 * Ms, 300 * Ms); });
     const Plans plans(fleet, {"uav1"});
     const std::size_t life = plans.LifeOf("uav2", 1);
     EXPECT_EQ(ErrorsOf(fleet, plans, life, 0).Beyond, 0U);
@@ -209,12 +212,10 @@ TEST(MergePlan, GoesByANodeBetweenWhereTheStraightWayIsWorse)
 
 TEST(MergePlan, TakesAsTimeLineTheNodeThatHasRelationsWithMost)
 {
-    const SyntheticFleet fleet({Node("uav1", Minute), Node("uav2", Minute), Node("uav3", Minute)},
-                               [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
-                               {
-                                   return from == 1 || to == 1 ? std::optional(Uniform(random, Ms, 2 * Ms))
-                                                               : std::nullopt;
-                               });
+    const SyntheticFleet fleet(
+        {Node("uav1", Minute), Node("uav2", Minute), Node("uav3", Minute)},
+        [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
+        { return from == 1 || to == 1 ? std::optional(Uniform(random, Ms, 2 * Ms)) : std::nullopt; });
     const Plans plans(fleet, {});
     EXPECT_EQ(plans.All.All[plans.Plan.TimeLine].Node, "uav2");
 }
@@ -223,10 +224,10 @@ TEST(MergePlan, IsTheMoreUncertainTheLongerNothingWasHeard)
 {
     // Out of reach for ten minutes, with clocks that drift apart by 60 ms a minute of them.
     const SyntheticFleet fleet({Node("ground", 20 * Minute), Node("uav1", 20 * Minute, Minute, 50e-6)},
-                               [](std::size_t, std::size_t, Time at, std::mt19937 &random)
-                               {
-                                   return at > 5 * Minute && at < 15 * Minute ? std::nullopt
-                                                                              : std::optional(Uniform(random, Ms, 3 * Ms));
+                               [](std::size_t, std::size_t, Time at, std::mt19937 &random) {
+                                   return at > 5 * Minute && at < 15 * Minute
+                                              ? std::nullopt
+                                              : std::optional(Uniform(random, Ms, 3 * Ms));
                                });
     const Plans plans(fleet, {"ground"});
     EXPECT_EQ(ErrorsOf(fleet, plans, 1, 0).Beyond, 0U);
@@ -237,7 +238,8 @@ TEST(MergePlan, IsTheMoreUncertainTheLongerNothingWasHeard)
 
 TEST(MergePlan, StaysWithinTheBoundAfterTheTimeLinesNodeHasEnded)
 {
-    const SyntheticFleet fleet({Node("ground", 5 * Minute), Node("uav1", 15 * Minute, Minute, 40e-6)}, Delays(Ms, 3 * Ms));
+    const SyntheticFleet fleet({Node("ground", 5 * Minute), Node("uav1", 15 * Minute, Minute, 40e-6)},
+                               Delays(Ms, 3 * Ms));
     const Plans plans(fleet, {"ground"});
     const Errors errors = ErrorsOf(fleet, plans, 1, 0);
     EXPECT_EQ(errors.Beyond, 0U);
@@ -281,13 +283,16 @@ TEST_P(AnyFleet, StaysWithinTheBound)
     for (std::size_t node = 0; node < 3; ++node)
     {
         const double rate = static_cast<double>(Uniform(random, -50, 50)) * 1e-6;
-        specs.push_back(Node("uav" + std::to_string(node), 6 * Minute, Uniform(random, -9, 9) * Minute, rate));
+        specs.push_back(
+            Node("uav" + std::to_string(node), 6 * Minute, Uniform(random, -9, 9) * Minute, rate));
         specs.back().Begin = Uniform(random, 0, Minute);
         specs.back().End -= Uniform(random, 0, Minute);
         for (Way &way : ways[node])
         {
-            way.Least = Uniform(random, 0, 3) == 0 ? Uniform(random, 0, 300 * Ms) : Uniform(random, 0, 3 * Ms);
-            way.Jitter = 1000 + (Uniform(random, 0, 2) == 0 ? Uniform(random, 0, 900 * Ms) : Uniform(random, 0, Ms));
+            way.Least =
+                Uniform(random, 0, 3) == 0 ? Uniform(random, 0, 300 * Ms) : Uniform(random, 0, 3 * Ms);
+            way.Jitter =
+                1000 + (Uniform(random, 0, 2) == 0 ? Uniform(random, 0, 900 * Ms) : Uniform(random, 0, Ms));
             way.Lost = static_cast<int>(Uniform(random, 0, 2) == 0 ? Uniform(random, 0, 80) : 0);
             way.OutFrom = Uniform(random, 0, 6 * Minute);
             way.OutTo = way.OutFrom + Uniform(random, 0, 2 * Minute);
@@ -297,16 +302,17 @@ TEST_P(AnyFleet, StaysWithinTheBound)
     {
         specs[1].Stands = {{Uniform(random, 2 * Minute, 3 * Minute), Uniform(random, 2 * OneSecond, Minute)}};
     }
-    const SyntheticFleet fleet(specs,
-                               [&ways](std::size_t from, std::size_t to, Time at, std::mt19937 &chance) -> std::optional<Time>
-                               {
-                                   const Way &way = ways[from][to];
-                                   const bool isOut = at >= way.OutFrom && at < way.OutTo;
-                                   return isOut || Uniform(chance, 0, 99) < way.Lost
-                                              ? std::nullopt
-                                              : std::optional(way.Least + Uniform(chance, 0, way.Jitter));
-                               },
-                               GetParam());
+    const SyntheticFleet fleet(
+        specs,
+        [&ways](std::size_t from, std::size_t to, Time at, std::mt19937 &chance) -> std::optional<Time>
+        {
+            const Way &way = ways[from][to];
+            const bool isOut = at >= way.OutFrom && at < way.OutTo;
+            return isOut || Uniform(chance, 0, 99) < way.Lost
+                       ? std::nullopt
+                       : std::optional(way.Least + Uniform(chance, 0, way.Jitter));
+        },
+        GetParam());
     const Plans plans(fleet, {"uav0"});
     if (!plans.Plan.Problem.empty())
     {
@@ -315,7 +321,8 @@ TEST_P(AnyFleet, StaysWithinTheBound)
     for (std::size_t life = 1; life < 3; ++life)
     {
         const Errors errors = ErrorsOf(fleet, plans, life, 0);
-        EXPECT_EQ(errors.Beyond, 0U) << errors.Messages << " messages, wrong by " << errors.Worst << " of uav" << life;
+        EXPECT_EQ(errors.Beyond, 0U) << errors.Messages << " messages, wrong by " << errors.Worst << " of uav"
+                                     << life;
     }
 }
 
@@ -323,13 +330,13 @@ INSTANTIATE_TEST_SUITE_P(MergePlan, AnyFleet, testing::Range(1U, 61U));
 
 TEST(MergePlan, RefusesANodeWhoseClockNobodyRelates)
 {
-    const SyntheticFleet fleet({Node("ground", Minute), Node("uav1", Minute), Node("uav9", Minute, 2 * Minute)},
-                               [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
-                               {
-                                   return from == 2 || to == 2 ? std::nullopt : std::optional(Uniform(random, Ms, 2 * Ms));
-                               });
+    const SyntheticFleet fleet(
+        {Node("ground", Minute), Node("uav1", Minute), Node("uav9", Minute, 2 * Minute)},
+        [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
+        { return from == 2 || to == 2 ? std::nullopt : std::optional(Uniform(random, Ms, 2 * Ms)); });
     const Plans refused(fleet, {});
-    EXPECT_THAT(refused.Plan.Problem, HasSubstr("uav9_1_1.mcap: nothing relates the clock of uav9 to that of"));
+    EXPECT_THAT(refused.Plan.Problem,
+                HasSubstr("uav9_1_1.mcap: nothing relates the clock of uav9 to that of"));
     const Plans taken(fleet, {"ground", true});
     const std::size_t life = taken.LifeOf("uav9", 1);
     EXPECT_EQ(taken.Plan.Problem, "");
@@ -344,11 +351,10 @@ TEST(MergePlan, TakesTheWallClockThatAnotherLifeOfTheNodeHad)
     auto second = Node("uav1", 3 * Minute, 2 * Minute);
     second.Begin = 2 * Minute;
     second.Incarnation = 2;
-    const SyntheticFleet fleet({Node("ground", 3 * Minute), Node("uav1", Minute, 2 * Minute), second},
-                               [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
-                               {
-                                   return from == 2 || to == 2 ? std::nullopt : std::optional(Uniform(random, Ms, 2 * Ms));
-                               });
+    const SyntheticFleet fleet(
+        {Node("ground", 3 * Minute), Node("uav1", Minute, 2 * Minute), second},
+        [](std::size_t from, std::size_t to, Time, std::mt19937 &random)
+        { return from == 2 || to == 2 ? std::nullopt : std::optional(Uniform(random, Ms, 2 * Ms)); });
     const Plans plans(fleet, {"ground", true});
     const std::size_t life = plans.LifeOf("uav1", 2);
     EXPECT_EQ(plans.Plan.Lives[life].By, PlannedLife::Way::WallClock);

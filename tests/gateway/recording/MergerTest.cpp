@@ -47,7 +47,8 @@ struct Read
 
 struct MergedFile
 {
-    MergedFile(const SyntheticFleet &fleet, const std::vector<std::string> &paths, const MergeWishes &wishes = {})
+    MergedFile(const SyntheticFleet &fleet, const std::vector<std::string> &paths,
+               const MergeWishes &wishes = {})
         : Opener(fleet.Opener()), All(ReadLives(Opener, paths)), Plan(MakePlan(All, wishes))
     {
         EXPECT_EQ(All.Problem, "");
@@ -58,7 +59,9 @@ struct MergedFile
         Mcap::MessageCursor cursor(File, Contents, {});
         while (const auto message = cursor.Next())
         {
-            Messages.push_back({Contents.Channels.at(message->ChannelId), message->LogTime, message->PublishTime,
+            Messages.push_back({Contents.Channels.at(message->ChannelId),
+                                message->LogTime,
+                                message->PublishTime,
                                 {message->Data.begin(), message->Data.end()}});
         }
     }
@@ -136,8 +139,8 @@ TEST(Merger, PutsBothTimesOfAMessageOnTheTimeLine)
 
 TEST(Merger, WritesInTheOrderOfTheTimeLine)
 {
-    const SyntheticFleet fleet({Node("uav1", Minute), Node("uav2", Minute, 5 * Minute), Node("uav3", Minute, -Minute)},
-                               Quick);
+    const SyntheticFleet fleet(
+        {Node("uav1", Minute), Node("uav2", Minute, 5 * Minute), Node("uav3", Minute, -Minute)}, Quick);
     const MergedFile merged(fleet, fleet.Paths());
     // In the file itself, not by its index.
     std::uint64_t last = 0;
@@ -237,7 +240,8 @@ TEST(Merger, KeepsReportsOfClocksTrue)
     // The clock of uav1, as uav2 knew it, on a time line that is the clock of uav1.
     ASSERT_EQ(report->Peers.size(), 1U);
     const Life &uav1 = merged.All.All[0];
-    EXPECT_NEAR(static_cast<double>(report->Peers[0].SourceToLog), static_cast<double>(uav1.SourceToLog), 10.0 * Ms);
+    EXPECT_NEAR(static_cast<double>(report->Peers[0].SourceToLog), static_cast<double>(uav1.SourceToLog),
+                10.0 * Ms);
 }
 
 TEST(Merger, PutsLogLinesOnTheTimeLine)
@@ -248,8 +252,8 @@ TEST(Merger, PutsLogLinesOnTheTimeLine)
     {
         Mcap::McapWriter writer(*file, {"test", "rabit", true});
         writer.AddMetadata({"rabit.node", {{"node", "uav1"}}});
-        const std::uint16_t channel =
-            *writer.AddChannel(writer.AddSchema("foxglove.Log", "jsonschema", "{}"), "uav1/Recorder/Log", "json");
+        const std::uint16_t channel = *writer.AddChannel(writer.AddSchema("foxglove.Log", "jsonschema", "{}"),
+                                                         "uav1/Recorder/Log", "json");
         const std::string line = R"({"timestamp":{"sec":7,"nsec":5},"message":"hello"})";
         const std::string garbage = R"({"timestamp":{"sec":"x"}})";
         writer.Add({channel, 0, 7000000005U, 7000000005U, Mcap::Bytes(line.begin(), line.end())});
@@ -260,7 +264,8 @@ TEST(Merger, PutsLogLinesOnTheTimeLine)
     const MergedFile merged(fleet, fleet.Paths(), {"uav0", true});
     const auto lines = merged.Of("uav1/Recorder/Log");
     ASSERT_EQ(lines.size(), 2U);
-    EXPECT_EQ(Json::parse(lines[0].Data), Json::parse(R"({"timestamp":{"sec":7,"nsec":5},"message":"hello"})"));
+    EXPECT_EQ(Json::parse(lines[0].Data),
+              Json::parse(R"({"timestamp":{"sec":7,"nsec":5},"message":"hello"})"));
 }
 
 TEST(Merger, TakesWhatIsThereOfAFileThatWasCutOffAnywhere)
@@ -270,7 +275,8 @@ TEST(Merger, TakesWhatIsThereOfAFileThatWasCutOffAnywhere)
     std::uint64_t most = 0;
     for (std::size_t size = 0; size < whole.size(); size += 7)
     {
-        fleet.Files["uav2_1_1.mcap"]->Content.assign(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+        fleet.Files["uav2_1_1.mcap"]->Content.assign(whole.begin(),
+                                                     whole.begin() + static_cast<std::ptrdiff_t>(size));
         const MergedFile merged(fleet, fleet.Paths(), {"uav1", true});
         ASSERT_TRUE(merged.Result.IsWritten);
         ASSERT_TRUE(merged.Contents.Problems.empty());
@@ -303,7 +309,8 @@ TEST(Merger, HoldsWhateverByteIsDamaged)
 TEST(Merger, TakesAFileAndItsRecoveredCopyOnce)
 {
     SyntheticFleet fleet({Node("uav1", Minute), Node("uav2", Minute)}, Quick);
-    fleet.Files["uav1_1_1_recovered.mcap"] = std::make_shared<MemoryFile>(fleet.Files["uav1_1_1.mcap"]->Content);
+    fleet.Files["uav1_1_1_recovered.mcap"] =
+        std::make_shared<MemoryFile>(fleet.Files["uav1_1_1.mcap"]->Content);
     const Mcap::Bytes &whole = fleet.Files["uav1_1_1.mcap"]->Content;
     fleet.Files["uav1_1_1.mcap"]->Content.resize(whole.size() / 2);
     const Lives lives = ReadLives(fleet.Opener(), fleet.Paths());
@@ -329,7 +336,8 @@ TEST(Merger, RefusesAFileThatDoesNotSayWhoseItIs)
     writer.Add({*writer.AddChannel(0, "topic", "json"), 0, 5, 5, Mcap::Bytes{1}});
     writer.Finish();
     fleet.Files["other.mcap"] = file;
-    EXPECT_EQ(ReadLives(fleet.Opener(), fleet.Paths()).Problem, "other.mcap: does not say which node recorded it");
+    EXPECT_EQ(ReadLives(fleet.Opener(), fleet.Paths()).Problem,
+              "other.mcap: does not say which node recorded it");
 }
 
 TEST(Merger, AddsUpWhatWasLost)

@@ -173,8 +173,8 @@ void SyntheticFleet::Post(std::size_t from, Time at)
                      if (Lives(to, arrival) && posted && at > heard.LastPose)
                      {
                          heard.LastPose = at;
-                         Record(to, arrival, topic, "mirrored", _nodes[from].Is.Name, ToLog(to, posted->count()),
-                                PoseOf(at));
+                         Record(to, arrival, topic, "mirrored", _nodes[from].Is.Name,
+                                ToLog(to, posted->count()), PoseOf(at));
                      }
                  });
     }
@@ -185,7 +185,8 @@ void SyntheticFleet::Report(std::size_t node, Time at)
     const auto about = [this, node](std::uint64_t incarnation, Time sourceToMonotonic)
     {
         std::ostringstream text;
-        text << R"("incarnation":")" << incarnation << R"(","source_to_log_ns":")" << ToLog(node, sourceToMonotonic) << '"';
+        text << R"("incarnation":")" << incarnation << R"(","source_to_log_ns":")"
+             << ToLog(node, sourceToMonotonic) << '"';
         return text.str();
     };
     std::ostringstream report;
@@ -197,14 +198,15 @@ void SyntheticFleet::Report(std::size_t node, Time at)
         {
             const auto roundTrip = heard.Clock.RoundTrip();
             report << std::exchange(comma, ",") << R"({"node":")" << _nodes[peer].Is.Name << R"(",)"
-                   << about(_nodes[peer].Is.Incarnation, relation->ToLocal.count()) << R"(,"uncertain_by_ns":)"
+                   << about(_nodes[peer].Is.Incarnation, relation->ToLocal.count())
+                   << R"(,"uncertain_by_ns":)"
                    << (roundTrip ? std::to_string(roundTrip->count() / 2) : "null") << '}';
         }
     }
     report << "]}";
     const std::string text = report.str();
-    Record(node, at, _nodes[node].Is.Name + "/Recorder/Clocks", "recorder", _nodes[node].Is.Name, LogAt(node, at),
-           {text.begin(), text.end()});
+    Record(node, at, _nodes[node].Is.Name + "/Recorder/Clocks", "recorder", _nodes[node].Is.Name,
+           LogAt(node, at), {text.begin(), text.end()});
     if (_nodes[node].Writer)
     {
         _nodes[node].Writer->FinishChunks();
@@ -220,8 +222,8 @@ void SyntheticFleet::Record(std::size_t node, Time at, const std::string &topic,
         return;
     }
     const auto logTime = static_cast<std::uint64_t>(LogAt(node, at));
-    const auto write = [&recorder, logTime](const std::string &to, const std::string &as, const std::string &of,
-                                            Time posted, const Mcap::Bytes &bytes)
+    const auto write = [&recorder, logTime](const std::string &to, const std::string &as,
+                                            const std::string &of, Time posted, const Mcap::Bytes &bytes)
     {
         const auto [channel, isNew] = recorder.Channels.try_emplace(to);
         if (isNew)
@@ -229,8 +231,9 @@ void SyntheticFleet::Record(std::size_t node, Time at, const std::string &topic,
             const bool isJson = as == "recorder";
             const std::uint16_t schema =
                 isJson ? recorder.Writer->AddSchema("rabit.Clocks", "jsonschema", "{}")
-                       : recorder.Writer->AddSchema("Test::Pose", "omgidl",
-                                                    "module Test {\n@final\nstruct Pose {\n    long long posted;\n};\n};\n");
+                       : recorder.Writer->AddSchema(
+                             "Test::Pose", "omgidl",
+                             "module Test {\n@final\nstruct Pose {\n    long long posted;\n};\n};\n");
             channel->second = *recorder.Writer->AddChannel(schema, to, isJson ? "json" : "cdr",
                                                            {{"rabit.kind", as}, {"rabit.node", of}});
         }
@@ -266,7 +269,8 @@ void SyntheticFleet::Split(std::size_t node, Time at)
     const std::string number = std::to_string(++recorder.FileNumber);
     recorder.File = std::make_shared<MemoryFile>();
     Files[life + "_" + number + ".mcap"] = recorder.File;
-    recorder.Writer = std::make_unique<Mcap::McapWriter>(*recorder.File, Mcap::McapWriter::Options{"test", "rabit", true});
+    recorder.Writer =
+        std::make_unique<Mcap::McapWriter>(*recorder.File, Mcap::McapWriter::Options{"test", "rabit", true});
     recorder.Writer->AddMetadata(
         {"rabit.file", {{"node", recorder.Is.Name}, {"number", number}, {"recording", life}}});
     recorder.Writer->AddMetadata({"rabit.node", {{"node", recorder.Is.Name}, {"host", recorder.Is.Name}}});
@@ -279,7 +283,10 @@ Merge::OpenFile SyntheticFleet::Opener() const
     public:
         explicit Borrowed(std::shared_ptr<MemoryFile> file) : _file(std::move(file)) {}
         std::uint64_t Size() override { return _file->Size(); }
-        bool Read(std::uint64_t offset, std::span<std::uint8_t> to) override { return _file->Read(offset, to); }
+        bool Read(std::uint64_t offset, std::span<std::uint8_t> to) override
+        {
+            return _file->Read(offset, to);
+        }
 
     private:
         const std::shared_ptr<MemoryFile> _file;

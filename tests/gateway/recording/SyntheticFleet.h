@@ -1,6 +1,6 @@
-// Nodes with clocks of their own that beat to each other over a network with delays, and the recordings that they make of
-// it: with the filter that the gateway has (PeerClock), in the form that the recorder writes. Time is true time, in
-// nanoseconds since the beginning.
+// Nodes with clocks of their own that beat to each other over a network with delays, and the recordings that
+// they make of it: with the filter that the gateway has (PeerClock), in the form that the recorder writes.
+// Time is true time, in nanoseconds since the beginning.
 #pragma once
 
 #include <cstdint>
@@ -33,15 +33,16 @@ public:
         std::string Name;
         Time Begin = 0;
         Time End = 0;
-        Time WallAhead = 0;       // of its log clock against true time, at time 0
-        double Rate = 0;          // its clock gains that part of time
+        Time WallAhead = 0;  // of its log clock against true time, at time 0
+        double Rate = 0;     // its clock gains that part of time
         std::uint64_t Incarnation = 1;
         bool IsRecorded = true;
-        Time SplitEvery = 0;      // 0: one file
+        Time SplitEvery = 0;  // 0: one file
         std::optional<Standstill> Stands;
     };
     // How long something is on its way that is sent at that time; empty: it is lost. The nodes by index.
-    using Network = std::function<std::optional<Time>(std::size_t from, std::size_t to, Time at, std::mt19937 &random)>;
+    using Network =
+        std::function<std::optional<Time>(std::size_t from, std::size_t to, Time at, std::mt19937 &random)>;
 
     SyntheticFleet(std::vector<Spec> specs, Network network, unsigned seed = 1);
 
@@ -96,11 +97,12 @@ private:
     void Schedule(Time at, std::function<void()> action);
     void Repeat(std::size_t node, Time at, Time period, const std::function<void(Time)> &action);
     void Beat(std::size_t from, Time at);
-    void TakeBeat(std::size_t to, std::size_t from, Time source, std::optional<std::pair<Time, Time>> echo, Time at);
+    void TakeBeat(std::size_t to, std::size_t from, Time source, std::optional<std::pair<Time, Time>> echo,
+                  Time at);
     void Post(std::size_t from, Time at);
     void Report(std::size_t node, Time at);
-    void Record(std::size_t node, Time at, const std::string &topic, const std::string &kind, const std::string &origin,
-                Time publishLog, const Rabit::Mcap::Bytes &data);
+    void Record(std::size_t node, Time at, const std::string &topic, const std::string &kind,
+                const std::string &origin, Time publishLog, const Rabit::Mcap::Bytes &data);
     void Split(std::size_t node, Time at);
 
     std::vector<Node> _nodes;

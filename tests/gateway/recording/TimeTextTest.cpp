@@ -26,8 +26,9 @@ TEST(TimeText, ReadsUtc)
 
 TEST(TimeText, RefusesAllElse)
 {
-    for (const char *text : {"", "now", "1s", "nan", "inf", "2026-11-23", "2026-13-23T04:04:07", "2026-02-30T04:04:07",
-                             "2026-11-23T25:04:07", "2026-11-23T04:04:07.5 h", "2026-11-23x04:04:07"})
+    for (const char *text :
+         {"", "now", "1s", "nan", "inf", "2026-11-23", "2026-13-23T04:04:07", "2026-02-30T04:04:07",
+          "2026-11-23T25:04:07", "2026-11-23T04:04:07.5 h", "2026-11-23x04:04:07"})
     {
         EXPECT_FALSE(ParseMoment(text, Beginning).has_value()) << text;
     }
