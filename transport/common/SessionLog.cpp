@@ -94,6 +94,27 @@ void SessionLog::MalformedDatagram() noexcept
           [] { return std::string("a datagram that is no sound RTPS message was dropped"); });
 }
 
+void SessionLog::Impostor(const std::string &node) noexcept
+{
+    Count(_impostors,
+          [&]
+          {
+              return "somebody calls itself " + node +
+                     " and has the keys of another node: it is taken for a program that is no node";
+          });
+}
+
+void SessionLog::Stranger(const std::string &node) noexcept
+{
+    Count(_strangers,
+          [&]
+          {
+              return (node.empty() ? std::string("somebody") : "one that calls itself " + node) +
+                     " was not let in: its certificate or its permissions are not of this fleet, out of "
+                     "date, or revoked";
+          });
+}
+
 TransportCounters SessionLog::Read() const
 {
     TransportCounters counters;

@@ -7,6 +7,7 @@
 
 #include "ParticipantLease.h"
 #include "PeerAddresses.h"
+#include "VendorLog.h"
 #include "common/SettingsCheck.h"
 
 namespace Rabit::Cyclone
@@ -32,14 +33,51 @@ std::chrono::milliseconds AnswerGap(const TransportSettings &settings)
     return std::chrono::milliseconds(50 + std::hash<std::string>()(settings.Node) % 100);
 }
 
+// The vendor's plugins are libraries that it loads by name.
+void AddSecurity(const TransportSecurity &security, dds_qos_t *qos)
+{
+    const auto add = [&](const std::string &name, const std::string &value)
+    { dds_qset_prop(qos, name.c_str(), value.c_str()); };
+    const auto addLibrary = [&](const std::string &part, const std::string &file, const std::string &function)
+    {
+        const std::string library = "dds.sec." + part + ".library.";
+        add(library + "path", "dds_security_" + file);
+        add(library + "init", "init_" + function);
+        add(library + "finalize", "finalize_" + function);
+    };
+    addLibrary("auth", "auth", "authentication");
+    addLibrary("access", "ac", "access_control");
+    addLibrary("crypto", "crypto", "crypto");
+    add("dds.sec.auth.identity_ca", "file:" + security.IdentityAuthority);
+    add("dds.sec.auth.identity_certificate", "file:" + security.Certificate);
+    add("dds.sec.auth.private_key", "file:" + security.PrivateKey);
+    if (!security.Revoked.empty())
+    {
+        add("org.eclipse.cyclonedds.sec.auth.crl", "file:" + security.Revoked);
+    }
+    add("dds.sec.access.permissions_ca", "file:" + security.PermissionsAuthority);
+    add("dds.sec.access.governance", "file:" + security.Governance);
+    add("dds.sec.access.permissions", "file:" + security.Permissions);
+}
+
 Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain)
 {
     const Qos qos = MakeQos();
     dds_qset_entity_name(qos.get(), settings.Node.c_str());
     const std::string data = MakeUserData(settings.Incarnation);
     dds_qset_userdata(qos.get(), data.data(), data.size());
-    return {dds_create_participant(domain, qos.get(), nullptr),
-            "join domain " + std::to_string(settings.Domain)};
+    if (settings.Security)
+    {
+        AddSecurity(*settings.Security, qos.get());
+    }
+    const std::string what = "join domain " + std::to_string(settings.Domain);
+    if (!settings.Security)
+    {
+        return {dds_create_participant(domain, qos.get(), nullptr), what};
+    }
+    const VendorLogCapture capture;
+    const dds_entity_t participant = dds_create_participant(domain, qos.get(), nullptr);
+    return {participant, capture.FirstLine().empty() ? what : what + ": " + capture.FirstLine()};
 }
 
 // Only from a listener of a built-in topic.
@@ -113,6 +151,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
       _topics(_log),
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer)),
+      _proof(settings, _log),
       _domain(settings, _log, std::move(pace)),
       _announcements(AnswerGap(settings)),
       _participant(MakeParticipant(settings, _domain.Id()))
@@ -252,6 +291,10 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
     const auto identity = std::make_shared<const ParticipantIdentity>(
         ParticipantIdentity{name != nullptr ? name : "", *incarnation});
     dds_free(name);
+    if (!_proof.MayBe(identity->Node, prefix))
+    {
+        return;
+    }
     const PeerPlace place = PlaceOf(prefix);
     {
         // A prefix belongs to one life of one participant: the one who has left does not come back.

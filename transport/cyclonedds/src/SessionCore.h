@@ -19,6 +19,7 @@
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
+#include "common/PeerProof.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -72,6 +73,7 @@ private:
     TopicRegistry _topics;
     HandlerGate _peerGate;
     const PeerHandler _onPeer;
+    const PeerProof _proof;
     std::atomic<bool> _closed{false};
     Prefix _own{};  // set before anything is discovered
     mutable std::mutex _mutex;

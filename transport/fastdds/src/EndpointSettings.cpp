@@ -26,6 +26,19 @@ void Apply(const TopicDescription &topic, const TopicQos &qos, rtps::EndpointAtt
         qos.Durability == Durability::TransientLocal ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
 }
 
+// What the vendor's access control asks the permissions for; it has no other way to know.
+void AddNames(const TopicDescription &topic, const std::vector<std::string> &partitions,
+              rtps::PropertyPolicy &properties)
+{
+    properties.properties().emplace_back("topic_name", topic.Name);
+    std::string names = partitions.empty() ? "" : partitions.front();
+    for (std::size_t i = 1; i < partitions.size(); ++i)
+    {
+        names += ";" + partitions[i];
+    }
+    properties.properties().emplace_back("partitions", names);
+}
+
 template <typename EndpointQos>
 void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, EndpointQos &result)
 {
@@ -50,10 +63,12 @@ eprosima::fastrtps::TopicAttributes MakeTopicAttributes(const TopicDescription &
     return attributes;
 }
 
-rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos)
+rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos,
+                                            const std::vector<std::string> &partitions)
 {
     rtps::WriterAttributes attributes;
     Apply(topic, qos, attributes.endpoint);
+    AddNames(topic, partitions, attributes.endpoint.properties);
     // The vendor's defaults (3 s, 5 ms) suit a wire that loses nothing: here they would make every repair,
     // and the end of every replay, seconds late.
     attributes.times.heartbeatPeriod = {0, 20 * Milliseconds};
@@ -71,10 +86,12 @@ eprosima::fastrtps::WriterQos MakeWriterQos(const TopicQos &qos, const std::vect
     return result;
 }
 
-rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos)
+rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos,
+                                            const std::vector<std::string> &partitions)
 {
     rtps::ReaderAttributes attributes;
     Apply(topic, qos, attributes.endpoint);
+    AddNames(topic, partitions, attributes.endpoint.properties);
     attributes.times.heartbeatResponseDelay = {0, 1 * Milliseconds};
     attributes.times.initialAcknackDelay = {0, 10 * Milliseconds};
     return attributes;

@@ -40,7 +40,7 @@ FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescr
       _pool(std::make_shared<PayloadPool>([] {})),
       _history(qos.Depth, qos.Durability == Durability::TransientLocal)
 {
-    auto attributes = MakeWriterAttributes(topic, qos);
+    auto attributes = MakeWriterAttributes(topic, qos, partitions);
     _writer = rtps::RTPSDomain::createRTPSWriter(&_core->Participant(), attributes, _pool, &_history, this);
     if (_writer == nullptr)
     {

@@ -35,6 +35,9 @@ namespace
 
 // The kernel caps them at net.core.rmem_max and wmem_max.
 constexpr std::uint32_t SocketBuffer = 4u << 20;
+// Who shows a certificate does so in one message, with its permissions: the vendor does not cut these in
+// pieces, and makes no larger ones than of any other message.
+constexpr std::size_t LargestHandshake = 16384;
 // A peer without a port is looked for at the ports of this many participants of its host.
 constexpr std::uint32_t ParticipantsPerPeer = 16;
 // OMG DDSI-RTPS 2.3, 9.6.1.4.1: the group of discovery, and by default of samples.
@@ -63,6 +66,29 @@ rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
     eprosima::fastrtps::ParticipantAttributes profile;
     XMLProfileManager::getDefaultParticipantAttributes(profile);
     return profile.rtps;
+}
+
+void AddSecurity(const TransportSecurity &security, rtps::PropertyPolicy &properties)
+{
+    const auto add = [&](const std::string &name, const std::string &value)
+    { properties.properties().emplace_back(name, value); };
+    const auto addFile = [&](const std::string &name, const std::string &file)
+    {
+        if (!file.empty())
+        {
+            add(name, "file://" + file);
+        }
+    };
+    add("dds.sec.auth.plugin", "builtin.PKI-DH");
+    addFile("dds.sec.auth.builtin.PKI-DH.identity_ca", security.IdentityAuthority);
+    addFile("dds.sec.auth.builtin.PKI-DH.identity_certificate", security.Certificate);
+    addFile("dds.sec.auth.builtin.PKI-DH.identity_crl", security.Revoked);
+    addFile("dds.sec.auth.builtin.PKI-DH.private_key", security.PrivateKey);
+    add("dds.sec.access.plugin", "builtin.Access-Permissions");
+    addFile("dds.sec.access.builtin.Access-Permissions.permissions_ca", security.PermissionsAuthority);
+    addFile("dds.sec.access.builtin.Access-Permissions.governance", security.Governance);
+    addFile("dds.sec.access.builtin.Access-Permissions.permissions", security.Permissions);
+    add("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
 }
 
 std::uint32_t DiscoveryGroupPort(const TransportSettings &settings,
@@ -105,7 +131,9 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
     GuardedUdpDescriptor::Settings guarded;
-    guarded.MaxDatagram = static_cast<std::uint32_t>(settings.MaxDatagram);
+    guarded.MaxDatagram =
+        static_cast<std::uint32_t>(settings.Security ? std::max(settings.MaxDatagram, LargestHandshake)
+                                                     : settings.MaxDatagram);
     guarded.Mode = GuardMode(settings, attributes);
     guarded.GroupPort = IsMulticastForData(settings) ? 0 : DiscoveryGroupPort(settings, attributes);
     guarded.SocketsSendAll = !settings.Interfaces.empty();
@@ -205,6 +233,10 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     discovery.initial_announcements.period =
         ToDuration(std::min(std::chrono::milliseconds(250), settings.AnnouncementPeriod));
     LimitPeers(attributes);
+    if (settings.Security)
+    {
+        AddSecurity(*settings.Security, attributes.properties);
+    }
     if (attributes.userTransports.empty())
     {
         AddTransports(settings, log, std::move(calls), attributes);

@@ -79,7 +79,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
       _peerGate(_log, "peer events"),
       _announceGate(_log, "announcements"),
       _onPeer(std::move(onPeer)),
-      _multicast(IsMulticastForData(settings))
+      _multicast(IsMulticastForData(settings)),
+      _proof(settings, _log)
 {
     auto attributes = MakeParticipantAttributes(
         settings, _log,
@@ -98,7 +99,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
     if (_participant == nullptr)
     {
         throw TransportError("Fast DDS cannot join domain " + std::to_string(settings.Domain) +
-                             ": no free port, or no usable network interface");
+                             ": no free port, or no usable network interface" +
+                             (settings.Security ? ", or it does not accept the keys" : ""));
     }
     _announceTimer.Start(*_participant, [this] { Announce(); });
     _owedTimer.Start(*_participant, [owed = _owed] { owed->Run(); });
@@ -223,18 +225,66 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
     {
         return;
     }
-    const auto identity = std::make_shared<const ParticipantIdentity>(
-        ParticipantIdentity{peer.m_participantName.to_string(), *incarnation});
+    const GuidPrefix &prefix = peer.m_guid.guidPrefix;
+    const Newcomer newcomer{.Who = std::make_shared<const ParticipantIdentity>(ParticipantIdentity{
+                                peer.m_participantName.to_string(), *incarnation}),
+                            .Place = PlaceOf(peer)};
+    if (_proof.IsWanted())
+    {
+        // What it has announced first is what it has shown: later ones may be of anybody.
+        const std::lock_guard lock(_mutex);
+        if (!_proven.contains(prefix))
+        {
+            _unproven.insert_or_assign(prefix, newcomer);
+            return;
+        }
+    }
+    Admit(prefix, newcomer);
+}
+
+void SessionCore::onParticipantAuthentication(rtps::RTPSParticipant * /*participant*/,
+                                              rtps::ParticipantAuthenticationInfo &&info)
+{
+    const GuidPrefix &prefix = info.guid.guidPrefix;
+    if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
+    {
+        const std::lock_guard lock(_mutex);
+        const auto found = _unproven.find(prefix);
+        _proof.Refused(found == _unproven.end() ? "" : found->second.Who->Node);
+        return;
+    }
+    Newcomer newcomer;
+    {
+        const std::lock_guard lock(_mutex);
+        _proven.insert(prefix);
+        const auto found = _unproven.find(prefix);
+        if (found == _unproven.end())
+        {
+            return;
+        }
+        newcomer = std::move(found->second);
+        _unproven.erase(found);
+    }
+    Admit(prefix, newcomer);
+}
+
+void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
+{
+    const std::shared_ptr<const ParticipantIdentity> &identity = newcomer.Who;
+    if (!_proof.MayBe(identity->Node, std::span<const std::uint8_t, GuidPrefix::size>(prefix.value)))
+    {
+        return;
+    }
     {
         // An announcement may be overtaken by the goodbye that was sent after it, on another socket. The one
         // who has gone does not come back: a prefix belongs to one life of one participant.
         const std::lock_guard lock(_mutex);
-        const auto departed = std::find(_departed.begin(), _departed.end(), peer.m_guid.guidPrefix);
-        if (departed != _departed.end() || !_peers.emplace(peer.m_guid.guidPrefix, identity).second)
+        const auto departed = std::find(_departed.begin(), _departed.end(), prefix);
+        if (departed != _departed.end() || !_peers.emplace(prefix, identity).second)
         {
             return;
         }
-        _places.emplace(peer.m_guid.guidPrefix, PlaceOf(peer));
+        _places.emplace(prefix, newcomer.Place);
     }
     _peerGate.Run(
         [&]
@@ -251,6 +301,8 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
     std::shared_ptr<const ParticipantIdentity> identity;
     {
         const std::lock_guard lock(_mutex);
+        _unproven.erase(prefix);
+        _proven.erase(prefix);
         if (how == PeerEvent::Kind::Left)
         {
             _departed.push_back(prefix);

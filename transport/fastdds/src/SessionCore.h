@@ -21,6 +21,7 @@
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
+#include "common/PeerProof.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -65,6 +66,9 @@ private:
                            eprosima::fastrtps::rtps::ReaderDiscoveryInfo &&info) override;
     void onWriterDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
                            eprosima::fastrtps::rtps::WriterDiscoveryInfo &&info) override;
+    void onParticipantAuthentication(
+        eprosima::fastrtps::rtps::RTPSParticipant *participant,
+        eprosima::fastrtps::rtps::ParticipantAuthenticationInfo &&info) override;
     // The name, or "" where IdentityOf gives nullptr.
     std::string NodeOf(const GuidPrefix &prefix) const;
     // On a thread of the network, before and while the participant lives.
@@ -73,6 +77,12 @@ private:
     bool IsInGroup(const GuidPrefix &prefix) const;
     void NotePlace(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo &info);
     void PeerAppeared(const eprosima::fastrtps::rtps::ParticipantProxyData &peer);
+    struct Newcomer
+    {
+        std::shared_ptr<const ParticipantIdentity> Who;
+        PeerPlace Place;
+    };
+    void Admit(const GuidPrefix &prefix, const Newcomer &newcomer);
     void PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how);
 
     const std::shared_ptr<SessionLog> _log;
@@ -81,11 +91,15 @@ private:
     HandlerGate _announceGate;
     const PeerHandler _onPeer;
     const bool _multicast;
+    const PeerProof _proof;
     std::atomic<bool> _closed{false};
     mutable std::mutex _mutex;
     std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>
         _peers;                               // Rabit nodes; guarded by _mutex
     std::map<GuidPrefix, PeerPlace> _places;  // of those; guarded by _mutex
+    // Rabit nodes that have not shown yet who they are; guarded by _mutex
+    std::map<GuidPrefix, Newcomer> _unproven;
+    std::set<GuidPrefix> _proven;             // who has shown it; guarded by _mutex
     std::set<GuidPrefix> _inGroup;            // who listens to the group of discovery; guarded by _mutex
     std::deque<GuidPrefix> _departed;         // the last that said goodbye; guarded by _mutex
     const ParticipantNumber _number;

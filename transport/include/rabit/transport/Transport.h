@@ -43,6 +43,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -69,6 +70,23 @@ public:
 
 private:
     std::string _setting;
+};
+
+// DDS Security: the files that the vendors read, in PEM and S/MIME, and who somebody is by his certificate. The
+// program `rabit keys` makes them.
+struct TransportSecurity
+{
+    std::string IdentityAuthority;     // the certificate of who signs certificates
+    std::string PermissionsAuthority;  // the certificate of who signs the two documents below
+    std::string Certificate;           // of this node
+    std::string PrivateKey;            // of this node
+    std::string Revoked;               // a list of revoked certificates; empty: none
+    std::string Governance;
+    std::string Permissions;
+    // Whether a participant whose GUID begins with these bytes may call itself that node: they are bound to
+    // the subject of its certificate (OMG DDS Security 1.1, 9.3.3). One that may not is taken for a program
+    // that is no node. Called on any thread; must not throw. Empty: everybody may.
+    std::function<bool(std::string_view node, std::span<const std::uint8_t, 12> guidPrefix)> MayBe;
 };
 
 // Settings common to all backends.
@@ -106,6 +124,9 @@ struct TransportSettings
     std::chrono::milliseconds AnnouncementPeriod{10000};
     // A vendor's own configuration file, for the expert; empty: none.
     std::string BackendConfig;
+    // Set: only who has a certificate of the same authority is heard and answered, and may do what its
+    // permissions say. A backend without security throws TransportError.
+    std::optional<TransportSecurity> Security{};
     // Takes the session's log lines (handlers that threw, writes that failed, types that differ ...), without
     // a newline; called on any thread, must be quick and thread-safe. Not set: they go to standard error.
     std::function<void(const std::string &)> Log;

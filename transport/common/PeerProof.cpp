@@ -1,0 +1,21 @@
+#include "common/PeerProof.h"
+
+namespace Rabit
+{
+
+bool PeerProof::MayBe(const std::string &node, std::span<const std::uint8_t, PrefixSize> prefix) const
+{
+    if (!_security || !_security->MayBe || _security->MayBe(node, prefix))
+    {
+        return true;
+    }
+    _log->Impostor(node);
+    return false;
+}
+
+void PeerProof::Refused(const std::string &node) const
+{
+    _log->Stranger(node);
+}
+
+}  // namespace Rabit
