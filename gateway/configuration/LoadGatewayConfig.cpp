@@ -65,6 +65,25 @@ void ReadNetwork(const YamlMap &map, GatewayConfig &config)
     map.Read("state_dir", config.StateDir);
 }
 
+// A level's index in the list is its value.
+const std::vector<std::string> LevelNames = {"sign", "encrypt"};
+
+void ReadSecurity(const YamlMap &map, GatewayConfig &config)
+{
+    if (const auto security = map.Map("security", "the section `security`", {"keys", "level"}))
+    {
+        security->Require("keys");
+        SecuritySettings &settings = config.Security.emplace();
+        security->Read("keys", settings.Keys);
+        const int level = security->ReadChoice("level", LevelNames);
+        settings.Level = level < 0 ? settings.Level : static_cast<SecurityLevel>(level);
+        for (const auto &[key, line] : security->Lines())
+        {
+            config.Lines["security." + key] = line;
+        }
+    }
+}
+
 void ReadRadio(const YamlMap &map, GatewayConfig &config)
 {
     if (const auto radio = map.Map("radio", "the section `radio`", {"budget", "slowest_beat"}))
@@ -216,7 +235,7 @@ YamlMap OpenFile(const std::string &file)
             Parse(file, ReadFile(file)),
             "the configuration",
             {"node", "name", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram",
-             "shared_memory", "lease", "backend_config", "state_dir", "radio", "record", "publish",
+             "shared_memory", "lease", "backend_config", "state_dir", "security", "radio", "record", "publish",
              "subscribe", "accept", "send", "foreign", "foxglove"}};
 }
 
@@ -244,6 +263,7 @@ GatewayConfig LoadNetworkConfig(const std::string &file)
     config.File = file;
     ReadName(map, "any", config);  // which node it would be does not matter
     ReadNetwork(map, config);
+    ReadSecurity(map, config);
     ReadRadio(map, config);
     ReadPanels(map, config);
     ValidateGatewayConfig(config);
@@ -264,6 +284,7 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     config.File = file;
     ReadName(map, nodeOverride, config);
     ReadNetwork(map, config);
+    ReadSecurity(map, config);
     ReadRadio(map, config);
     ReadRecord(map, config);
     ReadPublish(map, config);

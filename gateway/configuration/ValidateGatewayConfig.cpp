@@ -118,6 +118,21 @@ private:
         }
         CheckNoneTwice(_config.Interfaces, "interfaces", LineOf("interfaces"));
         CheckNoneTwice(_config.Peers, "peers", LineOf("peers"));
+        CheckSecurity();
+    }
+
+    void CheckSecurity() const
+    {
+        constexpr int largestDomain = 230;  // that both vendors know with security
+        if (_config.Security && _config.Security->Keys.empty())
+        {
+            Fail(LineOf("security.keys"), "no folder of keys; expected `keys: <folder>`");
+        }
+        if (_config.Security && _config.Domain > largestDomain)
+        {
+            Fail(LineOf("domain"), "with security the domain must be 0 to " + std::to_string(largestDomain) +
+                                       ", not " + std::to_string(_config.Domain));
+        }
     }
 
     void CheckRadio() const

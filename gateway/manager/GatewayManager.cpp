@@ -16,6 +16,7 @@
 #include "incarnation/IncarnationStore.h"
 #include "manager/AirTraffic.h"
 #include "manager/Exploration.h"
+#include "manager/NodeSecurity.h"
 #include "manager/TransportSettingsOf.h"
 #include "manager/TypeExchange.h"
 #include "mirrors/StateExchange.h"
@@ -214,8 +215,9 @@ private:
 
     void OpenSession()
     {
-        _session = _transport->Open(TransportSettingsOf(_config, _incarnation),
-                                    [this](const PeerEvent &event) { _presence.OnPeer(event); });
+        TransportSettings settings = TransportSettingsOf(_config, _incarnation);
+        AddSecurity(_config, _transport->Name(), settings);
+        _session = _transport->Open(settings, [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
         if (_config.Tool)
         {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "manager/NodeSecurity.h"
+
 namespace Rabit
 {
 namespace
@@ -55,7 +57,16 @@ std::vector<std::string> CheckTransportSettings(const GatewayConfig &config, con
 {
     constexpr std::uint64_t AnyIncarnation = 1;
     std::vector<std::string> missing;
-    for (const SettingsProblem &problem : transport.Check(TransportSettingsOf(config, AnyIncarnation)))
+    TransportSettings settings = TransportSettingsOf(config, AnyIncarnation);
+    try
+    {
+        AddSecurity(config, transport.Name(), settings);
+    }
+    catch (const TransportError &error)
+    {
+        throw ConfigError(config.File, LineOfSetting(config, error.Setting()), error.what());
+    }
+    for (const SettingsProblem &problem : transport.Check(settings))
     {
         const ConfigError error(config.File, LineOfSetting(config, problem.Setting), problem.Text);
         if (problem.Impossible)

@@ -38,6 +38,7 @@ void AddMergeCommand(CLI::App &app, Chosen &chosen);
 void AddKnewCommand(CLI::App &app, Chosen &chosen);
 void AddCheckCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);
+void AddKeysCommand(CLI::App &app, Chosen &chosen);
 
 // For the shells: writes what the last word of a line can be, one a line; the line is without the program's
 // name. Looks into the network that the line names where that is wanted. Returns the exit code; may throw

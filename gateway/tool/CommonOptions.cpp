@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 
+#include "keys/NodeKeys.h"
+
 namespace Rabit::Tool
 {
 namespace
@@ -49,7 +51,7 @@ GatewayConfig ConfigOf(const CommonOptions &options)
     GatewayConfig config = LoadNetworkConfig(options.Node);
     if (options.Node.Node.empty())
     {
-        config.Node = OwnName();
+        config.Node = config.Security ? Keys::NodeKeys(config.Security->Keys).Subject().Node : OwnName();
     }
     if (!options.Interfaces.empty())
     {

@@ -40,6 +40,7 @@ int main(int argc, char **argv)
     AddKnewCommand(app, chosen);
     AddCheckCommand(app, chosen);
     AddDoctorCommand(app, chosen);
+    AddKeysCommand(app, chosen);
     // A line that is being written is none that can be parsed.
     const std::vector<std::string> words(argv + 1, argv + argc);
     const bool completes = words.size() > 1 && words[0] == "complete" && words[1] == "--";

@@ -16,6 +16,7 @@ SOURCES = {".h", ".hpp", ".c", ".cpp", ".cc"}
 # gateway/links is among them: "links" stands for its public headers.
 ROOMS = {
     "air": [],
+    "keys": [],
     "names": [],
     "clocks": [],
     "incarnation": ["links"],
@@ -27,7 +28,7 @@ ROOMS = {
     "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
     "foreign": ["names", "clocks", "mirrors", "queues"],
     "report": ["names", "wire", "presence", "mirrors", "queues"],
-    "manager": ["air", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "mirrors",
+    "manager": ["air", "keys", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "mirrors",
                 "queues", "foreign", "report"],
 }
 
@@ -59,6 +60,8 @@ OWNERS = [
     (r"fastcdr/", "Fast-CDR"),
     (r"dds/|ddsc/|idlc/|idl/", "Cyclone DDS"),
     (r"yaml-cpp/", "yaml-cpp"),
+    (r"openssl/", "OpenSSL"),
+    (r"tinyxml2\.h", "tinyxml2"),
     (r"zstd\.h", "zstd"),
     (r"CLI/", "CLI11"),
     (r"boost/asio|boost/beast", "network"),
@@ -87,13 +90,14 @@ ALLOWED = {
     "gateway/links": {"links"},
     **{f"gateway/{room}": {"core", "idl", "transport", "gateway", "gateway messages", f"room {room}"}
        | ({"yaml-cpp"} if room == "configuration" else set())
+       | ({"OpenSSL", "tinyxml2"} if room == "keys" else set())
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
     # Files alone: no network, no messages.
     "gateway/recording/mcap": {"room mcap", "zstd"},
     "gateway/recording/merge": {"room mcap", "room merge"},
     "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room recording"},
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
-                     "network", "guard", "CLI11", "room names", "room clocks", "room air", "room wire", "room manager", "room mcap",
+                     "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room manager", "room mcap",
                      "room recording", "room merge"},
     "gateway/node": {"core", "factory", "gateway", "node", "recording", "CLI11"},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to

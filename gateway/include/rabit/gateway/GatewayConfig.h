@@ -91,6 +91,20 @@ struct RadioSettings
 // Below this budget a node could not say in time that it is there and anything else; bytes a second.
 double SmallestBudget(std::chrono::milliseconds slowestBeat);
 
+// How much a fleet with keys is protected; all of it alike, or they do not hear each other.
+enum class SecurityLevel
+{
+    Sign,    // everybody can read what is said, nobody can forge it
+    Encrypt  // nor can it be read
+};
+
+// DDS Security: who has no keys of this fleet is neither heard nor answered (keys/README.md).
+struct SecuritySettings
+{
+    std::string Keys;  // the node's folder, which `rabit keys add` made
+    SecurityLevel Level = SecurityLevel::Encrypt;
+};
+
 // A node that looks, asks and sends, and on which nobody counts, as the program `rabit`: it publishes and
 // accepts nothing, the others do not list it, and keep nothing of it once it has gone. README.md (A tool is
 // no node of the fleet) says what exactly holds.
@@ -152,6 +166,9 @@ struct GatewayConfig
     std::chrono::milliseconds Lease{30000};
     std::string BackendConfig;
 
+    // Set: with keys. Not set: whoever reaches the network takes part.
+    std::optional<SecuritySettings> Security{};
+
     RadioSettings Radio;
 
     // Folder of the incarnation counter; empty: none, the wall clock numbers the lives of this node.
@@ -173,7 +190,7 @@ struct GatewayConfig
     std::optional<ToolSettings> Tool{};
 
     // For error messages: the file it came from and the line of each of its top-level keys, and of those of
-    // the sections `radio` and `record` (`radio.budget`); empty: made in code.
+    // the sections `security`, `radio` and `record` (`radio.budget`); empty: made in code.
     std::string File;
     std::map<std::string, int> Lines;
 };

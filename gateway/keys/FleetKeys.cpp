@@ -1,0 +1,359 @@
+#include "keys/FleetKeys.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "keys/KeyFiles.h"
+#include "keys/KeysError.h"
+#include "keys/SignedDocument.h"
+
+namespace Rabit::Keys
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+constexpr const char *AuthorityFolder = "authority";
+constexpr const char *IssuedFolder = "issued";
+constexpr const char *RevokedFile = "revoked.pem";
+constexpr std::time_t Day = 24 * 60 * 60;
+constexpr std::size_t LongestName = 64;  // of X.509
+
+// Letters, digits, `_`, `.`, `-`, and no hidden folder.
+bool IsFolderName(const std::string &name)
+{
+    const auto isGood = [](char c)
+    {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+               c == '.' || c == '-';
+    };
+    return !name.empty() && name.size() <= LongestName && name.front() != '.' &&
+           std::all_of(name.begin(), name.end(), isGood);
+}
+
+void CheckName(const std::string &node)
+{
+    if (!IsFolderName(node) || node == AuthorityFolder)
+    {
+        throw KeysError("`" + node +
+                        "` cannot be the name of a node with keys; expected 1 to 64 of A-Z a-z 0-9 _ . -, no "
+                        "dot in front, and not `authority`");
+    }
+}
+
+// A day back, for clocks that are slow.
+Validity ValidityFrom(const FleetKeys::Period &period)
+{
+    return {period.Now - Day, period.Now + period.Days * Day};
+}
+
+void MoveTo(const std::string &from, const std::string &to)
+{
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error)
+    {
+        throw KeysError("cannot rename " + from + " to " + to + ": " + error.message());
+    }
+}
+
+int LockOf(const std::string &folder)
+{
+    const int lock = ::open((folder + "/" + AuthorityFolder).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock < 0)
+    {
+        throw KeysError("there are no authorities of a fleet in " + folder + "; `rabit keys init " + folder +
+                        "` makes them");
+    }
+    if (::flock(lock, LOCK_EX | LOCK_NB) != 0)
+    {
+        ::close(lock);
+        throw KeysError("somebody else is changing the keys in " + folder + " now");
+    }
+    return lock;
+}
+
+}  // namespace
+
+void FleetKeys::Init(const std::string &folder, const std::string &fleet, const Period &period)
+{
+    if (!IsFolderName(fleet))
+    {
+        throw KeysError("`" + fleet +
+                        "` cannot be the name of a fleet; expected 1 to 64 of A-Z a-z 0-9 _ . -, no dot in "
+                        "front");
+    }
+    if (!fs::exists(folder))
+    {
+        MakeSecretFolder(folder);
+    }
+    if (IsFleet(folder))
+    {
+        throw KeysError(folder + " has the authorities of a fleet already: nothing is changed");
+    }
+    const std::string made = folder + "/.authority.new";
+    std::error_code ignored;
+    fs::remove_all(made, ignored);
+    MakeSecretFolder(made);
+    MakeSecretFolder(made + "/" + IssuedFolder);
+    for (const std::string name : {"identity", "permissions"})
+    {
+        const KeyPtr key = MakeKey();
+        const CertificatePtr certificate =
+            MakeAuthority(fleet, name + " authority", *key, ValidityFrom(period));
+        WriteSecret(made + "/" + name + "_key.pem", PemOf(*key));
+        WriteFile(made + "/" + name + ".pem", PemOf(*certificate));
+        if (name == "identity")
+        {
+            WriteFile(made + "/" + RevokedFile,
+                      PemOf(*MakeRevocations(nullptr, {}, *certificate, *key, period.Now)));
+        }
+    }
+    MoveTo(made, folder + "/" + AuthorityFolder);
+}
+
+bool FleetKeys::IsFleet(const std::string &folder)
+{
+    return fs::is_directory(folder + "/" + AuthorityFolder);
+}
+
+FleetKeys::FleetKeys(const std::string &folder) : _folder(folder), _lock(LockOf(folder))
+{
+    try
+    {
+        const CertificatePtr identity = Authority("identity");
+        _fleet = FleetOf(*identity);
+        _validity = ValidityOf(*identity);
+    }
+    catch (...)
+    {
+        ::close(_lock);
+        throw;
+    }
+}
+
+FleetKeys::~FleetKeys()
+{
+    ::close(_lock);
+}
+
+CertificatePtr FleetKeys::Authority(const char *name) const
+{
+    const std::string file = Place(std::string(name) + ".pem");
+    return ReadCertificate(ReadFile(file), file);
+}
+
+KeyPtr FleetKeys::AuthorityKey(const char *name) const
+{
+    const std::string file = Place(std::string(name) + "_key.pem");
+    return ReadKey(ReadSecret(file), file);
+}
+
+std::vector<std::string> FleetKeys::Nodes() const
+{
+    std::vector<std::string> nodes;
+    for (const auto &entry : fs::directory_iterator(_folder))
+    {
+        const std::string name = entry.path().filename().string();
+        if (entry.is_directory() && name != AuthorityFolder && IsFolderName(name) &&
+            fs::exists(NodeFiles(entry.path().string()).Certificate))
+        {
+            nodes.push_back(name);
+        }
+    }
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+}
+
+FleetKeys::Request FleetKeys::RequestOf(const std::string &node) const
+{
+    CheckName(node);
+    const NodeKeys keys(FolderOf(node));
+    Request request{.Node = node,
+                    .Transport = HasSmallGuid(keys.Subject()) ? "cyclonedds" : "fastdds",
+                    .Access = {}};
+    for (const Permissions::Rule &rule : keys.Permissions().Rules)
+    {
+        const bool isPlain = rule.Allows && rule.Domains.size() == 1 &&
+                             rule.Domains.front().first == rule.Domains.front().second;
+        if (!isPlain || keys.Permissions().Rules.size() != 1)
+        {
+            throw KeysError(keys.Files().Permissions +
+                            " was written by hand; name the node's configuration with --config");
+        }
+        request.Access = {rule.Domains.front().first, rule.Publish, rule.Subscribe};
+    }
+    return request;
+}
+
+std::vector<std::string> FleetKeys::Issued(const std::string &node) const
+{
+    std::vector<std::string> files;
+    for (const auto &entry : fs::directory_iterator(Place(IssuedFolder)))
+    {
+        // `uav1.7.pem`
+        if (entry.path().extension() == ".pem" && entry.path().stem().stem().string() == node)
+        {
+            files.push_back(entry.path().string());
+        }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+// Never one that the node had: old permissions are for an old subject.
+unsigned FleetKeys::NextNumber(const Request &request) const
+{
+    SubjectName subject{.Fleet = _fleet, .Number = 0, .Node = request.Node};
+    for (const std::string &file : Issued(request.Node))
+    {
+        subject.Number =
+            std::max(subject.Number, SubjectOf(*ReadCertificate(ReadFile(file), file)).Number + 1);
+    }
+    while (subject.Number <= SubjectName::LargestNumber &&
+           HasSmallGuid(subject) != WantsSmallGuid(request.Transport))
+    {
+        ++subject.Number;
+    }
+    if (subject.Number > SubjectName::LargestNumber)
+    {
+        throw KeysError("too many certificates were made for " + request.Node +
+                        "; give it another name, or make a new fleet");
+    }
+    return subject.Number;
+}
+
+void FleetKeys::Make(const std::string &folder, const Request &request, const Period &period) const
+{
+    if (request.Access.Domain > LargestDomain)
+    {
+        throw KeysError("keys are for the domains 0 to " + std::to_string(LargestDomain) + ", not for " +
+                        std::to_string(request.Access.Domain));
+    }
+    const Validity validity = ValidityFrom(period);
+    if (validity.To > _validity.To)
+    {
+        throw KeysError("the fleet's own certificates end on " + DayText(_validity.To) +
+                        ", before those that are asked for; ask for fewer days, or make a new fleet");
+    }
+    const CertificatePtr identity = Authority("identity");
+    const CertificatePtr permissions = Authority("permissions");
+    const KeyPtr permissionsKey = AuthorityKey("permissions");
+    const SubjectName subject{.Fleet = _fleet, .Number = NextNumber(request), .Node = request.Node};
+    const KeyPtr key = MakeKey();
+    const CertificatePtr certificate =
+        MakeCertificate(subject, *key, validity, *identity, *AuthorityKey("identity"));
+
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    MakeSecretFolder(folder);
+    const NodeFiles files(folder);
+    WriteFile(files.IdentityAuthority, PemOf(*identity));
+    WriteFile(files.PermissionsAuthority, PemOf(*permissions));
+    WriteSecret(files.PrivateKey, PemOf(*key));
+    WriteFile(files.Certificate, PemOf(*certificate));
+    WriteFile(files.Revoked, ReadFile(Place(RevokedFile)));
+    for (const Level level : {Level::Sign, Level::Encrypt})
+    {
+        WriteFile(files.Governance(level),
+                  SignDocument(GovernanceText(level), *permissions, *permissionsKey));
+    }
+    WriteFile(files.Permissions, SignDocument(PermissionsText(subject, validity, request.Access),
+                                              *permissions, *permissionsKey));
+    WriteFile(Place(std::string(IssuedFolder) + "/" + request.Node + "." + std::to_string(subject.Number) +
+                    ".pem"),
+              PemOf(*certificate));
+}
+
+void FleetKeys::Add(const Request &request, const Period &period) const
+{
+    CheckName(request.Node);
+    const std::string folder = FolderOf(request.Node);
+    if (fs::exists(folder))
+    {
+        throw KeysError(folder + " is there already: nothing is changed; `rabit keys renew` makes new ones");
+    }
+    const std::string made = _folder + "/." + request.Node + ".new";
+    Make(made, request, period);
+    MoveTo(made, folder);
+}
+
+void FleetKeys::Renew(const Request &request, const Period &period) const
+{
+    CheckName(request.Node);
+    const std::string folder = FolderOf(request.Node);
+    if (!fs::exists(folder))
+    {
+        throw KeysError("there is no folder " + folder + "; `rabit keys add` makes one");
+    }
+    const std::string made = _folder + "/." + request.Node + ".new";
+    const std::string old = _folder + "/." + request.Node + ".old";
+    Make(made, request, period);
+    std::error_code ignored;
+    fs::remove_all(old, ignored);
+    MoveTo(folder, old);
+    MoveTo(made, folder);
+    fs::remove_all(old, ignored);
+}
+
+std::size_t FleetKeys::RevokeFiles(const std::vector<std::string> &files, std::time_t now) const
+{
+    const std::string place = Place(RevokedFile);
+    const RevocationsPtr before = ReadRevocations(ReadFile(place), place);
+    std::vector<CertificatePtr> certificates;
+    std::vector<const X509 *> revoked;
+    for (const std::string &file : files)
+    {
+        CertificatePtr certificate = ReadCertificate(ReadFile(file), file);
+        if (!IsRevoked(*before, *certificate))
+        {
+            revoked.push_back(certificate.get());
+            certificates.push_back(std::move(certificate));
+        }
+    }
+    const std::string text =
+        PemOf(*MakeRevocations(before.get(), revoked, *Authority("identity"), *AuthorityKey("identity"), now));
+    WriteFile(place, text);
+    for (const std::string &node : Nodes())
+    {
+        WriteFile(NodeFiles(FolderOf(node)).Revoked, text);
+    }
+    return revoked.size();
+}
+
+std::size_t FleetKeys::RevokeOlder(const std::string &node, std::time_t now) const
+{
+    CheckName(node);
+    const std::string file = NodeFiles(FolderOf(node)).Certificate;
+    const unsigned current = SubjectOf(*ReadCertificate(ReadFile(file), file)).Number;
+    std::vector<std::string> files = Issued(node);
+    std::erase_if(files,
+                  [&](const std::string &one)
+                  { return SubjectOf(*ReadCertificate(ReadFile(one), one)).Number == current; });
+    return RevokeFiles(files, now);
+}
+
+std::size_t FleetKeys::Revoke(const std::string &node, std::time_t now) const
+{
+    CheckName(node);
+    const std::vector<std::string> files = Issued(node);
+    if (files.empty())
+    {
+        throw KeysError("no certificate was ever made for " + node + " in " + _folder);
+    }
+    const std::size_t count = RevokeFiles(files, now);
+    std::error_code error;
+    fs::remove_all(FolderOf(node), error);
+    if (error)
+    {
+        throw KeysError(node + " is revoked, and its folder cannot be removed: " + error.message());
+    }
+    return count;
+}
+
+}  // namespace Rabit::Keys

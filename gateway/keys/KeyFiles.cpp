@@ -1,0 +1,165 @@
+#include "keys/KeyFiles.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "keys/KeysError.h"
+
+namespace Rabit::Keys
+{
+namespace
+{
+
+constexpr std::size_t LargestFile = 1u << 20;
+constexpr mode_t OwnerOnly = 0600;
+constexpr mode_t ForAll = 0644;
+constexpr mode_t OfOthers = 077;
+
+std::string Reason()
+{
+    return std::generic_category().message(errno);
+}
+
+class Descriptor
+{
+public:
+    Descriptor(const std::string &file, int flags, mode_t mode, const char *what)
+        : _number(::open(file.c_str(), flags | O_CLOEXEC, mode))
+    {
+        if (_number < 0)
+        {
+            throw KeysError("cannot " + std::string(what) + " " + file + ": " + Reason());
+        }
+    }
+    ~Descriptor() { ::close(_number); }
+    Descriptor(const Descriptor &) = delete;
+    Descriptor &operator=(const Descriptor &) = delete;
+    int Get() const { return _number; }
+
+private:
+    const int _number;
+};
+
+std::string ModeText(mode_t mode)
+{
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), "%03o", static_cast<unsigned>(mode & 0777));
+    return text.data();
+}
+
+std::string Read(const std::string &file, bool secret)
+{
+    const Descriptor descriptor(file, O_RDONLY, 0, "read");
+    struct stat status = {};
+    if (::fstat(descriptor.Get(), &status) != 0 || !S_ISREG(status.st_mode))
+    {
+        throw KeysError(file + " is no file");
+    }
+    if (secret && (status.st_mode & OfOthers) != 0)
+    {
+        throw KeysError(file + " is not for its owner alone (mode " + ModeText(status.st_mode) +
+                        "): others may have read it. Make new keys, or `chmod 600` if you are sure");
+    }
+    std::string text;
+    std::array<char, 4096> part{};
+    for (;;)
+    {
+        const ssize_t got = ::read(descriptor.Get(), part.data(), part.size());
+        if (got < 0 && errno == EINTR)
+        {
+            continue;
+        }
+        if (got < 0)
+        {
+            throw KeysError("cannot read " + file + ": " + Reason());
+        }
+        if (got == 0)
+        {
+            return text;
+        }
+        text.append(part.data(), static_cast<std::size_t>(got));
+        if (text.size() > LargestFile)
+        {
+            throw KeysError(file + " is larger than 1 MiB");
+        }
+    }
+}
+
+void WriteAll(const Descriptor &descriptor, const std::string &file, std::string_view text)
+{
+    while (!text.empty())
+    {
+        const ssize_t written = ::write(descriptor.Get(), text.data(), text.size());
+        if (written < 0 && errno != EINTR)
+        {
+            throw KeysError("cannot write " + file + ": " + Reason());
+        }
+        text.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+    }
+    if (::fsync(descriptor.Get()) != 0)
+    {
+        throw KeysError("cannot write " + file + ": " + Reason());
+    }
+}
+
+void Write(const std::string &file, std::string_view text, mode_t mode)
+{
+    const std::string temporary = file + ".new";
+    ::unlink(temporary.c_str());
+    try
+    {
+        {
+            const Descriptor descriptor(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, mode, "write");
+            WriteAll(descriptor, file, text);
+        }
+        if (::rename(temporary.c_str(), file.c_str()) != 0)
+        {
+            throw KeysError("cannot write " + file + ": " + Reason());
+        }
+    }
+    catch (const KeysError &)
+    {
+        ::unlink(temporary.c_str());
+        throw;
+    }
+}
+
+}  // namespace
+
+std::string ReadFile(const std::string &file)
+{
+    return Read(file, false);
+}
+
+std::string ReadSecret(const std::string &file)
+{
+    return Read(file, true);
+}
+
+void WriteSecret(const std::string &file, std::string_view text)
+{
+    Write(file, text, OwnerOnly);
+}
+
+void WriteFile(const std::string &file, std::string_view text)
+{
+    Write(file, text, ForAll);
+}
+
+void MakeSecretFolder(const std::string &folder)
+{
+    constexpr mode_t ownerOnly = 0700;
+    if (::mkdir(folder.c_str(), ownerOnly) != 0)
+    {
+        throw KeysError("cannot make the folder " + folder + ": " + Reason());
+    }
+}
+
+}  // namespace Rabit::Keys

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "keys/Access.h"
+#include "keys/Governance.h"
+#include "keys/Permissions.h"
+
+namespace Rabit::Keys
+{
+
+// The names of the files in a node's folder.
+struct NodeFiles
+{
+    explicit NodeFiles(const std::string &folder);
+
+    const std::string &Governance(Level level) const
+    {
+        return level == Level::Sign ? GovernanceSign : GovernanceEncrypt;
+    }
+
+    std::string IdentityAuthority;
+    std::string PermissionsAuthority;
+    std::string Certificate;
+    std::string PrivateKey;
+    std::string Revoked;
+    std::string GovernanceSign;
+    std::string GovernanceEncrypt;
+    std::string Permissions;
+};
+
+// The folder of a node, checked as far as this host can: each file is there and is what it should be, they
+// belong together, and the private key is its owner's alone.
+class NodeKeys
+{
+public:
+    // Throws KeysError.
+    explicit NodeKeys(const std::string &folder);
+
+    const NodeFiles &Files() const { return _files; }
+    const SubjectName &Subject() const { return _subject; }
+    const Validity &ValidityOf() const { return _validity; }
+    const Rabit::Keys::Permissions &Permissions() const { return _permissions; }
+
+    // Why a node cannot use them as it is now, one line for people; empty if it can.
+    std::string WhyNot(const std::string &node, const std::string &transport, int domain,
+                       std::time_t now) const;
+    // What of that the permissions do not allow, each `write Pose` or `read Pose`.
+    std::vector<std::string> Lacks(const Access &access) const;
+
+private:
+    NodeFiles _files;
+    SubjectName _subject;
+    Validity _validity;
+    bool _isRevoked = false;
+    Rabit::Keys::Permissions _permissions;
+};
+
+}  // namespace Rabit::Keys

@@ -1,0 +1,370 @@
+// rabit keys: makes the keys, certificates and permissions of a fleet, and tells what is wrong with them.
+#include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "Output.h"
+#include "SafeText.h"
+#include "keys/FleetKeys.h"
+#include "keys/KeysCheck.h"
+#include "keys/KeysError.h"
+#include "manager/NodeSecurity.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+struct Options
+{
+    std::string Folder = "keys";
+    std::string FleetName = "fleet";
+    std::string Node;
+    std::vector<std::string> Nodes;
+    std::string Config;
+    std::vector<std::string> Configs;
+    std::string Transport;
+    int Domain = 0;
+    int Days = 365;
+    int Ahead = 30;
+    bool ForTool = false;
+    bool RevokeOld = false;
+    bool Json = false;
+};
+
+Keys::FleetKeys::Period PeriodOf(const Options &options)
+{
+    return {std::time(nullptr), options.Days};
+}
+
+GatewayConfig ConfigFor(const std::string &file, const std::string &node)
+{
+    // Whether there are such types does not matter to keys.
+    return LoadGatewayConfig(file, node, [](const std::string &) { return std::string(); });
+}
+
+Keys::FleetKeys::Request RequestFrom(const GatewayConfig &config)
+{
+    return {.Node = config.Node, .Transport = config.Transport, .Access = AccessOf(config)};
+}
+
+Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &node)
+{
+    GatewayConfig config;
+    if (!options.Config.empty())
+    {
+        config = ConfigFor(options.Config, node);
+    }
+    else
+    {
+        config.Node = node;
+        config.Domain = options.Domain;
+        config.Tool.emplace();
+    }
+    if (!options.Transport.empty())
+    {
+        config.Transport = options.Transport;
+    }
+    ValidateTransportName(config, AvailableTransports(), KnownTransports());
+    return RequestFrom(config);
+}
+
+// What was made, and who may now do what.
+void ShowMade(const Keys::FleetKeys &fleet, const std::string &node)
+{
+    const std::string folder = fleet.FolderOf(node);
+    const Keys::NodeKeys keys(folder);
+    Output::Line(folder + ": valid until " + Keys::DayText(keys.ValidityOf().To));
+    for (const std::string &line : Keys::WhoMayWhat(keys))
+    {
+        Output::Line("  " + SafeText(line));
+    }
+    Output::Talk("copy the folder to " + node +
+                 " by a way that nobody else can read, and write into its configuration:\n    security: "
+                 "{keys: <the folder there>}");
+}
+
+int Init(const Options &options)
+{
+    Keys::FleetKeys::Init(options.Folder, options.FleetName, PeriodOf(options));
+    const Keys::FleetKeys fleet(options.Folder);
+    Output::Line(options.Folder + ": fleet `" + fleet.Fleet() + "`, valid until " +
+                 Keys::DayText(fleet.EndsAt()));
+    Output::Talk("keep " + options.Folder +
+                 "/authority where no node and no network reaches it: who has it can make keys for anybody");
+    return Good;
+}
+
+int Add(const Options &options)
+{
+    const Keys::FleetKeys fleet(options.Folder);
+    fleet.Add(RequestOf(options, options.Node), PeriodOf(options));
+    ShowMade(fleet, options.Node);
+    return Good;
+}
+
+int Renew(const Options &options)
+{
+    const Keys::FleetKeys fleet(options.Folder);
+    for (const std::string &node : options.Nodes)
+    {
+        Keys::FleetKeys::Request request =
+            options.Config.empty() ? fleet.RequestOf(node) : RequestOf(options, node);
+        if (!options.Transport.empty())
+        {
+            request.Transport = options.Transport;
+        }
+        fleet.Renew(request, PeriodOf(options));
+        ShowMade(fleet, node);
+        if (options.RevokeOld)
+        {
+            const std::size_t count = fleet.RevokeOlder(node, std::time(nullptr));
+            Output::Talk(std::to_string(count) + " older certificates of " + node +
+                         " are revoked: copy revoked.pem to all nodes, and start them again");
+        }
+    }
+    return Good;
+}
+
+int Revoke(const Options &options)
+{
+    const Keys::FleetKeys fleet(options.Folder);
+    const std::size_t count = fleet.Revoke(options.Node, std::time(nullptr));
+    Output::Line(options.Node + ": " + std::to_string(count) + " certificates are revoked");
+    Output::Talk("every node goes on to believe " + options.Node +
+                 " until it has the new revoked.pem and is started again; it is in these folders:");
+    for (const std::string &node : fleet.Nodes())
+    {
+        Output::Talk("    " + fleet.FolderOf(node));
+    }
+    return Good;
+}
+
+std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const GatewayConfig *config, int ahead)
+{
+    std::vector<Keys::KeysFinding> findings = Keys::WhatEnds(keys, std::time(nullptr), ahead);
+    const auto tooMuch = Keys::WhatIsTooMuch(keys);
+    findings.insert(findings.end(), tooMuch.begin(), tooMuch.end());
+    if (config == nullptr)
+    {
+        return findings;
+    }
+    const Keys::Validity &validity = keys.ValidityOf();
+    const std::time_t then = std::clamp(std::time(nullptr), validity.From, validity.To);
+    if (const std::string why = keys.WhyNot(config->Node, config->Transport, config->Domain, then);
+        !why.empty())
+    {
+        findings.push_back({true, why});
+    }
+    const Keys::Access needs = AccessOf(*config);
+    for (const std::string &one : keys.Lacks(needs))
+    {
+        findings.push_back({true, "may not " + one + ", which " + config->File + " wants; renew it"});
+    }
+    const auto isNeeded = [](const std::vector<Keys::TopicAccess> &list, const Keys::TopicAccess &one)
+    { return std::find(list.begin(), list.end(), one) != list.end(); };
+    for (const Keys::Permissions::Rule &rule : keys.Permissions().Rules)
+    {
+        for (const Keys::TopicAccess &one : rule.Publish)
+        {
+            if (rule.Allows && !isNeeded(needs.Publish, one))
+            {
+                findings.push_back({true, "may write " + one.Topic + ", which " + config->File +
+                                              " does not want; renew it"});
+            }
+        }
+        for (const Keys::TopicAccess &one : rule.Subscribe)
+        {
+            if (rule.Allows && !isNeeded(needs.Subscribe, one))
+            {
+                findings.push_back({false, "may read " + one.Topic + " otherwise than " + config->File +
+                                               " wants"});
+            }
+        }
+    }
+    return findings;
+}
+
+// Of one node's folder; whether it is good.
+bool Check(const std::string &folder, const std::map<std::string, GatewayConfig> &configs,
+           const Options &options)
+{
+    std::string name = std::filesystem::path(folder).filename().string();
+    std::vector<Keys::KeysFinding> findings;
+    std::vector<std::string> words;
+    std::string until;
+    try
+    {
+        const Keys::NodeKeys keys(folder);
+        name = keys.Subject().Node;
+        until = Keys::DayText(keys.ValidityOf().To);
+        words = Keys::WhoMayWhat(keys);
+        const auto config = configs.find(name);
+        findings = FindingsOf(keys, config == configs.end() ? nullptr : &config->second, options.Ahead);
+    }
+    catch (const Keys::KeysError &error)
+    {
+        findings.push_back({true, error.what()});
+    }
+    const bool isGood = std::none_of(findings.begin(), findings.end(),
+                                     [](const Keys::KeysFinding &finding) { return finding.IsProblem; });
+    if (options.Json)
+    {
+        Json problems = Json::array();
+        Json notes = Json::array();
+        for (const Keys::KeysFinding &finding : findings)
+        {
+            (finding.IsProblem ? problems : notes).push_back(finding.Text);
+        }
+        Output::Object(Json{{"node", name},
+                            {"folder", folder},
+                            {"until", until},
+                            {"may", words},
+                            {"problems", problems},
+                            {"notes", notes}});
+        return isGood;
+    }
+    Output::Line(SafeText(name) + (until.empty() ? "" : ": valid until " + until));
+    for (const std::string &line : words)
+    {
+        Output::Line("  " + SafeText(line));
+    }
+    for (const Keys::KeysFinding &finding : findings)
+    {
+        Output::Line((finding.IsProblem ? "  problem: " : "  note: ") + SafeText(finding.Text));
+    }
+    return isGood;
+}
+
+int CheckAll(const Options &options)
+{
+    std::map<std::string, GatewayConfig> configs;
+    for (const std::string &file : options.Configs)
+    {
+        GatewayConfig config = ConfigFor(file, "");
+        const std::string node = config.Node;
+        configs.insert_or_assign(node, std::move(config));
+    }
+    if (!Keys::FleetKeys::IsFleet(options.Folder))
+    {
+        return Check(options.Folder, configs, options) ? Good : ProblemFound;
+    }
+    const Keys::FleetKeys fleet(options.Folder);
+    bool isGood = true;
+    for (const std::string &node : fleet.Nodes())
+    {
+        isGood = Check(fleet.FolderOf(node), configs, options) && isGood;
+    }
+    for (const auto &[node, config] : configs)
+    {
+        if (!std::filesystem::exists(fleet.FolderOf(node)))
+        {
+            Output::Talk(node + " has no keys; `rabit keys add " + node + " --config " + config.File + "`");
+            isGood = false;
+        }
+    }
+    return isGood ? Good : ProblemFound;
+}
+
+CLI::Option *AddFolder(CLI::App &command, Options &options)
+{
+    return command.add_option("--keys", options.Folder, "The fleet's folder")->capture_default_str();
+}
+
+void AddDays(CLI::App &command, Options &options, int days)
+{
+    constexpr int longest = 36500;
+    options.Days = days;
+    command.add_option("--days", options.Days, "How long they are valid")
+        ->check(CLI::Range(1, longest))
+        ->capture_default_str();
+}
+
+using Command = int (*)(const Options &);
+
+std::shared_ptr<Options> AddCommand(CLI::App &keys, const char *name, const char *help, Command run,
+                                    Chosen &chosen, CLI::App *&command)
+{
+    auto options = std::make_shared<Options>();
+    command = keys.add_subcommand(name, help);
+    command->callback([options, run, &chosen] { chosen.Run = [=](Wakeup &) { return run(*options); }; });
+    return options;
+}
+
+}  // namespace
+
+void AddKeysCommand(CLI::App &app, Chosen &chosen)
+{
+    CLI::App *keys = app.add_subcommand("keys", "Keys, certificates and permissions of a fleet");
+    keys->require_subcommand(1);
+    CLI::App *command = nullptr;
+
+    auto init = AddCommand(*keys, "init", "Makes the two authorities of a new fleet", &Init, chosen, command);
+    command->add_option("FOLDER", init->Folder, "Where to")->capture_default_str();
+    command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
+    AddDays(*command, *init, 3650);
+
+    auto add = AddCommand(*keys, "add", "Makes a node's key, certificate and permissions", &Add, chosen,
+                          command);
+    command->add_option("NODE", add->Node, "Name of the node")->required();
+    AddFolder(*command, *add);
+    CLI::Option *config = command->add_option("--config", add->Config,
+                                              "The node's configuration: what it needs is what it may do");
+    config->check(CLI::ExistingFile);
+    CLI::Option *tool = command->add_flag("--tool", add->ForTool,
+                                          "For this program: it may read everything, and publishes nothing");
+    config->excludes(tool);
+    command->add_option("--domain", add->Domain, "DDS domain of a tool")
+        ->check(CLI::Range(0, Keys::LargestDomain))
+        ->needs(tool);
+    command->add_option("--transport", add->Transport, "DDS implementation, in place of the file's");
+    AddDays(*command, *add, 365);
+    command->callback(
+        [add, &chosen]
+        {
+            if (add->Config.empty() && !add->ForTool)
+            {
+                throw CLI::RequiredError("--config or --tool");
+            }
+            chosen.Run = [add](Wakeup &) { return Add(*add); };
+        });
+
+    auto check = AddCommand(*keys, "check", "What is wrong with keys, and who may do what", &CheckAll, chosen,
+                            command);
+    command->add_option("FOLDER", check->Folder, "The fleet's folder, or one node's")->capture_default_str();
+    command->add_option("--config", check->Configs, "Configurations of nodes, to compare with")
+        ->check(CLI::ExistingFile);
+    command->add_option("--ahead", check->Ahead, "Days before the end from which on it is a problem")
+        ->check(CLI::Range(0, 3650))
+        ->capture_default_str();
+    command->add_flag("--json", check->Json, "One JSON object a line");
+
+    auto renew = AddCommand(*keys, "renew", "Makes new ones in place of those that nodes have", &Renew, chosen,
+                            command);
+    command->add_option("NODE", renew->Nodes, "Names of the nodes")->required();
+    AddFolder(*command, *renew);
+    command->add_option("--config", renew->Config, "The node's configuration, if it has changed")
+        ->check(CLI::ExistingFile);
+    command->add_option("--transport", renew->Transport, "DDS implementation, if it has changed");
+    command->add_flag("--revoke-old", renew->RevokeOld, "The older ones are not to be believed any more");
+    AddDays(*command, *renew, 365);
+
+    auto revoke = AddCommand(*keys, "revoke", "A node is not to be believed any more", &Revoke, chosen,
+                             command);
+    command->add_option("NODE", revoke->Node, "Name of the node")->required();
+    AddFolder(*command, *revoke);
+}
+
+}  // namespace Rabit::Tool
