@@ -92,8 +92,8 @@ void ShowMade(const Keys::FleetKeys &fleet, const std::string &node)
         Output::Line("  " + SafeText(line));
     }
     Output::Talk("copy the folder to " + node +
-                 " by a way that nobody else can read, and write into its configuration:\n    security: "
-                 "{keys: <the folder there>}");
+                 " by a way that nobody else can read, and write `security: {keys: <the folder there>}` into "
+                 "its configuration");
 }
 
 int Init(const Options &options)

@@ -22,6 +22,22 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
     app.add_option("--interface", config.Interfaces);
     app.add_option("--peer", config.Peers, "Address of another node, for unicast discovery");
     app.add_flag("!--no-multicast", config.Multicast);
+    app.add_option_function<std::string>(
+        "--keys",
+        [&config](const std::string &folder)
+        {
+            config.Security = config.Security.value_or(Rabit::SecuritySettings());
+            config.Security->Keys = folder;
+        },
+        "Folder of the node's keys");
+    app.add_flag_function(
+        "--sign",
+        [&config](std::int64_t)
+        {
+            config.Security = config.Security.value_or(Rabit::SecuritySettings());
+            config.Security->Level = Rabit::SecurityLevel::Sign;
+        },
+        "With keys, only sign");
     app.add_option("--budget", config.Radio.Budget, "Bytes a second that the node may put on the air");
     app.add_option("--slowest-beat", config.Radio.SlowestBeat, "Milliseconds");
 }

@@ -156,6 +156,13 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
 {
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
+    if (settings.Security && _id != static_cast<dds_domainid_t>(settings.Domain))
+    {
+        Numbers::Give(_id);
+        throw TransportError("with security, Cyclone DDS can be in domain " +
+                                 std::to_string(settings.Domain) + " only once in a process",
+                             "security");
+    }
     VendorLog::Follow(_id, log);
     dds_entity_t entity = 0;
     std::string said;

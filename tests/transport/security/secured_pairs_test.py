@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Fresh fleets with keys, in every pair of backends: the keys are made by the program `rabit`, and two nodes exchange
+telemetry, a state of 4 MB and queue messages, at either level.
+
+Usage: secured_pairs_test.py RABIT NODE FLEETS TRANSPORT...
+FLEETS: how many fresh fleets for each pair and level."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "integration"))
+import harness  # noqa: E402
+
+# Only keeps a broken test from hanging.
+LIMIT_S = 90
+ORDERS = 100
+
+CONFIG = """node: {name}
+domain: {domain}
+transport: {transport}
+publish:
+  - {{message: Counter, type: Interop::Counter, qos: telemetry}}
+  - {{message: Frame, type: Interop::Frame}}
+subscribe:
+  - {{message: Counter, type: Interop::Counter}}
+  - {{message: Frame, type: Interop::Frame}}
+accept:
+  - {{queue: Orders, types: [Interop::Order]}}
+"""
+
+
+def run(argv):
+    done = subprocess.run([str(a) for a in argv], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise AssertionError(f"{argv}: {done.stdout}{done.stderr}")
+
+
+def make_keys(rabit, folder, nodes, domain):
+    """A new fleet; `nodes` are pairs of name and transport."""
+    run([rabit, "keys", "init", folder / "keys"])
+    for name, transport in nodes:
+        config = folder / f"{name}.yaml"
+        config.write_text(CONFIG.format(name=name, transport=transport, domain=domain))
+        run([rabit, "keys", "add", name, "--keys", folder / "keys", "--config", config])
+
+
+class Fleet:
+    """Two nodes of a fleet of their own."""
+
+    def __init__(self, rabit, node, transports, level, domain):
+        self.rabit, self.node, self.transports, self.level, self.domain = rabit, node, transports, level, domain
+        self.failure = None
+
+    def start(self, processes, folder, index):
+        names = ("first", "second")
+        argv = [self.node, "--node", names[index], "--other", names[1 - index], "--transport", self.transports[index],
+                "--domain", self.domain, "--interface", "127.0.0.1", "--count", ORDERS, "--keys",
+                folder / "keys" / names[index]]
+        return processes.start(argv + (["--sign"] if self.level == "sign" else []))
+
+    def run(self):
+        try:
+            with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
+                make_keys(self.rabit, pathlib.Path(folder), zip(("first", "second"), self.transports), self.domain)
+                self.exchange(processes, pathlib.Path(folder))
+        except Exception as error:  # the others go on
+            self.failure = str(error)
+
+    def exchange(self, processes, folder):
+        nodes = [self.start(processes, folder, index) for index in (0, 1)]
+        for node in nodes:
+            node.wait_for(re.compile("peer UP").fullmatch, LIMIT_S)
+            node.wait_for(re.compile(r"mirror life=\d+").fullmatch, LIMIT_S)
+            node.wait_for(re.compile(f"orders life=\\d+ round=1 count={ORDERS} skipped=0").fullmatch, LIMIT_S)
+            node.wait_for(re.compile(f"settled round=1 delivered={ORDERS} in_doubt=0").fullmatch, LIMIT_S)
+            node.wait_for(re.compile(r"frame life=\d+").fullmatch, LIMIT_S)
+        for node in nodes:
+            if node.terminate() != 0:
+                raise AssertionError(f"{node.argv} did not end well")
+
+
+def main():
+    rabit, node, count, transports = sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4:]
+    harness.enter_namespace()
+    pairs = [(first, second) for first in transports for second in transports]
+    failures = []
+    fleets = 0
+    for _ in range(count):
+        for level in ("encrypt", "sign"):
+            row = [Fleet(rabit, node, pair, level, (harness.domain() + 7 * i) % 200) for i, pair in enumerate(pairs)]
+            threads = [threading.Thread(target=fleet.run) for fleet in row]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+            fleets += len(row)
+            failures += [f"{fleet.transports} {level}: {fleet.failure}" for fleet in row if fleet.failure]
+    print(f"{fleets} fleets, {len(failures)} failed")
+    print("\n".join(failures))
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()
