@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 # What the headers and the static libraries need is not seen by dpkg-shlibdeps.
-set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev
+set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev libssl-dev libtinyxml2-dev
     nlohmann-json3-dev cyclonedds-dev)
 if(RABIT_WITH_FASTDDS)
   list(APPEND dev_needs libfastrtps-dev)

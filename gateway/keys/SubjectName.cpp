@@ -13,6 +13,7 @@ namespace
 constexpr const char *Organization = "O";
 constexpr const char *Unit = "OU";
 constexpr const char *CommonName = "CN";
+constexpr std::size_t LongestNode = 64;
 
 void Add(X509_NAME &name, const char *field, const std::string &value)
 {
@@ -99,6 +100,10 @@ bool HasSmallGuid(const SubjectName &subject)
 bool IsGuidOf(const std::string &fleet, std::string_view node, std::span<const std::uint8_t, 12> guidPrefix)
 {
     SubjectName subject{.Fleet = fleet, .Number = 0, .Node = std::string(node)};
+    if (node.empty() || node.size() > LongestNode)
+    {
+        return false;
+    }
     for (; subject.Number <= SubjectName::LargestNumber; ++subject.Number)
     {
         const auto start = GuidStartOf(*subject.Encoded());

@@ -74,6 +74,7 @@ void AddSecurity(const GatewayConfig &config, const std::string &transport, Tran
             .Revoked = files.Revoked,
             .Governance = files.Governance(encrypts ? Keys::Level::Encrypt : Keys::Level::Sign),
             .Permissions = files.Permissions,
+            .Encrypts = encrypts,
             .MayBe = [fleet = keys.Subject().Fleet](std::string_view node,
                                                     std::span<const std::uint8_t, 12> guidPrefix)
             { return Keys::IsGuidOf(fleet, node, guidPrefix); }};

@@ -23,7 +23,7 @@ TypeExchange::TypeExchange(const GatewayConfig &config, Presence &presence, Link
       _links(links),
       _wake(std::move(wake)),
       _onText(std::move(onText)),
-      _largestFrame(LargestLinkFrame(config.MaxDatagram)),
+      _largestFrame(LargestLinkFrame(config.MaxDatagram, config.Security.has_value())),
       _answers([this](std::uint64_t definition) { return _texts.Find(definition); })
 {
     _links.SetOtherFrames(TypeFrames::FirstByte,

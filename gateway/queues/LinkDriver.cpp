@@ -20,7 +20,7 @@ LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
     LinkSettings settings;
     settings.Node = config.Node;
     settings.Clock = std::max<std::uint64_t>(clockName, 1);  // 0 is no name
-    settings.MaxDatagram = LargestLinkFrame(config.MaxDatagram);
+    settings.MaxDatagram = LargestLinkFrame(config.MaxDatagram, config.Security.has_value());
     settings.LargestMessage = LargestSample;
     return settings;
 }

@@ -75,7 +75,7 @@ Candidates ValuesOf(const CLI::Option &option)
     {
         return {"state", "telemetry"};
     }
-    if (name == "config" || name == "idl" || name == "to" || name == "plot")
+    if (name == "config" || name == "idl" || name == "to" || name == "plot" || name == "keys")
     {
         return {Files};
     }
@@ -205,10 +205,8 @@ Candidates FromFleet(const Words &line, const std::string &command, const Words 
 }
 
 // Of all that can stand there, whatever is written of it already.
-Candidates CandidatesFor(const CLI::App &app, const Words &line, Wakeup &wakeup)
+Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::string &last, Wakeup &wakeup)
 {
-    const std::string last = line.empty() ? "" : line.back();
-    const Words before(line.begin(), line.empty() ? line.end() : std::prev(line.end()));
     const Candidates commands = CommandsOf(app);
     const auto named = std::find_if(before.begin(), before.end(),
                                     [&commands](const std::string &word) { return commands.contains(word); });
@@ -217,6 +215,10 @@ Candidates CandidatesFor(const CLI::App &app, const Words &line, Wakeup &wakeup)
         return IsOption(last) ? OptionsOf(app) : commands;
     }
     const CLI::App &command = *app.get_subcommand(*named);
+    if (!CommandsOf(command).empty())
+    {
+        return CandidatesFor(command, Words(std::next(named), before.end()), last, wakeup);
+    }
     Words arguments;
     const CLI::Option *open = nullptr;
     for (auto word = std::next(named); word != before.end(); ++word)
@@ -236,12 +238,14 @@ Candidates CandidatesFor(const CLI::App &app, const Words &line, Wakeup &wakeup)
     {
         return OptionsOf(command);
     }
-    static const Candidates ofFiles = {"check", "info", "recover", "merge", "knew"};
+    static const Candidates ofFiles = {"check", "info", "recover", "merge", "knew", "init"};
     if (ofFiles.contains(command.get_name()))
     {
         return {Files};
     }
-    if (command.get_name() == "doctor")
+    // Nodes that get keys need not be there yet.
+    const bool isOfKeys = command.get_parent() != nullptr && command.get_parent()->get_parent() != nullptr;
+    if (command.get_name() == "doctor" || isOfKeys)
     {
         return {};
     }
@@ -253,7 +257,8 @@ Candidates CandidatesFor(const CLI::App &app, const Words &line, Wakeup &wakeup)
 int Complete(const CLI::App &app, const Words &line, Wakeup &wakeup)
 {
     const std::string last = line.empty() ? "" : line.back();
-    for (const std::string &candidate : CandidatesFor(app, line, wakeup))
+    const Words before(line.begin(), line.empty() ? line.end() : std::prev(line.end()));
+    for (const std::string &candidate : CandidatesFor(app, before, last, wakeup))
     {
         if ((candidate == Files || candidate.starts_with(last)) && !Output::Line(candidate))
         {

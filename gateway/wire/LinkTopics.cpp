@@ -25,10 +25,12 @@ TopicQos LinkTopicQos()
     return qos;
 }
 
-std::size_t LargestLinkFrame(std::size_t maxDatagram)
+std::size_t LargestLinkFrame(std::size_t maxDatagram, bool secured)
 {
     constexpr std::size_t vendors = 176;
-    return std::max(maxDatagram, TransportSettings::SmallestDatagram) - vendors - LinkSampleOverhead;
+    constexpr std::size_t signatures = 256;
+    return std::max(maxDatagram, TransportSettings::SmallestDatagram) - vendors -
+           (secured ? signatures : 0) - LinkSampleOverhead;
 }
 
 }  // namespace Rabit

@@ -16,6 +16,8 @@ inline constexpr std::size_t LinkSampleOverhead = 8;
 // Bytes of a frame that goes in one datagram of so many bytes over every backend. Less than the headers leave
 // room for: the vendors cut a sample in two sooner, Fast DDS one that is less than 176 bytes smaller than the
 // largest datagram, Cyclone DDS 100.
-std::size_t LargestLinkFrame(std::size_t maxDatagram);
+// With security, signatures take some of it: one of a message, one of the frame, and one for each of a few
+// nodes. In a larger fleet such a datagram is larger.
+std::size_t LargestLinkFrame(std::size_t maxDatagram, bool secured = false);
 
 }  // namespace Rabit

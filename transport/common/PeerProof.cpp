@@ -13,6 +13,14 @@ bool PeerProof::MayBe(const std::string &node, std::span<const std::uint8_t, Pre
     return false;
 }
 
+void PeerProof::Compare(const std::string &node, bool encrypts) const
+{
+    if (_security && _security->Encrypts != encrypts)
+    {
+        _log->OtherLevel(node);
+    }
+}
+
 void PeerProof::Refused(const std::string &node) const
 {
     _log->Stranger(node);

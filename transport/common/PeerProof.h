@@ -27,6 +27,8 @@ public:
     bool IsWanted() const { return _security.has_value(); }
     // Whether the one whose GUID begins so may call itself that; logs it if not.
     bool MayBe(const std::string &node, std::span<const std::uint8_t, PrefixSize> prefix) const;
+    // What the other one, which calls itself that, announces of its own protection; logs it if it differs.
+    void Compare(const std::string &node, bool encrypts) const;
     // The vendor has not accepted the certificate or the permissions of one that calls itself that; empty if
     // that is not known.
     void Refused(const std::string &node) const;

@@ -99,8 +99,8 @@ void SessionLog::Impostor(const std::string &node) noexcept
     Count(_impostors,
           [&]
           {
-              return "somebody calls itself " + node +
-                     " and has the keys of another node: it is taken for a program that is no node";
+              return "somebody calls itself " + node + " and has not the keys of " + node +
+                     ": it is taken for a program that is no node";
           });
 }
 
@@ -112,6 +112,16 @@ void SessionLog::Stranger(const std::string &node) noexcept
               return (node.empty() ? std::string("somebody") : "one that calls itself " + node) +
                      " was not let in: its certificate or its permissions are not of this fleet, out of "
                      "date, or revoked";
+          });
+}
+
+void SessionLog::OtherLevel(const std::string &node) noexcept
+{
+    Count(_otherLevels,
+          [&]
+          {
+              return "one that calls itself " + node +
+                     " has another level of security than this node: they do not hear each other";
           });
 }
 

@@ -26,10 +26,12 @@ public:
                           const std::string &node) noexcept;
     void MalformedSample(const std::string &topic, const char *why) noexcept;
     void MalformedDatagram() noexcept;
-    // Somebody calls itself that node and has the certificate of another one.
+    // Somebody calls itself that node and has the certificate of another one, or none.
     void Impostor(const std::string &node) noexcept;
     // The certificate or the permissions of one that calls itself that were not accepted.
     void Stranger(const std::string &node) noexcept;
+    // One that calls itself that is protected less, or more, than this node.
+    void OtherLevel(const std::string &node) noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
 
     // Counts what was given to sockets; `bytes` are those of all these datagrams, without headers of IP and
@@ -76,6 +78,7 @@ private:
     std::atomic<std::uint64_t> _malformedDatagrams{0};
     std::atomic<std::uint64_t> _impostors{0};
     std::atomic<std::uint64_t> _strangers{0};
+    std::atomic<std::uint64_t> _otherLevels{0};
     Sent _discovery;
     Sent _samples;
 };

@@ -1,11 +1,12 @@
-// A session with DDS Security in a process of its own, for security_test.py:
-//   secured_peer <transport> <node> <domain> <folder> <level> [<topic>...]
-// Writes and reads each of the topics, State if none is named, in the partition of its node and in all, and
+// A session in a process of its own, with whatever keys it is given: what of them is wrong is left to the
+// vendors to find. For strangers_test.py:
+//   secured_peer <transport> <node> <domain> <folder> <level>
+// The folder is `-` for none. Writes and reads the topic State, in the partition of its node and of all, and
 // prints a line for each thing that it sees:
-//   open                the session is open
-//   failed <why>        it is not
-//   appeared <node>     and `gone <node>`
-//   heard <topic> <node>     the first sample of that node
+//   open                     the session, its writer and its reader are there
+//   failed <why>             they are not
+//   appeared <node>          and `gone <node>`
+//   heard <node> <count>     the first sample of that node, and the tenth, the twentieth ...
 //   log <line>
 // Ends with its standard input.
 #include <rabit/transport/TransportFactory.h>
@@ -15,13 +16,15 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <map>
 #include <mutex>
-#include <set>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "../conformance/TestSample.h"
+#include "keys/Certificates.h"
+#include "keys/KeyFiles.h"
+#include "keys/NodeKeys.h"
 
 namespace
 {
@@ -33,19 +36,24 @@ void Say(const std::string &line)
     std::cout << line + "\n" << std::flush;
 }
 
-class FirstOnes
+class Counts
 {
 public:
-    bool IsNew(const std::string &what)
+    unsigned Next(const std::string &node)
     {
         const std::lock_guard lock(_mutex);
-        return _seen.insert(what).second;
+        return ++_counts[node];
     }
 
 private:
     std::mutex _mutex;
-    std::set<std::string> _seen;
+    std::map<std::string, unsigned> _counts;
 };
+
+std::string FleetIn(const std::string &file)
+{
+    return Rabit::Keys::FleetOf(*Rabit::Keys::ReadCertificate(Rabit::Keys::ReadFile(file), file));
+}
 
 Rabit::TransportSettings SettingsFrom(char **argv)
 {
@@ -60,19 +68,25 @@ Rabit::TransportSettings SettingsFrom(char **argv)
     const std::string folder = argv[4];
     if (folder != "-")
     {
-        settings.Security = {.IdentityAuthority = folder + "/identity_ca.pem",
-                             .PermissionsAuthority = folder + "/permissions_ca.pem",
-                             .Certificate = folder + "/cert.pem",
-                             .PrivateKey = folder + "/key.pem",
-                             .Revoked = {},
-                             .Governance = folder + "/governance_" + argv[5] + ".p7s",
-                             .Permissions = folder + "/permissions.p7s",
-                             .MayBe = {}};
+        const Rabit::Keys::NodeFiles files(folder);
+        const bool encrypts = std::string(argv[5]) == "encrypt";
+        const std::string fleet = FleetIn(files.IdentityAuthority);
+        settings.Security = {
+            .IdentityAuthority = files.IdentityAuthority,
+            .PermissionsAuthority = files.PermissionsAuthority,
+            .Certificate = files.Certificate,
+            .PrivateKey = files.PrivateKey,
+            .Revoked = files.Revoked,
+            .Governance = files.Governance(encrypts ? Rabit::Keys::Level::Encrypt : Rabit::Keys::Level::Sign),
+            .Permissions = files.Permissions,
+            .Encrypts = encrypts,
+            .MayBe = [fleet](std::string_view node, std::span<const std::uint8_t, 12> guidPrefix)
+            { return Rabit::Keys::IsGuidOf(fleet, node, guidPrefix); }};
     }
     return settings;
 }
 
-void Run(int argc, char **argv)
+void Run(char **argv)
 {
     using namespace Rabit::Conformance;
     const Rabit::TransportSettings settings = SettingsFrom(argv);
@@ -80,28 +94,19 @@ void Run(int argc, char **argv)
         settings,
         [](const Rabit::PeerEvent &event)
         { Say((event.What == Rabit::PeerEvent::Kind::Appeared ? "appeared " : "gone ") + event.Node); });
-    std::vector<std::string> topics(argv + 6, argv + argc);
-    if (topics.empty())
-    {
-        topics.emplace_back("State");
-    }
-    FirstOnes heard;
-    std::vector<std::unique_ptr<Rabit::TransportWriter>> writers;
-    std::vector<std::unique_ptr<Rabit::TransportReader>> readers;
-    for (const std::string &topic : topics)
-    {
-        readers.push_back(session->CreateReader(
-            TextTopic(topic), Telemetry(), {"*"},
-            [&heard, topic](Rabit::SampleBytes, const Rabit::SampleInfo &info)
+    Counts counts;
+    const auto reader = session->CreateReader(
+        TextTopic("State"), Telemetry(), {"*"},
+        [&counts](Rabit::SampleBytes, const Rabit::SampleInfo &info)
+        {
+            const std::string node(info.Node.empty() ? "nobody" : info.Node);
+            const unsigned count = info.Alive ? counts.Next(node) : 0;
+            if (count == 1 || (count > 0 && count % 10 == 0))
             {
-                const std::string what = "heard " + topic + " " + std::string(info.Node);
-                if (info.Alive && heard.IsNew(what))
-                {
-                    Say(what);
-                }
-            }));
-        writers.push_back(session->CreateWriter(TextTopic(topic), Telemetry(), {"", settings.Node}));
-    }
+                Say("heard " + node + " " + std::to_string(count));
+            }
+        });
+    const auto writer = session->CreateWriter(TextTopic("State"), Telemetry(), {"", settings.Node});
     Say("open");
     std::atomic<bool> stopped{false};
     std::thread writing(
@@ -109,10 +114,7 @@ void Run(int argc, char **argv)
         {
             while (!stopped)
             {
-                for (const auto &writer : writers)
-                {
-                    writer->Write(MakeSample(1, settings.Node), 1);
-                }
+                writer->Write(MakeSample(1, settings.Node), 1);
                 std::this_thread::sleep_for(std::chrono::milliseconds(100));
             }
         });
@@ -127,14 +129,14 @@ void Run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    if (argc < 6)
+    if (argc != 6)
     {
-        std::cerr << "usage: secured_peer <transport> <node> <domain> <folder> <level> [<topic>...]\n";
+        std::cerr << "usage: secured_peer <transport> <node> <domain> <folder> <level>\n";
         return 2;
     }
     try
     {
-        Run(argc, argv);
+        Run(argv);
         return 0;
     }
     catch (const std::exception &error)

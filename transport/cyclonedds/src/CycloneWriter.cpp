@@ -9,6 +9,7 @@
 #include "Guid.h"
 #include "OpaqueType.h"
 #include "VendorTraffic.h"
+#include "common/SendingSamples.h"
 
 namespace Rabit::Cyclone
 {
@@ -174,6 +175,7 @@ WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourc
     // Unregistered as well: the vendor keeps nothing of such an instance once its readers know, not even for
     // late ones; and readers need not keep it for this writer.
     sample->Header.statusinfo = dispose ? StatusDisposed | StatusUnregistered : 0u;
+    const SendingSamples sending;
     const dds_return_t result = dds_forwardcdr(_writer.Get(), &sample.release()->Header);
     if (result == DDS_RETCODE_TIMEOUT)
     {

@@ -21,6 +21,8 @@ constexpr int MostParticipants = 100;
 constexpr int ParticipantsPerPeer = 16;
 // What the vendor's headers may take of a datagram beside a fragment of a sample.
 constexpr std::size_t HeaderRoom = 100;
+// And signatures, which the vendor adds to a message that is full already.
+constexpr std::size_t SecurityRoom = 256;
 
 // OMG DDSI-RTPS 2.3, 9.6.1.1
 int DiscoveryPort(int domain, int participant)
@@ -104,6 +106,7 @@ Rtps::RtpsGuard::Mode GuardMode(const TransportSettings &settings)
 
 std::string MakeDomainConfig(const TransportSettings &settings)
 {
+    const std::size_t largest = settings.MaxDatagram - (settings.Security ? SecurityRoom : 0);
     std::ostringstream xml;
     xml << "<Domain><General>";
     if (!HasOwnInterfaces(settings.BackendConfig))
@@ -116,8 +119,8 @@ std::string MakeDomainConfig(const TransportSettings &settings)
                                          : "false")
         << "</AllowMulticast>"
         << "<DontRoute>" << (IsRoutingNeeded(settings) ? "false" : "true") << "</DontRoute>"
-        << "<MaxMessageSize>" << settings.MaxDatagram << "B</MaxMessageSize>"
-        << "<FragmentSize>" << settings.MaxDatagram - HeaderRoom
+        << "<MaxMessageSize>" << largest << "B</MaxMessageSize>"
+        << "<FragmentSize>" << largest - HeaderRoom
         << "B</FragmentSize></General>"
         // The vendor hands samples over inside Write between sessions that share its domain. Each session has
         // one of its own, which is called as the user says on the network alone.

@@ -15,6 +15,7 @@
 #include "VendorTraffic.h"
 #include "common/MulticastUse.h"
 #include "common/RtpsTraffic.h"
+#include "common/SendingSamples.h"
 #include "guard/JoinMessages.h"
 
 namespace Rabit::Cyclone
@@ -59,6 +60,12 @@ private:
     }
 };
 
+// Whether something that is sent now is of samples.
+bool IsOfSamplesSent(std::span<const std::uint8_t> head)
+{
+    return SendingSamples::Now() || IsOfSamples(head);
+}
+
 bool IsGroup(const DirectAnnouncements::Address &address)
 {
     return (address[0] & 0xf0) == 0xe0;
@@ -98,7 +105,7 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
 {
     SessionLog &log = *static_cast<const VendorDomain *>(self)->_log;
-    IsOfSamples({head, headSize}) ? log.SentSamples(1, size) : log.SentDiscovery(1, size);
+    IsOfSamplesSent({head, headSize}) ? log.SentSamples(1, size) : log.SentDiscovery(1, size);
 }
 
 std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size)
@@ -193,7 +200,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     _watch = RabitCycloneWatch({.argument = this,
                                 .isDiscovery =
                                     [](const unsigned char *head, std::size_t size) {
-                                        return !IsOfSamples({head, size});
+                                        return !IsOfSamplesSent({head, size});
                                     },
                                 .may = &MaySend,
                                 .sent = &OnSent,

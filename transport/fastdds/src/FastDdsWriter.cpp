@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "EndpointSettings.h"
+#include "common/SendingSamples.h"
 
 namespace Rabit::FastDds
 {
@@ -168,6 +169,7 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
     {
         _writer->reader_data_filter(this);
     }
+    const SendingSamples sending;
     const bool added = _history.Add(*change, params, deadline);
     _targets = nullptr;
     if (!added)

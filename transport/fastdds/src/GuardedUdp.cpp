@@ -19,6 +19,7 @@
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
 #include "common/DiscoveryOutbox.h"
+#include "common/SendingSamples.h"
 
 namespace Rabit::FastDds
 {
@@ -86,7 +87,8 @@ public:
         const std::lock_guard lock(_sending);
         const auto left = static_cast<std::uint32_t>(SizeWithoutStatistics({buffer, size}));
         _guard.Sending({buffer, left});
-        const OutgoingMessage message = ReadOutgoing({buffer, left});
+        OutgoingMessage message = ReadOutgoing({buffer, left});
+        message.HasSamples = message.HasSamples || SendingSamples::Now();
         const auto now = std::chrono::steady_clock::now();
         const std::uint32_t socket = NumberOf(sender);
         if (message.Request && !_requests.MayGo(socket, *message.Request, now))

@@ -26,6 +26,10 @@ namespace
 // Announcements are overtaken by milliseconds: nobody closes so many sessions in that time.
 constexpr std::size_t MostDeparted = 64;
 
+// OMG DDS Security 1.1, 9.4.2.4: what a participant announces of its protection.
+constexpr std::uint32_t IsSecured = 1u << 31;
+constexpr std::uint32_t HasDiscoveryEncrypted = 1u << 1;
+
 rtps::GuidPrefix_t ToVendorPrefix(const Rtps::GuidPrefix &prefix)
 {
     rtps::GuidPrefix_t result;
@@ -231,6 +235,11 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
                             .Place = PlaceOf(peer)};
     if (_proof.IsWanted())
     {
+        if ((peer.plugin_security_attributes_ & IsSecured) != 0)
+        {
+            _proof.Compare(newcomer.Who->Node,
+                           (peer.plugin_security_attributes_ & HasDiscoveryEncrypted) != 0);
+        }
         // What it has announced first is what it has shown: later ones may be of anybody.
         const std::lock_guard lock(_mutex);
         if (!_proven.contains(prefix))

@@ -83,6 +83,8 @@ struct TransportSecurity
     std::string Revoked;               // a list of revoked certificates; empty: none
     std::string Governance;
     std::string Permissions;
+    // Whether Governance has discovery encrypted; only for a hint in the log.
+    bool Encrypts = true;
     // Whether a participant whose GUID begins with these bytes may call itself that node: they are bound to
     // the subject of its certificate (OMG DDS Security 1.1, 9.3.3). One that may not is taken for a program
     // that is no node. Called on any thread; must not throw. Empty: everybody may.

@@ -1,0 +1,61 @@
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include "KeysFolder.h"
+
+namespace Rabit::Keys
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class KeyFilesTest : public KeysFolder
+{
+};
+
+TEST_F(KeyFilesTest, ASecretIsForItsOwnerAloneWhateverTheMaskSays)
+{
+    const mode_t before = ::umask(0);
+    WriteSecret(Root + "/secret", "text");
+    ::umask(before);
+    EXPECT_EQ(fs::status(Root + "/secret").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(KeyFilesTest, ASecretInPlaceOfAFileForAllIsForItsOwnerAlone)
+{
+    WriteFile(Root + "/secret", "old");
+    WriteSecret(Root + "/secret", "new");
+    EXPECT_EQ(ReadSecret(Root + "/secret"), "new");
+}
+
+TEST_F(KeyFilesTest, ASecretIsNotWrittenThroughALink)
+{
+    fs::create_symlink(Root + "/elsewhere", Root + "/secret.new");
+    WriteSecret(Root + "/secret", "text");
+    EXPECT_FALSE(fs::exists(Root + "/elsewhere"));
+}
+
+TEST_F(KeyFilesTest, ASecretThatOthersMayReadIsRefused)
+{
+    WriteFile(Root + "/secret", "text");
+    EXPECT_THAT(WhyNot([&] { ReadSecret(Root + "/secret"); }), HasSubstr("(mode 644)"));
+}
+
+TEST_F(KeyFilesTest, AFolderAndAHugeFileAreNoKeys)
+{
+    EXPECT_THAT(WhyNot([&] { ReadFile(Root); }), HasSubstr("is no file"));
+    std::ofstream(Root + "/huge") << std::string(2 << 20, 'x');
+    EXPECT_THAT(WhyNot([&] { ReadFile(Root + "/huge"); }), HasSubstr("larger than 1 MiB"));
+}
+
+TEST_F(KeyFilesTest, AFileThatCannotBeWrittenLeavesNothingBehind)
+{
+    fs::create_directory(Root + "/folder");
+    EXPECT_THAT(WhyNot([&] { WriteFile(Root + "/folder", "text"); }), HasSubstr("cannot write"));
+    EXPECT_FALSE(fs::exists(Root + "/folder.new"));
+}
+
+}  // namespace
+}  // namespace Rabit::Keys
