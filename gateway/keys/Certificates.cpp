@@ -27,9 +27,9 @@ void AddExtension(X509 &certificate, const X509 &authority, int kind, const char
     X509V3_CTX context;
     X509V3_set_ctx(&context, const_cast<X509 *>(&authority), &certificate, nullptr, nullptr, 0);
     using ExtensionPtr = std::unique_ptr<X509_EXTENSION, FreedBy<&X509_EXTENSION_free>>;
-    const ExtensionPtr extension = Must(
-        ExtensionPtr(X509V3_EXT_conf_nid(nullptr, &context, kind, const_cast<char *>(value))),
-        "make a certificate");
+    const ExtensionPtr extension =
+        Must(ExtensionPtr(X509V3_EXT_conf_nid(nullptr, &context, kind, const_cast<char *>(value))),
+             "make a certificate");
     Must(X509_add_ext(&certificate, extension.get(), -1) == 1, "make a certificate");
 }
 
@@ -142,14 +142,14 @@ RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X
         using EntryPtr = std::unique_ptr<X509_REVOKED, FreedBy<&X509_REVOKED_free>>;
         EntryPtr entry = Must(EntryPtr(X509_REVOKED_new()), "revoke a certificate");
         done = done &&
-               X509_REVOKED_set_serialNumber(entry.get(), const_cast<ASN1_INTEGER *>(
-                                                              X509_get0_serialNumber(certificate))) == 1 &&
+               X509_REVOKED_set_serialNumber(
+                   entry.get(), const_cast<ASN1_INTEGER *>(X509_get0_serialNumber(certificate))) == 1 &&
                X509_REVOKED_set_revocationDate(entry.get(), from.get()) == 1 &&
                X509_CRL_add0_revoked(list.get(), entry.get()) == 1;
         static_cast<void>(done ? entry.release() : nullptr);  // the list owns it
     }
-    done = done && X509_CRL_sort(list.get()) == 1 &&
-           X509_CRL_sign(list.get(), &authorityKey, EVP_sha256()) > 0;
+    done =
+        done && X509_CRL_sort(list.get()) == 1 && X509_CRL_sign(list.get(), &authorityKey, EVP_sha256()) > 0;
     Must(done, "make a list of revoked certificates");
     return list;
 }
@@ -206,9 +206,9 @@ Validity ValidityOf(const X509 &certificate)
 
 bool IsSignedBy(const X509 &certificate, const X509 &authority)
 {
-    const bool isSigned = X509_NAME_cmp(X509_get_issuer_name(&certificate),
-                                        X509_get_subject_name(&authority)) == 0 &&
-                          X509_verify(const_cast<X509 *>(&certificate), X509_get0_pubkey(&authority)) == 1;
+    const bool isSigned =
+        X509_NAME_cmp(X509_get_issuer_name(&certificate), X509_get_subject_name(&authority)) == 0 &&
+        X509_verify(const_cast<X509 *>(&certificate), X509_get0_pubkey(&authority)) == 1;
     OpenSslError();
     return isSigned;
 }

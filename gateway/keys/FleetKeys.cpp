@@ -174,9 +174,8 @@ FleetKeys::Request FleetKeys::RequestOf(const std::string &node) const
 {
     CheckName(node);
     const NodeKeys keys(FolderOf(node));
-    Request request{.Node = node,
-                    .Transport = HasSmallGuid(keys.Subject()) ? "cyclonedds" : "fastdds",
-                    .Access = {}};
+    Request request{
+        .Node = node, .Transport = HasSmallGuid(keys.Subject()) ? "cyclonedds" : "fastdds", .Access = {}};
     for (const Permissions::Rule &rule : keys.Permissions().Rules)
     {
         const bool isPlain = rule.Allows && rule.Domains.size() == 1 &&
@@ -265,9 +264,9 @@ void FleetKeys::Make(const std::string &folder, const Request &request, const Pe
     }
     WriteFile(files.Permissions, SignDocument(PermissionsText(subject, validity, request.Access),
                                               *permissions, *permissionsKey));
-    WriteFile(Place(std::string(IssuedFolder) + "/" + request.Node + "." + std::to_string(subject.Number) +
-                    ".pem"),
-              PemOf(*certificate));
+    WriteFile(
+        Place(std::string(IssuedFolder) + "/" + request.Node + "." + std::to_string(subject.Number) + ".pem"),
+        PemOf(*certificate));
 }
 
 void FleetKeys::Add(const Request &request, const Period &period) const
@@ -316,8 +315,8 @@ std::size_t FleetKeys::RevokeFiles(const std::vector<std::string> &files, std::t
             certificates.push_back(std::move(certificate));
         }
     }
-    const std::string text =
-        PemOf(*MakeRevocations(before.get(), revoked, *Authority("identity"), *AuthorityKey("identity"), now));
+    const std::string text = PemOf(
+        *MakeRevocations(before.get(), revoked, *Authority("identity"), *AuthorityKey("identity"), now));
     WriteFile(place, text);
     for (const std::string &node : Nodes())
     {
@@ -332,8 +331,7 @@ std::size_t FleetKeys::RevokeOlder(const std::string &node, std::time_t now) con
     const std::string file = NodeFiles(FolderOf(node)).Certificate;
     const unsigned current = SubjectOf(*ReadCertificate(ReadFile(file), file)).Number;
     std::vector<std::string> files = Issued(node);
-    std::erase_if(files,
-                  [&](const std::string &one)
+    std::erase_if(files, [&](const std::string &one)
                   { return SubjectOf(*ReadCertificate(ReadFile(one), one)).Number == current; });
     return RevokeFiles(files, now);
 }

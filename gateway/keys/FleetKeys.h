@@ -10,8 +10,8 @@
 namespace Rabit::Keys
 {
 
-// The folder of a fleet: its two authorities in `authority`, and a folder for each node, ready to be copied to
-// it. One that changes it keeps others out for so long.
+// The folder of a fleet: its two authorities in `authority`, and a folder for each node, ready to be copied
+// to it. One that changes it keeps others out for so long.
 class FleetKeys
 {
 public:

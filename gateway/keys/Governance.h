@@ -19,9 +19,9 @@ const char *NameOf(Level level);
 inline constexpr int LargestDomain = 230;
 
 // The text of a document, to be signed. Nobody joins without a certificate and permissions. Every message is
-// signed as a whole, its times too; what is said of endpoints and what samples say is protected once more with
-// keys that only those get who may read it. The frames of the queue links besides bear a signature for each
-// reader: those who share a key to read cannot use it to command in another's name.
+// signed as a whole, its times too; what is said of endpoints and what samples say is protected once more
+// with keys that only those get who may read it. The frames of the queue links besides bear a signature for
+// each reader: those who share a key to read cannot use it to command in another's name.
 std::string GovernanceText(Level level);
 
 }  // namespace Rabit::Keys

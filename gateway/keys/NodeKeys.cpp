@@ -43,8 +43,7 @@ NodeKeys::NodeKeys(const std::string &folder) : _files(folder)
     {
         throw KeysError("there is no folder of keys " + folder + "; `rabit keys add` makes one");
     }
-    const auto certificateIn = [](const std::string &file)
-    { return ReadCertificate(ReadFile(file), file); };
+    const auto certificateIn = [](const std::string &file) { return ReadCertificate(ReadFile(file), file); };
     const CertificatePtr identity = certificateIn(_files.IdentityAuthority);
     const CertificatePtr permissions = certificateIn(_files.PermissionsAuthority);
     if (IsKeyOf(*X509_get0_pubkey(identity.get()), *permissions))
@@ -56,8 +55,9 @@ NodeKeys::NodeKeys(const std::string &folder) : _files(folder)
     const CertificatePtr certificate = certificateIn(_files.Certificate);
     if (!IsSignedBy(*certificate, *identity))
     {
-        throw KeysError(_files.Certificate + " is not signed by the identity authority beside it: it is of "
-                                             "another fleet");
+        throw KeysError(_files.Certificate +
+                        " is not signed by the identity authority beside it: it is of "
+                        "another fleet");
     }
     const KeyPtr key = ReadKey(ReadSecret(_files.PrivateKey), _files.PrivateKey);
     if (!IsKeyOf(*key, *certificate))
@@ -78,8 +78,7 @@ NodeKeys::NodeKeys(const std::string &folder) : _files(folder)
                             "`; `rabit keys renew` makes it anew");
         }
     }
-    const std::string text =
-        VerifiedDocument(ReadFile(_files.Permissions), *permissions, _files.Permissions);
+    const std::string text = VerifiedDocument(ReadFile(_files.Permissions), *permissions, _files.Permissions);
     for (Keys::Permissions &grant : ReadPermissions(text, _files.Permissions))
     {
         if (grant.Subject == _subject.Text())

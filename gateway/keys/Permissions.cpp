@@ -73,8 +73,7 @@ void AddEntries(const char *kind, std::vector<TopicAccess> topics, std::string &
             text += "<partition>" + Escaped(partition) + "</partition>";
         }
         text += std::string("</partitions></") + kind + ">\n";
-        std::erase_if(topics,
-                      [&](const TopicAccess &topic) { return topic.Partitions == partitions; });
+        std::erase_if(topics, [&](const TopicAccess &topic) { return topic.Partitions == partitions; });
     }
 }
 

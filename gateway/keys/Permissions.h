@@ -17,7 +17,8 @@ struct Permissions
     {
         bool Allows = true;
         std::vector<std::pair<int, int>> Domains{};  // from, to
-        std::vector<TopicAccess> Publish{};  // each topic with the partitions that it is listed with; none: ""
+        std::vector<TopicAccess>
+            Publish{};  // each topic with the partitions that it is listed with; none: ""
         std::vector<TopicAccess> Subscribe{};
     };
 

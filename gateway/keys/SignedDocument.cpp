@@ -31,8 +31,8 @@ std::string VerifiedDocument(std::string_view document, const X509 &authority, c
     const BioPtr out = EmptyBio();
     if (PKCS7_verify(signature.get(), nullptr, store.get(), content, out.get(), PKCS7_TEXT) != 1)
     {
-        throw KeysError(file + " is not signed by the permissions authority, or was changed: " +
-                        OpenSslError());
+        throw KeysError(file +
+                        " is not signed by the permissions authority, or was changed: " + OpenSslError());
     }
     // Signed is the form with carriage returns.
     std::string text = TextOf(*out);

@@ -5,6 +5,7 @@
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
+#include <ctime>
 #include <deque>
 #include <optional>
 #include <stdexcept>
@@ -216,7 +217,7 @@ private:
     void OpenSession()
     {
         TransportSettings settings = TransportSettingsOf(_config, _incarnation);
-        AddSecurity(_config, _transport->Name(), settings);
+        _keysEndAt = AddSecurity(_config, _transport->Name(), settings);
         _session = _transport->Open(settings, [this](const PeerEvent &event) { _presence.OnPeer(event); });
         _openedAt = Now();
         if (_config.Tool)
@@ -381,6 +382,10 @@ private:
         {
             fleet.problems.push_back(std::move(*lonely));
         }
+        if (auto ending = KeysProblem(_keysEndAt, std::time(nullptr)))
+        {
+            fleet.problems.push_back(std::move(*ending));
+        }
         for (const TopicPublisher &publisher : _publishers)
         {
             if (!publisher.IsAttached())
@@ -431,6 +436,7 @@ private:
     bool _forwards = false;
     Duration _nextFleet{0};
     Duration _openedAt{0};
+    std::optional<std::time_t> _keysEndAt;
     std::unique_ptr<TransportSession> _session;
     std::deque<TopicPublisher> _publishers;
     TypeExchange _types{_config, _presence, _links, _manager.WakeUpHandler(),

@@ -39,11 +39,12 @@ Keys::Access AccessOf(const GatewayConfig &config)
     return access;
 }
 
-void AddSecurity(const GatewayConfig &config, const std::string &transport, TransportSettings &settings)
+std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::string &transport,
+                                       TransportSettings &settings)
 {
     if (!config.Security)
     {
-        return;
+        return std::nullopt;
     }
     const auto fail = [](const std::string &why) { throw TransportError(why, "security"); };
     try
@@ -78,11 +79,31 @@ void AddSecurity(const GatewayConfig &config, const std::string &transport, Tran
             .MayBe = [fleet = keys.Subject().Fleet](std::string_view node,
                                                     std::span<const std::uint8_t, 12> guidPrefix)
             { return Keys::IsGuidOf(fleet, node, guidPrefix); }};
+        return keys.ValidityOf().To;
     }
     catch (const Keys::KeysError &error)
     {
-        fail(error.what());
+        throw TransportError(error.what(), "security");
     }
+}
+
+std::optional<Gateway::Problem> KeysProblem(std::optional<std::time_t> endsAt, std::time_t now)
+{
+    constexpr std::time_t ahead = 30 * 24 * 60 * 60;
+    if (!endsAt || *endsAt - now > ahead)
+    {
+        return std::nullopt;
+    }
+    Gateway::Problem problem;
+    problem.subject = "keys";
+    problem.reason =
+        "the certificate of this node " +
+        (now > *endsAt
+             ? "ended on " + Keys::DayText(*endsAt) + ": who comes now does not let it in"
+             : "ends on " + Keys::DayText(*endsAt) + ": from then on who comes does not let it in") +
+        "; `rabit keys renew` makes a new one";
+    problem.certain = true;
+    return problem;
 }
 
 }  // namespace Rabit

@@ -189,8 +189,8 @@ std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const Gate
         {
             if (rule.Allows && !isNeeded(needs.Subscribe, one))
             {
-                findings.push_back({false, "may read " + one.Topic + " otherwise than " + config->File +
-                                               " wants"});
+                findings.push_back(
+                    {false, "may read " + one.Topic + " otherwise than " + config->File + " wants"});
             }
         }
     }
@@ -316,8 +316,8 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
     AddDays(*command, *init, 3650);
 
-    auto add = AddCommand(*keys, "add", "Makes a node's key, certificate and permissions", &Add, chosen,
-                          command);
+    auto add =
+        AddCommand(*keys, "add", "Makes a node's key, certificate and permissions", &Add, chosen, command);
     command->add_option("NODE", add->Node, "Name of the node")->required();
     AddFolder(*command, *add);
     CLI::Option *config = command->add_option("--config", add->Config,
@@ -351,8 +351,8 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
         ->capture_default_str();
     command->add_flag("--json", check->Json, "One JSON object a line");
 
-    auto renew = AddCommand(*keys, "renew", "Makes new ones in place of those that nodes have", &Renew, chosen,
-                            command);
+    auto renew = AddCommand(*keys, "renew", "Makes new ones in place of those that nodes have", &Renew,
+                            chosen, command);
     command->add_option("NODE", renew->Nodes, "Names of the nodes")->required();
     AddFolder(*command, *renew);
     command->add_option("--config", renew->Config, "The node's configuration, if it has changed")
@@ -361,8 +361,8 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     command->add_flag("--revoke-old", renew->RevokeOld, "The older ones are not to be believed any more");
     AddDays(*command, *renew, 365);
 
-    auto revoke = AddCommand(*keys, "revoke", "A node is not to be believed any more", &Revoke, chosen,
-                             command);
+    auto revoke =
+        AddCommand(*keys, "revoke", "A node is not to be believed any more", &Revoke, chosen, command);
     command->add_option("NODE", revoke->Node, "Name of the node")->required();
     AddFolder(*command, *revoke);
 }

@@ -29,8 +29,8 @@ std::size_t LargestLinkFrame(std::size_t maxDatagram, bool secured)
 {
     constexpr std::size_t vendors = 176;
     constexpr std::size_t signatures = 256;
-    return std::max(maxDatagram, TransportSettings::SmallestDatagram) - vendors -
-           (secured ? signatures : 0) - LinkSampleOverhead;
+    return std::max(maxDatagram, TransportSettings::SmallestDatagram) - vendors - (secured ? signatures : 0) -
+           LinkSampleOverhead;
 }
 
 }  // namespace Rabit

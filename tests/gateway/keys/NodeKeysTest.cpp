@@ -17,8 +17,8 @@ class NodeKeysTest : public KeysFolder
 {
 protected:
     NodeKeysTest() : Files(FolderOf("uav1")) { Add("uav1"); }
-    std::string WhyNoUse(std::time_t now = TestNow, const std::string &transport = "fastdds",
-                         int domain = 7, const std::string &node = "uav1") const
+    std::string WhyNoUse(std::time_t now = TestNow, const std::string &transport = "fastdds", int domain = 7,
+                         const std::string &node = "uav1") const
     {
         return NodeKeys(FolderOf("uav1")).WhyNot(node, transport, domain, now);
     }
@@ -39,9 +39,9 @@ TEST_F(NodeKeysTest, ThatNoFolderIsThereIsSaid)
 
 TEST_F(NodeKeysTest, EachFileMustBeThereAndSound)
 {
-    for (const std::string &file : {Files.IdentityAuthority, Files.PermissionsAuthority, Files.Certificate,
-                                    Files.PrivateKey, Files.Revoked, Files.GovernanceSign,
-                                    Files.GovernanceEncrypt, Files.Permissions})
+    for (const std::string &file :
+         {Files.IdentityAuthority, Files.PermissionsAuthority, Files.Certificate, Files.PrivateKey,
+          Files.Revoked, Files.GovernanceSign, Files.GovernanceEncrypt, Files.Permissions})
     {
         const std::string text = ReadFile(file);
         fs::remove(file);
@@ -65,7 +65,8 @@ TEST_F(NodeKeysTest, WhatIsWrongIsOneLine)
 TEST_F(NodeKeysTest, APrivateKeyThatOthersMayReadIsRefused)
 {
     fs::permissions(Files.PrivateKey, fs::perms(0640));
-    EXPECT_THAT(WhyNoKeys(FolderOf("uav1")), HasSubstr("private_key.pem is not for its owner alone (mode 640)"));
+    EXPECT_THAT(WhyNoKeys(FolderOf("uav1")),
+                HasSubstr("private_key.pem is not for its owner alone (mode 640)"));
 }
 
 TEST_F(NodeKeysTest, TheKeyOfAnotherCertificateIsRefused)
@@ -146,7 +147,8 @@ TEST_F(NodeKeysTest, ACertificateThatEndedIsSaid)
 
 TEST_F(NodeKeysTest, TheKeysOfAnotherNodeAreRefused)
 {
-    EXPECT_THAT(WhyNoUse(TestNow, "fastdds", 7, "uav2"), HasSubstr("is for the node `uav1`, and this is `uav2`"));
+    EXPECT_THAT(WhyNoUse(TestNow, "fastdds", 7, "uav2"),
+                HasSubstr("is for the node `uav1`, and this is `uav2`"));
 }
 
 TEST_F(NodeKeysTest, KeysForAnotherBackendAreRefused)

@@ -52,9 +52,11 @@ TEST(Permissions, AreForThatTopicAndThatPartitionAlone)
 
 TEST(Permissions, WhatAnEarlierRuleForbidsALaterOneDoesNotAllow)
 {
-    const std::string rules = "<deny_rule><domains><id>7</id></domains><publish><topics><topic>Pose</topic>"
-                              "</topics></publish></deny_rule>";
-    std::string text = PermissionsText(Uav1, SomeTime, {.Domain = 7, .Publish = {{"Pose", {""}}}, .Subscribe = {}});
+    const std::string rules =
+        "<deny_rule><domains><id>7</id></domains><publish><topics><topic>Pose</topic>"
+        "</topics></publish></deny_rule>";
+    std::string text =
+        PermissionsText(Uav1, SomeTime, {.Domain = 7, .Publish = {{"Pose", {""}}}, .Subscribe = {}});
     text.insert(text.find("<allow_rule>"), rules);
     EXPECT_FALSE(ReadPermissions(text, "file").front().MayPublish(7, {"Pose", {""}}));
 }

@@ -91,21 +91,20 @@ void Run(char **argv)
     using namespace Rabit::Conformance;
     const Rabit::TransportSettings settings = SettingsFrom(argv);
     const auto session = Rabit::MakeTransport(argv[1])->Open(
-        settings,
-        [](const Rabit::PeerEvent &event)
+        settings, [](const Rabit::PeerEvent &event)
         { Say((event.What == Rabit::PeerEvent::Kind::Appeared ? "appeared " : "gone ") + event.Node); });
     Counts counts;
-    const auto reader = session->CreateReader(
-        TextTopic("State"), Telemetry(), {"*"},
-        [&counts](Rabit::SampleBytes, const Rabit::SampleInfo &info)
-        {
-            const std::string node(info.Node.empty() ? "nobody" : info.Node);
-            const unsigned count = info.Alive ? counts.Next(node) : 0;
-            if (count == 1 || (count > 0 && count % 10 == 0))
-            {
-                Say("heard " + node + " " + std::to_string(count));
-            }
-        });
+    const auto reader =
+        session->CreateReader(TextTopic("State"), Telemetry(), {"*"},
+                              [&counts](Rabit::SampleBytes, const Rabit::SampleInfo &info)
+                              {
+                                  const std::string node(info.Node.empty() ? "nobody" : info.Node);
+                                  const unsigned count = info.Alive ? counts.Next(node) : 0;
+                                  if (count == 1 || (count > 0 && count % 10 == 0))
+                                  {
+                                      Say("heard " + node + " " + std::to_string(count));
+                                  }
+                              });
     const auto writer = session->CreateWriter(TextTopic("State"), Telemetry(), {"", settings.Node});
     Say("open");
     std::atomic<bool> stopped{false};

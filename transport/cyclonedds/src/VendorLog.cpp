@@ -43,8 +43,8 @@ std::string_view LineOf(const dds_log_data_t &data)
     return line;
 }
 
-// What it says of a participant with keys that it does not accept, and of any that is heard before the own one
-// is complete: a few such lines say nothing.
+// What it says of a participant with keys that it does not accept, and of any that is heard before the own
+// one is complete: a few such lines say nothing.
 constexpr unsigned MostOvertaken = 8;
 bool IsOvertaken(const std::string &line)
 {

@@ -14,12 +14,14 @@ namespace Rabit::FastDds
 
 eprosima::fastrtps::TopicAttributes MakeTopicAttributes(const TopicDescription &topic);
 
-eprosima::fastrtps::rtps::WriterAttributes MakeWriterAttributes(
-    const TopicDescription &topic, const TopicQos &qos, const std::vector<std::string> &partitions);
+eprosima::fastrtps::rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic,
+                                                                const TopicQos &qos,
+                                                                const std::vector<std::string> &partitions);
 eprosima::fastrtps::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions);
 
-eprosima::fastrtps::rtps::ReaderAttributes MakeReaderAttributes(
-    const TopicDescription &topic, const TopicQos &qos, const std::vector<std::string> &partitions);
+eprosima::fastrtps::rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic,
+                                                                const TopicQos &qos,
+                                                                const std::vector<std::string> &partitions);
 eprosima::fastrtps::ReaderQos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions);
 
 WriterId ToWriterId(const eprosima::fastrtps::rtps::GUID_t &guid);

@@ -131,9 +131,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
     GuardedUdpDescriptor::Settings guarded;
-    guarded.MaxDatagram =
-        static_cast<std::uint32_t>(settings.Security ? std::max(settings.MaxDatagram, LargestHandshake)
-                                                     : settings.MaxDatagram);
+    guarded.MaxDatagram = static_cast<std::uint32_t>(
+        settings.Security ? std::max(settings.MaxDatagram, LargestHandshake) : settings.MaxDatagram);
     guarded.Mode = GuardMode(settings, attributes);
     guarded.GroupPort = IsMulticastForData(settings) ? 0 : DiscoveryGroupPort(settings, attributes);
     guarded.SocketsSendAll = !settings.Interfaces.empty();

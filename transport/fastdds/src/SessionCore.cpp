@@ -230,8 +230,8 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
         return;
     }
     const GuidPrefix &prefix = peer.m_guid.guidPrefix;
-    const Newcomer newcomer{.Who = std::make_shared<const ParticipantIdentity>(ParticipantIdentity{
-                                peer.m_participantName.to_string(), *incarnation}),
+    const Newcomer newcomer{.Who = std::make_shared<const ParticipantIdentity>(
+                                ParticipantIdentity{peer.m_participantName.to_string(), *incarnation}),
                             .Place = PlaceOf(peer)};
     if (_proof.IsWanted())
     {
@@ -244,7 +244,7 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
         const std::lock_guard lock(_mutex);
         if (!_proven.contains(prefix))
         {
-            _unproven.insert_or_assign(prefix, newcomer);
+            _unproven.emplace(prefix, newcomer);
             return;
         }
     }

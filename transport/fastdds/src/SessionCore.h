@@ -66,9 +66,8 @@ private:
                            eprosima::fastrtps::rtps::ReaderDiscoveryInfo &&info) override;
     void onWriterDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
                            eprosima::fastrtps::rtps::WriterDiscoveryInfo &&info) override;
-    void onParticipantAuthentication(
-        eprosima::fastrtps::rtps::RTPSParticipant *participant,
-        eprosima::fastrtps::rtps::ParticipantAuthenticationInfo &&info) override;
+    void onParticipantAuthentication(eprosima::fastrtps::rtps::RTPSParticipant *participant,
+                                     eprosima::fastrtps::rtps::ParticipantAuthenticationInfo &&info) override;
     // The name, or "" where IdentityOf gives nullptr.
     std::string NodeOf(const GuidPrefix &prefix) const;
     // On a thread of the network, before and while the participant lives.

@@ -72,8 +72,8 @@ private:
     std::string _setting;
 };
 
-// DDS Security: the files that the vendors read, in PEM and S/MIME, and who somebody is by his certificate. The
-// program `rabit keys` makes them.
+// DDS Security: the files that the vendors read, in PEM and S/MIME, and who somebody is by his certificate.
+// The program `rabit keys` makes them.
 struct TransportSecurity
 {
     std::string IdentityAuthority;     // the certificate of who signs certificates
