@@ -247,6 +247,14 @@ void FleetKeys::Make(const std::string &folder, const Request &request, const Pe
     const KeyPtr key = MakeKey();
     const CertificatePtr certificate =
         MakeCertificate(subject, *key, validity, *identity, *AuthorityKey("identity"));
+    const std::string document =
+        SignDocument(PermissionsText(subject, validity, request.Access), *permissions, *permissionsKey);
+    if (document.size() > LargestDocument)
+    {
+        throw KeysError("the permissions of " + request.Node + " take " + std::to_string(document.size()) +
+                        " bytes, and DDS can show others no more than " + std::to_string(LargestDocument) +
+                        ": too many topics for one node");
+    }
 
     std::error_code ignored;
     fs::remove_all(folder, ignored);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,10 @@ struct Permissions
     bool MayPublish(int domain, const TopicAccess &access) const;
     bool MaySubscribe(int domain, const TopicAccess &access) const;
 };
+
+// A signed document that is larger does not fit into the one message in which a vendor shows it, with its
+// certificate.
+inline constexpr std::size_t LargestDocument = 12000;
 
 // The text of a document, to be signed: exactly this access.
 std::string PermissionsText(const SubjectName &subject, const Validity &validity, const Access &access);
