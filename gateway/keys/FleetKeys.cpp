@@ -270,8 +270,7 @@ void FleetKeys::Make(const std::string &folder, const Request &request, const Pe
         WriteFile(files.Governance(level),
                   SignDocument(GovernanceText(level), *permissions, *permissionsKey));
     }
-    WriteFile(files.Permissions, SignDocument(PermissionsText(subject, validity, request.Access),
-                                              *permissions, *permissionsKey));
+    WriteFile(files.Permissions, document);
     WriteFile(
         Place(std::string(IssuedFolder) + "/" + request.Node + "." + std::to_string(subject.Number) + ".pem"),
         PemOf(*certificate));

@@ -93,6 +93,21 @@ TEST_F(FleetKeysTest, ACertificateDoesNotOutliveItsAuthority)
     EXPECT_THAT(WhyNot([&] { Add("uav1", "fastdds", TestNow, 4000); }), HasSubstr("fewer days"));
 }
 
+TEST_F(FleetKeysTest, PermissionsThatNoVendorCanShowAreRefused)
+{
+    FleetKeys::Request request = RequestFor("uav1");
+    for (int i = 0; i < 500; ++i)
+    {
+        request.Access.Publish.push_back({"SomeMessage" + std::to_string(i), {"", "uav1"}});
+    }
+    EXPECT_THAT(WhyNot(
+                    [&] {
+                        FleetKeys(Place()).Add(request, {TestNow, 10});
+                    }),
+                HasSubstr("too many topics"));
+    EXPECT_FALSE(fs::exists(FolderOf("uav1")));
+}
+
 TEST_F(FleetKeysTest, TwoDoNotChangeAFleetAtOnce)
 {
     const FleetKeys one(Place());
