@@ -181,7 +181,7 @@ TEST_F(SecurityInAFile, EncryptsUnlessItIsToldOtherwise)
 TEST_F(SecurityInAFile, IsRefusedWithoutKeysOrWithAnotherLevel)
 {
     EXPECT_THAT(WhyNot("security: {level: sign}\n"), HasSubstr("keys"));
-    EXPECT_THAT(WhyNot("security: {keys: ''}\n"), HasSubstr("no folder of keys"));
+    EXPECT_THAT(WhyNot("security: {keys: ''}\n"), HasSubstr("keys"));
     EXPECT_THAT(WhyNot("security: {keys: a, level: none}\n"), HasSubstr("level"));
     EXPECT_THAT(WhyNot("security: {keys: a, key: b}\n"), HasSubstr("key"));
     EXPECT_THAT(WhyNot("domain: 231\nsecurity: {keys: a}\n"),

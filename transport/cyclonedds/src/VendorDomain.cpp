@@ -93,6 +93,10 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     {
         domain._outbox.HasGroup(route->connection);
     }
+    if (domain._secured)
+    {
+        domain._handshakes.Sent({datagram, size}, *route, std::chrono::steady_clock::now());
+    }
     if (auto parts = ReadDiscoveryParts({datagram, size}))
     {
         const bool hears = IsGroup(address) || (domain._multicast && !direct);
@@ -130,6 +134,14 @@ std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size
     return Rtps::JoinMessages(others, buffer, left);
 }
 
+void VendorDomain::RepeatHandshake(std::span<const std::uint8_t> received)
+{
+    if (const auto end = _handshakes.Received(received, std::chrono::steady_clock::now()))
+    {
+        RabitCycloneSend(_watch, &end->Route, false, end->Bytes.data(), end->Bytes.size());
+    }
+}
+
 std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t size,
                                      std::size_t capacity, const unsigned char *from, bool direct)
 {
@@ -140,6 +152,10 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
         return admitted;
     }
     domain._outbox.Received({datagram, admitted});
+    if (domain._secured)
+    {
+        domain.RepeatHandshake({datagram, admitted});
+    }
     const Announcing announcing = AnnouncingOf({datagram, admitted});
     if (announcing.Alone && direct && from != nullptr)
     {
@@ -156,6 +172,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                            std::shared_ptr<DiscoveryPace> pace)
     : _log(log),
       _multicast(IsMulticastForData(settings)),
+      _secured(settings.Security.has_value()),
       // The vendor knows by itself which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
       _outbox(std::move(pace), [this](const auto &route, bool toGroup, auto datagram)

@@ -7,6 +7,7 @@
 
 #include "DirectAnnouncements.h"
 #include "Entity.h"
+#include "HandshakeEnds.h"
 #include "OutboxThread.h"
 #include "common/DiscoveryPace.h"
 #include "common/SessionLog.h"
@@ -40,6 +41,8 @@ private:
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);
+    // What came may show that the last message of a handshake was lost.
+    void RepeatHandshake(std::span<const std::uint8_t> received);
     // How long what the vendor may see of a datagram is.
     std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size);
 
@@ -47,7 +50,9 @@ private:
     void *_watch = nullptr;  // of what it sends
     const std::shared_ptr<SessionLog> _log;
     const bool _multicast;  // reaches all, but for who announces itself to us alone
+    const bool _secured;
     DirectAnnouncements _direct;
+    HandshakeEnds _handshakes;
     Rtps::RtpsGuard _guard;
     OutboxThread _outbox;
     Entity _entity;

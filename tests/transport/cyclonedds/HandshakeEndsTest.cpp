@@ -1,0 +1,105 @@
+#include "HandshakeEnds.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace
+{
+
+using Rabit::Cyclone::HandshakeEnds;
+using std::chrono::milliseconds;
+
+constexpr RabitCycloneRoute Route{nullptr, {10, 0, 0, 1}, 7410};
+constexpr HandshakeEnds::TimePoint Start{std::chrono::seconds(100)};
+constexpr auto Later = Start + std::chrono::seconds(1);
+
+// From `from` to `to`, each of them twelve times that byte.
+std::vector<std::uint8_t> Message(std::uint8_t from, std::uint8_t to, const std::string &text)
+{
+    std::vector<std::uint8_t> bytes{'R', 'T', 'P', 'S', 2, 1, 1, 16};
+    bytes.insert(bytes.end(), 12, from);
+    bytes.insert(bytes.end(), {0x0e, 0x01, 12, 0});
+    bytes.insert(bytes.end(), 12, to);
+    bytes.insert(bytes.end(), {0x15, 0x05, 0, 0});
+    bytes.insert(bytes.end(), text.begin(), text.end());
+    return bytes;
+}
+std::vector<std::uint8_t> Final(std::uint8_t to)
+{
+    return Message(1, to, "DDS:Auth:PKI-DH:1.0+Final");
+}
+std::vector<std::uint8_t> Reply(std::uint8_t from)
+{
+    return Message(from, 1, "DDS:Auth:PKI-DH:1.0+Reply");
+}
+
+TEST(HandshakeEnds, WhoShowsItsCertificateAgainIsAnsweredAgain)
+{
+    HandshakeEnds ends;
+    ends.Sent(Final(2), Route, Start);
+    const auto again = ends.Received(Reply(2), Later);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->Bytes, Final(2));
+    EXPECT_EQ(again->Route.port, Route.port);
+}
+
+TEST(HandshakeEnds, WhoHasNotBeenAnsweredYetIsNot)
+{
+    HandshakeEnds ends;
+    ends.Sent(Final(2), Route, Start);
+    EXPECT_FALSE(ends.Received(Reply(3), Later));
+}
+
+TEST(HandshakeEnds, AFloodIsNotAnsweredByAFlood)
+{
+    HandshakeEnds ends;
+    ends.Sent(Final(2), Route, Start);
+    EXPECT_FALSE(ends.Received(Reply(2), Start + milliseconds(1)));
+    EXPECT_TRUE(ends.Received(Reply(2), Later));
+    EXPECT_FALSE(ends.Received(Reply(2), Later + milliseconds(1)));
+}
+
+TEST(HandshakeEnds, TheLastOfAHandshakeThatBeganAnewCounts)
+{
+    HandshakeEnds ends;
+    ends.Sent(Message(1, 2, "DDS:Auth:PKI-DH:1.0+Final older"), Route, Start);
+    ends.Sent(Final(2), Route, Start);
+    EXPECT_EQ(ends.Received(Reply(2), Later)->Bytes, Final(2));
+}
+
+TEST(HandshakeEnds, OtherMessagesAreNone)
+{
+    HandshakeEnds ends;
+    ends.Sent(Message(1, 2, "DDS:Auth:PKI-DH:1.0+Req"), Route, Start);
+    EXPECT_FALSE(ends.Received(Reply(2), Later));
+    ends.Sent(Final(2), Route, Start);
+    EXPECT_FALSE(ends.Received(Message(2, 1, "DDS:Auth:PKI-DH:1.0+Req"), Later));
+}
+
+TEST(HandshakeEnds, TruncatedOnesDoNoHarm)
+{
+    HandshakeEnds ends;
+    for (std::size_t size = 0; size <= Final(2).size(); ++size)
+    {
+        const auto sent = Final(2);
+        ends.Sent(std::span(sent).first(size), Route, Start);
+        const auto came = Reply(2);
+        ends.Received(std::span(came).first(size), Later);
+    }
+}
+
+TEST(HandshakeEnds, OfManyTheLastAreRemembered)
+{
+    HandshakeEnds ends;
+    for (std::size_t i = 0; i <= HandshakeEnds::MostPeers; ++i)
+    {
+        auto message = Final(0);
+        message[24] = static_cast<std::uint8_t>(i >> 8);
+        message[25] = static_cast<std::uint8_t>(i);
+        ends.Sent(message, Route, Start);
+    }
+    EXPECT_FALSE(ends.Received(Reply(0), Later));
+}
+
+}  // namespace
