@@ -225,6 +225,10 @@ private:
             _presence.BeTool([this](const std::string &node)
                              { return MatchesAny(_config.Tool->AsksOf, node); });
         }
+        if (_config.Replay)
+        {
+            _presence.BeReplay();
+        }
         // First, so that the others know of this node as early as can be.
         _presence.Open(*_session, Announcements::Of(_config));
         _links.Open(*_session);

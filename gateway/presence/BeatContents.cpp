@@ -63,12 +63,17 @@ bool BeatContents::IsPlaceDue(Duration now) const
     return _peers.OwnNameTwice() && (!_placeSaid || now - *_placeSaid >= PlacePeriod);
 }
 
+std::size_t BeatContents::SizeOfMarks() const
+{
+    return (_isTool ? BeatFormat::ToolMark : 0) + (_isReplay ? BeatFormat::ReplayMark : 0);
+}
+
 std::size_t BeatContents::Size(Duration now) const
 {
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t size = BeatFormat::Empty + (_isTool ? BeatFormat::ToolMark : 0) +
+    const std::size_t size = BeatFormat::Empty + SizeOfMarks() +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
@@ -82,7 +87,7 @@ std::size_t BeatContents::Size(Duration now) const
 void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
 {
     std::size_t room = std::min(most, BeatFormat::Largest);
-    room -= std::min(room, BeatFormat::Empty + (_isTool ? BeatFormat::ToolMark : 0));
+    room -= std::min(room, BeatFormat::Empty + SizeOfMarks());
     AddWants(beat, now, room);
     AddTypes(beat, now, room);
     beat.echoes = _peers.NextEchoes(now, std::min(BeatFormat::MostEchoes, room / BeatFormat::Echo));
@@ -94,6 +99,10 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     if (_isTool)
     {
         BeatExtensions::MarkTool(beat);
+    }
+    if (_isReplay)
+    {
+        BeatExtensions::MarkReplay(beat);
     }
 }
 

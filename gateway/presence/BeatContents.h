@@ -55,6 +55,8 @@ public:
 
     // This node is a tool, and its beats say so.
     void BeTool() { _isTool = true; }
+    // What this node posts was recorded before, and its beats say so.
+    void BeReplay() { _isReplay = true; }
 
     // When there is something to ask for, which need not wait for the next period.
     std::optional<Duration> QuestionDue() const;
@@ -71,6 +73,7 @@ private:
     void AddWants(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddPart(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddStates(Gateway::Beat &beat, std::size_t &room);
+    std::size_t SizeOfMarks() const;
     std::size_t SizeOfPart(Duration now, std::size_t room) const;
     bool IsPlaceDue(Duration now) const;
 
@@ -80,6 +83,7 @@ private:
     DelayNotes _delays;
     PeerTable &_peers;
     bool _isTool = false;
+    bool _isReplay = false;
     std::vector<std::uint8_t> _offers;
     std::uint32_t _digest = 0;
     std::vector<std::uint32_t> _states;  // versions

@@ -55,6 +55,7 @@ public:
         std::uint64_t Incarnation = 0;
         std::uint32_t Tag = 0;  // of node and incarnation (names/NodeTag.h)
         bool IsTool = false;    // UP as long as it is kept; it has no offers and no states
+        bool IsReplay = false;  // what it posts was recorded before
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
         Duration FirstHeard{0};

@@ -52,6 +52,8 @@ public:
 
     // This node is a tool, and asks for the announcements of these nodes alone. Before Open.
     void BeTool(PeerTable::IsAsked asksOf);
+    // What this node posts was recorded before. Before Open.
+    void BeReplay() { _contents.BeReplay(); }
     // Starts to send and to receive. Throws TransportError.
     void Open(TransportSession &session, const Gateway::Announcement &announcement);
     // Says goodbye and stops.

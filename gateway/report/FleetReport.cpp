@@ -22,6 +22,7 @@ Gateway::NodeStatus StatusOf(const PeerTable::Peer &peer, std::chrono::nanosecon
     status.node = peer.Node;
     status.state = peer.State;
     status.reason = peer.Reason;
+    status.replay = peer.IsReplay;
     status.incarnation = peer.Incarnation;
     status.last_heard_s = std::max(0.0, Seconds(now - peer.LastHeard));
     const auto roundTrip = peer.Clock.RoundTrip();

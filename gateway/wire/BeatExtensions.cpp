@@ -22,6 +22,13 @@ Gateway::Wanted &Add(Gateway::Beat &beat, std::uint16_t kind)
     return extension;
 }
 
+bool Has(const Gateway::Beat &beat, std::uint16_t kind)
+{
+    return std::any_of(beat.wants.begin(), beat.wants.end(),
+                       [kind](const Gateway::Wanted &wanted)
+                       { return wanted.node == Nobody && wanted.offers == kind; });
+}
+
 }  // namespace
 
 void MarkTool(Gateway::Beat &beat)
@@ -31,9 +38,17 @@ void MarkTool(Gateway::Beat &beat)
 
 bool IsTool(const Gateway::Beat &beat)
 {
-    return std::any_of(beat.wants.begin(), beat.wants.end(),
-                       [](const Gateway::Wanted &wanted)
-                       { return wanted.node == Nobody && wanted.offers == Tool; });
+    return Has(beat, Tool);
+}
+
+void MarkReplay(Gateway::Beat &beat)
+{
+    Add(beat, Replay);
+}
+
+bool IsReplay(const Gateway::Beat &beat)
+{
+    return Has(beat, Replay);
 }
 
 void Ask(Gateway::Beat &beat, const TypeQuestion &question)

@@ -15,9 +15,11 @@ namespace Rabit::BeatExtensions
 inline constexpr std::uint32_t Nobody = 0;  // NodeTagOf never gives it
 inline constexpr std::uint16_t Tool = 1;    // the sender is a tool (ToolSettings)
 inline constexpr std::uint16_t Type = 2;    // a TypeQuestion, in Wanted::states
+inline constexpr std::uint16_t Replay = 3;  // what the sender posts was recorded before (GatewayConfig::Replay)
 
 // Bytes of Wanted::states.
 inline constexpr std::size_t ToolBytes = 0;
+inline constexpr std::size_t ReplayBytes = 0;
 inline constexpr std::size_t TypeBytes = 16;
 
 // The sender lacks the text of a type that a node has announced.
@@ -32,6 +34,9 @@ struct TypeQuestion
 
 void MarkTool(Gateway::Beat &beat);
 bool IsTool(const Gateway::Beat &beat);
+
+void MarkReplay(Gateway::Beat &beat);
+bool IsReplay(const Gateway::Beat &beat);
 
 void Ask(Gateway::Beat &beat, const TypeQuestion &question);
 // The questions in a beat; what makes no sense is left out.

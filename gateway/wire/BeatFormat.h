@@ -32,8 +32,9 @@ inline constexpr std::size_t MostWants = 8;
 inline constexpr std::size_t MostEchoes = 2;
 inline constexpr std::size_t MostDelays = 16;
 
-// What tools say that they are (wire/BeatExtensions.h).
+// What tools and replays say that they are (wire/BeatExtensions.h).
 inline constexpr std::size_t ToolMark = Wanted(0);
+inline constexpr std::size_t ReplayMark = Wanted(0);
 
 // A question for a type.
 inline constexpr std::size_t TypeQuestion = Wanted(16);

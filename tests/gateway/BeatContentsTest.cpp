@@ -9,6 +9,7 @@
 #include "air/AirCost.h"
 #include "names/NodeTag.h"
 #include "presence/Whereabouts.h"
+#include "wire/BeatExtensions.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -116,6 +117,21 @@ TEST_F(BeatContentsTest, WhoHasNothingToSayHasAnEmptyBeat)
     BeginLongAgo(100, 0);
     EXPECT_EQ(contents.Size(10s), BeatFormat::Empty);
     EXPECT_EQ(BodyOf(Next(10s)), BeatFormat::Empty);
+}
+
+TEST_F(BeatContentsTest, AReplaySaysInEachBeatThatItIsOne)
+{
+    contents.BeReplay();
+    Begin(0, 0);
+    for (int i = 0; i < 3; ++i)
+    {
+        const Ns now = std::chrono::minutes(i + 1);
+        const std::size_t size = contents.Size(now);
+        Gateway::Beat beat;
+        contents.Fill(beat, now, size);
+        EXPECT_TRUE(BeatExtensions::IsReplay(beat));
+        EXPECT_LE(BodyOf(beat), size);
+    }
 }
 
 TEST_F(BeatContentsTest, TheFirstBeatOfALifeCarriesTheAnnouncement)

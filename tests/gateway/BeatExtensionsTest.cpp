@@ -24,6 +24,16 @@ TEST(BeatExtensions, ABeatIsOfAToolOnlyIfItSaysSo)
     EXPECT_TRUE(BeatExtensions::IsTool(beat));
 }
 
+TEST(BeatExtensions, ABeatIsOfAReplayOnlyIfItSaysSo)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::MarkTool(beat);
+    EXPECT_FALSE(BeatExtensions::IsReplay(beat));
+    BeatExtensions::MarkReplay(beat);
+    EXPECT_TRUE(BeatExtensions::IsReplay(beat));
+    EXPECT_TRUE(BeatExtensions::IsTool(beat));
+}
+
 TEST(BeatExtensions, WhatIsAskedForIsWhatIsUnderstood)
 {
     const TypeQuestion first{.Node = 0xfedcba98, .Definition = 0x0123456789abcdef, .From = 70000};
@@ -48,6 +58,7 @@ TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
 {
     Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
     BeatExtensions::MarkTool(beat);
+    BeatExtensions::MarkReplay(beat);
     BeatExtensions::Ask(beat, TypeQuestion());
     const MessageType &type = GatewayTopics::TypeOf<Gateway::Beat>();
     std::vector<std::uint8_t> bytes(type.SerializedSize(beat));

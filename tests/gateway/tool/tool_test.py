@@ -68,7 +68,8 @@ def nodes_are_listed_with_what_they_have(rabit):
     assert done.stderr == "", done.stderr
     row = rows["uav1"]
     assert keys(row) == ["node", "state", "reason", "incarnation", "last_heard_s", "round_trip_s", "delivery_rate",
-                         "publishes", "accepts"], keys(row)
+                         "publishes", "accepts", "replay"], keys(row)
+    assert row["replay"] is False
     assert row["state"] == "UP" and 0 < row["round_trip_s"] < LIMIT
     pose = next(item for item in row["publishes"] if item["message"] == "Pose")
     assert keys(pose) == ["message", "type", "qos", "definition"]

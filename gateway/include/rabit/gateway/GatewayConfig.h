@@ -188,6 +188,9 @@ struct GatewayConfig
 
     // Set: this node is a tool. Only in code.
     std::optional<ToolSettings> Tool{};
+    // Whether what this node posts was recorded before, and is played again. Its beats say so, and the others
+    // show it (NodeStatus::replay). Only in code.
+    bool Replay = false;
 
     // For error messages: the file it came from and the line of each of its top-level keys, and of those of
     // the sections `security`, `radio` and `record` (`radio.budget`); empty: made in code.
