@@ -291,6 +291,7 @@ std::string SnapshotText(const StationData &data, const std::deque<StationEvent>
                      {"targets", std::move(targets)},
                      {"events", ToJson(events, data.NowS)},
                      {"problems", ToJson(data.Problems)},
+                     {"replayed", data.Replayed},
                      {"radio", ToJson(data.Radio)}};
     Add(snapshot, "area", data.Area);
     snapshot["commands"] = data.Commands ? ToJson(*data.Commands.Content, data.Commands.AgeS) : Json::array();

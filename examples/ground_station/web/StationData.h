@@ -80,6 +80,7 @@ struct StationData
     Aged<Uav::SearchArea> Area;
     Aged<CommandList> Commands;
     std::vector<Rabit::Gateway::Problem> Problems;
+    std::vector<std::string> Replayed;  // nodes that are there, but whose messages were recorded before
     RadioUse Radio;  // of this node, as old as the states of the aircraft
 };
 

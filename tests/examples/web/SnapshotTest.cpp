@@ -103,6 +103,13 @@ TEST_F(Snapshot, TellsFloorGroundAndHomeWhereTheyAreKnown)
     EXPECT_EQ(aircraft["mission"]["area_declined"], "too low");
 }
 
+TEST_F(Snapshot, TellsWhatIsReplayed)
+{
+    EXPECT_EQ(Shown()["replayed"], Json::array());
+    _data.Replayed = {"replay.uav1", "replay.uav2"};
+    EXPECT_EQ(Shown()["replayed"], Json({"replay.uav1", "replay.uav2"}));
+}
+
 TEST_F(Snapshot, TellsWhichAircraftIsBackWithoutOrders)
 {
     EXPECT_FALSE(Shown()["aircraft"][0].contains("without_orders"));

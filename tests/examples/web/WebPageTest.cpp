@@ -124,6 +124,16 @@ TEST_F(WebPage, ShowsAnExpectedAircraftBeforeItIsHeard)
     EXPECT_EQ(shown["aircraft"][0]["state"], "waiting");
 }
 
+TEST_F(WebPage, NamesTheNodesThatAreThereAndReplay)
+{
+    Start();
+    PostFleet({{"uav1", NodeState::UP}, {"uav2", NodeState::STALE}, {"uav3", NodeState::LOST}, {"uav4", NodeState::UP}});
+    for (auto &status : _fleet->nodes)
+        status.replay = status.node != "uav4";
+    _fleet->PostMessage();
+    EXPECT_EQ(Shown()["replayed"], Json({"uav1", "uav2"}));
+}
+
 TEST_F(WebPage, ShowsTheRadioOnceTheGatewayHasToldOfIt)
 {
     Start({"uav1"});

@@ -5,8 +5,8 @@
 // `progress STEP [REASON]` (the last command comes to that step, a number of Ground::CommandProgress),
 // `decline NODE REASON` (the search area), `orders NODE` (it is back without), `problems COUNT` (there are so
 // many now), `radio held` (it has a budget, and two in five posts of Pose and some messages for uav2 are held
-// back), `radio free` (not limited), `silence` (nothing is posted any more); it ends at their end. The ground
-// is at 430 m, and each aircraft has a floor of 460 m.
+// back), `radio free` (not limited), `replay NODE` (it plays a recording), `silence` (nothing is posted any
+// more); it ends at their end. The ground is at 430 m, and each aircraft has a floor of 460 m.
 #include "WebPage.h"
 #include "WebServer.h"
 
@@ -155,6 +155,8 @@ private:
                 _silent = true;
             if (what == "radio")
                 _held = node == "held";
+            if (what == "replay")
+                _replayed = node;
             if (what == "problems")
                 SetProblems(std::stoul(node));
             std::string text;
@@ -247,6 +249,7 @@ private:
             Rabit::Gateway::NodeStatus status;
             status.node = one.Node;
             status.state = one.State;
+            status.replay = one.Node == _replayed;
             status.round_trip_s = 0.004;
             status.delivery_rate = _hostile ? std::numeric_limits<double>::infinity() : 3210;
             if (one.State != NodeState::UP)
@@ -362,6 +365,7 @@ private:
     std::vector<FlyingAircraft> _aircraft;
     bool _silent = false;
     bool _held = false;
+    std::string _replayed;  // aircraft
     int _step = 0;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();

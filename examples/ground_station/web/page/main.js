@@ -60,6 +60,14 @@ function receive(snapshot, takenAt) {
   if (document.hidden) setTimeout(draw, 50);
 }
 
+// What was recorded must not be taken for what is there now, whatever else the page shows.
+function showReplay() {
+  const {replayed} = model;
+  const banner = byId('replay');
+  banner.hidden = replayed.length === 0;
+  if (replayed.length > 0) setText(banner, `▶ REPLAY of a recording, not live: ${replayed.join(', ')}`);
+}
+
 const counts = new Map();
 function showCounts() {
   const byState = {up: 0, stale: 0, lost: 0, waiting: 0};
@@ -107,6 +115,7 @@ function show(isNewSnapshot) {
   setText(byId('station'), model.snapshot?.node ?? '');
   showCounts();
   showLink();
+  showReplay();
   table.update();
   showSelected(model);
   orders.update();

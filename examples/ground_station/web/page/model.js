@@ -35,6 +35,10 @@ export class Model {
     const rank = new Map(this.aircraft.map((one) => [one, URGENCY.indexOf(this.state(one))]));
     return [...this.aircraft].sort((a, b) => rank.get(a) - rank.get(b));
   }
+  // Nodes whose messages were recorded before.
+  get replayed() {
+    return this.snapshot?.replayed ?? [];
+  }
   find(node) {
     return this.aircraft.find((one) => one.node === node) ?? null;
   }

@@ -101,6 +101,24 @@ async function showsTheProblemsThatThereAreNow(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+async function showsAReplayAcrossThePage(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state), 'is shown');
+  assert.equal(await page.isVisible('#replay'), false);
+  fixture.tell('replay uav2');
+  await becomes(() => page.isVisible('#replay'), 'the replay is announced');
+  assert.equal(await fleet.text('#replay'), '▶ REPLAY of a recording, not live: uav2');
+  const {width} = await page.locator('#replay').boundingBox();
+  assert.equal(width, page.viewportSize().width, 'across the page');
+  fixture.tell('silence');
+  await becomes(async () => /STALE/.test((await fleet.row('uav1')).state), 'the fleet falls silent');
+  assert.equal(await page.isVisible('#replay'), true, 'what is old was a replay still');
+  assert.deepEqual(fleet.errors, []);
+}
+
 async function showsWhatTheRadioHoldsBack(programs) {
   const {fixture, url} = await startFixture(programs, 3);
   await openBrowser();
@@ -321,6 +339,7 @@ export const cases = {
   shows_hostile_texts_as_text: showsHostileTextsAsText,
   shows_the_problems_that_there_are_now: showsTheProblemsThatThereAreNow,
   shows_what_the_radio_holds_back: showsWhatTheRadioHoldsBack,
+  shows_a_replay_across_the_page: showsAReplayAcrossThePage,
   sends_a_dragged_search_area: sendsADraggedSearchArea,
   recovers_from_a_reload_and_a_restart: recoversFromAReloadAndARestart,
   works_by_keyboard_alone: worksByKeyboardAlone,
