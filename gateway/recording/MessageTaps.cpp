@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "names/NamePattern.h"
@@ -28,6 +29,11 @@ const char *StateOf(ManagerStatusMessage::RunningState_e state)
         default:
             return "shutdown";
     }
+}
+
+std::string WordOf(std::optional<QosProfile> qos)
+{
+    return !qos ? "" : *qos == QosProfile::State ? "state" : "telemetry";
 }
 
 bool EncodeManager(const RabitMessage &message, Mcap::Bytes &bytes)
@@ -127,12 +133,16 @@ MessageTaps::Origin MessageTaps::OriginOf(const std::string &name) const
                                        { return one.Message == message && MatchesAny(one.From, node); });
         if (rule != _config.Subscribe.end())
         {
-            return {node, message, true, rule->Qos != QosProfile::Telemetry};
+            return {node, message, true, rule->Qos != QosProfile::Telemetry, WordOf(rule->Qos)};
         }
     }
     const auto rule = std::find_if(_config.Publish.begin(), _config.Publish.end(),
                                    [&name](const PublishRule &one) { return one.Message == name; });
-    return {_config.Node, name, false, rule == _config.Publish.end() || rule->Qos != QosProfile::Telemetry};
+    if (rule == _config.Publish.end())
+    {
+        return {_config.Node, name, false, true, "none"};
+    }
+    return {_config.Node, name, false, rule->Qos != QosProfile::Telemetry, WordOf(rule->Qos)};
 }
 
 std::shared_ptr<MessageTap> MessageTaps::Tap(const std::string &name,
@@ -157,6 +167,10 @@ std::shared_ptr<MessageTap> MessageTaps::Tap(const std::string &name,
     stream.IsState = origin.IsState;
     stream.Metadata = {{"rabit.kind", origin.IsMirrored ? "mirrored" : "posted"},
                        {"rabit.node", origin.Node}};
+    if (!origin.Qos.empty())
+    {
+        stream.Metadata["rabit.qos"] = origin.Qos;
+    }
     const auto &box = _config.Record->BlackBox;
     std::string event = box && MatchesAny(box->Messages, name) ? "message " + stream.Topic : "";
     const std::uint32_t number = _target->Inbox().AddStream(std::move(stream));

@@ -32,6 +32,7 @@ private:
         std::string Message;
         bool IsMirrored = false;
         bool IsState = true;
+        std::string Qos{};  // in words, `none` if it is not published; empty: not known
     };
     Origin OriginOf(const std::string &name) const;
     std::shared_ptr<MessageTap> Tap(const std::string &name,

@@ -47,6 +47,7 @@ struct Recorded
 {
     std::string Schema;
     std::string Kind;
+    std::string Qos;
     std::vector<Mcap::Bytes> Samples;
     std::vector<std::uint32_t> Sequences;
     std::vector<std::uint64_t> LogTimes;
@@ -93,6 +94,8 @@ protected:
                 Recorded &topic = topics[channel.Topic];
                 topic.Schema = contents.Schemas.at(channel.SchemaId).Name;
                 topic.Kind = channel.Metadata.at("rabit.kind");
+                const auto qos = channel.Metadata.find("rabit.qos");
+                topic.Qos = qos == channel.Metadata.end() ? "" : qos->second;
                 topic.Samples.emplace_back(message->Data.begin(), message->Data.end());
                 topic.Sequences.push_back(message->Sequence);
                 topic.LogTimes.push_back(message->LogTime);
@@ -158,6 +161,27 @@ TEST_F(RecorderManagerTest, RecordsEachPostHereAndThoseThatComeFromOthers)
         EXPECT_LT(mirrored.LogTimes[at] - mirrored.PublishTimes[at], 300000000U);
     }
     EXPECT_EQ(topics.at("uav1/Gateway/Fleet").Schema, "Rabit::Gateway::Fleet");
+}
+
+TEST_F(RecorderManagerTest, TellsTheQosOfWhatTheConfigurationNames)
+{
+    SimulatedNode &uav1 = AddRecorded(Watching("uav1"));
+    SimulatedNode &uav2 = Fleet.Add(AircraftConfig("uav2"));
+    const auto pose = uav1.Register<Uav::Pose>("Pose");
+    const auto mission = uav1.Register<Uav::MissionState>("MissionState");
+    const auto own = uav1.Register<Uav::Goto>("Plan");
+    const auto other = uav2.Register<Uav::Pose>("Pose");
+    Fleet.RunFor(3s);
+    pose->PostMessage();
+    mission->PostMessage();
+    own->PostMessage();
+    other->PostMessage();
+    Fleet.RunFor(1s);
+    const auto topics = RecordingOf("uav1");
+    EXPECT_EQ(topics.at("uav1/Pose").Qos, "telemetry");
+    EXPECT_EQ(topics.at("uav1/MissionState").Qos, "state");
+    EXPECT_EQ(topics.at("uav1/Plan").Qos, "none") << "it is not published";
+    EXPECT_EQ(topics.at("uav2/Pose").Qos, "") << "the subscription names none";
 }
 
 TEST_F(RecorderManagerTest, RecordsQueueMessagesAtBothEndsWithTheirOutcome)
