@@ -36,6 +36,7 @@ ROOMS = {
 OWNERS = [
     (r"recording/mcap/", "room mcap"),
     (r"recording/merge/", "room merge"),
+    (r"recording/replay/", "room replay"),
     (r"recording/", "room recording"),
     *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"guard/", "guard"),
@@ -95,10 +96,12 @@ ALLOWED = {
     # Files alone: no network, no messages.
     "gateway/recording/mcap": {"room mcap", "zstd"},
     "gateway/recording/merge": {"room mcap", "room merge"},
+    # What is played when: files and names alone.
+    "gateway/recording/replay": {"room names", "room mcap", "room replay"},
     "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room recording"},
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
                      "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room manager", "room mcap",
-                     "room recording", "room merge"},
+                     "room recording", "room merge", "room replay"},
     "gateway/node": {"core", "factory", "gateway", "node", "recording", "CLI11"},
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.

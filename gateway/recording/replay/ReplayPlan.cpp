@@ -1,0 +1,234 @@
+#include "recording/replay/ReplayPlan.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "names/NamePattern.h"
+
+namespace Rabit::Replay
+{
+namespace
+{
+
+constexpr const char *FleetType = "Rabit::Gateway::Fleet";
+
+std::string TextIn(const Mcap::TextMap &values, const std::string &key)
+{
+    const auto found = values.find(key);
+    return found == values.end() ? "" : found->second;
+}
+
+// One channel of one file that could be played.
+struct Candidate
+{
+    ReplayStream Stream;
+    bool IsOwn = false;        // its own node recorded it, or its sender
+    bool IsPublished = false;  // it was seen by others, or could be
+    std::size_t File = 0;
+    std::uint16_t Channel = 0;
+    std::uint64_t Messages = 0;
+};
+
+// The same for all that recorded the same thing.
+std::string ThingOf(const ReplayStream &stream)
+{
+    return std::to_string(static_cast<int>(stream.What)) + ' ' + stream.Node + ' ' + stream.Name + ' ' +
+           stream.Peer + ' ' + (stream.What == ReplayStream::Kind::Queue ? stream.Type : "");
+}
+
+// `NODE/MESSAGE`.
+std::optional<std::pair<std::string, std::string>> SplitTopic(const std::string &topic)
+{
+    const std::size_t slash = topic.find('/');
+    if (slash == std::string::npos || !IsNodeName(topic.substr(0, slash)) ||
+        !IsMessageName(topic.substr(slash + 1)))
+    {
+        return std::nullopt;
+    }
+    return std::pair(topic.substr(0, slash), topic.substr(slash + 1));
+}
+
+bool FillQueue(const Mcap::Channel &channel, Candidate &candidate)
+{
+    ReplayStream &stream = candidate.Stream;
+    const std::string kind = TextIn(channel.Metadata, "rabit.kind");
+    const std::string peer = TextIn(channel.Metadata, "rabit.peer");
+    candidate.IsOwn = kind == "queue sent";
+    stream.What = ReplayStream::Kind::Queue;
+    stream.Recorder = TextIn(channel.Metadata, "rabit.node");
+    stream.Node = candidate.IsOwn ? stream.Recorder : peer;
+    stream.Peer = candidate.IsOwn ? peer : stream.Recorder;
+    stream.Name = TextIn(channel.Metadata, "rabit.queue");
+    return (candidate.IsOwn || kind == "queue received") && IsNodeName(stream.Node) &&
+           IsNodeName(stream.Peer) && IsMessageName(stream.Name);
+}
+
+bool FillMessage(const Mcap::Channel &channel, const std::string &recorder, Candidate &candidate)
+{
+    ReplayStream &stream = candidate.Stream;
+    const std::string kind = TextIn(channel.Metadata, "rabit.kind");
+    // In a merged recording topics that a node had from others are told by their metadata.
+    const auto topic = SplitTopic(kind == "knew" ? TextIn(channel.Metadata, "rabit.node") + "/" +
+                                                       TextIn(channel.Metadata, "rabit.message")
+                                                 : channel.Topic);
+    if (!topic)
+    {
+        return false;
+    }
+    const std::string qos = TextIn(channel.Metadata, "rabit.qos");
+    stream.Node = topic->first;
+    stream.Name = topic->second;
+    stream.IsTelemetry = qos == "telemetry";
+    candidate.IsOwn = kind == "posted";
+    candidate.IsPublished = qos != "none";
+    const std::string told = TextIn(channel.Metadata, "rabit.recorded_by");
+    stream.Recorder = candidate.IsOwn ? stream.Node : told.empty() ? recorder : told;
+    if (stream.Type == FleetType)
+    {
+        stream.What = ReplayStream::Kind::Fleet;
+        return candidate.IsOwn;
+    }
+    return kind != "recorder";
+}
+
+std::optional<Candidate> CandidateOf(const Mcap::Contents &contents, const Mcap::Channel &channel,
+                                     const std::string &recorder)
+{
+    const auto schema = contents.Schemas.find(channel.SchemaId);
+    if (channel.MessageEncoding != "cdr" || schema == contents.Schemas.end() ||
+        schema->second.Encoding != "omgidl")
+    {
+        return std::nullopt;
+    }
+    Candidate candidate;
+    candidate.Channel = channel.Id;
+    candidate.Stream.Type = schema->second.Name;
+    candidate.Stream.IdlText = schema->second.Data;
+    const auto counted = contents.Statistics.ChannelMessageCounts.find(channel.Id);
+    candidate.Messages = counted == contents.Statistics.ChannelMessageCounts.end() ? 0 : counted->second;
+    const bool isQueue = TextIn(channel.Metadata, "rabit.kind").starts_with("queue ");
+    return (isQueue ? FillQueue(channel, candidate) : FillMessage(channel, recorder, candidate))
+               ? std::optional(std::move(candidate))
+               : std::nullopt;
+}
+
+bool IsSelected(const Candidate &candidate, const PlanSettings &settings)
+{
+    const ReplayStream &stream = candidate.Stream;
+    switch (stream.What)
+    {
+        case ReplayStream::Kind::Fleet:
+            return true;
+        case ReplayStream::Kind::Queue:
+            return MatchesAny(settings.Queues, stream.Peer + "/" + stream.Name);
+        default:
+            break;
+    }
+    const std::string name = stream.Node + "/" + stream.Name;
+    return (settings.Include.empty() ? candidate.IsPublished : MatchesAny(settings.Include, name)) &&
+           !MatchesAny(settings.Exclude, name);
+}
+
+// Of each thing what one recorder has of it.
+std::vector<Candidate> OneRecorderEach(std::vector<Candidate> candidates)
+{
+    std::map<std::pair<std::string, std::string>, std::uint64_t> counts;       // by thing and recorder
+    std::map<std::string, std::tuple<bool, std::uint64_t, std::string>> best;  // by thing
+    for (const Candidate &candidate : candidates)
+    {
+        counts[{ThingOf(candidate.Stream), candidate.Stream.Recorder}] += candidate.Messages;
+    }
+    for (const Candidate &candidate : candidates)
+    {
+        const std::string thing = ThingOf(candidate.Stream);
+        const std::string &recorder = candidate.Stream.Recorder;
+        const std::tuple rank(candidate.IsOwn, counts[{thing, recorder}], recorder);
+        const auto [known, isNew] = best.try_emplace(thing, rank);
+        known->second = isNew ? rank : std::max(known->second, rank);
+    }
+    std::erase_if(candidates, [&](const Candidate &candidate)
+                  { return std::get<2>(best[ThingOf(candidate.Stream)]) != candidate.Stream.Recorder; });
+    return candidates;
+}
+
+// Of a node that posts nothing which is played, and yet was there.
+bool IsNodeSelected(const std::string &node, const PlanSettings &settings)
+{
+    const std::string name = node + "/";
+    return (settings.Include.empty() || MatchesAny(settings.Include, name)) &&
+           !MatchesAny(settings.Exclude, name);
+}
+
+// Who recorded a file, or a part of one that was merged.
+void TakeRecorder(const Mcap::TextMap &about, const PlanSettings &settings, ReplayPlan &plan)
+{
+    const std::string node = TextIn(about, "node");
+    const std::string domain = TextIn(about, "domain");
+    if (!domain.empty())
+    {
+        plan.Domains.insert(domain);
+    }
+    if (IsNodeName(node) && TextIn(about, "kind").empty() && IsNodeSelected(node, settings))
+    {
+        plan.Nodes.insert(node);
+    }
+}
+
+// What is selected of all files; tells the plan of nodes and domains.
+std::vector<Candidate> CandidatesOf(const std::vector<const Mcap::Contents *> &files,
+                                    const PlanSettings &settings, ReplayPlan &plan)
+{
+    std::vector<Candidate> candidates;
+    for (std::size_t file = 0; file < files.size(); ++file)
+    {
+        std::string recorder;
+        for (const Mcap::Metadata &metadata : files[file]->MetadataRecords)
+        {
+            if (metadata.Name == "rabit.node" || metadata.Name == "rabit.recording")
+            {
+                recorder = TextIn(metadata.Values, "node");
+                TakeRecorder(metadata.Values, settings, plan);
+            }
+        }
+        for (const auto &[id, channel] : files[file]->Channels)
+        {
+            auto candidate = CandidateOf(*files[file], channel, recorder);
+            if (candidate && IsSelected(*candidate, settings))
+            {
+                candidate->File = file;
+                candidates.push_back(std::move(*candidate));
+            }
+        }
+    }
+    return candidates;
+}
+
+}  // namespace
+
+ReplayPlan PlanReplay(const std::vector<const Mcap::Contents *> &files, const PlanSettings &settings)
+{
+    ReplayPlan plan;
+    plan.Channels.resize(files.size());
+    std::map<std::string, std::size_t> known;  // streams
+    for (Candidate &candidate : OneRecorderEach(CandidatesOf(files, settings, plan)))
+    {
+        ReplayStream &stream = candidate.Stream;
+        const std::string key = ThingOf(stream) + ' ' + stream.Type + ' ' + stream.IdlText;
+        const auto [entry, isNew] = known.try_emplace(key, plan.Streams.size());
+        plan.Channels[candidate.File][candidate.Channel] = entry->second;
+        if (stream.What != ReplayStream::Kind::Fleet)
+        {
+            plan.Nodes.insert(stream.Node);
+        }
+        if (isNew)
+        {
+            plan.Streams.push_back(std::move(stream));
+        }
+    }
+    return plan;
+}
+
+}  // namespace Rabit::Replay

@@ -1,0 +1,209 @@
+#include "recording/replay/ReplayPlan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "PlayedFile.h"
+
+namespace Rabit::Replay
+{
+namespace
+{
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+class ReplayPlanTest : public ::testing::Test
+{
+protected:
+    PlayedFile &AddFile(const std::string &recorder, const PlayedFile::TextMap &more = {})
+    {
+        return files.emplace_back(recorder, more);
+    }
+    ReplayPlan Plan(const PlanSettings &settings = {})
+    {
+        std::vector<const Mcap::Contents *> contents;
+        for (PlayedFile &file : files)
+        {
+            contents.push_back(&file.Contents());
+        }
+        return PlanReplay(contents, settings);
+    }
+    // NODE/MESSAGE<RECORDER, NODE>PEER/QUEUE, NODE!
+    static std::vector<std::string> NamesOf(const ReplayPlan &plan)
+    {
+        std::vector<std::string> names;
+        for (const ReplayStream &stream : plan.Streams)
+        {
+            const bool isQueue = stream.What == ReplayStream::Kind::Queue;
+            names.push_back(stream.What == ReplayStream::Kind::Fleet ? stream.Node + "!"
+                            : isQueue ? stream.Node + ">" + stream.Peer + "/" + stream.Name
+                                      : stream.Node + "/" + stream.Name + "<" + stream.Recorder);
+        }
+        return names;
+    }
+
+    std::deque<PlayedFile> files;
+};
+
+TEST_F(ReplayPlanTest, WhatANodePublishedAndWhatItHadFromOthersIsPlayed)
+{
+    PlayedFile &file = AddFile("uav1", {{"domain", "7"}});
+    file.Posted("uav1", "Pose", "telemetry");
+    file.Posted("uav1", "MissionState", "state");
+    file.Mirrored("uav2", "Pose");
+    file.Fleet("uav1");
+    const ReplayPlan plan = Plan();
+    EXPECT_THAT(NamesOf(plan),
+                UnorderedElementsAre("uav1/Pose<uav1", "uav1/MissionState<uav1", "uav2/Pose<uav1", "uav1!"));
+    EXPECT_THAT(plan.Nodes, ElementsAre("uav1", "uav2"));
+    EXPECT_THAT(plan.Domains, ElementsAre("7"));
+    EXPECT_TRUE(plan.Streams.at(0).IsTelemetry);
+    EXPECT_FALSE(plan.Streams.at(1).IsTelemetry);
+    EXPECT_EQ(plan.Streams.at(0).Type, "Uav::Pose");
+    EXPECT_EQ(plan.Streams.at(0).IdlText, "text");
+}
+
+TEST_F(ReplayPlanTest, WhatANodeKeptToItselfIsPlayedIfItIsNamed)
+{
+    AddFile("uav1").Posted("uav1", "Plan", "none");
+    EXPECT_THAT(NamesOf(Plan()), IsEmpty());
+    EXPECT_THAT(NamesOf(Plan({.Include = {"uav1/Plan"}})), ElementsAre("uav1/Plan<uav1"));
+}
+
+TEST_F(ReplayPlanTest, PatternsSayWhatIsPlayedAndWhatIsNot)
+{
+    PlayedFile &file = AddFile("uav1");
+    file.Posted("uav1", "Pose");
+    file.Posted("uav1", "CameraView");
+    file.Mirrored("uav2", "Pose");
+    EXPECT_THAT(NamesOf(Plan({.Exclude = {"*/CameraView"}})),
+                UnorderedElementsAre("uav1/Pose<uav1", "uav2/Pose<uav1"));
+    const ReplayPlan one = Plan({.Include = {"uav2/*"}, .Exclude = {"*/CameraView"}});
+    EXPECT_THAT(NamesOf(one), ElementsAre("uav2/Pose<uav1"));
+    EXPECT_THAT(one.Nodes, ElementsAre("uav2"));
+    EXPECT_THAT(Plan({.Exclude = {"uav1/*"}}).Nodes, ElementsAre("uav2"));
+}
+
+TEST_F(ReplayPlanTest, ANodeThatPostedNothingWasThereAllTheSame)
+{
+    AddFile("ground").Fleet("ground");
+    EXPECT_THAT(Plan().Nodes, ElementsAre("ground"));
+}
+
+TEST_F(ReplayPlanTest, ARecordingFromOutsideAddsNoNode)
+{
+    PlayedFile &file = AddFile("rabit.vm.7", {{"kind", "rabit record"}});
+    file.Mirrored("uav1", "Pose");
+    file.Fleet("rabit.vm.7");
+    const ReplayPlan plan = Plan();
+    EXPECT_THAT(NamesOf(plan), UnorderedElementsAre("uav1/Pose<rabit.vm.7", "rabit.vm.7!"));
+    EXPECT_THAT(plan.Nodes, ElementsAre("uav1"));
+}
+
+TEST_F(ReplayPlanTest, OfWhatSeveralRecordedThatOfItsOwnNodeIsPlayed)
+{
+    PlayedFile &ground = AddFile("ground");
+    const std::uint16_t mirrored = ground.Mirrored("uav1", "Pose");
+    ground.Add(mirrored, 1, 1);
+    ground.Add(mirrored, 2, 2);
+    PlayedFile &own = AddFile("uav1");
+    own.Add(own.Posted("uav1", "Pose"), 1, 1);
+    EXPECT_THAT(NamesOf(Plan()), ElementsAre("uav1/Pose<uav1"));
+}
+
+TEST_F(ReplayPlanTest, OfWhatOthersRecordedThatOfWhoHasMostOfItIsPlayed)
+{
+    for (const auto &[recorder, messages] :
+         {std::pair("uav2", 3), std::pair("ground", 5), std::pair("uav3", 4)})
+    {
+        PlayedFile &file = AddFile(recorder);
+        const std::uint16_t channel = file.Mirrored("uav1", "Pose");
+        for (int at = 1; at <= messages; ++at)
+        {
+            file.Add(channel, static_cast<std::uint64_t>(at), 1);
+        }
+    }
+    EXPECT_THAT(NamesOf(Plan()), ElementsAre("uav1/Pose<ground"));
+}
+
+TEST_F(ReplayPlanTest, TheFilesOfOneRecorderAreOneStream)
+{
+    for (int part = 0; part < 2; ++part)
+    {
+        PlayedFile &file = AddFile("uav1");
+        file.Channel("uav1/Log", {}, "x", "json");
+        file.Posted("uav1", "Pose");
+    }
+    const ReplayPlan plan = Plan();
+    EXPECT_THAT(NamesOf(plan), ElementsAre("uav1/Pose<uav1"));
+    ASSERT_EQ(plan.Channels.size(), 2U);
+    EXPECT_EQ(plan.Channels[0].at(1), 0U);
+    EXPECT_EQ(plan.Channels[1].at(1), 0U);
+}
+
+TEST_F(ReplayPlanTest, QueueMessagesArePlayedOnlyIfTheyAreNamedAndOnce)
+{
+    PlayedFile &ground = AddFile("ground");
+    ground.Queue("ground", "sent", "uav1", "MissionControl");
+    ground.Queue("ground", "refused", "uav2", "MissionControl");
+    AddFile("uav1").Queue("uav1", "received", "ground", "MissionControl");
+    EXPECT_THAT(NamesOf(Plan()), IsEmpty());
+    const ReplayPlan plan = Plan({.Queues = {"*/MissionControl"}});
+    EXPECT_THAT(NamesOf(plan), ElementsAre("ground>uav1/MissionControl"));
+    EXPECT_TRUE(plan.Channels[1].empty()) << "as it was sent";
+    files.pop_front();
+    EXPECT_THAT(NamesOf(Plan({.Queues = {"uav1/*"}})), ElementsAre("ground>uav1/MissionControl"))
+        << "as it was received";
+}
+
+TEST_F(ReplayPlanTest, AMergedRecordingIsPlayedAsItsPartsWouldBe)
+{
+    PlayedFile &file = AddFile("", {{"kind", "merge"}});
+    file.AddMetadata("rabit.recording", {{"node", "uav1"}, {"domain", "3"}});
+    file.AddMetadata("rabit.recording", {{"node", "ground"}, {"domain", "3"}});
+    file.AddMetadata("rabit.recording", {{"node", "rabit.vm.7"}, {"kind", "rabit record"}});
+    const auto knew = [&file](const std::string &recorder, const std::string &node)
+    {
+        file.Channel(recorder + "/Recorder/knew/" + node + "/Pose", {{"rabit.kind", "knew"},
+                                                                     {"rabit.node", node},
+                                                                     {"rabit.message", "Pose"},
+                                                                     {"rabit.recorded_by", recorder}});
+    };
+    file.Posted("uav1", "Pose", "telemetry");
+    knew("ground", "uav1");
+    knew("ground", "uav2");
+    const ReplayPlan plan = Plan();
+    EXPECT_THAT(NamesOf(plan), UnorderedElementsAre("uav1/Pose<uav1", "uav2/Pose<ground"));
+    EXPECT_THAT(plan.Nodes, ElementsAre("ground", "uav1", "uav2"));
+    EXPECT_THAT(plan.Domains, ElementsAre("3"));
+}
+
+TEST_F(ReplayPlanTest, WhatCannotBeAMessageOfANodeIsPassedOver)
+{
+    PlayedFile &file = AddFile("u v");
+    file.Channel("Pose", {});
+    file.Channel("u v/Pose", {});
+    file.Channel("uav1/", {});
+    file.Channel("uav1//Pose", {});
+    file.Channel("uav1/Pose", {{"rabit.kind", "queue sent"}});
+    file.Channel("uav1/Recorder/Log", {{"rabit.kind", "recorder"}}, "foxglove.Log", "json");
+    file.Channel("uav1/Json", {}, "x", "json");
+    const ReplayPlan plan = Plan({.Queues = {"*"}});
+    EXPECT_THAT(NamesOf(plan), IsEmpty());
+    EXPECT_THAT(plan.Nodes, IsEmpty());
+}
+
+TEST_F(ReplayPlanTest, AFileOfAnotherProgramIsPlayedAsFarAsItsTopicsAreMessagesOfNodes)
+{
+    AddFile("").Channel("robot/Odometry", {});
+    EXPECT_THAT(NamesOf(Plan()), ElementsAre("robot/Odometry<"));
+}
+
+}  // namespace
+}  // namespace Rabit::Replay
