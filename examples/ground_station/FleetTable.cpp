@@ -98,8 +98,8 @@ std::string TableRow(const FleetRow &row, std::size_t nodeWidth)
 
 std::string LogLine(const FleetRow &row, double elapsedS)
 {
-    std::string line = Right(Format("%.1f", elapsedS), 7) + " s  " + Left(Printable(row.Node, NodeWidth), 6) +
-                       " " + Left(ToText(row.State), 7);
+    std::string line = Right(Format("%.1f", elapsedS), 7) + " s  " +
+                       Left(Printable(row.Node, MaxNodeWidth), 6) + " " + Left(ToText(row.State), 7);
     if (row.AgeS)
     {
         const bool old = !row.IsFresh();

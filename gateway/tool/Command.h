@@ -31,6 +31,7 @@ void AddAgeCommand(CLI::App &app, Chosen &chosen);
 void AddSendCommand(CLI::App &app, Chosen &chosen);
 void AddPostCommand(CLI::App &app, Chosen &chosen);
 void AddRecordCommand(CLI::App &app, Chosen &chosen);
+void AddPlayCommand(CLI::App &app, Chosen &chosen);
 void AddInfoCommand(CLI::App &app, Chosen &chosen);
 void AddRecoverCommand(CLI::App &app, Chosen &chosen);
 void AddFoxgloveCommand(CLI::App &app, Chosen &chosen);

@@ -238,7 +238,7 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     {
         return OptionsOf(command);
     }
-    static const Candidates ofFiles = {"check", "info", "recover", "merge", "knew", "init"};
+    static const Candidates ofFiles = {"check", "info", "recover", "play", "merge", "knew", "init"};
     if (ofFiles.contains(command.get_name()))
     {
         return {Files};

@@ -160,8 +160,8 @@ bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node
         char heard[32];
         std::snprintf(heard, sizeof heard, "%.1f s", status.last_heard_s);
         rows.push_back(
-            {SafeText(status.node), std::string(ToString(status.state)) + (status.replay ? " (replay)" : ""), heard, Milliseconds(status.round_trip_s),
-             Rate(status.delivery_rate),
+            {SafeText(status.node), std::string(ToString(status.state)) + (status.replay ? " (replay)" : ""),
+             heard, Milliseconds(status.round_trip_s), Rate(status.delivery_rate),
              known ? Names(node->Offers->publishes, [](const auto &item) { return item.message; }) : "?",
              known ? Names(node->Offers->accepts, [](const auto &item) { return item.queue; }) : "?"});
     }

@@ -33,6 +33,7 @@ int main(int argc, char **argv)
     AddSendCommand(app, chosen);
     AddPostCommand(app, chosen);
     AddRecordCommand(app, chosen);
+    AddPlayCommand(app, chosen);
     AddInfoCommand(app, chosen);
     AddRecoverCommand(app, chosen);
     AddFoxgloveCommand(app, chosen);

@@ -15,7 +15,8 @@ namespace Rabit::BeatExtensions
 inline constexpr std::uint32_t Nobody = 0;  // NodeTagOf never gives it
 inline constexpr std::uint16_t Tool = 1;    // the sender is a tool (ToolSettings)
 inline constexpr std::uint16_t Type = 2;    // a TypeQuestion, in Wanted::states
-inline constexpr std::uint16_t Replay = 3;  // what the sender posts was recorded before (GatewayConfig::Replay)
+inline constexpr std::uint16_t Replay =
+    3;  // what the sender posts was recorded before (GatewayConfig::Replay)
 
 // Bytes of Wanted::states.
 inline constexpr std::size_t ToolBytes = 0;

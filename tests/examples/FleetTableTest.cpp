@@ -185,6 +185,13 @@ TEST(FleetLog, ShowsOneLineForEachRow)
                     "mission GOTO 3, commands 3 sent 2 acknowledged"));
 }
 
+TEST(FleetLog, TellsNodesApartThatBeginAlike)
+{
+    FleetRow row = Fresh();
+    row.Node = "replay.uav12";
+    EXPECT_THAT(FleetLogLines({row}, 0)[0], testing::HasSubstr("replay.uav12 UP"));
+}
+
 TEST(FleetLog, TellsOfTheWayThere)
 {
     FleetRow row = Fresh();

@@ -127,7 +127,10 @@ TEST_F(WebPage, ShowsAnExpectedAircraftBeforeItIsHeard)
 TEST_F(WebPage, NamesTheNodesThatAreThereAndReplay)
 {
     Start();
-    PostFleet({{"uav1", NodeState::UP}, {"uav2", NodeState::STALE}, {"uav3", NodeState::LOST}, {"uav4", NodeState::UP}});
+    PostFleet({{"uav1", NodeState::UP},
+               {"uav2", NodeState::STALE},
+               {"uav3", NodeState::LOST},
+               {"uav4", NodeState::UP}});
     for (auto &status : _fleet->nodes)
         status.replay = status.node != "uav4";
     _fleet->PostMessage();

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <termios.h>
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace Rabit::Tool
+{
+
+// The keys of the terminal on standard input, as they are pressed. If there is none, or another program has
+// it, none ever is.
+class KeyInput
+{
+public:
+    // `onKey` is called on a thread of its own when there is something to take.
+    explicit KeyInput(std::function<void()> onKey);
+    // The terminal is as before.
+    ~KeyInput();
+    KeyInput(const KeyInput &) = delete;
+    KeyInput &operator=(const KeyInput &) = delete;
+
+    bool IsThere() const { return _reader.joinable(); }
+    std::optional<char> Take();
+
+private:
+    void Read();
+
+    const std::function<void()> _onKey;
+    termios _before{};
+    std::array<int, 2> _end{-1, -1};  // a pipe
+    std::mutex _mutex;
+    std::deque<char> _keys;
+    std::thread _reader;
+};
+
+}  // namespace Rabit::Tool

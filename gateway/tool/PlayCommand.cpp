@@ -1,0 +1,293 @@
+// rabit play: recordings, once more to the network.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "Output.h"
+#include "PlayedFiles.h"
+#include "Playing.h"
+#include "ReplayFleet.h"
+#include "ReplayNetwork.h"
+#include "names/NamePattern.h"
+#include "recording/replay/TimeText.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Replay::ReplayTimeline;
+
+// Each costs a dozen threads.
+constexpr std::size_t MostNodes = 100;
+// A node that is there has been heard by then, if anything of it comes.
+constexpr double ShortestListening = 1.5;
+
+struct Options
+{
+    CommonOptions Common;
+    std::vector<std::string> Files;
+    std::string Rate = "1";
+    std::string From;
+    std::string To;
+    std::vector<std::string> Renames;
+    Replay::PlanSettings Plan;
+    bool StartPaused = false;
+    bool Loops = false;
+};
+
+// 0: as fast as it goes. Nothing if it is no rate.
+std::optional<double> RateOf(const std::string &text)
+{
+    if (text == "max")
+    {
+        return 0.0;
+    }
+    double rate = 0.0;
+    const char *end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, rate, std::chars_format::fixed);
+    const bool isNumber = parsed.ec == std::errc() && parsed.ptr == end;
+    return isNumber && rate >= 0.1 && rate <= 100.0 ? std::optional(rate) : std::nullopt;
+}
+
+// Returns Good, or says what is wrong and returns the exit code.
+int NameNodes(const Options &options, const Replay::ReplayPlan &plan, Replay::NodeRenames &renames)
+{
+    for (const std::string &rule : options.Renames)
+    {
+        if (const std::string misfit = renames.Add(rule); !misfit.empty())
+        {
+            Output::Talk("--rename " + misfit);
+            return Usage;
+        }
+    }
+    if (plan.Nodes.size() > MostNodes)
+    {
+        Output::Talk(std::to_string(plan.Nodes.size()) + " nodes would be played, and no more than " +
+                     std::to_string(MostNodes) + " can be (--include, --exclude)");
+        return Usage;
+    }
+    std::set<std::string> names;
+    for (const std::string &node : plan.Nodes)
+    {
+        const std::string name = renames.NewNameOf(node);
+        if (!IsNodeName(name))
+        {
+            Output::Talk("`" + name + "` is too long for the name of a node; --rename " + node + "=NAME");
+            return Usage;
+        }
+        if (!names.insert(name).second)
+        {
+            Output::Talk("two nodes would be called `" + name + "`; --rename " + node + "=NAME");
+            return Usage;
+        }
+    }
+    return Good;
+}
+
+int SetTimes(const Options &options, const Replay::RecordedMessages &messages,
+             ReplayTimeline::Settings &settings)
+{
+    const Replay::Time first = messages.First();
+    const Replay::Time last = messages.Last();
+    const auto from = options.From.empty() ? std::optional(first) : Replay::TimeOf(options.From, first);
+    const auto to = options.To.empty() ? std::optional(last) : Replay::TimeOf(options.To, first);
+    if (!from || !to)
+    {
+        Output::Talk("`" + (from ? options.To : options.From) +
+                     "` is no time; expected seconds from the beginning, as 12.5, or UTC, as " +
+                     Replay::TextOf(first));
+        return Usage;
+    }
+    if (*from > *to || *from > last || *to < first)
+    {
+        Output::Talk("nothing was recorded then; the recording is from " + Replay::TextOf(first) + " to " +
+                     Replay::TextOf(last) + " UTC");
+        return Usage;
+    }
+    settings.From = std::max(*from, first);
+    settings.To = std::min(*to, last);
+    settings.Loops = options.Loops;
+    settings.Paused = options.StartPaused;
+    settings.Rate = *RateOf(options.Rate);
+    return Good;
+}
+
+// Returns whether none of the names is that of a node which is there; says so if one is.
+bool AreFree(const std::vector<std::string> &names, const GatewayConfig &network, const Options &options,
+             Wakeup &wakeup)
+{
+    GatewayConfig config = network;
+    config.Tool->AsksOf = names;
+    FleetSession session(config, options.Common, wakeup);
+    std::string taken;
+    const auto isTaken = [&]
+    {
+        for (const FleetSession::Node &node : session.Nodes())
+        {
+            const bool isThere = node.State != Gateway::NodeState::LOST;
+            if (isThere && std::find(names.begin(), names.end(), node.Name) != names.end())
+            {
+                taken = node.Name;
+            }
+        }
+        return !taken.empty();
+    };
+    if (!session.WaitUntil(std::max(options.Common.Wait, ShortestListening), isTaken))
+    {
+        return true;
+    }
+    Output::Talk("there is a node `" + taken + "`; two of one name would disturb each other (--rename)");
+    return false;
+}
+
+std::string Counted(std::uint64_t count, const std::string &one)
+{
+    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+int Tell(const Options &options, const PlayedFiles &files, const ReplayFleet &fleet, std::uint64_t rounds)
+{
+    const ReplayFleet::Counts counts = fleet.CountsNow();
+    const std::vector<std::string> problems = files.Messages().Problems();
+    for (const std::string &problem : problems)
+    {
+        Output::Talk(problem);
+    }
+    const auto tell = [](const std::string &what, std::uint64_t count)
+    {
+        if (count > 0)
+        {
+            Output::Talk(what + ": " + Counted(count, "message"));
+        }
+    };
+    tell("not played, because they do not decode", counts.Undecodable);
+    tell("did not go out, because a newer one of the same name came before its turn", counts.Replaced);
+    tell("younger than they were, because an older one had gone out before", counts.AgesNotKept);
+    tell("not delivered to a queue", counts.Undelivered);
+    if (options.Common.Json)
+    {
+        Output::Object({{"nodes", fleet.Names()},
+                        {"messages", counts.Messages},
+                        {"restored", counts.Restored},
+                        {"queue_messages", counts.QueueMessages},
+                        {"undelivered", counts.Undelivered},
+                        {"undecodable", counts.Undecodable},
+                        {"replaced", counts.Replaced},
+                        {"ages_not_kept", counts.AgesNotKept},
+                        {"rounds", rounds}});
+    }
+    else
+    {
+        Output::Line(
+            Counted(counts.Messages + counts.QueueMessages, "message") + " of " +
+            Counted(fleet.Names().size(), "node") +
+            (counts.Restored > 0 ? ", " + std::to_string(counts.Restored) + " restored before" : ""));
+    }
+    return problems.empty() && counts.Undecodable == 0 && counts.Undelivered == 0 ? Good : ProblemFound;
+}
+
+int Play(const Options &options, PlayedFiles &files, const Replay::NodeRenames &renames,
+         const ReplayTimeline::Settings &settings, Wakeup &wakeup)
+{
+    // Until what was posted last has gone out, and the gateways have told of it.
+    constexpr double farewell = 1.2;
+    // What was recorded so shortly after the beginning tells who was there.
+    constexpr Replay::Time introduction = 1'500'000'000;
+    const auto later = [](double seconds)
+    {
+        return std::chrono::steady_clock::now() +
+               std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                   std::chrono::duration<double>(seconds));
+    };
+    const GatewayConfig network =
+        ReplayNetwork(ConfigOf(options.Common), options.Common, files.Plan().Domains);
+    ReplayFleet fleet(files.Plan(), renames, network, options.Common, wakeup);
+    if (!AreFree(fleet.Names(), network, options, wakeup))
+    {
+        return ProblemFound;
+    }
+    if (settings.Rate == 0.0)
+    {
+        fleet.KeepAll();
+        fleet.WaitForTurns();
+    }
+    const Replay::Time at = std::min(settings.From + introduction, settings.To + 1);
+    fleet.Begin(files.Messages().LastBefore(at), at);
+    // So that those who listen have found the nodes when the first message goes out.
+    wakeup.WaitUntil(later(options.Common.Wait), [] { return false; });
+    Playing playing(files, settings, fleet, wakeup);
+    const int code = playing.Run();
+    if (!wakeup.IsInterrupted() && code == Good)
+    {
+        wakeup.WaitUntil(later(farewell), [] { return false; });
+        wakeup.WaitUntil(later(options.Common.Wait), [&fleet] { return fleet.IsSettled(); });
+    }
+    const int told = Tell(options, files, fleet, playing.Rounds());
+    return code != Good || wakeup.IsInterrupted() ? code : told;
+}
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    if (options.StartPaused && ::isatty(STDIN_FILENO) == 0)
+    {
+        Output::Talk("--start-paused waits for a key, and standard input is no terminal");
+        return Usage;
+    }
+    PlayedFiles files(options.Files, options.Plan);
+    if (files.Plan().Nodes.empty())
+    {
+        Output::Talk("there is nothing in it that can be played, or nothing that was named");
+        return ProblemFound;
+    }
+    Replay::NodeRenames renames;
+    ReplayTimeline::Settings settings;
+    int code = NameNodes(options, files.Plan(), renames);
+    code = code == Good ? SetTimes(options, files.Messages(), settings) : code;
+    return code == Good ? Play(options, files, renames, settings, wakeup) : code;
+}
+
+}  // namespace
+
+void AddPlayCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand(
+        "play",
+        "Recordings, once more to the network, as nodes `replay.NAME`; on loopback unless told otherwise");
+    command->add_option("FILE", options->Files, "Recordings (MCAP)")->required();
+    AddCommonOptions(*command, options->Common, 2.0);
+    command->add_option("--rate", options->Rate, "So many recorded seconds in one, 0.1 to 100, or max")
+        ->check([](const std::string &text)
+                { return RateOf(text) ? "" : "`" + text + "` is no rate; expected 0.1 to 100, or max"; })
+        ->capture_default_str();
+    command->add_option("--from", options->From, "Seconds from the beginning, or UTC as 2026-11-23T04:04:06");
+    command->add_option("--to", options->To, "Likewise, where it ends");
+    command->add_flag("--loop", options->Loops, "Begin again at the end, until Ctrl-C");
+    command->add_flag("--start-paused", options->StartPaused, "Wait at the beginning until space is pressed");
+    command
+        ->add_option("--include", options->Plan.Include,
+                     "Only these messages, as uav1/Pose; *, ? stand for any")
+        ->allow_extra_args(false);
+    command->add_option("--exclude", options->Plan.Exclude, "Messages to leave out, as */CameraView")
+        ->allow_extra_args(false);
+    command->add_option("--queues", options->Plan.Queues, "Play messages for these queues, too, as uav1/*")
+        ->allow_extra_args(false);
+    command->add_option("--rename", options->Renames, "OLD=NEW node name, as uav1=sim1 or *=*")
+        ->allow_extra_args(false);
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool

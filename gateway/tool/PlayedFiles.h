@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "recording/mcap/FileSource.h"
+#include "recording/replay/RecordedMessages.h"
+#include "recording/replay/ReplayPlan.h"
+
+namespace Rabit::Tool
+{
+
+// The files of a replay, and what of them is played.
+class PlayedFiles
+{
+public:
+    // Tells what is wrong with a file; throws std::runtime_error if one cannot be read at all. A pattern
+    // without a slash is of all nodes.
+    PlayedFiles(const std::vector<std::string> &names, Replay::PlanSettings settings);
+
+    const Replay::ReplayPlan &Plan() const { return _plan; }
+    Replay::RecordedMessages &Messages() { return *_messages; }
+    const Replay::RecordedMessages &Messages() const { return *_messages; }
+
+private:
+    std::vector<std::unique_ptr<Mcap::FileSource>> _files;
+    std::vector<std::unique_ptr<Mcap::Contents>> _contents;
+    Replay::ReplayPlan _plan;
+    std::unique_ptr<Replay::RecordedMessages> _messages;
+};
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "KeyInput.h"
+#include "PlayedFiles.h"
+#include "ReplayFleet.h"
+#include "Wakeup.h"
+#include "recording/replay/ReplayTimeline.h"
+
+namespace Rabit::Tool
+{
+
+// Has a fleet play a time line, as somebody at the keys of the terminal wants it to.
+class Playing
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // All must outlive it.
+    Playing(PlayedFiles &files, const Replay::ReplayTimeline::Settings &settings, ReplayFleet &fleet,
+            Wakeup &wakeup);
+
+    // Until its end, or somebody ends it. Returns the exit code.
+    int Run();
+    std::uint64_t Rounds() const { return _timeline.Rounds(); }
+
+private:
+    // Between two looks at who is there and what is wrong.
+    static constexpr Duration Look = std::chrono::milliseconds(200);
+    static constexpr Replay::Time Leap = 10'000'000'000;
+
+    void PlayDue();
+    bool LookAround();
+    void Wait();
+    void Obey();
+    void Obey(char key);
+    std::string Place() const;
+
+    const PlayedFiles &_files;
+    const Replay::Time _end;
+    ReplayFleet &_fleet;
+    Wakeup &_wakeup;
+    Replay::ReplayTimeline _timeline;
+    KeyInput _keys;
+    std::optional<char> _key;
+    std::uint64_t _jumps = 0;
+    Duration _nextLook{0};
+    bool _quits = false;
+};
+
+}  // namespace Rabit::Tool
