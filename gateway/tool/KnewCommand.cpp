@@ -297,7 +297,7 @@ void ShowAges(const Options &options, const Asked &asked, const std::vector<AgeH
 std::string SvgOf(const Options &options, const Asked &asked, const std::vector<AgeHistory> &histories)
 {
     Merge::AgePlot plot;
-    plot.Title = "How old it was what nodes knew of each other";
+    plot.Title = "Age of what nodes knew of each other";
     plot.Note =
         std::filesystem::path(options.File).filename().string() + ", from " + Merge::DateOf(asked.Begin()) +
         (asked.Known.WorstBound
