@@ -5,6 +5,7 @@ namespace Rabit::JsonStreams
 namespace
 {
 
+// Each property has one plain type, though it may be null: Foxglove refuses schemas that say so.
 RecordingStream Make(const std::string &node, const std::string &name, const std::string &schema,
                      const std::string &text)
 {
@@ -46,7 +47,7 @@ RecordingStream Clocks(const std::string &node)
 "peers":{"type":"array","items":{"type":"object","properties":{"node":{"type":"string"},
 "incarnation":{"type":"string"},
 "source_to_log_ns":{"type":"string","description":"from its source clock to the log times of this file"},
-"uncertain_by_ns":{"type":["integer","null"],"description":"half a round trip; null: not known"}}}}}})");
+"uncertain_by_ns":{"type":"integer","description":"half a round trip; null: not known"}}}}}})");
 }
 
 RecordingStream Outcomes(const std::string &node)

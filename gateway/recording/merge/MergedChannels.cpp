@@ -67,7 +67,7 @@ std::optional<std::uint16_t> MergedChannels::TimeLineOf(std::size_t life)
 "clock":{"type":"string","description":"time line, relations or wall clock"},
 "by":{"type":"array","items":{"type":"string"},"description":"nodes between it and the time line, at some time"},
 "later_by_ns":{"type":"string","description":"what was added to the times of the recording"},
-"uncertain_by_ns":{"type":["integer","null"],"description":"how wrong that may be; null: not known"}}})";
+"uncertain_by_ns":{"type":"integer","description":"how wrong that may be; null: not known"}}})";
     return Make(life, SchemaOf("rabit.TimeLine", "jsonschema", schema),
                 _lives.All[life].Node + "/Recorder/TimeLine", "json",
                 {{"rabit.kind", "recorder"}, {"rabit.node", _lives.All[life].Node}});

@@ -126,6 +126,9 @@ TEST_F(RecordingFilesTest, BeginsAFileWhenOneIsLongEnoughAndRepeatsTheStates)
     // The state and the message, both recorded now.
     EXPECT_THAT(LogTimesOf(_disk.Open(_disk.Names()[1])), ElementsAre(_now, _now));
     EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[1]), "rabit.file").at("number"), "2");
+    // Both say that they belong together.
+    EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[0]), "rabit.file").at("recording") + ".mcap", _disk.Names()[0]);
+    EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[1]), "rabit.file").at("recording") + ".mcap", _disk.Names()[0]);
 }
 
 TEST_F(RecordingFilesTest, GoesOnBehindTheLastNumberThatIsThere)

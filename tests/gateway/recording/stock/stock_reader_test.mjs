@@ -35,6 +35,13 @@ function messagesOfStream(bytes) {
     return { messages, isWhole: reader.done() };
 }
 
+// Foxglove takes a JSON schema only if each property in it has one plain type.
+function checkJsonSchema(schema, path) {
+    assert.equal(typeof schema.type, "string", `${path}: ${JSON.stringify(schema.type)}`);
+    if (schema.type === "array") checkJsonSchema(schema.items, `${path}[]`);
+    for (const [name, inner] of Object.entries(schema.properties ?? {})) checkJsonSchema(inner, `${path}.${name}`);
+}
+
 // What these packages do not read.
 const NOT_READ = {
     "Constructs::Choices": "bitmasks",
@@ -90,6 +97,9 @@ const cases = {
         const metadata = new Map();
         for await (const record of reader.readMetadata()) metadata.set(record.name, record.metadata);
         assert.ok(Number(metadata.get("rabit.merge").get("uncertain_by_ns")) < 5e7);
+        for (const { name, encoding, data } of reader.schemasById.values()) {
+            if (encoding === "jsonschema") checkJsonSchema(JSON.parse(new TextDecoder().decode(data)), name);
+        }
         const schema = reader.schemasById.get(knew.schemaId);
         const decoder = new MessageReader(schema.name, parseIDL(new TextDecoder().decode(schema.data)));
         let last = 0n;
