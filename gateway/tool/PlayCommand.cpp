@@ -174,7 +174,7 @@ int Tell(const Options &options, const PlayedFiles &files, const ReplayFleet &fl
     };
     tell("not played, because they do not decode", counts.Undecodable);
     tell("did not go out, because a newer one of the same name came before its turn", counts.Replaced);
-    tell("younger than they were, because an older one had gone out before", counts.AgesNotKept);
+    tell("younger than they were, because a later one had gone out before", counts.AgesNotKept);
     tell("not delivered to a queue", counts.Undelivered);
     if (options.Common.Json)
     {

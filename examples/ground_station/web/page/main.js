@@ -14,6 +14,7 @@ import {byId, element, keepList, setClass, setText} from './dom.js';
 
 const AGEING_MS = 200;
 const MEASURE_MS = 1000;
+const MOST_REPLAYED = 6;  // named in the bar
 
 const model = new Model();
 const say = (text) => setText(byId('live'), text);
@@ -65,7 +66,9 @@ function showReplay() {
   const {replayed} = model;
   const banner = byId('replay');
   banner.hidden = replayed.length === 0;
-  if (replayed.length > 0) setText(banner, `▶ REPLAY of a recording, not live: ${replayed.join(', ')}`);
+  const others = replayed.length - MOST_REPLAYED;
+  const names = replayed.slice(0, MOST_REPLAYED).join(', ') + (others > 0 ? ` and ${others} more` : '');
+  if (replayed.length > 0) setText(banner, `▶ REPLAY of a recording, not live: ${names}`);
 }
 
 const counts = new Map();
