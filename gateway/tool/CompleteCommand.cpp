@@ -232,7 +232,9 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     }
     if (open != nullptr)
     {
-        return ValuesOf(*open);
+        // A moment, where others write to a file.
+        const bool isTime = command.get_name() == "play" && open->check_lname("to");
+        return isTime ? Candidates() : ValuesOf(*open);
     }
     if (last.starts_with('-'))
     {
