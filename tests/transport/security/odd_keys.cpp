@@ -31,7 +31,8 @@ void Add(const std::vector<std::string> &words)
                         .Subscribe = {{"State", {"*"}}}};
     FleetKeys(words.at(1))
         .Add({.Node = node, .Transport = words.at(3), .Access = access},
-             {.Now = std::time(nullptr) + std::stoi(words.at(5)) * Day, .Days = std::stoi(words.at(6))});
+             {.Now = std::time(nullptr) + static_cast<std::time_t>(std::stod(words.at(5)) * Day),
+              .Days = std::stoi(words.at(6))});
 }
 
 void Revoke(const std::string &folder, const std::string &node)
