@@ -1,8 +1,12 @@
 #include "ros/RosIdlText.h"
 
 #include <algorithm>
+#include <cctype>
 #include <regex>
+#include <string_view>
 #include <vector>
+
+#include "model/Names.h"
 
 namespace RabitIdl
 {
@@ -19,7 +23,7 @@ public:
     {
         while (_at < _text.size())
         {
-            if (!CopyQuoted() && !SkipVerbatim())
+            if (!CopyQuoted() && !SkipVerbatim() && !CopyWord())
             {
                 CopyOne();
             }
@@ -92,6 +96,46 @@ private:
             }
         } while (_at < _text.size());
         return true;
+    }
+
+    static bool IsLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+    // A keyword, as IDL writes it, or a name that needs an escape.
+    bool CopyWord()
+    {
+        std::size_t end = _at;
+        while (end < _text.size() && IsLetter(_text[end]))
+        {
+            ++end;
+        }
+        if (end == _at)
+        {
+            return false;
+        }
+        const std::string word = _text.substr(_at, end - _at);
+        _out += IsIdlKeyword(word) && (!IsWrittenAsKeyword(word) || IsName(end)) ? "_" : "";
+        _out += word;
+        _at = end;
+        return true;
+    }
+
+    static bool IsWrittenAsKeyword(const std::string &word)
+    {
+        return word == "TRUE" || word == "FALSE" ||
+               std::none_of(word.begin(), word.end(),
+                            [](unsigned char letter) { return std::isupper(letter) != 0; });
+    }
+
+    // Of a word that ends there: whether it stands behind a type, and nothing more follows but what follows a
+    // name.
+    bool IsName(std::size_t end) const
+    {
+        const std::size_t next = _text.find_first_not_of(" \t", end);
+        const bool endsHere =
+            next != std::string::npos && std::string_view(";=[").find(_text[next]) != std::string_view::npos;
+        const std::size_t before = _out.find_last_not_of(" \t");
+        return endsHere && before != std::string::npos && (IsLetter(_out[before]) || _out[before] == '>') &&
+               before + 1 < _out.size();
     }
 
     void CopyOne()

@@ -41,6 +41,30 @@ TEST(RosIdlText, LeavesOutVerbatimAndKeepsTheLines)
         "\n\n\nlong a;\n");
 }
 
+// IDL knows its keywords in whatever case.
+TEST(RosIdlText, EscapesNamesThatAreKeywordsInAnotherCase)
+{
+    EXPECT_EQ(RosIdlText("struct Char {\n  const uint8 INT8 = 1;\n  a::msg::Object o;\n};\n"),
+              "struct _Char {\n  const uint8 _INT8 = 1;\n  a::msg::_Object o;\n};\n");
+}
+
+TEST(RosIdlText, EscapesMembersAndConstantsThatAreKeywords)
+{
+    EXPECT_EQ(RosIdlText("uint8 default;\nsequence<char, 3> map ;\nlong in[3];\nconst long case = 1;\n"),
+              "uint8 _default;\nsequence<char, 3> _map ;\nlong _in[3];\nconst long _case = 1;\n");
+}
+
+TEST(RosIdlText, LeavesKeywordsThatAreMeant)
+{
+    for (const std::string text :
+         {"unsigned long x;\n", "@default (value=TRUE)\n", "const boolean B = FALSE;\n",
+          "const string S = \"Char\"; // Char\n", "sequence<string> a;\n", "typedef char Letters[2];\n",
+          "@default (value=1)\nlong value;\n"})
+    {
+        EXPECT_EQ(RosIdlText(text).find('_'), text.find('_')) << RosIdlText(text);
+    }
+}
+
 TEST(RosIdlText, EndsWhateverIsNotClosed)
 {
     EXPECT_EQ(RosIdlText("@verbatim (\"a\n"), "\n");
