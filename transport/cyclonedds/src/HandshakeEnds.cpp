@@ -25,8 +25,7 @@ bool Contains(std::span<const std::uint8_t> datagram, std::string_view text)
 
 }  // namespace
 
-void HandshakeEnds::Sent(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route,
-                         TimePoint now)
+void HandshakeEnds::Sent(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route)
 {
     if (!Contains(datagram, Final))
     {
@@ -51,27 +50,39 @@ void HandshakeEnds::Sent(std::span<const std::uint8_t> datagram, const RabitCycl
     {
         _ends.pop_front();
     }
-    _ends.push_back({*to, now, {route, {datagram.begin(), datagram.end()}}});
+    _ends.push_back({*to, {route, {datagram.begin(), datagram.end()}}});
 }
 
-std::optional<HandshakeEnds::Datagram> HandshakeEnds::Received(std::span<const std::uint8_t> datagram,
-                                                               TimePoint now)
+void HandshakeEnds::Received(std::span<const std::uint8_t> datagram, TimePoint now)
 {
     if (datagram.size() < RtpsHeaderSize || !Contains(datagram, Reply))
     {
-        return std::nullopt;
+        return;
     }
     const auto from = datagram.subspan(PrefixAt, Peer().size());
     const std::lock_guard lock(_mutex);
     const auto found = std::find_if(
         _ends.begin(), _ends.end(),
         [&](const End &end) { return std::equal(from.begin(), from.end(), end.To.begin(), end.To.end()); });
-    if (found == _ends.end() || now - found->At < ShortestGap)
+    if (found != _ends.end())
     {
-        return std::nullopt;
+        found->Due = now + Delay;
     }
-    found->At = now;
-    return found->What;
+}
+
+std::vector<HandshakeEnds::Datagram> HandshakeEnds::TakeDue(TimePoint now)
+{
+    std::vector<Datagram> due;
+    const std::lock_guard lock(_mutex);
+    for (End &end : _ends)
+    {
+        if (end.Due && *end.Due <= now)
+        {
+            due.push_back(end.What);
+            end.Due.reset();
+        }
+    }
+    return due;
 }
 
 }  // namespace Rabit::Cyclone

@@ -17,7 +17,8 @@ namespace Rabit::Cyclone
 
 // The last message of a handshake of DDS Security, which goes to who was asked for its certificate and has
 // shown it. The vendor says it once. Who did not get it shows its certificate again and again, and
-// nobody would ever answer: so it is said again here. Thread-safe.
+// nobody would ever answer: so it is said again here. A while later: Fast DDS does not listen while it shows
+// it, and never to the same once more. Thread-safe.
 class HandshakeEnds
 {
 public:
@@ -28,20 +29,22 @@ public:
     };
     using TimePoint = std::chrono::steady_clock::time_point;
     static constexpr std::size_t MostPeers = 256;
-    static constexpr std::chrono::milliseconds ShortestGap{200};
+    static constexpr std::chrono::milliseconds Delay{50};
 
     // Of anything that is sent.
-    void Sent(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route, TimePoint now);
-    // Of anything that came: what is to be sent again for it.
-    std::optional<Datagram> Received(std::span<const std::uint8_t> datagram, TimePoint now);
+    void Sent(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route);
+    // Of anything that came.
+    void Received(std::span<const std::uint8_t> datagram, TimePoint now);
+    // What is to be sent again by now.
+    std::vector<Datagram> TakeDue(TimePoint now);
 
 private:
     using Peer = std::array<std::uint8_t, 12>;  // how its GUID begins
     struct End
     {
         Peer To;
-        TimePoint At;
         Datagram What;
+        std::optional<TimePoint> Due{};
     };
 
     std::mutex _mutex;

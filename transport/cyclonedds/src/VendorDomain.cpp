@@ -95,7 +95,8 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     }
     if (domain._secured)
     {
-        domain._handshakes.Sent({datagram, size}, *route, std::chrono::steady_clock::now());
+        domain._handshakes.Sent({datagram, size}, *route);
+        domain.RepeatHandshakes();
     }
     if (auto parts = ReadDiscoveryParts({datagram, size}))
     {
@@ -134,11 +135,11 @@ std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size
     return Rtps::JoinMessages(others, buffer, left);
 }
 
-void VendorDomain::RepeatHandshake(std::span<const std::uint8_t> received)
+void VendorDomain::RepeatHandshakes()
 {
-    if (const auto end = _handshakes.Received(received, std::chrono::steady_clock::now()))
+    for (const HandshakeEnds::Datagram &end : _handshakes.TakeDue(std::chrono::steady_clock::now()))
     {
-        RabitCycloneSend(_watch, &end->Route, false, end->Bytes.data(), end->Bytes.size());
+        RabitCycloneSend(_watch, &end.Route, false, end.Bytes.data(), end.Bytes.size());
     }
 }
 
@@ -154,7 +155,8 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     domain._outbox.Received({datagram, admitted});
     if (domain._secured)
     {
-        domain.RepeatHandshake({datagram, admitted});
+        domain._handshakes.Received({datagram, admitted}, std::chrono::steady_clock::now());
+        domain.RepeatHandshakes();
     }
     const Announcing announcing = AnnouncingOf({datagram, admitted});
     if (announcing.Alone && direct && from != nullptr)

@@ -41,8 +41,8 @@ private:
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);
-    // What came may show that the last message of a handshake was lost.
-    void RepeatHandshake(std::span<const std::uint8_t> received);
+    // Looked at whenever something is said or comes: the vendor itself says something every now and then.
+    void RepeatHandshakes();
     // How long what the vendor may see of a datagram is.
     std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size);
 
