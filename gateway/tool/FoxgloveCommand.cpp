@@ -32,15 +32,16 @@ struct Options
 LiveServer::Settings SettingsOf(const Options &options)
 {
     LiveServer::Settings settings;
-    boost::system::error_code error;
-    const auto address = boost::asio::ip::make_address(options.Address, error);
-    if (error)
-    {
-        throw NetworkError("--listen: `" + options.Address + "` is no address");
-    }
-    settings.Endpoint = {address, options.Port};
+    settings.Endpoint = {boost::asio::ip::make_address(options.Address), options.Port};
     settings.Origins = options.Origins;
     return settings;
+}
+
+std::string WhyNoAddress(const std::string &text)
+{
+    boost::system::error_code error;
+    static_cast<void>(boost::asio::ip::make_address(text, error));
+    return error ? "`" + text + "` is no address" : "";
 }
 
 std::string UrlOf(const boost::asio::ip::tcp::endpoint &endpoint)
@@ -95,8 +96,10 @@ void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any; without: all messages");
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("--except", options->Except, "Messages to leave out, as */CameraView");
-    command->add_option("--listen", options->Address,
-                        "Address to listen at; everybody who reaches it sees all (default: 127.0.0.1)");
+    command
+        ->add_option("--listen", options->Address,
+                     "Address to listen at; everybody who reaches it sees all (default: 127.0.0.1)")
+        ->check(CLI::Validator([](const std::string &text) { return WhyNoAddress(text); }, ""));
     command->add_option("--port", options->Port, "Port to listen at (default: 8765; 0: any)");
     command->add_option("--origin", options->Origins,
                         "A site whose pages may look, besides Foxglove's, Lichtblick's and this machine's");
