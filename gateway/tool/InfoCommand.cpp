@@ -33,23 +33,6 @@ struct Options
     bool Json = false;
 };
 
-// What a file says under that name, the last time.
-Mcap::TextMap MetadataOf(const Contents &contents, const std::string &name)
-{
-    Mcap::TextMap values;
-    for (const Mcap::Metadata &metadata : contents.MetadataRecords)
-    {
-        values = metadata.Name == name ? metadata.Values : values;
-    }
-    return values;
-}
-
-std::string ValueOf(const Mcap::TextMap &values, const std::string &key)
-{
-    const auto found = values.find(key);
-    return found == values.end() ? "" : found->second;
-}
-
 double SecondsOf(const Contents &contents)
 {
     return 1e-9 * static_cast<double>(contents.Statistics.EndTime - contents.Statistics.StartTime);
@@ -83,10 +66,10 @@ std::string RateOf(std::uint64_t messages, double seconds)
 // Of a file that was merged.
 std::string MergeText(const Mcap::TextMap &merge)
 {
-    const std::string bound = ValueOf(merge, "uncertain_by_ns");
+    const std::string bound = Mcap::ValueOf(merge, "uncertain_by_ns");
     const bool isKnown = !bound.empty() && bound.find_first_not_of("0123456789") == std::string::npos;
-    return ValueOf(merge, "lives") + " recordings of " + ValueOf(merge, "files") + " files by the clock of " +
-           ValueOf(merge, "time_line") +
+    return Mcap::ValueOf(merge, "lives") + " recordings of " + Mcap::ValueOf(merge, "files") +
+           " files by the clock of " + Mcap::ValueOf(merge, "time_line") +
            (isKnown ? Formatted(", wrong by %.2f ms at most", 1e-6 * std::strtod(bound.c_str(), nullptr))
                     : ", how wrong is not known");
 }
@@ -133,7 +116,7 @@ bool ShowJson(const std::string &file, std::uint64_t size, const Contents &conte
     return Output::Object({{"file", file},
                            {"bytes", size},
                            {"ended", contents.IsIndexed},
-                           {"node", ValueOf(MetadataOf(contents, "rabit.node"), "node")},
+                           {"node", Mcap::ValueOf(MetadataOf(contents, "rabit.node"), "node")},
                            {"begin_ns", contents.Statistics.StartTime},
                            {"end_ns", contents.Statistics.EndTime},
                            {"messages", contents.Statistics.MessageCount},
@@ -152,7 +135,7 @@ bool ShowText(const std::string &file, std::uint64_t size, const Contents &conte
     head.push_back({"size", Formatted("%.3f MB", 1e-6 * static_cast<double>(size))});
     if (!node.empty())
     {
-        std::string text = ValueOf(node, "node");
+        std::string text = Mcap::ValueOf(node, "node");
         for (const char *key : {"host", "process", "version"})
         {
             text += node.count(key) == 0 ? "" : std::string(", ") + key + " " + node.at(key);

@@ -409,4 +409,20 @@ Contents ReadContents(ByteSource &source)
     return ScanContents(source);
 }
 
+TextMap MetadataOf(const Contents &contents, const std::string &name)
+{
+    TextMap values;
+    for (const Metadata &metadata : contents.MetadataRecords)
+    {
+        values = metadata.Name == name ? metadata.Values : values;
+    }
+    return values;
+}
+
+std::string ValueOf(const TextMap &values, const std::string &key)
+{
+    const auto found = values.find(key);
+    return found == values.end() ? "" : found->second;
+}
+
 }  // namespace Rabit::Mcap

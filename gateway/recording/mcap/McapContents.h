@@ -45,4 +45,9 @@ Contents ReadContents(ByteSource &source);
 // From all of the file, whatever its summary says.
 Contents ScanContents(ByteSource &source);
 
+// What the file says under that name, the last time; empty if nothing.
+TextMap MetadataOf(const Contents &contents, const std::string &name);
+// The text of that key; empty if there is none.
+std::string ValueOf(const TextMap &values, const std::string &key);
+
 }  // namespace Rabit::Mcap

@@ -22,7 +22,7 @@ constexpr Moment ClocksAround = 100 * OneSecond;
 template <typename Number>
 std::optional<Number> NumberIn(const Mcap::TextMap &values, const std::string &key)
 {
-    const std::string text = ValueOf(values, key);
+    const std::string text = Mcap::ValueOf(values, key);
     Number number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
@@ -42,7 +42,7 @@ std::vector<KnowerLife> LivesOf(const Mcap::Contents &contents)
         const Mcap::TextMap &values = metadata.Values;
         if (metadata.Name == "rabit.recording")
         {
-            lives.push_back({ValueOf(values, "node"), NumberIn<unsigned>(values, "life").value_or(1),
+            lives.push_back({Mcap::ValueOf(values, "node"), NumberIn<unsigned>(values, "life").value_or(1),
                              NumberIn<std::uint64_t>(values, "incarnation").value_or(0),
                              Within(NumberIn<Moment>(values, "begin_ns").value_or(0)),
                              Within(NumberIn<Moment>(values, "end_ns").value_or(0))});
@@ -50,7 +50,7 @@ std::vector<KnowerLife> LivesOf(const Mcap::Contents &contents)
     }
     if (lives.empty())
     {
-        lives.push_back({ValueOf(MetadataOf(contents, "rabit.node"), "node"), 1, 0,
+        lives.push_back({Mcap::ValueOf(MetadataOf(contents, "rabit.node"), "node"), 1, 0,
                          FromFile(contents.Statistics.StartTime), FromFile(contents.Statistics.EndTime)});
     }
     return lives;
@@ -139,8 +139,8 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
     std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> known;
     for (const auto &[id, channel] : contents.Channels)
     {
-        const std::string kind = ValueOf(channel.Metadata, "rabit.kind");
-        const std::string node = ValueOf(channel.Metadata, "rabit.node");
+        const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
+        const std::string node = Mcap::ValueOf(channel.Metadata, "rabit.node");
         const auto schema = contents.Schemas.find(channel.SchemaId);
         const auto life =
             std::find_if(Lives.begin(), Lives.end(),
@@ -149,8 +149,8 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
         {
             continue;
         }
-        const std::string message =
-            kind == "knew" ? ValueOf(channel.Metadata, "rabit.message") : WithoutNode(channel.Topic, node);
+        const std::string message = kind == "knew" ? Mcap::ValueOf(channel.Metadata, "rabit.message")
+                                                   : WithoutNode(channel.Topic, node);
         const auto at = static_cast<std::size_t>(life - Lives.begin());
         const std::string type = schema == contents.Schemas.end() ? "" : schema->second.Name;
         const auto [stream, isNew] = known.try_emplace({at, node, message, type}, Streams.size());

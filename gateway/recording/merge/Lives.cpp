@@ -87,15 +87,15 @@ private:
             return;
         }
         const Mcap::TextMap node = MetadataOf(contents, "rabit.node");
-        found.Node = ValueOf(node, "node");
-        found.Host = ValueOf(node, "host");
-        found.Recording = ValueOf(MetadataOf(contents, "rabit.file"), "recording");
+        found.Node = Mcap::ValueOf(node, "node");
+        found.Host = Mcap::ValueOf(node, "host");
+        found.Recording = Mcap::ValueOf(MetadataOf(contents, "rabit.file"), "recording");
         if (found.Node.empty())
         {
             _lives.Problem = path + ": does not say which node recorded it";
             return;
         }
-        found.File.Number = NumberIn(ValueOf(MetadataOf(contents, "rabit.file"), "number"));
+        found.File.Number = NumberIn(Mcap::ValueOf(MetadataOf(contents, "rabit.file"), "number"));
         found.File.Begin = FromFile(contents.Statistics.StartTime);
         found.File.End = FromFile(contents.Statistics.EndTime);
         _found.push_back(std::move(found));
@@ -237,22 +237,6 @@ private:
 Lives ReadLives(const OpenFile &open, const std::vector<std::string> &paths)
 {
     return Reader(open).Run(paths);
-}
-
-Mcap::TextMap MetadataOf(const Mcap::Contents &contents, const std::string &name)
-{
-    Mcap::TextMap values;
-    for (const Mcap::Metadata &metadata : contents.MetadataRecords)
-    {
-        values = metadata.Name == name ? metadata.Values : values;
-    }
-    return values;
-}
-
-std::string ValueOf(const Mcap::TextMap &values, const std::string &key)
-{
-    const auto found = values.find(key);
-    return found == values.end() ? "" : found->second;
 }
 
 }  // namespace Rabit::Merge

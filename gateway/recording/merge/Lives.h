@@ -52,8 +52,4 @@ using OpenFile = std::function<std::unique_ptr<Mcap::ByteSource>(const std::stri
 // recording, as `rabit recover` makes them, are taken once: that with more messages.
 Lives ReadLives(const OpenFile &open, const std::vector<std::string> &paths);
 
-// What a file says under that name, the last time; empty if nothing.
-Mcap::TextMap MetadataOf(const Mcap::Contents &contents, const std::string &name);
-std::string ValueOf(const Mcap::TextMap &values, const std::string &key);
-
 }  // namespace Rabit::Merge

@@ -9,7 +9,7 @@ namespace
 
 bool IsMirrored(const Mcap::Channel &channel)
 {
-    return ValueOf(channel.Metadata, "rabit.kind") == "mirrored";
+    return Mcap::ValueOf(channel.Metadata, "rabit.kind") == "mirrored";
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::optional<MergedChannels::Made> MergedChannels::Of(std::size_t life, const M
     Mcap::TextMap metadata = original.Metadata;
     if (IsMirrored(original))
     {
-        const std::string origin = ValueOf(metadata, "rabit.node") + "/";
+        const std::string origin = Mcap::ValueOf(metadata, "rabit.node") + "/";
         metadata["rabit.kind"] = "knew";
         metadata["rabit.message"] = original.Topic.compare(0, origin.size(), origin) == 0
                                         ? original.Topic.substr(origin.size())

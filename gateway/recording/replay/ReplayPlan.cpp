@@ -15,12 +15,6 @@ namespace
 
 constexpr const char *FleetType = "Rabit::Gateway::Fleet";
 
-std::string TextIn(const Mcap::TextMap &values, const std::string &key)
-{
-    const auto found = values.find(key);
-    return found == values.end() ? "" : found->second;
-}
-
 // One channel of one file that could be played.
 struct Candidate
 {
@@ -54,14 +48,14 @@ std::optional<std::pair<std::string, std::string>> SplitTopic(const std::string 
 bool FillQueue(const Mcap::Channel &channel, Candidate &candidate)
 {
     ReplayStream &stream = candidate.Stream;
-    const std::string kind = TextIn(channel.Metadata, "rabit.kind");
-    const std::string peer = TextIn(channel.Metadata, "rabit.peer");
+    const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
+    const std::string peer = Mcap::ValueOf(channel.Metadata, "rabit.peer");
     candidate.IsOwn = kind == "queue sent";
     stream.What = ReplayStream::Kind::Queue;
-    stream.Recorder = TextIn(channel.Metadata, "rabit.node");
+    stream.Recorder = Mcap::ValueOf(channel.Metadata, "rabit.node");
     stream.Node = candidate.IsOwn ? stream.Recorder : peer;
     stream.Peer = candidate.IsOwn ? peer : stream.Recorder;
-    stream.Name = TextIn(channel.Metadata, "rabit.queue");
+    stream.Name = Mcap::ValueOf(channel.Metadata, "rabit.queue");
     return (candidate.IsOwn || kind == "queue received") && IsNodeName(stream.Node) &&
            IsNodeName(stream.Peer) && IsMessageName(stream.Name);
 }
@@ -69,22 +63,22 @@ bool FillQueue(const Mcap::Channel &channel, Candidate &candidate)
 bool FillMessage(const Mcap::Channel &channel, const std::string &recorder, Candidate &candidate)
 {
     ReplayStream &stream = candidate.Stream;
-    const std::string kind = TextIn(channel.Metadata, "rabit.kind");
+    const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
     // In a merged recording topics that a node had from others are told by their metadata.
-    const auto topic = SplitTopic(kind == "knew" ? TextIn(channel.Metadata, "rabit.node") + "/" +
-                                                       TextIn(channel.Metadata, "rabit.message")
+    const auto topic = SplitTopic(kind == "knew" ? Mcap::ValueOf(channel.Metadata, "rabit.node") + "/" +
+                                                       Mcap::ValueOf(channel.Metadata, "rabit.message")
                                                  : channel.Topic);
     if (!topic)
     {
         return false;
     }
-    const std::string qos = TextIn(channel.Metadata, "rabit.qos");
+    const std::string qos = Mcap::ValueOf(channel.Metadata, "rabit.qos");
     stream.Node = topic->first;
     stream.Name = topic->second;
     stream.IsTelemetry = qos == "telemetry";
     candidate.IsOwn = kind == "posted";
     candidate.IsPublished = qos != "none";
-    const std::string told = TextIn(channel.Metadata, "rabit.recorded_by");
+    const std::string told = Mcap::ValueOf(channel.Metadata, "rabit.recorded_by");
     stream.Recorder = candidate.IsOwn ? stream.Node : told.empty() ? recorder : told;
     if (stream.Type == FleetType)
     {
@@ -109,7 +103,7 @@ std::optional<Candidate> CandidateOf(const Mcap::Contents &contents, const Mcap:
     candidate.Stream.IdlText = schema->second.Data;
     const auto counted = contents.Statistics.ChannelMessageCounts.find(channel.Id);
     candidate.Messages = counted == contents.Statistics.ChannelMessageCounts.end() ? 0 : counted->second;
-    const bool isQueue = TextIn(channel.Metadata, "rabit.kind").starts_with("queue ");
+    const bool isQueue = Mcap::ValueOf(channel.Metadata, "rabit.kind").starts_with("queue ");
     return (isQueue ? FillQueue(channel, candidate) : FillMessage(channel, recorder, candidate))
                ? std::optional(std::move(candidate))
                : std::nullopt;
@@ -165,13 +159,13 @@ bool IsNodeSelected(const std::string &node, const PlanSettings &settings)
 // Who recorded a file, or a part of one that was merged.
 void TakeRecorder(const Mcap::TextMap &about, const PlanSettings &settings, ReplayPlan &plan)
 {
-    const std::string node = TextIn(about, "node");
-    const std::string domain = TextIn(about, "domain");
+    const std::string node = Mcap::ValueOf(about, "node");
+    const std::string domain = Mcap::ValueOf(about, "domain");
     if (!domain.empty())
     {
         plan.Domains.insert(domain);
     }
-    if (IsNodeName(node) && TextIn(about, "kind").empty() && IsNodeSelected(node, settings))
+    if (IsNodeName(node) && Mcap::ValueOf(about, "kind").empty() && IsNodeSelected(node, settings))
     {
         plan.Nodes.insert(node);
     }
@@ -189,7 +183,7 @@ std::vector<Candidate> CandidatesOf(const std::vector<const Mcap::Contents *> &f
         {
             if (metadata.Name == "rabit.node" || metadata.Name == "rabit.recording")
             {
-                recorder = TextIn(metadata.Values, "node");
+                recorder = Mcap::ValueOf(metadata.Values, "node");
                 TakeRecorder(metadata.Values, settings, plan);
             }
         }

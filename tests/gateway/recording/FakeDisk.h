@@ -129,10 +129,5 @@ inline std::vector<std::uint64_t> LogTimesOf(MemoryFile file)
 // What a file says of itself under that name, the last time that it does.
 inline Rabit::Mcap::TextMap MetadataOf(MemoryFile file, const std::string &name)
 {
-    Rabit::Mcap::TextMap values;
-    for (const Rabit::Mcap::Metadata &metadata : Rabit::Mcap::ReadContents(file).MetadataRecords)
-    {
-        values = metadata.Name == name ? metadata.Values : values;
-    }
-    return values;
+    return Rabit::Mcap::MetadataOf(Rabit::Mcap::ReadContents(file), name);
 }
