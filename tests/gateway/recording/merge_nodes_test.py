@@ -97,7 +97,10 @@ def check_merge(rabit, folder):
 def check_info(rabit, merged):
     done = run(rabit, "info", "--json", merged)
     about = json.loads(done.stdout)
-    assert done.returncode == 0 and about["ended"], done
+    # Of posts of two threads at the same time the recorder sees one, and counts the other: on a busy machine managers'
+    # states may be among them, and info says so.
+    assert all(topic.endswith("/Recorder/Managers") for topic in about["lost"]), done
+    assert done.returncode == (1 if about["lost"] else 0) and about["ended"], done
     topics = [row["topic"] for row in about["topics"]]
     assert topics.count("sensor/Reading") == 2, topics  # two lives
     for topic in ("display/Recorder/knew/sensor/Reading", "display2/Recorder/knew/sensor/Reading",
