@@ -1,6 +1,7 @@
 #include "PrintManager.h"
 
 #include <iostream>
+#include <syncstream>
 
 PrintManager::PrintManager(const Options &options) : RabitManager("PrintManager")
 {
@@ -33,25 +34,27 @@ bool PrintManager::PrintWhatIsThere()
     if (_line->FetchMessage() && _line->WasPosted())
     {
         printed = true;
-        std::cout << "posted: " << _line->Line << std::endl;
+        std::osyncstream(std::cout) << "posted: " << _line->Line << std::endl;
     }
     // A queue keeps them all.
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
     {
         printed = true;
-        std::cout << "queued: " << message->ToString() << std::endl;
+        std::osyncstream(std::cout) << "queued: " << message->ToString() << std::endl;
     }
     return printed;
 }
 
 void PrintManager::SayThatItWaits()
 {
-    std::cout << "PrintManager is waiting for a Message" << std::endl;
+    // ReadManager writes from its own thread: without the osyncstream its text could stand before our end of
+    // line.
+    std::osyncstream(std::cout) << "PrintManager is waiting for a Message" << std::endl;
 }
 
 void PrintManager::Shutdown()
 {
     PrintWhatIsThere();
-    std::cout << "PrintManager: shut down" << std::endl;
+    std::osyncstream(std::cout) << "PrintManager: shut down" << std::endl;
 }

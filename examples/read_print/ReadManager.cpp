@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iostream>
 #include <string_view>
+#include <syncstream>
 
 #include <poll.h>
 #include <unistd.h>
@@ -50,7 +51,7 @@ void ReadManager::Prompt()
 {
     if (isatty(STDIN_FILENO) == 1)
     {
-        std::cout << "Type a line (quit or exit ends): " << std::flush;
+        std::osyncstream(std::cout) << "Type a line (quit or exit ends): " << std::flush;
     }
 }
 
@@ -111,11 +112,12 @@ void ReadManager::PutIntoQueue()
     // A clone, because the queue keeps the message while the next line overwrites ours.
     if (!AddMessageToQueue("PrintManager", std::shared_ptr<Rabit::RabitMessage>(_line->Clone())))
     {
-        std::cerr << "ReadManager: the queue of PrintManager is full, lost: " << _line->Line << std::endl;
+        std::osyncstream(std::cerr) << "ReadManager: the queue of PrintManager is full, lost: " << _line->Line
+                                    << std::endl;
     }
 }
 
 void ReadManager::Shutdown()
 {
-    std::cout << "ReadManager: shut down" << std::endl;
+    std::osyncstream(std::cout) << "ReadManager: shut down" << std::endl;
 }

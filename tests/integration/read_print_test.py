@@ -145,6 +145,14 @@ class ReadPrint(unittest.TestCase):
             session.write("quit")
             self.assert_shut_down_cleanly(session)
 
+    def test_lines_of_both_managers_stay_whole_when_both_speak_at_once(self):
+        # Both say that they shut down at the same moment, so one time of twenty would do to see a line torn.
+        for _ in range(200):
+            output = subprocess.run([PROGRAM, "--period", "3600"], input="quit\n", stdout=subprocess.PIPE, text=True,
+                                    timeout=PATIENCE_SEC, check=True).stdout
+            self.assertEqual(sorted(output.splitlines()), ["PrintManager is waiting for a Message",
+                                                           "PrintManager: shut down", "ReadManager: shut down"])
+
     def test_a_terminal_gets_a_prompt_for_each_line_and_a_pipe_none(self):
         master, terminal = pty.openpty()
         with subprocess.Popen([PROGRAM], stdin=terminal, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
