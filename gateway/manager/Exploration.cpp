@@ -2,6 +2,7 @@
 
 #include <rabit/idl/MessageTypeRegistry.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <set>
@@ -24,6 +25,31 @@ double ClockAhead(const PeerTable::Peer &peer, const PostTime &now)
     const auto wall = now.Monotonic - source->ToLocal + peer.Clock.SourceToWall();
     const std::chrono::nanoseconds own(GpsTime::ToUtcNanoseconds(now.GpsTimeSeconds));
     return std::chrono::duration<double>(wall - own).count();
+}
+
+FleetExplorer::Strain::Kind KindOf(LinkStrain::Kind kind)
+{
+    using Kind = FleetExplorer::Strain::Kind;
+    return kind == LinkStrain::Kind::Filling   ? Kind::Filling
+           : kind == LinkStrain::Kind::InDoubt ? Kind::InDoubt
+                                               : Kind::HeldBack;
+}
+
+std::vector<FleetExplorer::Strain> StrainsOf(const PeerTable::Peer &peer,
+                                             const std::vector<const PeerTable::Peer *> &heard)
+{
+    std::vector<FleetExplorer::Strain> strains;
+    for (const LinkStrain &said : peer.Strains)
+    {
+        const auto other =
+            std::find_if(heard.begin(), heard.end(),
+                         [&said](const PeerTable::Peer *one) { return one->Tag == said.Node; });
+        strains.push_back({.What = KindOf(said.What),
+                           .Other = other == heard.end() ? "" : (*other)->Node,
+                           .Percent = said.Percent,
+                           .Messages = said.Messages});
+    }
+    return strains;
 }
 
 }  // namespace
@@ -123,10 +149,12 @@ Exploration::Requests Exploration::TakeRequests()
 void Exploration::SetNodes(const PeerTable &peers, const PostTime &now)
 {
     std::vector<Node> nodes;
-    for (const PeerTable::Peer *peer : peers.Heard())
+    const std::vector<const PeerTable::Peer *> heard = peers.Heard();
+    for (const PeerTable::Peer *peer : heard)
     {
         nodes.push_back({peer->Node, peer->State, peer->Incarnation, peer->Offers, peer->Twice,
-                         ClockAhead(*peer, now), peer->Beats.Heard(), peer->Beats.Missed()});
+                         ClockAhead(*peer, now), peer->Beats.Heard(), peer->Beats.Missed(),
+                         StrainsOf(*peer, heard)});
     }
     {
         const std::lock_guard lock(_mutex);

@@ -31,6 +31,7 @@
 #include "queues/OutgoingQueues.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
+#include "report/LinkStrains.h"
 #include "report/Loneliness.h"
 #include "report/OtherGateways.h"
 #include "report/ProblemLog.h"
@@ -376,6 +377,7 @@ private:
         AddProblems(now, fleet);
         _foreign.Report(now, fleet);
         OtherGateways::AddSharedNodes(_workspace, _config.Name, fleet);
+        _presence.SetStrains(_strains.Look(fleet, _presence.Peers(), now));
         fleet.PostMessage();
         Log(_problemLog.Look(fleet.problems, now));
     }
@@ -432,6 +434,7 @@ private:
     StateExchange _states;
     ForeignTopics _foreign{_config, _source};
     std::shared_ptr<Gateway::Fleet> _fleet;
+    LinkStrains _strains;
     Exploration &_exploration;
     std::optional<Duration> _exploredAt;
     const std::string _logName =

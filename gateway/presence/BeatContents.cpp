@@ -68,12 +68,18 @@ std::size_t BeatContents::SizeOfMarks() const
     return (_isTool ? BeatFormat::ToolMark : 0) + (_isReplay ? BeatFormat::ReplayMark : 0);
 }
 
+std::size_t BeatContents::SizeOfStrains() const
+{
+    const std::size_t count = std::min(_strains.size(), BeatExtensions::MostStrains);
+    return count == 0 ? 0 : BeatFormat::Wanted(count * BeatExtensions::StrainBytes);
+}
+
 std::size_t BeatContents::Size(Duration now) const
 {
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t size = BeatFormat::Empty + SizeOfMarks() +
+    const std::size_t size = BeatFormat::Empty + SizeOfMarks() + SizeOfStrains() +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
@@ -95,6 +101,11 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     beat.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
     room -= beat.delays.size() * BeatFormat::Delay;
     AddPart(beat, now, room);
+    if (SizeOfStrains() > 0 && SizeOfStrains() <= room)
+    {
+        BeatExtensions::Say(beat, _strains);
+        room -= SizeOfStrains();
+    }
     AddStates(beat, room);
     if (_isTool)
     {

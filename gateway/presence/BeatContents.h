@@ -15,6 +15,7 @@
 #include "presence/PeerTable.h"
 #include "presence/StateQuestions.h"
 #include "types/TypeQuestions.h"
+#include "wire/LinkStrain.h"
 
 namespace Rabit
 {
@@ -58,6 +59,9 @@ public:
     // What this node posts was recorded before, and its beats say so.
     void BeReplay() { _isReplay = true; }
 
+    // What its links suffer from, the worst first, for each beat to say from now on that has room for it.
+    void SetStrains(std::vector<LinkStrain> strains) { _strains = std::move(strains); }
+
     // When there is something to ask for, which need not wait for the next period.
     std::optional<Duration> QuestionDue() const;
     // When a part of the announcement is to be said.
@@ -74,6 +78,7 @@ private:
     void AddPart(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfMarks() const;
+    std::size_t SizeOfStrains() const;
     std::size_t SizeOfPart(Duration now, std::size_t room) const;
     bool IsPlaceDue(Duration now) const;
 
@@ -84,6 +89,7 @@ private:
     PeerTable &_peers;
     bool _isTool = false;
     bool _isReplay = false;
+    std::vector<LinkStrain> _strains;
     std::vector<std::uint8_t> _offers;
     std::uint32_t _digest = 0;
     std::vector<std::uint32_t> _states;  // versions

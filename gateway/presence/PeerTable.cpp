@@ -220,6 +220,7 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     Measure(peer, heard);
     peer.Beats.Add(heard.Sequence);
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
+    peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
     {

@@ -16,6 +16,7 @@
 #include "presence/HeardBeat.h"
 #include "presence/MissingOffers.h"
 #include "presence/SentBeats.h"
+#include "wire/LinkStrain.h"
 
 namespace Rabit
 {
@@ -56,6 +57,7 @@ public:
         std::uint32_t Tag = 0;  // of node and incarnation (names/NodeTag.h)
         bool IsTool = false;    // UP as long as it is kept; it has no offers and no states
         bool IsReplay = false;  // what it posts was recorded before
+        std::vector<LinkStrain> Strains;  // that its newest beat tells of
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
         Duration FirstHeard{0};

@@ -137,6 +137,8 @@ public:
     {
         _contents.Questions().Set(node, states, soon, now);
     }
+    // What this node's links suffer from, for the beats to say.
+    void SetStrains(std::vector<LinkStrain> strains) { _contents.SetStrains(std::move(strains)); }
     // The texts of types that are lacking, for the beats to ask for.
     TypeQuestions &TypesLacking() { return _contents.Types(); }
     const TypeQuestions &TypesLacking() const { return _contents.Types(); }

@@ -87,6 +87,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfNodes(nodes, fleet));
         Append(findings, Doctor::OfTypes(nodes));
         Append(findings, Doctor::OfClocks(nodes, fleet));
+        Append(findings, Doctor::OfLinks(nodes));
         Append(findings, Doctor::OfLosses(nodes));
     }
     catch (const NetworkError &error)

@@ -78,4 +78,43 @@ std::vector<TypeQuestion> TypeQuestionsIn(const Gateway::Beat &beat)
     return questions;
 }
 
+void Say(Gateway::Beat &beat, std::span<const LinkStrain> strains)
+{
+    std::vector<std::uint8_t> bytes;
+    for (const LinkStrain &strain : strains.first(std::min(strains.size(), MostStrains)))
+    {
+        Put(strain.Node, bytes);
+        Put(static_cast<std::uint8_t>(strain.What), bytes);
+        Put(strain.Percent, bytes);
+        Put(strain.Messages, bytes);
+    }
+    Add(beat, Strain).states.assign(bytes.begin(), bytes.end());
+}
+
+std::vector<LinkStrain> StrainsIn(const Gateway::Beat &beat)
+{
+    std::vector<LinkStrain> strains;
+    for (const Gateway::Wanted &wanted : beat.wants)
+    {
+        if (wanted.node != Nobody || wanted.offers != Strain)
+        {
+            continue;
+        }
+        std::span<const std::uint8_t> bytes(wanted.states.data(), wanted.states.size());
+        while (bytes.size() >= StrainBytes && strains.size() < MostStrains)
+        {
+            LinkStrain strain;
+            strain.Node = Take<std::uint32_t>(bytes);
+            strain.What = static_cast<LinkStrain::Kind>(Take<std::uint8_t>(bytes));
+            strain.Percent = std::min<std::uint8_t>(Take<std::uint8_t>(bytes), 100);
+            strain.Messages = Take<std::uint16_t>(bytes);
+            if (strain.What >= LinkStrain::Kind::Filling && strain.What <= LinkStrain::Kind::HeldBack)
+            {
+                strains.push_back(strain);
+            }
+        }
+    }
+    return strains;
+}
+
 }  // namespace Rabit::BeatExtensions

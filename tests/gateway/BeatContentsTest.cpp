@@ -134,6 +134,32 @@ TEST_F(BeatContentsTest, AReplaySaysInEachBeatThatItIsOne)
     }
 }
 
+TEST_F(BeatContentsTest, StrainsAreSaidAsLongAsThereAreAnyAndThenCostNothing)
+{
+    BeginLongAgo(100, 0);
+    const std::vector<LinkStrain> strains(3, LinkStrain{.Node = 7, .What = LinkStrain::Kind::InDoubt});
+    contents.SetStrains(strains);
+    for (int i = 1; i <= 3; ++i)
+    {
+        EXPECT_EQ(BeatExtensions::StrainsIn(Next(std::chrono::seconds(i))), strains);
+    }
+    contents.SetStrains({});
+    EXPECT_EQ(BodyOf(Next(4s)), BeatFormat::Empty);
+}
+
+TEST_F(BeatContentsTest, StrainsGoBeforeStatesAndWaitForRoom)
+{
+    BeginLongAgo(100, 3);
+    contents.SetStrains(std::vector<LinkStrain>(9));
+    const std::size_t strains = BeatFormat::Wanted(BeatExtensions::MostStrains * BeatExtensions::StrainBytes);
+    const Gateway::Beat without = Next(1s, BeatFormat::Empty + strains - 1);
+    EXPECT_THAT(BeatExtensions::StrainsIn(without), IsEmpty());
+    EXPECT_THAT(without.states, SizeIs(3));
+    const Gateway::Beat with = Next(2s, BeatFormat::Empty + strains + BeatFormat::State);
+    EXPECT_THAT(BeatExtensions::StrainsIn(with), SizeIs(BeatExtensions::MostStrains));
+    EXPECT_THAT(with.states, SizeIs(1));
+}
+
 TEST_F(BeatContentsTest, TheFirstBeatOfALifeCarriesTheAnnouncement)
 {
     Begin(100, 0);

@@ -53,6 +53,42 @@ TEST(BeatExtensions, AQuestionOfAnotherSizeIsNone)
     EXPECT_THAT(BeatExtensions::TypeQuestionsIn(beat), IsEmpty());
 }
 
+constexpr LinkStrain Full{
+    .Node = 0xfedcba98, .What = LinkStrain::Kind::Filling, .Percent = 87, .Messages = 65535};
+constexpr LinkStrain Slow{.Node = 7, .What = LinkStrain::Kind::HeldBack};
+
+TEST(BeatExtensions, StrainsAreUnderstoodAsTheyWereSaid)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    EXPECT_THAT(BeatExtensions::StrainsIn(beat), IsEmpty());
+    BeatExtensions::Say(beat, std::vector{Full, Slow});
+    EXPECT_THAT(BeatExtensions::StrainsIn(beat), ElementsAre(Full, Slow));
+}
+
+TEST(BeatExtensions, NoMoreStrainsAreSaidOrTakenThanABeatMayHave)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::Say(beat, std::vector(9, Full));
+    EXPECT_EQ(beat.wants.back().states.size(), BeatExtensions::MostStrains * BeatExtensions::StrainBytes);
+    BeatExtensions::Say(beat, std::vector(9, Slow));
+    EXPECT_EQ(BeatExtensions::StrainsIn(beat), std::vector(BeatExtensions::MostStrains, Full));
+}
+
+TEST(BeatExtensions, OfStrainsThatMakeNoSenseTheOthersAreTaken)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::Say(beat, std::vector{Full, Full, Slow});
+    auto &bytes = beat.wants.back().states;
+    bytes[4] = 0;     // no such kind
+    bytes[13] = 200;  // more than all of it
+    bytes.push_back(1);
+    LinkStrain clamped = Full;
+    clamped.Percent = 100;
+    EXPECT_THAT(BeatExtensions::StrainsIn(beat), ElementsAre(clamped, Slow));
+    bytes[4] = 4;
+    EXPECT_THAT(BeatExtensions::StrainsIn(beat), ElementsAre(clamped, Slow));
+}
+
 // Gateways that know nothing of extensions judge beats by these rules, and look for their own tag in `wants`.
 TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
 {
@@ -60,6 +96,7 @@ TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
     BeatExtensions::MarkTool(beat);
     BeatExtensions::MarkReplay(beat);
     BeatExtensions::Ask(beat, TypeQuestion());
+    BeatExtensions::Say(beat, std::vector(BeatExtensions::MostStrains, Full));
     const MessageType &type = GatewayTopics::TypeOf<Gateway::Beat>();
     std::vector<std::uint8_t> bytes(type.SerializedSize(beat));
     ASSERT_EQ(type.Serialize(beat, bytes), bytes.size());

@@ -133,6 +133,46 @@ TEST_F(ExplorerTest, CountsBeatsThatWereLost)
     EXPECT_NEAR(lost / (lost + heard), 0.5, 0.3);
 }
 
+TEST_F(ExplorerTest, TellsOfLinksThatDoNotGetOnFromBothEnds)
+{
+    using Kind = FleetExplorer::Strain::Kind;
+    using ::testing::ElementsAre;
+    using ::testing::Field;
+    using Strain = FleetExplorer::Strain;
+    const auto queue =
+        std::make_shared<RabitMessageQueue<std::shared_ptr<RabitMessage>>>(4, "MissionControl");
+    uav.Workspace.AddManagerMessageQueue("MissionControl", queue);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(3s);
+    ASSERT_THAT(explorer.Nodes(), SizeIs(2));
+    EXPECT_THAT(explorer.Nodes()[0].Strains, ::testing::IsEmpty());
+    while (ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()))
+    {
+    }
+    fleet.RunFor(5s);
+    EXPECT_THAT(
+        explorer.Nodes()[0].Strains,
+        ElementsAre(AllOf(Field(&Strain::What, Kind::Filling), Field(&Strain::Other, "uav1"),
+                          Field(&Strain::Percent, ::testing::Ge(99u)), Field(&Strain::Messages, 1u))));
+    EXPECT_THAT(explorer.Nodes()[1].Strains,
+                ElementsAre(AllOf(Field(&Strain::What, Kind::HeldBack), Field(&Strain::Other, "ground"))));
+    // It takes what has come and is well again; what was refused is told for a while.
+    std::shared_ptr<RabitMessage> message;
+    fleet.RunUntil(
+        [&]
+        {
+            while (queue->GetMessage(message))
+            {
+            }
+            return ground.LinkTo("uav1", "MissionControl").outbox == 0;
+        },
+        60s);
+    fleet.RunFor(40s);
+    EXPECT_THAT(explorer.Nodes()[0].Strains, ::testing::IsEmpty());
+    EXPECT_THAT(explorer.Nodes()[1].Strains, ::testing::IsEmpty());
+}
+
 TEST_F(ExplorerTest, GetsTheTextOfATypeThatANodePublishesAcceptsOrKnows)
 {
     FleetExplorer &explorer = AddTool();

@@ -1,5 +1,6 @@
 #include "LinkOutbox.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace Rabit
@@ -20,6 +21,13 @@ LinkRefusal LinkOutbox::Check(std::size_t bytes) const
         return LinkRefusal::FullByBytes;
     }
     return LinkRefusal::None;
+}
+
+double LinkOutbox::Fill() const
+{
+    const auto of = [](std::size_t used, std::size_t room)
+    { return static_cast<double>(used) / static_cast<double>(std::max<std::size_t>(room, 1)); };
+    return std::min(std::max(of(Count(), _options.Capacity), of(_bytes, _options.CapacityBytes)), 1.0);
 }
 
 void LinkOutbox::Add(OutboxMessage message)

@@ -60,6 +60,8 @@ public:
     bool Empty() const { return _sent.Empty() && _waiting.Empty(); }
     std::size_t Count() const { return _sent.Size() + _waiting.Size(); }
     std::size_t Bytes() const { return _bytes; }
+    // Of the room that there is, for messages or for bytes, whichever is fuller; 1: full.
+    double Fill() const;
     std::size_t SentCount() const { return _sent.Size(); }
     bool HasWaiting() const { return !_waiting.Empty(); }
 

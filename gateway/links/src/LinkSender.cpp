@@ -348,6 +348,7 @@ LinkSenderCounters LinkSender::Counters() const
     LinkSenderCounters counters = _counters;
     counters.Pending = _outbox.Count();
     counters.PendingBytes = _outbox.Bytes();
+    counters.Fill = _outbox.Fill();
     counters.Unacknowledged = _outbox.SentCount();
     counters.UnacknowledgedParts = static_cast<std::size_t>(_outbox.NextSequence() - _outbox.FirstSequence());
     counters.RoundTrip = _path.Times().Smoothed();

@@ -38,6 +38,35 @@ double RoundTripOf(const std::string &node, const Gateway::Fleet &fleet)
     return found == fleet.nodes.end() || !std::isfinite(found->round_trip_s) ? 0.0 : found->round_trip_s;
 }
 
+std::string Many(unsigned messages)
+{
+    // What a beat can count to.
+    constexpr unsigned most = 65535;
+    return std::to_string(messages) + (messages >= most ? " or more" : "");
+}
+
+Finding OfStrain(const std::string &node, const FleetExplorer::Strain &strain)
+{
+    using Kind = FleetExplorer::Strain::Kind;
+    const std::string other = strain.Other.empty() ? "a node that is not heard here" : strain.Other;
+    switch (strain.What)
+    {
+        case Kind::Filling:
+            return {strain.Messages > 0 ? Level::Problem : Level::Note, "outbox of " + node,
+                    "that for " + other + " is " + std::to_string(strain.Percent) + " % full" +
+                        (strain.Messages > 0 ? ", and of late it refused " + Many(strain.Messages) : ""),
+                    "look whether " + other + " is up and its queues have room; else send less"};
+        case Kind::InDoubt:
+            return {Level::Problem, "messages of " + node,
+                    Many(strain.Messages) + " to " + other + " in doubt: it restarted before it acknowledged",
+                    "send again what still matters, and look why it restarted"};
+        case Kind::HeldBack:
+            break;
+    }
+    return {Level::Problem, "queue of " + node, "it is full, and messages of " + other + " wait",
+            "look what keeps its manager from taking them, or give the queue more capacity"};
+}
+
 }  // namespace
 
 std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet)
@@ -128,6 +157,29 @@ std::vector<Finding> OfClocks(const std::vector<FleetSession::Node> &nodes, cons
         findings.push_back({Level::Good, "clocks",
                             "those of " + std::to_string(known) + " nodes differ by " +
                                 Seconds(std::max(std::abs(least), std::abs(most))) + " at most"});
+    }
+    return findings;
+}
+
+std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes)
+{
+    std::vector<Finding> findings;
+    std::size_t up = 0;
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (node.State == Gateway::NodeState::LOST)
+        {
+            continue;
+        }
+        ++up;
+        for (const FleetExplorer::Strain &strain : node.Strains)
+        {
+            findings.push_back(OfStrain(node.Name, strain));
+        }
+    }
+    if (findings.empty() && up > 0)
+    {
+        findings.push_back({Level::Good, "links", "no outbox fills, and no message is in doubt"});
     }
     return findings;
 }

@@ -16,6 +16,8 @@ std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const
 std::vector<Finding> OfTypes(const std::vector<FleetSession::Node> &nodes);
 // Wall clocks that differ from this machine's.
 std::vector<Finding> OfClocks(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet);
+// Links that do not get on, by what the nodes at their ends say.
+std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes);
 // Beats that were lost on the way.
 std::vector<Finding> OfLosses(const std::vector<FleetSession::Node> &nodes);
 

@@ -86,6 +86,15 @@ TEST_F(LinkSenderRules, S1_refuses_when_full_by_bytes_and_says_when_it_could_nev
     EXPECT_EQ(a.SenderCounters().RefusedTooLarge, 1U);
 }
 
+TEST_F(LinkSenderRules, S1_says_how_full_it_is_by_what_is_fuller)
+{
+    a.Configure({.Capacity = 4, .CapacityBytes = 10});
+    EXPECT_NE(a.Enqueue("1"), 0U);
+    EXPECT_EQ(a.SenderCounters().Fill, 0.25);
+    EXPECT_NE(a.Enqueue("1234567"), 0U);
+    EXPECT_EQ(a.SenderCounters().Fill, 0.8);
+}
+
 TEST_F(LinkSenderRules, S1_accepts_again_when_outcomes_have_made_room)
 {
     a.Configure({.Capacity = 1});

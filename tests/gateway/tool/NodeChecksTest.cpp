@@ -45,6 +45,41 @@ TEST(NodeChecks, TwoNodesOfOneNameAreTold)
     EXPECT_THAT(ProblemLinesOf(OfNodes({node}, {})), ElementsAre("node uav1: two live nodes have this name"));
 }
 
+TEST(NodeChecks, LinksThatDoNotGetOnAreToldByWhatTheNodesSay)
+{
+    using Kind = FleetExplorer::Strain::Kind;
+    auto node = NodeOf("uav1");
+    node.Strains = {{.What = Kind::Filling, .Other = "uav2", .Percent = 100, .Messages = 7},
+                    {.What = Kind::InDoubt, .Other = "", .Percent = 0, .Messages = 65535},
+                    {.What = Kind::HeldBack, .Other = "ground", .Percent = 0, .Messages = 0}};
+    EXPECT_THAT(
+        ProblemLinesOf(OfLinks({node})),
+        ElementsAre("outbox of uav1: that for uav2 is 100 % full, and of late it refused 7",
+                    "messages of uav1: 65535 or more to a node that is not heard here in doubt: it restarted "
+                    "before it acknowledged",
+                    "queue of uav1: it is full, and messages of ground wait"));
+}
+
+TEST(NodeChecks, AnOutboxThatFillsAndHasRefusedNothingIsWorthANote)
+{
+    auto node = NodeOf("uav1");
+    node.Strains = {{.What = FleetExplorer::Strain::Kind::Filling, .Other = "uav2", .Percent = 60}};
+    const std::vector<Finding> findings = OfLinks({node});
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings.front().How, Level::Note);
+    EXPECT_EQ(findings.front().Text, "that for uav2 is 60 % full");
+}
+
+TEST(NodeChecks, LinksAreGoodWhereNobodySaysOtherwiseAndOfWhoIsLostNothingIsSaid)
+{
+    auto node = NodeOf("uav1");
+    ASSERT_THAT(OfLinks({node}), SizeIs(1));
+    EXPECT_EQ(OfLinks({node}).front().How, Level::Good);
+    node.Strains.emplace_back();
+    node.State = Gateway::NodeState::LOST;
+    EXPECT_THAT(OfLinks({node}), IsEmpty());
+}
+
 TEST(NodeChecks, ANodeWhoseAnnouncementDoesNotComeIsTold)
 {
     auto node = NodeOf("uav1");

@@ -24,6 +24,20 @@ class FleetExplorer
 public:
     virtual ~FleetExplorer() = default;
 
+    struct Strain
+    {
+        enum class Kind
+        {
+            Filling,  // its outbox for the other node is half full or more, or was full lately
+            InDoubt,  // messages of it, since the other node restarted before it acknowledged them
+            HeldBack  // messages of the other node, since its own queue has been full for some time
+        };
+        Kind What = Kind::Filling;
+        std::string Other;      // node; empty: one that this gateway has not heard
+        unsigned Percent = 0;   // Filling: how full
+        unsigned Messages = 0;  // Filling: refused in the last half minute; InDoubt: in it
+    };
+
     struct Node
     {
         std::string Name;
@@ -39,6 +53,9 @@ public:
         // Beats of its present life since it was first heard: that came, and that did not.
         std::uint64_t BeatsHeard = 0;
         std::uint64_t BeatsMissed = 0;
+        // What keeps queue messages between it and others from getting on, as it says itself; the worst come
+        // first, and no more than four are told.
+        std::vector<Strain> Strains;
     };
     // The other nodes, by name.
     virtual std::vector<Node> Nodes() const = 0;

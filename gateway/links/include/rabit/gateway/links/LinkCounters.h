@@ -29,6 +29,7 @@ struct LinkSenderCounters
     // Present state.
     std::size_t Pending = 0;         // messages without an outcome
     std::size_t PendingBytes = 0;    // bytes of their payloads
+    double Fill = 0.0;               // of what LinkOptions lets wait, messages or bytes, the fuller; 1: full
     std::size_t Unacknowledged = 0;  // of them, sent at least once, as a whole or in part
     std::size_t UnacknowledgedParts = 0;
     LinkTime RoundTrip{0};  // of the path to the node, smoothed (RFC 6298 SRTT); 0: not measured yet

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+namespace Rabit
+{
+
+// What keeps queue messages between two nodes from getting on, as one of the two says it in its beats, for
+// who looks at the fleet.
+struct LinkStrain
+{
+    enum class Kind : std::uint8_t
+    {
+        Filling = 1,  // the sender's outbox for that node fills, or was full lately
+        InDoubt = 2,  // that node restarted lately before it acknowledged
+        HeldBack = 3  // the sender of the beat is the receiver: a queue of it is full, and messages of that
+                      // node wait
+    };
+
+    std::uint32_t Node = 0;  // tag of the other one
+    Kind What = Kind::Filling;
+    std::uint8_t Percent = 0;    // Filling: of the outbox's room, 0 to 100
+    std::uint16_t Messages = 0;  // Filling: refused lately for want of room; InDoubt: so many; 65535: or more
+
+    bool operator==(const LinkStrain &) const = default;
+};
+
+}  // namespace Rabit
