@@ -95,10 +95,11 @@ std::vector<Finding> OfInterfaces(const GatewayConfig &config, const std::vector
     {
         findings.push_back({Level::Good, "interface " + one.Name,
                             Listed(one.Addresses) + ", MTU " + std::to_string(one.Mtu)});
-        if (config.Multicast && !one.HasMulticast)
+        // Linux gives loopback no such flag, and carries multicast on it all the same; the trial tells if
+        // not.
+        if (config.Multicast && !one.HasMulticast && !one.IsLoopback)
         {
-            findings.push_back({one.IsLoopback && used.size() > 1 ? Level::Note : Level::Problem,
-                                "interface " + one.Name,
+            findings.push_back({Level::Problem, "interface " + one.Name,
                                 "it is not for multicast, by which nodes find each other",
                                 "ip link set " + one.Name + " multicast on, or list peers"});
         }

@@ -89,6 +89,16 @@ TEST(MachineChecks, AnInterfaceWithoutMulticastIsToldUnlessNobodyWantsIt)
     EXPECT_THAT(ProblemsOf(OfInterfaces(config, all)), IsEmpty());
 }
 
+TEST(MachineChecks, LoopbackNeedsNoFlagForMulticast)
+{
+    std::vector<Interface> all{InterfaceOf("lo", "127.0.0.1")};
+    all[0].IsLoopback = true;
+    all[0].HasMulticast = false;
+    GatewayConfig config;
+    config.Interfaces = {"lo"};
+    EXPECT_THAT(ProblemsOf(OfInterfaces(config, all)), IsEmpty());
+}
+
 TEST(MachineChecks, DatagramsMustFitTheMtu)
 {
     std::vector<Interface> used{InterfaceOf("wlan0", "10.0.0.2")};
