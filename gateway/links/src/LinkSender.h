@@ -87,6 +87,8 @@ private:
     bool MayCut() const;
 
     void FillAgain(Filling &filling);
+    std::size_t BytesAgain(const Filling &filling, std::uint64_t sequence) const;
+    std::size_t BytesForNext(const Filling &filling) const;
     bool FillNew(Filling &filling);
     bool Again(Filling &filling, std::uint64_t &sequence);
     void Describe(const SentPart &part, const OutboxMessage &message, std::uint64_t sequence, LinkItem &item,

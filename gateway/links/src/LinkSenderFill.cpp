@@ -179,6 +179,7 @@ void LinkSender::FillAgain(Filling &filling)
         return;
     }
     const LinkTime half = _path.Times().Smoothed() / 2;
+    const std::size_t forNext = along ? BytesForNext(filling) : 0;
     for (std::uint64_t sequence = _outbox.FirstSequence(); sequence < _outbox.NextSequence();)
     {
         const SentPart &part = _outbox.Part(sequence);
@@ -188,7 +189,8 @@ void LinkSender::FillAgain(Filling &filling)
         }
         const bool extra = along && !part.IsLost && part.Cost > 0 && part.Length <= SmallPart &&
                            part.SentAt + half <= filling.Now &&
-                           filling.Along + part.Length <= filling.Most / PartOfDatagram;
+                           filling.Along + part.Length <= filling.Most / PartOfDatagram &&
+                           BytesAgain(filling, sequence) + forNext <= filling.Room();
         if (part.IsHeld || !(part.IsLost || _probe || extra))
         {
             ++sequence;
@@ -200,6 +202,29 @@ void LinkSender::FillAgain(Filling &filling)
             return;
         }
     }
+}
+
+std::size_t LinkSender::BytesAgain(const Filling &filling, std::uint64_t sequence) const
+{
+    const SentPart &part = _outbox.Part(sequence);
+    LinkItem item;
+    Describe(part, _outbox.MessageOf(part), sequence, item, filling.Now);
+    return LinkFrameCodec::ItemSize(item) + item.Payload.size();
+}
+
+// What the next new part takes at least. If what goes along once more took that, nothing new would ever go.
+std::size_t LinkSender::BytesForNext(const Filling &filling) const
+{
+    if (!MayCut())
+    {
+        return 0;
+    }
+    const OutboxMessage &next = _outbox.Next();
+    const std::size_t left = next.Bytes - next.Cut;
+    LinkItem item;
+    Describe({.Offset = next.Cut, .Length = left}, next, _outbox.NextSequence(), item, filling.Now);
+    const bool isCut = next.Cut > 0 || left > filling.Most / 2;
+    return LinkFrameCodec::ItemSize(item) + LengthBytes + (isCut ? std::min(left, SmallestPiece) : left);
 }
 
 // Adds a part that was sent before, and moves on to the next. False: there is no room for it.

@@ -309,6 +309,51 @@ TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_parts_unacknowledged
     EXPECT_EQ(most, LinkWindowParts - 1);
 }
 
+TEST_F(LinkSenderRules, S2_what_goes_along_once_more_leaves_room_for_what_is_new)
+{
+    LinkSettings settings;
+    settings.MaxDatagram = 200;
+    NodeUnderTest sender(settings);
+    const auto echo = [&](StoredFrame ack)
+    {
+        ack.Fields.Echo = {PlayedPeer::ClockOfA, sender.Now.count() - 20'000'000, 0};
+        sender.Hear(ack);
+    };
+    sender.Hear(b.Hello());
+    sender.Enqueue("1");
+    sender.Pass(0ms);
+    sender.Now += 20ms;
+    echo(b.Ack(1));
+    // Of three datagrams two are lost, and then sent again.
+    for (int i = 2; i <= 4; ++i)
+    {
+        sender.Enqueue(std::string(150, '0'));
+        sender.Live(3ms);
+    }
+    sender.Now += 40ms;
+    echo(b.AckWith(1, {4}));
+    sender.Live(60ms);
+    echo(b.Ack(4));
+    for (int i = 5; i <= 14; ++i)
+    {
+        sender.Enqueue(std::string(20, '1'));
+    }
+    sender.Live(5ms);
+    sender.TakeDatas();
+    sender.Enqueue(std::string(300, '2'));
+    sender.Now += 15ms;  // more than half of the round trip, and less than a timer takes
+    sender.Live(10ms);
+    std::size_t fresh = 0;
+    const std::vector<StoredFrame> sent = sender.TakeDatas();
+    EXPECT_LE(sent.size(), 4u);
+    for (const StoredFrame &data : sent)
+    {
+        fresh += std::count_if(data.Items.begin(), data.Items.end(),
+                               [](const StoredItem &item) { return item.Text().front() == '2'; });
+    }
+    EXPECT_GE(fresh, 2u);
+}
+
 TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_unacknowledged)
 {
     a.Configure({.Window = 3});
