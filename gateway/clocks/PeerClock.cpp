@@ -54,7 +54,7 @@ void PeerClock::OnBeat(const Reading &peer, Duration arrival)
 
 void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
 {
-    if (roundTrip < Duration(0))
+    if (roundTrip < Duration(0) || !_difference.Value())
     {
         return;
     }
@@ -66,7 +66,27 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
         _stoodStill += delay;
         _stoodStillUntil = _lastSource;
         _difference.Restart(_lastDifference, now);
+        _wayThere.Restart(roundTrip - _lastDifference, now);
+        return;
     }
+    _wayThere.Add(roundTrip - _lastDifference, now);
+    if (*_wayThere.Value() + *_difference.Value() < Duration(0))
+    {
+        // Our own clock stood still in between.
+        _wayThere.Restart(roundTrip - _lastDifference, now);
+    }
+}
+
+// Of the beat to which the smallest difference belongs.
+PeerClock::Duration PeerClock::QuickestDelay() const
+{
+    const Duration shortest = _roundTrip.Value().value_or(Duration(0));
+    if (!_wayThere.Value())
+    {
+        return shortest / 2;
+    }
+    const Duration both = *_wayThere.Value() + *_difference.Value();
+    return (both < Duration(0) ? shortest : both) / 2;
 }
 
 std::optional<PeerClock::Duration> PeerClock::SourceToLocal() const
@@ -76,7 +96,7 @@ std::optional<PeerClock::Duration> PeerClock::SourceToLocal() const
     {
         return std::nullopt;
     }
-    return *difference - _roundTrip.Value().value_or(Duration(0)) / 2;
+    return *difference - QuickestDelay();
 }
 
 std::optional<PeerClock::SourceRelation> PeerClock::Source() const

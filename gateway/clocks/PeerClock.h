@@ -13,8 +13,12 @@ namespace Rabit
 //
 // A beat carries the sender's source clock, which runs as its monotonic one does, and its wall clock, read
 // together. The smallest difference between arrival here and the sender's source clock belongs to the beat
-// that was least delayed (the minimum filter of NTP, RFC 5905, section 10); half the smallest round trip is
-// taken as its delay. The filter forgets after 15 to 30 seconds, so that drift does not add up.
+// that was least delayed (the minimum filter of NTP, RFC 5905, section 10). What of a round trip that beat's
+// difference does not account for is the way there: its minimum is known as well, of whichever beat of ours.
+// Half of the two together is taken as the delay of the quickest beat; nobody can tell one way from the
+// other. A queue that was full while the few round trips were measured makes nothing look older than it is,
+// unless it was full on the way there. Both filters forget after 15 to 30 seconds, so that drift does not add
+// up.
 //
 // A clock that stood still (a virtual machine that was paused, a computer that was suspended) makes all later
 // differences larger, as a delay of every beat would. The two are told apart by the echo that a beat carries:
@@ -88,8 +92,11 @@ private:
     };
 
     std::optional<Duration> SourceToLocal() const;
+    Duration QuickestDelay() const;
 
     MinimumFilter _difference;
+    MinimumFilter
+        _wayThere;  // the same of our beats, arrival there less our clock: a round trip less a difference
     MinimumFilter _roundTrip;
     Duration _lastDifference{0};
     Duration _lastSource{0};

@@ -73,14 +73,50 @@ TEST(PeerClock, ForgetsAnOldMinimumSoThatDriftDoesNotAddUp)
 TEST(PeerClock, ForgetsAnOldRoundTripOnAPathThatBecameLonger)
 {
     PeerClock clock;
-    clock.OnRoundTrip(2ms, 0s);
+    clock.OnBeat({0s, 0s}, 1ms);
+    clock.OnRoundTrip(2ms, 1ms);
     for (int i = 1; i < 100; ++i)
     {
-        clock.OnRoundTrip(80ms, i * 500ms);
         clock.OnBeat({i * 500ms, i * 500ms}, i * 500ms + 40ms);
+        clock.OnRoundTrip(80ms, i * 500ms + 40ms);
     }
     EXPECT_EQ(*clock.SentAt(10s), Ns(10s));
     EXPECT_EQ(clock.RoundTrip(), Ns(80ms));
+}
+
+TEST(PeerClock, AQueueThatWasFullWhenTheRoundTripWasMeasuredMakesNothingOlder)
+{
+    PeerClock clock;
+    clock.OnBeat({1001s, 0s}, 1s + 2010ms);
+    clock.OnRoundTrip(10ms + 2010ms, 1s + 2010ms);  // the way there took 10 ms
+    for (int i = 4; i < 12; ++i)
+    {
+        clock.OnBeat({1000s + i * 1s, 0s}, i * 1s + 10ms);  // without an echo
+    }
+    EXPECT_EQ(clock.ToLocal(1011s), Ns(11s));
+}
+
+TEST(PeerClock, ThereAndBackMayBeQuickAtDifferentTimes)
+{
+    PeerClock clock;
+    clock.OnBeat({1001s, 0s}, 1s + 10ms);
+    clock.OnRoundTrip(1500ms + 10ms, 1s + 10ms);
+    clock.OnBeat({1002s, 0s}, 2s + 2s);
+    clock.OnRoundTrip(10ms + 2s, 4s);
+    EXPECT_EQ(clock.ToLocal(1011s), Ns(11s));
+}
+
+TEST(PeerClock, AStandstillOfOurClockThatIsLongerThanTheRoundTripIsSeenAtTheNextEcho)
+{
+    PeerClock clock;
+    clock.OnBeat({1001s, 0s}, 1s + 10ms);
+    clock.OnRoundTrip(20ms, 1s + 10ms);
+    // Five seconds of the peer's that were none here.
+    clock.OnBeat({1007s, 0s}, 2s + 10ms);
+    EXPECT_EQ(clock.ToLocal(1007s), Ns(2s)) << "half of the round trip, while there is no other";
+    clock.OnBeat({1008s, 0s}, 3s + 10ms);
+    clock.OnRoundTrip(30ms, 3s + 10ms);
+    EXPECT_EQ(clock.ToLocal(1008s), Ns(3s) - 5ms);
 }
 
 TEST(PeerClock, IgnoresANegativeRoundTrip)
