@@ -381,7 +381,9 @@ void FleetSimulation::BeIdle()
     }
     RunUntil(_world.Now + 10s);
     _air.BeginIdle();
-    RunUntil(_world.Now + 60s);  // twice the period of DDS's announcements with a budget
+    // Twelve of DDS's announcements, four with a budget: that one more may fall into it, since it began just
+    // before one, must not decide.
+    RunUntil(_world.Now + 120s);
     if (_world.Failure.empty())
     {
         _air.EndIdle();
