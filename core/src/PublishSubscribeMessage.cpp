@@ -1,9 +1,11 @@
 #include <rabit/PublishSubscribeMessage.h>
 
+#include <rabit/RabitManagerTrace.h>
 #include <rabit/RabitMessage.h>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <typeinfo>
 #include <utility>
@@ -98,12 +100,14 @@ inline void PublishSubscribeMessage::MarkAsCurrent(RabitMessage &msg) const
 
 std::unique_ptr<RabitMessage> PublishSubscribeMessage::GetCopyOfMessage()
 {
-    const std::lock_guard<std::mutex> lock(*_mutex);
+    std::unique_lock<std::mutex> lock(*_mutex);
     std::unique_ptr<RabitMessage> copy = _message->Clone();
     if (copy)
     {
         copy->_globalPublishSubscribeMessageRef.reset();
         MarkAsCurrent(*copy);
+        lock.unlock();
+        TellFetched(*copy);
     }
     return copy;
 }
@@ -121,6 +125,11 @@ void PublishSubscribeMessage::PostMessage(RabitMessage *msg)
     {
         throw std::invalid_argument("a null message cannot be posted");
     }
+    if (RabitManagerTrace::Current() != nullptr)
+    {
+        PostTraced(*msg, nullptr);
+        return;
+    }
     const PostTime now = Now();
     if (_usesSystemClock)
     {
@@ -135,7 +144,40 @@ void PublishSubscribeMessage::PostMessage(RabitMessage *msg, const PostTime &tim
     {
         throw std::invalid_argument("a null message cannot be posted");
     }
+    if (RabitManagerTrace::Current() != nullptr)
+    {
+        PostTraced(*msg, &time);
+        return;
+    }
     Post(*msg, time, false);
+}
+
+// By a manager that is traced. Its handlers are not.
+void PublishSubscribeMessage::PostTraced(RabitMessage &msg, const PostTime *time)
+{
+    const RabitManagerTrace::Pause trace;
+    if (time != nullptr)
+    {
+        Post(msg, *time, false);
+    }
+    else if (const std::optional<PostTime> known = trace->Posting(*this))
+    {
+        Post(msg, *known, false);
+    }
+    else
+    {
+        Post(msg, Now(), true);
+    }
+    trace->Posted(*this, msg, msg._seenSequence);
+}
+
+void PublishSubscribeMessage::TellFetched(const RabitMessage &msg) const
+{
+    if (RabitManagerTrace::Current() != nullptr)
+    {
+        const RabitManagerTrace::Pause trace;
+        trace->Fetched(*this, msg, msg._seenSequence);
+    }
 }
 
 inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
@@ -235,7 +277,7 @@ bool PublishSubscribeMessage::FetchIfChanged(RabitMessage *msg)
     {
         throw std::invalid_argument("cannot fetch to a null message");
     }
-    const std::lock_guard<std::mutex> lock(*_mutex);
+    std::unique_lock<std::mutex> lock(*_mutex);
     const bool stampsEqual = msg->_timeStamp == _message->_timeStamp;
     const bool samePost = msg->_seenSource == _identity && msg->_seenSequence == Sequence();
     // A copy that was never registered, with nothing posted yet, differs by its time stamp alone.
@@ -245,7 +287,13 @@ bool PublishSubscribeMessage::FetchIfChanged(RabitMessage *msg)
         MarkAsCurrent(*msg);
         return false;
     }
-    return CopyToMessage(*msg);
+    const bool copied = CopyToMessage(*msg);
+    lock.unlock();
+    if (copied)
+    {
+        TellFetched(*msg);
+    }
+    return copied;
 }
 
 void PublishSubscribeMessage::ForceFetchMessage(RabitMessage *msg)
@@ -259,8 +307,14 @@ bool PublishSubscribeMessage::ForceFetch(RabitMessage *msg)
     {
         throw std::invalid_argument("cannot fetch to a null message");
     }
-    const std::lock_guard<std::mutex> lock(*_mutex);
-    return CopyToMessage(*msg);
+    std::unique_lock<std::mutex> lock(*_mutex);
+    const bool copied = CopyToMessage(*msg);
+    lock.unlock();
+    if (copied)
+    {
+        TellFetched(*msg);
+    }
+    return copied;
 }
 
 // For the message that the global copy was just cloned from. If somebody posted in between, it is not

@@ -1,5 +1,6 @@
 #include <rabit/ManualClock.h>
 #include <rabit/RabitClock.h>
+#include <rabit/RabitManagerTrace.h>
 #include <rabit/SystemTimeClock.h>
 #include <rabit/UptimeClock.h>
 
@@ -10,15 +11,42 @@ namespace Rabit
 namespace
 {
 
+// What a manager reads, its trace sees.
+std::chrono::nanoseconds Seen(std::chrono::nanoseconds monotonic)
+{
+    if (RabitManagerTrace::Current() != nullptr)
+    {
+        const RabitManagerTrace::Pause trace;
+        trace->ReadMonotonic(monotonic);
+    }
+    return monotonic;
+}
+
+double Seen(double gpsTimeSeconds)
+{
+    if (RabitManagerTrace::Current() != nullptr)
+    {
+        const RabitManagerTrace::Pause trace;
+        trace->ReadGpsTime(gpsTimeSeconds);
+    }
+    return gpsTimeSeconds;
+}
+
 class SystemRabitClock final : public RabitClock
 {
 public:
     std::chrono::nanoseconds Monotonic() const override
     {
-        return UptimeClock::now().time_since_epoch();
+        return Seen(UptimeClock::now().time_since_epoch());
     }
-    double GpsTimeSeconds() const override { return Now().GpsTimeSeconds; }
-    PostTime Now() const override { return _clock->Now(); }
+    double GpsTimeSeconds() const override { return Seen(_clock->Now().GpsTimeSeconds); }
+    PostTime Now() const override
+    {
+        PostTime now = _clock->Now();
+        now.GpsTimeSeconds = Seen(now.GpsTimeSeconds);
+        now.Monotonic = Seen(now.Monotonic);
+        return now;
+    }
 
 private:
     SystemTimeClock *const _clock = SystemTimeClock::GetSystemTimeClock();
@@ -45,12 +73,12 @@ ManualClock::ManualClock(double gpsTimeSeconds, std::chrono::nanoseconds monoton
 
 std::chrono::nanoseconds ManualClock::Monotonic() const
 {
-    return std::chrono::nanoseconds(_monotonic.load());
+    return Seen(std::chrono::nanoseconds(_monotonic.load()));
 }
 
 double ManualClock::GpsTimeSeconds() const
 {
-    return _gpsAtZero.load() + InSeconds(Monotonic());
+    return Seen(_gpsAtZero.load() + InSeconds(std::chrono::nanoseconds(_monotonic.load())));
 }
 
 void ManualClock::Advance(std::chrono::nanoseconds duration)
@@ -72,7 +100,7 @@ void ManualClock::AdvanceTo(std::chrono::nanoseconds monotonic)
 
 void ManualClock::SetGpsTimeSeconds(double gpsTimeSeconds)
 {
-    _gpsAtZero.store(gpsTimeSeconds - InSeconds(Monotonic()));
+    _gpsAtZero.store(gpsTimeSeconds - InSeconds(std::chrono::nanoseconds(_monotonic.load())));
 }
 
 }  // namespace Rabit

@@ -3,6 +3,7 @@
 #include "ExceptionText.h"
 
 #include <rabit/RabitLog.h>
+#include <rabit/RabitManagerTrace.h>
 
 #include <stdexcept>
 
@@ -168,6 +169,7 @@ void RabitEvent::Fire() const
 
 void RabitEvent::Handlers::CallAll() const
 {
+    const RabitManagerTrace::Pause pause;  // what they do is not the manager's
     for (const auto &slot : *_slots)
     {
         if (!slot->Connected.load(std::memory_order_acquire))

@@ -28,6 +28,19 @@ double InSeconds(std::chrono::nanoseconds duration)
     return std::chrono::duration<double>(duration).count();
 }
 
+RabitManagerTrace::Step StepOf(int errorCode)
+{
+    switch (errorCode)
+    {
+        case ManagerStatusMessage::Error_Startup:
+            return RabitManagerTrace::Step::Startup;
+        case ManagerStatusMessage::Error_Shutdown:
+            return RabitManagerTrace::Step::Shutdown;
+        default:
+            return RabitManagerTrace::Step::UnitOfWork;
+    }
+}
+
 // Counters stay at the largest int.
 void Add(int &counter, int count)
 {
@@ -119,6 +132,7 @@ void RabitManager::PrepareRun()
     {
         TakeControlMessagesAsRead();
     }
+    _trace = _workspace.TraceOf(_name);
     _startupFailed = false;
     _lastPassFailed = false;
     _loopThread.store(std::thread::id());
@@ -295,19 +309,25 @@ void RabitManager::ObeyControlMessages()
 template <typename Work>
 bool RabitManager::Guard(const char *what, int errorCode, Work work)
 {
+    std::string failure;
     _step.store(what, std::memory_order_relaxed);
-    try
     {
-        work();
-        _step.store(nullptr, std::memory_order_relaxed);
-        return true;
+        RabitManagerTrace::Scope trace(_trace, StepOf(errorCode), _wakeup->IsTurn());
+        try
+        {
+            work();
+            _step.store(nullptr, std::memory_order_relaxed);
+            return true;
+        }
+        catch (...)
+        {
+            _step.store(nullptr, std::memory_order_relaxed);
+            trace.Threw();
+            failure = CurrentExceptionText();
+        }
     }
-    catch (...)
-    {
-        _step.store(nullptr, std::memory_order_relaxed);
-        ReportFailure(what, errorCode, CurrentExceptionText());
-        return false;
-    }
+    ReportFailure(what, errorCode, failure);
+    return false;
 }
 
 void RabitManager::ReportFailure(const char *what, int errorCode, const std::string &reason)

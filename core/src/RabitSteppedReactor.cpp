@@ -138,11 +138,29 @@ int RabitSteppedReactor::RunDue()
     return passes;
 }
 
-bool RabitSteppedReactor::RunPass(Entry &entry)
+bool RabitSteppedReactor::RunPassOf(const RabitManager &manager, bool isTurn)
+{
+    for (Entry &entry : _entries)
+    {
+        if (entry.Manager.get() == &manager && entry.Running)
+        {
+            const bool ran = RunPass(entry, isTurn);
+            LeaveIfAllEnded();
+            return ran;
+        }
+    }
+    return false;
+}
+
+bool RabitSteppedReactor::RunPass(Entry &entry, std::optional<bool> isTurn)
 {
     if (!std::exchange(entry.FirstPass, false))
     {
         entry.Manager->EndSleepStep();
+    }
+    if (isTurn)
+    {
+        entry.Manager->_wakeup->SetTurn(*isTurn);
     }
     if (!entry.Manager->CycleStep())
     {

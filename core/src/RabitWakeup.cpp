@@ -194,6 +194,13 @@ void RabitWakeup::EndSleep(std::chrono::nanoseconds start, std::chrono::nanoseco
     TakeTurn(start, now);
 }
 
+void RabitWakeup::SetTurn(bool isTurn)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _isTurn = isTurn;
+    _isWorkDue = true;
+}
+
 bool RabitWakeup::IsSignalled() const
 {
     const std::lock_guard<std::mutex> lock(_mutex);

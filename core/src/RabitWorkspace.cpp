@@ -218,9 +218,31 @@ bool RabitWorkspace::ForceFetchMessage(std::string name, RabitMessage *msg)
     return global && global->ForceFetch(msg);
 }
 
+void RabitWorkspace::SetManagerTracing(RabitManagerTracing tracing)
+{
+    const std::lock_guard<std::mutex> lock(_tracingMutex);
+    _tracing = std::move(tracing);
+}
+
+std::shared_ptr<RabitManagerTrace> RabitWorkspace::TraceOf(const std::string &managerName) const
+{
+    RabitManagerTracing tracing;
+    {
+        const std::lock_guard<std::mutex> lock(_tracingMutex);
+        tracing = _tracing;
+    }
+    return tracing ? tracing(managerName) : nullptr;
+}
+
 std::vector<MessageInfo> RabitWorkspace::GetListOfMessages() const
 {
-    return _registry->Messages();
+    std::vector<MessageInfo> messages = _registry->Messages();
+    if (RabitManagerTrace::Current() != nullptr)
+    {
+        const RabitManagerTrace::Pause trace;
+        trace->Listed(messages);
+    }
+    return messages;
 }
 
 std::vector<QueueInfo> RabitWorkspace::GetListOfQueues() const

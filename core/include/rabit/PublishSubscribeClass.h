@@ -91,6 +91,8 @@ private:
     static constexpr std::uint64_t Exposed = std::uint64_t{1} << 63;
 
     void Post(RabitMessage &msg, PostTime time, bool byOwnClock);
+    void PostTraced(RabitMessage &msg, const PostTime *time);
+    void TellFetched(const RabitMessage &msg) const;
     void PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock);
     bool FetchIfChanged(RabitMessage *msg);
     void CopyFromMessage(RabitMessage &msg);

@@ -278,6 +278,7 @@ private:
     RabitWorkspace &_workspace;
     const std::shared_ptr<RabitWakeup> _wakeup;
     const std::unique_ptr<ManagerLease> _lease;
+    std::shared_ptr<RabitManagerTrace> _trace;  // of this run; null: none
 
     std::mutex _wakeupsMutex;
     std::vector<MessageWakeup> _messageWakeups;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/RabitEvent.h>
+#include <rabit/RabitManagerTrace.h>
 #include <rabit/RabitRing.h>
 #include <rabit/SafeQueue.h>
 
@@ -15,6 +16,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace Rabit
@@ -120,6 +122,14 @@ public:
         }
         msg = std::move(*oldest);
         handlers.Call();
+        if constexpr (std::is_same_v<T, std::shared_ptr<RabitMessage>>)
+        {
+            if (RabitManagerTrace::Current() != nullptr && msg)
+            {
+                const RabitManagerTrace::Pause trace;
+                trace->Taken(_name, *msg);
+            }
+        }
         return true;
     }
 

@@ -48,6 +48,9 @@ public:
     // must be the one of the workspace. Returns the number of passes.
     int RunUntil(ManualClock &clock, std::chrono::nanoseconds until);
     int RunFor(ManualClock &clock, std::chrono::nanoseconds duration);
+    // Runs one pass of a manager of this reactor that runs, whether it is due or not; IsTurn says in it what
+    // this says. For running again what was recorded. False: it has shut down, or is none of this reactor's.
+    bool RunPassOf(const RabitManager &manager, bool isTurn);
     // Whether any manager has not shut down yet.
     bool IsRunning() const;
     // Has all managers shut down, in order. They can be started again.
@@ -62,7 +65,7 @@ private:
     };
 
     void StartEntry(Entry &entry);
-    bool RunPass(Entry &entry);
+    bool RunPass(Entry &entry, std::optional<bool> isTurn = std::nullopt);
     void EndEntry(Entry &entry);
     void LeaveIfAllEnded();
     std::chrono::nanoseconds DueOf(const Entry &entry) const;

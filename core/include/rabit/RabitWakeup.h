@@ -63,6 +63,8 @@ public:
     void BeginSleep();
     std::chrono::nanoseconds SleepUntil(std::chrono::nanoseconds start) const;
     void EndSleep(std::chrono::nanoseconds start, std::chrono::nanoseconds now);
+    // What IsTurn and IsWorkDue say of the next pass, whatever ended the sleep before it.
+    void SetTurn(bool isTurn);
     bool IsSignalled() const;
     void ForgetSignals();
     Counts TakeCounts();

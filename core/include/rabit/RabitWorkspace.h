@@ -5,6 +5,7 @@
 #include <rabit/QueueForwarder.h>
 #include <rabit/QueueTypeException.h>
 #include <rabit/RabitClock.h>
+#include <rabit/RabitManagerTrace.h>
 #include <rabit/RabitMessage.h>
 #include <rabit/RabitMessageQueue.h>
 #include <rabit/RabitNonBlockingSPSCQueue.h>
@@ -16,6 +17,8 @@
 #include <cstdint>
 #include <iostream>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <typeindex>
@@ -192,6 +195,10 @@ public:
     bool FetchMessage(std::string name, RabitMessage *msg);
     bool ForceFetchMessage(std::string name, RabitMessage *msg);
 
+    // Has each manager that starts from now on seen by the trace that this gives for it, see
+    // RabitManagerTrace. Empty: none. It is called by whoever starts the manager.
+    void SetManagerTracing(RabitManagerTracing tracing);
+
     // What is registered now, sorted by name.
     std::vector<MessageInfo> GetListOfMessages() const;
     std::vector<QueueInfo> GetListOfQueues() const;
@@ -206,6 +213,9 @@ private:
     friend class ManagerLease;
 
     void AddManagerName(const std::string &managerName, std::uint64_t owner);
+    std::shared_ptr<RabitManagerTrace> TraceOf(const std::string &managerName) const;
+    template <typename T>
+    bool AddUntraced(const std::string &name, T msg, const std::shared_ptr<RabitQueueReceipt> &receipt);
 
     // global is what becomes the global copy if the name is new; null: a clone of the message.
     MessageRegistration RegisterMessageFor(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
@@ -236,6 +246,8 @@ private:
     const std::unique_ptr<WorkspaceRegistry> _registry;
     const std::unique_ptr<WorkspaceForwarders> _forwarders;
     const std::shared_ptr<QueueRefusals> _refusals;
+    mutable std::mutex _tracingMutex;
+    RabitManagerTracing _tracing;
 };
 
 template <typename T>
@@ -273,7 +285,23 @@ bool RabitWorkspace::AddMessageToQueue(std::string name, T msg, std::shared_ptr<
         {
             return TellReceipt(receipt, false);
         }
+        if (RabitManagerTrace::Current() != nullptr)
+        {
+            const RabitManagerTrace::Pause trace;
+            const std::optional<bool> known = trace->Adding(name, *msg);
+            const bool accepted =
+                known ? TellReceipt(receipt, *known) : AddUntraced(name, std::move(msg), receipt);
+            trace->Added(accepted);
+            return accepted;
+        }
     }
+    return AddUntraced(name, std::move(msg), receipt);
+}
+
+template <typename T>
+bool RabitWorkspace::AddUntraced(const std::string &name, T msg,
+                                 const std::shared_ptr<RabitQueueReceipt> &receipt)
+{
     const std::shared_ptr<RabitQueueHandle> handle = FindQueue(name);
     if (handle)
     {
