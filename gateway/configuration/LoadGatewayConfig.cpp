@@ -103,8 +103,8 @@ constexpr std::uint64_t Terabyte = Megabyte * Megabyte;
 void ReadRecord(const YamlMap &map, GatewayConfig &config)
 {
     const auto record = map.Map("record", "the section `record`",
-                                {"folder", "messages", "except", "queues", "split_size", "split_time", "keep",
-                                 "free", "memory", "black_box"});
+                                {"folder", "messages", "except", "queues", "steps", "split_size",
+                                 "split_time", "keep", "free", "memory", "black_box"});
     if (!record)
     {
         return;
@@ -116,6 +116,7 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
     record->Read("messages", settings.Messages);
     record->Read("except", settings.Except);
     record->Read("queues", settings.Queues);
+    record->Read("steps", settings.Steps);
     record->ReadByteSize("split_size", settings.SplitSize, Megabyte, Terabyte);
     record->Read("split_time", settings.SplitTime);
     record->ReadByteSize("keep", settings.Keep, 0, 1000 * Terabyte);

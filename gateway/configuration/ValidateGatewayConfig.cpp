@@ -171,6 +171,7 @@ private:
         }
         CheckMessagePatterns(record.Messages, "messages", LineOf("record.messages"));
         CheckMessagePatterns(record.Except, "except", LineOf("record.except"));
+        CheckMessagePatterns(record.Steps, "steps", LineOf("record.steps"), "name of a manager");
         if (record.BlackBox)
         {
             CheckBlackBox(*record.BlackBox);
@@ -191,14 +192,15 @@ private:
         CheckMessagePatterns(box.Queues, "queues", LineOf("record.black_box.queues"));
     }
 
-    void CheckMessagePatterns(const std::vector<std::string> &patterns, const char *key, int line) const
+    void CheckMessagePatterns(const std::vector<std::string> &patterns, const char *key, int line,
+                              const std::string &what = "message name") const
     {
         for (const std::string &pattern : patterns)
         {
             if (!IsMessageName(WithoutWildcards(pattern)))
             {
-                Fail(line, "`" + pattern + "` in `" + key +
-                               "` is no message name; `*` and `?` stand for any characters");
+                Fail(line, "`" + pattern + "` in `" + key + "` is no " + what +
+                               "; `*` and `?` stand for any characters");
             }
         }
         CheckNoneTwice(patterns, key, line);

@@ -14,11 +14,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "names/NamePattern.h"
 #include "recording/FolderDisk.h"
 #include "recording/JsonStreams.h"
 #include "recording/MessageTaps.h"
 #include "recording/ProblemWatch.h"
 #include "recording/QueueStreams.h"
+#include "recording/StepRecorder.h"
 
 namespace Rabit
 {
@@ -91,6 +93,7 @@ class RecorderManager::Parts
 public:
     Parts(GatewayConfig &config, RabitWorkspace &workspace, std::unique_ptr<RecordingDisk> disk)
         : _settings(SettingsOf(config)),
+          _workspace(workspace),
           _target(std::make_shared<RecordingTarget>(
               config.Node, workspace.GetClock(),
               disk ? std::move(disk) : std::make_unique<FolderDisk>(_settings.Folder), _settings)),
@@ -103,6 +106,17 @@ public:
             _target->Inbox().SetMetadata("rabit.configuration", std::move(text));
         }
         config.Tap = std::make_shared<QueueStreams>(_target, *config.Record);
+        if (!config.Record->Steps.empty())
+        {
+            _workspace.SetManagerTracing(
+                [&workspace, target = _target, wanted = config.Record->Steps](
+                    const std::string &manager) -> std::shared_ptr<RabitManagerTrace>
+                {
+                    return MatchesAny(wanted, manager)
+                               ? std::make_shared<StepRecorder>(manager, workspace, target)
+                               : nullptr;
+                });
+        }
         const std::uint32_t log = _target->Inbox().AddStream(JsonStreams::Log(config.Node));
         if (config.Record->BlackBox && config.Record->BlackBox->Problems)
         {
@@ -118,6 +132,10 @@ public:
     ~Parts()
     {
         _log.reset();
+        if (!_config.Record->Steps.empty())
+        {
+            _workspace.SetManagerTracing(nullptr);
+        }
         _target->End();
     }
     void Look()
@@ -135,6 +153,7 @@ public:
 
 private:
     const RecordingSettings _settings;
+    RabitWorkspace &_workspace;
     const std::shared_ptr<RecordingTarget> _target;
     const GatewayConfig _config;  // a copy: without the tap, which would keep what it is given
     MessageTaps _taps;
@@ -145,6 +164,11 @@ private:
 
 RecorderManager::RecorderManager(GatewayConfig &config)
     : RecorderManager(config, *RabitWorkspace::GetWorkspace())
+{
+}
+
+RecorderManager::RecorderManager(GatewayConfig &config, RabitWorkspace &workspace)
+    : RecorderManager(config, workspace, nullptr)
 {
 }
 

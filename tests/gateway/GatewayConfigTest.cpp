@@ -94,6 +94,7 @@ record:
   messages: [Pose, "uav*/Pose"]
   except: "*/CameraView"
   queues: off
+  steps: [MissionControl, "Health*"]
   split_size: 256MB
   split_time: 2min
   keep: 1.5GB
@@ -104,6 +105,7 @@ record:
     EXPECT_EQ(all.Messages, (std::vector<std::string>{"Pose", "uav*/Pose"}));
     EXPECT_EQ(all.Except, std::vector<std::string>{"*/CameraView"});
     EXPECT_FALSE(all.Queues);
+    EXPECT_EQ(all.Steps, (std::vector<std::string>{"MissionControl", "Health*"}));
     EXPECT_EQ(all.SplitSize, 256000000U);
     EXPECT_EQ(all.SplitTime, 120s);
     EXPECT_EQ(all.Keep, 1500000000U);
@@ -395,6 +397,8 @@ const BadConfig BadConfigs[] = {
      "node.yaml:6: `after` is out of range; expected 1s to 60min"},
     {"NoNameOfAMessageForTheBlackBox", "node: a\nrecord:\n  folder: x\n  black_box: {messages: [\"a b\"]}\n",
      "node.yaml:4: `a b` in `messages` is no message name; `*` and `?` stand for any characters"},
+    {"NoNameOfAManagerToRecord", "node: a\nrecord:\n  folder: x\n  steps: [\"a b\"]\n",
+     "node.yaml:4: `a b` in `steps` is no name of a manager; `*` and `?` stand for any characters"},
     {"NoNameOfAMessageToRecord", "node: a\nrecord:\n  folder: x\n  except: [\"a b\"]\n",
      "node.yaml:4: `a b` in `except` is no message name; `*` and `?` stand for any characters"},
     {"WordForRadio", "node: a\nradio: auto\n",

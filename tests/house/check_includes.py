@@ -37,6 +37,7 @@ OWNERS = [
     (r"recording/mcap/", "room mcap"),
     (r"recording/merge/", "room merge"),
     (r"recording/replay/", "room replay"),
+    (r"recording/rerun/", "room rerun"),
     (r"recording/", "room recording"),
     *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"guard/", "guard"),
@@ -98,7 +99,10 @@ ALLOWED = {
     "gateway/recording/merge": {"room mcap", "room merge"},
     # What is played when: files and names alone.
     "gateway/recording/replay": {"room names", "room mcap", "room replay"},
-    "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room recording"},
+    # Runs managers again: files, messages and core, no network.
+    "gateway/recording/rerun": {"core", "idl", "idl dynamic", "recording", "room mcap", "room rerun"},
+    "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room rerun",
+                          "room recording"},
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
                      "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room manager", "room mcap",
                      "room recording", "room merge", "room replay"},
@@ -112,8 +116,8 @@ ALLOWED = {
     "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
     # Carries frames, whosever they are.
     "tests/integration/radio": {"CLI11", "network"},
-    "examples": {"core", "idl", "factory", "gateway", "node", "gateway messages", "user messages", "CLI11", "network",
-                 "yaml-cpp"},
+    "examples": {"core", "idl", "factory", "gateway", "node", "recording", "gateway messages", "user messages", "CLI11",
+                 "network", "yaml-cpp"},
 }
 
 

@@ -138,6 +138,9 @@ struct RecordSettings
     std::vector<std::string> Messages = {"*"};
     std::vector<std::string> Except{};
     bool Queues = true;                                // messages to and from queues of other nodes
+    // Managers, by name or pattern, whose every unit of work is recorded with all that it read and did, so
+    // that it can be run again.
+    std::vector<std::string> Steps{};
     std::uint64_t SplitSize = std::uint64_t{1} << 30;  // a file is ended at so many bytes, 1 MB to 1 TB
     std::chrono::milliseconds SplitTime{600'000};      // or after so long, 1 s to 24 h
     std::uint64_t Keep = 0;                       // bytes of this node's files that are kept; 0: all that fit

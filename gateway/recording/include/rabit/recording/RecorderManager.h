@@ -20,6 +20,9 @@ class RecordingDisk;
 // memory; nothing there waits for the disk. What could not be kept is counted, in the file and in
 // Gateway/Fleet.
 //
+// The steps of managers that RecordSettings::Steps names are recorded if they start after this was made: what
+// each read and did, encoded on its thread. They can be run again then (ManagerRerun.h).
+//
 // A message's name is looked for ten times a second: of one that is new, values that are posted before the
 // first look are lost but for the last. So is what is posted while another thread posts the same name.
 class RecorderManager final : public RabitManager
@@ -28,8 +31,8 @@ public:
     // Sets config.Tap, and so comes before the gateway. It must have config.Record (std::invalid_argument).
     // Without a disk the folder of the configuration is used; it is touched when there is something to write.
     explicit RecorderManager(GatewayConfig &config);
-    RecorderManager(GatewayConfig &config, RabitWorkspace &workspace,
-                    std::unique_ptr<RecordingDisk> disk = nullptr);
+    RecorderManager(GatewayConfig &config, RabitWorkspace &workspace);
+    RecorderManager(GatewayConfig &config, RabitWorkspace &workspace, std::unique_ptr<RecordingDisk> disk);
     // Ends the file; what other managers did at their end is in it.
     ~RecorderManager() override;
 
