@@ -1,19 +1,18 @@
 // One aircraft: an autopilot, a mission control, a health monitor, and the gateway that joins them to the
 // other nodes.
 #include "AircraftConfig.h"
+#include "AircraftOptions.h"
 #include "Autopilot.h"
 #include "Flight.h"
 #include "HealthMonitor.h"
 #include "MissionControl.h"
 #include "Names.h"
-#include "NumberWithin.h"
 #include "SimulatedVehicle.h"
 #include "Track.h"
 #include "mavlink/ByteChannel.h"
 #include "mavlink/MavlinkVehicle.h"
 #include "px4/Px4Topics.h"
 #include "px4/Px4Vehicle.h"
-#include "vision/World.h"
 
 #include <rabit/node/RunNode.h>
 
@@ -33,10 +32,7 @@ struct Options
     std::string TrackFile;
     std::string Mavlink;
     std::string Px4;
-    std::string Ground = "ground";
-    double EnduranceMinutes = 40;
-    Swarm::Floor::Settings Floor;
-    std::string WorldFile;
+    Swarm::AircraftOptions Aircraft;
 };
 
 // Circles south of the field, beside those of the other aircraft: the number at the end of the name says
@@ -63,33 +59,17 @@ std::unique_ptr<Swarm::Vehicle> MakeVehicle(const Options &options, const std::s
                                   : Swarm::Flight(Swarm::Track::Load(options.TrackFile)));
 }
 
-Swarm::HealthMonitor::Options HealthOptions(const Options &options)
-{
-    Swarm::HealthMonitor::Options health;
-    health.Ground = options.Ground;
-    if (options.Mavlink.empty() && options.Px4.empty())
-        health.EnduranceS = options.EnduranceMinutes * 60;
-    return health;
-}
-
-// Throws Swarm::WorldError.
-Swarm::Floor FloorOf(const Options &options)
-{
-    Swarm::Floor::Settings floor = options.Floor;
-    if (!options.WorldFile.empty() && !floor.GroundM)
-        floor.GroundM = Swarm::World::Load(options.WorldFile).GroundM;
-    return Swarm::Floor(floor);
-}
-
 void AddManagers(Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config, const Options &options)
 {
     if (!options.Px4.empty())
         Swarm::AddPx4Topics(config, Swarm::Px4Namespace(options.Px4));
-    Swarm::CompleteAircraftConfig(config, options.Ground);
+    Swarm::CompleteAircraftConfig(config, options.Aircraft.Ground);
     const Swarm::Names names(config.Node, config.Node);
     reactor.AddManager(std::make_unique<Swarm::Autopilot>(names, MakeVehicle(options, config.Node)));
-    reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, options.Ground, FloorOf(options)));
-    reactor.AddManager(std::make_unique<Swarm::HealthMonitor>(names, HealthOptions(options)));
+    reactor.AddManager(std::make_unique<Swarm::MissionControl>(names, options.Aircraft.Ground,
+                                                               options.Aircraft.MissionFloor()));
+    const bool isSimulated = options.Mavlink.empty() && options.Px4.empty();
+    reactor.AddManager(std::make_unique<Swarm::HealthMonitor>(names, options.Aircraft.Health(isSimulated)));
 }
 
 void AddOptions(CLI::App &app, Options &options)
@@ -104,23 +84,7 @@ void AddOptions(CLI::App &app, Options &options)
                    "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
                    "`serial:DEVICE:BAUD`")
         ->excludes(px4);
-    app.add_option("--ground", options.Ground, "Name of the ground station's node (default: ground)");
-    app.add_option("--endurance", options.EnduranceMinutes,
-                   "Minutes that the simulated battery lasts (default: 40)")
-        ->check(Common::NumberWithin({0.1, 10'000}));
-    app.add_option("--floor", options.Floor.AboveSeaM,
-                   "Metres above mean sea level: what would lead it lower is declined (default: none)")
-        ->check(Common::NumberWithin(Common::AltitudeM));
-    app.add_option("--ground-height", options.Floor.GroundM,
-                   "Height of the ground where it flies, in metres above mean sea level: what would lead "
-                   "it lower than --clearance above that is declined (default: not known)")
-        ->check(Common::NumberWithin({-500, 9000}));
-    app.add_option("--clearance", options.Floor.ClearanceM,
-                   "Metres above the ground, where that is known (default: 30)")
-        ->check(Common::NumberWithin({0, 1000}));
-    app.add_option("--world", options.WorldFile,
-                   "YAML file of a simulated world, whose `ground_m` is the height of the ground unless "
-                   "--ground-height says otherwise");
+    options.Aircraft.AddTo(app);
 }
 }  // namespace
 
