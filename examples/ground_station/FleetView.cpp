@@ -3,6 +3,7 @@
 #include "AttentionLines.h"
 #include "ProblemLines.h"
 #include "RadioLines.h"
+#include "ReplayLine.h"
 
 #include <rabit/gateway/GatewayManager.h>
 
@@ -117,6 +118,8 @@ void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
 {
     const TerminalScreen::Size size = TerminalSize();
     std::vector<TableLine> lines = FleetTableLines(rows, elapsedS, size.Columns);
+    if (std::string replay = ReplayLine(*_fleet); !replay.empty())
+        lines.insert(lines.begin(), {std::move(replay), Emphasis::Warning});
     for (const std::string &line : Attention(rows))
         lines.push_back({line, Emphasis::Warning});
     for (TableLine &line : RadioTableLines(_radio.Use(), _fleet->GetAgeSeconds(), size.Columns))
@@ -134,6 +137,8 @@ void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
 
 void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
 {
+    if (const std::string replay = ReplayLine(*_fleet); !replay.empty())
+        _output.Stream << "         " << replay << '\n';
     for (const std::string &line : FleetLogLines(rows, elapsedS))
         _output.Stream << line << '\n';
     for (const std::string &line : NewAttention(rows))

@@ -13,6 +13,7 @@
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/node/NodeOptions.h>
 #include <rabit/node/RunProgram.h>
+#include <rabit/recording/RecorderManager.h>
 #include <rabit/transport/TransportFactory.h>
 
 #include <boost/asio/io_context.hpp>
@@ -200,7 +201,7 @@ int Summarize(const Ground::FleetView &view, const Ground::Commander &commander,
 
 int Watch(const Options &options)
 {
-    const Rabit::GatewayConfig config = LoadConfig(options);
+    Rabit::GatewayConfig config = LoadConfig(options);
     const Uav::SearchArea area = AreaOf(options);
     std::unique_ptr<Ground::WebServer> server = MakeWebServer(options);
     if (options.Node.Check)
@@ -223,6 +224,8 @@ int Watch(const Options &options)
     reactor.AddManager(std::move(commander));
     if (server)
         reactor.AddManager(MakeWebPage(options, config, std::move(server)));
+    if (config.Record)
+        reactor.AddManager(std::make_unique<Rabit::RecorderManager>(config));
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
     {

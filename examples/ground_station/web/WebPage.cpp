@@ -1,5 +1,6 @@
 #include "WebPage.h"
 
+#include "ReplayLine.h"
 #include "Snapshot.h"
 
 #include <rabit/gateway/GatewayManager.h>
@@ -95,10 +96,7 @@ void WebPage::Look()
     _data.Commands = Latest(*_commands);
     _tally->FetchMessage();
     _data.Problems = _fleet->problems;
-    _data.Replayed.clear();
-    for (const auto &status : _fleet->nodes)
-        if (status.replay && status.state != Rabit::Gateway::NodeState::LOST)
-            _data.Replayed.push_back(status.node);
+    _data.Replayed = ReplayedNodes(*_fleet);
     if (_fleet->WasPosted())
         _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
     _data.Radio = _radio.Use();
