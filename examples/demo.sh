@@ -17,6 +17,7 @@ missing Debian packages and builds what is missing first.
   --transport NAME   DDS implementation: fastdds (default), cyclonedds, or mixed: uav1, uav3, ... and the ground station
                      on fastdds, uav2, uav4, ... on cyclonedds
   --domain N         DDS domain, 0 to 232 (default: one that nobody on this machine uses)
+  --record DIR       let each process record itself into this folder: see black_box.sh
   --bin DIR          take the programs uav, vision and ground from this folder; install and build nothing
   -h, --help         show this and exit
 
@@ -50,6 +51,7 @@ transport=fastdds
 domain=
 bin=
 web=
+record=
 while [ $# -gt 0 ]; do
     option=$1
     case $option in
@@ -61,7 +63,7 @@ while [ $# -gt 0 ]; do
         set -- "${option%%=*}" "${option#*=}" "${@:2}"
         continue
         ;;
-    --uavs | --seconds | --track | --transport | --domain | --web | --bin)
+    --uavs | --seconds | --track | --transport | --domain | --web | --record | --bin)
         [ $# -ge 2 ] || fail_usage "$option needs a value"
         value=$2
         shift 2
@@ -92,6 +94,7 @@ while [ $# -gt 0 ]; do
             fail_usage "--web must be a port from 1 to 65535, or off, not '$value'"
         web=$value
         ;;
+    --record) record=$value ;;
     --bin) bin=$value ;;
     esac
 done
@@ -136,6 +139,30 @@ if [ -z "$domain" ]; then
     done
 fi
 
+# A recording is a section more in each configuration.
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
+if [ -n "$record" ]; then
+    mkdir -p -- "$record" || exit 2
+    record=$(cd -- "$record" && pwd) || exit 2
+fi
+config_of() { # config_of FILE [LINE]: prints the configuration to use; the line stands in its section `record`
+    local copy
+    copy=$logs/$(basename "$1")
+    if [ -z "$record" ]; then
+        echo "$1"
+        return
+    fi
+    {
+        cat "$1"
+        printf 'record:\n  folder: '"'%s'"'\n  free: 100MB\n%s' "${record//\'/\'\'}" "${2:+  $2$'\n'}"
+    } >"$copy"
+    echo "$copy"
+}
+uav_config=$(config_of "$here/swarm/uav.yaml" 'steps: [MissionControl, HealthMonitor]')
+vision_config=$(config_of "$here/swarm/vision.yaml")
+ground_config=$(config_of "$here/ground_station/ground.yaml")
+
 # Everything is checked before anything is started.
 transport_of() { # transport_of K: prints the transport of aircraft K; the ground station is number 1
     case $transport-$(($1 % 2)) in
@@ -145,7 +172,7 @@ transport_of() { # transport_of K: prints the transport of aircraft K; the groun
     esac
 }
 uav_arguments() { # uav_arguments K: sets the array `arguments`
-    arguments=(--config "$here/swarm/uav.yaml" --node "uav$1" --domain "$domain"
+    arguments=(--config "$uav_config" --node "uav$1" --domain "$domain"
         --transport "$(transport_of "$1")")
     # A recorded track may lie anywhere, over other ground than that of the simulated world.
     if [ "$1" -le ${#tracks[@]} ]; then
@@ -155,10 +182,10 @@ uav_arguments() { # uav_arguments K: sets the array `arguments`
     fi
 }
 vision_arguments() { # vision_arguments K: sets the array `arguments`
-    arguments=(--config "$here/swarm/vision.yaml" --node "uav$1.vision" --domain "$domain"
+    arguments=(--config "$vision_config" --node "uav$1.vision" --domain "$domain"
         --transport "$(transport_of "$1")" --world "$here/swarm/world.yaml")
 }
-ground_arguments=(--config "$here/ground_station/ground.yaml" --domain "$domain"
+ground_arguments=(--config "$ground_config" --domain "$domain"
     --transport "$(transport_of 1)")
 [ -z "$seconds" ] || ground_arguments+=(--seconds "$seconds")
 [ "$web" = off ] || ground_arguments+=(--web "$web")
@@ -203,7 +230,6 @@ idle=$(idle_processors)
 [ "$needed" -le "$idle" ] || echo "demo.sh: $uavs aircraft need about $(hundredths "$needed") of a processor, and" \
     "$(hundredths "$idle") is idle: they may start late, and be STALE at times" >&2
 
-logs=$(mktemp -d)
 names=()  # of the processes of the aircraft, and their ids, in the same order
 pids=()
 ground_pid=
