@@ -56,6 +56,14 @@ def run_types(program):
     print("ok: types known at run time")
 
 
+def run_again(program, folder):
+    said = run(program, folder / "recording")
+    if said != ("as recorded: 12 steps, 10 messages\n"
+                "step 2, 0.500 s after its startup: message Reading, value: recorded 2, now 3\n"):
+        sys.exit(f"again said: {said}")
+    print("ok: a manager that is run again")
+
+
 def exchange(node, first, second):
     """Runs two nodes against each other, each over its backend."""
     with harness.Processes() as processes:

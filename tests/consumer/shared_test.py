@@ -47,6 +47,7 @@ def main():
         programs = consumer.build(cmake, "programs", folder, prefix)
         consumer.run_two_managers(programs / "two_managers")
         consumer.run_types(programs / "types")
+        consumer.run_again(programs / "again", folder)
         for transport in transports:
             consumer.exchange(programs / "node", transport, transport)
         consumer.build_template(cmake, folder, prefix)
