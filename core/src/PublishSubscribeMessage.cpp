@@ -166,7 +166,12 @@ void PublishSubscribeMessage::PostTraced(RabitMessage &msg, const PostTime *time
     }
     else
     {
-        Post(msg, Now(), true);
+        const PostTime now = Now();
+        if (_usesSystemClock)
+        {
+            SystemTimeClock::GetSystemTimeClock()->ReportSteps();
+        }
+        Post(msg, now, true);
     }
     trace->Posted(*this, msg, msg._seenSequence);
 }
