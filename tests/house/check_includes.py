@@ -110,7 +110,7 @@ ALLOWED = {
     # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
     # show what a user gets who does without Rabit, and so include nothing of it.
     "tests/bench": {"core", "idl", "idl dynamic", "transport", "factory", "simulated backend", "gateway", "gateway messages",
-                    "user messages", "room recording", "room mcap", "CLI11"},
+                    "user messages", "recording", "room recording", "room mcap", "CLI11"},
     "tests/bench/raw": {"CLI11"},
     "tests/bench/raw/fastdds": {"Fast DDS", "Fast-CDR"},
     "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
