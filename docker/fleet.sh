@@ -86,7 +86,7 @@ up() {
     docker image inspect "$image" >/dev/null 2>&1 ||
         docker build --tag "$image" --file "$here/Dockerfile" "$here/.."
     make_network
-    run_node ground ground --web 0.0.0.0:8080 --search '*'
+    run_node ground ground --web 0.0.0.0:8080 --web-open-to-everybody-on-the-network --search '*'
     for ((k = 1; k <= uavs; k++)); do
         run_node "uav$k" uav
         run_node "uav$k.vision" vision

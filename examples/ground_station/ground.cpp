@@ -26,6 +26,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <ctime>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -46,6 +47,8 @@ struct Options
     bool ExpectTarget = false;
     std::vector<std::string> Expected;
     std::string Web;
+    std::string WebKeys;
+    bool WebIsOpen = false;
 };
 
 void Describe(CLI::App &app, Options &options)
@@ -71,7 +74,18 @@ void Describe(CLI::App &app, Options &options)
     app.add_option(
         "--web", options.Web,
         "Serve the web page at `PORT`, `ADDRESS:PORT` or `[ADDRESS]:PORT` (address: 127.0.0.1 unless "
-        "given; port 0: any that is free)");
+        "given; port 0: any that is free). At another address than this machine's own 127.0.0.1 it is served "
+        "by "
+        "TLS, to who shows the token that the program says when it starts");
+    CLI::Option *const keys = app.add_option("--web-keys", options.WebKeys,
+                                             "Folder of the page's certificate.pem, private_key.pem and "
+                                             "token; what is not there is made there, so that "
+                                             "the next start has the same (default: new ones at each start)");
+    app.add_flag(
+           "--web-open-to-everybody-on-the-network", options.WebIsOpen,
+           "Serve the page without TLS and without a token at whatever address: whoever reaches the port "
+           "commands the fleet")
+        ->excludes(keys);
 }
 
 Rabit::GatewayConfig LoadConfig(const Options &options)
@@ -111,6 +125,20 @@ std::uint32_t FirstCommandId()
     return 1 + static_cast<std::uint32_t>(seconds.count() % 400'000) * 10'000;
 }
 
+// Of a page that others than this machine reach, unless everybody is to; nothing if it needs none.
+std::optional<Ground::WebSecrets> SecretsOf(const Options &options, const boost::asio::ip::address &address)
+{
+    if (options.WebIsOpen || (options.WebKeys.empty() && address.is_loopback()))
+        return std::nullopt;
+    Ground::WebNames names{Ground::NamesOfThisHost(), {}};
+    names.Names.emplace_back("localhost");
+    for (const auto &one : Ground::AddressesOf(address))
+        names.Addresses.push_back(one.to_string());
+    const std::time_t now = std::time(nullptr);
+    return options.WebKeys.empty() ? Ground::MakeWebSecrets(names, now)
+                                   : Ground::WebSecretsIn(options.WebKeys, names, now, !options.Node.Check);
+}
+
 // Null if no page is wanted. Listens already, so that an address that cannot be had is known at once.
 std::unique_ptr<Ground::WebServer> MakeWebServer(const Options &options)
 {
@@ -118,6 +146,7 @@ std::unique_ptr<Ground::WebServer> MakeWebServer(const Options &options)
         return nullptr;
     Ground::WebServer::Settings settings;
     settings.Endpoint = Ground::ParseWebAddress(options.Web);
+    settings.Secrets = SecretsOf(options, settings.Endpoint.address());
     return std::make_unique<Ground::WebServer>(settings);
 }
 
@@ -133,7 +162,8 @@ Ground::RateLimits MaxRatesOf(const Rabit::GatewayConfig &config)
 std::unique_ptr<Ground::WebPage> MakeWebPage(const Options &options, const Rabit::GatewayConfig &config,
                                              std::unique_ptr<Ground::WebServer> server)
 {
-    std::cerr << "Web page: " << Ground::WebPageUrl(server->Endpoint()) << std::endl;
+    for (const std::string &line : server->Addresses())
+        std::cerr << line << std::endl;
     return std::make_unique<Ground::WebPage>(
         Ground::WebPage::Settings{config.Node, options.Expected, MaxRatesOf(config)}, std::move(server));
 }

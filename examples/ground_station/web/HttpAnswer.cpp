@@ -11,6 +11,8 @@ namespace
 namespace http = boost::beast::http;
 
 constexpr std::string_view PicturesTarget = "/pictures/";
+constexpr std::string_view TokenTarget = "/?token=";
+constexpr std::string_view Bearer = "Bearer ";
 
 std::string_view ToView(boost::beast::string_view text)
 {
@@ -77,7 +79,7 @@ HttpResponse RefuseHttp(http::status status, const std::string &reason, unsigned
 HttpResponse AnswerHttp(const HttpRequest &request, std::span<const PageFile> files,
                         const PictureStore &pictures, const RequestGuard &guard)
 {
-    if (!guard.IsHostAllowed(ToView(request[http::field::host])))
+    if (!guard.IsHostAllowed(HostOf(request)))
         return RefuseHttp(http::status::forbidden, "This server does not go by that name.", request.version(),
                           false);
     if (request.method() != http::verb::get && request.method() != http::verb::head)
@@ -91,12 +93,70 @@ HttpResponse AnswerHttp(const HttpRequest &request, std::span<const PageFile> fi
     return request.method() == http::verb::head ? WithoutBody(std::move(response)) : response;
 }
 
+std::string_view HostOf(const HttpRequest &request)
+{
+    return ToView(request[http::field::host]);
+}
+
+std::vector<std::string_view> TokensOf(const HttpRequest &request, std::string_view cookie)
+{
+    std::vector<std::string_view> tokens;
+    if (HasTokenInTarget(request))
+        tokens.push_back(ToView(request.target()).substr(TokenTarget.size()));
+    std::string_view cookies = ToView(request[http::field::cookie]);
+    while (!cookies.empty())
+    {
+        const std::size_t end = std::min(cookies.find(';'), cookies.size());
+        std::string_view one = cookies.substr(0, end);
+        one.remove_prefix(std::min(one.find_first_not_of(' '), one.size()));
+        if (one.size() > cookie.size() && one.starts_with(cookie) && one[cookie.size()] == '=')
+        {
+            tokens.push_back(one.substr(cookie.size() + 1));
+            break;
+        }
+        cookies.remove_prefix(std::min(end + 1, cookies.size()));
+    }
+    if (const std::string_view field = ToView(request[http::field::authorization]); field.starts_with(Bearer))
+        tokens.push_back(field.substr(Bearer.size()));
+    return tokens;
+}
+
+bool HasTokenInTarget(const HttpRequest &request)
+{
+    return ToView(request.target()).starts_with(TokenTarget);
+}
+
+HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const std::string &token)
+{
+    // No redirection: a browser that came from another site's link would not send the cookie along with it.
+    HttpResponse response =
+        Make(http::status::ok, "text/html; charset=utf-8",
+             "<!doctype html><meta http-equiv=\"refresh\" content=\"0; url=/\"><link rel=\"icon\" "
+             "href=\"data:,\"><title>Ground station</title>"
+             "<a href=\"/\">Open the page</a>\n",
+             request.version(), request.keep_alive());
+    response.set(http::field::set_cookie,
+                 std::string(cookie) + "=" + token + "; Path=/; Secure; HttpOnly; SameSite=Strict");
+    return request.method() == http::verb::head ? WithoutBody(std::move(response)) : response;
+}
+
+HttpResponse AskForToken(const HttpRequest &request)
+{
+    HttpResponse response = RefuseHttp(
+        http::status::unauthorized,
+        "This page is for those who have its token: open the address that the ground station says when "
+        "it starts.",
+        request.version(), request.keep_alive());
+    response.set(http::field::www_authenticate, "Bearer");
+    return request.method() == http::verb::head ? WithoutBody(std::move(response)) : response;
+}
+
 std::string RefusalOfUpgrade(const HttpRequest &request, const RequestGuard &guard)
 {
-    const std::string_view host = ToView(request[http::field::host]);
+    const std::string_view host = HostOf(request);
     if (!guard.IsHostAllowed(host))
         return "This server does not go by that name.";
-    if (!RequestGuard::IsOriginAllowed(ToView(request[http::field::origin]), host))
+    if (!guard.IsOriginAllowed(ToView(request[http::field::origin]), host))
         return "Only the page of this server may connect.";
     if (ToView(request.target()) != LiveTarget)
         return "There is no such WebSocket.";

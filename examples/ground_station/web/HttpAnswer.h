@@ -8,6 +8,8 @@
 
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace Ground
 {
@@ -27,6 +29,19 @@ HttpResponse AnswerHttp(const HttpRequest &request, std::span<const PageFile> fi
 // An answer of one line of text.
 HttpResponse RefuseHttp(boost::beast::http::status status, const std::string &reason, unsigned version,
                         bool keepAlive);
+
+std::string_view HostOf(const HttpRequest &request);
+
+// The tokens that a request shows: in the address of the page, in its cookie of that name, or as a bearer
+// token. They live as long as the request.
+std::vector<std::string_view> TokensOf(const HttpRequest &request, std::string_view cookie);
+// Whether its address shows one.
+bool HasTokenInTarget(const HttpRequest &request);
+// Gives the browser the token as a cookie that no script can read and that no other site's page can use, and
+// has it open the page under its plain address, so that the token stays in no history.
+HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const std::string &token);
+// To one that shows no token, or a wrong one.
+HttpResponse AskForToken(const HttpRequest &request);
 
 // What is wrong with a request to open a WebSocket; empty: nothing.
 std::string RefusalOfUpgrade(const HttpRequest &request, const RequestGuard &guard);

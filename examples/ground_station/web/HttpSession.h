@@ -1,7 +1,9 @@
 #pragma once
 
 #include "ServerContext.h"
+#include "WebStream.h"
 
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 
@@ -10,6 +12,9 @@
 
 namespace Ground
 {
+
+// Logs what there is to say of wrong tokens.
+void SayWrongTokens(ServerContext &context);
 
 // One connection while it speaks HTTP. It owns itself: it lives while something is under way.
 class HttpSession : public std::enable_shared_from_this<HttpSession>
@@ -21,19 +26,30 @@ public:
     HttpSession(const HttpSession &) = delete;
     HttpSession &operator=(const HttpSession &) = delete;
 
-    void Read();
+    void Begin();
     // Ends it, for another one needs its place.
     void Drop();
 
 private:
+    void TellWhetherTls();
+    void ShakeHands();
+    void Read();
     void OnRead(const boost::beast::error_code &error);
+    void CheckToken();
+    bool ShowsToken();
+    void Answer();
     void Write(HttpResponse response);
     void Close();
+    boost::beast::tcp_stream &Lowest() { return _stream.next_layer(); }
 
     ServerContext &_context;
     const ConnectionGate::Id _id;
+    const boost::asio::ip::address _from;
     std::unique_ptr<ConnectionSlot> _slot;
-    boost::beast::tcp_stream _stream;
+    WebStream _stream;
+    boost::asio::steady_timer _pause;
+    bool _knowsToken = false;  // has shown it on this connection
+    HttpRequest _request;
     boost::beast::flat_buffer _buffer;
     std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> _parser;
     std::optional<HttpResponse> _response;

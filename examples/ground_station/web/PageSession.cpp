@@ -9,8 +9,7 @@ namespace Ground
 {
 namespace websocket = boost::beast::websocket;
 
-PageSession::PageSession(boost::beast::tcp_stream stream, std::unique_ptr<ConnectionSlot> slot,
-                         ServerContext &context)
+PageSession::PageSession(WebStream stream, std::unique_ptr<ConnectionSlot> slot, ServerContext &context)
     : _context(context), _slot(std::move(slot)), _stream(std::move(stream))
 {
 }

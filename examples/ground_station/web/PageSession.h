@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ServerContext.h"
+#include "WebStream.h"
 
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
@@ -16,8 +17,7 @@ namespace Ground
 class PageSession : public std::enable_shared_from_this<PageSession>
 {
 public:
-    PageSession(boost::beast::tcp_stream stream, std::unique_ptr<ConnectionSlot> slot,
-                ServerContext &context);
+    PageSession(WebStream stream, std::unique_ptr<ConnectionSlot> slot, ServerContext &context);
     ~PageSession();
     PageSession(const PageSession &) = delete;
     PageSession &operator=(const PageSession &) = delete;
@@ -36,7 +36,7 @@ private:
 
     ServerContext &_context;
     const std::unique_ptr<ConnectionSlot> _slot;
-    boost::beast::websocket::stream<boost::beast::tcp_stream> _stream;
+    boost::beast::websocket::stream<WebStream> _stream;
     boost::beast::flat_buffer _buffer;
     bool _open = false;
     bool _writing = false;

@@ -35,8 +35,8 @@ std::optional<std::string> NameOf(std::string_view host)
 }
 }  // namespace
 
-RequestGuard::RequestGuard(bool boundToLoopback, std::string hostName)
-    : _loopback(boundToLoopback), _hostName(std::move(hostName))
+RequestGuard::RequestGuard(bool boundToLoopback, std::vector<std::string> names, bool hasTls)
+    : _loopback(boundToLoopback), _names(std::move(names)), _hasTls(hasTls)
 {
 }
 
@@ -51,15 +51,16 @@ bool RequestGuard::IsHostAllowed(std::string_view host) const
     const auto address = boost::asio::ip::make_address(*name, error);
     if (_loopback)
         return !error && address.is_loopback();
-    return !error || (!_hostName.empty() && (boost::algorithm::iequals(*name, _hostName) ||
-                                             boost::algorithm::iequals(*name, _hostName + ".local")));
+    return !error ||
+           std::any_of(_names.begin(), _names.end(),
+                       [&name](const std::string &one) { return boost::algorithm::iequals(*name, one); });
 }
 
-bool RequestGuard::IsOriginAllowed(std::string_view origin, std::string_view host)
+bool RequestGuard::IsOriginAllowed(std::string_view origin, std::string_view host) const
 {
-    // https: behind a proxy that ends TLS.
-    for (const std::string_view scheme : {"http://", "https://"})
-        if (origin.substr(0, scheme.size()) == scheme &&
+    // https without TLS: behind a proxy that ends it.
+    for (const std::string_view scheme : {"https://", "http://"})
+        if ((scheme == "https://" || !_hasTls) && origin.substr(0, scheme.size()) == scheme &&
             boost::algorithm::iequals(origin.substr(scheme.size()), host))
             return true;
     return false;

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace Ground
 {
@@ -10,24 +11,25 @@ namespace Ground
 // browser reaches every port that the browser reaches; it must not command aircraft.
 //
 // - The Host of every request must be a name that nobody else can point here: a numerical address or
-//   `localhost`, or this machine's host name. A site that points a name of its own at this machine (DNS
-//   rebinding) shows that name. A server that is bound to the loopback interface takes loopback names only.
-// - The Origin of a WebSocket must equal the Host.
+//   `localhost`, or a name of this machine or of its certificate. A site that points a name of its own at
+//   this machine (DNS rebinding) shows that name. A server that is bound to the loopback interface takes
+//   loopback names only.
+// - The Origin of a WebSocket must equal the Host, with https where the server speaks TLS.
 //
 // Immutable: any thread.
 class RequestGuard
 {
 public:
-    // hostName: of this machine; may be empty.
-    RequestGuard(bool boundToLoopback, std::string hostName);
+    RequestGuard(bool boundToLoopback, std::vector<std::string> names, bool hasTls = false);
 
     bool IsHostAllowed(std::string_view host) const;
     // The host must have been allowed.
-    static bool IsOriginAllowed(std::string_view origin, std::string_view host);
+    bool IsOriginAllowed(std::string_view origin, std::string_view host) const;
 
 private:
     const bool _loopback;
-    const std::string _hostName;
+    const std::vector<std::string> _names;
+    const bool _hasTls;
 };
 
 }  // namespace Ground

@@ -2,11 +2,15 @@
 
 #include "ConnectionGate.h"
 #include "HttpAnswer.h"
+#include "TokenGuard.h"
 #include "WebServer.h"
+
+#include <boost/asio/ssl/context.hpp>
 
 #include <atomic>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -15,6 +19,15 @@ namespace Ground
 class HttpSession;
 class PageSession;
 
+// What a server has that is not for everybody: see WebServer::Settings::Secrets.
+struct ServerSecrets
+{
+    boost::asio::ssl::context Tls;
+    TokenGuard Guard;
+    std::string Token;
+    std::string Cookie;  // its name
+};
+
 // What the sessions of a WebServer share. All but the counters and pictures is for the server's thread, or
 // set before it starts.
 struct ServerContext
@@ -22,6 +35,7 @@ struct ServerContext
     WebServer::Settings Settings;
     std::span<const PageFile> Files;
     RequestGuard Guard;
+    std::unique_ptr<ServerSecrets> Secrets;  // null: it has none
     WebServer::RequestHandler Handler;
     PictureStore Pictures;
     ConnectionGate Gate;
@@ -32,6 +46,7 @@ struct ServerContext
     std::atomic<std::uint64_t> Connections{0};
     std::atomic<std::uint64_t> ConnectionsRefused{0};
     std::atomic<std::uint64_t> ConnectionsDropped{0};
+    std::atomic<std::uint64_t> HandshakesFailed{0};
     std::atomic<std::uint64_t> PagesOpened{0};
     std::atomic<std::uint64_t> PagesOpen{0};
     std::atomic<std::uint64_t> SnapshotsSent{0};

@@ -5,6 +5,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include <string>
+#include <vector>
 
 namespace Ground
 {
@@ -20,7 +21,15 @@ public:
 // and a port from 0 to 65535, where 0 means any that is free. Throws WebServerError.
 boost::asio::ip::tcp::endpoint ParseWebAddress(const std::string &text);
 
-// The page at that address, for people: `http://127.0.0.1:8080/`.
-std::string WebPageUrl(const boost::asio::ip::tcp::endpoint &endpoint);
+// The page at that address, for people: `http://127.0.0.1:8080/`, or with a token, and so with TLS,
+// `https://127.0.0.1:8080/?token=...`.
+std::string WebPageUrl(const boost::asio::ip::tcp::endpoint &endpoint, const std::string &token = {});
+
+// By which others may know this machine: its host name, and that with `.local`. None if it has none.
+std::vector<std::string> NamesOfThisHost();
+
+// At which this machine is reached when a server listens there: that one, or all that it has now if it is the
+// one that stands for all.
+std::vector<boost::asio::ip::address> AddressesOf(const boost::asio::ip::address &listening);
 
 }  // namespace Ground

@@ -6,7 +6,6 @@
 #include <rabit/RabitLog.h>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 
@@ -15,6 +14,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace Ground
 {
@@ -22,11 +22,40 @@ namespace
 {
 using boost::asio::ip::tcp;
 
-std::string HostName()
+// The names by which a browser may ask for it: of this machine, and those that its certificate says.
+RequestGuard GuardOf(const WebServer::Settings &settings)
 {
-    boost::system::error_code error;
-    std::string name = boost::asio::ip::host_name(error);
-    return error ? std::string() : name;
+    std::vector<std::string> names = NamesOfThisHost();
+    if (settings.Secrets)
+        for (std::string &name : NamesIn(settings.Secrets->Certificate))
+            names.push_back(std::move(name));
+    return {settings.Endpoint.address().is_loopback(), std::move(names), settings.Secrets.has_value()};
+}
+
+std::unique_ptr<ServerSecrets> SecretsOf(const WebServer::Settings &settings, std::uint16_t port)
+{
+    namespace ssl = boost::asio::ssl;
+    if (!settings.Secrets)
+        return nullptr;
+    const WebSecrets &secrets = *settings.Secrets;
+    ssl::context tls(ssl::context::tls_server);
+    try
+    {
+        tls.set_options(ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1 | SSL_OP_NO_RENEGOTIATION);
+        SSL_CTX_set_mode(tls.native_handle(), SSL_MODE_RELEASE_BUFFERS);
+        SSL_CTX_set_session_cache_mode(tls.native_handle(), SSL_SESS_CACHE_OFF);
+        tls.use_certificate_chain(boost::asio::buffer(secrets.Certificate));
+        tls.use_private_key(boost::asio::buffer(secrets.Key), ssl::context::pem);
+    }
+    catch (const boost::system::system_error &error)
+    {
+        throw WebServerError("The web page cannot be served with that certificate: " +
+                             error.code().message());
+    }
+    // Cookies are of a host, whatever the port: two ground stations of one machine must not share a name. The
+    // prefix has the browser take it from this host by TLS alone.
+    return std::make_unique<ServerSecrets>(ServerSecrets{
+        std::move(tls), TokenGuard(secrets.Token), secrets.Token, "__Host-rabit-" + std::to_string(port)});
 }
 }  // namespace
 
@@ -35,12 +64,20 @@ class WebServer::Core
 {
 public:
     Core(const Settings &settings, std::span<const PageFile> files)
-        : _context{settings, files, RequestGuard(settings.Endpoint.address().is_loopback(), HostName()),
-                   {},       {},    ConnectionGate(settings.Connections),
-                   {},       {},    {}},
+        : _context{settings,
+                   files,
+                   GuardOf(settings),
+                   nullptr,
+                   {},
+                   {},
+                   ConnectionGate(settings.Connections),
+                   {},
+                   {},
+                   {}},
           _endpoint(settings.Endpoint)
     {
         Listen();
+        _context.Secrets = SecretsOf(settings, _endpoint.port());
     }
     ~Core() { Stop(); }
     Core(const Core &) = delete;
@@ -74,6 +111,19 @@ public:
         _context.Latest.reset();
     }
     tcp::endpoint Endpoint() const { return _endpoint; }
+    std::vector<std::string> Addresses() const
+    {
+        const auto &secrets = _context.Settings.Secrets;
+        std::vector<std::string> lines;
+        for (const auto &address : AddressesOf(_endpoint.address()))
+            lines.push_back("Web page: " + WebPageUrl({address, _endpoint.port()},
+                                                      secrets ? secrets->Token : std::string()));
+        if (secrets)
+            lines.push_back("Its certificate, SHA-256: " + FingerprintOf(secrets->Certificate));
+        else if (!_endpoint.address().is_loopback())
+            lines.push_back("Whoever reaches this port commands the fleet: there is no TLS, and no token.");
+        return lines;
+    }
     PictureStore &Pictures() { return _context.Pictures; }
     void Broadcast(std::shared_ptr<const std::string> snapshot)
     {
@@ -92,6 +142,7 @@ public:
         counters.Connections = _context.Connections;
         counters.ConnectionsRefused = _context.ConnectionsRefused;
         counters.ConnectionsDropped = _context.ConnectionsDropped;
+        counters.HandshakesFailed = _context.HandshakesFailed;
         counters.PagesOpened = _context.PagesOpened;
         counters.PagesOpen = _context.PagesOpen;
         counters.SnapshotsSent = _context.SnapshotsSent;
@@ -177,7 +228,7 @@ private:
         }
         ++_context.Connections;
         auto slot = std::make_unique<ConnectionSlot>(_context, *decision.Taken);
-        std::make_shared<HttpSession>(std::move(socket), std::move(slot), _context)->Read();
+        std::make_shared<HttpSession>(std::move(socket), std::move(slot), _context)->Begin();
     }
     void Distribute()
     {
@@ -185,6 +236,7 @@ private:
             const std::lock_guard lock(_mutex);
             _context.Latest = std::exchange(_next, nullptr);
         }
+        SayWrongTokens(_context);
         if (!_context.Latest)
             return;
         for (PageSession *page : _context.Pages)
@@ -222,6 +274,11 @@ void WebServer::Stop()
 tcp::endpoint WebServer::Endpoint() const
 {
     return _core->Endpoint();
+}
+
+std::vector<std::string> WebServer::Addresses() const
+{
+    return _core->Addresses();
 }
 
 PictureStore &WebServer::Pictures()

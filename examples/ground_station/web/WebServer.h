@@ -4,6 +4,7 @@
 #include "PageFiles.h"
 #include "PictureStore.h"
 #include "WebAddress.h"
+#include "WebSecrets.h"
 
 #include <boost/asio/ip/tcp.hpp>
 
@@ -12,8 +13,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace Ground
 {
@@ -30,6 +33,10 @@ namespace Ground
 // server sends pings), number of connections (see ConnectionGate), replies that wait. Whoever goes beyond is
 // disconnected. Nothing from the network throws out of here.
 //
+// With secrets it speaks TLS alone, and gives nothing to who does not show the token (see TokenGuard): by the
+// address that Addresses says, and from then on by a cookie. Without, whoever reaches it may look and
+// command.
+//
 // Threads: Start, Stop and the destructor belong to one thread; the rest may be called from any.
 class WebServer
 {
@@ -40,6 +47,7 @@ public:
         ConnectionGate::Limits Connections{};          // more are closed at once
         std::chrono::milliseconds RequestTime{10000};  // for a request to come, or an answer to be taken
         std::chrono::milliseconds Silence{15000};      // after which a WebSocket is given up
+        std::optional<WebSecrets> Secrets{};
     };
     static constexpr std::size_t MaxHeaderBytes = 8192;
     static constexpr std::size_t MaxMessageBytes = 4096;
@@ -56,6 +64,7 @@ public:
         std::uint64_t Connections = 0;         // taken
         std::uint64_t ConnectionsRefused = 0;  // one too many
         std::uint64_t ConnectionsDropped = 0;  // idle ones that made room for others
+        std::uint64_t HandshakesFailed = 0;    // of TLS
         std::uint64_t PagesOpened = 0;         // WebSockets
         std::uint64_t PagesOpen = 0;           // now
         std::uint64_t SnapshotsSent = 0;
@@ -77,6 +86,8 @@ public:
 
     // Where it listens; the port is the one that was chosen if the settings had 0.
     boost::asio::ip::tcp::endpoint Endpoint() const;
+    // Where the page is opened, with the token, and what its certificate is known by, in lines for a person.
+    std::vector<std::string> Addresses() const;
     PictureStore &Pictures();
     // The text that every page is to show now. Returns at once.
     void Broadcast(std::shared_ptr<const std::string> snapshot);

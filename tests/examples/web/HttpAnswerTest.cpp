@@ -17,7 +17,7 @@ class HttpAnswer : public testing::Test
 {
 protected:
     Ground::PictureStore _pictures;
-    Ground::RequestGuard _guard{true, "field"};
+    Ground::RequestGuard _guard{true, {"field"}};
 
     static Ground::HttpRequest Request(http::verb method, const std::string &target)
     {
@@ -113,6 +113,46 @@ TEST_F(HttpAnswer, RefusesAnUpgradeOfAnotherOriginNameOrTarget)
     request.set(http::field::host, "evil.example");
     request.set(http::field::origin, "http://evil.example");
     EXPECT_THAT(Ground::RefusalOfUpgrade(request, _guard), HasSubstr("not go by that name"));
+}
+
+TEST_F(HttpAnswer, FindsTheTokensThatARequestShows)
+{
+    auto request = Request(http::verb::get, "/?token=in-address");
+    request.set(http::field::cookie,
+                "a=b; __Host-rabit-8=other; __Host-rabit-80=in-cookie; __Host-rabit-80=again");
+    request.set(http::field::authorization, "Bearer in-field");
+    EXPECT_THAT(Ground::TokensOf(request, "__Host-rabit-80"),
+                testing::ElementsAre("in-address", "in-cookie", "in-field"));
+}
+
+TEST_F(HttpAnswer, FindsNoTokenWhereNoneIsShown)
+{
+    EXPECT_THAT(Ground::TokensOf(Request(http::verb::get, "/"), "c"), testing::IsEmpty());
+    for (const char *cookies : {"", ";", ";;;", "c", "cc=1", "=", " ; c ;", "xc=1"})
+    {
+        auto request = Request(http::verb::get, "/a.js?token=x");
+        request.set(http::field::cookie, cookies);
+        request.set(http::field::authorization, "Basic eDp5");
+        EXPECT_THAT(Ground::TokensOf(request, "c"), testing::IsEmpty()) << cookies;
+    }
+}
+
+TEST_F(HttpAnswer, GivesTheTokenAsACookieForThisSiteByTlsAndForNoScript)
+{
+    const auto response = Ground::LetIn(Request(http::verb::get, "/?token=t"), "__Host-rabit-80", "t");
+    EXPECT_EQ(response.result(), http::status::ok);
+    EXPECT_EQ(response[http::field::set_cookie],
+              "__Host-rabit-80=t; Path=/; Secure; HttpOnly; SameSite=Strict");
+    EXPECT_THAT(response.body(), HasSubstr("url=/"));
+    EXPECT_THAT(response.body(), testing::Not(HasSubstr("token")));
+}
+
+TEST_F(HttpAnswer, AsksForTheTokenAndTellsWhereItIs)
+{
+    const auto response = Ground::AskForToken(Request(http::verb::get, "/"));
+    EXPECT_EQ(response.result(), http::status::unauthorized);
+    EXPECT_THAT(response.body(), HasSubstr("open the address that the ground station says"));
+    EXPECT_EQ(Ground::AskForToken(Request(http::verb::head, "/")).body(), "");
 }
 
 }  // namespace

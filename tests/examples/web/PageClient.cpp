@@ -1,11 +1,14 @@
 #include "PageClient.h"
 
+#include "WebStream.h"
+
 #include <boost/asio/io_context.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include <functional>
+#include <utility>
 
 namespace GroundTest
 {
@@ -15,7 +18,10 @@ namespace websocket = boost::beast::websocket;
 class PageClient::Connection
 {
 public:
-    explicit Connection(const boost::asio::ip::tcp::endpoint &server) : _server(server) {}
+    Connection(const boost::asio::ip::tcp::endpoint &server, std::optional<std::string> cookies)
+        : _server(server), _cookies(std::move(cookies))
+    {
+    }
 
     unsigned Open(const std::string &origin, const std::string &host, const std::string &target)
     {
@@ -25,13 +31,16 @@ public:
         auto &lowest = beast::get_lowest_layer(_stream);
         lowest.expires_after(Patience);
         lowest.socket().connect(_server, error);
-        if (error)
+        if (error || !ShakeHands())
             return 0;
         _stream.set_option(websocket::stream_base::decorator(
             [&](websocket::request_type &request)
             {
                 if (origin != "none")
-                    request.set(beast::http::field::origin, origin.empty() ? "http://" + sent : origin);
+                    request.set(beast::http::field::origin,
+                                origin.empty() ? (_cookies ? "https://" : "http://") + sent : origin);
+                if (_cookies)
+                    request.set(beast::http::field::cookie, *_cookies);
             }));
         websocket::response_type response;
         error =
@@ -61,6 +70,14 @@ public:
 private:
     using Handler = std::function<void(const beast::error_code &)>;
 
+    bool ShakeHands()
+    {
+        if (!_cookies)
+            return true;
+        Ground::WebStream::Tls &tls = _stream.next_layer().UseTls(_tls);
+        return !Await([&](const Handler &handler)
+                      { tls.async_handshake(boost::asio::ssl::stream_base::client, handler); });
+    }
     beast::error_code Await(const std::function<void(const Handler &)> &operation)
     {
         std::optional<beast::error_code> result;
@@ -81,12 +98,14 @@ private:
     }
 
     const boost::asio::ip::tcp::endpoint _server;
+    const std::optional<std::string> _cookies;
     boost::asio::io_context _io;
-    websocket::stream<beast::tcp_stream> _stream{_io};
+    boost::asio::ssl::context _tls{boost::asio::ssl::context::tls_client};
+    websocket::stream<Ground::WebStream> _stream{beast::tcp_stream(_io)};
 };
 
-PageClient::PageClient(const boost::asio::ip::tcp::endpoint &server)
-    : _connection(std::make_unique<Connection>(server))
+PageClient::PageClient(const boost::asio::ip::tcp::endpoint &server, std::optional<std::string> cookies)
+    : _connection(std::make_unique<Connection>(server, std::move(cookies)))
 {
 }
 

@@ -18,7 +18,9 @@ class PageClient
 public:
     static constexpr std::chrono::seconds Patience{20};
 
-    explicit PageClient(const boost::asio::ip::tcp::endpoint &server);
+    // cookies: as its header says them; with them it speaks TLS, and believes every certificate.
+    explicit PageClient(const boost::asio::ip::tcp::endpoint &server,
+                        std::optional<std::string> cookies = {});
     ~PageClient();
     PageClient(const PageClient &) = delete;
     PageClient &operator=(const PageClient &) = delete;

@@ -100,6 +100,15 @@ TEST_F(WebServerTest, ServesThePage)
     EXPECT_THAT(answer, HasSubstr("<p>page</p>"));
 }
 
+TEST_F(WebServerTest, SaysWhereItsPageIsAndWhatItMeansThatEverybodyMayOpenIt)
+{
+    EXPECT_THAT(WebServer(_settings, Files).Addresses(),
+                testing::ElementsAre(StartsWith("Web page: http://127.0.0.1:")));
+    _settings.Endpoint = {boost::asio::ip::address_v4::any(), 0};
+    EXPECT_THAT(WebServer(_settings, Files).Addresses().back(),
+                StartsWith("Whoever reaches this port commands the fleet"));
+}
+
 TEST_F(WebServerTest, ServesSeveralRequestsOnOneConnection)
 {
     Start();
@@ -227,7 +236,8 @@ TEST_F(WebServerTest, SkipsSnapshotsForAPageThatDoesNotSayThatItHasSeenThem)
         EXPECT_THAT(quick.NextSeen(), Optional(std::to_string(i))) << "a slow page holds no other one back";
     }
     EXPECT_EQ(_server->Count().SnapshotsSent, 52u);
-    EXPECT_EQ(_server->Count().SnapshotsSkipped, 47u);
+    EXPECT_TRUE(Becomes([this] { return _server->Count().SnapshotsSkipped == 47; }))
+        << "the quick page may be first";
     EXPECT_THAT(slow.Next(), Optional(std::string("1")));
     EXPECT_THAT(slow.NextSeen(), Optional(std::string("2")));
     EXPECT_THAT(slow.Next(), Optional(std::string("50"))) << "the next one is the latest";

@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <deque>
 #include <exception>
 #include <iostream>
@@ -373,12 +374,15 @@ private:
     std::shared_ptr<Ground::CommandTally> _tally = std::make_shared<Ground::CommandTally>();
 };
 
-void Serve(int aircraft, bool hostile, const std::string &port)
+void Serve(int aircraft, bool hostile, const std::string &port, bool secured)
 {
     Ground::WebServer::Settings settings;
     settings.Endpoint = Ground::ParseWebAddress(port);
+    if (secured)
+        settings.Secrets = Ground::MakeWebSecrets({{"localhost"}, {"127.0.0.1"}}, std::time(nullptr));
     auto server = std::make_unique<Ground::WebServer>(settings);
-    std::cout << Ground::WebPageUrl(server->Endpoint()) << std::endl;
+    for (const std::string &line : server->Addresses())
+        std::cout << line << std::endl;
 
     Script script;
     Rabit::RabitReactor reactor;
@@ -401,8 +405,9 @@ int main(int argc, char **argv)
 {
     try
     {
-        Serve(argc > 1 ? std::atoi(argv[1]) : 3, argc > 2 && std::string(argv[2]) == "hostile",
-              argc > 3 ? argv[3] : "0");
+        const std::string kind = argc > 2 ? argv[2] : "plain";
+        Serve(argc > 1 ? std::atoi(argv[1]) : 3, kind == "hostile", argc > 3 ? argv[3] : "0",
+              kind == "secured");
         return 0;
     }
     catch (const std::exception &error)

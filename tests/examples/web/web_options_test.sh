@@ -41,4 +41,32 @@ for ((i = 0; i < 600; i++)); do
 done
 port=$(grep -o '[0-9]*/$' <<<"$url" | tr -d /)
 refused "$port" "cannot be served at $url: Address already in use"
+
+# Beyond this machine: by TLS and with a token, the same at each start where they are kept.
+serve() { # serve OPTION...: it ends without having heard an aircraft
+    timeout 60 "$ground" --config "$root/examples/ground_station/ground.yaml" --seconds 1 "$@" >"$work/out" 2>"$work/err"
+    [ $? -eq 1 ] || fail "$*: it does not run"
+}
+addresses() { grep -o 'https://[^ ]*' "$work/err" | sed 's/:[0-9][0-9]*\//\//'; }
+serve --web 0.0.0.0:0
+first=$(addresses)
+grep -q '/?token=[0-9a-f]\{32\}$' <<<"$first" || fail "no address with a token"
+grep -q '^Its certificate, SHA-256: ' "$work/err" || fail "it does not say how its certificate is known"
+serve --web 0.0.0.0:0
+[ "$(addresses)" != "$first" ] || fail "a second start has the token of the first"
+serve --web 0.0.0.0:0 --web-keys "$work/keys"
+first=$(addresses)
+serve --web 0.0.0.0:0 --web-keys "$work/keys"
+[ "$(addresses)" = "$first" ] || fail "a second start has not the token that is kept"
+chmod 640 "$work/keys/token"
+for extra in --check --seconds=1; do
+    timeout 60 "$ground" --config "$root/examples/ground_station/ground.yaml" --web 0.0.0.0:0 --web-keys "$work/keys" \
+        $extra >"$work/out" 2>"$work/err"
+    [ $? -eq 2 ] || fail "a token that others may read is taken"
+    grep -q '/token is not for its owner alone (mode 640)' "$work/err" || fail "it does not say what is wrong with the token"
+done
+timeout 60 "$ground" --web 0.0.0.0:0 --web-keys "$work/keys" --web-open-to-everybody-on-the-network 2>"$work/err"
+[ $? -eq 2 ] || fail "a page with keys is open to everybody"
+timeout 60 "$ground" --help | tr -s ' \n' ' ' | grep -q 'whoever reaches the port commands the fleet' ||
+    fail "the help does not say what an open page means"
 echo passed

@@ -28,6 +28,7 @@ export class Connection {
     this.onSnapshot = onSnapshot;
     this.onState = onState;
     this.attempts = 0;
+    this.isStranger = false;  // the ground station wants a token that this page does not have
     this.nextRef = 1;
     this.waiting = new Map();
     this.connect();
@@ -37,11 +38,13 @@ export class Connection {
     this.clockSamples = [];
     this.held = null;
     this.unseen = 0;
+    this.opened = false;
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const socket = new WebSocket(`${scheme}//${location.host}/live`);
     this.socket = socket;
     socket.onopen = () => {
       this.attempts = 0;
+      this.opened = true;
       this.listenFor();
       this.askClock();
       this.clockTimer = setInterval(() => this.askClock(), CLOCK_PERIOD_MS);
@@ -59,7 +62,14 @@ export class Connection {
     this.waiting.clear();
     this.onState(false);
     const pause = RECONNECT_MS[Math.min(this.attempts++, RECONNECT_MS.length - 1)];
-    setTimeout(() => this.connect(), pause);
+    setTimeout(() => this.connectUnlessStranger(), pause);
+  }
+
+  // A WebSocket is not told why it is refused. Wrong tokens are counted: one that is wrong is not shown again and again.
+  async connectUnlessStranger() {
+    if (!this.opened) this.isStranger = await fetch('/', {method: 'HEAD'}).then((answer) => answer.status === 401, () => false);
+    if (this.isStranger) this.onState(false);
+    else this.connect();
   }
 
   listenFor() {

@@ -91,7 +91,8 @@ function showLink() {
     banner.hidden = true;
   } else {
     const age = snapshot ? `Everything shown is old: ${ageWithUnit(Math.floor(staleness))}.` : 'Nothing is known yet.';
-    setText(banner, `✕ No connection to the ground station. ${age} Trying to connect.`);
+    const how = connection.isStranger ? 'It has another token now: open the address that it says on its terminal.' : 'Trying to connect.';
+    setText(banner, `✕ No connection to the ground station. ${age} ${how}`);
     banner.hidden = snapshot === null && performance.now() < 2000;
   }
   const now = performance.now();

@@ -5,7 +5,7 @@ import {becomes, Program} from './processes.mjs';
 
 export async function startFixture({bin}, aircraft, ...rest) {
   const fixture = new Program(`${bin}/web_fixture`, [String(aircraft), ...rest]);
-  const [url] = await fixture.says(/http:\S+/);
+  const [url] = await fixture.says(/https?:\S+/);
   return {fixture, url};
 }
 
@@ -218,6 +218,39 @@ async function recoversFromAReloadAndARestart(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+async function asksForItsTokenAndOpensWithIt(programs) {
+  const {fixture, url} = await startFixture(programs, 3, 'secured');
+  const plain = new URL('/', url).href;
+  const context = await openBrowser({ignoreHTTPSErrors: true});
+  const stranger = await context.newPage();
+  const answer = await stranger.goto(plain);
+  assert.equal(answer.status(), 401);
+  assert.match(await stranger.textContent('body'), /open the address/);
+  assert.equal((await stranger.goto(url.replace(/.$/, 'x'))).status(), 401);
+  await stranger.close();
+
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  assert.equal(page.url(), plain, 'the token stays in no address');
+  assert.equal(await page.evaluate(() => document.cookie), '', 'no script reads the cookie');
+  await page.waitForSelector('.pictures figure img');
+  await fleet.rowBecomes('uav2', (row) => /UP/.test(row.state) && !row.old, 'is shown');
+  await fleet.select('uav2');
+  await page.keyboard.press('h');
+  await page.keyboard.press('Enter');
+  await fixture.says(/order \d uav2 /, 'that the order came');
+  await page.reload();
+  await fleet.isLive();
+  assert.deepEqual(fleet.errors, []);
+
+  await fixture.end();
+  await becomes(async () => (await fleet.data('live')) === 'false', 'the page notices the loss');
+  const again = await startFixture(programs, 3, 'secured', new URL(url).port);
+  await becomes(async () => /open the address/.test(await fleet.text('#banner')), 'the page says that the token is another');
+  const anew = await FleetPage.open(again.url);
+  await anew.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is shown');
+}
+
 async function worksByKeyboardAlone(programs) {
   const {fixture, url} = await startFixture(programs, 3);
   await openBrowser();
@@ -342,6 +375,7 @@ export const cases = {
   shows_a_replay_across_the_page: showsAReplayAcrossThePage,
   sends_a_dragged_search_area: sendsADraggedSearchArea,
   recovers_from_a_reload_and_a_restart: recoversFromAReloadAndARestart,
+  asks_for_its_token_and_opens_with_it: asksForItsTokenAndOpensWithIt,
   works_by_keyboard_alone: worksByKeyboardAlone,
   has_themes_that_last: hasThemesThatLast,
 };

@@ -40,6 +40,8 @@ export class FleetPage {
       if (message.type() === 'error' && !/WebSocket|ERR_CONNECTION|net::/.test(message.text())) fleet.errors.push(message.text());
     });
     await page.goto(url);
+    // One with a token hands over to the page itself.
+    await page.waitForURL(({search}) => search === '');
     await fleet.isLive();
     return fleet;
   }
