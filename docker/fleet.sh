@@ -5,10 +5,11 @@ set -euo pipefail
 usage() {
     cat <<'USAGE'
 Usage: fleet.sh COMMAND
-  up [UAVS]                   a ground station and UAVS aircraft (default 3) on one network; an aircraft is two
-                              containers, uav1 and uav1.vision, and so on
+  up [--secure] [UAVS]        a ground station and UAVS aircraft (default 3) on one network; an aircraft is two
+                              containers, uav1 and uav1.vision, and so on. --secure: each with keys of its own, and the
+                              page with TLS and a token (`logs ground` says its address)
   run NODE PROGRAM [ARG...]   one more node, running any program of the image
-  down                        removes all containers of the fleet, and its network
+  down                        removes all containers of the fleet, its network and its keys
   status                      one line for each node: state, address, faults
   logs NODE [OPTION...]       what the node has written; the options are those of `docker logs`
   cut NODE [in|out]           the node's network is cut: both ways, or only what comes in, or only what goes out
@@ -62,6 +63,37 @@ find_container() {
     fail "no node '$1' in the fleet '$fleet'; there are: $(containers | awk '{printf "%s ", $2}')" 2
 }
 
+# The authorities of a fleet with keys are in a volume, which no node has.
+authority=$fleet-authority
+folder=/var/lib/rabit
+
+has_keys() {
+    docker volume inspect "$authority" >/dev/null 2>&1
+}
+
+# with_authority OPTION... IMAGE ARGUMENT...: a container that has them, and no network
+with_authority() {
+    docker run --rm --network none --label "$label" --cap-drop ALL --security-opt no-new-privileges \
+        --volume "$authority:$folder" "$@"
+}
+
+make_authorities() {
+    docker volume create --label "$label" "$authority" >/dev/null
+    with_authority --entrypoint rabit "$image" keys init "$folder/keys" --name "$fleet" >/dev/null
+}
+
+# give_keys CONTAINER NODE OPTION... -- PROGRAM: makes them, and copies the node's own into the container
+give_keys() {
+    local container=$1 node=$2 options=() said
+    shift 2
+    while [ "$1" != -- ]; do
+        options+=("$1")
+        shift
+    done
+    said=$(with_authority "${options[@]}" --env MAKE_KEYS="$folder/keys" "$image" "$2" 2>&1) || fail "$node gets no keys: $said"
+    with_authority --entrypoint tar "$image" -C "$folder/keys" -c "$node" | docker cp - "$container:$folder" >/dev/null
+}
+
 make_network() {
     [ -n "$(docker network ls --quiet --filter "label=$label")" ] ||
         docker network create --label "$label" "$fleet" >/dev/null
@@ -69,24 +101,35 @@ make_network() {
 
 # run_node NODE PROGRAM [ARG...]
 run_node() {
-    local node=$1 options=()
+    local node=$1 options=() environment
     shift
-    [ -z "${CONFIG:-}" ] || options+=(--volume "$(cd "$CONFIG" && pwd):/etc/rabit/nodes:ro")
+    environment=(--env NODE="$node" --env DOMAIN="${DOMAIN:-7}" --env TRANSPORTS="${TRANSPORTS:-}")
+    [ -z "${CONFIG:-}" ] || environment+=(--volume "$(cd "$CONFIG" && pwd):/etc/rabit/nodes:ro")
     # shellcheck disable=SC2206 # options are words
     options+=(${RUN_OPTIONS:-})
-    docker run --detach --name "$fleet-$node" --hostname "$node" --network "$fleet" --label "$label" \
+    ! has_keys || options+=(--env KEYS="$folder/$node")
+    docker create --name "$fleet-$node" --hostname "$node" --network "$fleet" --label "$label" \
         --label "rabit.node=$node" --cap-drop ALL --security-opt no-new-privileges \
-        --env NODE="$node" --env DOMAIN="${DOMAIN:-7}" --env TRANSPORTS="${TRANSPORTS:-}" \
-        "${options[@]}" "$image" "$@" >/dev/null
+        "${environment[@]}" "${options[@]}" "$image" "$@" >/dev/null
+    case $1 in
+    uav | vision | ground) ! has_keys || give_keys "$fleet-$node" "$node" "${environment[@]}" -- "$1" ;;
+    esac
+    docker start "$fleet-$node" >/dev/null
 }
 
 up() {
-    local uavs=${1:-${UAVS:-3}} k
+    local page=(--web-open-to-everybody-on-the-network) secure="" uavs k
+    if [ "${1:-}" = --secure ]; then
+        secure=yes page=()
+        shift
+    fi
+    uavs=${1:-${UAVS:-3}}
     [[ $uavs =~ ^[1-9][0-9]{0,2}$ ]] || fail "up takes a number of aircraft from 1 to 999, not '$uavs'" 2
     docker image inspect "$image" >/dev/null 2>&1 ||
         docker build --tag "$image" --file "$here/Dockerfile" "$here/.."
+    [ -z "$secure" ] || has_keys || make_authorities
     make_network
-    run_node ground ground --web 0.0.0.0:8080 --web-open-to-everybody-on-the-network --search '*'
+    run_node ground ground --web 0.0.0.0:8080 "${page[@]}" --search '*'
     for ((k = 1; k <= uavs; k++)); do
         run_node "uav$k" uav
         run_node "uav$k.vision" vision
@@ -213,6 +256,9 @@ down() {
     ids=$(docker network ls --quiet --filter "label=$label")
     # shellcheck disable=SC2086
     [ -z "$ids" ] || docker network rm $ids >/dev/null
+    ids=$(docker volume ls --quiet --filter "label=$label")
+    # shellcheck disable=SC2086
+    [ -z "$ids" ] || docker volume rm $ids >/dev/null
 }
 
 # need COUNT "$@": so many arguments after the command

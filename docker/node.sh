@@ -1,6 +1,7 @@
 #!/bin/sh
 # The entry point of the image. Usage: rabit-node uav|vision|ground [OPTION...], or rabit-node PROGRAM [ARGUMENT...].
-# The three find their name, their configuration and their backend by the variables in README.md.
+# The three find their name, their configuration, their backend and their keys by the variables in README.md. With
+# MAKE_KEYS, the folder of a fleet's keys, the keys of such a node are made there, and it does not run.
 set -eu
 
 # A replica of a compose service is told its number by nobody but the network's name server: PROJECT-SERVICE-NUMBER.
@@ -31,12 +32,19 @@ config=/etc/rabit/nodes/$NODE.yaml
 [ -f "$config" ] || config=/etc/rabit/$role.yaml
 
 # The backends in turn: the ground station and uav1 have the first, uav2 the second, and from the start again.
+transport=
 if [ -n "${TRANSPORTS:-}" ]; then
     number=$(expr "${NODE%.vision}" : '.*[^0-9]0*\([0-9][0-9]*\)$' || echo 1)
     count=$(echo "$TRANSPORTS" | wc -w)
     wanted=$(((${number:-1} - 1) % count + 1))
-    set -- --transport "$(echo "$TRANSPORTS" | awk -v n="$wanted" '{print $n}')" "$@"
+    transport=$(echo "$TRANSPORTS" | awk -v n="$wanted" '{print $n}')
+    set -- --transport "$transport" "$@"
 fi
+if [ -n "${MAKE_KEYS:-}" ]; then
+    exec rabit keys add "$NODE" --keys "$MAKE_KEYS" --config "$config" ${DOMAIN:+--domain "$DOMAIN"} \
+        ${transport:+--transport "$transport"}
+fi
+[ -z "${KEYS:-}" ] || set -- --keys "$KEYS" "$@"
 # The simulated world; a real aircraft flies over other ground.
 case "$role $*" in
 ground* | *--mavlink*) ;;

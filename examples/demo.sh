@@ -16,9 +16,11 @@ missing Debian packages and builds what is missing first.
   --web PORT         port of the web page on this machine, 1 to 65535 (default: the first free one from 8080 on), or `off`
   --transport NAME   DDS implementation: fastdds (default), cyclonedds, or mixed: uav1, uav3, ... and the ground station
                      on fastdds, uav2, uav4, ... on cyclonedds
-  --domain N         DDS domain, 0 to 232 (default: one that nobody on this machine uses)
+  --secure           with fresh keys, a folder for each node: strangers are neither heard nor answered
+  --domain N         DDS domain, 0 to 232, with --secure to 230 (default: one that nobody on this machine uses)
   --record DIR       let each process record itself into this folder: see black_box.sh
-  --bin DIR          take the programs uav, vision and ground from this folder; install and build nothing
+  --bin DIR          take the programs uav, vision and ground, and with --secure rabit, from this folder; install and
+                     build nothing
   -h, --help         show this and exit
 
 Exit code: 0 if every aircraft was up at the end, at least 90 % of the poses that it published were heard, every command
@@ -52,12 +54,18 @@ domain=
 bin=
 web=
 record=
+secure=
 while [ $# -gt 0 ]; do
     option=$1
     case $option in
     -h | --help)
         usage
         exit 0
+        ;;
+    --secure)
+        secure=yes
+        shift
+        continue
         ;;
     --*=*) # --option=value
         set -- "${option%%=*}" "${option#*=}" "${@:2}"
@@ -103,12 +111,14 @@ done
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(dirname "$here")
+programs=(uav vision ground)
+[ -z "$secure" ] || programs+=(rabit)
 if [ -z "$bin" ]; then
     "$root/docker/install-packages.sh" || exit 1
-    "$root/docker/build-preset.sh" release uav vision ground || exit 1
+    "$root/docker/build-preset.sh" release "${programs[@]}" || exit 1
     bin=$root/build/release/bin
 fi
-for program in uav vision ground; do
+for program in "${programs[@]}"; do
     [ -x "$bin/$program" ] || fail_usage "there is no program $bin/$program"
 done
 
@@ -171,9 +181,25 @@ transport_of() { # transport_of K: prints the transport of aircraft K; the groun
     *) echo "$transport" ;;
     esac
 }
+# The keys of a node: what its configuration needs is what they allow.
+keys=
+if [ -n "$secure" ]; then
+    keys=$(mktemp -d)
+    trap 'rm -rf "$logs" "$keys"' EXIT
+    said=$("$bin/rabit" keys init "$keys/fleet" --name demo 2>&1) || fail_usage "$said"
+fi
+make_keys() { # make_keys NODE TRANSPORT [OPTION...]
+    [ -z "$keys" ] ||
+        said=$("$bin/rabit" keys add "$1" --keys "$keys/fleet" --domain "$domain" --transport "$2" "${@:3}" 2>&1) ||
+        fail_usage "$said"
+}
+keys_argument() { # keys_argument NODE: adds to the array `arguments`
+    [ -z "$keys" ] || arguments+=(--keys "$keys/fleet/$1")
+}
 uav_arguments() { # uav_arguments K: sets the array `arguments`
     arguments=(--config "$uav_config" --node "uav$1" --domain "$domain"
         --transport "$(transport_of "$1")")
+    keys_argument "uav$1"
     # A recorded track may lie anywhere, over other ground than that of the simulated world.
     if [ "$1" -le ${#tracks[@]} ]; then
         arguments+=(--track "${tracks[$1 - 1]}")
@@ -184,15 +210,21 @@ uav_arguments() { # uav_arguments K: sets the array `arguments`
 vision_arguments() { # vision_arguments K: sets the array `arguments`
     arguments=(--config "$vision_config" --node "uav$1.vision" --domain "$domain"
         --transport "$(transport_of "$1")" --world "$here/swarm/world.yaml")
+    keys_argument "uav$1.vision"
 }
-ground_arguments=(--config "$ground_config" --domain "$domain"
-    --transport "$(transport_of 1)")
+arguments=(--config "$ground_config" --domain "$domain" --transport "$(transport_of 1)")
+keys_argument ground
+ground_arguments=("${arguments[@]}")
+make_keys ground "$(transport_of 1)" --config "$ground_config"
+make_keys laptop "$(transport_of 1)" --tool
 [ -z "$seconds" ] || ground_arguments+=(--seconds "$seconds")
 [ "$web" = off ] || ground_arguments+=(--web "$web")
 [ $((uavs - ${#tracks[@]})) -lt 2 ] || ground_arguments+=(--expect-target)
 for ((k = 1; k <= uavs; k++)); do
     ground_arguments+=(--expect "uav$k")
     [ "$k" -le ${#tracks[@]} ] || ground_arguments+=(--search "uav$k")
+    make_keys "uav$k" "$(transport_of "$k")" --config "$uav_config"
+    make_keys "uav$k.vision" "$(transport_of "$k")" --config "$vision_config"
     uav_arguments "$k"
     "$bin/uav" "${arguments[@]}" --check || exit $?
     vision_arguments "$k"
@@ -253,7 +285,7 @@ on_exit() {
     trap - EXIT
     trap '' INT TERM HUP
     end_processes ${ground_pid:+"$ground_pid"} "${pids[@]}"
-    rm -rf "$logs"
+    rm -rf "$logs" ${keys:+"$keys"}
 }
 
 # The first time the ground station ends in its own time, with its summary; the second time everything ends at once.
@@ -287,6 +319,7 @@ done
 setsid setpriv --pdeathsig TERM "$bin/ground" "${ground_arguments[@]}" </dev/null &
 ground_pid=$!
 echo "DDS domain $domain. Processes: $started, ground ($ground_pid). Ctrl-C ends them." >&2
+[ -z "$keys" ] || echo "Strangers are kept out. To look at it: $bin/rabit nodes --keys $keys/fleet/laptop --interface lo" >&2
 
 # From here on the shell's own notices, for instance of an aircraft that was killed, would spoil the table.
 exec 3>&2 2>/dev/null

@@ -19,10 +19,12 @@ std::string AircraftOf(const std::string &visionNode)
 void CompleteAircraftConfig(Rabit::GatewayConfig &config, const std::string &ground)
 {
     for (Rabit::SubscribeRule &rule : config.Subscribe)
+    {
         if (rule.Message == "SearchArea")
             rule.From = {ground};
-    config.Subscribe.push_back(
-        {.Message = "Targets", .Type = "Uav::Targets", .From = {Names::VisionOf(config.Node)}});
+        if (rule.Message == "Targets")
+            rule.From = {Names::VisionOf(config.Node)};
+    }
     Rabit::ValidateGatewayConfig(config);
 }
 

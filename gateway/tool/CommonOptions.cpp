@@ -2,6 +2,7 @@
 
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/transport/TransportFactory.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -46,12 +47,45 @@ void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait)
     app.add_flag("-v,--verbose", options.Verbose, "Tell more on standard error");
 }
 
+namespace
+{
+
+// Without a file its keys say who a tool is, in which domain and over what.
+void TakeFromKeys(const CommonOptions &options, GatewayConfig &config)
+{
+    const Keys::NodeKeys keys(config.Security->Keys);
+    if (options.Node.Node.empty())
+    {
+        config.Node = keys.Subject().Node;
+    }
+    if (!options.Node.ConfigFile.empty())
+    {
+        return;
+    }
+    const auto &rules = keys.Permissions().Rules;
+    if (options.Node.Domain < 0 && !rules.empty() && !rules.front().Domains.empty())
+    {
+        config.Domain = rules.front().Domains.front().first;
+    }
+    const std::vector<std::string> transports = AvailableTransports();
+    const auto fits = [&](const std::string &transport)
+    { return Keys::WantsSmallGuid(transport) == Keys::HasSmallGuid(keys.Subject()); };
+    if (const auto found = std::find_if(transports.begin(), transports.end(), fits);
+        options.Node.Transport.empty() && found != transports.end())
+    {
+        config.Transport = *found;
+    }
+}
+
+}  // namespace
+
 GatewayConfig ConfigOf(const CommonOptions &options)
 {
     GatewayConfig config = LoadNetworkConfig(options.Node);
-    if (options.Node.Node.empty())
+    config.Node = options.Node.Node.empty() ? OwnName() : options.Node.Node;
+    if (config.Security)
     {
-        config.Node = config.Security ? Keys::NodeKeys(config.Security->Keys).Subject().Node : OwnName();
+        TakeFromKeys(options, config);
     }
     if (!options.Interfaces.empty())
     {

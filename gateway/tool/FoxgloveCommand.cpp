@@ -27,6 +27,7 @@ struct Options
     std::string Address = "127.0.0.1";
     std::uint16_t Port = 8765;
     std::vector<std::string> Origins;
+    bool IsOpen = false;
 };
 
 LiveServer::Settings SettingsOf(const Options &options)
@@ -42,6 +43,18 @@ std::string WhyNoAddress(const std::string &text)
     boost::system::error_code error;
     static_cast<void>(boost::asio::ip::make_address(text, error));
     return error ? "`" + text + "` is no address" : "";
+}
+
+// Throws CLI::ValidationError.
+void CheckListen(const Options &options)
+{
+    if (!options.IsOpen && !boost::asio::ip::make_address(options.Address).is_loopback())
+    {
+        throw CLI::ValidationError(
+            "--listen", "whoever reaches " + options.Address +
+                            " would see everything, for there is no password; `ssh -L 8765:127.0.0.1:8765` brings "
+                            "it to one machine, --open-to-everybody-on-the-network allows it to all");
+    }
 }
 
 std::string UrlOf(const boost::asio::ip::tcp::endpoint &endpoint)
@@ -98,13 +111,20 @@ void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--except", options->Except, "Messages to leave out, as */CameraView");
     command
         ->add_option("--listen", options->Address,
-                     "Address to listen at; everybody who reaches it sees all (default: 127.0.0.1)")
+                     "Address to listen at (default: 127.0.0.1); another one than of this machine alone needs "
+                     "--open-to-everybody-on-the-network")
         ->check(CLI::Validator([](const std::string &text) { return WhyNoAddress(text); }, ""));
+    command->add_flag("--open-to-everybody-on-the-network", options->IsOpen,
+                      "Whoever reaches the address may see everything: there is no password");
     command->add_option("--port", options->Port, "Port to listen at (default: 8765; 0: any)");
     command->add_option("--origin", options->Origins,
                         "A site whose pages may look, besides Foxglove's, Lichtblick's and this machine's");
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+    command->callback(
+        [options, &chosen]
+        {
+            CheckListen(*options);
+            chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); };
+        });
 }
 
 }  // namespace Rabit::Tool

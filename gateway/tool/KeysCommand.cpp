@@ -36,7 +36,7 @@ struct Options
     std::string Config;
     std::vector<std::string> Configs;
     std::string Transport;
-    int Domain = 0;
+    int Domain = -1;  // the file's, or for a tool 0
     int Days = 365;
     int Ahead = 30;
     bool ForTool = false;
@@ -70,8 +70,11 @@ Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &no
     else
     {
         config.Node = node;
-        config.Domain = options.Domain;
         config.Tool.emplace();
+    }
+    if (options.Domain >= 0)
+    {
+        config.Domain = options.Domain;
     }
     if (!options.Transport.empty())
     {
@@ -326,9 +329,8 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     CLI::Option *tool = command->add_flag("--tool", add->ForTool,
                                           "For this program: it may read everything, and publishes nothing");
     config->excludes(tool);
-    command->add_option("--domain", add->Domain, "DDS domain of a tool")
-        ->check(CLI::Range(0, Keys::LargestDomain))
-        ->needs(tool);
+    command->add_option("--domain", add->Domain, "DDS domain, in place of the file's; of a tool: 0")
+        ->check(CLI::Range(0, Keys::LargestDomain));
     command->add_option("--transport", add->Transport, "DDS implementation, in place of the file's");
     AddDays(*command, *add, 365);
     command->callback(

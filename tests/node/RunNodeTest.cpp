@@ -98,6 +98,14 @@ TEST_F(RunNodeTest, OptionsTakeThePlaceOfTheFile)
     EXPECT_EQ(_domain, 5);
 }
 
+TEST_F(RunNodeTest, KeysThatAreNotThereAreOneLine)
+{
+    EXPECT_EQ(Run({"--check", "--keys", "/nowhere/keys"}), ExitBadInput);
+    EXPECT_THAT(_err, HasSubstr("/nowhere/keys/"));
+    EXPECT_EQ(_err.find('\n'), _err.size() - 1);
+    EXPECT_THAT(_node, IsEmpty());
+}
+
 TEST_F(RunNodeTest, ACheckMakesTheManagersAndRunsNothing)
 {
     EXPECT_EQ(Run({"--check"}), 0);

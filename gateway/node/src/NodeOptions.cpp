@@ -23,6 +23,14 @@ void Override(GatewayConfig &config, const NodeOptions &options)
     {
         config.Transport = options.Transport;
     }
+    if (!options.Keys.empty())
+    {
+        if (!config.Security)
+        {
+            config.Security.emplace();
+        }
+        config.Security->Keys = options.Keys;
+    }
     ValidateTransportName(config, AvailableTransports(), KnownTransports());
 }
 
@@ -37,6 +45,7 @@ void AddNetworkOptions(CLI::App &app, NodeOptions &options)
     app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
         ->check(CLI::Range(0, 232));
     app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
+    app.add_option("--keys", options.Keys, "Folder of this node's keys, in place of the file's");
 }
 
 GatewayConfig LoadNetworkConfig(const NodeOptions &options)

@@ -19,10 +19,11 @@ struct NodeOptions
     std::string Node{};  // empty: the file's
     int Domain = -1;     // -1: the file's
     std::string Transport{};
+    std::string Keys{};
     bool Check = false;
 };
 
-// Adds --config, --node, --domain and --transport.
+// Adds --config, --node, --domain, --transport and --keys.
 void AddNetworkOptions(CLI::App &app, NodeOptions &options);
 // The network settings of the file, with the options in place of what it says; without a file the defaults.
 // The name is the option's alone. Throws ConfigError.
