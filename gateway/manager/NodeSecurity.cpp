@@ -63,7 +63,8 @@ std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::s
         if (!lacks.empty())
         {
             fail(keys.Files().Permissions + " does not allow what the configuration needs: " + lacks +
-                 "; `rabit keys renew` with the configuration makes permissions that fit");
+                 (config.Tool ? "; a tool needs keys of its own: `rabit keys add <name> --tool`"
+                              : "; `rabit keys renew` with the configuration makes permissions that fit"));
         }
         const Keys::NodeFiles &files = keys.Files();
         const bool encrypts = config.Security->Level == SecurityLevel::Encrypt;

@@ -30,7 +30,8 @@ struct CommonOptions
     bool Verbose = false;
 };
 
-// Adds --config, --node, --domain, --transport, --keys, --interface, --wait, --json and --verbose. `wait`: what
+// Adds --config, --node, --domain, --transport, --keys, --interface, --wait, --json and --verbose. `wait`:
+// what
 // --wait is unless it is given.
 void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait);
 

@@ -84,6 +84,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
         Append(findings, Doctor::OfMulticast(config, used, network));
         Append(findings, Doctor::OfDomains(config, network, anyNode));
+        Append(findings, Doctor::OfKeys(config, network, anyNode));
         Append(findings, Doctor::OfNodes(nodes, fleet));
         Append(findings, Doctor::OfTypes(nodes));
         Append(findings, Doctor::OfClocks(nodes, fleet));

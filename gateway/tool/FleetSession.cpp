@@ -6,6 +6,10 @@
 #include <rabit/transport/TransportFactory.h>
 
 #include "Output.h"
+#include "SafeText.h"
+#include "doctor/MachineChecks.h"
+#include "doctor/NetworkChecks.h"
+#include "doctor/NetworkTrial.h"
 
 namespace Rabit::Tool
 {
@@ -56,12 +60,39 @@ double FleetSession::Seconds() const
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count();
 }
 
-int FleetSession::NobodyThere() const
+// A fleet with keys does not answer those without: but its announcements are there for all to hear.
+void FleetSession::TellOfKeys()
+{
+    constexpr double twoAnnouncements = 2.2;  // unless a budget makes them rarer
+    try
+    {
+        const Doctor::NetworkTrial trial(Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces),
+                                         _config.Node, {_config.Domain});
+        const double end = Seconds() + twoAnnouncements;
+        std::vector<Doctor::Finding> findings;
+        while (findings.empty() && Seconds() < end && !_wakeup.IsInterrupted())
+        {
+            WaitUntil(Seconds() + 0.1, [] { return false; });
+            findings = Doctor::OfKeys(_config, trial.Facts(), IsAnybodyThere());
+        }
+        for (const Doctor::Finding &finding : findings)
+        {
+            Output::Talk(SafeText(finding.Text + " (" + finding.Advice + ")"));
+        }
+    }
+    catch (const NetworkError &)
+    {
+        // Then nothing is known.
+    }
+}
+
+int FleetSession::NobodyThere()
 {
     for (const Gateway::Problem &problem : Fleet().problems)
     {
         Output::Talk(problem.subject + ": " + problem.reason);
     }
+    TellOfKeys();
     Output::Talk("nobody was heard in domain " + std::to_string(_config.Domain) + " over " +
                  _config.Transport + " (--domain, --interface, --wait; gateway/CONNECTING.md)");
     return NoNetwork;

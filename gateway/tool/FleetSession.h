@@ -51,10 +51,13 @@ public:
     double Seconds() const;
     // Whether somebody was heard.
     bool IsAnybodyThere() const { return !_explorer->Nodes().empty(); }
-    // Says that nobody was, and why as far as that is known; returns the exit code.
-    int NobodyThere() const;
+    // Says that nobody was, and why as far as that is known or can be heard in a moment; returns the exit
+    // code.
+    int NobodyThere();
 
 private:
+    void TellOfKeys();
+
     const GatewayConfig _config;
     Wakeup &_wakeup;
     RabitWorkspace _workspace;

@@ -51,9 +51,10 @@ void CheckListen(const Options &options)
     if (!options.IsOpen && !boost::asio::ip::make_address(options.Address).is_loopback())
     {
         throw CLI::ValidationError(
-            "--listen", "whoever reaches " + options.Address +
-                            " would see everything, for there is no password; `ssh -L 8765:127.0.0.1:8765` brings "
-                            "it to one machine, --open-to-everybody-on-the-network allows it to all");
+            "--listen",
+            "whoever reaches " + options.Address +
+                " would see everything, for there is no password; `ssh -L 8765:127.0.0.1:8765` brings "
+                "it to one machine, --open-to-everybody-on-the-network allows it to all");
     }
 }
 
@@ -110,9 +111,10 @@ void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("--except", options->Except, "Messages to leave out, as */CameraView");
     command
-        ->add_option("--listen", options->Address,
-                     "Address to listen at (default: 127.0.0.1); another one than of this machine alone needs "
-                     "--open-to-everybody-on-the-network")
+        ->add_option(
+            "--listen", options->Address,
+            "Address to listen at (default: 127.0.0.1); another one than of this machine alone needs "
+            "--open-to-everybody-on-the-network")
         ->check(CLI::Validator([](const std::string &text) { return WhyNoAddress(text); }, ""));
     command->add_flag("--open-to-everybody-on-the-network", options->IsOpen,
                       "Whoever reaches the address may see everything: there is no password");

@@ -82,6 +82,22 @@ finds_a_target_on_both_backends)
     grep -qx Passed "$work/out" || fail "no summary"
     expect_no_processes_left
     ;;
+finds_a_target_with_keys_on_both_backends)
+    start_demo --transport mixed --secure --web off
+    wait_for "$work/out" 'target uav[1-3]/[0-9]* *TRACKED .* validated by uav[1-3], followed'
+    laptop=$(sed -n 's/^Strangers are kept out. To look at it: .* nodes --keys \([^ ]*\) .*/\1/p' "$work/err")
+    [ "$(stat -c %a "$(dirname "$(dirname "$laptop")")")" = 700 ] || fail "others may look at the keys"
+    "$bin/rabit" nodes --keys "$laptop" --interface lo --wait 10 >"$work/nodes" 2>&1 ||
+        fail "who has keys does not see it: $(cat "$work/nodes")"
+    "$bin/rabit" nodes --domain "$(sed -n 's/^DDS domain \([0-9]*\).*/\1/p' "$work/err")" --interface lo >"$work/nodes" 2>&1
+    grep -q 'have keys, and this program has none' "$work/nodes" || fail "who has none is told: $(cat "$work/nodes")"
+    kill -INT "$demo_pid"
+    end_demo
+    expect_status 0
+    grep -qx Passed "$work/out" || fail "no summary"
+    [ ! -e "$laptop" ] || fail "keys are left over"
+    expect_no_processes_left
+    ;;
 fails_without_a_target)
     demo --uavs 2 --seconds 12 --web off
     expect_status 1

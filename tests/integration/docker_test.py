@@ -96,6 +96,40 @@ def fly_example(engine, transports):
     assert not left, f"left behind: {left}"
 
 
+def keep_strangers_out(engine, transports):
+    """The example's aircraft come up with keys of their own, and one comes back; who has none is neither heard nor
+    answered; no node has what another one has, or an authority."""
+    fleet = Console(engine, transports)
+    try:
+        fleet("up", "--secure", 2)
+        for node in ("uav1", "uav2"):
+            fleet.wait_for_row(node, r" UP .*[1-9] acknowledged")
+        fleet.wait_for_line(r"Web page: https://\S+/\?token=[0-9a-f]{32}")
+        for transport in transports:
+            stranger = engine.run("docker", "run", "--rm", "--network", engine.mark, "--entrypoint", "rabit",
+                                  engine.image, "nodes", "--domain", 7, "--transport", transport, "--wait", 4,
+                                  check=False)
+            assert "have keys, and this program has none" in stranger and "nobody was heard" in stranger, stranger
+        for node in ("ground", "uav1", "uav2.vision"):
+            keys = engine.run("docker", "exec", f"{engine.mark}-{node}", "find", "/", "-xdev", "-name", "*.pem", "-path",
+                              "*rabit*")
+            folders = {str(pathlib.PurePath(line).parent) for line in keys.splitlines()}
+            assert folders == {f"/var/lib/rabit/{node}"}, f"{node} has {folders}"
+        fleet("kill", "uav1")
+        fleet.wait_for_row("uav1", " LOST ")
+        fleet("start", "uav1")
+        fleet.wait_for_row("uav1", " UP ")
+        fleet("run", "uav9", "uav")
+        fleet.wait_for_row("uav9", " UP ")
+    except BaseException:
+        print(fleet("status"))
+        raise
+    finally:
+        fleet("down")
+    left = engine.run("docker", "volume", "ls", "--quiet", "--filter", f"label=rabit.fleet={engine.mark}")
+    assert not left, f"left behind: {left}"
+
+
 def build_image(engine, cmake, build):
     with tempfile.TemporaryDirectory(prefix=engine.mark + "-") as programs:
         subprocess.run([cmake, "--install", build, "--component", "programs", "--strip", "--prefix", programs],
@@ -111,6 +145,8 @@ def main():
             build_image(engine, cmake, build)
             fly_example(engine, transports.split(","))
             print("ok: the example fleet")
+            keep_strangers_out(engine, transports.split(","))
+            print("ok: the example fleet with keys")
             for name in scenarios:
                 scenario = json.loads((HERE / "scenarios" / name / "scenario.json").read_text())
                 options = argparse.Namespace(ledger_node="ledger_node", transports=transports, keep=None)

@@ -1,6 +1,7 @@
 #include "doctor/NetworkChecks.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace Rabit::Tool::Doctor
 {
@@ -111,6 +112,48 @@ std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &
                  (isMeant ? ", and nobody in domain " + std::to_string(config.Domain) : ""),
              isMeant ? "--domain " + std::to_string(domain) + ", or the same `domain` in all files"
                      : "the same `domain` in all files, if they belong to this fleet"});
+    }
+    return findings;
+}
+
+std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)
+{
+    std::set<std::string> with;
+    std::set<std::string> without;
+    if (const auto ours = facts.Domains.find(config.Domain); ours != facts.Domains.end())
+    {
+        for (const auto &[address, of] : ours->second)
+        {
+            with.insert(of.WithKeys.begin(), of.WithKeys.end());
+            std::set_difference(of.Names.begin(), of.Names.end(), of.WithKeys.begin(), of.WithKeys.end(),
+                                std::inserter(without, without.end()));
+        }
+    }
+    const std::string there = " in domain " + std::to_string(config.Domain);
+    const bool one = with.size() == 1;
+    std::vector<Finding> findings;
+    if (!with.empty() && !config.Security)
+    {
+        findings.push_back(
+            {Level::Problem, "keys",
+             Listed(with) + there + (one ? " has keys" : " have keys") +
+                 ", and this program has none: " + (one ? "it" : "they") + " will not hear nor answer it",
+             "--keys FOLDER; `rabit keys add laptop --tool` makes one where the fleet's keys are"});
+    }
+    if (!with.empty() && config.Security && !anyNode)
+    {
+        findings.push_back({Level::Problem, "keys",
+                            Listed(with) + there + (one ? " has keys, and does" : " have keys, and do") +
+                                " not let this program in",
+                            "keys of the same fleet, neither ended nor revoked, and the same level; " +
+                                std::string(one ? "its" : "their") + " log says why"});
+    }
+    if (!without.empty() && config.Security)
+    {
+        findings.push_back({Level::Note, "keys",
+                            Listed(without) + there + (without.size() == 1 ? " has" : " have") +
+                                " no keys: what it says is not heard",
+                            "`rabit keys add`, if it belongs to this fleet"});
     }
     return findings;
 }

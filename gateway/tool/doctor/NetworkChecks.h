@@ -17,5 +17,7 @@ std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<
                                  const NetworkFacts &facts);
 // Other domains in use. `anyNode`: somebody was heard in ours.
 std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
+// Who in our domain has keys and we have none, or the other way round.
+std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
 
 }  // namespace Rabit::Tool::Doctor

@@ -12,6 +12,7 @@ struct Voices
 {
     std::set<std::string> Names;
     bool AreNodes = false;  // one of them at least is a node of Rabit
+    std::set<std::string> WithKeys{};  // those of them that take part in DDS Security
 };
 
 // What was tried on one interface, and came of it.

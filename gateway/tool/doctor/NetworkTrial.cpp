@@ -301,6 +301,10 @@ private:
             Voices &from = voices[datagram.From];
             from.AreNodes = from.AreNodes || heard->IsNode;
             AddTo(from.Names, heard->Name, MostNames);
+            if (heard->HasKeys && from.Names.contains(heard->Name))
+            {
+                from.WithKeys.insert(heard->Name);
+            }
         }
     }
 

@@ -31,7 +31,8 @@ enum Parameter : std::uint16_t
     MetatrafficUnicastLocator = 0x32,
     ParticipantGuid = 0x50,
     BuiltinEndpoints = 0x58,
-    EntityName = 0x62
+    EntityName = 0x62,
+    IdentityToken = 0x1001  // OMG DDS Security 1.1, 7.4.1.3
 };
 
 std::string Printable(std::span<const std::uint8_t> bytes)
@@ -61,6 +62,7 @@ void ReadParameters(RtpsReader &reader, bool littleEndian, HeardCall &heard)
             return;
         }
         RtpsReader value(reader.Bytes(length), littleEndian);
+        heard.HasKeys = heard.HasKeys || parameter == IdentityToken;
         if (parameter == EntityName || parameter == UserData)
         {
             const auto bytes = value.Bytes(value.U32());

@@ -22,6 +22,7 @@ struct HeardCall
     ParticipantId Sender{};
     std::string Name{};   // of the participant, if it announces itself here; printable, 64 characters at most
     bool IsNode = false;  // of Rabit
+    bool HasKeys = false;  // it says that it takes part in DDS Security
     bool Announces = false;
 };
 // Nothing if it is not of RTPS.

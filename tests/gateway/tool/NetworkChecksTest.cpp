@@ -110,6 +110,42 @@ TEST_F(NetworkChecks, NodesOfAnotherDomainAreAProblemIfNobodyIsInOurs)
     EXPECT_THAT(OfDomains(config, facts, false)[0].Advice, HasSubstr("--domain 8"));
 }
 
+TEST_F(NetworkChecks, NodesWithKeysAreAProblemForWhoHasNone)
+{
+    config.Domain = 7;
+    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav1", "uav2"}, true, {"uav1", "uav2"}};
+    facts.Domains[8]["10.0.0.3"] = {{"uav3"}, true, {"uav3"}};
+    const auto findings = OfKeys(config, facts, true);
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Problem);
+    EXPECT_EQ(
+        findings[0].Text,
+        "uav1, uav2 in domain 7 have keys, and this program has none: they will not hear nor answer it");
+    EXPECT_THAT(findings[0].Advice, HasSubstr("--keys FOLDER"));
+}
+
+TEST_F(NetworkChecks, ThatNobodyLetsOneInWhoHasKeysIsAProblemAndOneWithoutKeysANote)
+{
+    config.Domain = 7;
+    config.Security.emplace();
+    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav1"}, true, {"uav1"}};
+    const auto lonely = OfKeys(config, facts, false);
+    ASSERT_THAT(lonely, SizeIs(2));
+    EXPECT_EQ(lonely[0].How, Level::Problem);
+    EXPECT_EQ(lonely[0].Text, "uav1 in domain 7 has keys, and does not let this program in");
+    const auto well = OfKeys(config, facts, true);
+    ASSERT_THAT(well, SizeIs(1));
+    EXPECT_EQ(well[0].How, Level::Note);
+    EXPECT_EQ(well[0].Text, "plain in domain 7 has no keys: what it says is not heard");
+}
+
+TEST_F(NetworkChecks, KeysAreNoMatterWhereNobodyHasSome)
+{
+    facts.Domains[config.Domain]["10.0.0.3"] = {{"uav1"}, true};
+    EXPECT_THAT(OfKeys(config, facts, true), IsEmpty());
+    EXPECT_THAT(OfKeys(config, facts, false), IsEmpty());
+}
+
 TEST_F(NetworkChecks, ProgramsThatAreNoNodesAreNeverAProblem)
 {
     facts.Domains[8]["10.0.0.4"] = {{""}, false};

@@ -66,6 +66,19 @@ TEST(RtpsCall, TellsANodeByItsNameAndWhatItSaysOfItself)
     EXPECT_TRUE(heard->IsNode);
 }
 
+TEST(RtpsCall, TellsOneThatHasKeys)
+{
+    auto parameters = Parameter(0x62, "uav1");
+    EXPECT_FALSE(HeardIn(CallWith(parameters))->HasKeys);
+    auto token = Parameter(0x01, "DDS:Auth:PKI-DH:1.0");
+    token[1] = 0x10;
+    parameters.insert(parameters.end(), token.begin(), token.end());
+    const auto heard = HeardIn(CallWith(parameters));
+    ASSERT_TRUE(heard);
+    EXPECT_EQ(heard->Name, "uav1");
+    EXPECT_TRUE(heard->HasKeys);
+}
+
 TEST(RtpsCall, ANameCannotCommandATerminal)
 {
     EXPECT_EQ(HeardIn(CallWith(Parameter(0x62, "a\x1b[2J\n")))->Name, "a?[2J?");

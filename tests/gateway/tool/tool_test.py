@@ -247,6 +247,12 @@ def nobody_in_the_domain_is_3(rabit):
         assert done.returncode == 3 and "nobody was heard in domain" in done.stderr and done.stdout == "", done
 
 
+def viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means(rabit):
+    done = rabit.run("foxglove", "--listen", "0.0.0.0", "--port", "0")
+    assert done.returncode == 2 and done.stdout == "", done
+    assert "would see everything" in done.stderr and "--open-to-everybody-on-the-network" in done.stderr, done
+
+
 def a_configuration_of_a_node_serves_for_its_network_alone(rabit):
     done = subprocess.run([rabit.program, "echo", "uav1/Pose", "--once", "--wait", "30",
                            "--config", str(harness.ROOT / "examples/swarm/uav.yaml"),
@@ -441,7 +447,8 @@ def the_manual_tells_of_every_command_and_every_common_option(rabit):
     assert len(commands) >= 9, commands
     for command in commands:
         assert re.search(rf"^\.B[IR]? {command}\b", manual, re.MULTILINE), command
-    for option in ("--config", "--domain", "--transport", "--interface", "--node", "--wait", "--json", "--verbose"):
+    for option in ("--config", "--domain", "--transport", "--interface", "--keys", "--node", "--wait", "--json",
+                   "--verbose"):
         assert option in manual, option
 
 
@@ -454,6 +461,7 @@ TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          lines_of_standard_input_are_sent_each, what_cannot_be_sent_is_told_with_the_nearest_right_word,
          a_message_is_posted_as_a_node_of_the_given_name, what_cannot_be_posted_is_told,
          ctrl_c_ends_it_well, a_pipe_that_is_closed_ends_it_well, wrong_usage_is_2, nobody_in_the_domain_is_3,
+         viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means,
          a_configuration_of_a_node_serves_for_its_network_alone,
          how_often_all_messages_come_is_measured_together,
          a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well,

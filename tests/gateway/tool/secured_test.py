@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""The program `rabit` from the shell, against a fleet with keys: two aircraft, one on each DDS implementation.
+
+Usage: secured_test.py RABIT UAV TRANSPORT[,TRANSPORT]..."""
+
+import itertools
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
+import harness  # noqa: E402
+
+# Only keeps a broken program from hanging.
+LIMIT = 120
+CONFIG = harness.ROOT / "examples/swarm/uav.yaml"
+
+
+class Fleet:
+    """Makes keys, and runs the program as one who types it. `transport` is the tool's."""
+
+    def __init__(self, program, transport, domain, folder):
+        self.program, self.transport, self.domain, self.folder = program, transport, domain, folder
+        self._tools = itertools.count()
+
+    def keys(self, *words):
+        done = subprocess.run([self.program, "keys", *map(str, words)], capture_output=True, text=True, timeout=LIMIT,
+                              check=False)
+        assert done.returncode == 0, (words, done)
+
+    def make(self, name):
+        self.keys("init", self.folder / name)
+
+    def add(self, fleet, node, transport, *words):
+        self.keys("add", node, "--keys", self.folder / fleet, "--transport", transport, "--domain", self.domain, *words)
+        return str(self.folder / fleet / node)
+
+    def tool(self, fleet, *words):
+        return self.add(fleet, f"laptop{next(self._tools)}-{self.transport}", self.transport, "--tool", *words)
+
+    def run(self, command, *arguments):
+        return subprocess.run([self.program, command, *map(str, arguments), "--interface", "127.0.0.1"],
+                              capture_output=True, text=True, timeout=LIMIT, check=False)
+
+
+def until(holds):
+    end = time.monotonic() + LIMIT
+    while True:
+        result = holds()
+        if result:
+            return result
+        assert time.monotonic() < end, f"{holds.__name__} did not come true"
+
+
+def a_tool_with_keys_sees_and_sends(fleet):
+    keys = fleet.tool("fleet")
+
+    def both():
+        done = fleet.run("nodes", "--keys", keys, "--json", "--wait", "10")
+        rows = {row["node"]: row["state"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
+        return done.returncode == 0 and rows == {"uav1": "UP", "uav2": "UP"}
+    until(both)
+    for node in ("uav1", "uav2"):
+        done = fleet.run("echo", f"{node}/Pose", "--keys", keys, "--once", "--json", "--wait", "30")
+        assert done.returncode == 0 and "latitude_deg" in json.loads(done.stdout)["value"], done
+        done = fleet.run("send", f"{node}/MissionControl", "Uav::GoHome", '{"reason": "test"}', "--keys", keys,
+                         "--wait", "30")
+        assert done.returncode == 0 and done.stdout == "delivered\n", done
+    done = fleet.run("messages", "--keys", keys, "--wait", "10")
+    assert done.returncode == 0 and "Pose" in done.stdout, done
+
+
+def a_configuration_names_keys_as_well(fleet):
+    keys = fleet.tool("fleet")
+    config = fleet.folder / f"{fleet.transport}.yaml"
+    config.write_text(f"domain: {fleet.domain}\ntransport: {fleet.transport}\nsecurity: {{keys: {keys}}}\n")
+    done = fleet.run("echo", "uav1/Pose", "--config", config, "--once", "--wait", "30")
+    assert done.returncode == 0 and "latitude_deg" in done.stdout, done
+
+
+def a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some(fleet):
+    keys = fleet.tool("fleet")
+
+    def well():
+        done = fleet.run("doctor", "--keys", keys, "--wait", "4")
+        return done.returncode == 0 and "nodes: uav1 uav2" in done.stdout
+    until(well)
+    done = fleet.run("doctor", "--domain", fleet.domain, "--transport", fleet.transport, "--json")
+    found = {row["subject"]: row for row in map(json.loads, done.stdout.splitlines())}
+    assert done.returncode == 3 and found["keys"]["level"] == "problem", done
+    assert found["keys"]["text"].startswith(f"uav1, uav2 in domain {fleet.domain} have keys, and this program has none")
+
+
+def a_tool_without_keys_says_that_the_fleet_has_some(fleet):
+    for command in (["nodes"], ["echo", "uav1/Pose"], ["send", "uav1/MissionControl", "Uav::GoHome", "{}"]):
+        done = fleet.run(*command, "--domain", fleet.domain, "--transport", fleet.transport, "--wait", "2")
+        assert done.returncode == 3 and done.stdout == "", done
+        assert "have keys, and this program has none" in done.stderr or "has keys, and this program" in done.stderr, done
+        assert "--keys FOLDER" in done.stderr and "nobody was heard" in done.stderr, done
+
+
+def a_tool_with_keys_of_another_fleet_says_that_it_is_not_let_in(fleet):
+    keys = fleet.tool("other")
+    done = fleet.run("nodes", "--keys", keys, "--wait", "4")
+    assert done.returncode == 3 and "not let this program in" in done.stderr, done
+
+
+def what_is_wrong_with_keys_is_one_line(fleet):
+    node = str(fleet.folder / "fleet" / "uav1")
+    for keys, expected in ((fleet.folder / "nowhere", "there is no folder of keys"),
+                           (fleet.folder / "fleet" / "authority", "authority/"),
+                           (node, "a tool needs keys of its own: `rabit keys add <name> --tool`")):
+        done = fleet.run("nodes", "--keys", keys, "--wait", "2")
+        assert done.returncode in (1, 2, 3) and expected in done.stderr, done
+        assert len(done.stderr.splitlines()) == 1 and done.stdout == "", done
+    done = fleet.run("nodes", "--keys", fleet.tool("fleet"), "--domain", fleet.domain + 1)
+    assert done.returncode != 0 and f"permissions.p7s is not for domain {fleet.domain + 1}" in done.stderr, done
+
+
+TESTS = [a_tool_with_keys_sees_and_sends, a_configuration_names_keys_as_well,
+         a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some,
+         a_tool_without_keys_says_that_the_fleet_has_some, a_tool_with_keys_of_another_fleet_says_that_it_is_not_let_in,
+         what_is_wrong_with_keys_is_one_line]
+
+
+def main():
+    program, uav, transports = sys.argv[1], sys.argv[2], sys.argv[3].split(",")
+    harness.enter_namespace()
+    domain = harness.domain()
+    with tempfile.TemporaryDirectory() as name, harness.Processes() as processes:
+        folder = pathlib.Path(name)
+        maker = Fleet(program, transports[0], domain, folder)
+        maker.make("fleet")
+        maker.make("other")
+        for k in (1, 2):
+            transport = transports[(k - 1) % len(transports)]
+            keys = maker.add("fleet", f"uav{k}", transport, "--config", CONFIG)
+            processes.start([uav, "--config", CONFIG, "--node", f"uav{k}", "--domain", domain, "--transport", transport,
+                             "--keys", keys])
+        for transport in transports:
+            fleet = Fleet(program, transport, domain, folder)
+            for test in TESTS:
+                begin = time.monotonic()
+                test(fleet)
+                print(f"ok: {test.__name__} over {transport}, {time.monotonic() - begin:.1f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()
