@@ -68,13 +68,10 @@ void FleetSession::TellOfKeys()
     {
         const Doctor::NetworkTrial trial(Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces),
                                          _config.Node, {_config.Domain});
-        const double end = Seconds() + twoAnnouncements;
-        std::vector<Doctor::Finding> findings;
-        while (findings.empty() && Seconds() < end && !_wakeup.IsInterrupted())
-        {
-            WaitUntil(Seconds() + 0.1, [] { return false; });
-            findings = Doctor::OfKeys(_config, trial.Facts(), IsAnybodyThere());
-        }
+        const auto ends = [this] { return _wakeup.IsInterrupted(); };
+        WaitUntil(Seconds() + twoAnnouncements, ends);
+        const std::vector<Doctor::Finding> findings =
+            Doctor::OfKeys(_config, trial.Facts(), IsAnybodyThere());
         for (const Doctor::Finding &finding : findings)
         {
             Output::Talk(SafeText(finding.Text + " (" + finding.Advice + ")"));

@@ -109,7 +109,7 @@ def keep_strangers_out(engine, transports):
             stranger = engine.run("docker", "run", "--rm", "--network", engine.mark, "--entrypoint", "rabit",
                                   engine.image, "nodes", "--domain", 7, "--transport", transport, "--wait", 4,
                                   check=False)
-            assert "have keys, and this program has none" in stranger and "nobody was heard" in stranger, stranger
+            assert "keys, and this program has none" in stranger and "nobody was heard" in stranger, stranger
         for node in ("ground", "uav1", "uav2.vision"):
             keys = engine.run("docker", "exec", f"{engine.mark}-{node}", "find", "/", "-xdev", "-name", "*.pem", "-path",
                               "*rabit*")
