@@ -101,7 +101,7 @@ TEST_F(RunNodeTest, OptionsTakeThePlaceOfTheFile)
 TEST_F(RunNodeTest, KeysThatAreNotThereAreOneLine)
 {
     EXPECT_EQ(Run({"--check", "--keys", "/nowhere/keys"}), ExitBadInput);
-    EXPECT_THAT(_err, HasSubstr("/nowhere/keys/"));
+    EXPECT_THAT(_err, HasSubstr("no folder of keys /nowhere/keys"));
     EXPECT_EQ(_err.find('\n'), _err.size() - 1);
     EXPECT_THAT(_node, IsEmpty());
 }

@@ -137,7 +137,7 @@ std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &fac
         findings.push_back(
             {Level::Problem, "keys",
              Listed(with) + there + (one ? " has keys" : " have keys") +
-                 ", and this program has none: " + (one ? "it" : "they") + " will not hear nor answer it",
+                 ", and this program has none: it stays out",
              "--keys FOLDER; `rabit keys add laptop --tool` makes one where the fleet's keys are"});
     }
     if (!with.empty() && config.Security && !anyNode)

@@ -118,9 +118,7 @@ TEST_F(NetworkChecks, NodesWithKeysAreAProblemForWhoHasNone)
     const auto findings = OfKeys(config, facts, true);
     ASSERT_THAT(findings, SizeIs(1));
     EXPECT_EQ(findings[0].How, Level::Problem);
-    EXPECT_EQ(
-        findings[0].Text,
-        "uav1, uav2 in domain 7 have keys, and this program has none: they will not hear nor answer it");
+    EXPECT_EQ(findings[0].Text, "uav1, uav2 in domain 7 have keys, and this program has none: it stays out");
     EXPECT_THAT(findings[0].Advice, HasSubstr("--keys FOLDER"));
 }
 
