@@ -85,7 +85,7 @@ Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &no
 }
 
 // What was made, and who may now do what.
-void ShowMade(const Keys::FleetKeys &fleet, const std::string &node)
+void ShowMade(const Keys::FleetKeys &fleet, const std::string &node, bool isTool = false)
 {
     const std::string folder = fleet.FolderOf(node);
     const Keys::NodeKeys keys(folder);
@@ -94,9 +94,9 @@ void ShowMade(const Keys::FleetKeys &fleet, const std::string &node)
     {
         Output::Line("  " + SafeText(line));
     }
-    Output::Talk("copy the folder to " + node +
-                 " by a way that nobody else can read, and write `security: {keys: <the folder there>}` into "
-                 "its configuration");
+    Output::Talk("copy the folder to " + node + " by a way that nobody else can read, and " +
+                 (isTool ? "look at the fleet with `rabit nodes --keys <the folder there>`"
+                         : "write `security: {keys: <the folder there>}` into its configuration"));
 }
 
 int Init(const Options &options)
@@ -114,7 +114,7 @@ int Add(const Options &options)
 {
     const Keys::FleetKeys fleet(options.Folder);
     fleet.Add(RequestOf(options, options.Node), PeriodOf(options));
-    ShowMade(fleet, options.Node);
+    ShowMade(fleet, options.Node, options.ForTool);
     return Good;
 }
 

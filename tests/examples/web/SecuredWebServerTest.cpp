@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -231,6 +232,28 @@ TEST_F(SecuredWebServerTest, ServesWhoHasTheTokenWhileAnotherAddressGuesses)
         << "slowly, but not locked out";
     for (std::thread &guesser : guessers)
         guesser.join();
+}
+
+TEST_F(SecuredWebServerTest, StopsAtOnceWhileGuessersWait)
+{
+    Start();
+    const std::string guess = "GET /?token=guess HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+    for (int i = 0; i < 6; ++i)
+        TlsClient(Endpoint(), "127.0.0.2").Ask(guess);
+    std::vector<std::thread> guessers;
+    std::atomic<int> refused{0};
+    for (int i = 0; i < 8; ++i)
+        guessers.emplace_back(
+            [&]
+            {
+                if (TlsClient(Endpoint(), "127.0.0.2").Ask(guess).empty())
+                    ++refused;
+            });
+    ASSERT_TRUE(Becomes([this] { return _server->Count().Connections == 14; }));
+    _server->Stop();
+    for (std::thread &guesser : guessers)
+        guesser.join();
+    EXPECT_GT(refused, 0) << "those that waited were not answered any more";
 }
 
 TEST_F(SecuredWebServerTest, TellsWhoSpeaksNoTlsThatItShould)
