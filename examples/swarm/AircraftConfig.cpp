@@ -18,13 +18,19 @@ std::string AircraftOf(const std::string &visionNode)
 
 void CompleteAircraftConfig(Rabit::GatewayConfig &config, const std::string &ground)
 {
+    const std::string vision = Names::VisionOf(config.Node);
+    bool takesTargets = false;
     for (Rabit::SubscribeRule &rule : config.Subscribe)
     {
         if (rule.Message == "SearchArea")
             rule.From = {ground};
-        if (rule.Message == "Targets")
-            rule.From = {Names::VisionOf(config.Node)};
+        if (rule.Message != "Targets")
+            continue;
+        rule.From = {vision};
+        takesTargets = true;
     }
+    if (!takesTargets)
+        config.Subscribe.push_back({.Message = "Targets", .Type = "Uav::Targets", .From = {vision}});
     Rabit::ValidateGatewayConfig(config);
 }
 
