@@ -17,6 +17,8 @@ constexpr EntityId ParticipantWriter = 0x000100c2;
 constexpr EntityId PublicationsWriter = 0x000003c2;
 constexpr EntityId SubscriptionsWriter = 0x000004c2;
 constexpr EntityId LivelinessWriter = 0x000200c2;
+// Of DDS Security: writes the messages of handshakes.
+constexpr EntityId HandshakeWriter = 0x000201c3;
 
 // Whether an entity is one of the protocol's own.
 bool IsBuiltin(EntityId entity);

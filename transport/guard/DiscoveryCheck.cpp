@@ -5,6 +5,7 @@
 
 #include "guard/DeliveryCheck.h"
 #include "guard/RtpsReader.h"
+#include "guard/TokenCheck.h"
 
 namespace Rabit::Rtps
 {
@@ -51,6 +52,12 @@ enum Parameter : std::uint16_t
     EntityName = 0x0062,
     KeyHash = 0x0070,
     DataRepresentation = 0x0073,
+    // OMG DDS Security 1.1, 7.4.1
+    IdentityToken = 0x1001,
+    PermissionsToken = 0x1002,
+    EndpointSecurityInfo = 0x1004,
+    ParticipantSecurityInfo = 0x1005,
+    IdentityStatusToken = 0x1006,
     DisablePositiveAcks = 0x8005
 };
 
@@ -192,6 +199,30 @@ std::size_t FixedSize(std::uint16_t id)
     }
 }
 
+bool IsOneToken(RtpsReader value)
+{
+    return IsToken(value) && value.Left() < 4;
+}
+
+// Whether the parameter is sound, of those of DDS Security; `wanted` is false afterwards if it is none.
+bool CheckSecurity(std::uint16_t id, const RtpsReader &value, bool &wanted)
+{
+    constexpr std::size_t InfoSize = 8;
+    switch (id)
+    {
+        case IdentityToken:
+        case PermissionsToken:
+        case IdentityStatusToken:
+            return IsOneToken(value);
+        case EndpointSecurityInfo:
+        case ParticipantSecurityInfo:
+            return value.Left() == InfoSize;
+        default:
+            wanted = false;
+            return true;
+    }
+}
+
 // Whether the parameter is sound; `wanted` is false afterwards if we have no use for it.
 bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
                     std::span<const std::uint8_t> bytes, bool littleEndian, Found &found, bool &wanted)
@@ -269,7 +300,7 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
 }
 
 std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &sender,
-                                            std::span<std::uint8_t> list, bool littleEndian, bool keepOthers)
+                                            std::span<std::uint8_t> list, bool littleEndian, bool secured)
 {
     RtpsReader rest(list, littleEndian);
     Found found;
@@ -300,7 +331,15 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
         {
             found.Digested(id, value);
         }
-        if (!wanted && !keepOthers)
+        if (!wanted && secured)
+        {
+            wanted = true;
+            if (!CheckSecurity(id, RtpsReader(value, littleEndian), wanted))
+            {
+                return std::nullopt;
+            }
+        }
+        if (!wanted)
         {
             list[at] = list[at + 1] = Pad;
         }
@@ -319,7 +358,7 @@ bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payl
 }  // namespace
 
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
-                                           std::span<std::uint8_t> payload, bool keepOthers)
+                                           std::span<std::uint8_t> payload, bool secured)
 {
     constexpr std::size_t EncapsulationSize = 4;
     constexpr std::uint8_t BigEndianList = 2;
@@ -334,7 +373,7 @@ std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &se
         return std::nullopt;
     }
     return CheckParameters(writer, sender, payload.subspan(EncapsulationSize), payload[1] == LittleEndianList,
-                           keepOthers);
+                           secured);
 }
 
 EntityId EntityOf(std::span<const std::uint8_t> guid)

@@ -23,10 +23,10 @@ struct Announcement
 // DeliveryCheck.h), written by `sender`. The vendor believes lengths, counts and identities in there and can
 // be made to read outside of them, to allocate gigabytes, or to fail an assertion; so every parameter that it
 // would read has to be whole, and everything has to be about the sender itself. Parameters that we have no
-// use for are blanked unless `keepOthers`: descriptions of types, for instance, which the vendor would take
-// apart. Nothing if it is unsound.
+// use for are blanked: descriptions of types, for instance, which the vendor would take apart; and what DDS
+// Security has to say unless it is `secured`. Nothing if it is unsound.
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
-                                           std::span<std::uint8_t> payload, bool keepOthers);
+                                           std::span<std::uint8_t> payload, bool secured);
 
 // Whether a key hash names something of the sender's: itself, or one of its endpoints.
 bool IsKeyOf(EntityId writer, const GuidPrefix &sender, std::span<const std::uint8_t> keyHash);

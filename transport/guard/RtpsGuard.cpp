@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "guard/DiscoveryCheck.h"
+#include "guard/ProtectionCheck.h"
 #include "guard/RtpsReader.h"
+#include "guard/TokenCheck.h"
 
 namespace Rabit::Rtps
 {
@@ -28,6 +30,17 @@ void Write(std::span<std::uint8_t> bytes, std::uint32_t value, bool littleEndian
         const std::size_t shift = 8 * (littleEndian ? i : bytes.size() - 1 - i);
         bytes[i] = static_cast<std::uint8_t>(value >> shift);
     }
+}
+
+// What Cyclone DDS says without protection where all has it: that it is alive, and how little those writers
+// of the protocol's own have said that it does not use then.
+bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
+{
+    constexpr std::int64_t Most = 65536;  // one in some seconds: days
+    const bool is = submessage.Kind == SubmessageKind::Heartbeat ||
+                    submessage.Kind == SubmessageKind::AckNack ||
+                    (submessage.Kind == SubmessageKind::Data && delivery.Writer == LivelinessWriter);
+    return is && IsBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
 }
 
 bool HasSize(const Submessage &submessage, std::size_t size)
@@ -77,11 +90,18 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
             passage.Honest = false;
             return {};
         }
-        if (_mode == Mode::Secured && IsSecure(submessage->Kind))
+        if (IsSecured() && IsSecure(submessage->Kind))
         {
-            // What follows may be covered by a signature: nothing of it is changed.
+            const auto size = ProtectedSize(passage.Datagram.subspan(at), at == RtpsHeaderSize);
+            if (!size)
+            {
+                passage.Honest = false;
+                return {};
+            }
+            // It is covered by a signature: nothing of it is changed.
+            rest = passage.Datagram.subspan(at + *size);
             passage.Useful = true;
-            break;
+            continue;
         }
         if (submessage->Kind == SubmessageKind::Statistics && rest.empty())
         {
@@ -177,9 +197,19 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     const bool isSample =
         submessage.Kind == SubmessageKind::Data || submessage.Kind == SubmessageKind::DataFrag;
     auto verdict = Verdict::Pass;
-    if (IsBuiltin(delivery.Writer) && !IsKnownBuiltin(delivery.Writer))
+    const bool isHandshake = IsSecured() && delivery.Writer == HandshakeWriter;
+    if (_mode == Mode::Protected && !isHandshake && delivery.Writer != ParticipantWriter &&
+        !IsOfIdleWriter(submessage, delivery))
     {
-        verdict = _mode == Mode::Secured ? Verdict::Pass : Verdict::Ignore;
+        verdict = Verdict::Refuse;
+    }
+    else if (isHandshake && submessage.Kind == SubmessageKind::HeartbeatFrag)
+    {
+        verdict = Verdict::Ignore;  // of fragments that are put together here
+    }
+    else if (IsBuiltin(delivery.Writer) && !IsKnownBuiltin(delivery.Writer) && !isHandshake)
+    {
+        verdict = IsSecured() ? Verdict::Pass : Verdict::Ignore;
     }
     else if (IsBuiltin(delivery.Writer) && isSample)
     {
@@ -198,16 +228,16 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
 {
     if (submessage.Kind == SubmessageKind::DataFrag)
     {
-        if (_mode == Mode::Secured)
-        {
-            return Verdict::Pass;
-        }
         auto whole = _fragments.Add(passage.Header, delivery, passage.Destination);
         if (!whole.empty())
         {
             passage.Whole.push_back(std::move(whole));
         }
         return Verdict::Ignore;
+    }
+    if (delivery.Writer == HandshakeWriter)
+    {
+        return delivery.Alive && IsGenericMessage(delivery.Payload) ? Verdict::Pass : Verdict::Drop;
     }
     // A short payload that is a key would be taken for the key hash.
     constexpr std::size_t KeySize = 16;
@@ -224,8 +254,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         }
         return Verdict::Pass;
     }
-    const auto announcement =
-        CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload, _mode == Mode::Secured);
+    const auto announcement = CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload, IsSecured());
     if (!announcement)
     {
         return Verdict::Drop;

@@ -35,8 +35,10 @@ public:
         // Only what a datagram shows by itself is checked: what peers say of themselves may come another way,
         // by shared memory.
         StructureOnly,
-        // As StructureOnly, and what DDS Security needs gets through as it is.
-        Secured
+        // As StructureOnly, and what DDS Security needs gets through as it is, if it is sound.
+        Secured,
+        // As Secured, where nothing is said without protection but who is there, and handshakes.
+        Protected
     };
 
     using TimePoint = KnownPeers::TimePoint;
@@ -95,6 +97,7 @@ private:
         std::vector<std::vector<std::uint8_t>> Whole;
     };
 
+    bool IsSecured() const { return _mode == Mode::Secured || _mode == Mode::Protected; }
     // What is left of the datagram; empty if nothing.
     std::span<std::uint8_t> Filter(Passage &passage);
     Verdict Judge(const Submessage &submessage, Passage &passage);

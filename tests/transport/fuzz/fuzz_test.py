@@ -2,11 +2,13 @@
 """Two nodes on loopback while a stranger sends them damaged copies of their own traffic, discovery included: nobody ends,
 their memory stays within its limit, and every queue message between them is delivered.
 
-Usage: fuzz_test.py NODE FUZZER TRANSPORT DATAGRAMS [--content] [--seed N]
+Usage: fuzz_test.py NODE FUZZER TRANSPORT DATAGRAMS [--content | --keys RABIT] [--seed N]
 Without an option everything is damaged but the content of the nodes' own samples, and no message may be in doubt.
 --content: that too. Forged content of a sample with the right number cannot be told from honest content without a
 signature: a link that is told of another life of its receiver takes it for restarted, and messages may be in doubt. All
 others are delivered.
+--keys: everything, of nodes that have keys, which the program RABIT makes: handshakes, tokens and what is encrypted as well. No
+message may be in doubt: whatever is forged is nobody's.
 Needs to make network namespaces; ends with 77 where it may not."""
 
 import argparse
@@ -15,11 +17,13 @@ import pathlib
 import re
 import signal
 import sys
+import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "integration"))
+sys.path[:0] = [str(HERE.parents[1] / "integration"), str(HERE.parent / "security")]
 import harness  # noqa: E402
+from interop_keys import make_keys  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 120
@@ -78,21 +82,26 @@ def main():
     parser.add_argument("count")
     parser.add_argument("--seed", default="1")
     parser.add_argument("--content", action="store_true")
+    parser.add_argument("--keys", metavar="RABIT")
     options = parser.parse_args()
     node, transport, count, seed = options.node, options.transport, options.count, options.seed
     harness.enter_namespace()
     if os.environ[harness.IN_NAMESPACE] != "yes":
         print("skipped: no network namespaces can be made here")
         sys.exit(SKIPPED)
-    with harness.Processes() as processes:
+    names = ("first", "second")
+    with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
+        if options.keys:
+            make_keys(options.keys, pathlib.Path(folder), [(name, transport) for name in names], harness.domain())
         save = os.environ.get("FUZZ_SAVE")
-        keep = not options.content
+        keep = not options.content and not options.keys
         fuzzer = processes.start([options.fuzzer, "--count", count, "--seed", seed, *(["--keep-content"] if keep else []),
                                   *(["--save", save] if save else [])])
         fuzzer.wait_for(re.compile("recording").fullmatch, LIMIT_S)
-        names = ("first", "second")
         nodes = [processes.start([node, "--node", names[i], "--other", names[1 - i], "--transport", transport,
-                                  "--interface", "127.0.0.1", "--count", 1000000000, "--rate", RATE]) for i in (0, 1)]
+                                  "--interface", "127.0.0.1", "--count", 1000000000, "--rate", RATE,
+                                  *(["--keys", pathlib.Path(folder) / "keys" / names[i]] if options.keys else [])])
+                 for i in (0, 1)]
         for each in nodes:
             each.wait_for(re.compile("peer UP").fullmatch, LIMIT_S)
             each.wait_for(re.compile(r"frame life=\d+").fullmatch, LIMIT_S)

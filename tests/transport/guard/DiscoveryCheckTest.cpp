@@ -171,20 +171,25 @@ TEST(DiscoveryCheck, ThereAreNotEndlesslyManyParametersOrLocators)
     EXPECT_FALSE(with(128, Parameter(0x4000, {})));
 }
 
-TEST(DiscoveryCheck, WhatWeHaveNoUseForIsBlankedUnlessItIsToBeKept)
+TEST(DiscoveryCheck, WhatWeHaveNoUseForIsBlanked)
 {
     constexpr std::uint16_t TypeObject = 0x0072;
+    constexpr std::uint16_t EndpointSecurityInfo = 0x1004;
     Bytes payload = WriterData();
     const std::size_t at = payload.size() - 4;
     payload.resize(at);
-    payload = Join({payload, Parameter(TypeObject, Bytes(64, 7)), {1, 0, 0, 0}});
-    const Bytes before = payload;
+    const Bytes object = Parameter(TypeObject, Bytes(64, 7));
+    payload = Join({payload, object, Parameter(EndpointSecurityInfo, Bytes(8, 7)), {1, 0, 0, 0}});
+    const auto nameAt = [&](std::size_t where)
+    {
+        const auto begin = payload.begin() + static_cast<std::ptrdiff_t>(where);
+        return Bytes(begin, begin + 4);
+    };
     ASSERT_TRUE(CheckDiscovery(PublicationsWriter, Sender, payload, true));
-    EXPECT_EQ(payload, before);
+    EXPECT_EQ(nameAt(at), (Bytes{0, 0, 64, 0}));
+    EXPECT_EQ(nameAt(at + object.size()), (Bytes{0x04, 0x10, 8, 0}));
     ASSERT_TRUE(CheckDiscovery(PublicationsWriter, Sender, payload, false));
-    EXPECT_EQ(Bytes(payload.begin() + static_cast<std::ptrdiff_t>(at),
-                    payload.begin() + static_cast<std::ptrdiff_t>(at) + 4),
-              (Bytes{0, 0, 64, 0}));
+    EXPECT_EQ(nameAt(at + object.size()), (Bytes{0, 0, 8, 0}));
 }
 
 TEST(DiscoveryCheck, OnlyAListOfParametersIsAnAnnouncement)

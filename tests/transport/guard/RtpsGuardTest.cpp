@@ -354,7 +354,8 @@ TEST_F(RtpsGuardTest, WhatIsRefusedIsBlankedAndTheRestGetsThrough)
     EXPECT_EQ(Guard.Handed, std::vector<Bytes>{Join({Message(0x01, GapBody(11, 900)), data})});
 }
 
-std::vector<Bytes> Cut(const Bytes &payload, std::uint16_t size, const Bytes &header = Header())
+std::vector<Bytes> Cut(const Bytes &payload, std::uint16_t size, const Bytes &header = Header(),
+                       EntityId writer = 0x000003c2)
 {
     std::vector<Bytes> fragments;
     for (std::size_t at = 0; at < payload.size(); at += size)
@@ -364,7 +365,7 @@ std::vector<Bytes> Cut(const Bytes &payload, std::uint16_t size, const Bytes &he
             begin, begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(size, payload.size() - at)));
         fragments.push_back(
             Join({header, Submessage(DataFrag, Join({{0, 0, 28, 0},
-                                                     Ids(0, 0x000003c2),
+                                                     Ids(0, writer),
                                                      Sequence(2),
                                                      U32(static_cast<std::uint32_t>(at / size + 1)),
                                                      U16(1),
@@ -425,17 +426,100 @@ TEST(RtpsGuardModes, WhereSharedMemoryIsInUseOnlyTheStructureIsChecked)
     EXPECT_TRUE(guard.Handed.empty());
 }
 
+// A token of DDS Security with a name alone.
+Bytes EmptyToken()
+{
+    return Join({Text("DDS:Auth:PKI-DH:1.0"), U32(0), U32(0)});
+}
+
+Bytes WithParameter(Bytes list, std::uint16_t id, const Bytes &value)
+{
+    list.resize(list.size() - 4);
+    return Join({list, Parameter(id, value), {1, 0, 0, 0}});
+}
+
+Bytes Sealed()
+{
+    constexpr std::uint8_t body = 0x30;
+    constexpr std::uint8_t postfix = 0x32;
+    return Join({Submessage(SecurePrefix, Bytes(20)), Submessage(body, Join({{0, 0, 0, 8}, Bytes(8)})),
+                 Submessage(postfix, Bytes(20))});
+}
+
+Bytes Handshake(std::uint32_t tokens)
+{
+    return DataBody(1, Join({{0, 1, 0, 0}, Bytes(96), Text("dds.sec.auth"), U32(tokens), EmptyToken()}),
+                    0x000201c3);
+}
+
 TEST(RtpsGuardModes, WithDdsSecurityItsSubmessagesAndTokensGetThroughAsTheyAre)
 {
     Gate guard(RtpsGuard::Mode::Secured);
-    EXPECT_TRUE(guard.Passes(Join({Message(SecurePrefix, Bytes(32)), Submessage(Gap, Bytes(4))})));
+    EXPECT_TRUE(guard.Passes(Join({Header(), Sealed(), Submessage(Data, DataBody(1), 5)})));
     EXPECT_TRUE(guard.Passes(Message(Data, DataBody(1, Bytes(8), 0xff0003c2), 5)));
-    const Bytes token = Parameter(0x1001, Bytes(16, 7));
-    Bytes data = ParticipantData();
-    data.resize(data.size() - 4);
-    data = Join({data, token, {1, 0, 0, 0}});
+    const Bytes data = WithParameter(ParticipantData(), 0x1001, EmptyToken());
     EXPECT_TRUE(guard.Passes(Message(Data, DataBody(1, data, 0x000100c2), 5)));
+    EXPECT_TRUE(guard.Passes(Message(Data, Handshake(1), 5)));
     EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
+}
+
+TEST(RtpsGuardModes, WithDdsSecurityWhatIsUnsoundOfItIsStopped)
+{
+    Gate guard(RtpsGuard::Mode::Secured);
+    EXPECT_TRUE(guard.Stops(Message(SecurePrefix, Bytes(20))));
+    EXPECT_TRUE(guard.Stops(Message(Data, Handshake(0xffffffff), 5)));
+    const Bytes token = Join({Text("DDS:Auth:PKI-DH:1.0"), U32(0xffffffff), U32(0)});
+    const Bytes data = WithParameter(ParticipantData(), 0x1001, token);
+    EXPECT_TRUE(guard.Stops(Message(Data, DataBody(1, data, 0x000100c2), 5)));
+}
+
+TEST(RtpsGuardModes, BehindSomethingEncryptedTheRestIsCheckedLikeAnyOther)
+{
+    Gate guard(RtpsGuard::Mode::Secured);
+    EXPECT_FALSE(guard.Admit(Join({Header(), Sealed(), Submessage(Gap, GapBody(1, std::int64_t{1} << 32))})));
+    EXPECT_TRUE(guard.Handed.empty());
+    const Bytes sealed = Join({Header(), Sealed()});
+    EXPECT_TRUE(guard.Admit(Join({sealed, Submessage(Statistics, Bytes(56))})));
+    EXPECT_EQ(guard.Handed, std::vector<Bytes>{sealed});
+}
+
+TEST(RtpsGuardModes, WhereAllIsProtectedAnnouncementsOfParticipantsAndHandshakesAreHeardInPlain)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    EXPECT_TRUE(guard.Passes(ParticipantMessage()));
+    EXPECT_TRUE(guard.Passes(Message(Data, Handshake(1), 5)));
+    EXPECT_TRUE(guard.Passes(Join({Header(), Sealed()})));
+    EXPECT_TRUE(guard.Stops(WriterMessage()));
+    EXPECT_TRUE(guard.Stops(Message(Data, DataBody(1), 5)));
+    EXPECT_TRUE(guard.Stops(Message(Data, DataBody(1, Bytes(8), 0xff0003c2), 5)));
+    EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(1, 10, 1))));
+}
+
+TEST(RtpsGuardModes, WhereAllIsProtectedAHeartbeatOfAnIdleBuiltinWriterIsNoForgery)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    EXPECT_TRUE(guard.Passes(Message(Heartbeat, HeartbeatBody(1, 0, 1, 0x000003c2))));
+    EXPECT_TRUE(guard.Passes(Message(Heartbeat, HeartbeatBody(1, 1, 1, 0x000200c2))));
+    EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(1, 100000, 1, 0x000003c2))));
+    EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(100000, 99999, 1, 0x000003c2))));
+    EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(1, 0, 1))));
+}
+
+TEST(RtpsGuardModes, AHandshakeInFragmentsIsHandedOnWhole)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    const Bytes body = Handshake(1);
+    const Bytes payload(body.begin() + 20, body.end());
+    const auto fragments = Cut(payload, 64, Header(), 0x000201c3);
+    for (std::size_t i = 0; i + 1 < fragments.size(); ++i)
+    {
+        EXPECT_TRUE(guard.Admit(fragments[i]));
+        EXPECT_TRUE(guard.Handed.empty());
+    }
+    EXPECT_TRUE(guard.Admit(fragments.back()));
+    ASSERT_EQ(guard.Handed.size(), 1u);
+    EXPECT_TRUE(std::search(guard.Handed[0].begin(), guard.Handed[0].end(), payload.begin(), payload.end()) !=
+                guard.Handed[0].end());
 }
 
 // With AddressSanitizer this tells whether anything outside of the datagram is read or written.

@@ -7,7 +7,6 @@ FLEETS: how many fresh fleets for each pair and level."""
 
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 import threading
@@ -15,39 +14,11 @@ import threading
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
 import harness  # noqa: E402
+from interop_keys import make_keys  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 90
 ORDERS = 100
-
-CONFIG = """node: {name}
-domain: {domain}
-transport: {transport}
-publish:
-  - {{message: Counter, type: Interop::Counter, qos: telemetry}}
-  - {{message: Frame, type: Interop::Frame}}
-subscribe:
-  - {{message: Counter, type: Interop::Counter}}
-  - {{message: Frame, type: Interop::Frame}}
-accept:
-  - {{queue: Orders, types: [Interop::Order]}}
-"""
-
-
-def run(argv):
-    done = subprocess.run([str(a) for a in argv], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise AssertionError(f"{argv}: {done.stdout}{done.stderr}")
-
-
-def make_keys(rabit, folder, nodes, domain):
-    """A new fleet; `nodes` are pairs of name and transport."""
-    run([rabit, "keys", "init", folder / "keys"])
-    for name, transport in nodes:
-        config = folder / f"{name}.yaml"
-        config.write_text(CONFIG.format(name=name, transport=transport, domain=domain))
-        run([rabit, "keys", "add", name, "--keys", folder / "keys", "--config", config])
-
 
 class Fleet:
     """Two nodes of a fleet of their own."""

@@ -101,9 +101,10 @@ Rtps::RtpsGuard::Mode GuardMode(const TransportSettings &settings)
     using Mode = Rtps::RtpsGuard::Mode;
     const std::string config = settings.BackendConfig.empty() ? "" : Read(settings.BackendConfig);
     const auto names = [&](const char *element) { return config.find(element) != std::string::npos; };
-    return settings.Security || names("Security>") ? Mode::Secured
-           : names("SharedMemory>")                ? Mode::StructureOnly
-                                                   : Mode::Full;
+    return settings.Security        ? Mode::Protected
+           : names("Security>")     ? Mode::Secured
+           : names("SharedMemory>") ? Mode::StructureOnly
+                                    : Mode::Full;
 }
 
 std::string MakeDomainConfig(const TransportSettings &settings)

@@ -100,6 +100,10 @@ std::uint32_t DiscoveryGroupPort(const TransportSettings &settings,
 RtpsGuard::Mode GuardMode(const TransportSettings &settings,
                           const rtps::RTPSParticipantAttributes &attributes)
 {
+    if (settings.Security)
+    {
+        return RtpsGuard::Mode::Protected;
+    }
     if (rtps::PropertyPolicyHelper::find_property(attributes.properties, "dds.sec.auth.plugin") != nullptr)
     {
         return RtpsGuard::Mode::Secured;

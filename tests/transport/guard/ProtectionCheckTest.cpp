@@ -1,0 +1,120 @@
+// What DDS Security puts around submessages: whether it is whole.
+#include "guard/ProtectionCheck.h"
+
+#include <gtest/gtest.h>
+
+#include "guard/RtpsBytes.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using Rabit::Rtps::ProtectedSize;
+
+constexpr std::uint8_t Body = 0x30;
+constexpr std::uint8_t Postfix = 0x32;
+constexpr std::uint8_t MessagePrefix = 0x33;
+constexpr std::uint8_t MessagePostfix = 0x34;
+
+Bytes BigEndian(std::uint32_t value)
+{
+    return {static_cast<std::uint8_t>(value >> 24), static_cast<std::uint8_t>(value >> 16),
+            static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value)};
+}
+
+Bytes Prefix(std::uint8_t kind = SecurePrefix)
+{
+    return Submessage(kind, Bytes(20, 7));
+}
+
+Bytes Tag(std::uint8_t kind = Postfix, std::uint32_t said = 0, std::size_t there = 0)
+{
+    return Submessage(kind, Join({Bytes(16, 9), BigEndian(said), Bytes(20 * there, 5)}));
+}
+
+Bytes Sealed(std::uint32_t said, std::size_t there)
+{
+    return Submessage(Body, Join({BigEndian(said), Bytes(there, 3)}));
+}
+
+bool IsWhole(Bytes bytes, bool wholeMessage = false)
+{
+    return ProtectedSize(bytes, wholeMessage) == bytes.size();
+}
+
+bool IsUnsound(Bytes bytes, bool wholeMessage = false)
+{
+    return !ProtectedSize(bytes, wholeMessage);
+}
+
+TEST(ProtectionCheck, AnEncryptedOrSignedSubmessageIsPrefixContentAndTag)
+{
+    EXPECT_TRUE(IsWhole(Join({Prefix(), Sealed(40, 40), Tag()})));
+    EXPECT_TRUE(IsWhole(Join({Prefix(), Sealed(38, 40), Tag(Postfix, 2, 2)})));
+    EXPECT_TRUE(IsWhole(Join({Prefix(), Submessage(Data, DataBody(1), 5), Tag()})));
+}
+
+TEST(ProtectionCheck, WhatFollowsTheTagIsLeftToTheCaller)
+{
+    Bytes group = Join({Prefix(), Sealed(40, 40), Tag()});
+    const std::size_t size = group.size();
+    group = Join({group, Submessage(Data, DataBody(1), 5)});
+    EXPECT_EQ(ProtectedSize(group, false), size);
+}
+
+TEST(ProtectionCheck, AWholeMessageIsProtectedBehindTheHeaderAlone)
+{
+    const Bytes message = Join({Prefix(MessagePrefix), Source(Sender), Submessage(Data, DataBody(1), 5),
+                                Prefix(), Sealed(40, 40), Tag(), Tag(MessagePostfix)});
+    EXPECT_TRUE(IsWhole(message, true));
+    EXPECT_TRUE(IsUnsound(message, false));
+    EXPECT_TRUE(IsWhole(Join({Prefix(MessagePrefix), Sealed(40, 40), Tag(MessagePostfix)}), true));
+}
+
+// The vendor walks on from lengths that do not fit, adds them up, and read a gigabyte from a datagram of a
+// few hundred bytes: a segmentation fault, before any signature was looked at.
+TEST(ProtectionCheck, LengthsBeyondTheDatagramAreUnsound)
+{
+    Bytes long1 = Submessage(Data, DataBody(1), 5);
+    long1[2] = long1[3] = 0xff;
+    EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), long1, Tag(MessagePostfix)}), true));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), long1, Tag()})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(44, 40), Tag()})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(0xffffffff, 40), Tag()})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), Sealed(0x10000000, 40), Tag(MessagePostfix)}), true));
+}
+
+TEST(ProtectionCheck, APrefixOfAnotherSizeIsUnsound)
+{
+    EXPECT_TRUE(IsUnsound(Join({Submessage(SecurePrefix, Bytes(16)), Sealed(40, 40), Tag()})));
+    EXPECT_TRUE(IsUnsound(Join({Submessage(SecurePrefix, Bytes(24)), Sealed(40, 40), Tag()})));
+}
+
+TEST(ProtectionCheck, ATagHasAsManyReceiversAsItSays)
+{
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(40, 40), Tag(Postfix, 2, 1)})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(40, 40), Tag(Postfix, 0x0ccccccd, 1)})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(40, 40), Submessage(Postfix, Bytes(16))})));
+}
+
+TEST(ProtectionCheck, WithoutATagOrWithTheOtherOneItIsUnsound)
+{
+    EXPECT_TRUE(IsUnsound(Prefix()));
+    EXPECT_TRUE(IsUnsound(Prefix(MessagePrefix), true));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(40, 40)})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(40, 40), Tag(MessagePostfix)})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), Sealed(40, 40)}), true));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), Submessage(Data, DataBody(1), 5)}), true));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), Tag(MessagePostfix)}), true));
+}
+
+TEST(ProtectionCheck, PartsOfItAloneAreUnsound)
+{
+    EXPECT_TRUE(IsUnsound(Sealed(40, 40)));
+    EXPECT_TRUE(IsUnsound(Tag()));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Prefix(), Sealed(40, 40), Tag(), Tag()})));
+    EXPECT_TRUE(IsUnsound(
+        Join({Prefix(MessagePrefix), Submessage(Statistics, Bytes(56)), Tag(MessagePostfix)}), true));
+}
+
+}  // namespace

@@ -1,0 +1,81 @@
+// What participants show each other before they are authenticated: whether it is as long as it says.
+#include "guard/TokenCheck.h"
+
+#include <gtest/gtest.h>
+
+#include "guard/RtpsBytes.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using Rabit::Rtps::IsGenericMessage;
+using Rabit::Rtps::IsToken;
+using Rabit::Rtps::RtpsReader;
+
+Bytes Octets(std::size_t size)
+{
+    return Join({U32(static_cast<std::uint32_t>(size)), Bytes((size + 3) / 4 * 4, 1)});
+}
+
+Bytes Token(std::uint32_t properties = 1, std::uint32_t binary = 1)
+{
+    return Join({Text("DDS:Auth:PKI-DH:1.0+Req"), U32(properties), Text("dds.cert.sn"), Text("uav1"),
+                 U32(binary), Text("c.id"), Octets(501)});
+}
+
+Bytes Generic(const Bytes &tokens)
+{
+    return Join({{0, 1, 0, 0}, Bytes(96), Text("dds.sec.auth"), tokens});
+}
+
+bool Holds(const Bytes &bytes)
+{
+    RtpsReader reader(bytes, true);
+    return IsToken(reader) && reader.Left() == 0;
+}
+
+TEST(TokenCheck, ATokenIsANameAndProperties)
+{
+    EXPECT_TRUE(Holds(Token()));
+    EXPECT_TRUE(Holds(Join({Text("DDS:Access"), U32(0), U32(0)})));
+}
+
+TEST(TokenCheck, AMessageOfAHandshakeHasTokens)
+{
+    EXPECT_TRUE(IsGenericMessage(Generic(Join({U32(1), Token()}))));
+    EXPECT_TRUE(IsGenericMessage(Generic(Join({U32(2), Token(), Token()}))));
+    Bytes unfilled = Generic(Join({U32(1), Token()}));
+    unfilled.resize(unfilled.size() - 3);
+    EXPECT_TRUE(IsGenericMessage(unfilled));
+}
+
+// The vendor made room for four billion of them: the process ended.
+TEST(TokenCheck, CountsOfWhatIsNotThereAreRefused)
+{
+    EXPECT_FALSE(Holds(Token(0xffffffff)));
+    EXPECT_FALSE(Holds(Token(1, 0xffffffff)));
+    EXPECT_FALSE(Holds(Token(1, 65)));
+    EXPECT_FALSE(IsGenericMessage(Generic(Join({U32(0xffffffff), Token()}))));
+    EXPECT_FALSE(IsGenericMessage(Generic(Join({U32(2), Token()}))));
+}
+
+TEST(TokenCheck, LengthsBeyondTheEndAreRefused)
+{
+    EXPECT_FALSE(Holds(U32(0xffffffff)));
+    EXPECT_FALSE(Holds(Join({Text("a"), U32(0), U32(1), Text("c.id"), U32(0xfffffff0), Bytes(16)})));
+    Bytes cut = Generic(Join({U32(1), Token()}));
+    cut.resize(cut.size() - 8);
+    EXPECT_FALSE(IsGenericMessage(cut));
+    EXPECT_FALSE(IsGenericMessage(Bytes(3)));
+    EXPECT_FALSE(IsGenericMessage(Generic({})));
+}
+
+TEST(TokenCheck, OtherEncodingsAreRefused)
+{
+    Bytes message = Generic(Join({U32(1), Token()}));
+    message[1] = 3;
+    EXPECT_FALSE(IsGenericMessage(message));
+}
+
+}  // namespace

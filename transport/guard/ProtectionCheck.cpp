@@ -1,0 +1,133 @@
+#include "guard/ProtectionCheck.h"
+
+#include "guard/RtpsMessage.h"
+#include "guard/RtpsReader.h"
+
+namespace Rabit::Rtps
+{
+
+namespace
+{
+
+// OMG DDS Security 1.1, 7.3.6.2
+enum Kind : std::uint8_t
+{
+    SecureBody = 0x30,
+    SecurePrefix = 0x31,
+    SecurePostfix = 0x32,
+    MessagePrefix = 0x33,
+    MessagePostfix = 0x34
+};
+
+std::uint8_t KindOf(const Submessage &submessage)
+{
+    return static_cast<std::uint8_t>(submessage.Kind);
+}
+
+bool IsSecure(const Submessage &submessage)
+{
+    return submessage.Kind >= SubmessageKind::FirstSecure && submessage.Kind <= SubmessageKind::LastSecure;
+}
+
+// 9.5.2.3 and 9.5.3.3.1: kind and number of the key, a session, and the rest of the start value.
+bool IsPrefix(const Submessage &submessage)
+{
+    constexpr std::size_t CryptoHeaderSize = 20;
+    return submessage.Body().size() == CryptoHeaderSize;
+}
+
+// What is encrypted, after its own length.
+bool IsSealed(const Submessage &submessage)
+{
+    RtpsReader body(submessage.Body(), false);
+    const std::uint32_t size = body.U32();
+    return body.IsGood() && size <= body.Left() && body.Left() - size < 4;
+}
+
+// A tag for all, and one for each of those receivers who have one of their own.
+bool IsPostfix(const Submessage &submessage)
+{
+    constexpr std::size_t TagSize = 16;
+    constexpr std::size_t ReceiverTagSize = 4 + TagSize;
+    RtpsReader body(submessage.Body(), false);
+    body.Skip(TagSize);
+    const std::uint32_t receivers = body.U32();
+    return body.IsGood() && body.Left() % ReceiverTagSize == 0 && body.Left() / ReceiverTagSize == receivers;
+}
+
+// The one submessage that is between a prefix and a postfix, and the postfix.
+bool TakeContent(std::span<std::uint8_t> &rest)
+{
+    if (rest.empty())
+    {
+        return false;
+    }
+    const auto content = TakeSubmessage(rest);
+    if (!content || rest.empty() ||
+        (KindOf(*content) == SecureBody ? !IsSealed(*content) : KindOf(*content) == 0 || IsSecure(*content)))
+    {
+        return false;
+    }
+    const auto postfix = TakeSubmessage(rest);
+    return postfix && KindOf(*postfix) == SecurePostfix && IsPostfix(*postfix);
+}
+
+// What is between the prefix of a message and its postfix, and the postfix, with which the message ends but
+// for statistics.
+bool TakeMessage(std::span<std::uint8_t> &rest)
+{
+    for (bool first = true; !rest.empty(); first = false)
+    {
+        const auto submessage = TakeSubmessage(rest);
+        if (!submessage)
+        {
+            return false;
+        }
+        switch (KindOf(*submessage))
+        {
+            case SecureBody:
+            {
+                if (!first || !IsSealed(*submessage) || rest.empty())
+                {
+                    return false;
+                }
+                const auto postfix = TakeSubmessage(rest);
+                return postfix && KindOf(*postfix) == MessagePostfix && IsPostfix(*postfix);
+            }
+            case SecurePrefix:
+                if (!IsPrefix(*submessage) || !TakeContent(rest))
+                {
+                    return false;
+                }
+                break;
+            case MessagePostfix:
+                return !first && IsPostfix(*submessage);
+            default:
+                if (KindOf(*submessage) == 0 || IsSecure(*submessage) ||
+                    submessage->Kind >= SubmessageKind::Statistics)
+                {
+                    return false;
+                }
+                break;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+std::optional<std::size_t> ProtectedSize(std::span<std::uint8_t> from, bool wholeMessage)
+{
+    auto rest = from;
+    const auto prefix = TakeSubmessage(rest);
+    if (!prefix || !IsPrefix(*prefix))
+    {
+        return std::nullopt;
+    }
+    const bool sound = KindOf(*prefix) == SecurePrefix || !wholeMessage
+                           ? KindOf(*prefix) == SecurePrefix && TakeContent(rest)
+                           : KindOf(*prefix) == MessagePrefix && TakeMessage(rest);
+    return sound ? std::optional(from.size() - rest.size()) : std::nullopt;
+}
+
+}  // namespace Rabit::Rtps
