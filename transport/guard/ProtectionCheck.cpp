@@ -44,9 +44,20 @@ bool IsSealed(const Submessage &submessage)
     return body.IsGood() && size <= body.Left() && body.Left() - size < 4;
 }
 
+// Whether the vendor may see it between a prefix and a postfix, where all ends are known.
+bool IsContent(const Submessage &submessage)
+{
+    return KindOf(submessage) != 0 && !IsSecure(submessage) && submessage.Kind < SubmessageKind::Statistics;
+}
+
 // A tag for all, and one for each of those receivers who have one of their own.
 bool IsPostfix(const Submessage &submessage)
 {
+    const bool endsWithTheDatagram = submessage.Whole[2] == 0 && submessage.Whole[3] == 0;
+    if (endsWithTheDatagram)
+    {
+        return false;  // the vendor takes it for empty
+    }
     constexpr std::size_t TagSize = 16;
     constexpr std::size_t ReceiverTagSize = 4 + TagSize;
     RtpsReader body(submessage.Body(), false);
@@ -64,7 +75,7 @@ bool TakeContent(std::span<std::uint8_t> &rest)
     }
     const auto content = TakeSubmessage(rest);
     if (!content || rest.empty() ||
-        (KindOf(*content) == SecureBody ? !IsSealed(*content) : KindOf(*content) == 0 || IsSecure(*content)))
+        (KindOf(*content) == SecureBody ? !IsSealed(*content) : !IsContent(*content)))
     {
         return false;
     }
@@ -103,8 +114,7 @@ bool TakeMessage(std::span<std::uint8_t> &rest)
             case MessagePostfix:
                 return !first && IsPostfix(*submessage);
             default:
-                if (KindOf(*submessage) == 0 || IsSecure(*submessage) ||
-                    submessage->Kind >= SubmessageKind::Statistics)
+                if (!IsContent(*submessage))
                 {
                     return false;
                 }

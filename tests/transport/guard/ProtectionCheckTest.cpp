@@ -108,13 +108,28 @@ TEST(ProtectionCheck, WithoutATagOrWithTheOtherOneItIsUnsound)
     EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), Tag(MessagePostfix)}), true));
 }
 
+// The assertion at RTPSStatisticsMessages.hpp:128, which the vendor looks for wherever they are.
+TEST(ProtectionCheck, StatisticsWithinAreUnsound)
+{
+    const Bytes statistics = Submessage(Statistics, Bytes(56));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), statistics, Tag()})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), statistics, Tag(MessagePostfix)}), true));
+    EXPECT_TRUE(
+        IsUnsound(Join({Prefix(MessagePrefix), Prefix(), statistics, Tag(), Tag(MessagePostfix)}), true));
+}
+
+TEST(ProtectionCheck, ATagSaysHowLongItIs)
+{
+    Bytes tag = Tag();
+    tag[2] = 0;
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Sealed(40, 40), tag})));
+}
+
 TEST(ProtectionCheck, PartsOfItAloneAreUnsound)
 {
     EXPECT_TRUE(IsUnsound(Sealed(40, 40)));
     EXPECT_TRUE(IsUnsound(Tag()));
     EXPECT_TRUE(IsUnsound(Join({Prefix(), Prefix(), Sealed(40, 40), Tag(), Tag()})));
-    EXPECT_TRUE(IsUnsound(
-        Join({Prefix(MessagePrefix), Submessage(Statistics, Bytes(56)), Tag(MessagePostfix)}), true));
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 // A session in a process of its own, with whatever keys it is given: what of them is wrong is left to the
-// vendors to find. For strangers_test.py:
-//   secured_peer <transport> <node> <domain> <folder> <level>
-// The folder is `-` for none. Writes and reads the topic State, in the partition of its node and of all, and
-// prints a line for each thing that it sees:
+// vendors to find. For the tests of this folder:
+//   secured_peer <transport> <node> <domain> <folder> <level> [<interface> [<lease in seconds> [words]]]
+// The folder is `-` for none. Writes and reads the topic State, in the partition of its node and of all; with
+// `words` it is one of strings as ROS 2 has them, for programs of the vendors' own. Prints a line for each
+// thing that it sees:
 //   open                     the session, its writer and its reader are there
 //   failed <why>             they are not
 //   appeared <node>          and `gone <node>`
 //   heard <node> <count>     the first sample of that node, and the tenth, the twentieth ...
+//   said <node> <text>       a sample of that node does not have its name as text; the first ten
 //   log <line>
 // Ends with its standard input.
 #include <rabit/transport/TransportFactory.h>
@@ -15,11 +17,14 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "../conformance/TestSample.h"
 #include "keys/Certificates.h"
@@ -55,14 +60,21 @@ std::string FleetIn(const std::string &file)
     return Rabit::Keys::FleetOf(*Rabit::Keys::ReadCertificate(Rabit::Keys::ReadFile(file), file));
 }
 
-Rabit::TransportSettings SettingsFrom(char **argv)
+struct Options
+{
+    std::string Interface = "lo";
+    int LeaseSeconds = 10;
+    bool Words = false;
+};
+
+Rabit::TransportSettings SettingsFrom(char **argv, const Options &options)
 {
     Rabit::TransportSettings settings;
     settings.Node = argv[2];
     settings.Incarnation = 1;
     settings.Domain = std::stoi(argv[3]);
-    settings.Interfaces = {"lo"};
-    settings.Lease = std::chrono::seconds(10);
+    settings.Interfaces = {options.Interface};
+    settings.Lease = std::chrono::seconds(options.LeaseSeconds);
     settings.AnnouncementPeriod = std::chrono::milliseconds(500);
     settings.Log = [](const std::string &line) { Say("log " + line); };
     const std::string folder = argv[4];
@@ -86,26 +98,76 @@ Rabit::TransportSettings SettingsFrom(char **argv)
     return settings;
 }
 
-void Run(char **argv)
+// Behind the encapsulation is a string in the one, and a key before it in the other.
+std::string TextIn(Rabit::SampleBytes bytes, bool words)
+{
+    const std::vector<std::uint8_t> key(4);
+    std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
+    if (words && whole.size() >= 4)
+    {
+        whole.insert(whole.begin() + 4, key.begin(), key.end());
+    }
+    return Rabit::Conformance::TextOf(whole);
+}
+
+Rabit::Conformance::RawSample SampleOf(const std::string &text, bool words)
+{
+    if (!words)
+    {
+        return Rabit::Conformance::MakeSample(1, text);
+    }
+    const auto size = static_cast<std::uint8_t>(text.size() + 1);
+    std::vector<std::uint8_t> body = {size, 0, 0, 0};
+    body.insert(body.end(), text.begin(), text.end());
+    body.push_back(0);
+    return Rabit::Conformance::RawSample(std::move(body));
+}
+
+class Listener
+{
+public:
+    explicit Listener(bool words) : _words(words) {}
+
+    void operator()(Rabit::SampleBytes bytes, const Rabit::SampleInfo &info)
+    {
+        const std::string node(info.Node.empty() ? "nobody" : info.Node);
+        if (!info.Alive)
+        {
+            return;
+        }
+        const unsigned count = _counts.Next(node);
+        if (count == 1 || count % 10 == 0)
+        {
+            Say("heard " + node + " " + std::to_string(count));
+        }
+        const std::string text = TextIn(bytes, _words);
+        if (text != node && _others.Next(node) <= 10)
+        {
+            Say("said " + node + " " + text);
+        }
+    }
+
+private:
+    const bool _words;
+    Counts _counts;
+    Counts _others;
+};
+
+void Run(char **argv, const Options &options)
 {
     using namespace Rabit::Conformance;
-    const Rabit::TransportSettings settings = SettingsFrom(argv);
+    const Rabit::TransportSettings settings = SettingsFrom(argv, options);
     const auto session = Rabit::MakeTransport(argv[1])->Open(
         settings, [](const Rabit::PeerEvent &event)
         { Say((event.What == Rabit::PeerEvent::Kind::Appeared ? "appeared " : "gone ") + event.Node); });
-    Counts counts;
-    const auto reader =
-        session->CreateReader(TextTopic("State"), Telemetry(), {"*"},
-                              [&counts](Rabit::SampleBytes, const Rabit::SampleInfo &info)
-                              {
-                                  const std::string node(info.Node.empty() ? "nobody" : info.Node);
-                                  const unsigned count = info.Alive ? counts.Next(node) : 0;
-                                  if (count == 1 || (count > 0 && count % 10 == 0))
-                                  {
-                                      Say("heard " + node + " " + std::to_string(count));
-                                  }
-                              });
-    const auto writer = session->CreateWriter(TextTopic("State"), Telemetry(), {"", settings.Node});
+    const Rabit::TopicDescription topic =
+        options.Words ? Rabit::TopicDescription{"State", "std_msgs::msg::dds_::String_", {}}
+                      : TextTopic("State");
+    Listener listener(options.Words);
+    const auto reader = session->CreateReader(
+        topic, Telemetry(), options.Words ? std::vector<std::string>{"*", ""} : std::vector<std::string>{"*"},
+        std::ref(listener));
+    const auto writer = session->CreateWriter(topic, Telemetry(), {"", settings.Node});
     Say("open");
     std::atomic<bool> stopped{false};
     std::thread writing(
@@ -113,7 +175,7 @@ void Run(char **argv)
         {
             while (!stopped)
             {
-                writer->Write(MakeSample(1, settings.Node), 1);
+                writer->Write(SampleOf(settings.Node, options.Words), 1);
                 std::this_thread::sleep_for(std::chrono::milliseconds(100));
             }
         });
@@ -128,14 +190,19 @@ void Run(char **argv)
 
 int main(int argc, char **argv)
 {
-    if (argc != 6)
+    if (argc < 6 || argc > 9)
     {
-        std::cerr << "usage: secured_peer <transport> <node> <domain> <folder> <level>\n";
+        std::cerr << "usage: secured_peer <transport> <node> <domain> <folder> <level> [<interface> [<lease> "
+                     "[words]]]\n";
         return 2;
     }
     try
     {
-        Run(argv);
+        Options options;
+        options.Interface = argc > 6 ? argv[6] : options.Interface;
+        options.LeaseSeconds = argc > 7 ? std::stoi(argv[7]) : options.LeaseSeconds;
+        options.Words = argc > 8;
+        Run(argv, options);
         return 0;
     }
     catch (const std::exception &error)
