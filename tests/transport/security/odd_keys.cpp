@@ -1,7 +1,8 @@
 // Makes keys as the program `rabit` would not, for strangers_test.py:
 //   odd_keys init <folder> <fleet>
-//   odd_keys add <folder> <node> <transport> <domain> <begins in days> <days> [<name>]
-//                                     for the topic State, in the partition of that name instead of its own
+//   odd_keys add <folder> <node> <transport> <domain> <begins in days> <days> [<name> [<topic>]]
+//                                     for the topic State, in the partition of that name instead of its own;
+//                                     it may write that topic instead
 //   odd_keys revoke <folder> <node>                      whose folder stays
 //   odd_keys sign_with_identity <folder> <node>          its permissions, by the wrong authority
 #include <ctime>
@@ -27,7 +28,7 @@ void Add(const std::vector<std::string> &words)
     const std::string &node = words.at(2);
     const std::string partition = words.size() > 7 ? words[7] : node;
     const Access access{.Domain = std::stoi(words.at(4)),
-                        .Publish = {{"State", {"", partition}}},
+                        .Publish = {{words.size() > 8 ? words[8] : "State", {"", partition}}},
                         .Subscribe = {{"State", {"*"}}}};
     FleetKeys(words.at(1))
         .Add({.Node = node, .Transport = words.at(3), .Access = access},

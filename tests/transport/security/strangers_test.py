@@ -147,6 +147,14 @@ def anothers_name(case, _):
     return case.add(case.fleet, "stranger", case.stranger, more=["member0"])
 
 
+def other_topic(case, _):
+    return case.add(case.fleet, "stranger", case.stranger, more=["stranger", "Other"])
+
+
+def other_partition(case, _):
+    return case.add(case.fleet, "stranger", case.stranger, more=["member0"])
+
+
 REFUSED = ["itself: failed"]
 CASES = [
     ("no keys", no_keys, ["cyclonedds: .*has not the keys of stranger", "fastdds: .*itself stranger was not let in"]),
@@ -162,6 +170,8 @@ CASES = [
     ("permissions for another domain", other_domain, []),
     ("less protected", less_protected, ["cyclonedds: .*security_attributes mismatch",
                                         "fastdds: .*itself stranger has another level of security"]),
+    ("writes what it may not", other_topic, REFUSED),
+    ("writes where it may not, as to a queue", other_partition, REFUSED),
     ("another's name", anothers_name, ["itself member0 and has not the keys of member0"]),
 ]
 
