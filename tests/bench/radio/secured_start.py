@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""How long nodes that start at once need to find each other on a radio, without keys and with them: until all saw all others UP.
+
+Usage: secured_start.py [--nodes N] [--kbit RATE]... [--transports NAME,...] [--levels NAME,...] [--limit SECONDS] PROGRAMS
+PROGRAMS is the folder of the programs (build/release/bin). Each node publishes a tick a second, which all others follow. Exit
+code 77: this machine does not allow it."""
+
+import argparse
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import measures
+from rows import RABIT
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
+import field  # noqa: E402
+import radio_field  # noqa: E402
+
+CONFIG = """node: {node}
+domain: {domain}
+transport: {transport}
+publish: [{{message: Tick, type: Ledger::Tick, qos: telemetry}}]
+subscribe: [{{message: Tick, type: Ledger::Tick}}]
+accept: [{{queue: Notes, types: [Ledger::Note]}}]
+"""
+
+
+def run(*argv):
+    subprocess.run([str(word) for word in argv], check=True, capture_output=True)
+
+
+def make_keys(programs, folder, nodes, transport):
+    run(programs / "rabit", "keys", "init", folder / "keys")
+    for node in nodes:
+        config = folder / f"{node}.yaml"
+        config.write_text(CONFIG.format(node=node, domain=measures.DOMAIN, transport=transport))
+        run(programs / "rabit", "keys", "add", node, "--keys", folder / "keys", "--config", config)
+
+
+def start(options, transport, level, kbit):
+    programs = pathlib.Path(options.programs)
+    nodes = [f"uav{number}" for number in range(1, options.nodes + 1)]
+    with tempfile.TemporaryDirectory() as folder, \
+            radio_field.RadioField(programs / "radio", nodes, {"kbit": kbit}) as ground:
+        keys = pathlib.Path(folder)
+        if level != "none":
+            make_keys(programs, keys, nodes, transport)
+        fleet = measures.Fleet(ground, programs, RABIT, transport)
+        ground.reset()
+        began = time.monotonic()
+        for node in nodes:
+            more = [] if level == "none" else ["--keys", keys / "keys" / node] + (["--sign"] if level == "sign" else [])
+            fleet.start_ledger(node, "--ticks", "--tick-period-ns", 1_000_000_000, *more)
+        up = fleet.wait_until_all_up(options.limit)
+        took, counters = time.monotonic() - began, ground.counters()
+        dropped = sum(each["dropped"]["bytes"] for each in counters["nodes"].values())
+        offered = sum(each["offered"]["bytes"] for each in counters["nodes"].values())
+        wait = max(each["longest_wait_ms"] for each in counters["nodes"].values())
+        time.sleep(options.settle)
+        ground.reset()
+        time.sleep(options.settle)
+        idle = ground.counters()["sent"]["ip_bytes"] / options.settle
+        peers = [event for life in fleet.ledgers().all_lives() for event in life.of("peer")]
+        lost = sum(event["state"] in ("STALE", "LOST") for event in peers)
+        print(f"| {measures_name(transport)} | {level} | {kbit} | {'never' if up is None else f'{up:.1f}'} | "
+              f"{counters['sent']['ip_bytes'] / 1e6:.2f} | {took:.1f} | {100 * dropped / max(offered, 1):.0f} | {wait:.0f} | "
+              f"{lost} | {idle / 1000:.1f} |", flush=True)
+
+
+def measures_name(transport):
+    return {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS"}[transport]
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--nodes", type=int, default=10)
+    parser.add_argument("--kbit", type=float, action="append")
+    parser.add_argument("--transports", default="fastdds,cyclonedds")
+    parser.add_argument("--levels", default="none,sign,encrypt")
+    parser.add_argument("--limit", type=float, default=120)
+    parser.add_argument("--settle", type=float, default=10, help="seconds, before and while the idle fleet is measured")
+    parser.add_argument("programs")
+    options = parser.parse_args()
+    print(f"{options.nodes} nodes at once\n\n| backend | keys | kbit/s | all UP, s | IP MB until then | in, s | dropped by queues, % | "
+          "longest in a queue, ms | STALE, LOST | then, kB/s |\n|---|---|---|---|---|---|---|---|---|---|")
+    try:
+        for kbit in options.kbit or [1000]:
+            for transport in options.transports.split(","):
+                for level in options.levels.split(","):
+                    start(options, transport, level, kbit)
+    except field.Unsupported as reason:
+        print(f"skipped: {reason}")
+        sys.exit(77)
+
+
+if __name__ == "__main__":
+    main()
