@@ -63,9 +63,12 @@ def start(options, transport, level, kbit):
         ground.reset()
         time.sleep(options.settle)
         idle = ground.counters()["sent"]["ip_bytes"] / options.settle
+        pairs = {(node, event["node"]) for node, lives in fleet.ledgers().lives.items() for life in lives
+                 for event in life.of("peer") if event["state"] == "UP"}
+        found = 100 * len(pairs) / (options.nodes * (options.nodes - 1))
         peers = [event for life in fleet.ledgers().all_lives() for event in life.of("peer")]
         lost = sum(event["state"] in ("STALE", "LOST") for event in peers)
-        print(f"| {measures_name(transport)} | {level} | {kbit} | {'never' if up is None else f'{up:.1f}'} | "
+        print(f"| {measures_name(transport)} | {level} | {kbit} | {'never' if up is None else f'{up:.1f}'} | {found:.0f} | "
               f"{counters['sent']['ip_bytes'] / 1e6:.2f} | {took:.1f} | {100 * dropped / max(offered, 1):.0f} | {wait:.0f} | "
               f"{lost} | {idle / 1000:.1f} |", flush=True)
 
@@ -84,8 +87,8 @@ def main():
     parser.add_argument("--settle", type=float, default=10, help="seconds, before and while the idle fleet is measured")
     parser.add_argument("programs")
     options = parser.parse_args()
-    print(f"{options.nodes} nodes at once\n\n| backend | keys | kbit/s | all UP, s | IP MB until then | in, s | dropped by queues, % | "
-          "longest in a queue, ms | STALE, LOST | then, kB/s |\n|---|---|---|---|---|---|---|---|---|---|")
+    print(f"{options.nodes} nodes at once\n\n| backend | keys | kbit/s | all UP, s | found, % | IP MB until then | in, s | dropped by queues, % | "
+          "longest in a queue, ms | STALE, LOST | then, kB/s |\n|---|---|---|---|---|---|---|---|---|---|---|")
     try:
         for kbit in options.kbit or [1000]:
             for transport in options.transports.split(","):
