@@ -107,7 +107,10 @@ std::unique_ptr<RabitMessage> PublishSubscribeMessage::GetCopyOfMessage()
         copy->_globalPublishSubscribeMessageRef.reset();
         MarkAsCurrent(*copy);
         lock.unlock();
-        TellFetched(*copy);
+        if (RabitManagerTrace::Current() != nullptr)
+        {
+            TellFetched(*copy);
+        }
     }
     return copy;
 }
@@ -178,11 +181,8 @@ void PublishSubscribeMessage::PostTraced(RabitMessage &msg, const PostTime *time
 
 void PublishSubscribeMessage::TellFetched(const RabitMessage &msg) const
 {
-    if (RabitManagerTrace::Current() != nullptr)
-    {
-        const RabitManagerTrace::Pause trace;
-        trace->Fetched(*this, msg, msg._seenSequence);
-    }
+    const RabitManagerTrace::Pause trace;
+    trace->Fetched(*this, msg, msg._seenSequence);
 }
 
 inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
@@ -294,7 +294,7 @@ bool PublishSubscribeMessage::FetchIfChanged(RabitMessage *msg)
     }
     const bool copied = CopyToMessage(*msg);
     lock.unlock();
-    if (copied)
+    if (copied && RabitManagerTrace::Current() != nullptr)
     {
         TellFetched(*msg);
     }
@@ -315,7 +315,7 @@ bool PublishSubscribeMessage::ForceFetch(RabitMessage *msg)
     std::unique_lock<std::mutex> lock(*_mutex);
     const bool copied = CopyToMessage(*msg);
     lock.unlock();
-    if (copied)
+    if (copied && RabitManagerTrace::Current() != nullptr)
     {
         TellFetched(*msg);
     }

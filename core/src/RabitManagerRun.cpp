@@ -241,9 +241,8 @@ std::chrono::nanoseconds RabitManager::NextDue() const
     return std::max(_sleepBegan + PauseOfThisSleep(), _wakeup->SleepUntil(_sleepBegan));
 }
 
-void RabitManager::EndSleepStep()
+void RabitManager::EndSleepStep(std::chrono::nanoseconds now)
 {
-    const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
     _wakeup->EndSleep(_sleepBegan, now);
     _slept = now > _sleepBegan;
 }
@@ -312,7 +311,11 @@ bool RabitManager::Guard(const char *what, int errorCode, Work work)
     std::string failure;
     _step.store(what, std::memory_order_relaxed);
     {
-        RabitManagerTrace::Scope trace(_trace, StepOf(errorCode), _wakeup->IsTurn());
+        RabitManagerTrace::Scope trace(_trace.get());
+        if (_trace)
+        {
+            trace.Begin(StepOf(errorCode), _wakeup->IsTurn());
+        }
         try
         {
             work();

@@ -52,6 +52,7 @@ void RabitSteppedReactor::Start()
         throw std::logic_error("the reactor is started already");
     }
     _started = true;
+    _anyEnded = _entries.empty();
     for (Entry &entry : _entries)
     {
         entry.Manager->PrepareRun();
@@ -81,6 +82,7 @@ void RabitSteppedReactor::EndEntry(Entry &entry)
 {
     entry.Manager->ShutdownStep();
     entry.Running = false;
+    _anyEnded = true;
 }
 
 std::chrono::nanoseconds RabitSteppedReactor::DueOf(const Entry &entry) const
@@ -115,6 +117,7 @@ int RabitSteppedReactor::RunDue()
 {
     int passes = 0;
     bool again = _started;
+    std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
     while (again)
     {
         again = false;
@@ -122,19 +125,23 @@ int RabitSteppedReactor::RunDue()
         for (std::size_t i = 0; i < _entries.size(); ++i)
         {
             Entry &entry = _entries[i];
-            if (!entry.Running || DueOf(entry) > _workspace.GetClock().Monotonic())
+            if (!entry.Running || DueOf(entry) > now)
             {
                 continue;
             }
             again = true;
-            if (RunPass(entry) && ++passes > MaxPassesAtOneMoment)
+            if (RunPass(entry, now) && ++passes > MaxPassesAtOneMoment)
             {
                 throw std::runtime_error("managers wake each other for ever; the last one was \"" +
                                          entry.Manager->GetManagerName() + "\"");
             }
+            now = std::max(now, entry.Manager->_sleepBegan);  // read at the end of the pass
         }
     }
-    LeaveIfAllEnded();
+    if (std::exchange(_anyEnded, false))
+    {
+        LeaveIfAllEnded();
+    }
     return passes;
 }
 
@@ -144,7 +151,7 @@ bool RabitSteppedReactor::RunPassOf(const RabitManager &manager, bool isTurn)
     {
         if (entry.Manager.get() == &manager && entry.Running)
         {
-            const bool ran = RunPass(entry, isTurn);
+            const bool ran = RunPass(entry, _workspace.GetClock().Monotonic(), isTurn);
             LeaveIfAllEnded();
             return ran;
         }
@@ -152,11 +159,11 @@ bool RabitSteppedReactor::RunPassOf(const RabitManager &manager, bool isTurn)
     return false;
 }
 
-bool RabitSteppedReactor::RunPass(Entry &entry, std::optional<bool> isTurn)
+bool RabitSteppedReactor::RunPass(Entry &entry, std::chrono::nanoseconds now, std::optional<bool> isTurn)
 {
     if (!std::exchange(entry.FirstPass, false))
     {
-        entry.Manager->EndSleepStep();
+        entry.Manager->EndSleepStep(now);
     }
     if (isTurn)
     {

@@ -50,6 +50,7 @@ void PeerClock::OnBeat(const Reading &peer, Duration arrival)
     _lastSource = peer.Source;
     _difference.Add(_lastDifference, arrival);
     _sourceToWall = peer.Wall - peer.Source;
+    Estimate();
 }
 
 void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
@@ -67,7 +68,6 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
         _stoodStillUntil = _lastSource;
         _difference.Restart(_lastDifference, now);
         _wayThere.Restart(roundTrip - _lastDifference, now);
-        return;
     }
     _wayThere.Add(roundTrip - _lastDifference, now);
     if (*_wayThere.Value() + *_difference.Value() < Duration(0))
@@ -75,6 +75,7 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
         // Our own clock stood still in between.
         _wayThere.Restart(roundTrip - _lastDifference, now);
     }
+    Estimate();
 }
 
 // Of the beat to which the smallest difference belongs.
@@ -89,22 +90,17 @@ PeerClock::Duration PeerClock::QuickestDelay() const
     return (both < Duration(0) ? shortest : both) / 2;
 }
 
-std::optional<PeerClock::Duration> PeerClock::SourceToLocal() const
+void PeerClock::Estimate()
 {
-    const std::optional<Duration> difference = _difference.Value();
-    if (!difference)
-    {
-        return std::nullopt;
-    }
-    return *difference - QuickestDelay();
+    _toLocal = *_difference.Value() - QuickestDelay();
 }
 
 std::optional<PeerClock::SourceRelation> PeerClock::Source() const
 {
-    const std::optional<Duration> offset = SourceToLocal();
-    return offset ? std::optional(SourceRelation{
-                        .ToLocal = *offset, .StoodStill = _stoodStill, .StoodStillUntil = _stoodStillUntil})
-                  : std::nullopt;
+    return _toLocal
+               ? std::optional(SourceRelation{
+                     .ToLocal = *_toLocal, .StoodStill = _stoodStill, .StoodStillUntil = _stoodStillUntil})
+               : std::nullopt;
 }
 
 std::optional<PeerClock::Duration> PeerClock::ToLocal(Duration source) const
@@ -115,8 +111,7 @@ std::optional<PeerClock::Duration> PeerClock::ToLocal(Duration source) const
 
 std::optional<PeerClock::Duration> PeerClock::SentAt(Duration source) const
 {
-    const std::optional<Duration> offset = SourceToLocal();
-    return offset ? std::optional<Duration>(*offset + source) : std::nullopt;
+    return _toLocal ? std::optional<Duration>(*_toLocal + source) : std::nullopt;
 }
 
 }  // namespace Rabit

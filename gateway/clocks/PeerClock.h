@@ -91,7 +91,7 @@ private:
         Duration _periodStart{0};
     };
 
-    std::optional<Duration> SourceToLocal() const;
+    void Estimate();
     Duration QuickestDelay() const;
 
     MinimumFilter _difference;
@@ -104,6 +104,7 @@ private:
     Duration _stoodStillUntil{0};
     Duration _sourceToWall{0};
     std::optional<Duration> _lastRoundTrip;
+    std::optional<Duration> _toLocal;  // to be added to a source time: asked for with each sample
 };
 
 }  // namespace Rabit

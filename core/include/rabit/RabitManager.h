@@ -254,7 +254,7 @@ private:
     void SleepStep();                          // real sleep until the next pass
     void BeginSleepStep();                     // the same sleep when stepped
     std::chrono::nanoseconds NextDue() const;  // by the workspace's clock
-    void EndSleepStep();
+    void EndSleepStep(std::chrono::nanoseconds now);
     std::chrono::nanoseconds PauseOfThisSleep() const;
     void CountPass(std::chrono::nanoseconds start, std::chrono::nanoseconds end);
     void ShutdownStep();

@@ -69,14 +69,14 @@ public:
     virtual void Listed(std::vector<MessageInfo> &messages) = 0;
 
     // That of the manager whose step runs on this thread; null: none does, or it is not traced.
-    static RabitManagerTrace *Current() noexcept;
+    static RabitManagerTrace *Current() noexcept { return _current; }
 
     // Nothing that this thread does is seen while one of these lives; it gives access to the trace itself.
     class Pause
     {
     public:
-        Pause() noexcept;
-        ~Pause();
+        Pause() noexcept : _trace(std::exchange(_current, nullptr)) {}
+        ~Pause() { _current = _trace; }
         Pause(const Pause &) = delete;
         Pause &operator=(const Pause &) = delete;
         explicit operator bool() const { return _trace != nullptr; }
@@ -88,18 +88,35 @@ public:
 
 private:
     friend class RabitManager;
+    // Asked for with each reading of a clock, so it is here to be inlined.
+    static constinit inline thread_local RabitManagerTrace *_current = nullptr;
+
     // For the time of one step.
     class Scope
     {
     public:
-        Scope(const std::shared_ptr<RabitManagerTrace> &trace, Step step, bool isTurn);
-        ~Scope();
+        // The trace, if there is one, must outlive the object, and its step begins.
+        explicit Scope(RabitManagerTrace *trace) : _trace(trace), _former(std::exchange(_current, nullptr)) {}
+        void Begin(Step step, bool isTurn)
+        {
+            _trace->BeginStep(step, isTurn);
+            _current = _trace;
+        }
+        ~Scope()
+        {
+            if (_trace != nullptr)
+            {
+                _current = nullptr;
+                _trace->EndStep(_threw);
+            }
+            _current = _former;
+        }
         Scope(const Scope &) = delete;
         Scope &operator=(const Scope &) = delete;
         void Threw() { _threw = true; }
 
     private:
-        const std::shared_ptr<RabitManagerTrace> _trace;
+        RabitManagerTrace *const _trace;
         RabitManagerTrace *const _former;
         bool _threw = false;
     };

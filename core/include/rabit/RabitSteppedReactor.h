@@ -65,7 +65,7 @@ private:
     };
 
     void StartEntry(Entry &entry);
-    bool RunPass(Entry &entry, std::optional<bool> isTurn = std::nullopt);
+    bool RunPass(Entry &entry, std::chrono::nanoseconds now, std::optional<bool> isTurn = std::nullopt);
     void EndEntry(Entry &entry);
     void LeaveIfAllEnded();
     std::chrono::nanoseconds DueOf(const Entry &entry) const;
@@ -73,6 +73,7 @@ private:
     RabitWorkspace &_workspace;
     std::deque<Entry> _entries;  // stays in place when a unit of work adds managers
     bool _started = false;
+    bool _anyEnded = false;  // since it was last looked whether all have
 };
 
 }  // namespace Rabit

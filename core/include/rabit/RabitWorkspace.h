@@ -215,7 +215,7 @@ private:
     void AddManagerName(const std::string &managerName, std::uint64_t owner);
     std::shared_ptr<RabitManagerTrace> TraceOf(const std::string &managerName) const;
     template <typename T>
-    bool AddUntraced(const std::string &name, T msg, const std::shared_ptr<RabitQueueReceipt> &receipt);
+    bool AddUntraced(const std::string &name, T &msg, const std::shared_ptr<RabitQueueReceipt> &receipt);
 
     // global is what becomes the global copy if the name is new; null: a clone of the message.
     MessageRegistration RegisterMessageFor(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
@@ -289,17 +289,16 @@ bool RabitWorkspace::AddMessageToQueue(std::string name, T msg, std::shared_ptr<
         {
             const RabitManagerTrace::Pause trace;
             const std::optional<bool> known = trace->Adding(name, *msg);
-            const bool accepted =
-                known ? TellReceipt(receipt, *known) : AddUntraced(name, std::move(msg), receipt);
+            const bool accepted = known ? TellReceipt(receipt, *known) : AddUntraced(name, msg, receipt);
             trace->Added(accepted);
             return accepted;
         }
     }
-    return AddUntraced(name, std::move(msg), receipt);
+    return AddUntraced(name, msg, receipt);
 }
 
 template <typename T>
-bool RabitWorkspace::AddUntraced(const std::string &name, T msg,
+bool RabitWorkspace::AddUntraced(const std::string &name, T &msg,
                                  const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     const std::shared_ptr<RabitQueueHandle> handle = FindQueue(name);
