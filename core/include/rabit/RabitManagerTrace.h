@@ -89,7 +89,7 @@ public:
 private:
     friend class RabitManager;
     // Asked for with each reading of a clock, so it is here to be inlined.
-    static constinit inline thread_local RabitManagerTrace *_current = nullptr;
+    static inline thread_local RabitManagerTrace *_current = nullptr;
 
     // For the time of one step.
     class Scope
