@@ -74,11 +74,7 @@ ManualClock::ManualClock(double gpsTimeSeconds, std::chrono::nanoseconds monoton
 
 std::chrono::nanoseconds ManualClock::Monotonic() const
 {
-    if (RabitManagerTrace::Current() != nullptr)
-    {
-        return SeenByTrace(std::chrono::nanoseconds(_monotonic.load()));
-    }
-    return std::chrono::nanoseconds(_monotonic.load());
+    return Seen(std::chrono::nanoseconds(_monotonic.load()));
 }
 
 double ManualClock::GpsTimeSeconds() const

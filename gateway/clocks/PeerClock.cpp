@@ -62,18 +62,19 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
     _roundTrip.Add(roundTrip, now);
     _lastRoundTrip = roundTrip;
     const Duration delay = LastDelay();
-    if (delay > roundTrip + Tolerance)
+    const bool stoodStillThere = delay > roundTrip + Tolerance;
+    if (stoodStillThere)
     {
         _stoodStill += delay;
         _stoodStillUntil = _lastSource;
         _difference.Restart(_lastDifference, now);
-        _wayThere.Restart(roundTrip - _lastDifference, now);
     }
-    _wayThere.Add(roundTrip - _lastDifference, now);
-    if (*_wayThere.Value() + *_difference.Value() < Duration(0))
+    const Duration wayThere = roundTrip - _lastDifference;
+    _wayThere.Add(wayThere, now);
+    const bool stoodStillHere = *_wayThere.Value() + *_difference.Value() < Duration(0);
+    if (stoodStillThere || stoodStillHere)
     {
-        // Our own clock stood still in between.
-        _wayThere.Restart(roundTrip - _lastDifference, now);
+        _wayThere.Restart(wayThere, now);
     }
     Estimate();
 }
@@ -81,13 +82,12 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
 // Of the beat to which the smallest difference belongs.
 PeerClock::Duration PeerClock::QuickestDelay() const
 {
-    const Duration shortest = _roundTrip.Value().value_or(Duration(0));
     if (!_wayThere.Value())
     {
-        return shortest / 2;
+        return Duration(0);
     }
     const Duration both = *_wayThere.Value() + *_difference.Value();
-    return (both < Duration(0) ? shortest : both) / 2;
+    return (both < Duration(0) ? *_roundTrip.Value() : both) / 2;
 }
 
 void PeerClock::Estimate()

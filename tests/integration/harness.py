@@ -35,6 +35,16 @@ def domain():
     return 0 if os.environ.get(IN_NAMESPACE) == "yes" else 100 + os.getpid() % 100
 
 
+def until(holds, limit_s=120):
+    """What `holds` returns once it is true. The limit only keeps a broken program from hanging."""
+    end = time.monotonic() + limit_s
+    while True:
+        result = holds()
+        if result:
+            return result
+        assert time.monotonic() < end, f"{holds.__name__} did not come true"
+
+
 def die_with_parent():
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)

@@ -46,15 +46,6 @@ class Fleet:
                               capture_output=True, text=True, timeout=LIMIT, check=False)
 
 
-def until(holds):
-    end = time.monotonic() + LIMIT
-    while True:
-        result = holds()
-        if result:
-            return result
-        assert time.monotonic() < end, f"{holds.__name__} did not come true"
-
-
 def a_tool_with_keys_sees_and_sends(fleet):
     keys = fleet.tool("fleet")
 
@@ -62,24 +53,24 @@ def a_tool_with_keys_sees_and_sends(fleet):
         done = fleet.run("nodes", "--keys", keys, "--json", "--wait", "10")
         rows = {row["node"]: row["state"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
         return done.returncode == 0 and rows == {"uav1": "UP", "uav2": "UP"}
-    until(both)
+    harness.until(both)
     for node in ("uav1", "uav2"):
         # On a busy machine a handshake may take longer than one waits, as for a person who tries again.
         def echoed(node=node):
             done = fleet.run("echo", f"{node}/Pose", "--keys", keys, "--once", "--json", "--wait", "10")
             return done.returncode == 0 and "latitude_deg" in json.loads(done.stdout)["value"]
-        until(echoed)
+        harness.until(echoed)
 
         def delivered(node=node):
             done = fleet.run("send", f"{node}/MissionControl", "Uav::GoHome", '{"reason": "test"}', "--keys", keys,
                              "--wait", "10")
             return done.returncode == 0 and done.stdout == "delivered\n"
-        until(delivered)
+        harness.until(delivered)
 
     def listed():
         done = fleet.run("messages", "--keys", keys, "--wait", "10")
         return done.returncode == 0 and "Pose" in done.stdout
-    until(listed)
+    harness.until(listed)
 
 
 def a_configuration_names_keys_as_well(fleet):
@@ -90,7 +81,7 @@ def a_configuration_names_keys_as_well(fleet):
     def echoed():
         done = fleet.run("echo", "uav1/Pose", "--config", config, "--once", "--wait", "10")
         return done.returncode == 0 and "latitude_deg" in done.stdout
-    until(echoed)
+    harness.until(echoed)
 
 
 def a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some(fleet):
@@ -99,7 +90,7 @@ def a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some(fle
     def well():
         done = fleet.run("doctor", "--keys", keys, "--wait", "4")
         return done.returncode == 0 and "nodes: uav1 uav2" in done.stdout
-    until(well)
+    harness.until(well)
 
     def told():
         done = fleet.run("doctor", "--domain", fleet.domain, "--transport", fleet.transport, "--json")
@@ -107,7 +98,7 @@ def a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some(fle
         assert done.returncode == 3, done
         return "keys" in found and found["keys"]["level"] == "problem" and found["keys"]["text"].startswith(
             f"uav1, uav2 in domain {fleet.domain} have keys, and this program has none")
-    until(told)
+    harness.until(told)
 
 
 def a_tool_without_keys_says_that_the_fleet_has_some(fleet):
@@ -116,7 +107,7 @@ def a_tool_without_keys_says_that_the_fleet_has_some(fleet):
             done = fleet.run(*command, "--domain", fleet.domain, "--transport", fleet.transport, "--wait", "2")
             assert done.returncode == 3 and done.stdout == "" and "nobody was heard" in done.stderr, done
             return "keys, and this program has none" in done.stderr and "--keys FOLDER" in done.stderr
-        until(told)
+        harness.until(told)
 
 
 def a_tool_with_keys_of_another_fleet_says_that_it_is_not_let_in(fleet):
@@ -126,7 +117,7 @@ def a_tool_with_keys_of_another_fleet_says_that_it_is_not_let_in(fleet):
         done = fleet.run("nodes", "--keys", keys, "--wait", "4")
         assert done.returncode == 3, done
         return "not let this program in" in done.stderr
-    until(told)
+    harness.until(told)
 
 
 def what_is_wrong_with_keys_is_one_line(fleet):

@@ -11,7 +11,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
 import harness  # noqa: E402
@@ -43,16 +42,6 @@ class Rabit:
         return [json.loads(line) for line in done.stdout.splitlines()], done
 
 
-def until(holds):
-    """What `holds` returns once it is true."""
-    end = time.monotonic() + LIMIT
-    while True:
-        result = holds()
-        if result:
-            return result
-        assert time.monotonic() < end, f"{holds.__name__} did not come true"
-
-
 def keys(thing):
     return list(thing.keys())
 
@@ -63,7 +52,7 @@ def nodes_are_listed_with_what_they_have(rabit):
         rows = {row["node"]: row for row in listed if "node" in row and "problem" not in row}
         return (rows, done) if {"uav1", "uav2"} <= set(rows) and done.returncode == 0 else None
 
-    rows, done = until(both)
+    rows, done = harness.until(both)
     assert set(rows) == {"uav1", "uav2"}, "a tool is listed"
     assert done.stderr == "", done.stderr
     row = rows["uav1"]
@@ -80,7 +69,7 @@ def nodes_are_listed_with_what_they_have(rabit):
 
 
 def nodes_is_a_table_for_people(rabit):
-    done = until(lambda: (lambda d: d if "uav1" in d.stdout and "uav2" in d.stdout else None)(rabit.run("nodes")))
+    done = harness.until(lambda: (lambda d: d if "uav1" in d.stdout and "uav2" in d.stdout else None)(rabit.run("nodes")))
     lines = done.stdout.splitlines()
     assert lines[0].split() == ["NODE", "STATE", "HEARD", "ROUND", "TRIP", "DELIVERY", "PUBLISHES", "ACCEPTS"], lines
     assert "\x1b" not in done.stdout, "escape sequences in a pipe"
@@ -95,7 +84,7 @@ def messages_are_listed_with_their_types_and_who_publishes_and_reads_them(rabit)
         poses = rows.get("Pose")
         return rows if done.returncode == 0 and poses and poses["publishers"] == poses["subscribers"] == aircraft else None
 
-    rows = until(both)
+    rows = harness.until(both)
     assert keys(rows["Pose"]) == ["message", "type", "qos", "definition", "publishers", "subscribers", "other_subscribers",
                                   "rate_hz"]
     assert rows["Pose"]["other_subscribers"] == 0
@@ -321,7 +310,7 @@ def a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well(rabit):
         findings, done = rabit.objects("doctor", "--wait", "4")
         return findings if done.returncode == 0 else None
 
-    findings = until(well)
+    findings = harness.until(well)
     assert all(keys(finding) == ["level", "subject", "text", "advice"] for finding in findings), findings
     said = {finding["subject"]: finding["text"] for finding in findings}
     assert {"interface lo", "nodes", "clocks", "multicast on lo"} <= set(said), findings
@@ -336,7 +325,7 @@ def a_doctor_tells_of_the_domain_that_the_others_are_in(rabit):
         done = Rabit(rabit.program, rabit.transport, other).run("doctor", "--wait", "4")
         assert done.returncode == 3 and "nobody was heard" in done.stderr, done
         return re.search(rf"^! domain {rabit.domain}: .*uav1.*--domain {rabit.domain}", done.stdout, re.MULTILINE)
-    until(named)
+    harness.until(named)
 
 
 def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there(rabit):
@@ -348,7 +337,7 @@ def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_ther
         def twice():
             done = rabit.run("doctor", "--wait", "6")
             return "! node twin: two live nodes have this name. Do: give one of them another one" in done.stdout
-        until(twice)
+        harness.until(twice)
     done = subprocess.run([rabit.program, "doctor", "--interface", "nosuch0", "--wait", "1"], capture_output=True,
                           text=True, timeout=LIMIT, check=False)
     assert done.returncode == 3 and "! interface nosuch0: this machine has none. Do: name one of " in done.stdout, done
@@ -428,16 +417,16 @@ def shells_complete_what_the_fleet_has(rabit):
 
         def poses():
             return set(offers("echo", "uav")) >= {"uav1/Pose", "uav2/Pose"}
-        until(poses)
+        harness.until(poses)
 
         def queues():
             return set(offers("send", "uav1/")) == {"uav1/MissionControl"}
-        until(queues)
+        harness.until(queues)
 
         def types():
             # bash completes what stands behind the last colon.
             return {offer.removeprefix("Uav::") for offer in offers("type", "Uav::Po")} == {"Pose"}
-        until(types)
+        harness.until(types)
 
 
 def the_manual_tells_of_every_command_and_every_common_option(rabit):

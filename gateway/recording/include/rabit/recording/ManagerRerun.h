@@ -34,10 +34,9 @@
 // - Queues of RabitMessages that call themselves what they are registered as, as a manager's own queue does.
 //   How full a queue is, is not recorded: a manager that takes messages until there are no more is exact.
 // - Receipts are told at once whether the queue took the message, and nothing afterwards.
-// - No random numbers that differ from run to run, no threads, files, sockets or devices of the manager's
-// own,
-//   no order that follows from addresses, and no variables that it shares with other managers. A manager that
-//   reads what a device says is best split into one that reads and one that decides.
+// - No random numbers that differ from run to run, no threads, files, sockets or devices of its own, no order
+//   that follows from addresses, and no variables that it shares with other managers. A manager that reads
+//   what a device says is best split into one that reads and one that decides.
 // - The same types, compiler and libraries where numbers must agree to the last bit.
 namespace Rabit
 {
@@ -52,7 +51,7 @@ class ManagerRecording
 public:
     // All lives of the managers of that name in the files of one node, which may be given in any order, or in
     // a merged file; an empty node: of any. Several nodes: each has its own. Empty if there is none, then
-    // `problem` says why; what cannot be read is told there as well, one line each.
+    // `problems` says why; what cannot be read is told there as well, one line each.
     static std::vector<ManagerRecording> Read(const std::vector<std::string> &files,
                                               const std::string &manager, const std::string &node,
                                               std::vector<std::string> &problems);
