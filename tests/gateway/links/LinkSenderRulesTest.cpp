@@ -348,8 +348,9 @@ TEST_F(LinkSenderRules, S2_what_goes_along_once_more_leaves_room_for_what_is_new
     EXPECT_LE(sent.size(), 4u);
     for (const StoredFrame &data : sent)
     {
-        fresh += std::count_if(data.Items.begin(), data.Items.end(),
-                               [](const StoredItem &item) { return item.Text().front() == '2'; });
+        fresh += static_cast<std::size_t>(std::count_if(data.Items.begin(), data.Items.end(),
+                                                        [](const StoredItem &item)
+                                                        { return item.Text().front() == '2'; }));
     }
     EXPECT_GE(fresh, 2u);
 }

@@ -56,13 +56,14 @@ def late(ground, program, transport, period_s, limit_s):
     return f"{seconds:.1f} s", seconds <= limit_s
 
 
-# What, nodes, medium, how, limits. Measured when this was written, with Fast DDS and Cyclone DDS: 114 and 97 kB; 1.5 and
+# What, nodes, medium, runs, how, limits. Where one lost datagram more decides about seconds, the median of several runs
+# is held to the limits. Measured when this was written, with Fast DDS and Cyclone DDS: 114 and 97 kB; 1.5 and
 # 1 s; 17 and 14 to 18 s; 1 to 13 s.
 CASES = [
-    ("ten at once, wide", 10, {"kbit": 100_000}, at_once, {"limit_s": LIMIT_S, "limit_kb": 200}),
-    ("five at once, 250 kbit/s", 5, {"kbit": 250}, at_once, {"limit_s": 10, "limit_kb": 0}),
-    ("ten at once, 250 kbit/s, 10 % lost", 10, {"kbit": 250, "loss": 10}, at_once, {"limit_s": LIMIT_S, "limit_kb": 0}),
-    ("one later, period 60 s, 20 % lost", 4, {"kbit": 250, "loss": 20}, late, {"period_s": 60, "limit_s": 20}),
+    ("ten at once, wide", 10, {"kbit": 100_000}, 1, at_once, {"limit_s": LIMIT_S, "limit_kb": 200}),
+    ("five at once, 250 kbit/s", 5, {"kbit": 250}, 1, at_once, {"limit_s": 10, "limit_kb": 0}),
+    ("ten at once, 250 kbit/s, 10 % lost", 10, {"kbit": 250, "loss": 10}, 1, at_once, {"limit_s": LIMIT_S, "limit_kb": 0}),
+    ("one later, period 60 s, 20 % lost", 4, {"kbit": 250, "loss": 20}, 3, late, {"period_s": 60, "limit_s": 20}),
 ]
 
 
@@ -70,12 +71,15 @@ def main():
     radio, program, transports = sys.argv[1], sys.argv[2], sys.argv[3:]
     failed = False
     try:
-        for name, size, medium, measure, limits in CASES:
+        for name, size, medium, runs, measure, limits in CASES:
             for transport in transports:
-                with radio_field.RadioField(radio, [f"n{k}" for k in range(1, size + 1)], medium) as ground:
-                    found, good = measure(ground, program, transport, **limits)
-                print(f"{name}, {transport}: {found}{'' if good else f', {limits} wanted'}", flush=True)
-                failed = failed or not good
+                kept = 0
+                for _ in range(runs):
+                    with radio_field.RadioField(radio, [f"n{k}" for k in range(1, size + 1)], medium) as ground:
+                        found, good = measure(ground, program, transport, **limits)
+                    print(f"{name}, {transport}: {found}{'' if good else f', {limits} wanted'}", flush=True)
+                    kept += good
+                failed = failed or 2 * kept < runs
     except field.Unsupported as reason:
         print(f"skipped: {reason}")
         sys.exit(SKIPPED)
