@@ -73,6 +73,7 @@ std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_v
     auto source = std::make_shared<Source>();
     source->Counters.message = _rule.Message;
     source->Counters.node = node;
+    source->IsWanted = MatchesAny(_rule.From, node);
     const auto offered = _offers.find(node);
     source->Offer = offered == _offers.end() ? std::nullopt : std::optional(offered->second);
     offer = source->Offer;
@@ -183,7 +184,8 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
                                                SampleBytes bytes, const SampleInfo &info)
 {
     const auto origin = _origins.Find(info.Node);
-    const bool known = !info.Node.empty() && origin && origin->Incarnation == info.Incarnation;
+    const bool known =
+        !info.Node.empty() && source.IsWanted && origin && origin->Incarnation == info.Incarnation;
     const auto posted =
         known ? origin->PostedAt(info.SourceTime, _workspace.GetClock().Monotonic()) : std::nullopt;
     if (!posted || IsOvertaken(source, info) || (_rule.Qos == QosProfile::State && offer != _rule.Qos))

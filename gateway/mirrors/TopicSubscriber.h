@@ -27,10 +27,11 @@ namespace Rabit
 // sample once, on the transport's thread, and posts it there, without a lock held. The reader is best effort
 // and volatile whatever the node announces: what is lost of a State is asked for (StateRepair).
 //
-// What is not posted: samples of a node that has not been heard as live or is in another life by now, of one
-// that does not announce the profile that the rule asks for, what is older than what was posted of that life,
-// or of a time in the future, repetitions of a State that is posted already, what does not decode, and
-// samples of programs that are not nodes. All but the repetitions are counted as dropped.
+// What is not posted: samples of a node that the rule does not name, whatever partition it writes into, that
+// has not been heard as live or is in another life by now, of one that does not announce the profile that the
+// rule asks for, what is older than what was posted of that life, or of a time in the future, repetitions of
+// a State that is posted already, what does not decode, and samples of programs that are not nodes. All but
+// the repetitions are counted as dropped.
 //
 // That an instance is disposed, or has lost its writer, changes nothing. If it is the former one, the message
 // has another value by now, or will have. If it is the present one, there is nothing newer to show: a message
@@ -76,6 +77,7 @@ private:
     struct Source
     {
         Gateway::TopicStatus Counters;
+        bool IsWanted = false;  // the rule names it
         std::shared_ptr<PublishSubscribeMessage> Global;
         std::string Problem;
         std::optional<Sample> Posted;

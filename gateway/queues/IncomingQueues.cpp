@@ -9,7 +9,7 @@ namespace Rabit
 IncomingQueues::IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorkspace &workspace,
                                const std::function<void()> &wake, std::size_t quicklyDecoded,
                                bool keepsReceived)
-    : _quicklyDecoded(quicklyDecoded), _keepsReceived(keepsReceived)
+    : _workspace(workspace), _quicklyDecoded(quicklyDecoded), _keepsReceived(keepsReceived)
 {
     for (const AcceptRule &rule : rules)
     {
@@ -33,8 +33,13 @@ LocalQueueResult IncomingQueues::Deliver(std::string_view source, std::string_vi
                                          const LinkPayload &owner, bool redelivered)
 {
     const auto found = _accepted.find(queue);
-    if (found == _accepted.end() || !found->second.AcceptsFrom(source))
+    if (found == _accepted.end())
     {
+        return LocalQueueResult::Unknown;
+    }
+    if (!found->second.AcceptsFrom(source))
+    {
+        _unwanted.Refused(source, queue, _workspace.GetClock().Monotonic());
         return LocalQueueResult::Unknown;
     }
     AcceptedQueue &accepted = found->second;
@@ -87,7 +92,7 @@ void IncomingQueues::Find(const std::function<void(const std::string &queue)> &c
 
 std::vector<Gateway::Problem> IncomingQueues::Problems() const
 {
-    std::vector<Gateway::Problem> problems;
+    std::vector<Gateway::Problem> problems = _unwanted.Problems(_workspace.GetClock().Monotonic());
     for (const auto &[name, queue] : _accepted)
     {
         if (!queue.Problem().empty())

@@ -16,6 +16,7 @@
 
 #include "gateway.idl.h"
 #include "queues/AcceptedQueue.h"
+#include "queues/UnwantedSenders.h"
 
 namespace Rabit
 {
@@ -86,10 +87,11 @@ public:
                              bool redelivered) override;
     std::size_t Room(std::string_view queue) const override;
 
-    // What keeps messages from being delivered, by queue.
+    // What keeps messages from being delivered, by queue, and who sends what is not accepted of it.
     std::vector<Gateway::Problem> Problems() const;
 
 private:
+    RabitWorkspace &_workspace;
     const std::size_t _quicklyDecoded;
     const bool _keepsReceived;
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;  // the names: unchanged after construction
@@ -97,6 +99,7 @@ private:
     std::vector<Undecoded> _undecoded;
     std::vector<std::shared_ptr<Queue>> _delivered;
     std::vector<Received> _received;
+    UnwantedSenders _unwanted;
 };
 
 }  // namespace Rabit

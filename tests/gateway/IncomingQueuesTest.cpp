@@ -1,6 +1,7 @@
 #include "queues/IncomingQueues.h"
 
 #include <gtest/gtest.h>
+#include <rabit/ManualClock.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <vector>
@@ -53,6 +54,42 @@ protected:
     IncomingQueues incoming;
     std::vector<std::vector<std::uint8_t>> payloads;
 };
+
+TEST_F(IncomingQueuesTest, WhoSendsToAQueueThatAcceptsNothingOfItIsNamedForSomeSeconds)
+{
+    const auto clock = std::make_shared<ManualClock>(1.4e9, std::chrono::seconds(1000));
+    RabitWorkspace stepped(clock);
+    std::vector<AcceptRule> rules = Rules();
+    rules[0].From = {"ground"};
+    stepped.AddManagerMessageQueue("Orders", local);
+    IncomingQueues strict(rules, stepped, [] {});
+    strict.Find([](const std::string &) {});
+    EXPECT_EQ(strict.Deliver("ground", "Orders", "Uav::Goto", payloads[0], nullptr, false),
+              LocalQueueResult::Ok);
+    EXPECT_TRUE(strict.Problems().empty());
+    EXPECT_EQ(strict.Deliver("uav2", "Orders", "Uav::Goto", payloads[0], nullptr, false),
+              LocalQueueResult::Unknown);
+    ASSERT_EQ(strict.Problems().size(), 1u);
+    EXPECT_EQ(strict.Problems()[0].subject, "accept Orders");
+    EXPECT_EQ(strict.Problems()[0].node, "uav2");
+    EXPECT_EQ(strict.Problems()[0].reason,
+              "uav2 sends messages to queue `Orders`, which accepts none of it: they are refused");
+    clock->Advance(UnwantedSenders::Memory);
+    EXPECT_TRUE(strict.Problems().empty());
+}
+
+TEST(UnwantedSenders, ThereIsRoomForSomeAtATime)
+{
+    using namespace std::chrono_literals;
+    UnwantedSenders senders;
+    for (int i = 0; i < 1000; ++i)
+    {
+        senders.Refused("uav" + std::to_string(i), "Orders", 1s);
+    }
+    EXPECT_EQ(senders.Problems(1s).size(), UnwantedSenders::MostRemembered);
+    senders.Refused("late", "Orders", 1s + UnwantedSenders::Memory);
+    EXPECT_EQ(senders.Problems(1s + UnwantedSenders::Memory).size(), 1u);
+}
 
 // All messages are large.
 class LargeMessagesTest : public IncomingQueuesTest

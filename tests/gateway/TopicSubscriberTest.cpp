@@ -246,5 +246,19 @@ TEST_F(TopicSubscriberTest, WhatCannotBeUsedIsTakenInNevertheless)
     EXPECT_EQ(subscriber.TakenIn("uav2", 5), 3'000'000'000);
 }
 
+// Partitions alone do not keep it out: with keys, one vendor heeds those of its own permissions, not those of
+// others'.
+TEST_F(TopicSubscriberTest, WhoIsNotAmongThoseThatTheRuleNamesIsNotHeardThroughAPartitionOfTheirs)
+{
+    SubscribeRule asks = rule;
+    asks.From = {"ground", "uav?.vision"};
+    TopicSubscriber strict(asks, Contact::IdlType(), origins, workspace);
+    strict.Open(session);
+    strict.SetOffer("uav1", QosProfile::State);
+    Hear(1, 1'000'000'000);
+    EXPECT_EQ(Posted(), -1);
+    EXPECT_EQ(strict.Status().at(0).refused, 1u);
+}
+
 }  // namespace
 }  // namespace Rabit

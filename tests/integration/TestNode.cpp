@@ -42,7 +42,8 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
     app.add_option("--slowest-beat", config.Radio.SlowestBeat, "Milliseconds");
 }
 
-void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers)
+void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers,
+         const std::function<std::shared_ptr<Rabit::Transport>(std::shared_ptr<Rabit::Transport>)> &wrap)
 {
     Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
     Rabit::RabitReactor reactor;
@@ -50,8 +51,9 @@ void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::
     {
         reactor.AddManager(std::move(manager));
     }
-    reactor.AddManager(
-        std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
+    std::shared_ptr<Rabit::Transport> backend = Rabit::MakeTransport(config.Transport);
+    reactor.AddManager(std::make_unique<Rabit::GatewayManager>(
+        config, wrap ? wrap(std::move(backend)) : std::move(backend)));
     reactor.Run();
 }
 

@@ -3,6 +3,7 @@
 
 #include <rabit/RabitManager.h>
 #include <rabit/gateway/GatewayConfig.h>
+#include <rabit/transport/Transport.h>
 
 #include <functional>
 #include <memory>
@@ -19,8 +20,11 @@ namespace TestNode
 // The options that say who the node is and on which network.
 void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config);
 
-// Runs the managers and a gateway until SIGINT or SIGTERM. Throws Rabit::ConfigError.
-void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers);
+// Runs the managers and a gateway until SIGINT or SIGTERM, over the backend that the configuration names or
+// what is made of it. Throws Rabit::ConfigError.
+void Run(
+    const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers,
+    const std::function<std::shared_ptr<Rabit::Transport>(std::shared_ptr<Rabit::Transport>)> &wrap = {});
 
 // Parses the arguments and runs the body. Returns the exit code: 0; 1 if the body failed; 2 if an option is
 // wrong.

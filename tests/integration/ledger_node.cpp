@@ -3,6 +3,7 @@
 #include "LedgerFile.h"
 #include "PictureClerk.h"
 #include "StateClerk.h"
+#include "StolenKeys.h"
 #include "TestNode.h"
 #include "gateway.idl.h"
 #include "ledger.idl.h"
@@ -36,6 +37,8 @@ struct Options
     Rabit::GatewayConfig Gateway;
     std::string LedgerFile;
     std::vector<std::string> To;
+    std::vector<std::string> AcceptFrom = {"*"};
+    std::string Stolen;
     std::uint64_t Count = 0;
     double Rate = 100;
     std::size_t Payload = 100;
@@ -293,6 +296,8 @@ void Describe(CLI::App &app, Options &o)
     app.add_option("--to", o.To, "Node to send notes to");
     app.add_option("--count", o.Count, "Notes to have accepted by each of these nodes' links");
     app.add_option("--rate", o.Rate, "Notes a second to each");
+    app.add_option("--accept-from", o.AcceptFrom, "Nodes whose notes are taken; default all");
+    app.add_option("--stolen", o.Stolen, "Folder of keys that are used whoever's they are");
     app.add_option("--payload", o.Payload, "Octets of padding in each note, the same on all nodes");
     app.add_option("--capacity", o.Capacity, "Notes that may wait in one outbox");
     app.add_option("--expire", o.ExpireS, "Seconds after which a note is too old; 0: never");
@@ -313,7 +318,7 @@ void Describe(CLI::App &app, Options &o)
 void Run(Options &options)
 {
     Rabit::GatewayConfig &config = options.Gateway;
-    config.Accept.push_back({NotesQueue, {"Ledger::Note"}});
+    config.Accept.push_back({NotesQueue, {"Ledger::Note"}, options.AcceptFrom});
     if (options.Ticks)
     {
         config.Publish.push_back({"Tick", "Ledger::Tick", Rabit::QosProfile::Telemetry});
@@ -339,7 +344,13 @@ void Run(Options &options)
         TestNode::PictureClerk::Configure(config);
         managers.push_back(std::make_unique<TestNode::PictureClerk>(options.Pictures));
     }
-    TestNode::Run(config, std::move(managers));
+    if (options.Stolen.empty())
+    {
+        TestNode::Run(config, std::move(managers));
+        return;
+    }
+    TestNode::Run(config, std::move(managers),
+                  [&](auto backend) { return TestNode::WithStolenKeys(backend, options.Stolen); });
 }
 }  // namespace
 
