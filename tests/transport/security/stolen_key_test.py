@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
@@ -51,16 +52,15 @@ class Node:
 
     def wait_for(self, pattern, more_than=0):
         """Lines of the ledger, once there are more than so many."""
-        def written():
-            if not self.process.running():
-                raise AssertionError(f"{self.name} ended: {self.said()}")
+        end = time.monotonic() + LIMIT_S
+        while True:
             lines = self.find(pattern)
-            return lines if len(lines) > more_than else None
-        try:
-            return harness.until(written, LIMIT_S)
-        except AssertionError as error:
-            raise AssertionError(f"{self.name} did not write `{pattern}`, but {self.lines()[-12:]}, "
-                                 f"and said {self.said()[-6:]}: {error}") from None
+            if len(lines) > more_than:
+                return lines
+            if time.monotonic() > end or not self.process.running():
+                raise AssertionError(f"{self.name} did not write `{pattern}`, but {self.lines()[-12:]}, "
+                                     f"and said {self.said()[-6:]}")
+            time.sleep(0.05)
 
     def said(self):
         found = (WARNINGS.fullmatch(text) for _, text in self.process.lines)
