@@ -183,20 +183,25 @@ static bool HasPrefixOf(const ddsi_guid_t *one, const ddsi_guid_t *other)
     return memcmp(&one->prefix, &other->prefix, sizeof one->prefix) == 0;
 }
 
-/* Whether a participant has a reader of the writer, whose lock is held. */
-static bool HasReader(const struct ddsi_writer *writer, const ddsi_guid_t *participant)
+/* The reader of the writer that the participant has, if any. */
+static bool FindReader(struct ddsi_writer *writer, const ddsi_guid_t *participant, ddsi_guid_t *reader)
 {
     bool found = false;
+    ddsrt_mutex_lock(&writer->e.lock);
     ddsrt_avl_iter_t at;
     for (const struct ddsi_wr_prd_match *match =
              ddsrt_avl_iter_first(&ddsi_wr_readers_treedef, &writer->readers, &at);
          match != NULL && !found; match = ddsrt_avl_iter_next(&at))
     {
         found = HasPrefixOf(&match->prd_guid, participant);
+        *reader = match->prd_guid;
     }
+    ddsrt_mutex_unlock(&writer->e.lock);
     return found;
 }
 
+/* Where the reader is, not where its participant once said that it is: of a participant the vendor takes the
+ * first word alone, which may have been forged. */
 void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *writer,
                          const ddsi_guid_t *participants, size_t count)
 {
@@ -211,14 +216,15 @@ void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *wri
     struct ddsi_writer *known = entidx_lookup_writer_guid(domain->entity_index, writer);
     for (size_t i = 0; i < count && known != NULL; ++i)
     {
-        ddsrt_mutex_lock(&known->e.lock);
-        const bool hasReader = HasReader(known, &participants[i]);
-        ddsrt_mutex_unlock(&known->e.lock);
-        const struct ddsi_proxy_participant *reading =
-            hasReader ? entidx_lookup_proxy_participant_guid(domain->entity_index, &participants[i]) : NULL;
-        if (reading != NULL)
+        ddsi_guid_t guid;
+        struct ddsi_proxy_reader *reader = FindReader(known, &participants[i], &guid)
+                                               ? entidx_lookup_proxy_reader_guid(domain->entity_index, &guid)
+                                               : NULL;
+        if (reader != NULL)
         {
-            addrset_forall(reading->as_default, AddTarget, NULL);
+            ddsrt_mutex_lock(&reader->e.lock);
+            addrset_forall(reader->c.as, AddTarget, NULL);
+            ddsrt_mutex_unlock(&reader->e.lock);
         }
     }
     thread_state_asleep(lookup_thread_state());
