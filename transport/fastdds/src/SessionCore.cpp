@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "EndpointSettings.h"
+#include "KeyAddressees.h"
 #include "ParticipantSettings.h"
 #include "common/MulticastUse.h"
 
@@ -109,6 +110,10 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
     _announceTimer.Start(*_participant, [this] { Announce(); });
     _owedTimer.Start(*_participant, [owed = _owed] { owed->Run(); });
     _participant.load()->enable();
+    if (settings.Security && !KeyAddressees::Heed(*_participant))
+    {
+        _log->Line("Fast DDS does not show its writer of keys: it says them to all");
+    }
 }
 
 SessionCore::~SessionCore()

@@ -1,0 +1,55 @@
+#include "KeyAddressees.h"
+
+#include <fastdds/rtps/common/CacheChange.h>
+#include <fastdds/rtps/common/Guid.h>
+#include <fastdds/rtps/writer/RTPSWriter.h>
+
+#include <algorithm>
+#include <mutex>
+
+// The library has it for its own sake, and no header that is installed: a writer of a participant of this
+// process, builtin ones included; nullptr if there is none.
+namespace eprosima::fastrtps::rtps
+{
+class RTPSDomainImpl
+{
+public:
+    static RTPSWriter *find_local_writer(const GUID_t &guid);
+};
+}  // namespace eprosima::fastrtps::rtps
+
+namespace Rabit::FastDds
+{
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
+{
+    // OMG DDS Security 1.1, 7.4.5: BuiltinParticipantVolatileMessageSecureWriter
+    constexpr rtps::octet keyWriter[] = {0xff, 0x02, 0x02, 0xc3};
+    static KeyAddressees addressees;
+    rtps::GUID_t guid = participant.getGuid();
+    std::copy(std::begin(keyWriter), std::end(keyWriter), guid.entityId.value);
+    rtps::RTPSWriter *const writer = rtps::RTPSDomainImpl::find_local_writer(guid);
+    if (writer == nullptr)
+    {
+        return false;
+    }
+    // The vendor asks a filter with this held.
+    const std::lock_guard lock(writer->getMutex());
+    writer->reader_data_filter(&addressees);
+    return true;
+}
+
+bool KeyAddressees::is_relevant(const rtps::CacheChange_t &change, const rtps::GUID_t &reader) const
+{
+    // 7.4.4.1: before the participant that a sample is for there are who said it and to which it is the
+    // answer, each a GUID and a number, after the header of CDR.
+    constexpr std::size_t addresseeAt = 4 + 2 * (16 + 8);
+    const auto &payload = change.serializedPayload;
+    const auto &prefix = reader.guidPrefix.value;
+    return payload.length < addresseeAt + sizeof(prefix) ||
+           std::equal(std::begin(prefix), std::end(prefix), payload.data + addresseeAt);
+}
+
+}  // namespace Rabit::FastDds
