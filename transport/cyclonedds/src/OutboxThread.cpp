@@ -61,6 +61,60 @@ bool OutboxThread::Put(std::span<const std::uint8_t> message, std::vector<Discov
     return true;
 }
 
+bool OutboxThread::PutExchange(std::span<const std::uint8_t> datagram, const KeyExchange &what,
+                               const RabitCycloneRoute &route)
+{
+    {
+        std::unique_lock lock(_mutex);
+        if (_stop)
+        {
+            return false;
+        }
+        _self = what.From;
+        _exchanges.SetRate(_pace->Get());
+        if (!_exchanges.Put(datagram, what, NumberOf(route), Clock::now()))
+        {
+            return false;
+        }
+        SendExchanges(lock);
+    }
+    _changed.notify_one();
+    return true;
+}
+
+bool OutboxThread::ReceivedExchange(const KeyExchange &what)
+{
+    bool isHeard = true;
+    {
+        const std::lock_guard lock(_mutex);
+        if (what.To != _self)
+        {
+            return true;
+        }
+        isHeard = _exchanges.Received(what, Clock::now());
+    }
+    _changed.notify_one();
+    return isHeard;
+}
+
+void OutboxThread::SendExchanges(std::unique_lock<std::mutex> &lock)
+{
+    for (const KeyExchangeOutbox::Datagram &datagram : _exchanges.TakeDue(Clock::now()))
+    {
+        const RabitCycloneRoute route = _routes.at(datagram.Route);
+        lock.unlock();
+        _send(route, false, datagram.Bytes);
+        lock.lock();
+    }
+}
+
+std::optional<OutboxThread::Clock::time_point> OutboxThread::Due() const
+{
+    const auto discovery = _outbox.Due();
+    const auto exchange = _exchanges.Due();
+    return discovery && exchange ? std::min(*discovery, *exchange) : discovery ? discovery : exchange;
+}
+
 void OutboxThread::Sent(std::size_t size)
 {
     const std::lock_guard lock(_mutex);
@@ -101,7 +155,7 @@ void OutboxThread::Run()
     std::unique_lock lock(_mutex);
     while (!_stop)
     {
-        const auto due = _outbox.Due();
+        const auto due = Due();
         if (!due)
         {
             _changed.wait(lock);
@@ -124,6 +178,7 @@ void OutboxThread::Run()
             lock.lock();
         }
         _pace->SetHeldUpSince(_outbox.HeldUpSince());
+        SendExchanges(lock);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 #include <thread>
@@ -12,11 +13,12 @@
 #include "VendorTraffic.h"
 #include "common/DiscoveryOutbox.h"
 #include "common/DiscoveryPace.h"
+#include "common/KeyExchangeOutbox.h"
 
 namespace Rabit::Cyclone
 {
 
-// A thread that sends what a DiscoveryOutbox lets go.
+// A thread that sends what a DiscoveryOutbox and a KeyExchangeOutbox let go.
 class OutboxThread
 {
 public:
@@ -40,6 +42,12 @@ public:
     // there is one.
     bool Put(std::span<const std::uint8_t> message, std::vector<DiscoveryPart> parts,
              const RabitCycloneRoute &route, bool hears);
+    // A datagram of an exchange of keys; false if it is to go as it is. What may go now is sent on this
+    // thread.
+    bool PutExchange(std::span<const std::uint8_t> datagram, const KeyExchange &what,
+                     const RabitCycloneRoute &route);
+    // One that came. False if the vendor should not see it.
+    bool ReceivedExchange(const KeyExchange &what);
     // A message of discovery that came; it must be sound.
     void Received(std::span<const std::uint8_t> message);
     // So many bytes of discovery have gone past it.
@@ -51,6 +59,8 @@ private:
     using Clock = std::chrono::steady_clock;
 
     std::uint64_t NumberOf(const RabitCycloneRoute &route);
+    std::optional<Clock::time_point> Due() const;
+    void SendExchanges(std::unique_lock<std::mutex> &lock);
     void Run();
 
     const std::shared_ptr<DiscoveryPace> _pace;
@@ -58,6 +68,8 @@ private:
     std::mutex _mutex;
     std::condition_variable _changed;
     DiscoveryOutbox _outbox;                 // guarded by _mutex
+    KeyExchangeOutbox _exchanges;            // guarded by _mutex
+    KeyExchange::Prefix _self{};             // once something was exchanged; guarded by _mutex
     std::vector<RabitCycloneRoute> _routes;  // by their numbers; guarded by _mutex
     std::set<const void *> _groups;          // of the sockets that have one; guarded by _mutex
     bool _stop = false;                      // guarded by _mutex

@@ -98,6 +98,11 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     {
         domain._handshakes.Sent({datagram, size}, *route);
         domain.RepeatHandshakes();
+        if (const auto exchange = ReadKeyExchange({datagram, size});
+            exchange && domain._outbox.PutExchange({datagram, size}, *exchange, *route))
+        {
+            return false;
+        }
     }
     if (auto parts = ReadDiscoveryParts({datagram, size}))
     {
@@ -164,6 +169,11 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     {
         domain._handshakes.Received({datagram, admitted}, std::chrono::steady_clock::now());
         domain.RepeatHandshakes();
+        if (const auto exchange = ReadKeyExchange({datagram, admitted});
+            exchange && !domain._outbox.ReceivedExchange(*exchange))
+        {
+            return 0;
+        }
     }
     const Announcing announcing = AnnouncingOf({datagram, admitted});
     if (announcing.Alone && direct && from != nullptr)

@@ -19,6 +19,7 @@
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
 #include "common/DiscoveryOutbox.h"
+#include "common/KeyExchangeOutbox.h"
 #include "common/SendingSamples.h"
 
 namespace Rabit::FastDds
@@ -99,6 +100,11 @@ public:
         _guard.Sending({buffer, left});
         OutgoingMessage message = ReadOutgoing({buffer, left});
         message.HasSamples = message.HasSamples || SendingSamples::Now();
+        if (const auto exchange = message.HasSamples ? std::nullopt : KeyExchangeOf({buffer, left});
+            exchange && PutExchange(sender, {buffer, left}, *exchange, *begin, *end))
+        {
+            return true;
+        }
         const auto now = std::chrono::steady_clock::now();
         const std::uint32_t socket = NumberOf(sender);
         if (message.Request && !_requests.MayGo(socket, *message.Request, now))
@@ -134,9 +140,9 @@ public:
                 _descriptor.Chosen().AnnounceAt(*due);
             }
         }
-        if (const auto due = _outbox.Due(); due && parts)
+        if (parts)
         {
-            _descriptor.Chosen().SendOwedAt(*due);
+            ScheduleOwed();
         }
         if (!message.HasSamples)
         {
@@ -153,6 +159,10 @@ public:
         const auto handOn = [&](std::span<std::uint8_t> admitted)
         {
             Translate(admitted);
+            if (!NoteExchange(admitted))
+            {
+                return;
+            }
             NoteAcknowledgements(admitted);
             next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()), local, remote);
         };
@@ -249,10 +259,72 @@ private:
             }
         }
         _descriptor.Chosen().Pace->SetHeldUpSince(_outbox.HeldUpSince());
-        if (const auto due = _outbox.Due())
+        SendExchanges(now);
+    }
+    // With _sending held.
+    void ScheduleOwed()
+    {
+        const auto discovery = _outbox.Due();
+        const auto exchange = _exchanges.Due();
+        if (discovery || exchange)
         {
-            _descriptor.Chosen().SendOwedAt(*due);
+            constexpr TimePoint Never = TimePoint::max();
+            _descriptor.Chosen().SendOwedAt(std::min(discovery.value_or(Never), exchange.value_or(Never)));
         }
+    }
+
+    std::optional<KeyExchange> KeyExchangeOf(std::span<const std::uint8_t> datagram) const
+    {
+        return _descriptor.Chosen().Mode == RtpsGuard::Mode::Protected ? ReadKeyExchange(datagram)
+                                                                       : std::nullopt;
+    }
+    // With _sending held, as for the next one. False if it is to go as it is.
+    bool PutExchange(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
+                     const KeyExchange &what, rtps::LocatorsIterator &begin,
+                     const rtps::LocatorsIterator &end)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const std::uint32_t socket = NumberOf(sender);
+        _exchanges.SetRate(_descriptor.Chosen().Pace->Get());
+        _self = what.From;
+        for (; begin != end; ++begin)
+        {
+            if (Leaves(socket, *begin))
+            {
+                const auto route = static_cast<std::uint64_t>(socket) << 32 | NumberOf(*begin);
+                _routes.insert_or_assign(route, std::pair(sender, *begin));
+                if (!_exchanges.Put(datagram, what, route, now))
+                {
+                    return false;  // nor was any before
+                }
+            }
+        }
+        SendExchanges(now);
+        return true;
+    }
+    void SendExchanges(TimePoint now)
+    {
+        constexpr std::chrono::milliseconds LongestWait{100};
+        for (const KeyExchangeOutbox::Datagram &each : _exchanges.TakeDue(now))
+        {
+            const auto &[sender, destination] = _routes.at(each.Route);
+            _chosen.assign(1, destination);
+            SendChosen(sender, each.Bytes, false, now + LongestWait);
+        }
+        ScheduleOwed();
+    }
+    // Of what came. False if the vendor should not see it.
+    bool NoteExchange(std::span<const std::uint8_t> datagram)
+    {
+        const auto what = KeyExchangeOf(datagram);
+        const std::lock_guard lock(_sending);
+        if (!what || what->To != _self)
+        {
+            return true;
+        }
+        const bool isHeard = _exchanges.Received(*what, std::chrono::steady_clock::now());
+        ScheduleOwed();
+        return isHeard;
     }
 
     void Translate(std::span<std::uint8_t> datagram)
@@ -304,6 +376,8 @@ private:
     RequestPace _requests;
     HeartbeatPace _heartbeats;
     DiscoveryOutbox _outbox;
+    KeyExchangeOutbox _exchanges;
+    GuidPrefix _self{};  // once something was exchanged
     std::map<std::uint64_t, std::pair<rtps::SenderResource *, rtps::Locator_t>> _routes;
     // Where announcements go to all.
     std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _groups;

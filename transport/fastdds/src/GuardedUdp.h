@@ -3,7 +3,7 @@
 // kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h);
 // multicast groups that peers name are not sent to where multicast may not pass; the vendor's statistics are
 // not sent; and what it repeats in haste, or says to each by itself, goes at a measured pace
-// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/DiscoveryOutbox.h).
+// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/DiscoveryOutbox.h, common/KeyExchangeOutbox.h).
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>

@@ -1,0 +1,343 @@
+// When what two participants exchange until they can read each other goes.
+#include "common/KeyExchangeOutbox.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+namespace
+{
+
+using namespace std::chrono_literals;
+using Rabit::KeyExchange;
+using Rabit::KeyExchangeOutbox;
+using Milliseconds = std::chrono::milliseconds;
+using Step = KeyExchange::Step;
+using Routes = std::vector<std::uint64_t>;
+
+class KeyExchangeOutboxTest : public testing::Test
+{
+protected:
+    static constexpr std::size_t Large = 4200;
+
+    static KeyExchange::Prefix Prefix(std::uint8_t peer)
+    {
+        KeyExchange::Prefix prefix;
+        prefix.fill(peer);
+        return prefix;
+    }
+    // To a peer, by a route that tells what it was.
+    bool Put(std::uint8_t peer, Step what, std::uint64_t route, Milliseconds at, std::size_t size = Large,
+             std::uint32_t source = 1)
+    {
+        return Put({.To = Prefix(peer), .What = what, .Source = source, .Number = route}, route, at, size);
+    }
+    bool Put(const KeyExchange &what, std::uint64_t route, Milliseconds at, std::size_t size)
+    {
+        return Outbox.Put(std::vector<std::uint8_t>(size), what, route, Start + at);
+    }
+    bool Hear(std::uint8_t peer, Step what, Milliseconds at, bool isWhole = false)
+    {
+        return Outbox.Received({.From = Prefix(peer), .What = what, .IsWhole = isWhole}, Start + at);
+    }
+    Routes Take(Milliseconds at)
+    {
+        Routes routes;
+        for (const auto &datagram : Outbox.TakeDue(Start + at))
+        {
+            routes.push_back(datagram.Route);
+        }
+        return routes;
+    }
+    // When the next one goes.
+    Milliseconds Next()
+    {
+        while (const auto due = Outbox.Due())
+        {
+            const auto at = std::chrono::duration_cast<Milliseconds>(*due - Start);
+            if (!Take(at).empty())
+            {
+                return at;
+            }
+        }
+        return Milliseconds::max();
+    }
+
+    const KeyExchangeOutbox::TimePoint Start{1000s};
+    KeyExchangeOutbox Outbox;
+};
+
+TEST_F(KeyExchangeOutboxTest, TheFirstGoesAtOnce)
+{
+    EXPECT_TRUE(Put(1, Step::Request, 10, 0ms));
+    EXPECT_EQ(Take(0ms), (Routes{10}));
+    EXPECT_EQ(Outbox.Unanswered(), Large + KeyExchangeOutbox::Headers);
+}
+
+TEST_F(KeyExchangeOutboxTest, WhatNamesNobodyGoesAsItIs)
+{
+    EXPECT_FALSE(Outbox.Put(std::vector<std::uint8_t>(100), {.What = Step::Request}, 1, Start));
+}
+
+TEST_F(KeyExchangeOutboxTest, WhatIsForAnotherDoesNotGo)
+{
+    EXPECT_TRUE(Put({.To = Prefix(1), .What = Step::Request, .IsForOther = true}, 1, 0ms, Large));
+    EXPECT_EQ(Take(10s), Routes{});
+}
+
+TEST_F(KeyExchangeOutboxTest, TheWindowBoundsWhatIsNotAnswered)
+{
+    for (std::uint8_t peer = 1; peer <= 5; ++peer)
+    {
+        Put(peer, Step::Request, peer, 0ms);
+    }
+    EXPECT_EQ(Take(0ms), (Routes{1, 2}));
+    EXPECT_EQ(Take(100ms), Routes{});
+}
+
+TEST_F(KeyExchangeOutboxTest, AnAnswerMakesRoomForTheNext)
+{
+    for (std::uint8_t peer = 1; peer <= 3; ++peer)
+    {
+        Put(peer, Step::Request, peer, 0ms);
+    }
+    Take(0ms);
+    Hear(2, Step::Reply, 500ms);
+    EXPECT_EQ(Take(500ms), (Routes{3}));
+}
+
+TEST_F(KeyExchangeOutboxTest, QuickAnswersOpenTheWindowAndLateOnesCloseIt)
+{
+    Put(1, Step::Request, 1, 0ms);
+    Take(0ms);
+    Hear(1, Step::Reply, 100ms);
+    EXPECT_GT(Outbox.Window(), KeyExchangeOutbox::FirstWindow);
+    const std::size_t open = Outbox.Window();
+    Put(2, Step::Request, 2, 100ms);
+    Take(100ms);
+    Hear(2, Step::Reply, 2s);
+    EXPECT_EQ(Outbox.Window(), open / 2);
+}
+
+TEST_F(KeyExchangeOutboxTest, WhatIsNeverAnsweredCountsAsLostAndClosesTheWindow)
+{
+    Put(1, Step::Request, 1, 0ms);
+    Put(2, Step::Request, 2, 0ms);
+    Put(3, Step::Request, 3, 0ms);
+    Take(0ms);
+    EXPECT_EQ(Next(), 1000ms);
+    EXPECT_EQ(Outbox.Window(), KeyExchangeOutbox::SmallestWindow);
+}
+
+TEST_F(KeyExchangeOutboxTest, AnAnswerToARepetitionTellsNoTime)
+{
+    Put(1, Step::Request, 1, 0ms);
+    Take(0ms);
+    Put(1, Step::Request, 2, 500ms);
+    EXPECT_EQ(Take(1000ms), (Routes{2}));
+    const std::size_t before = Outbox.Window();
+    Hear(1, Step::Reply, 1001ms);
+    EXPECT_EQ(Outbox.Window(), before);
+}
+
+TEST_F(KeyExchangeOutboxTest, RepetitionsGoAtDoublingDistancesAndTheNewestAlone)
+{
+    std::vector<Milliseconds::rep> times;
+    Routes routes;
+    for (int at = 0; at < 20000; at += 500)
+    {
+        Put(1, Step::Request, static_cast<std::uint64_t>(at), Milliseconds(at));
+        for (const auto route : Take(Milliseconds(at)))
+        {
+            times.push_back(at);
+            routes.push_back(route);
+        }
+    }
+    EXPECT_EQ(times, (std::vector<Milliseconds::rep>{0, 1000, 3000, 7000, 15000}));
+    EXPECT_EQ(routes, (Routes{0, 1000, 3000, 7000, 15000}));
+}
+
+TEST_F(KeyExchangeOutboxTest, ARepetitionIsForgottenWhenTheAnswerComes)
+{
+    Put(1, Step::Request, 1, 0ms);
+    Take(0ms);
+    Put(1, Step::Request, 2, 500ms);
+    Hear(1, Step::Reply, 600ms);
+    EXPECT_EQ(Take(10s), Routes{});
+}
+
+TEST_F(KeyExchangeOutboxTest, AReplyIsKeptUntilTheFinalMessageComes)
+{
+    Put(1, Step::Reply, 1, 0ms);
+    Take(0ms);
+    Put(1, Step::Reply, 2, 500ms);
+    Hear(1, Step::Keys, 600ms);
+    EXPECT_EQ(Take(1000ms), (Routes{2}));
+}
+
+TEST_F(KeyExchangeOutboxTest, WhatEndsAnExchangeGoesBeforeWhatBeginsOne)
+{
+    Put(9, Step::Request, 9, 0ms);
+    Take(0ms);
+    Put(1, Step::Request, 1, 1ms, 100);
+    Put(2, Step::Ask, 2, 1ms, 100);
+    Put(3, Step::Reply, 3, 1ms, 100);
+    Put(4, Step::Control, 4, 1ms, 100);
+    Put(5, Step::Keys, 5, 1ms, 100);
+    Put(6, Step::Final, 6, 1ms, 100);
+    EXPECT_EQ(Take(1ms), (Routes{6, 5, 4, 3, 2, 1}));
+}
+
+TEST_F(KeyExchangeOutboxTest, TheLastMessageDoesNotWaitForTheWindow)
+{
+    Put(1, Step::Request, 1, 0ms);
+    Put(2, Step::Request, 2, 0ms);
+    Take(0ms);
+    Put(3, Step::Final, 3, 0ms);
+    EXPECT_EQ(Take(0ms), (Routes{3}));
+}
+
+TEST_F(KeyExchangeOutboxTest, FragmentsGoTogether)
+{
+    for (std::uint64_t route = 1; route <= 3; ++route)
+    {
+        Put({.To = Prefix(1), .What = route == 1 ? Step::Request : Step::Rest, .Number = 7}, route, 0ms,
+            1000);
+    }
+    EXPECT_EQ(Take(0ms), (Routes{1, 2, 3}));
+}
+
+TEST_F(KeyExchangeOutboxTest, FragmentsOfWhatHasBegunToGoFollowAtOnce)
+{
+    Put({.To = Prefix(1), .What = Step::Request, .Number = 7}, 1, 0ms, 1000);
+    Take(0ms);
+    Put({.To = Prefix(1), .What = Step::Rest, .Number = 7}, 2, 1ms, 1000);
+    EXPECT_EQ(Take(1ms), (Routes{2}));
+}
+
+TEST_F(KeyExchangeOutboxTest, FragmentsOfWhatHasGivenWayDoNotGo)
+{
+    Put({.To = Prefix(1), .What = Step::Rest, .Number = 7}, 1, 0ms, 1000);
+    EXPECT_EQ(Take(10s), Routes{});
+}
+
+TEST_F(KeyExchangeOutboxTest, KeysStayInTheirOrderAndNoneIsLeftOut)
+{
+    Routes all;
+    for (std::uint64_t route = 0; route < 100; ++route)
+    {
+        Put(1, Step::Keys, route, 0ms, 600);
+        all.push_back(route);
+    }
+    Routes gone;
+    for (auto at = 0ms; gone.size() < all.size() && at < 60s; at += 10ms)
+    {
+        for (const auto route : Take(at))
+        {
+            gone.push_back(route);
+        }
+        Hear(1, Step::Control, at);
+    }
+    EXPECT_EQ(gone, all);
+}
+
+TEST_F(KeyExchangeOutboxTest, ControlGoesAtDoublingDistancesAndTheNewestAlone)
+{
+    std::vector<int> times;
+    for (int at = 0; at < 2000; at += 10)
+    {
+        Put(1, Step::Control, 1, Milliseconds(at), 100);
+        if (!Take(Milliseconds(at)).empty())
+        {
+            times.push_back(at);
+        }
+    }
+    EXPECT_EQ(times, (std::vector<int>{0, 50, 150, 350, 750, 1550}));
+}
+
+TEST_F(KeyExchangeOutboxTest, ControlBeginsAnewWhenKeysCome)
+{
+    for (int at = 0; at < 1000; at += 10)
+    {
+        Put(1, Step::Control, 1, Milliseconds(at), 100);
+        Take(Milliseconds(at));
+    }
+    Put(1, Step::Control, 1, 1000ms, 100);
+    EXPECT_EQ(Take(1000ms), Routes{});
+    Hear(1, Step::Keys, 1001ms);
+    EXPECT_EQ(Take(1001ms), (Routes{1}));
+}
+
+TEST_F(KeyExchangeOutboxTest, WhatAWriterSaysOfItsKeysStaysBehindThem)
+{
+    Put(9, Step::Request, 9, 0ms);
+    Put(8, Step::Request, 8, 0ms);
+    Take(0ms);
+    Put(1, Step::Keys, 1, 1ms, 1000, 5);
+    Put(1, Step::Control, 2, 1ms, 100, 5);
+    Put(1, Step::Control, 3, 1ms, 100, 6);
+    EXPECT_EQ(Take(1ms), (Routes{3}));
+    Hear(9, Step::Reply, 2ms);
+    EXPECT_EQ(Take(2ms), (Routes{1, 2}));
+}
+
+TEST_F(KeyExchangeOutboxTest, WhoAsksForKeysThatAreOnTheirWayIsNotHeard)
+{
+    Put(9, Step::Request, 9, 0ms);
+    Put(8, Step::Request, 8, 0ms);
+    Take(0ms);
+    EXPECT_TRUE(Hear(1, Step::Control, 1ms));
+    Put(1, Step::Keys, 1, 1ms, 1000);
+    EXPECT_FALSE(Hear(1, Step::Control, 2ms));
+    Hear(9, Step::Reply, 400ms);
+    EXPECT_EQ(Take(400ms), (Routes{1}));
+    EXPECT_FALSE(Hear(1, Step::Control, 700ms));
+    EXPECT_TRUE(Hear(1, Step::Control, 800ms));
+}
+
+TEST_F(KeyExchangeOutboxTest, WhatIsProtectedAsAWholeIsHeldAMomentAfterKeysAlone)
+{
+    const KeyExchange control{.To = Prefix(1), .What = Step::Control, .Source = 3, .IsWhole = true};
+    EXPECT_FALSE(Put(control, 1, 0ms, 100));
+    Put(1, Step::Keys, 2, 0ms, 600);
+    Take(0ms);
+    EXPECT_TRUE(Put(control, 1, 10ms, 100));
+    EXPECT_TRUE(Put(control, 1, 5990ms, 100));
+    EXPECT_FALSE(Put(control, 1, 6010ms, 100));
+}
+
+TEST_F(KeyExchangeOutboxTest, ASetRateBoundsAll)
+{
+    Outbox.SetRate(1000.0);
+    Put(1, Step::Keys, 1, 0ms, 500 - KeyExchangeOutbox::Headers);
+    Put(1, Step::Keys, 2, 0ms, 500 - KeyExchangeOutbox::Headers);
+    EXPECT_EQ(Take(0ms), (Routes{1}));
+    EXPECT_EQ(Next(), 500ms);
+}
+
+TEST_F(KeyExchangeOutboxTest, MemoryIsBoundedWhateverIsSaid)
+{
+    for (std::uint32_t peer = 0; peer < 2 * KeyExchangeOutbox::MostPeers; ++peer)
+    {
+        KeyExchange what{.What = Step::Keys, .Source = peer};
+        what.To.fill(1);
+        what.To[0] = static_cast<std::uint8_t>(peer & 0xff);
+        what.To[1] = static_cast<std::uint8_t>(peer >> 8);
+        EXPECT_TRUE(Put(what, peer, 0ms, 60000));
+    }
+    EXPECT_LE(Outbox.Peers(), KeyExchangeOutbox::MostPeers);
+    std::size_t bytes = 0;
+    for (auto at = 0s; at < 4000s; at += 10s)
+    {
+        for (const auto &datagram : Outbox.TakeDue(Start + at))
+        {
+            bytes += datagram.Bytes.size();
+        }
+    }
+    EXPECT_GT(bytes, 0U);
+    EXPECT_LE(bytes, KeyExchangeOutbox::MostWaiting);
+}
+
+}  // namespace

@@ -1,0 +1,186 @@
+// What a KeyExchangeOutbox lets go next.
+#include "common/KeyExchangeOutbox.h"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace Rabit
+{
+
+std::size_t KeyExchangeOutbox::SizeOf(const Message &message)
+{
+    std::size_t size = 0;
+    for (const Datagram &datagram : message.Datagrams)
+    {
+        size += datagram.Bytes.size() + Headers;
+    }
+    return size;
+}
+
+bool KeyExchangeOutbox::IsBehindKeys(const Peer &peer, const ControlKind &kind)
+{
+    return !peer.KeysWaiting.empty() && peer.KeysWaiting.front().Source == kind.Source;
+}
+
+// Calls visit(choice) with what may go as far as the window is concerned.
+template <typename Visit>
+void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
+{
+    for (const auto &[name, peer] : _peers)
+    {
+        if (!peer.Rest.empty())
+        {
+            visit(Choice{.What = Step::Final, .Place = 0, .Due = TimePoint{}, .Of = name, .Kind = {}});
+        }
+        for (const auto &[kind, control] : peer.Controls)
+        {
+            if (!control.Bytes.empty() && !IsBehindKeys(peer, kind))
+            {
+                visit(Choice{.What = Step::Control,
+                             .Place = control.Place,
+                             .Due = control.Due,
+                             .Of = name,
+                             .Kind = kind});
+            }
+        }
+        if (peer.Waiting && (peer.Waiting->What == Step::Final || Fits(SizeOf(*peer.Waiting))))
+        {
+            visit(Choice{.What = peer.Waiting->What,
+                         .Place = peer.Waiting->Place,
+                         .Due = peer.Waiting->Due,
+                         .Of = name,
+                         .Kind = {}});
+        }
+        if (!peer.KeysWaiting.empty() && Fits(peer.KeysWaiting.front().What.Bytes.size() + Headers))
+        {
+            const Keys &keys = peer.KeysWaiting.front();
+            visit(Choice{.What = Step::Keys, .Place = keys.Place, .Due = keys.Since, .Of = name, .Kind = {}});
+        }
+    }
+}
+
+std::optional<KeyExchangeOutbox::TimePoint> KeyExchangeOutbox::Due() const
+{
+    std::optional<TimePoint> due;
+    const auto notAfter = [&due](TimePoint time) { due = due ? std::min(*due, time) : time; };
+    VisitChoices([&](const Choice &choice) { notAfter(choice.Due); });
+    if (due)
+    {
+        due = std::max(*due, _freeAt);
+    }
+    for (const auto &[name, peer] : _peers)
+    {
+        if (peer.Unanswered > 0)
+        {
+            notAfter(peer.UnansweredUntil);
+        }
+    }
+    return due;
+}
+
+std::optional<KeyExchangeOutbox::Choice> KeyExchangeOutbox::Next(TimePoint now) const
+{
+    std::optional<Choice> best;
+    VisitChoices(
+        [&](const Choice &choice)
+        {
+            if (choice.Due <= now &&
+                (!best || std::tie(choice.What, choice.Place) < std::tie(best->What, best->Place)))
+            {
+                best = choice;
+            }
+        });
+    return best;
+}
+
+std::vector<KeyExchangeOutbox::Datagram> KeyExchangeOutbox::TakeDue(TimePoint now)
+{
+    std::vector<Datagram> taken;
+    Expire(now);
+    while (_freeAt <= now)
+    {
+        const auto next = Next(now);
+        if (!next)
+        {
+            break;
+        }
+        Take(*next, now, taken);
+    }
+    return taken;
+}
+
+void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Datagram> &taken)
+{
+    Peer &peer = _peers.at(choice.Of);
+    const auto from = static_cast<std::ptrdiff_t>(taken.size());
+    bool waits = true;
+    if (choice.Kind)
+    {
+        Control &control = peer.Controls.at(*choice.Kind);
+        taken.push_back({choice.Kind->Route, std::exchange(control.Bytes, {})});
+        control.Gap = std::exchange(control.IsSaid, true)
+                          ? std::min<Duration>(2 * control.Gap, control.IsIdle ? Duration(LongestIdleGap)
+                                                                               : LongControlGapNow())
+                          : ControlGapNow();
+        control.SaidAt = now;
+        waits = false;
+    }
+    else if (choice.What == Step::Keys)
+    {
+        _waiting -= peer.KeysWaiting.front().What.Bytes.size();
+        taken.push_back(std::move(peer.KeysWaiting.front().What));
+        peer.KeysWaiting.pop_front();
+        peer.KeysSaidAt = now;
+        BeginControlAnew(peer);
+    }
+    else if (!peer.Rest.empty())
+    {
+        std::move(peer.Rest.begin(), peer.Rest.end(), std::back_inserter(taken));
+        peer.Rest.clear();
+    }
+    else
+    {
+        TakeMessage(peer, now, taken);
+    }
+    std::size_t size = 0;
+    std::for_each(taken.begin() + from, taken.end(),
+                  [&size](const Datagram &datagram) { size += datagram.Bytes.size() + Headers; });
+    Charge(peer, size, waits, now);
+}
+
+void KeyExchangeOutbox::TakeMessage(Peer &peer, TimePoint now, std::vector<Datagram> &taken)
+{
+    const bool again = peer.Said == peer.Waiting->What;
+    peer.Gap = again && peer.Gap > Duration(0) ? std::min<Duration>(2 * peer.Gap, LongestGap) : GapNow();
+    peer.Said = peer.Waiting->What;
+    peer.SaidNumber = peer.Waiting->Number;
+    peer.SaidAgainAt = now + peer.Gap;
+    peer.IsRepeated = peer.IsRepeated || again;
+    peer.Rest.clear();
+    std::move(peer.Waiting->Datagrams.begin(), peer.Waiting->Datagrams.end(), std::back_inserter(taken));
+    peer.Waiting.reset();
+}
+
+void KeyExchangeOutbox::Charge(Peer &peer, std::size_t size, bool waits, TimePoint now)
+{
+    if (_most > 0.0)
+    {
+        const std::chrono::duration<double> time(static_cast<double>(size) / _most);
+        _freeAt = std::max(_freeAt, now) + std::chrono::duration_cast<Duration>(time);
+    }
+    if (!waits)
+    {
+        return;
+    }
+    if (peer.Unanswered == 0)
+    {
+        peer.UnansweredSince = now;
+    }
+    peer.Unanswered += size;
+    peer.UnansweredUntil = now + std::max(peer.Gap, GapNow());
+    _unanswered += size;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,272 @@
+#include "common/KeyExchangeOutbox.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace Rabit
+{
+
+namespace
+{
+
+// Whether who has said this has no use any more for what was to be said to it.
+bool IsPast(KeyExchange::Step ours, KeyExchange::Step theirs)
+{
+    using Step = KeyExchange::Step;
+    switch (theirs)
+    {
+        case Step::Final:
+            return ours == Step::Reply || ours == Step::Ask;
+        case Step::Keys:
+        case Step::Reply:
+            return ours == Step::Request || ours == Step::Ask;
+        case Step::Request:
+            return ours == Step::Ask;
+        default:
+            return false;
+    }
+}
+
+// Whether that was the answer to this.
+bool Answers(std::optional<KeyExchange::Step> said, KeyExchange::Step theirs)
+{
+    using Step = KeyExchange::Step;
+    const bool isHandshake = theirs != Step::Keys && theirs != Step::Control;
+    return !isHandshake || (said && IsPast(*said, theirs));
+}
+
+}  // namespace
+
+KeyExchangeOutbox::Duration KeyExchangeOutbox::GapNow() const
+{
+    constexpr int Times = 4;
+    return _answerTime ? std::clamp<Duration>(Times * *_answerTime, ShortestGap, LongestFirstGap)
+                       : Duration(FirstGap);
+}
+
+KeyExchangeOutbox::Duration KeyExchangeOutbox::ControlGapNow() const
+{
+    return std::clamp<Duration>(2 * _answerTime.value_or(Duration(0)), ShortestControlGap,
+                                LongestFirstControlGap);
+}
+
+KeyExchangeOutbox::Duration KeyExchangeOutbox::LongControlGapNow() const
+{
+    constexpr int Times = 4;
+    return _answerTime ? std::clamp<Duration>(Times * *_answerTime, ShortestLongControlGap, LongestControlGap)
+                       : Duration(LongestControlGap);
+}
+
+void KeyExchangeOutbox::BeginControlAnew(Peer &peer)
+{
+    for (auto &[kind, control] : peer.Controls)
+    {
+        if (control.IsIdle)
+        {
+            continue;
+        }
+        control.Gap = std::min(control.Gap, ControlGapNow());
+        control.Due = std::min(control.Due, control.SaidAt + control.Gap);
+    }
+}
+
+void KeyExchangeOutbox::ForgetOldest()
+{
+    const auto oldest = std::min_element(_peers.begin(), _peers.end(),
+                                         [](const auto &one, const auto &other)
+                                         { return one.second.TouchedAt < other.second.TouchedAt; });
+    _unanswered -= oldest->second.Unanswered;
+    for (const Keys &keys : oldest->second.KeysWaiting)
+    {
+        _waiting -= keys.What.Bytes.size();
+    }
+    _peers.erase(oldest);
+}
+
+KeyExchangeOutbox::Peer &KeyExchangeOutbox::PeerOf(const KeyExchange::Prefix &name, TimePoint now)
+{
+    if (_peers.size() >= MostPeers && !_peers.contains(name))
+    {
+        ForgetOldest();
+    }
+    Peer &peer = _peers[name];
+    peer.TouchedAt = now;
+    return peer;
+}
+
+bool KeyExchangeOutbox::Put(std::span<const std::uint8_t> datagram, const KeyExchange &what,
+                            std::uint64_t route, TimePoint now)
+{
+    if (what.IsWhole ? !IsHeld(what, now) : what.To == KeyExchange::Prefix{})
+    {
+        return false;
+    }
+    if (what.IsForOther)
+    {
+        return true;
+    }
+    Peer &peer = PeerOf(what.To, now);
+    if (!what.IsWhole && what.What != Step::Control)
+    {
+        Exchanged(peer, now);
+    }
+    Datagram copy{.Route = route, .Bytes = {datagram.begin(), datagram.end()}};
+    if (what.IsHandshake())
+    {
+        PutHandshake(peer, std::move(copy), what, now);
+    }
+    else if (what.What == Step::Control)
+    {
+        PutControl(peer, std::move(copy), what, now);
+    }
+    else if (_waiting + datagram.size() <= MostWaiting)
+    {
+        _waiting += datagram.size();
+        peer.KeysWaiting.push_back({std::move(copy), what.Source, now, ++_turn});
+    }
+    return true;
+}
+
+void KeyExchangeOutbox::Exchanged(Peer &peer, TimePoint now)
+{
+    peer.ExchangedAt = _exchangedAt = now;
+}
+
+bool KeyExchangeOutbox::IsHeld(const KeyExchange &what, TimePoint now) const
+{
+    if (what.IsIdle)
+    {
+        return true;
+    }
+    if (what.To == KeyExchange::Prefix{})
+    {
+        return what.What == Step::Control && now - _exchangedAt < Settled;
+    }
+    const auto found = _peers.find(what.To);
+    return found != _peers.end() &&
+           (!found->second.KeysWaiting.empty() || now - found->second.ExchangedAt < Settled);
+}
+
+void KeyExchangeOutbox::PutHandshake(Peer &peer, Datagram datagram, const KeyExchange &what, TimePoint now)
+{
+    if (peer.Waiting && peer.Waiting->Number == what.Number)
+    {
+        if (peer.Waiting->Datagrams.size() < MostDatagrams)
+        {
+            peer.Waiting->Datagrams.push_back(std::move(datagram));
+        }
+        return;
+    }
+    if (peer.Said && peer.SaidNumber == what.Number)
+    {
+        if (peer.Rest.size() < MostDatagrams)
+        {
+            peer.Rest.push_back(std::move(datagram));
+        }
+        return;
+    }
+    if (what.What == Step::Rest)
+    {
+        return;  // what begins it has given way to something newer
+    }
+    const Turn place = peer.Waiting ? peer.Waiting->Place : ++_turn;
+    const TimePoint due = peer.Said == what.What ? std::max(now, peer.SaidAgainAt) : now;
+    peer.Waiting =
+        Message{.What = what.What, .Number = what.Number, .Datagrams = {}, .Due = due, .Place = place};
+    peer.Waiting->Datagrams.push_back(std::move(datagram));
+}
+
+void KeyExchangeOutbox::PutControl(Peer &peer, Datagram datagram, const KeyExchange &what, TimePoint now)
+{
+    const ControlKind kind{.Route = datagram.Route, .Source = what.Source, .Size = datagram.Bytes.size()};
+    if (peer.Controls.size() >= MostControls && !peer.Controls.contains(kind))
+    {
+        peer.Controls.clear();
+    }
+    Control &control = peer.Controls[kind];
+    if (control.Bytes.empty())
+    {
+        control.Place = ++_turn;
+        control.Due = control.IsSaid ? std::max(now, control.SaidAt + control.Gap) : now;
+    }
+    control.IsIdle = what.IsIdle;
+    control.Bytes = std::move(datagram.Bytes);
+}
+
+bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
+{
+    const auto found = _peers.find(what.From);
+    if (found == _peers.end())
+    {
+        return true;
+    }
+    Peer &peer = found->second;
+    peer.TouchedAt = now;
+    if (!what.IsWhole && what.What != Step::Control)
+    {
+        Exchanged(peer, now);
+    }
+    if (peer.Waiting && IsPast(peer.Waiting->What, what.What))
+    {
+        peer.Waiting.reset();
+    }
+    if (Answers(peer.Said, what.What))
+    {
+        Answered(peer, what.IsHandshake() && !what.IsWhole, now);
+    }
+    if (what.What == Step::Keys)
+    {
+        BeginControlAnew(peer);
+    }
+    return what.What != Step::Control ||
+           (peer.KeysWaiting.empty() && now - peer.KeysSaidAt >= _answerTime.value_or(Duration(0)));
+}
+
+void KeyExchangeOutbox::Answered(Peer &peer, bool tellsTime, TimePoint now)
+{
+    if (peer.Unanswered == 0)
+    {
+        return;
+    }
+    const std::size_t size = std::exchange(peer.Unanswered, 0);
+    _unanswered -= size;
+    peer.Gap = Duration(0);
+    if (std::exchange(peer.IsRepeated, false) || !tellsTime)
+    {
+        return;
+    }
+    const Duration took = std::max(now - peer.UnansweredSince, Duration(0));
+    _answerTime = std::max(took, _answerTime.value_or(took) / 2);
+    if (took <= Quick)
+    {
+        _window = std::min(_window + size, LargestWindow);
+    }
+    else if (took > Late)
+    {
+        Lower(now);
+    }
+}
+
+void KeyExchangeOutbox::Lower(TimePoint now)
+{
+    if (now - _loweredAt < GapNow())
+    {
+        return;
+    }
+    _loweredAt = now;
+    _window = std::max(_window / 2, SmallestWindow);
+}
+
+void KeyExchangeOutbox::Expire(TimePoint now)
+{
+    for (auto &[name, peer] : _peers)
+    {
+        if (peer.Unanswered > 0 && peer.UnansweredUntil <= now)
+        {
+            _unanswered -= std::exchange(peer.Unanswered, 0);
+            Lower(now);
+        }
+    }
+}
+
+}  // namespace Rabit
