@@ -53,8 +53,8 @@ public:
     static constexpr Milliseconds Quick{200};
     static constexpr Milliseconds Late{1000};
     // Between a message and its repetition: four times as long as answers take, within these bounds.
-    static constexpr Milliseconds FirstGap{1000};
-    static constexpr Milliseconds ShortestGap{500};
+    static constexpr Milliseconds FirstGap{500};
+    static constexpr Milliseconds ShortestGap{250};
     static constexpr Milliseconds LongestFirstGap{4000};
     static constexpr Milliseconds LongestGap{8000};
     // The same of control, of which each distance is twice the one before: twice as long as answers take at

@@ -127,7 +127,7 @@ TEST_F(KeyExchangeOutboxTest, WhatIsNeverAnsweredCountsAsLostAndClosesTheWindow)
     Put(2, Step::Request, 2, 0ms);
     Put(3, Step::Request, 3, 0ms);
     Take(0ms);
-    EXPECT_EQ(Next(), 1000ms);
+    EXPECT_EQ(Next(), 500ms);
     EXPECT_EQ(Outbox.Window(), KeyExchangeOutbox::SmallestWindow);
 }
 
@@ -155,8 +155,8 @@ TEST_F(KeyExchangeOutboxTest, RepetitionsGoAtDoublingDistancesAndTheNewestAlone)
             routes.push_back(route);
         }
     }
-    EXPECT_EQ(times, (std::vector<Milliseconds::rep>{0, 1000, 3000, 7000, 15000}));
-    EXPECT_EQ(routes, (Routes{0, 1000, 3000, 7000, 15000}));
+    EXPECT_EQ(times, (std::vector<Milliseconds::rep>{0, 500, 1500, 3500, 7500, 15500}));
+    EXPECT_EQ(routes, (Routes{0, 500, 1500, 3500, 7500, 15500}));
 }
 
 TEST_F(KeyExchangeOutboxTest, ARepetitionIsForgottenWhenTheAnswerComes)
