@@ -10,7 +10,7 @@ namespace
 
 constexpr int OftenEnough = 3;
 // What is said of discovery: numbers of two writers, and a few more. When they are too many it begins anew.
-constexpr std::size_t MostFromElsewhere = 256;
+constexpr std::size_t MostFromElsewhere = 1024;
 
 }  // namespace
 
