@@ -307,8 +307,12 @@ private:
     bool NoteExchange(std::span<const std::uint8_t> datagram)
     {
         const auto what = KeyExchangeOf(datagram);
+        if (!what)
+        {
+            return true;
+        }
         const std::lock_guard lock(_sending);
-        if (!what || what->To != _self)
+        if (what->To != _self)
         {
             return true;
         }
