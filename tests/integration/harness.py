@@ -45,6 +45,15 @@ def until(holds, limit_s=120):
         assert time.monotonic() < end, f"{holds.__name__} did not come true"
 
 
+def run_at_once(cases):
+    """Runs each case's `run` on a thread of its own, and returns when all have. A case keeps what went wrong itself."""
+    threads = [threading.Thread(target=case.run) for case in cases]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
 def die_with_parent():
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)

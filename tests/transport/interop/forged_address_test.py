@@ -11,7 +11,6 @@ import pathlib
 import re
 import struct
 import sys
-import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1] / "integration"), str(HERE.parent / "security")]
@@ -70,11 +69,7 @@ def main():
         with contextlib.ExitStack() as wires:
             for case in cases:
                 case.wire = wires.enter_context(between.Wire(NODES, case.number))
-            threads = [threading.Thread(target=case.run) for case in cases]
-            for thread in threads:
-                thread.start()
-            for thread in threads:
-                thread.join()
+            harness.run_at_once(cases)
     except field.Unsupported as reason:
         print(f"skipped: {reason}")
         sys.exit(SKIPPED)

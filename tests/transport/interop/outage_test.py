@@ -8,7 +8,6 @@ Needs to make network namespaces; ends with 77 where it may not."""
 import pathlib
 import re
 import sys
-import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -110,11 +109,7 @@ def main():
         sys.exit(SKIPPED)
     cases = [Case(node, (first, second), event) for first in transports for second in transports
              for event in ("cable", "address")]
-    threads = [threading.Thread(target=case.run) for case in cases]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    harness.run_at_once(cases)
     for case in cases:
         outcome = f"recovered in {case.recovered:.1f} s" if case.failure is None else f"FAILED: {case.failure}"
         print(f"{case.transports[0]:<11} {case.transports[1]:<11} {case.event:<8} {outcome}")

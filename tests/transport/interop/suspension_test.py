@@ -11,7 +11,6 @@ import re
 import signal
 import subprocess
 import sys
-import threading
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -158,11 +157,7 @@ def main():
         print("skipped: no network namespaces can be made here")
         sys.exit(SKIPPED)
     all_cases = [case for length in seconds.split(",") for case in cases(node, float(length), transports)]
-    threads = [threading.Thread(target=case.run) for case in all_cases]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    harness.run_at_once(all_cases)
     for case in all_cases:
         outcome = f"recovered in {case.recovered:.1f} s" if case.failure is None else f"FAILED: {case.failure}"
         print(f"{case.transports[0]:<11} {case.transports[1]:<11} {str(case.event):<22} {case.seconds:>5} s  {outcome}")

@@ -10,7 +10,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
@@ -62,11 +61,7 @@ def main():
     harness.enter_namespace()
     cases = [Case(sys.argv[1:3], transport, harness.domain() + 3 * i)
              for i, transport in enumerate(("fastdds", "cyclonedds"))]
-    threads = [threading.Thread(target=case.run) for case in cases]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    harness.run_at_once(cases)
     failures = [f"{case.transport}: {case.failure}" for case in cases if case.failure]
     print("\n".join(failures) or "as it should be")
     sys.exit(1 if failures else 0)

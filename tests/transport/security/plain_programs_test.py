@@ -10,7 +10,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
@@ -72,11 +71,7 @@ def main():
     harness.enter_namespace()
     cases = [Case(programs, program, transports, level, harness.domain() + 3 * (len(plain) * i + j))
              for i, level in enumerate(("none", "sign", "encrypt")) for j, program in enumerate(plain)]
-    threads = [threading.Thread(target=case.run) for case in cases]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    harness.run_at_once(cases)
     for case in cases:
         print(f"{pathlib.Path(case.program).name}, {case.level}: {case.failure or 'as it should be'}")
         for line in case.said:

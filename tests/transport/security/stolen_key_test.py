@@ -10,7 +10,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -237,11 +236,7 @@ def main():
         cases = [Case(programs, (harness.domain() + 3 * (number + i)) % 180, fleet, act, secured)
                  for i, fleet in enumerate(fleets)]
         number += len(cases)
-        threads = [threading.Thread(target=case.run) for case in cases]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        harness.run_at_once(cases)
         for case in cases:
             print(f"{case} {case.failure or 'as it should be'}")
             for line in case.noted:

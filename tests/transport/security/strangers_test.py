@@ -11,7 +11,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
@@ -186,11 +185,7 @@ def main():
         for stranger in transports:
             row.append(Case(programs, transports, stranger, (harness.domain() + 3 * number) % 180, description))
             number += 1
-        threads = [threading.Thread(target=case.run) for case in row]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        harness.run_at_once(row)
         for case in row:
             print(f"{case.name}, over {case.stranger}: {case.failure or 'stays out'}")
             for line in case.said:

@@ -281,11 +281,7 @@ def main():
         with contextlib.ExitStack() as wires:
             for case in cases:
                 case.wire = wires.enter_context(between.Wire(NODES, case.number))
-            threads = [threading.Thread(target=case.run) for case in cases]
-            for thread in threads:
-                thread.start()
-            for thread in threads:
-                thread.join()
+            harness.run_at_once(cases)
     except field.Unsupported as reason:
         print(f"skipped: {reason}")
         sys.exit(SKIPPED)
