@@ -20,13 +20,13 @@ MOST_KEPT = 400
 
 
 def overhear(listener, heard):
-    """Adds what waits at the packet socket: (address, port, payload)."""
+    """Adds what others have sent and waits at the packet socket: (address, port, payload)."""
     while True:
         try:
-            frame = listener.recv(65535)
+            frame, (_, _, kind, *_) = listener.recvfrom(65535)
         except BlockingIOError:
             return
-        if len(frame) < 42 or frame[12:14] != b"\x08\x00" or frame[23] != IP_UDP:
+        if kind == socket.PACKET_OUTGOING or len(frame) < 42 or frame[12:14] != b"\x08\x00" or frame[23] != IP_UDP:
             continue
         header = 14 + 4 * (frame[14] & 15)
         payload = frame[header + 8:]

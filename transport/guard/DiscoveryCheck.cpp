@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "guard/DeliveryCheck.h"
+#include "guard/Fnv.h"
 #include "guard/RtpsReader.h"
 #include "guard/TokenCheck.h"
 
@@ -73,14 +77,20 @@ struct Found
     bool Topic = false;
     bool Type = false;
     int Locators = 0;
-    std::uint64_t Digest = 14695981039346656037u;
+    Fnv Digest;
+    std::vector<HostAddress> Hosts;
 
-    // FNV-1a
+    void AddHost(const std::optional<HostAddress> &host)
+    {
+        if (host && std::find(Hosts.begin(), Hosts.end(), *host) == Hosts.end())
+        {
+            Hosts.push_back(*host);
+        }
+    }
     void Digested(std::uint16_t id, std::span<const std::uint8_t> value)
     {
-        const auto add = [this](std::uint8_t byte) { Digest = (Digest ^ byte) * 1099511628211u; };
-        add(static_cast<std::uint8_t>(id));
-        std::for_each(value.begin(), value.end(), add);
+        Digest.AddByte(static_cast<std::uint8_t>(id));
+        Digest.Add(value);
     }
 };
 
@@ -165,6 +175,21 @@ bool IsLocator(RtpsReader value)
     value.U32();  // kind: the vendor passes over those that it does not have
     const std::uint32_t port = value.U32();
     return value.IsGood() && value.Left() == 16 && port <= LargestPort;
+}
+
+// The host of a sound one.
+std::optional<HostAddress> HostOf(RtpsReader locator)
+{
+    constexpr std::uint32_t UdpV4 = 1;
+    if (locator.U32() != UdpV4)
+    {
+        return std::nullopt;
+    }
+    locator.U32();  // port
+    const auto address = locator.Bytes(16);
+    HostAddress host{};
+    std::copy_n(address.end() - static_cast<std::ptrdiff_t>(host.size()), host.size(), host.begin());
+    return host;
 }
 
 // The vendor reads these for participants and endpoints alike, and refuses another size or reads past the
@@ -265,7 +290,15 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
         case MetatrafficUnicastLocator:
         case MetatrafficMulticastLocator:
             found.Digested(id, bytes);
-            return IsLocator(value) && ++found.Locators <= MostLocators;
+            if (!IsLocator(value) || ++found.Locators > MostLocators)
+            {
+                return false;
+            }
+            if (id == DefaultUnicastLocator || id == MetatrafficUnicastLocator)
+            {
+                found.AddHost(HostOf(value));
+            }
+            return true;
         case ParticipantGuid:
             if (bytes.size() != 16 || !IsGuidOf(sender, bytes) || EntityOf(bytes) != ParticipantEntity)
             {
@@ -318,7 +351,9 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
             const bool isParticipant = writer == ParticipantWriter;
             const bool complete =
                 found.Subject != 0 && (isParticipant ? found.Lease : found.Topic && found.Type);
-            return complete ? std::optional(Announcement{found.Subject, found.Digest}) : std::nullopt;
+            return complete ? std::optional(
+                                  Announcement{found.Subject, found.Digest.Sum(), std::move(found.Hosts)})
+                            : std::nullopt;
         }
         const auto value = rest.Bytes(length);
         bool wanted = true;

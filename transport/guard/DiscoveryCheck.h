@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "guard/RtpsMessage.h"
 
@@ -17,6 +18,8 @@ struct Announcement
     EntityId Subject = 0;
     // Of a participant: of what says where it is heard. Of an endpoint: of all that we have a use for.
     std::uint64_t Digest = 0;
+    // Of a participant: where it says that it can be reached.
+    std::vector<HostAddress> Hosts;
 };
 
 // Checks the payload of a sample of one of the topics of discovery or liveliness (the known ones of

@@ -61,6 +61,7 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
             }
             known.Place = Word{digest};
             known.HasMoved = true;
+            known.IsNewThere = true;
         }
         known.Placed = now;
         known.Heard = now;
@@ -82,6 +83,18 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
         added.Writers[writer];
     }
     return true;
+}
+
+void KnownPeers::IsAt(const GuidPrefix &peer, std::span<const HostAddress> hosts, const HostAddress &from)
+{
+    Peer &known = _peers.at(peer);
+    known.Speaks.Announced(hosts, from, std::exchange(known.IsNewThere, false));
+}
+
+bool KnownPeers::Believes(const GuidPrefix &peer, const HostAddress &from, const PeerPlace::Saying &saying)
+{
+    const auto found = _peers.find(peer);
+    return found == _peers.end() || found->second.Speaks.Believes(from, saying);
 }
 
 bool KnownPeers::IsKnown(Word &word, std::uint64_t digest)

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 
+#include "guard/PeerPlace.h"
 #include "guard/RtpsMessage.h"
 
 namespace Rabit::Rtps
@@ -27,6 +29,11 @@ public:
     // it is said for the third time, with no word of the former one in between nor for twice as long as there
     // was between two such words.
     bool Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoint now);
+    // What was believed also says that it is at these hosts, and came from `from` (PeerPlace.h).
+    void IsAt(const GuidPrefix &peer, std::span<const HostAddress> hosts, const HostAddress &from);
+    // Whether what the peer is to have said of discovery is to be looked at. What is said in the name of who
+    // is not known is.
+    bool Believes(const GuidPrefix &peer, const HostAddress &from, const PeerPlace::Saying &saying);
     // Whether the peer was announced; if so, it is heard of at this moment.
     bool Hears(const GuidPrefix &peer, TimePoint now);
 
@@ -82,6 +89,8 @@ private:
     struct Peer
     {
         Word Place;
+        PeerPlace Speaks;
+        bool IsNewThere = true;              // since IsAt
         TimePoint Placed{};                  // when it was last said to be there
         std::chrono::milliseconds Period{};  // in which that is said again
         TimePoint Heard{};

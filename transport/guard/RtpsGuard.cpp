@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "guard/DiscoveryCheck.h"
+#include "guard/Fnv.h"
 #include "guard/ProtectionCheck.h"
 #include "guard/RtpsReader.h"
 #include "guard/TokenCheck.h"
@@ -43,6 +44,30 @@ bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
     return is && IsBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
 }
 
+// An honest sender repeats a submessage of discovery as it was until it is answered, but for the count and,
+// in a heartbeat, how far it has come.
+PeerPlace::Saying SayingOf(SubmessageKind kind, const Delivery &delivery)
+{
+    Fnv about;
+    about.AddNumber(static_cast<std::uint64_t>(kind));
+    about.AddNumber(delivery.Writer);
+    Fnv content;
+    content.AddNumber(static_cast<std::uint64_t>(delivery.First));
+    if (kind != SubmessageKind::Heartbeat)
+    {
+        content.AddNumber(static_cast<std::uint64_t>(delivery.Last));
+        content.AddNumber(delivery.LastFragment);
+    }
+    if (kind == SubmessageKind::Data || kind == SubmessageKind::Gap)
+    {
+        about.AddNumber(static_cast<std::uint64_t>(delivery.First));
+        content.AddNumber(delivery.Alive ? 1 : 0);
+        content.Add(delivery.KeyHash);
+        content.Add(delivery.Payload);
+    }
+    return {about.Sum(), content.Sum()};
+}
+
 bool HasSize(const Submessage &submessage, std::size_t size)
 {
     return submessage.Body().size() >= size;
@@ -50,7 +75,8 @@ bool HasSize(const Submessage &submessage, std::size_t size)
 
 }  // namespace
 
-bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, TimePoint now, const Deliver &deliver)
+bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from, TimePoint now,
+                      const Deliver &deliver)
 {
     if (!HasRtpsHeader(datagram))
     {
@@ -60,6 +86,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, TimePoint now, const Del
     passage.Datagram = datagram;
     std::copy_n(datagram.begin(), RtpsHeaderSize, passage.Header.begin());
     passage.Sender = SenderOf(datagram);
+    passage.From = from;
     passage.Now = now;
     std::span<std::uint8_t> left;
     {
@@ -68,7 +95,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, TimePoint now, const Del
     }
     for (auto &message : passage.Whole)
     {
-        passage.Honest = Admit(message, now, deliver) && passage.Honest;
+        passage.Honest = Admit(message, from, now, deliver) && passage.Honest;
     }
     if (!left.empty())
     {
@@ -211,6 +238,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     {
         verdict = IsSecured() ? Verdict::Pass : Verdict::Ignore;
     }
+    else if (_mode == Mode::Full && IsBuiltin(delivery.Writer) && !IsItsOwn(submessage, delivery, passage))
+    {
+        verdict = Verdict::Refuse;
+    }
     else if (IsBuiltin(delivery.Writer) && isSample)
     {
         verdict = JudgeBuiltinSample(submessage, delivery, passage);
@@ -259,10 +290,13 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return Verdict::Drop;
     }
-    if (_mode == Mode::Full && delivery.Alive && delivery.Writer == ParticipantWriter &&
-        !_peers.Announced(passage.Sender, announcement->Digest, passage.Now))
+    if (_mode == Mode::Full && delivery.Alive && delivery.Writer == ParticipantWriter)
     {
-        return Verdict::Refuse;
+        if (!_peers.Announced(passage.Sender, announcement->Digest, passage.Now))
+        {
+            return Verdict::Refuse;
+        }
+        _peers.IsAt(passage.Sender, announcement->Hosts, passage.From);
     }
     if (delivery.Alive && delivery.Writer == ParticipantWriter && passage.Sender != _own)
     {
@@ -279,6 +313,13 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         return Verdict::Refuse;
     }
     return Verdict::Pass;
+}
+
+bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
+{
+    const bool announces = delivery.Writer == ParticipantWriter && delivery.Alive;  // places are told by that
+    return announces || submessage.Kind == SubmessageKind::DataFrag ||  // it is looked at when whole
+           _peers.Believes(passage.Sender, passage.From, SayingOf(submessage.Kind, delivery));
 }
 
 RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delivery &delivery,

@@ -61,8 +61,9 @@ public:
 
     // Hands on what of a datagram the vendor may see: all, a part, or nothing. Parts that it must not see are
     // blanked in place, and the counts that it tells repeats of announcements and heartbeats by are replaced.
-    // Returns false if something was kept back that an honest sender does not send.
-    bool Admit(std::span<std::uint8_t> datagram, TimePoint now, const Deliver &deliver);
+    // `from` is whence it came. Returns false if something was kept back that an honest sender does not send.
+    bool Admit(std::span<std::uint8_t> datagram, const HostAddress &from, TimePoint now,
+               const Deliver &deliver);
 
     // Takes note of what we send.
     void Sending(std::span<const std::uint8_t> datagram);
@@ -90,6 +91,7 @@ private:
         std::array<std::uint8_t, RtpsHeaderSize> Header{};
         GuidPrefix Sender{};
         GuidPrefix Destination{};
+        HostAddress From{};
         TimePoint Now{};
         bool Useful = false;
         bool Honest = true;
@@ -104,6 +106,8 @@ private:
     bool IsForOthers(const Passage &passage) const;
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
+    // Whether what is said of discovery comes from whose name it is said in, as far as an address tells.
+    bool IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     // Against what was said before.
     Verdict Compare(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     void ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,

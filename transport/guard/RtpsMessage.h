@@ -16,6 +16,9 @@ namespace Rabit::Rtps
 using GuidPrefix = std::array<std::uint8_t, 12>;
 // Its four bytes as one number, the first the highest: 0x000100c2 writes the announcements of participants.
 using EntityId = std::uint32_t;
+// Of IPv4, as it is said: 10.0.0.1 begins with 10.
+using HostAddress = std::array<std::uint8_t, 4>;
+constexpr HostAddress UnknownHost{};
 
 // RTPS 2.3, 9.4.5.1.1; those from 0x80 on are the vendors' own.
 enum class SubmessageKind : std::uint8_t

@@ -30,6 +30,8 @@ constexpr std::uint8_t Statistics = 0x80;
 constexpr EntityId UserWriter = 0x00000103;
 constexpr EntityId UserReader = 0x00000104;
 inline constexpr GuidPrefix Sender = {1, 15, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+// Where ParticipantData says that it is.
+inline constexpr Rabit::Rtps::HostAddress SenderHost = {127, 0, 0, 1};
 inline constexpr GuidPrefix Other = {1, 15, 3, 4, 5, 6, 7, 8, 9, 10, 11, 99};
 
 Bytes Join(std::initializer_list<Bytes> parts);

@@ -1,11 +1,10 @@
 // What of a datagram gets through to the vendor's parser.
-#include "guard/RtpsGuard.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
+#include "guard/Gate.h"
 #include "guard/RtpsBytes.h"
 
 namespace
@@ -14,38 +13,7 @@ namespace
 using namespace RtpsBytes;
 using namespace std::chrono_literals;
 using Rabit::Rtps::RtpsGuard;
-
-class Gate
-{
-public:
-    explicit Gate(RtpsGuard::Mode mode = RtpsGuard::Mode::Full,
-                  RtpsGuard::Requests requests = RtpsGuard::Requests::Checked)
-        : _guard(mode, std::chrono::seconds(10), requests)
-    {
-    }
-
-    // Whether the guard found nothing to count; what it handed on is in Handed.
-    bool Admit(Bytes datagram)
-    {
-        Handed.clear();
-        return _guard.Admit(datagram, Now,
-                            [this](std::span<std::uint8_t> admitted)
-                            { Handed.emplace_back(admitted.begin(), admitted.end()); });
-    }
-    // That the datagram gets through as it is.
-    bool Passes(const Bytes &datagram) { return Admit(datagram) && Handed == std::vector<Bytes>{datagram}; }
-    // That nothing of it does, and that this is counted.
-    bool Stops(const Bytes &datagram) { return !Admit(datagram) && Handed.empty(); }
-
-    void Sending(const Bytes &datagram) { _guard.Sending(datagram); }
-    bool TakeReplyDue() { return _guard.TakeReplyDue(); }
-
-    std::vector<Bytes> Handed;
-    RtpsGuard::TimePoint Now{1h};
-
-private:
-    RtpsGuard _guard;
-};
+using RtpsBytes::Gate;
 
 // With the sender, and a writer of his, announced and at number 10.
 class RtpsGuardTest : public testing::Test

@@ -1,5 +1,6 @@
 #include "VendorDomain.h"
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <mutex>
@@ -118,7 +119,8 @@ void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t hea
     IsOfSamplesSent({head, headSize}) ? log.SentSamples(1, size) : log.SentDiscovery(1, size);
 }
 
-std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size)
+std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size,
+                                const Rtps::HostAddress &from)
 {
     std::vector<std::vector<std::uint8_t>> others;
     std::size_t left = 0;
@@ -133,7 +135,7 @@ std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size
             others.emplace_back(admitted.begin(), admitted.end());
         }
     };
-    if (!_guard.Admit(buffer.first(size), std::chrono::steady_clock::now(), std::cref(handOn)))
+    if (!_guard.Admit(buffer.first(size), from, std::chrono::steady_clock::now(), std::cref(handOn)))
     {
         _log->MalformedDatagram();
     }
@@ -152,7 +154,12 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
                                      std::size_t capacity, const unsigned char *from, bool direct)
 {
     auto &domain = *static_cast<VendorDomain *>(self);
-    const std::size_t admitted = domain.Admit({datagram, capacity}, size);
+    Rtps::HostAddress host = Rtps::UnknownHost;
+    if (from != nullptr)
+    {
+        std::copy_n(from, host.size(), host.begin());
+    }
+    const std::size_t admitted = domain.Admit({datagram, capacity}, size, host);
     if (IsOfSamples({datagram, admitted}))
     {
         return admitted;

@@ -44,7 +44,7 @@ private:
     // Looked at whenever something is said or comes: the vendor itself says something every now and then.
     void RepeatHandshakes();
     // How long what the vendor may see of a datagram is.
-    std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size);
+    std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size, const Rtps::HostAddress &from);
 
     dds_domainid_t _id = 0;
     void *_watch = nullptr;  // of what it sends

@@ -57,6 +57,16 @@ private:
     std::vector<rtps::Locator_t>::const_iterator _at;
 };
 
+HostAddress HostOf(const rtps::Locator_t &locator)
+{
+    HostAddress host = UnknownHost;
+    if (locator.kind == LOCATOR_KIND_UDPv4)
+    {
+        std::copy_n(rtps::IPLocator::getIPv4(locator), host.size(), host.begin());
+    }
+    return host;
+}
+
 class GuardedUdp final : public ChainingTransport
 {
 public:
@@ -156,7 +166,7 @@ public:
             NoteAcknowledgements(admitted);
             next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()), local, remote);
         };
-        if (!_guard.Admit(datagram, std::chrono::steady_clock::now(), std::cref(handOn)))
+        if (!_guard.Admit(datagram, HostOf(remote), std::chrono::steady_clock::now(), std::cref(handOn)))
         {
             _descriptor.Chosen().OnDropped();
         }

@@ -1,0 +1,47 @@
+// A guard, and what it hands on.
+#pragma once
+
+#include <chrono>
+#include <span>
+#include <vector>
+
+#include "guard/RtpsBytes.h"
+#include "guard/RtpsGuard.h"
+
+namespace RtpsBytes
+{
+
+class Gate
+{
+public:
+    explicit Gate(Rabit::Rtps::RtpsGuard::Mode mode = Rabit::Rtps::RtpsGuard::Mode::Full,
+                  Rabit::Rtps::RtpsGuard::Requests requests = Rabit::Rtps::RtpsGuard::Requests::Checked)
+        : _guard(mode, std::chrono::seconds(10), requests)
+    {
+    }
+
+    // Whether the guard found nothing to count; what it handed on is in Handed.
+    bool Admit(Bytes datagram)
+    {
+        Handed.clear();
+        return _guard.Admit(datagram, From, Now,
+                            [this](std::span<std::uint8_t> admitted)
+                            { Handed.emplace_back(admitted.begin(), admitted.end()); });
+    }
+    // That the datagram gets through as it is.
+    bool Passes(const Bytes &datagram) { return Admit(datagram) && Handed == std::vector<Bytes>{datagram}; }
+    // That nothing of it does, and that this is counted.
+    bool Stops(const Bytes &datagram) { return !Admit(datagram) && Handed.empty(); }
+
+    void Sending(const Bytes &datagram) { _guard.Sending(datagram); }
+    bool TakeReplyDue() { return _guard.TakeReplyDue(); }
+
+    std::vector<Bytes> Handed;
+    Rabit::Rtps::RtpsGuard::TimePoint Now{std::chrono::hours(1)};
+    Rabit::Rtps::HostAddress From = SenderHost;
+
+private:
+    Rabit::Rtps::RtpsGuard _guard;
+};
+
+}  // namespace RtpsBytes
