@@ -79,6 +79,7 @@ struct Found
     int Locators = 0;
     Fnv Digest;
     std::vector<HostAddress> Hosts;
+    bool BestEffort = false;
 
     void AddHost(const std::optional<HostAddress> &host)
     {
@@ -259,6 +260,11 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
         {
             found.Digested(id, bytes);
         }
+        if (id == Reliability)
+        {
+            constexpr std::uint32_t BestEffortKind = 1;  // 9.4.5.1 of RTPS 2.3
+            found.BestEffort = RtpsReader(value).U32() == BestEffortKind;
+        }
         return bytes.size() == size;
     }
     switch (id)
@@ -351,8 +357,8 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
             const bool isParticipant = writer == ParticipantWriter;
             const bool complete =
                 found.Subject != 0 && (isParticipant ? found.Lease : found.Topic && found.Type);
-            return complete ? std::optional(
-                                  Announcement{found.Subject, found.Digest.Sum(), std::move(found.Hosts)})
+            return complete ? std::optional(Announcement{found.Subject, found.Digest.Sum(), found.BestEffort,
+                                                         std::move(found.Hosts)})
                             : std::nullopt;
         }
         const auto value = rest.Bytes(length);

@@ -18,6 +18,8 @@ struct Announcement
     EntityId Subject = 0;
     // Of a participant: of what says where it is heard. Of an endpoint: of all that we have a use for.
     std::uint64_t Digest = 0;
+    // Of a writer: that it repeats nothing.
+    bool IsBestEffort = false;
     // Of a participant: where it says that it can be reached.
     std::vector<HostAddress> Hosts;
 };

@@ -170,7 +170,8 @@ bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)
     return true;
 }
 
-bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest)
+bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest,
+                                   bool isBestEffort)
 {
     if (!IsWriter(endpoint))
     {
@@ -185,7 +186,12 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
     const auto known = writers.find(endpoint);
     if (known != writers.end())
     {
-        return Agrees(known->second.Endpoint, digest);
+        const bool agrees = Agrees(known->second.Endpoint, digest);
+        if (agrees)
+        {
+            known->second.IsBestEffort = isBestEffort;
+        }
+        return agrees;
     }
     if (writers.size() >= MostWriters)
     {
@@ -197,7 +203,9 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
         };
         writers.erase(std::min_element(writers.begin(), writers.end(), silentLonger));
     }
-    writers[endpoint].Endpoint = Word{digest};
+    Numbers &added = writers[endpoint];
+    added.Endpoint = Word{digest};
+    added.IsBestEffort = isBestEffort;
     return true;
 }
 
@@ -269,6 +277,19 @@ void KnownPeers::Move(Numbers &numbers, std::int64_t number, TimePoint now)
         numbers.Began = now;
     }
     numbers.Highest = number;
+}
+
+std::int64_t KnownPeers::NumberOf(const GuidPrefix &peer, EntityId writer, std::int64_t number,
+                                  std::uint64_t stamp, TimePoint now)
+{
+    Numbers &numbers = _peers.at(peer).Writers.at(writer);
+    if (!numbers.IsBestEffort)
+    {
+        return number;
+    }
+    const std::int64_t given = numbers.Samples.Of(number, stamp, now);
+    numbers.Highest = numbers.Samples.Highest();
+    return given;
 }
 
 bool KnownPeers::CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const

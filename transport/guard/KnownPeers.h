@@ -9,6 +9,7 @@
 
 #include "guard/PeerPlace.h"
 #include "guard/RtpsMessage.h"
+#include "guard/SampleNumbers.h"
 
 namespace Rabit::Rtps
 {
@@ -46,12 +47,17 @@ public:
     // if it said otherwise before; but it may change its mind, and then sends its announcement until it is
     // received: that is believed with the third in a row. Of too many writers the one that was silent
     // for longest is forgotten.
-    bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest);
+    bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest,
+                           bool isBestEffort = false);
     bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
 
     // Whether a writer that was announced can be at this number. If so, it is there. What a writer says first
     // may be any number up to four million.
     bool Reaches(const GuidPrefix &peer, EntityId writer, std::int64_t number, TimePoint now);
+    // Under which number the vendor is to be given a sample, or a fragment of one, that was believed
+    // (SampleNumbers.h); its own but for writers that are best effort. The writer must have been announced.
+    std::int64_t NumberOf(const GuidPrefix &peer, EntityId writer, std::int64_t number, std::uint64_t stamp,
+                          TimePoint now);
     // Whether a writer that was announced can know what became of the samples up to this number.
     bool CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const;
 
@@ -85,6 +91,8 @@ private:
         int Agreeing = 0;
         std::uint32_t TheirCount = 0;
         std::uint32_t OurCount = 0;
+        bool IsBestEffort = false;
+        SampleNumbers Samples;
     };
     struct Peer
     {

@@ -73,6 +73,25 @@ bool HasSize(const Submessage &submessage, std::size_t size)
     return submessage.Body().size() >= size;
 }
 
+// Of an INFO_TS: seconds, and their fractions.
+std::uint64_t StampOf(const Submessage &submessage)
+{
+    RtpsReader body(submessage.Body(), submessage.LittleEndian);
+    const std::uint64_t seconds = body.U32();
+    return seconds << 32 | body.U32();
+}
+
+// 9.4.5.3, 9.4.5.4: behind flags, an offset and two entities; the high half comes first.
+void WriteNumber(const Submessage &submessage, std::int64_t number)
+{
+    constexpr std::size_t NumberAt = 12;
+    const auto bits = static_cast<std::uint64_t>(number);
+    Write(submessage.Body().subspan(NumberAt, 4), static_cast<std::uint32_t>(bits >> 32),
+          submessage.LittleEndian);
+    Write(submessage.Body().subspan(NumberAt + 4, 4), static_cast<std::uint32_t>(bits),
+          submessage.LittleEndian);
+}
+
 }  // namespace
 
 bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from, TimePoint now,
@@ -166,6 +185,7 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
         case SubmessageKind::Pad:
             return Verdict::Pass;
         case SubmessageKind::InfoTimestamp:
+            passage.Stamp = (submessage.Flags & Invalidate) != 0 ? 0 : StampOf(submessage);
             return (submessage.Flags & Invalidate) != 0 || HasSize(submessage, 8) ? Verdict::Pass
                                                                                   : Verdict::Drop;
         case SubmessageKind::InfoSource:
@@ -176,6 +196,7 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
                 return Verdict::Drop;
             }
             passage.Sender = SenderOf(passage.Header);
+            passage.Stamp = 0;
             return Verdict::Pass;
         case SubmessageKind::InfoDestination:
             if (!HasSize(submessage, passage.Destination.size()))
@@ -308,7 +329,8 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&
-        !_peers.EndpointAnnounced(passage.Sender, announcement->Subject, announcement->Digest))
+        !_peers.EndpointAnnounced(passage.Sender, announcement->Subject, announcement->Digest,
+                                  announcement->IsBestEffort))
     {
         return Verdict::Refuse;
     }
@@ -345,6 +367,10 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
             {
                 return Verdict::Refuse;
             }
+            if (submessage.Kind != SubmessageKind::Heartbeat && !IsBuiltin(delivery.Writer))
+            {
+                ReplaceNumber(submessage, delivery, passage);
+            }
             break;
         case SubmessageKind::Gap:
             if (!_peers.HasWriter(passage.Sender, delivery.Writer))
@@ -377,16 +403,20 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
     return Verdict::Pass;
 }
 
+void RtpsGuard::ReplaceNumber(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
+{
+    const std::int64_t ours =
+        _peers.NumberOf(passage.Sender, delivery.Writer, delivery.First, passage.Stamp, passage.Now);
+    if (ours != delivery.First)
+    {
+        WriteNumber(submessage, ours);
+    }
+}
+
 void RtpsGuard::ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
                                     const GuidPrefix &sender)
 {
-    // 9.4.5.3: behind flags, an offset and two entities; the high half comes first.
-    constexpr std::size_t NumberAt = 12;
-    const auto ours = static_cast<std::uint64_t>(_peers.AnnouncementOf(sender, delivery.First));
-    Write(submessage.Body().subspan(NumberAt, 4), static_cast<std::uint32_t>(ours >> 32),
-          submessage.LittleEndian);
-    Write(submessage.Body().subspan(NumberAt + 4, 4), static_cast<std::uint32_t>(ours),
-          submessage.LittleEndian);
+    WriteNumber(submessage, _peers.AnnouncementOf(sender, delivery.First));
 }
 
 void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender)

@@ -92,6 +92,7 @@ private:
         GuidPrefix Sender{};
         GuidPrefix Destination{};
         HostAddress From{};
+        std::uint64_t Stamp = 0;  // INFO_TS; 0: none
         TimePoint Now{};
         bool Useful = false;
         bool Honest = true;
@@ -110,6 +111,7 @@ private:
     bool IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     // Against what was said before.
     Verdict Compare(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
+    void ReplaceNumber(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     void ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
                              const GuidPrefix &sender);
     void ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender);

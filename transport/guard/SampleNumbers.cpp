@@ -1,0 +1,86 @@
+#include "guard/SampleNumbers.h"
+
+#include <algorithm>
+
+namespace Rabit::Rtps
+{
+
+namespace
+{
+
+constexpr int OftenEnough = 3;
+// How far a writer's clock may be from where its last sample and the time since let expect it. One that was
+// set is believed with the second sample.
+constexpr std::chrono::seconds Doubtful{10};
+
+std::uint64_t ToStamp(std::chrono::milliseconds time)
+{
+    return (static_cast<std::uint64_t>(time.count()) << 32) / 1000;
+}
+
+bool IsNear(std::uint64_t a, std::uint64_t b, std::uint64_t distance)
+{
+    return std::max(a, b) - std::min(a, b) <= distance;
+}
+
+}  // namespace
+
+std::int64_t SampleNumbers::Of(std::int64_t number, std::uint64_t stamp, TimePoint now)
+{
+    const Sample sample{number, stamp};
+    if (number > _highest)
+    {
+        GoOn(sample, now);
+    }
+    else if (number == _highest)
+    {
+        _belowInARow = 0;
+    }
+    else if (GoesBack(sample))
+    {
+        _added += _highest + 1 - number;
+        _highest = number;
+        _latest = stamp;
+        _wentOn = now;
+        _belowInARow = 0;
+    }
+    return number + _added;
+}
+
+void SampleNumbers::GoOn(const Sample &sample, TimePoint now)
+{
+    const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - _wentOn);
+    // A day is enough to reckon with.
+    const auto expected = std::min<std::chrono::milliseconds>(elapsed, std::chrono::hours(24));
+    if (_highest == 0 || IsNear(sample.Stamp, _latest, ToStamp(Doubtful + 2 * expected)) ||
+        (_doubtful != 0 && IsNear(sample.Stamp, _doubtful, ToStamp(Doubtful + 2 * expected))))
+    {
+        _latest = sample.Stamp;
+        _doubtful = 0;
+    }
+    else
+    {
+        _doubtful = sample.Stamp;
+    }
+    _highest = sample.Number;
+    _wentOn = now;
+    _belowInARow = 0;
+}
+
+bool SampleNumbers::GoesBack(const Sample &sample)
+{
+    if (sample.Stamp <= _latest)
+    {
+        return false;
+    }
+    const bool goesOn = _belowInARow > 0 && sample.Number > _below.Number && sample.Stamp > _below.Stamp;
+    if (_belowInARow > 0 && sample.Number == _below.Number)
+    {
+        return false;  // another fragment, or the same once more
+    }
+    _belowInARow = goesOn ? _belowInARow + 1 : 1;
+    _below = sample;
+    return _belowInARow >= OftenEnough;
+}
+
+}  // namespace Rabit::Rtps
