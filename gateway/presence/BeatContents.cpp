@@ -6,6 +6,7 @@
 #include "wire/Announcements.h"
 #include "wire/BeatExtensions.h"
 #include "wire/BeatFormat.h"
+#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -79,7 +80,7 @@ std::size_t BeatContents::Size(Duration now) const
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t size = BeatFormat::Empty + SizeOfMarks() + SizeOfStrains() +
+    const std::size_t news = SizeOfMarks() + SizeOfStrains() +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
@@ -87,19 +88,21 @@ std::size_t BeatContents::Size(Duration now) const
                              std::min(_states.size(), BeatFormat::MostStates) * BeatFormat::State;
     const std::size_t announced = SizeOfPart(now, BeatFormat::Largest);
     const std::size_t part = announced == 0 && IsPlaceDue(now) ? Whereabouts::Size : announced;
-    return std::min(size + (part > 0 ? BeatFormat::PartHeader + (part + 3) / 4 * 4 : 0), BeatFormat::Largest);
+    const std::size_t all = news + (part > 0 ? BeatFormat::PartHeader + (part + 3) / 4 * 4 : 0);
+    return all == 0 ? BeatFormat::Empty : std::min(BeatFormat::WithNews + all, BeatFormat::Largest);
 }
 
 void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
 {
     std::size_t room = std::min(most, BeatFormat::Largest);
-    room -= std::min(room, BeatFormat::Empty + SizeOfMarks());
+    room -= std::min(room, BeatFormat::WithNews + SizeOfMarks());
     AddWants(beat, now, room);
     AddTypes(beat, now, room);
-    beat.echoes = _peers.NextEchoes(now, std::min(BeatFormat::MostEchoes, room / BeatFormat::Echo));
-    room -= beat.echoes.size() * BeatFormat::Echo;
-    beat.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
-    room -= beat.delays.size() * BeatFormat::Delay;
+    Gateway::BeatNews &news = NewsOf(beat);
+    news.echoes = _peers.NextEchoes(now, std::min(BeatFormat::MostEchoes, room / BeatFormat::Echo));
+    room -= news.echoes.size() * BeatFormat::Echo;
+    news.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
+    room -= news.delays.size() * BeatFormat::Delay;
     AddPart(beat, now, room);
     if (SizeOfStrains() > 0 && SizeOfStrains() <= room)
     {
@@ -115,36 +118,38 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     {
         BeatExtensions::MarkReplay(beat);
     }
+    DropEmptyNews(beat);
 }
 
 void BeatContents::AddWants(Gateway::Beat &beat, Duration now, std::size_t &room)
 {
+    auto &wants = NewsOf(beat).wants;
     const std::size_t longest = BeatFormat::Wanted(_questions.Longest());
     const std::size_t count = Fit(BeatFormat::MostWants, longest, room);
     for (const MissingOffers::Question &question : _peers.Missing().Take(now, count))
     {
-        Gateway::Wanted &wanted = beat.wants.emplace_back();
+        Gateway::Wanted &wanted = wants.emplace_back();
         wanted.node = _peers.Find(question.Node)->Tag;
         wanted.offers = question.From;
     }
-    for (StateQuestions::Question &question : _questions.Take(count - beat.wants.size()))
+    for (StateQuestions::Question &question : _questions.Take(count - wants.size()))
     {
         const PeerTable::Peer *peer = _peers.Find(question.Node);
         if (peer == nullptr || peer->State == Gateway::NodeState::LOST)
         {
             continue;
         }
-        auto wanted = std::find_if(beat.wants.begin(), beat.wants.end(),
+        auto wanted = std::find_if(wants.begin(), wants.end(),
                                    [peer](const auto &other) { return other.node == peer->Tag; });
-        if (wanted == beat.wants.end())
+        if (wanted == wants.end())
         {
-            wanted = beat.wants.insert(beat.wants.end(), Gateway::Wanted());
+            wanted = wants.insert(wants.end(), Gateway::Wanted());
             wanted->node = peer->Tag;
             wanted->offers = BeatFormat::NotLacking;
         }
         wanted->states = std::move(question.States);
     }
-    room += (count - beat.wants.size()) * longest;
+    room += (count - wants.size()) * longest;
 }
 
 void BeatContents::AddTypes(Gateway::Beat &beat, Duration now, std::size_t &room)
@@ -169,14 +174,14 @@ void BeatContents::AddPart(Gateway::Beat &beat, Duration now, std::size_t &room)
     {
         if (IsPlaceDue(now) && room >= BeatFormat::PartHeader + Whereabouts::Size)
         {
-            beat.parts.push_back(Whereabouts::Part());
+            NewsOf(beat).parts.push_back(Whereabouts::Part());
             room -= BeatFormat::PartHeader + Whereabouts::Size;
             _placeSaid = now;
         }
         return;
     }
     const auto first = _offers.begin() + static_cast<std::ptrdiff_t>(_answer.From());
-    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    Gateway::AnnouncementPart &part = NewsOf(beat).parts.emplace_back();
     part.first = static_cast<std::uint16_t>(_answer.From());
     part.of = static_cast<std::uint16_t>(_offers.size());
     part.bytes.assign(first, first + static_cast<std::ptrdiff_t>(size));
@@ -194,7 +199,7 @@ void BeatContents::AddStates(Gateway::Beat &beat, std::size_t &room)
         Fit(std::min(BeatFormat::MostStates, _states.size() - _nextState), BeatFormat::State, room);
     const auto first = _states.begin() + static_cast<std::ptrdiff_t>(_nextState);
     beat.first_state = static_cast<std::uint16_t>(_nextState);
-    beat.states.assign(first, first + static_cast<std::ptrdiff_t>(count));
+    NewsOf(beat).states.assign(first, first + static_cast<std::ptrdiff_t>(count));
     _nextState += count;
 }
 

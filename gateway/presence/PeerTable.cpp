@@ -10,6 +10,7 @@
 #include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
 #include "wire/BeatExtensions.h"
+#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -250,7 +251,7 @@ void PeerTable::Measure(Peer &peer, const HeardBeat &heard) const
 // can only make its own clock look wrong.
 void PeerTable::MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const
 {
-    const auto &echoes = heard.Beat.echoes;
+    const auto &echoes = NewsOf(heard.Beat).echoes;
     const auto own =
         std::find_if(echoes.begin(), echoes.end(), [this](const auto &echo) { return echo.node == _ownTag; });
     const std::optional<Duration> sent = own == echoes.end() ? std::nullopt : _sent.Find(own->beat);
@@ -268,10 +269,11 @@ void PeerTable::TakeStates(Peer &peer, const Gateway::Beat &beat)
         peer.BeatsOffers = beat.offers;
         peer.States.clear();
     }
-    if (!beat.states.empty())
+    const auto &states = NewsOf(beat).states;
+    if (!states.empty())
     {
-        peer.States.resize(std::max(peer.States.size(), beat.first_state + beat.states.size()), 0);
-        std::copy(beat.states.begin(), beat.states.end(),
+        peer.States.resize(std::max(peer.States.size(), beat.first_state + states.size()), 0);
+        std::copy(states.begin(), states.end(),
                   peer.States.begin() + static_cast<std::ptrdiff_t>(beat.first_state));
     }
 }
@@ -290,8 +292,9 @@ void PeerTable::CompareOffers(Peer &peer, const HeardBeat &heard, Change &change
         return;
     }
     _missing.Lacks(peer.Node, beat.offers, heard.Arrival);
-    const bool hasPart = !beat.parts.empty() && !Whereabouts::IsIn(beat.parts.front());
-    const auto whole = hasPart ? _missing.Add(peer.Node, beat.parts.front()) : std::nullopt;
+    const auto &parts = NewsOf(beat).parts;
+    const bool hasPart = !parts.empty() && !Whereabouts::IsIn(parts.front());
+    const auto whole = hasPart ? _missing.Add(peer.Node, parts.front()) : std::nullopt;
     if (!whole)
     {
         return;

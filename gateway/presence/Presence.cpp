@@ -7,6 +7,7 @@
 #include "names/NodeTag.h"
 #include "wire/Announcements.h"
 #include "wire/BeatExtensions.h"
+#include "wire/BeatNews.h"
 #include "wire/GatewayTopics.h"
 #include "wire/MessageEncoder.h"
 
@@ -185,7 +186,7 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
     _owesNews |= _contents.Delays().Note(peer.Tag, peer.Clock.LastDelay(), heard.Arrival);
     TakeDelays(heard, peer, served);
     TakeQuestions(heard, now, served);
-    if (!heard.Beat.states.empty() || change.Offers)
+    if (!NewsOf(heard.Beat).states.empty() || change.Offers)
     {
         served.StatesTold.push_back(heard.Node);
     }
@@ -203,7 +204,7 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
 void Presence::TakeQuestions(const HeardBeat &heard, Duration now, Served &served)
 {
     const Gateway::Beat &beat = heard.Beat;
-    if (!beat.wants.empty())
+    if (!NewsOf(beat).wants.empty())
     {
         for (const BeatExtensions::TypeQuestion &question : BeatExtensions::TypeQuestionsIn(beat))
         {
@@ -213,7 +214,7 @@ void Presence::TakeQuestions(const HeardBeat &heard, Duration now, Served &serve
             }
         }
     }
-    for (const Gateway::Wanted &wanted : beat.wants)
+    for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
     {
         if (wanted.node != _tag)
         {
@@ -236,7 +237,7 @@ void Presence::TakeQuestions(const HeardBeat &heard, Duration now, Served &serve
 
 void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, Served &served) const
 {
-    for (const Gateway::DelayReport &report : heard.Beat.delays)
+    for (const Gateway::DelayReport &report : NewsOf(heard.Beat).delays)
     {
         if (report.node == _tag)
         {
@@ -361,6 +362,7 @@ Gateway::Beat Presence::MakeBeat(const PostTime &time) const
         std::chrono::duration_cast<std::chrono::milliseconds>(_pace.Period()).count());
     beat.source_ns = _source.At(time.Monotonic);
     beat.offers = _contents.OffersDigest();
+    DropEmptyNews(beat);
     return beat;
 }
 

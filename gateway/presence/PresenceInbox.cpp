@@ -7,6 +7,7 @@
 #include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
 #include "wire/BeatFormat.h"
+#include "wire/BeatNews.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -46,11 +47,12 @@ bool AreFew(const Entries &entries)
 bool IsPlausible(const Gateway::Beat &beat)
 {
     const auto plausible = [](const auto &entry) { return IsPlausible(entry); };
+    const Gateway::BeatNews &news = NewsOf(beat);
     return IsPlausible(beat.source_ns) &&
-           beat.first_state + beat.states.size() <= Announcements::MostOffers && AreFew(beat.wants) &&
-           AreFew(beat.echoes) && AreFew(beat.delays) && beat.parts.size() <= 1 &&
-           std::all_of(beat.wants.begin(), beat.wants.end(), plausible) &&
-           std::all_of(beat.parts.begin(), beat.parts.end(), plausible);
+           beat.first_state + news.states.size() <= Announcements::MostOffers && AreFew(news.wants) &&
+           AreFew(news.echoes) && AreFew(news.delays) && news.parts.size() <= 1 &&
+           std::all_of(news.wants.begin(), news.wants.end(), plausible) &&
+           std::all_of(news.parts.begin(), news.parts.end(), plausible);
 }
 
 }  // namespace

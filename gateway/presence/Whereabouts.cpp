@@ -1,4 +1,5 @@
 #include "presence/Whereabouts.h"
+#include "wire/BeatNews.h"
 
 #include <unistd.h>
 
@@ -32,11 +33,12 @@ Gateway::AnnouncementPart Part()
 
 std::string In(const Gateway::Beat &beat)
 {
-    if (beat.parts.empty() || !IsIn(beat.parts.front()))
+    const auto &parts = NewsOf(beat).parts;
+    if (parts.empty() || !IsIn(parts.front()))
     {
         return "";
     }
-    const auto &bytes = beat.parts.front().bytes;
+    const auto &bytes = parts.front().bytes;
     const auto end = std::find(bytes.begin(), bytes.end(), 0);
     std::string text(bytes.begin(), end);
     text.resize(std::min(text.size(), Size));

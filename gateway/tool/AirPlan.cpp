@@ -77,8 +77,10 @@ private:
             std::count_if(_config.Publish.begin(), _config.Publish.end(),
                           [](const PublishRule &rule) { return rule.Qos == QosProfile::State; }));
         const std::size_t copies = std::max<std::size_t>(1, Copies(_others.size()));
-        const auto beat = static_cast<double>(
-            _cost.Of(BeatFormat::Empty + BeatFormat::State * std::min(states, BeatFormat::MostStates)));
+        const auto beat = static_cast<double>(_cost.Of(
+            states == 0
+                ? BeatFormat::Empty
+                : BeatFormat::WithNews + BeatFormat::State * std::min(states, BeatFormat::MostStates)));
         const auto period =
             _config.Radio.Budget
                 ? BeatShare::PeriodOf(beat * static_cast<double>(copies),

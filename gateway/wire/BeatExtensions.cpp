@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "wire/BeatNews.h"
 #include "wire/LittleEndian.h"
 
 namespace Rabit::BeatExtensions
@@ -16,7 +17,7 @@ namespace
 
 Gateway::Wanted &Add(Gateway::Beat &beat, std::uint16_t kind)
 {
-    Gateway::Wanted &extension = beat.wants.emplace_back();
+    Gateway::Wanted &extension = NewsOf(beat).wants.emplace_back();
     extension.node = Nobody;
     extension.offers = kind;
     return extension;
@@ -24,7 +25,8 @@ Gateway::Wanted &Add(Gateway::Beat &beat, std::uint16_t kind)
 
 bool Has(const Gateway::Beat &beat, std::uint16_t kind)
 {
-    return std::any_of(beat.wants.begin(), beat.wants.end(),
+    const auto &wants = NewsOf(beat).wants;
+    return std::any_of(wants.begin(), wants.end(),
                        [kind](const Gateway::Wanted &wanted)
                        { return wanted.node == Nobody && wanted.offers == kind; });
 }
@@ -63,7 +65,7 @@ void Ask(Gateway::Beat &beat, const TypeQuestion &question)
 std::vector<TypeQuestion> TypeQuestionsIn(const Gateway::Beat &beat)
 {
     std::vector<TypeQuestion> questions;
-    for (const Gateway::Wanted &wanted : beat.wants)
+    for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
     {
         if (wanted.node == Nobody && wanted.offers == Type && wanted.states.size() == TypeBytes)
         {
@@ -94,7 +96,7 @@ void Say(Gateway::Beat &beat, std::span<const LinkStrain> strains)
 std::vector<LinkStrain> StrainsIn(const Gateway::Beat &beat)
 {
     std::vector<LinkStrain> strains;
-    for (const Gateway::Wanted &wanted : beat.wants)
+    for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
     {
         if (wanted.node != Nobody || wanted.offers != Strain)
         {

@@ -11,10 +11,12 @@ namespace Rabit::BeatFormat
 
 // Changes whenever a gateway of another version could not make sense of a beat. Never below 256: the beats of
 // the first gateways began with the length of a node's name.
-inline constexpr std::uint16_t Present = 0xbe02;
+inline constexpr std::uint16_t Present = 0xbe03;
 
 // Bytes of bodies (CDR without the encapsulation).
-inline constexpr std::size_t Empty = 40;
+inline constexpr std::size_t Empty = 20;
+// With news, none of which says anything yet.
+inline constexpr std::size_t WithNews = 40;
 inline constexpr std::size_t State = 4;
 inline constexpr std::size_t Echo = 12;
 inline constexpr std::size_t Delay = 8;

@@ -10,6 +10,7 @@
 #include "names/NodeTag.h"
 #include "presence/Whereabouts.h"
 #include "wire/BeatExtensions.h"
+#include "wire/BeatNews.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -30,7 +31,10 @@ std::size_t BodyOf(const Gateway::Beat &beat)
 
 TEST(Beat, AnEmptyOneTakesLessThan140BytesOnTheAir)
 {
-    EXPECT_EQ(BodyOf(Gateway::Beat()), BeatFormat::Empty);
+    Gateway::Beat beat;
+    EXPECT_EQ(BodyOf(beat), BeatFormat::WithNews);
+    DropEmptyNews(beat);
+    EXPECT_EQ(BodyOf(beat), BeatFormat::Empty);
     EXPECT_LT(AirCost(1400).Of(BeatFormat::Empty), 140u);
 }
 
@@ -107,7 +111,7 @@ TEST_F(BeatContentsTest, WhereTheNodeRunsIsSaidNowAndThenWhileAnotherHasItsName)
     EXPECT_EQ(Whereabouts::In(Next(1s)), Whereabouts::OfThisProcess());
     EXPECT_EQ(BodyOf(Next(1500ms)), BeatFormat::Empty);
     EXPECT_EQ(Whereabouts::In(Next(4s)), Whereabouts::OfThisProcess());
-    EXPECT_THAT(Next(8s, 60).parts, IsEmpty()) << "no room";
+    EXPECT_THAT(NewsOf(Next(8s, 60)).parts, IsEmpty()) << "no room";
     peers.Advance(20s);
     EXPECT_EQ(BodyOf(Next(20s)), BeatFormat::Empty);
 }
@@ -152,21 +156,21 @@ TEST_F(BeatContentsTest, StrainsGoBeforeStatesAndWaitForRoom)
     BeginLongAgo(100, 3);
     contents.SetStrains(std::vector<LinkStrain>(9));
     const std::size_t strains = BeatFormat::Wanted(BeatExtensions::MostStrains * BeatExtensions::StrainBytes);
-    const Gateway::Beat without = Next(1s, BeatFormat::Empty + strains - 1);
+    const Gateway::Beat without = Next(1s, BeatFormat::WithNews + strains - 1);
     EXPECT_THAT(BeatExtensions::StrainsIn(without), IsEmpty());
-    EXPECT_THAT(without.states, SizeIs(3));
-    const Gateway::Beat with = Next(2s, BeatFormat::Empty + strains + BeatFormat::State);
+    EXPECT_THAT(NewsOf(without).states, SizeIs(3));
+    const Gateway::Beat with = Next(2s, BeatFormat::WithNews + strains + BeatFormat::State);
     EXPECT_THAT(BeatExtensions::StrainsIn(with), SizeIs(BeatExtensions::MostStrains));
-    EXPECT_THAT(with.states, SizeIs(1));
+    EXPECT_THAT(NewsOf(with).states, SizeIs(1));
 }
 
 TEST_F(BeatContentsTest, TheFirstBeatOfALifeCarriesTheAnnouncement)
 {
     Begin(100, 0);
     const Gateway::Beat beat = Next(1s);
-    ASSERT_THAT(beat.parts, SizeIs(1));
-    EXPECT_THAT(beat.parts[0].bytes, SizeIs(100));
-    EXPECT_THAT(Next(2s).parts, IsEmpty());
+    ASSERT_THAT(NewsOf(beat).parts, SizeIs(1));
+    EXPECT_THAT(NewsOf(beat).parts[0].bytes, SizeIs(100));
+    EXPECT_THAT(NewsOf(Next(2s)).parts, IsEmpty());
 }
 
 TEST_F(BeatContentsTest, AnAnnouncementThatDoesNotFitGoesInParts)
@@ -178,8 +182,8 @@ TEST_F(BeatContentsTest, AnAnnouncementThatDoesNotFitGoesInParts)
     for (Ns now = 1s; outcome == OffersCollector::Outcome::Incomplete && beats < 10; now += 50ms, ++beats)
     {
         const Gateway::Beat beat = Next(now);
-        ASSERT_THAT(beat.parts, SizeIs(1));
-        outcome = collector.Add(contents.OffersDigest(), beat.parts[0]);
+        ASSERT_THAT(NewsOf(beat).parts, SizeIs(1));
+        outcome = collector.Add(contents.OffersDigest(), NewsOf(beat).parts[0]);
     }
     EXPECT_EQ(outcome, OffersCollector::Outcome::Complete);
     EXPECT_EQ(beats, 3);
@@ -194,9 +198,9 @@ TEST_F(BeatContentsTest, TheLargestAnnouncementGetsThroughBeatsOfAnySize)
     for (int i = 0; outcome == OffersCollector::Outcome::Incomplete && i < 1000; ++i, now += 50ms)
     {
         const Gateway::Beat beat = Next(now, 20 + 37 * static_cast<std::size_t>(i % 20));
-        if (!beat.parts.empty())
+        if (!NewsOf(beat).parts.empty())
         {
-            outcome = collector.Add(contents.OffersDigest(), beat.parts[0]);
+            outcome = collector.Add(contents.OffersDigest(), NewsOf(beat).parts[0]);
         }
     }
     EXPECT_EQ(outcome, OffersCollector::Outcome::Complete);
@@ -205,9 +209,9 @@ TEST_F(BeatContentsTest, TheLargestAnnouncementGetsThroughBeatsOfAnySize)
 TEST_F(BeatContentsTest, StatesAreToldInEachBeat)
 {
     BeginLongAgo(100, 3);
-    EXPECT_THAT(Next(1s).states, ElementsAre(1000, 1001, 1002));
+    EXPECT_THAT(NewsOf(Next(1s)).states, ElementsAre(1000, 1001, 1002));
     contents.SetStateVersion(1, 5);
-    EXPECT_THAT(Next(2s).states, ElementsAre(1000, 5, 1002));
+    EXPECT_THAT(NewsOf(Next(2s)).states, ElementsAre(1000, 5, 1002));
 }
 
 TEST_F(BeatContentsTest, ManyStatesAreToldInTurns)
@@ -218,8 +222,8 @@ TEST_F(BeatContentsTest, ManyStatesAreToldInTurns)
     {
         const Gateway::Beat beat = Next(now);
         EXPECT_EQ(beat.first_state, told.size());
-        EXPECT_LE(beat.states.size(), BeatFormat::MostStates);
-        told.insert(told.end(), beat.states.begin(), beat.states.end());
+        EXPECT_LE(NewsOf(beat).states.size(), BeatFormat::MostStates);
+        told.insert(told.end(), NewsOf(beat).states.begin(), NewsOf(beat).states.end());
     }
     ASSERT_EQ(told.size(), 150u);
     EXPECT_EQ(told[149], 1149u);
@@ -229,11 +233,11 @@ TEST_F(BeatContentsTest, ManyStatesAreToldInTurns)
 TEST_F(BeatContentsTest, WhatABeatHasNoRoomForFollowsInTheNextOnes)
 {
     BeginLongAgo(100, 10);
-    EXPECT_THAT(Next(1s, BeatFormat::Empty).states, IsEmpty());
-    EXPECT_THAT(Next(2s, BeatFormat::Empty + 24).states, SizeIs(6));
-    const Gateway::Beat beat = Next(3s, BeatFormat::Empty + 24);
+    EXPECT_THAT(NewsOf(Next(1s, BeatFormat::Empty)).states, IsEmpty());
+    EXPECT_THAT(NewsOf(Next(2s, BeatFormat::WithNews + 24)).states, SizeIs(6));
+    const Gateway::Beat beat = Next(3s, BeatFormat::WithNews + 24);
     EXPECT_EQ(beat.first_state, 6);
-    EXPECT_THAT(beat.states, SizeIs(4));
+    EXPECT_THAT(NewsOf(beat).states, SizeIs(4));
 }
 
 TEST_F(BeatContentsTest, WhoLacksSomethingAsksForItByItsTag)
@@ -243,10 +247,10 @@ TEST_F(BeatContentsTest, WhoLacksSomethingAsksForItByItsTag)
     EXPECT_EQ(contents.QuestionDue(), Ns(1s + MissingOffers::AskAfter));
     contents.Questions().Set("uav1", {false, true}, true, 2s);
     const Gateway::Beat beat = Next(2s);
-    ASSERT_THAT(beat.wants, SizeIs(1));
-    EXPECT_EQ(beat.wants[0].node, NodeTagOf("uav1", 5));
-    EXPECT_EQ(beat.wants[0].offers, 0);
-    EXPECT_THAT(beat.wants[0].states, ElementsAre(2));
+    ASSERT_THAT(NewsOf(beat).wants, SizeIs(1));
+    EXPECT_EQ(NewsOf(beat).wants[0].node, NodeTagOf("uav1", 5));
+    EXPECT_EQ(NewsOf(beat).wants[0].offers, 0);
+    EXPECT_THAT(NewsOf(beat).wants[0].states, ElementsAre(2));
 }
 
 TEST_F(BeatContentsTest, WhoLacksAStateAloneDoesNotAskForTheAnnouncement)
@@ -256,7 +260,7 @@ TEST_F(BeatContentsTest, WhoLacksAStateAloneDoesNotAskForTheAnnouncement)
     peers.Missing().LetGo("uav1");
     contents.Questions().Set("uav1", {true}, true, 2s);
     EXPECT_EQ(contents.QuestionDue(), Ns(2s));
-    EXPECT_EQ(Next(2s).wants.at(0).offers, BeatFormat::NotLacking);
+    EXPECT_EQ(NewsOf(Next(2s)).wants.at(0).offers, BeatFormat::NotLacking);
 }
 
 TEST_F(BeatContentsTest, NothingIsAskedOfWhoIsLostOrUnknown)
@@ -266,7 +270,7 @@ TEST_F(BeatContentsTest, NothingIsAskedOfWhoIsLostOrUnknown)
     peers.Advance(60s);
     contents.Questions().Set("uav1", {true}, true, 60s);
     contents.Questions().Set("uav2", {true}, true, 60s);
-    EXPECT_THAT(Next(60s).wants, IsEmpty());
+    EXPECT_THAT(NewsOf(Next(60s)).wants, IsEmpty());
 }
 
 TEST_F(BeatContentsTest, ACrowdIsAskedEchoedAndToldInTurnsAndTheBeatStaysSmall)
@@ -286,15 +290,15 @@ TEST_F(BeatContentsTest, ACrowdIsAskedEchoedAndToldInTurnsAndTheBeatStaysSmall)
     for (int i = 0; i < 60; ++i)
     {
         const Gateway::Beat beat = Next(1500ms + i * 50ms);
-        for (const auto &wanted : beat.wants)
+        for (const auto &wanted : NewsOf(beat).wants)
         {
             asked.insert(wanted.node);
         }
-        for (const auto &echo : beat.echoes)
+        for (const auto &echo : NewsOf(beat).echoes)
         {
             echoed.insert(echo.node);
         }
-        for (const auto &report : beat.delays)
+        for (const auto &report : NewsOf(beat).delays)
         {
             told.insert(report.node);
         }

@@ -5,6 +5,7 @@
 
 #include "BeatSamples.h"
 #include "presence/PresenceInbox.h"
+#include "wire/BeatNews.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -49,7 +50,7 @@ TEST(BeatExtensions, AQuestionOfAnotherSizeIsNone)
 {
     Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
     BeatExtensions::Ask(beat, TypeQuestion());
-    beat.wants.back().states.pop_back();
+    NewsOf(beat).wants.back().states.pop_back();
     EXPECT_THAT(BeatExtensions::TypeQuestionsIn(beat), IsEmpty());
 }
 
@@ -69,7 +70,8 @@ TEST(BeatExtensions, NoMoreStrainsAreSaidOrTakenThanABeatMayHave)
 {
     Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
     BeatExtensions::Say(beat, std::vector(9, Full));
-    EXPECT_EQ(beat.wants.back().states.size(), BeatExtensions::MostStrains * BeatExtensions::StrainBytes);
+    EXPECT_EQ(NewsOf(beat).wants.back().states.size(),
+              BeatExtensions::MostStrains * BeatExtensions::StrainBytes);
     BeatExtensions::Say(beat, std::vector(9, Slow));
     EXPECT_EQ(BeatExtensions::StrainsIn(beat), std::vector(BeatExtensions::MostStrains, Full));
 }
@@ -78,7 +80,7 @@ TEST(BeatExtensions, OfStrainsThatMakeNoSenseTheOthersAreTaken)
 {
     Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
     BeatExtensions::Say(beat, std::vector{Full, Full, Slow});
-    auto &bytes = beat.wants.back().states;
+    auto &bytes = NewsOf(beat).wants.back().states;
     bytes[4] = 0;     // no such kind
     bytes[13] = 200;  // more than all of it
     bytes.push_back(1);
@@ -106,8 +108,8 @@ TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
     PresenceInbox inbox;
     EXPECT_TRUE(inbox.AddBeat(bytes, info, std::chrono::seconds(1)));
     EXPECT_EQ(inbox.Dropped(), 0u);
-    EXPECT_EQ(beat.format, 0xbe02);
-    for (const Gateway::Wanted &wanted : beat.wants)
+    EXPECT_EQ(beat.format, 0xbe03);
+    for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
     {
         EXPECT_EQ(wanted.node, 0u);
     }

@@ -7,6 +7,7 @@
 #include "gateway.idl.h"
 #include "wire/Announcements.h"
 #include "wire/BeatFormat.h"
+#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -27,7 +28,7 @@ inline void Announce(Gateway::Beat &beat, const Gateway::Announcement &announcem
 {
     const std::vector<std::uint8_t> bytes = Announcements::Encode(announcement);
     beat.offers = Announcements::DigestOf(bytes);
-    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    Gateway::AnnouncementPart &part = NewsOf(beat).parts.emplace_back();
     part.of = static_cast<std::uint16_t>(bytes.size());
     part.bytes = bytes;
 }

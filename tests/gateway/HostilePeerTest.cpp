@@ -9,6 +9,7 @@
 
 #include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -91,7 +92,7 @@ TEST_F(HostilePeerTest, WhoMeansAnotherAnnouncementWithEachBeatAndSendsNoneIsAsk
         fleet.RunFor(10ms);
     }
     const auto asked = std::count_if(heard.begin(), heard.end(),
-                                     [](const Gateway::Beat &beat) { return !beat.wants.empty(); });
+                                     [](const Gateway::Beat &beat) { return !NewsOf(beat).wants.empty(); });
     EXPECT_GE(asked, 30);
     EXPECT_LE(asked, 40);
     EXPECT_LE(heard.size(), 120u + 40u + 5u);
@@ -106,7 +107,7 @@ TEST_F(HostilePeerTest, WhoSendsAPieceOfAnotherAnnouncementWithEachBeatKeepsNobo
     {
         Gateway::Beat beat = liar.Beat();
         beat.offers = i;
-        Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+        Gateway::AnnouncementPart &part = NewsOf(beat).parts.emplace_back();
         part.first = static_cast<std::uint16_t>(i % 30000);
         part.of = 32768;
         part.bytes.assign(800, 1);
@@ -142,9 +143,9 @@ TEST_F(HostilePeerTest, WhoAsksForEverythingWithoutEndGetsTwiceAsManyBeatsAtMost
         Gateway::Beat beat = asker.Beat();
         for (std::uint32_t other = 0; other < 200; ++other)
         {
-            beat.wants.emplace_back().node = other;
+            NewsOf(beat).wants.emplace_back().node = other;
         }
-        Gateway::Wanted &wanted = beat.wants.emplace_back();
+        Gateway::Wanted &wanted = NewsOf(beat).wants.emplace_back();
         wanted.node = NodeTagOf("uav1", uav.Fleet().incarnation);
         wanted.offers = static_cast<std::uint16_t>(i % 300);
         wanted.states.assign(64, 0xff);
@@ -176,7 +177,7 @@ TEST_F(HostilePeerTest, ManyThatMeanWhatTheyDoNotSendDoNotMakeANodeShout)
     EXPECT_LE(heard.size(), 60u + 30u);
     for (const Gateway::Beat &beat : heard)
     {
-        EXPECT_LE(beat.wants.size(), BeatFormat::MostWants);
+        EXPECT_LE(NewsOf(beat).wants.size(), BeatFormat::MostWants);
     }
 }
 
@@ -190,10 +191,10 @@ TEST_F(HostilePeerTest, WhatEchoesAndDelaysSayOfOthersMeansNothing)
         Announce(beat, {});
         for (std::uint32_t other = 0; other < 100; ++other)
         {
-            Gateway::BeatEcho &echo = beat.echoes.emplace_back();
+            Gateway::BeatEcho &echo = NewsOf(beat).echoes.emplace_back();
             echo.node = NodeTagOf("uav1", uav.Fleet().incarnation);
             echo.beat = other;
-            beat.delays.emplace_back().node = other;
+            NewsOf(beat).delays.emplace_back().node = other;
         }
         liar.Write(beat);
         fleet.RunFor(500ms);
@@ -250,7 +251,7 @@ TEST(ThinPresence, ANodeThatRestartsUnchangedIsNotAskedForItsAnnouncement)
                       {
                           Gateway::Beat beat;
                           ASSERT_TRUE(MessageTypeRegistry::Of(beat)->Deserialize(bytes, beat));
-                          wants += info.Node == "uav1" ? beat.wants.size() : 0;
+                          wants += info.Node == "uav1" ? NewsOf(beat).wants.size() : 0;
                       });
     fleet.Add(AircraftConfig("uav2"), 1.4e9 + 100);
     fleet.RunFor(5s);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include "names/NodeTag.h"
 #include "wire/Announcements.h"
+#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -42,7 +43,7 @@ void Echo(HeardBeat &heard, Ns sent, std::uint64_t incarnation = 7)
     Gateway::BeatEcho echo;
     echo.node = NodeTagOf("ground", incarnation);
     echo.beat = static_cast<std::uint32_t>(sent.count());
-    heard.Beat.echoes.push_back(echo);
+    NewsOf(heard.Beat).echoes.push_back(echo);
 }
 
 class PeerTableTest : public ::testing::Test
@@ -161,7 +162,7 @@ TEST_F(EchoTest, MeasuresTheRoundTrip)
     table.NoteSent(Ns(10700ms).count(), 10700ms);
     HeardBeat heard = BeatOf("uav1", 5, 11s);
     Echo(heard, 10700ms);
-    heard.Beat.echoes[0].held_us = 290'000;
+    NewsOf(heard.Beat).echoes[0].held_us = 290'000;
     table.OnBeat(heard);
     EXPECT_EQ(RoundTrip(), Ns(10ms));
 }
@@ -189,7 +190,7 @@ TEST_F(EchoTest, AnEchoThatWasHeldForLongerThanItWasOnItsWayMeansNothing)
     table.NoteSent(Ns(9s).count(), 9s);
     HeardBeat heard = BeatOf("uav1", 5, 10s);
     Echo(heard, 9s);
-    heard.Beat.echoes[0].held_us = 1'000'001;
+    NewsOf(heard.Beat).echoes[0].held_us = 1'000'001;
     table.OnBeat(heard);
     EXPECT_EQ(RoundTrip(), std::nullopt);
 }
@@ -283,7 +284,7 @@ TEST_F(PeerTableTest, WhereTwoNodesOfOneNameRunIsKnownOnceTheySaySoAndForgottenW
         HeardBeat heard = BeatOf(node, incarnation, at);
         if (!place.empty())
         {
-            heard.Beat.parts.emplace_back().bytes.assign(place.begin(), place.end());
+            NewsOf(heard.Beat).parts.emplace_back().bytes.assign(place.begin(), place.end());
         }
         table.OnBeat(heard);
     };
@@ -451,7 +452,7 @@ protected:
         heard.Beat.offers = Announcements::DigestOf(bytes);
         if (withThem)
         {
-            Gateway::AnnouncementPart &part = heard.Beat.parts.emplace_back();
+            Gateway::AnnouncementPart &part = NewsOf(heard.Beat).parts.emplace_back();
             part.of = static_cast<std::uint16_t>(bytes.size());
             part.bytes = bytes;
         }
@@ -550,7 +551,7 @@ protected:
         HeardBeat heard = BeatOf("uav1", incarnation, at);
         heard.Beat.offers = offers;
         heard.Beat.first_state = first;
-        heard.Beat.states = versions;
+        NewsOf(heard.Beat).states = versions;
         table.OnBeat(heard);
     }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "BeatSamples.h"
+#include "wire/BeatNews.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -100,9 +101,9 @@ TEST_F(PresenceInboxTest, ClocksThatNoneShowsAreDropped)
 
 TEST_F(PresenceInboxTest, TheLargestBeatThatANodeSendsIsTaken)
 {
-    beat.states.resize(512);
-    beat.wants.resize(8);
-    beat.wants[0].states.resize(64);
+    NewsOf(beat).states.resize(512);
+    NewsOf(beat).wants.resize(8);
+    NewsOf(beat).wants[0].states.resize(64);
     EXPECT_TRUE(Add(beat));
     EXPECT_EQ(inbox.Dropped(), 0u);
 }
@@ -110,41 +111,41 @@ TEST_F(PresenceInboxTest, TheLargestBeatThatANodeSendsIsTaken)
 TEST_F(PresenceInboxTest, MoreStatesThanANodeCanHaveAreDropped)
 {
     beat.first_state = 500;
-    beat.states.resize(13);
+    NewsOf(beat).states.resize(13);
     EXPECT_FALSE(Add(beat));
-    beat.states.resize(12);
+    NewsOf(beat).states.resize(12);
     EXPECT_TRUE(Add(beat));
 }
 
 TEST_F(PresenceInboxTest, QuestionsForMoreStatesThanANodeCanHaveAreDropped)
 {
-    beat.wants.resize(1);
-    beat.wants[0].states.resize(65);
+    NewsOf(beat).wants.resize(1);
+    NewsOf(beat).wants[0].states.resize(65);
     EXPECT_FALSE(Add(beat));
 }
 
 TEST_F(PresenceInboxTest, MoreEntriesThanANodeSendsAreDropped)
 {
-    beat.delays.resize(PresenceInbox::MostEntries + 1);
+    NewsOf(beat).delays.resize(PresenceInbox::MostEntries + 1);
     EXPECT_FALSE(Add(beat));
 }
 
 TEST_F(PresenceInboxTest, MoreThanOnePartOfAnAnnouncementIsDropped)
 {
-    beat.parts.resize(2);
-    for (Gateway::AnnouncementPart &part : beat.parts)
+    NewsOf(beat).parts.resize(2);
+    for (Gateway::AnnouncementPart &part : NewsOf(beat).parts)
     {
         part.of = 1;
         part.bytes = {1};
     }
     EXPECT_FALSE(Add(beat));
-    beat.parts.pop_back();
+    NewsOf(beat).parts.pop_back();
     EXPECT_TRUE(Add(beat));
 }
 
 TEST_F(PresenceInboxTest, APartThatLiesOutsideTheWholeIsDropped)
 {
-    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    Gateway::AnnouncementPart &part = NewsOf(beat).parts.emplace_back();
     part.first = 10;
     part.of = 12;
     part.bytes = {1, 2, 3};
@@ -157,7 +158,7 @@ TEST_F(PresenceInboxTest, APartThatLiesOutsideTheWholeIsDropped)
 
 TEST_F(PresenceInboxTest, APartOfAnAnnouncementThatIsTooLargeIsDropped)
 {
-    Gateway::AnnouncementPart &part = beat.parts.emplace_back();
+    Gateway::AnnouncementPart &part = NewsOf(beat).parts.emplace_back();
     part.of = Announcements::LargestEncoded;
     part.bytes = {1};
     EXPECT_TRUE(Add(beat));
@@ -207,9 +208,9 @@ TEST_F(PresenceInboxTest, GarbageIsDropped)
 
 TEST_F(PresenceInboxTest, HoldsNoMoreBytesThanItSays)
 {
-    beat.parts.resize(1);
-    beat.parts[0].of = 4000;
-    beat.parts[0].bytes.resize(4000);
+    NewsOf(beat).parts.resize(1);
+    NewsOf(beat).parts[0].of = 4000;
+    NewsOf(beat).parts[0].bytes.resize(4000);
     const std::vector<std::uint8_t> large = Encoded(beat);
     std::size_t added = 0;
     while (Add(large) && added < 100'000)

@@ -13,6 +13,7 @@
 
 #include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -235,13 +236,13 @@ protected:
         Gateway::Beat beat;
         ASSERT_TRUE(MessageTypeRegistry::Of(beat)->Deserialize(bytes, beat));
         ++beats;
-        parts += static_cast<int>(beat.parts.size());
+        parts += static_cast<int>(NewsOf(beat).parts.size());
     }
 
     void Ask(std::uint32_t tag, std::uint16_t offers = 0)
     {
         Gateway::Beat beat = asker.Beat();
-        Gateway::Wanted &wanted = beat.wants.emplace_back();
+        Gateway::Wanted &wanted = NewsOf(beat).wants.emplace_back();
         wanted.node = tag;
         wanted.offers = offers;
         asker.Write(beat);

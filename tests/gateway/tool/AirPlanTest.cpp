@@ -58,7 +58,7 @@ TEST(AirPlan, ABeatTwiceASecondAndAnAnnouncementEveryTenSecondsIsWhatPresenceCos
 {
     const std::vector<GatewayConfig> fleet{NodeOf("a")};
     const auto plans = AirPlansOf(fleet, InputOf(0, 0));
-    EXPECT_DOUBLE_EQ(Of(plans[0], "beats"), 2.0 * 128.0);
+    EXPECT_DOUBLE_EQ(Of(plans[0], "beats"), 2.0 * 108.0);
     EXPECT_DOUBLE_EQ(Of(plans[0], "discovery"), 51.0);
 }
 
@@ -166,7 +166,7 @@ TEST(AirPlan, WhatExceedsTheBudgetIsToldWithWhatTakesMost)
     EXPECT_EQ(WhyAboveBudget(AirPlansOf(fleet, InputOf(5, 40))[0]), "");
     EXPECT_THAT(
         WhyAboveBudget(AirPlansOf(fleet, InputOf(10, 40))[0]),
-        HasSubstr("the budget is 1000 B/s, and 1361 B/s would go on the air, most of it Pose with 1280 B/s"));
+        HasSubstr("the budget is 1000 B/s, and 1351 B/s would go on the air, most of it Pose with 1280 B/s"));
 }
 
 }  // namespace

@@ -81,6 +81,56 @@ TEST(OutgoingMessage, SamplesAndTheirRepairAreToldFromDiscovery)
     EXPECT_FALSE(ReadOutgoing(Message(Heartbeat, HeartbeatBody(1, 2, 3, Publications))).HasSamples);
 }
 
+TEST(OutgoingMessage, SamplesForOneAreToldFromSamplesForAllAndFromWhatComesBesides)
+{
+    const Bytes sample = Submessage(Data, DataBody(1), HasData);
+    const Bytes builtin = Submessage(Data, DataBody(1, Bytes(40), Rabit::Rtps::PublicationsWriter), HasData);
+    const Bytes heartbeat = Submessage(Heartbeat, HeartbeatBody(1, 2, 3));
+    const auto isToOne = [](std::initializer_list<Bytes> parts)
+    { return ReadOutgoing(Join(parts)).IsOfSamplesToOne; };
+    EXPECT_TRUE(isToOne({Header(), To(Other), sample}));
+    EXPECT_TRUE(isToOne({Header(), To(Other), sample, sample}));
+    EXPECT_FALSE(isToOne({Header(), sample}));
+    EXPECT_FALSE(isToOne({Header(), To(GuidPrefix{}), sample}));
+    EXPECT_FALSE(isToOne({Header(), To(Other), sample, To(Sender), sample}));
+    EXPECT_FALSE(isToOne({Header(), To(Other), sample, heartbeat}));
+    EXPECT_FALSE(isToOne({Header(), To(Other), builtin}));
+}
+
+TEST(OutgoingMessage, WithoutItsDestinationTheRestIsAsItWas)
+{
+    const Bytes time = Submessage(InfoTimestamp, Bytes(8));
+    const Bytes sample = Submessage(Data, DataBody(1), HasData);
+    Bytes left = {1, 2, 3};
+    Rabit::FastDds::WriteWithoutDestination(Join({Header(), To(Other), time, sample}), left);
+    EXPECT_EQ(left, Join({Header(), time, sample}));
+}
+
+TEST(OutgoingMessage, AnAnnouncementWithoutPropertiesIsTheRestOfIt)
+{
+    const auto announcement = [](const Bytes &list, const Bytes &behind)
+    {
+        return Join({Header(), Submessage(InfoTimestamp, Bytes(8)),
+                     Submessage(Data, DataBody(1, list, ParticipantWriter), HasData), behind});
+    };
+    const Bytes name = Parameter(0x0062, Text("uav1"));
+    const Bytes properties = Parameter(0x0059, Join({U32(1), Text("PARTICIPANT_TYPE"), Text("SIMPLE")}));
+    const Bytes behind = Submessage(Heartbeat, HeartbeatBody(1, 2, 3));
+    Bytes left = {1, 2, 3};
+    Rabit::FastDds::WriteWithoutProperties(announcement(List({name, properties, name}), behind), left);
+    EXPECT_EQ(left, announcement(List({name, name}), behind));
+    Rabit::FastDds::WriteWithoutProperties(announcement(List({name}), {}), left);
+    EXPECT_EQ(left, announcement(List({name}), {}));
+}
+
+TEST(OutgoingMessage, WhatIsNoAnnouncementKeepsItsProperties)
+{
+    const Bytes other = Message(Data, DataBody(1, List({Parameter(0x0059, Bytes(8))})), HasData);
+    Bytes left;
+    Rabit::FastDds::WriteWithoutProperties(other, left);
+    EXPECT_EQ(left, other);
+}
+
 TEST(OutgoingMessage, AHeartbeatAloneIsToldByItsWriterItsNumbersAndWhomItIsFor)
 {
     const auto toAll = ReadOutgoing(Message(Heartbeat, HeartbeatBody(2, 5, 7))).Heartbeat;

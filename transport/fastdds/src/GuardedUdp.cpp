@@ -67,6 +67,11 @@ HostAddress HostOf(const rtps::Locator_t &locator)
     return host;
 }
 
+bool IsGroup(const rtps::Locator_t &locator)
+{
+    return rtps::IPLocator::isMulticast(locator);
+}
+
 class GuardedUdp final : public ChainingTransport
 {
 public:
@@ -105,6 +110,12 @@ public:
         {
             return true;
         }
+        std::span<const std::uint8_t> datagram(buffer, left);
+        if (message.Announcement && _descriptor.Chosen().Mode == RtpsGuard::Mode::Full)
+        {
+            WriteWithoutProperties(datagram, _shortened);
+            datagram = _shortened;
+        }
         const auto now = std::chrono::steady_clock::now();
         const std::uint32_t socket = NumberOf(sender);
         if (message.Request && !_requests.MayGo(socket, *message.Request, now))
@@ -112,7 +123,7 @@ public:
             return true;
         }
         const auto parts =
-            message.HasSamples || message.Announcement ? std::nullopt : ReadDiscoveryParts({buffer, left});
+            message.HasSamples || message.Announcement ? std::nullopt : ReadDiscoveryParts(datagram);
         _chosen.clear();
         for (; *begin != *end; ++*begin)
         {
@@ -122,8 +133,7 @@ public:
                 (message.Announcement &&
                  !_announcements.MayGo(number, *message.Announcement, _guard.AnnouncementsHeard(), now)) ||
                 (message.Heartbeat && !_heartbeats.MayGo(number, *message.Heartbeat, now)) ||
-                (parts && Leaves(socket, destination) &&
-                 Put(sender, destination, {buffer, left}, *parts, now));
+                (parts && Leaves(socket, destination) && Put(sender, destination, datagram, *parts, now));
             if (!held)
             {
                 _chosen.push_back(destination);
@@ -146,9 +156,14 @@ public:
         }
         if (!message.HasSamples)
         {
-            CountPast(sender, {buffer, left}, message.Announcement.has_value(), now);
+            CountPast(sender, datagram, message.Announcement.has_value(), now);
         }
-        return SendChosen(sender, {buffer, left}, message.HasSamples, timeout);
+        if (message.IsOfSamplesToOne && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
+        {
+            WriteWithoutDestination(datagram, _shortened);
+            datagram = _shortened;
+        }
+        return SendChosen(sender, datagram, message.HasSamples, timeout);
     }
 
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
@@ -388,6 +403,7 @@ private:
     std::map<rtps::Locator_t, std::uint32_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;
+    std::vector<std::uint8_t> _shortened;  // what goes, if it is less than the vendor says
     eprosima::fastdds::rtps::SendResourceList _noSockets;
 };
 

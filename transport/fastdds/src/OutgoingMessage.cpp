@@ -51,6 +51,12 @@ GuidPrefix PrefixIn(std::span<const std::uint8_t> bytes)
     return prefix;
 }
 
+// Of a DATA.
+bool IsAnnouncement(const Part &part, EntityId writer)
+{
+    return writer == ParticipantWriter && (part.Flags & HasData) != 0 && (part.Flags & InlineQos) == 0;
+}
+
 std::uint64_t DigestOf(std::span<const std::uint8_t> bytes)
 {
     return std::hash<std::string_view>()({reinterpret_cast<const char *>(bytes.data()), bytes.size()});
@@ -65,6 +71,8 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     int requests = 0;
     int heartbeats = 0;
     int others = 0;
+    int samples = 0;
+    int destinations = 0;
     GuidPrefix peer{};
     FirstRequest request;
     LoneHeartbeat heartbeat;
@@ -79,6 +87,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 break;
             case SubmessageKind::InfoDestination:
                 peer = PrefixIn(part.Body());
+                ++destinations;
                 break;
             case SubmessageKind::AckNack:
                 message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
@@ -91,9 +100,9 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 const EntityId writer = body.Entity();
                 message.HasSamples = message.HasSamples || !IsBuiltin(writer);
                 const bool whole = SubmessageKind{part.Kind} == SubmessageKind::Data;
-                const bool announces = whole && writer == ParticipantWriter && (part.Flags & HasData) != 0 &&
-                                       (part.Flags & InlineQos) == 0;
+                const bool announces = whole && IsAnnouncement(part, writer);
                 (announces ? announcements : others) += 1;
+                samples += whole && !IsBuiltin(writer) ? 1 : 0;
                 // Whatever reader it is for.
                 digest =
                     31 * digest +
@@ -121,6 +130,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     };
     VisitSubmessages(datagram, visit);
     const int all = announcements + requests + heartbeats + others;
+    message.IsOfSamplesToOne = samples > 0 && samples == all && destinations == 1 && peer != GuidPrefix{};
     if (announcements == 1 && all == 1)
     {
         message.Announcement = digest;
@@ -136,6 +146,65 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
         message.Heartbeat = heartbeat;
     }
     return message;
+}
+
+void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to)
+{
+    to.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(
+                                                       std::min(Rabit::RtpsHeaderSize, datagram.size())));
+    VisitSubmessages(datagram,
+                     [&to](const Part &part)
+                     {
+                         if (SubmessageKind{part.Kind} != SubmessageKind::InfoDestination)
+                         {
+                             to.insert(to.end(), part.Whole.begin(), part.Whole.end());
+                         }
+                     });
+}
+
+void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to)
+{
+    constexpr std::uint16_t Properties = 0x0059;
+    constexpr std::size_t EncapsulationAt = SubmessageHeaderSize + 20;
+    constexpr std::size_t ListAt = EncapsulationAt + 4;
+    const auto add = [&to](std::span<const std::uint8_t> bytes)
+    { to.insert(to.end(), bytes.begin(), bytes.end()); };
+    to.clear();
+    add(announcement.first(std::min(Rabit::RtpsHeaderSize, announcement.size())));
+    const auto visit = [&](const Part &part)
+    {
+        RtpsReader body(part.Body(), part.LittleEndian);
+        body.Skip(ReaderInData + EntitySize);
+        if (SubmessageKind{part.Kind} != SubmessageKind::Data || !IsAnnouncement(part, body.Entity()) ||
+            part.Whole.size() < ListAt)
+        {
+            add(part.Whole);
+            return;
+        }
+        const std::size_t begins = to.size();
+        add(part.Whole.first(ListAt));
+        const bool littleEndianList = (part.Whole[EncapsulationAt + 1] & 1) != 0;
+        RtpsReader list(part.Whole.subspan(ListAt), littleEndianList);
+        while (list.Left() > 0)
+        {
+            const auto rest = list.Rest();
+            const std::uint16_t id = list.U16();
+            const std::uint16_t length = list.U16();
+            list.Skip(length);
+            if (id != Properties || !list.IsGood())
+            {
+                add(rest.first(rest.size() - list.Left()));
+            }
+        }
+        // 0 would mean that it goes on to the end, which remains true.
+        if (part.Whole[2] != 0 || part.Whole[3] != 0)
+        {
+            const std::size_t length = to.size() - begins - SubmessageHeaderSize;
+            to[begins + (part.LittleEndian ? 2 : 3)] = static_cast<std::uint8_t>(length);
+            to[begins + (part.LittleEndian ? 3 : 2)] = static_cast<std::uint8_t>(length >> 8);
+        }
+    };
+    VisitSubmessages(announcement, visit);
 }
 
 std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> datagram)

@@ -34,6 +34,9 @@ struct OutgoingMessage
 {
     // Something in it is of other than builtin endpoints: samples, or what their repair needs.
     bool HasSamples = false;
+    // One or more whole samples for one participant and nothing else: where it goes to that one's address
+    // alone, it need not say for whom it is (RTPS 2.3, 8.3.4.1: else it is for who receives it).
+    bool IsOfSamplesToOne = false;
     // Says that our participant is there, and nothing else; a number that tells one content from another. Not
     // set for a goodbye.
     std::optional<std::uint64_t> Announcement;
@@ -44,6 +47,13 @@ struct OutgoingMessage
 
 // `datagram` comes from the vendor's writers and is trusted to be sound.
 OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram);
+
+// The datagram without what says for whom it is; 16 bytes less.
+void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to);
+
+// An announcement of a participant without its list of properties: what the vendor says there of itself, in
+// 124 bytes of 400, is of use to its discovery servers alone.
+void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to);
 
 // What somebody acknowledges to a writer of ours.
 struct Acknowledgement

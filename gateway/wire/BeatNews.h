@@ -1,0 +1,15 @@
+#pragma once
+
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+// What a beat has to say besides; where it has nothing, that is empty.
+const Gateway::BeatNews &NewsOf(const Gateway::Beat &beat);
+// The same, to be added to.
+Gateway::BeatNews &NewsOf(Gateway::Beat &beat);
+// Leaves the news out if they are empty, so that they take no room on the wire.
+void DropEmptyNews(Gateway::Beat &beat);
+
+}  // namespace Rabit
