@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Runs examples/demo.sh as a user does, on loopback. Usage: demo_test.sh CASE FOLDER_OF_PROGRAMS
+# Runs examples/demo.sh as a user does, on the loopback of a network of its own. Usage: demo_test.sh CASE FOLDER_OF_PROGRAMS
 set -uo pipefail
 case=$1
 bin=$2
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+. "$root/tests/own_network.sh"
+enter_own_network "$@"
 work=$(mktemp -d)
 demo_pid=
 trap 'if [ -n "$demo_pid" ]; then kill -TERM "$demo_pid"; wait "$demo_pid"; fi; rm -rf "$work"' EXIT

@@ -6,6 +6,8 @@ set -uo pipefail
 bin=$1
 transport=$2
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+. "$root/tests/own_network.sh"
+enter_own_network "$@"
 work=$(mktemp -d)
 pids=()
 trap 'for pid in "${pids[@]}"; do kill -KILL "$pid"; wait "$pid"; done 2>/dev/null; rm -rf "$work"' EXIT

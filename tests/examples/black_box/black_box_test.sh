@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs examples/black_box.sh as a user does, on loopback, and looks at what it leaves with programs of others.
+# Runs examples/black_box.sh as a user does, on the loopback of a network of its own, and looks at what it leaves with
+# programs of others.
 #   black_box_test.sh FOLDER_OF_PROGRAMS TRANSPORT WORK_DIRECTORY_OF_STOCK_READERS WORK_DIRECTORY_OF_BROWSERS
 # Where npm, its registry or chromium is missing, what needs them is left out, and says so.
 set -uo pipefail
@@ -9,6 +10,22 @@ bin=$1
 transport=$2
 stock=$3
 browser=$4
+
+. "$root/tests/npm_packages.sh"
+. "$root/tests/own_network.sh"
+
+# Whether there is what these need.
+stock_reader() {
+    (fetch_npm_packages "$root/tests/gateway/recording/stock" @mcap/core "$stock")
+}
+page() {
+    command -v chromium >/dev/null &&
+        (fetch_npm_packages "$root/tests/examples/web/browser" playwright-core "$browser")
+}
+stock_reader >/dev/null
+page >/dev/null
+enter_own_network "$@"
+
 work=$(mktemp -d)
 : >"$work/out"
 pid=
@@ -18,11 +35,6 @@ fail() {
     echo "FAILED: $1"
     cat "$work/out" "$work/err"
     exit 1
-}
-
-# with_packages HERE PACKAGE WORK: whether they can be had.
-with_packages() {
-    (. "$root/tests/npm_packages.sh" && fetch_npm_packages "$@")
 }
 
 "$root/examples/black_box.sh" --bin "$bin" --seconds 16 --folder "$work/flight" --transport "$transport" >"$work/out" 2>"$work/err" &
@@ -55,12 +67,12 @@ fi
 grep -Eq '^uav1 HealthMonitor: step [0-9]+, .* s after its startup: message Health, battery_percent: recorded [0-9.]+, now [0-9.]+$' "$work/changed" ||
     fail "the difference is not named: $(cat "$work/changed")"
 
-if with_packages "$root/tests/gateway/recording/stock" @mcap/core "$stock"; then
-    cp "$here/stock_reader.mjs" "$stock/"
+if stock_reader; then
+    put_into "$stock" "$here/stock_reader.mjs"
     node "$stock/stock_reader.mjs" "$work/flight/flight.mcap" || fail "the stock reader"
 fi
-if command -v chromium >/dev/null && with_packages "$root/tests/examples/web/browser" playwright-core "$browser"; then
-    cp "$root"/tests/examples/web/browser/*.mjs "$here/replay_page.mjs" "$browser/"
+if page; then
+    put_into "$browser" "$root"/tests/examples/web/browser/*.mjs "$here/replay_page.mjs"
     node "$browser/replay_page.mjs" "$(sed -n 's/^The replay is at //p' "$work/out")" || fail "the page"
 fi
 

@@ -39,6 +39,7 @@ def only_file(folder):
 
 
 def main():
+    harness.enter_namespace()
     rabit, sensor = sys.argv[1:3]
     domain = harness.domain()
     with tempfile.TemporaryDirectory() as temporary:

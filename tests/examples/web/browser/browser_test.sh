@@ -7,17 +7,14 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 case=$1
 bin=$2
 work=$3
-for program in chromium node npm; do
-    if ! command -v "$program" >/dev/null; then
-        echo "skipped: $program is not installed"
-        exit 77
-    fi
-done
-mkdir -p "$work"
-cp "$here"/*.mjs "$here/package.json" "$here/package-lock.json" "$work/"
-if [ ! -d "$work/node_modules/playwright-core" ]; then
-    (cd "$work" && timeout 200 npm ci --silent --no-audit --no-fund --ignore-scripts) ||
-        { echo "skipped: npm could not fetch playwright-core"; exit 77; }
+if ! command -v chromium >/dev/null; then
+    echo "skipped: chromium is not installed"
+    exit 77
 fi
 root=$(cd "$here/../../../.." && pwd)
+. "$root/tests/npm_packages.sh"
+fetch_npm_packages "$here" playwright-core "$work"
+. "$root/tests/own_network.sh"
+enter_own_network "$@"
+put_into "$work" "$here"/*.mjs
 exec node "$work/run_case.mjs" "$case" "$bin" "$root"

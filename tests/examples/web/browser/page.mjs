@@ -39,6 +39,7 @@ export class FleetPage {
       // A connection that is lost is logged by the browser itself.
       if (message.type() === 'error' && !/WebSocket|ERR_CONNECTION|net::/.test(message.text())) fleet.errors.push(message.text());
     });
+    page.on('requestfailed', (request) => fleet.unanswered.push(`${request.url()}: ${request.failure()?.errorText}`));
     await page.goto(url);
     // One with a token hands over to the page itself.
     await page.waitForURL(({search}) => search === '');
@@ -46,6 +47,7 @@ export class FleetPage {
     return fleet;
   }
   errors = [];
+  unanswered = [];
   constructor(page) {
     this.page = page;
   }
@@ -54,7 +56,8 @@ export class FleetPage {
     return this.page.evaluate((key) => document.documentElement.dataset[key], name);
   }
   async isLive() {
-    await becomes(async () => (await this.data('live')) === 'true', async () => `the page is live; ${this.errors} ${await this.text('#banner')}`);
+    await becomes(async () => (await this.data('live')) === 'true', async () =>
+      `the page is live; ${this.errors} ${this.unanswered} ${await this.text('#banner')}`);
   }
   text(selector) {
     return this.page.textContent(selector);

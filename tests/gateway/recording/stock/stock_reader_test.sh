@@ -9,6 +9,6 @@ samples=$2
 work=$3
 . "$here/../../../npm_packages.sh"
 fetch_npm_packages "$here" @mcap/core "$work"
-cp "$here"/*.mjs "$work/"
+put_into "$work" "$here"/*.mjs
 "$samples" "$work"
 exec node "$work/stock_reader_test.mjs" "$case" "$work"

@@ -7,5 +7,5 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 work=$4
 . "$here/../../../npm_packages.sh"
 fetch_npm_packages "$here" @foxglove/ws-protocol "$work"
-cp "$here/viewer.mjs" "$work/"
+put_into "$work" "$here/viewer.mjs"
 exec python3 "$here/viewer_test.py" "$1" "$2" "$3" "$work/viewer.mjs"
