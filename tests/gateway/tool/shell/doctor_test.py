@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""What a doctor finds.
+
+Usage: doctor_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
+
+import re
+import subprocess
+
+from two_aircraft import LIMIT, SWARM, Rabit, harness, keys, main
+
+
+def a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well(rabit):
+    def well():
+        findings, done = rabit.objects("doctor", "--wait", "4")
+        return findings if done.returncode == 0 else None
+
+    findings = harness.until(well)
+    assert all(keys(finding) == ["level", "subject", "text", "advice"] for finding in findings), findings
+    said = {finding["subject"]: finding["text"] for finding in findings}
+    assert {"interface lo", "nodes", "clocks", "multicast on lo"} <= set(said), findings
+    assert {"uav1", "uav2"} <= set(said["nodes"].split()), said
+    assert "answered by 127.0.0.1" in said["multicast on lo"], said
+
+
+def a_doctor_tells_of_the_domain_that_the_others_are_in(rabit):
+    other = (rabit.domain + 100) % 200
+
+    def named():
+        done = Rabit(rabit.program, rabit.transport, other).run("doctor", "--wait", "4")
+        assert done.returncode == 3 and "nobody was heard" in done.stderr, done
+        return re.search(rf"^! domain {rabit.domain}: .*uav1.*--domain {rabit.domain}", done.stdout, re.MULTILINE)
+    harness.until(named)
+
+
+def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there(rabit):
+    with harness.Processes() as processes:
+        for _ in range(2):
+            processes.start([rabit.uav, "--config", SWARM / "uav.yaml", "--node", "twin", "--domain", rabit.domain,
+                             "--transport", rabit.transport])
+
+        def twice():
+            done = rabit.run("doctor", "--wait", "6")
+            return "! node twin: two live nodes have this name. Do: give one of them another one" in done.stdout
+        harness.until(twice)
+    done = subprocess.run([rabit.program, "doctor", "--interface", "nosuch0", "--wait", "1"], capture_output=True,
+                          text=True, timeout=LIMIT, check=False)
+    assert done.returncode == 3 and "! interface nosuch0: this machine has none. Do: name one of " in done.stdout, done
+
+
+TESTS = [a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well, a_doctor_tells_of_the_domain_that_the_others_are_in,
+         a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there]
+
+
+if __name__ == "__main__":
+    main(TESTS)

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""What `rabit` tells of a fleet: its nodes, messages and types, and who does not find it.
+
+Usage: listing_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
+
+import re
+import subprocess
+
+from two_aircraft import LIMIT, Rabit, harness, keys, main
+
+HASH = re.compile(r"^[0-9a-f]{16}$")
+
+
+def nodes_are_listed_with_what_they_have(rabit):
+    def both():
+        listed, done = rabit.objects("nodes", "--wait", "10")
+        rows = {row["node"]: row for row in listed if "node" in row and "problem" not in row}
+        return (rows, done) if {"uav1", "uav2"} <= set(rows) and done.returncode == 0 else None
+
+    rows, done = harness.until(both)
+    assert set(rows) == {"uav1", "uav2"}, "a tool is listed"
+    assert done.stderr == "", done.stderr
+    row = rows["uav1"]
+    assert keys(row) == ["node", "state", "reason", "incarnation", "last_heard_s", "round_trip_s", "delivery_rate",
+                         "publishes", "accepts", "replay"], keys(row)
+    assert row["replay"] is False
+    assert row["state"] == "UP" and 0 < row["round_trip_s"] < LIMIT
+    pose = next(item for item in row["publishes"] if item["message"] == "Pose")
+    assert keys(pose) == ["message", "type", "qos", "definition"]
+    assert pose["type"] == "Uav::Pose" and pose["qos"] == "telemetry" and HASH.match(pose["definition"])
+    queue = next(item for item in row["accepts"] if item["queue"] == "MissionControl")
+    assert keys(queue) == ["queue", "types", "from"] and queue["from"] == ["*"]
+    assert "Uav::Goto" in [item["type"] for item in queue["types"]]
+
+
+def nodes_is_a_table_for_people(rabit):
+    done = harness.until(lambda: (lambda d: d if "uav1" in d.stdout and "uav2" in d.stdout else None)(rabit.run("nodes")))
+    lines = done.stdout.splitlines()
+    assert lines[0].split() == ["NODE", "STATE", "HEARD", "ROUND", "TRIP", "DELIVERY", "PUBLISHES", "ACCEPTS"], lines
+    assert "\x1b" not in done.stdout, "escape sequences in a pipe"
+
+
+def messages_are_listed_with_their_types_and_who_publishes_and_reads_them(rabit):
+    aircraft = ["uav1", "uav2"]
+
+    def both():
+        listed, done = rabit.objects("messages", "--wait", "10")
+        rows = {row["message"]: row for row in listed}
+        poses = rows.get("Pose")
+        return rows if done.returncode == 0 and poses and poses["publishers"] == poses["subscribers"] == aircraft else None
+
+    rows = harness.until(both)
+    assert keys(rows["Pose"]) == ["message", "type", "qos", "definition", "publishers", "subscribers", "other_subscribers",
+                                  "rate_hz"]
+    assert rows["Pose"]["other_subscribers"] == 0
+    assert rows["Health"]["publishers"] == aircraft and rows["Health"]["subscribers"] == [], rows["Health"]
+    assert "MissionState" in rows
+
+
+def how_often_all_messages_come_is_measured_together(rabit):
+    listed, done = rabit.objects("messages", "--for", "3", "--wait", "10")
+    rates = {row["message"]: row["rate_hz"] for row in listed}
+    assert done.returncode == 0 and 2 < rates["Pose"] < 200, done
+    table = rabit.run("messages", "--for", "1")
+    assert table.stdout.split("\n")[0].split() == "MESSAGE TYPE QOS RATE PUBLISHED BY READ BY".split(), table
+
+
+def the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name(rabit):
+    by_type = rabit.run("type", "Uav::Pose", "--wait", "30")
+    by_message = rabit.run("type", "Pose", "--wait", "30")
+    assert by_type.returncode == by_message.returncode == 0, by_type.stderr + by_message.stderr
+    assert by_type.stdout == by_message.stdout
+    assert "double latitude_deg;" in by_type.stdout
+    (row,), _ = rabit.objects("type", "Uav::Goto", "--wait", "30")
+    assert keys(row) == ["type", "definition", "nodes", "idl"] and "struct Goto" in row["idl"]
+
+
+def a_name_that_is_wrong_is_answered_with_the_nearest(rabit):
+    for arguments, hint in ((("type", "Uav::Poze"), "did you mean `Uav::Pose`?"),
+                            (("echo", "uav1/Poze"), "did you mean `Pose`?"),
+                            (("echo", "uaw1/Pose"), "did you mean `uav1`?")):
+        done = rabit.run(*arguments, "--wait", "4")
+        assert done.returncode == 1 and hint in done.stderr and done.stdout == "", done
+
+
+def a_configuration_of_a_node_serves_for_its_network_alone(rabit):
+    done = subprocess.run([rabit.program, "echo", "uav1/Pose", "--once", "--wait", "30",
+                           "--config", str(harness.ROOT / "examples/swarm/uav.yaml"),
+                           "--domain", str(harness.domain())], capture_output=True, text=True, timeout=LIMIT,
+                          check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def wrong_usage_is_2(rabit):
+    for arguments in (["nodes", "--interfase", "lo"], ["nose"], [], ["echo"], ["nodes", "--domain", "233"],
+                      ["nodes", "--transport", "fastdss"], ["nodes", "--config", "/no/such/file"], ["check"],
+                      ["check", "/no/such/file"], ["check", "--rate", "Pose", __file__]):
+        done = subprocess.run([rabit.program, *arguments], capture_output=True, text=True, timeout=LIMIT,
+                              check=False)
+        assert done.returncode == 2, (arguments, done)
+        assert done.stdout == "" and done.stderr != "", (arguments, done)
+
+
+def nobody_in_the_domain_is_3(rabit):
+    for command in (["nodes"], ["messages"], ["type", "X"], ["echo", "X"]):
+        done = Rabit(rabit.program, rabit.transport, harness.domain() + 1).run(*command, "--wait", "1")
+        assert done.returncode == 3 and "nobody was heard in domain" in done.stderr and done.stdout == "", done
+
+
+def viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means(rabit):
+    done = rabit.run("foxglove", "--listen", "0.0.0.0", "--port", "0")
+    assert done.returncode == 2 and done.stdout == "", done
+    assert "would see everything" in done.stderr and "--open-to-everybody-on-the-network" in done.stderr, done
+
+
+TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
+         messages_are_listed_with_their_types_and_who_publishes_and_reads_them,
+         how_often_all_messages_come_is_measured_together, the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
+         a_name_that_is_wrong_is_answered_with_the_nearest, a_configuration_of_a_node_serves_for_its_network_alone,
+         wrong_usage_is_2, nobody_in_the_domain_is_3,
+         viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means]
+
+
+if __name__ == "__main__":
+    main(TESTS)

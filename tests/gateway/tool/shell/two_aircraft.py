@@ -1,0 +1,62 @@
+"""The program `rabit` as one who types it runs it, beside two aircraft, one on each DDS implementation: what the tests here
+share."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "integration"))
+import harness  # noqa: E402
+
+# Only keeps a broken program from hanging.
+LIMIT = 120
+SWARM = harness.ROOT / "examples/swarm"
+
+
+class Rabit:
+    """Runs the program as one who types it."""
+
+    def __init__(self, program, transport, domain, uav=None):
+        self.program = program
+        self.transport = transport
+        self.domain = domain
+        self.uav = uav
+        self._network = ["--interface", "127.0.0.1", "--domain", str(domain), "--transport", transport]
+
+    def argv(self, command, *arguments):
+        return [self.program, command, *self._network, *arguments]
+
+    def run(self, command, *arguments, text=None):
+        return subprocess.run(self.argv(command, *arguments), input=text, capture_output=True, text=True,
+                              timeout=LIMIT, check=False)
+
+    def objects(self, command, *arguments):
+        done = self.run(command, "--json", *arguments)
+        return [json.loads(line) for line in done.stdout.splitlines()], done
+
+
+def keys(thing):
+    return list(thing.keys())
+
+
+def main(tests):
+    """Runs each of them, or those that are named on the command line, with the program on each DDS implementation."""
+    harness.enter_namespace()
+    program, uav, transports = sys.argv[1], sys.argv[2], sys.argv[3].split(",")
+    failed = []
+    with harness.Processes() as processes:
+        for number, transport in enumerate((transports * 2)[:2], 1):
+            processes.start([uav, "--config", SWARM / "uav.yaml", "--node", f"uav{number}", "--domain", harness.domain(),
+                             "--transport", transport])
+        for transport in transports:
+            for test in [test for test in tests if not sys.argv[4:] or test.__name__ in sys.argv[4:]]:
+                begin = time.monotonic()
+                try:
+                    test(Rabit(program, transport, harness.domain(), uav))
+                    print(f"ok      {transport} {test.__name__}, {time.monotonic() - begin:.1f} s", flush=True)
+                except Exception as error:  # pylint: disable=broad-except
+                    failed.append(test.__name__)
+                    print(f"FAILED  {transport} {test.__name__}: {type(error).__name__} {error}", flush=True)
+    sys.exit(f"{len(failed)} failed" if failed else 0)
