@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Runs all cases of a GoogleTest program, and shows of its output only what belongs to those that failed, or to the one that
+# ended it, and how many there were.
+#   whole_program.sh PROGRAM
+set -uo pipefail
+"$1" 2>&1 | awk '
+    /^\[ RUN      \]/ { said = ""; inside = 1 }
+    inside { said = said $0 "\n" }
+    inside && /\[       OK \]|\[  SKIPPED \]/ { said = ""; inside = 0; next }
+    inside && /\[  FAILED  \]/ { printf "%s", said; said = ""; inside = 0; next }
+    !inside && !/^$|^\[----------\]/
+    END { printf "%s", said }'
+exit "${PIPESTATUS[0]}"
