@@ -10,4 +10,4 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$root/docker/build-preset.sh" release
 cd "$root"
 [ $# -gt 0 ] || set -- -LE 'mutation|field_long|fuzz_long|package_long'
-exec ctest --preset release -j2 --progress "$@"
+exec ctest --preset release -j4 --progress "$@"
