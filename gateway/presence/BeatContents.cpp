@@ -197,9 +197,14 @@ void BeatContents::AddStates(Gateway::Beat &beat, std::size_t &room)
     }
     const std::size_t count =
         Fit(std::min(BeatFormat::MostStates, _states.size() - _nextState), BeatFormat::State, room);
+    if (count == 0)
+    {
+        return;
+    }
     const auto first = _states.begin() + static_cast<std::ptrdiff_t>(_nextState);
-    beat.first_state = static_cast<std::uint16_t>(_nextState);
-    NewsOf(beat).states.assign(first, first + static_cast<std::ptrdiff_t>(count));
+    Gateway::BeatNews &news = NewsOf(beat);
+    news.first_state = static_cast<std::uint16_t>(_nextState);
+    news.states.assign(first, first + static_cast<std::ptrdiff_t>(count));
     _nextState += count;
 }
 

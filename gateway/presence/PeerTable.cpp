@@ -270,11 +270,11 @@ void PeerTable::TakeStates(Peer &peer, const Gateway::Beat &beat)
         peer.States.clear();
     }
     const auto &states = NewsOf(beat).states;
+    const std::size_t first = NewsOf(beat).first_state;
     if (!states.empty())
     {
-        peer.States.resize(std::max(peer.States.size(), beat.first_state + states.size()), 0);
-        std::copy(states.begin(), states.end(),
-                  peer.States.begin() + static_cast<std::ptrdiff_t>(beat.first_state));
+        peer.States.resize(std::max(peer.States.size(), first + states.size()), 0);
+        std::copy(states.begin(), states.end(), peer.States.begin() + static_cast<std::ptrdiff_t>(first));
     }
 }
 

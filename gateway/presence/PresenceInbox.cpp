@@ -49,7 +49,7 @@ bool IsPlausible(const Gateway::Beat &beat)
     const auto plausible = [](const auto &entry) { return IsPlausible(entry); };
     const Gateway::BeatNews &news = NewsOf(beat);
     return IsPlausible(beat.source_ns) &&
-           beat.first_state + news.states.size() <= Announcements::MostOffers && AreFew(news.wants) &&
+           news.first_state + news.states.size() <= Announcements::MostOffers && AreFew(news.wants) &&
            AreFew(news.echoes) && AreFew(news.delays) && news.parts.size() <= 1 &&
            std::all_of(news.wants.begin(), news.wants.end(), plausible) &&
            std::all_of(news.parts.begin(), news.parts.end(), plausible);

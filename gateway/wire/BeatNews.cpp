@@ -6,23 +6,23 @@ namespace Rabit
 const Gateway::BeatNews &NewsOf(const Gateway::Beat &beat)
 {
     static const Gateway::BeatNews none;
-    return beat.more._d() ? beat.more.news() : none;
+    return beat.rest._d() ? beat.rest.news() : none;
 }
 
 Gateway::BeatNews &NewsOf(Gateway::Beat &beat)
 {
-    if (!beat.more._d())
+    if (!beat.rest._d())
     {
-        beat.more.news(Gateway::BeatNews());
+        beat.rest.news(Gateway::BeatNews());
     }
-    return beat.more.news();
+    return beat.rest.news();
 }
 
 void DropEmptyNews(Gateway::Beat &beat)
 {
-    if (beat.more._d() && beat.more.news() == Gateway::BeatNews())
+    if (beat.rest._d() && beat.rest.news() == Gateway::BeatNews())
     {
-        beat.more._default();
+        beat.rest.nothing(0);
     }
 }
 

@@ -510,25 +510,47 @@ TEST_F(ThinAirTest, WhereTheAirCarriesLittleBeatsTakeLittleOfIt)
     EXPECT_LE(presence / 60, 200.0);
 }
 
-TEST_F(ThinAirTest, WhatTheAirSeemedToCarryWhileDdsHadItIsForgotten)
+// Three aircraft come where the air is full. When which datagram goes decides how it seems to one rate, so it
+// is many.
+class NewcomersInThinAir final : public ThinAirTest
 {
-    SetRate(7'000);
-    Fly(10s, 100ms, 1s);
-    for (const char *node : {"uav2", "uav3", "uav4"})
+public:
+    // For how many seconds in a row it seems to carry next to nothing, at most.
+    int LongestIn(std::uint64_t bytesPerSecond)
     {
-        fleet.Add(AircraftConfig(node));
+        SetRate(bytesPerSecond);
+        Fly(10s, 100ms, 1s);
+        for (const char *node : {"uav2", "uav3", "uav4"})
+        {
+            fleet.Add(AircraftConfig(node));
+        }
+        int longest = 0;
+        int inARow = 0;
+        for (int i = 0; i < 60; ++i)
+        {
+            Fly(1s, 100ms, 1s);
+            const double capacity = aircraft->Fleet().air.capacity;
+            inARow = capacity > 0.0 && capacity < 500.0 ? inARow + 1 : 0;
+            longest = std::max(longest, inARow);
+        }
+        return longest;
     }
-    int longest = 0;  // seconds in a row in which it seems to carry next to nothing
-    int inARow = 0;
-    for (int i = 0; i < 60; ++i)
+
+private:
+    void TestBody() override {}
+};
+
+TEST(ThinAir, WhatItSeemedToCarryWhileDdsHadItIsForgotten)
+{
+    int seconds = 0;
+    int rates = 0;
+    for (std::uint64_t rate = 5000; rate <= 9000; rate += 100)
     {
-        Fly(1s, 100ms, 1s);
-        const double capacity = aircraft->Fleet().air.capacity;
-        inARow = capacity > 0.0 && capacity < 500.0 ? inARow + 1 : 0;
-        longest = std::max(longest, inARow);
+        seconds += NewcomersInThinAir().LongestIn(rate);
+        ++rates;
     }
-    EXPECT_GT(longest, 0) << "or there is nothing to forget";
-    EXPECT_LE(longest, 10);
+    EXPECT_GT(seconds, 0) << "or there is nothing to forget";
+    EXPECT_LE(seconds, 10 * rates);
 }
 
 TEST_F(ThinAirTest, BeatsAreSaidAsPromisedHoweverMuchOfDdsGoesBeside)

@@ -221,13 +221,13 @@ TEST_F(BeatContentsTest, ManyStatesAreToldInTurns)
     for (Ns now = 1s; now < 4s; now += 1s)
     {
         const Gateway::Beat beat = Next(now);
-        EXPECT_EQ(beat.first_state, told.size());
+        EXPECT_EQ(NewsOf(beat).first_state, told.size());
         EXPECT_LE(NewsOf(beat).states.size(), BeatFormat::MostStates);
         told.insert(told.end(), NewsOf(beat).states.begin(), NewsOf(beat).states.end());
     }
     ASSERT_EQ(told.size(), 150u);
     EXPECT_EQ(told[149], 1149u);
-    EXPECT_EQ(Next(5s).first_state, 0);
+    EXPECT_EQ(NewsOf(Next(5s)).first_state, 0);
 }
 
 TEST_F(BeatContentsTest, WhatABeatHasNoRoomForFollowsInTheNextOnes)
@@ -236,7 +236,7 @@ TEST_F(BeatContentsTest, WhatABeatHasNoRoomForFollowsInTheNextOnes)
     EXPECT_THAT(NewsOf(Next(1s, BeatFormat::Empty)).states, IsEmpty());
     EXPECT_THAT(NewsOf(Next(2s, BeatFormat::WithNews + 24)).states, SizeIs(6));
     const Gateway::Beat beat = Next(3s, BeatFormat::WithNews + 24);
-    EXPECT_EQ(beat.first_state, 6);
+    EXPECT_EQ(NewsOf(beat).first_state, 6);
     EXPECT_THAT(NewsOf(beat).states, SizeIs(4));
 }
 

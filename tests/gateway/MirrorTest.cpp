@@ -8,6 +8,7 @@
 #include "HandNode.h"
 #include "SimulatedFleet.h"
 #include "presence/Whereabouts.h"
+#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -501,7 +502,7 @@ TEST_F(MirrorTest, GarbledGatewayTrafficIsCountedAndChangesNothing)
     beat.source_ns = std::numeric_limits<std::int64_t>::min();
     rogue.Write(beat);
     beat = rogue.Beat();
-    beat.first_state = 60000;
+    NewsOf(beat).first_state = 60000;
     rogue.Write(beat);
     const auto format = static_cast<std::uint8_t>(BeatFormat::Present & 0xff);
     rogue.WriteBytes({0, 1, 0, 0, format, BeatFormat::Present >> 8, 9, 9, 9});

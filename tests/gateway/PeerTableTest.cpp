@@ -550,7 +550,7 @@ protected:
     {
         HeardBeat heard = BeatOf("uav1", incarnation, at);
         heard.Beat.offers = offers;
-        heard.Beat.first_state = first;
+        NewsOf(heard.Beat).first_state = first;
         NewsOf(heard.Beat).states = versions;
         table.OnBeat(heard);
     }

@@ -110,7 +110,7 @@ TEST_F(PresenceInboxTest, TheLargestBeatThatANodeSendsIsTaken)
 
 TEST_F(PresenceInboxTest, MoreStatesThanANodeCanHaveAreDropped)
 {
-    beat.first_state = 500;
+    NewsOf(beat).first_state = 500;
     NewsOf(beat).states.resize(13);
     EXPECT_FALSE(Add(beat));
     NewsOf(beat).states.resize(12);

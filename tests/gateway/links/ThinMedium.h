@@ -29,6 +29,7 @@ public:
             LinkSettings settings;
             settings.Node = std::move(name);
             settings.Clock = index + 1;
+            settings.AirOverhead = medium.Headers;
             Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
         }
         void Send(const LinkFrame &frame) override
@@ -85,7 +86,10 @@ public:
         std::size_t DeliveredBytes = 0;
     };
 
-    ThinMedium() : A(*this, "alpha", 0), B(*this, "beta", 1) {}
+    explicit ThinMedium(std::size_t headers = Overhead)
+        : Headers(headers), A(*this, "alpha", 0), B(*this, "beta", 1)
+    {
+    }
 
     // Until then, or until nothing is to be done any more.
     void Live(LinkTime time)
@@ -142,6 +146,7 @@ public:
     std::size_t BytesCarried = 0;       // since it was last set to 0
     std::array<std::size_t, 2> Sent{};  // datagrams of each node
 
+    const std::size_t Headers;  // bytes of each datagram that are not its frame's
     Member A;
     Member B;
 
@@ -151,13 +156,13 @@ private:
         std::size_t From = 0;
         LinkTime At{0};
         std::vector<std::uint8_t> Bytes;
-        std::size_t Cost() const { return Bytes.size() + Overhead; }
     };
 
+    std::size_t CostOf(const Letter &letter) const { return letter.Bytes.size() + Headers; }
     void Offer(std::size_t from, std::vector<std::uint8_t> bytes)
     {
         Letter letter{from, Now, std::move(bytes)};
-        BytesSent += letter.Cost();
+        BytesSent += CostOf(letter);
         ++Datagrams;
         ++Sent[from];
         if (BitsPerSecond == 0)
@@ -165,12 +170,12 @@ private:
             Arrive(std::move(letter));
             return;
         }
-        if (_queued[from] + letter.Cost() > QueueBytes)
+        if (_queued[from] + CostOf(letter) > QueueBytes)
         {
             ++Overflows;
             return;
         }
-        _queued[from] += letter.Cost();
+        _queued[from] += CostOf(letter);
         _queue.push_back(std::move(letter));
         if (_freeAt == LinkNever)
         {
@@ -183,14 +188,14 @@ private:
         LongestWait = std::max(LongestWait, Now - letter.At);
         _freeAt =
             Now +
-            LinkTime(static_cast<LinkTime::rep>(static_cast<double>(letter.Cost()) * 8e9 / BitsPerSecond));
+            LinkTime(static_cast<LinkTime::rep>(static_cast<double>(CostOf(letter)) * 8e9 / BitsPerSecond));
     }
     void Transmit()
     {
         Letter letter = std::move(_queue.front());
         _queue.pop_front();
-        _queued[letter.From] -= letter.Cost();
-        BytesCarried += letter.Cost();
+        _queued[letter.From] -= CostOf(letter);
+        BytesCarried += CostOf(letter);
         _freeAt = LinkNever;
         if (!_queue.empty())
         {
