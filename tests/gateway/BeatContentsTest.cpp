@@ -29,13 +29,13 @@ std::size_t BodyOf(const Gateway::Beat &beat)
     return GatewayTopics::TypeOf<Gateway::Beat>().SerializedSize(beat) - AirCost::Encapsulation;
 }
 
-TEST(Beat, AnEmptyOneTakesLessThan140BytesOnTheAir)
+TEST(Beat, AnEmptyOneTakesLessThan110BytesOnTheAir)
 {
     Gateway::Beat beat;
     EXPECT_EQ(BodyOf(beat), BeatFormat::WithNews);
     DropEmptyNews(beat);
     EXPECT_EQ(BodyOf(beat), BeatFormat::Empty);
-    EXPECT_LT(AirCost(1400).Of(BeatFormat::Empty), 140u);
+    EXPECT_LT(AirCost(1400).Of(BeatFormat::Empty), 110u);
 }
 
 TEST(Beat, TheLargestFitsTheSmallestDatagramThatSettingsAllow)

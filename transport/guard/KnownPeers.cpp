@@ -91,7 +91,13 @@ void KnownPeers::IsAt(const GuidPrefix &peer, std::span<const HostAddress> hosts
     known.Speaks.Announced(hosts, from, std::exchange(known.IsNewThere, false));
 }
 
-bool KnownPeers::Believes(const GuidPrefix &peer, const HostAddress &from, const PeerPlace::Saying &saying)
+bool KnownPeers::SpeaksFrom(const GuidPrefix &peer, const HostAddress &from) const
+{
+    const auto found = _peers.find(peer);
+    return found == _peers.end() || found->second.Speaks.IsAt(from);
+}
+
+bool KnownPeers::Believes(const GuidPrefix &peer, const HostAddress &from, const PeerVoice::Saying &saying)
 {
     const auto found = _peers.find(peer);
     return found == _peers.end() || found->second.Speaks.Believes(from, saying);

@@ -7,7 +7,7 @@
 #include <map>
 #include <span>
 
-#include "guard/PeerPlace.h"
+#include "guard/PeerVoice.h"
 #include "guard/RtpsMessage.h"
 #include "guard/SampleNumbers.h"
 
@@ -30,11 +30,13 @@ public:
     // it is said for the third time, with no word of the former one in between nor for twice as long as there
     // was between two such words.
     bool Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoint now);
-    // What was believed also says that it is at these hosts, and came from `from` (PeerPlace.h).
+    // What was believed also says that it is at these hosts, and came from `from` (PeerVoice.h).
     void IsAt(const GuidPrefix &peer, std::span<const HostAddress> hosts, const HostAddress &from);
+    // Whether it speaks from there, as far as is known.
+    bool SpeaksFrom(const GuidPrefix &peer, const HostAddress &from) const;
     // Whether what the peer is to have said of discovery is to be looked at. What is said in the name of who
     // is not known is.
-    bool Believes(const GuidPrefix &peer, const HostAddress &from, const PeerPlace::Saying &saying);
+    bool Believes(const GuidPrefix &peer, const HostAddress &from, const PeerVoice::Saying &saying);
     // Whether the peer was announced; if so, it is heard of at this moment.
     bool Hears(const GuidPrefix &peer, TimePoint now);
 
@@ -97,7 +99,7 @@ private:
     struct Peer
     {
         Word Place;
-        PeerPlace Speaks;
+        PeerVoice Speaks;
         bool IsNewThere = true;              // since IsAt
         TimePoint Placed{};                  // when it was last said to be there
         std::chrono::milliseconds Period{};  // in which that is said again

@@ -46,7 +46,7 @@ bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
 
 // An honest sender repeats a submessage of discovery as it was until it is answered, but for the count and,
 // in a heartbeat, how far it has come.
-PeerPlace::Saying SayingOf(SubmessageKind kind, const Delivery &delivery)
+PeerVoice::Saying SayingOf(SubmessageKind kind, const Delivery &delivery)
 {
     Fnv about;
     about.AddNumber(static_cast<std::uint64_t>(kind));
@@ -341,6 +341,7 @@ bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery,
 {
     const bool announces = delivery.Writer == ParticipantWriter && delivery.Alive;  // places are told by that
     return announces || submessage.Kind == SubmessageKind::DataFrag ||  // it is looked at when whole
+           _peers.SpeaksFrom(passage.Sender, passage.From) ||
            _peers.Believes(passage.Sender, passage.From, SayingOf(submessage.Kind, delivery));
 }
 

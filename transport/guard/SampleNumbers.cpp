@@ -36,7 +36,7 @@ std::int64_t SampleNumbers::Of(std::int64_t number, std::uint64_t stamp, TimePoi
     {
         _belowInARow = 0;
     }
-    else if (GoesBack(sample))
+    else if (GoesBack(sample, now))
     {
         _added += _highest + 1 - number;
         _highest = number;
@@ -52,8 +52,14 @@ void SampleNumbers::GoOn(const Sample &sample, TimePoint now)
     const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - _wentOn);
     // A day is enough to reckon with.
     const auto expected = std::min<std::chrono::milliseconds>(elapsed, std::chrono::hours(24));
-    if (_highest == 0 || IsNear(sample.Stamp, _latest, ToStamp(Doubtful + 2 * expected)) ||
-        (_doubtful != 0 && IsNear(sample.Stamp, _doubtful, ToStamp(Doubtful + 2 * expected))))
+    const std::uint64_t distance = ToStamp(Doubtful + 2 * expected);
+    const bool isFirst = _highest == 0;
+    const bool isNear = IsNear(sample.Stamp, _latest, distance);
+    if (!isFirst && (!isNear || sample.Stamp < _latest))
+    {
+        _settled = now + Unsettled;
+    }
+    if (isFirst || isNear || (_doubtful != 0 && IsNear(sample.Stamp, _doubtful, distance)))
     {
         _latest = sample.Stamp;
         _doubtful = 0;
@@ -67,18 +73,20 @@ void SampleNumbers::GoOn(const Sample &sample, TimePoint now)
     _belowInARow = 0;
 }
 
-bool SampleNumbers::GoesBack(const Sample &sample)
+bool SampleNumbers::GoesBack(const Sample &sample, TimePoint now)
 {
-    if (sample.Stamp <= _latest)
+    if (sample.Stamp <= _latest || now < _settled)
     {
         return false;
     }
-    const bool goesOn = _belowInARow > 0 && sample.Number > _below.Number && sample.Stamp > _below.Stamp;
-    if (_belowInARow > 0 && sample.Number == _below.Number)
+    const bool isLater = sample.Number > _below.Number && sample.Stamp > _below.Stamp;
+    if (_belowInARow > 0 && sample.Stamp == _below.Stamp && sample.Number >= _below.Number)
     {
-        return false;  // another fragment, or the same once more
+        // Another fragment, or written together with it.
+        _below.Number = sample.Number;
+        return false;
     }
-    _belowInARow = goesOn ? _belowInARow + 1 : 1;
+    _belowInARow = _belowInARow > 0 && isLater ? _belowInARow + 1 : 1;
     _below = sample;
     return _belowInARow >= OftenEnough;
 }

@@ -143,31 +143,67 @@ TEST_F(SampleNumbersTest, AForgedTimeFarAheadDoesNotKeepAWriterSilent)
 {
     Forge(10, 11);
     EXPECT_EQ(At(26, Stamp + 100'000 * Second), 26);
-    Later(12);
-    Later(13);
-    EXPECT_EQ(Later(14), 27);
+    for (std::int64_t number = 12; number < 16; ++number)
+    {
+        EXPECT_EQ(Later(number), number);
+    }
+    EXPECT_EQ(Later(16), 27);
 }
 
-// A clock is set forward, then back, in the midst of it.
-TEST_F(SampleNumbersTest, AWriterWhoseClockIsSetIsFollowed)
+TEST_F(SampleNumbersTest, SamplesThatAreWrittenTogetherCountOnce)
 {
-    for (const std::uint64_t hours : {1, 100})
+    Forge(10, 26);
+    for (const std::int64_t number : {11, 13})
     {
-        Forge(10, 26);
-        Stamp += 3600 * hours * Second;
-        Later(11);
-        Later(12);
-        EXPECT_GT(Later(13), 26);
+        EXPECT_EQ(Later(number), number);
+        EXPECT_EQ(At(number + 1, Stamp), number + 1);
+    }
+    EXPECT_EQ(Later(15), 27);
+    EXPECT_EQ(At(16, Stamp), 28);
+}
+
+// In the midst of it.
+TEST_F(SampleNumbersTest, AWriterWhoseClockIsSetForwardIsFollowed)
+{
+    Forge(10, 26);
+    Stamp += 3600 * Second;
+    Later(11);
+    Later(12);
+    EXPECT_EQ(Later(13), 27);
+}
+
+TEST_F(SampleNumbersTest, AWriterWhoseClockWasSetBackIsHeardAgainWhenItsTimesHaveRisenForAWhile)
+{
+    Forge(10, 11);
+    Stamp -= 3600 * Second;
+    Later(12);
+    Later(13);
+    EXPECT_EQ(At(30, Stamp), 30);
+    for (std::int64_t number = 14; number < 18; ++number)
+    {
+        EXPECT_EQ(Later(number), number);
+    }
+    EXPECT_EQ(Later(18), 31);
+}
+
+TEST_F(SampleNumbersTest, OldSamplesOnceMoreRightAfterAClockWasSetStayBelow)
+{
+    for (const int seconds : {-3600, -5, 3600})
+    {
         Numbers = {};
-        Forge(10, 11);
-        Stamp -= 3600 * hours * Second;
-        Later(12);
-        Later(13);
-        EXPECT_EQ(At(30, Stamp), 30);
-        Later(14);
-        Later(15);
-        EXPECT_EQ(Later(16), 31);
-        Numbers = {};
+        std::vector<std::uint64_t> stamps;
+        for (std::int64_t number = 1; number <= 10; ++number)
+        {
+            Later(number);
+            stamps.push_back(Stamp);
+        }
+        Stamp += static_cast<std::uint64_t>(seconds) * Second;
+        EXPECT_EQ(Later(11), 11);
+        for (std::int64_t number = 6; number <= 10; ++number)
+        {
+            EXPECT_EQ(At(number, stamps[static_cast<std::size_t>(number) - 1]), number) << seconds;
+        }
+        EXPECT_EQ(Later(12), 12);
     }
 }
 
@@ -210,12 +246,16 @@ TEST_F(SampleNumbersTest, NothingIsHandedOnAsNewTwice)
         for (std::int64_t number = 1; number < 300; ++number)
         {
             Stamp += Second / 10;
+            if (chance() % 100 == 0)
+            {
+                Stamp = Stamp + (chance() % 1000) * Second - 500 * Second;
+            }
             Now += 100ms;
             written.emplace_back(number, Stamp);
             give(number, Stamp, true);
             if (chance() % 10 == 0)
             {
-                give(number + 1 + chance() % 16, Stamp, false);
+                give(number + 1 + static_cast<std::int64_t>(chance() % 16), Stamp, false);
             }
             // The last ones come once more, in their order.
             const std::size_t again = chance() % 5;

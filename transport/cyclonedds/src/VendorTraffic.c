@@ -249,9 +249,10 @@ static ssize_t ReadAndTell(ddsi_tran_conn_t connection, unsigned char *buffer, s
         return got;
     }
     /* For the vendor a datagram of no bytes is none. */
-    return (ssize_t)watch.calls.received(watch.calls.argument, buffer, (size_t)got, size,
-                                         source == NULL ? NULL : source->address + AddressAt,
-                                         connection == watch.domain->disc_conn_uc);
+    return (ssize_t)watch.calls.received(
+        watch.calls.argument, buffer, (size_t)got, size,
+        source == NULL || source->kind != NN_LOCATOR_KIND_UDPv4 ? NULL : source->address + AddressAt,
+        connection == watch.domain->disc_conn_uc);
 }
 
 void *RabitCycloneWatch(struct RabitCycloneCalls calls)

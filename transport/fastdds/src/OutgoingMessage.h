@@ -52,7 +52,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram);
 void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to);
 
 // An announcement of a participant without its list of properties: what the vendor says there of itself, in
-// 124 bytes of 400, is of use to its discovery servers alone.
+// 124 bytes of 420, is of use to its discovery servers alone.
 void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to);
 
 // What somebody acknowledges to a writer of ours.

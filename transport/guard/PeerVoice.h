@@ -21,7 +21,7 @@ namespace Rabit::Rtps
 // - 127.0.0.0/8 is this host, whatever was announced: from a network the kernel does not take that
 //   (RFC 1122, 3.2.1.3).
 // Bounded. Not thread-safe.
-class PeerPlace
+class PeerVoice
 {
 public:
     // What is said: `about` what, and its content. In a row are those about the same.
@@ -34,7 +34,9 @@ public:
     // Its announcement was believed, in which it says that it is at these hosts, and which came from `from`.
     // `anew`: for the first time, or since it has moved.
     void Announced(std::span<const HostAddress> hosts, const HostAddress &from, bool anew);
-    // Whether that is to be looked at. An address that is not known is as good as any.
+    // Whether it speaks from there. An address that is not known is as good as any.
+    bool IsAt(const HostAddress &from) const;
+    // Whether that is to be looked at.
     bool Believes(const HostAddress &from, const Saying &saying);
 
 private:
@@ -44,12 +46,13 @@ private:
         int Times = 0;
     };
 
-    bool IsAt(const HostAddress &from) const;
+    void ForgetOne();
 
     std::vector<HostAddress> _hosts;
     bool _heardThere = false;          // from one of the hosts
     std::vector<HostAddress> _others;  // where its announcements come from, if it was not
     std::map<std::uint64_t, Repeated> _fromElsewhere;
+    std::uint64_t _chance = 0;
 };
 
 }  // namespace Rabit::Rtps

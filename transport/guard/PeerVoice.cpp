@@ -1,4 +1,4 @@
-#include "guard/PeerPlace.h"
+#include "guard/PeerVoice.h"
 
 #include <algorithm>
 
@@ -9,8 +9,9 @@ namespace
 {
 
 constexpr int OftenEnough = 3;
-// What is said of discovery: numbers of two writers, and a few more. When they are too many it begins anew.
-constexpr std::size_t MostFromElsewhere = 256;
+// What is said of discovery: of each endpoint, and a few more. When they are too many any of them is
+// forgotten.
+constexpr std::size_t MostFromElsewhere = 1024;
 constexpr std::size_t MostOthers = 4;
 
 bool Has(const std::vector<HostAddress> &hosts, const HostAddress &host)
@@ -25,7 +26,7 @@ bool IsLoopback(const HostAddress &host)
 
 }  // namespace
 
-void PeerPlace::Announced(std::span<const HostAddress> hosts, const HostAddress &from, bool anew)
+void PeerVoice::Announced(std::span<const HostAddress> hosts, const HostAddress &from, bool anew)
 {
     if (anew)
     {
@@ -34,23 +35,36 @@ void PeerPlace::Announced(std::span<const HostAddress> hosts, const HostAddress 
         _others.clear();
         _fromElsewhere.clear();
     }
-    if (Has(_hosts, from))
+    if (Has(_hosts, from) || IsLoopback(from))
     {
         _heardThere = true;
         _others.clear();
     }
-    else if (!_heardThere && !Has(_others, from) && _others.size() < MostOthers)
+    else if (!_heardThere && !Has(_others, from))
     {
+        if (_others.size() >= MostOthers)
+        {
+            _others.erase(_others.begin());
+        }
         _others.push_back(from);
     }
 }
 
-bool PeerPlace::IsAt(const HostAddress &from) const
+bool PeerVoice::IsAt(const HostAddress &from) const
 {
     return from == UnknownHost || IsLoopback(from) || Has(_hosts, from) || Has(_others, from);
 }
 
-bool PeerPlace::Believes(const HostAddress &from, const Saying &saying)
+// Not in an order that somebody could keep pace with by chance.
+void PeerVoice::ForgetOne()
+{
+    _chance = _chance * 6364136223846793005u + 1442695040888963407u;  // Knuth, MMIX
+    auto forgotten = _fromElsewhere.lower_bound(_chance);
+    forgotten = forgotten == _fromElsewhere.end() ? _fromElsewhere.begin() : forgotten;
+    _fromElsewhere.erase(forgotten);
+}
+
+bool PeerVoice::Believes(const HostAddress &from, const Saying &saying)
 {
     if (IsAt(from))
     {
@@ -58,7 +72,7 @@ bool PeerPlace::Believes(const HostAddress &from, const Saying &saying)
     }
     if (_fromElsewhere.size() >= MostFromElsewhere && _fromElsewhere.count(saying.About) == 0)
     {
-        _fromElsewhere.clear();
+        ForgetOne();
     }
     Repeated &repeated = _fromElsewhere[saying.About];
     repeated.Times = repeated.Content == saying.Content ? repeated.Times + 1 : 1;
