@@ -431,6 +431,12 @@ TEST(RtpsGuardModes, WithDdsSecurityItsSubmessagesAndTokensGetThroughAsTheyAre)
     EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
 }
 
+TEST(RtpsGuardModes, WithoutDdsSecurityWhatIsSealedIsStopped)
+{
+    Gate guard(RtpsGuard::Mode::Full);
+    EXPECT_TRUE(guard.Stops(Join({Header(), Sealed()})));
+}
+
 TEST(RtpsGuardModes, WithDdsSecurityWhatIsUnsoundOfItIsStopped)
 {
     Gate guard(RtpsGuard::Mode::Secured);
