@@ -1,10 +1,11 @@
 #include "presence/Whereabouts.h"
-#include "wire/BeatNews.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+
+#include "wire/BeatNews.h"
 
 namespace Rabit::Whereabouts
 {
