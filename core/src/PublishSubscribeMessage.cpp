@@ -30,28 +30,6 @@ std::unique_ptr<RabitMessage> NotNull(std::unique_ptr<RabitMessage> message)
     return message;
 }
 
-// Puts something back as it was at the end of a scope. It stays in its place meanwhile, where others read it,
-// and is not written to unless it was changed.
-template <typename T>
-class Keeper
-{
-public:
-    explicit Keeper(T &kept) : _kept(kept), _value(kept) {}
-    ~Keeper()
-    {
-        if (_kept != _value)
-        {
-            _kept = std::move(_value);
-        }
-    }
-    Keeper(const Keeper &) = delete;
-    Keeper &operator=(const Keeper &) = delete;
-
-private:
-    T &_kept;
-    T _value;
-};
-
 }  // namespace
 
 PublishSubscribeMessage::PublishSubscribeMessage(std::unique_ptr<RabitMessage> stMessage,
@@ -192,15 +170,15 @@ inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
     {
         throw std::invalid_argument("a message was posted under a name that holds another type");
     }
-    // An override may have copied the reference: the global copy must not own itself.
+    // An override may have used CopyBase: the global copy must not own itself.
     if (_message->_globalPublishSubscribeMessageRef)
     {
         _message->_globalPublishSubscribeMessageRef.reset();
     }
 }
 
-// Makes the time stamp of a post later than that of the last one, unless the wall clock was set back. Asks the
-// clock again, with the lock given back, if the stamp would be too far ahead of it.
+// Makes the time stamp of a post later than that of the last one, unless the wall clock was set back. Asks
+// the clock again, with the lock given back, if the stamp would be too far ahead of it.
 void PublishSubscribeMessage::PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock)
 {
     const PostTime *latest = &time;
@@ -266,7 +244,6 @@ bool PublishSubscribeMessage::CopyToMessage(RabitMessage &msg)
 {
     if (&msg != _message.get())
     {
-        const Keeper<std::shared_ptr<PublishSubscribeMessage>> keepRef(msg._globalPublishSubscribeMessageRef);
         if (!msg.CopyMessage(_message.get()) && typeid(msg) != _type)
         {
             return false;

@@ -2,6 +2,7 @@
 
 #include "ExceptionText.h"
 
+#include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitLog.h>
 #include <rabit/RabitManagerTrace.h>
 
@@ -63,7 +64,27 @@ static void AddSlots(EventState &event, const SlotList &added)
     event.Slots = std::move(slots);
 }
 
+void CallHandler(const EventSlot &slot)
+{
+    try
+    {
+        slot.Handler();
+    }
+    catch (...)
+    {
+        RabitLog::Write(RabitLogLevel::Error, "an event handler threw: " + CurrentExceptionText());
+    }
+}
+
 }  // namespace Detail
+
+RabitQuickHandler::RabitQuickHandler(RabitHandler handler) : _handler(std::move(handler))
+{
+    if (!_handler)
+    {
+        throw std::invalid_argument("an empty handler cannot be connected to an event");
+    }
+}
 
 void RabitConnection::Disconnect()
 {
@@ -170,19 +191,13 @@ void RabitEvent::Fire() const
 void RabitEvent::Handlers::CallAll() const
 {
     const RabitManagerTrace::Pause pause;  // what they do is not the manager's
+    const RabitHandlerThread::Scope *const scope = RabitHandlerThread::Scope::Current();
     for (const auto &slot : *_slots)
     {
-        if (!slot->Connected.load(std::memory_order_acquire))
+        if (slot->Connected.load(std::memory_order_acquire) &&
+            (scope == nullptr || slot->IsQuick || !scope->HandOver(slot)))
         {
-            continue;
-        }
-        try
-        {
-            slot->Handler();
-        }
-        catch (...)
-        {
-            RabitLog::Write(RabitLogLevel::Error, "an event handler threw: " + CurrentExceptionText());
+            Detail::CallHandler(*slot);
         }
     }
 }

@@ -1,11 +1,14 @@
 #include <rabit/RabitLog.h>
 
 #include <atomic>
-#include <cstdio>
 #include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
+
+#include <unistd.h>
+
+#include "LineWriter.h"
 
 namespace Rabit
 {
@@ -18,6 +21,7 @@ struct LogState
     std::shared_ptr<const RabitLog::Sink> Sink;
     std::vector<std::weak_ptr<const RabitLog::Sink>> Listeners;
     std::atomic<RabitLogLevel> Level{RabitLogLevel::Warning};
+    LineWriter Stderr{STDERR_FILENO};
 };
 
 // Never destroyed: threads may log while the process ends.
@@ -27,25 +31,19 @@ LogState &State()
     return *state;
 }
 
-const char *NameOf(RabitLogLevel level)
+const char *PrefixOf(RabitLogLevel level)
 {
     switch (level)
     {
         case RabitLogLevel::Debug:
-            return "debug";
+            return "rabit: debug: ";
         case RabitLogLevel::Info:
-            return "info";
+            return "rabit: info: ";
         case RabitLogLevel::Warning:
-            return "warning";
+            return "rabit: warning: ";
         default:
-            return "error";
+            return "rabit: error: ";
     }
-}
-
-void WriteToStderr(RabitLogLevel level, const std::string &text)
-{
-    // One call for the whole line: lines of several threads do not mix.
-    std::fprintf(stderr, "rabit: %s: %s\n", NameOf(level), text.c_str());
 }
 
 // Those that still listen.
@@ -139,7 +137,12 @@ void RabitLog::Write(RabitLogLevel level, const std::string &text) noexcept
     catch (...)  // a broken sink must not cost the line, nor end the process
     {
     }
-    WriteToStderr(level, text);
+    state.Stderr.Write(PrefixOf(level), text);
+}
+
+void RabitLog::Print(const std::string &line) noexcept
+{
+    State().Stderr.Write("", line);
 }
 
 }  // namespace Rabit

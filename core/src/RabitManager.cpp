@@ -61,7 +61,7 @@ RabitManager::RabitManager(std::string name, RabitWorkspace &workspace, int queu
     _mgrControlAllMgrs_sptr = RegisterOrThrow<ManagerControlMessage>(*_lease, "ManagerControlMessage");
     _mgrControlThisMgr_sptr =
         RegisterOrThrow<ManagerControlMessage>(*_lease, _name + ":ManagerControlMessage");
-    const RabitHandler onControl = [wakeup = _wakeup] { wakeup->SignalControlChange(); };
+    const RabitHandler onControl = RabitQuickHandler([wakeup = _wakeup] { wakeup->SignalControlChange(); });
     AddMessageWakeup(_mgrControlAllMgrs_sptr, onControl);
     AddMessageWakeup(_mgrControlThisMgr_sptr, onControl);
     TakeControlMessagesAsRead();
@@ -296,7 +296,7 @@ void RabitManager::WakeUpManagerEH()
 
 RabitHandler RabitManager::WakeUpHandler() const
 {
-    return [wakeup = _wakeup] { wakeup->Signal(); };
+    return RabitQuickHandler([wakeup = _wakeup] { wakeup->Signal(); });
 }
 
 }  // namespace Rabit

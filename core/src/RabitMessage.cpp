@@ -18,9 +18,14 @@ RabitMessage::~RabitMessage() = default;
 
 void RabitMessage::CopyBase(const RabitMessage *msg)
 {
-    if (msg != nullptr)
+    if (msg == nullptr)
     {
-        RabitMessage::operator=(*msg);
+        return;
+    }
+    RabitMessage::operator=(*msg);
+    if (!_globalPublishSubscribeMessageRef)
+    {
+        _globalPublishSubscribeMessageRef = msg->_globalPublishSubscribeMessageRef;
     }
 }
 

@@ -71,6 +71,16 @@ void RabitQueueReceipt::Begin(std::uint32_t messages)
 
 void RabitQueueReceipt::Settle(QueueOutcome outcome)
 {
+    End(outcome, true);
+}
+
+void RabitQueueReceipt::Refuse()
+{
+    End(QueueOutcome::Refused, false);
+}
+
+void RabitQueueReceipt::End(QueueOutcome outcome, bool isNews)
+{
     RabitEvent::Handlers handlers;
     {
         const std::lock_guard<std::mutex> lock(*_mutex);
@@ -80,17 +90,9 @@ void RabitQueueReceipt::Settle(QueueOutcome outcome)
             throw std::logic_error("a receipt was settled more often than messages were begun");
         }
         ++count;
-        if (--_counts.Pending == 0)
-        {
-            if (_holds > 0)
-            {
-                _settledWhileHeld = true;
-            }
-            else
-            {
-                handlers = _known.Snapshot();
-            }
-        }
+        --_counts.Pending;
+        _news = _news || isNews;
+        handlers = HandlersIfKnown();
     }
     handlers.Call();
 }
@@ -110,12 +112,17 @@ void RabitQueueReceipt::Release()
         {
             throw std::logic_error("a receipt was released more often than it was held");
         }
-        if (--_holds == 0 && _counts.Pending == 0 && std::exchange(_settledWhileHeld, false))
-        {
-            handlers = _known.Snapshot();
-        }
+        --_holds;
+        handlers = HandlersIfKnown();
     }
     handlers.Call();
+}
+
+// The caller holds the mutex.
+RabitEvent::Handlers RabitQueueReceipt::HandlersIfKnown()
+{
+    const bool isKnown = _holds == 0 && _counts.Pending == 0;
+    return isKnown && std::exchange(_news, false) ? _known.Snapshot() : RabitEvent::Handlers();
 }
 
 const char *ToString(QueueOutcome outcome)

@@ -147,7 +147,14 @@ bool RabitWorkspace::TellReceipt(const std::shared_ptr<RabitQueueReceipt> &recei
     if (receipt)
     {
         receipt->Begin();
-        receipt->Settle(delivered ? QueueOutcome::Delivered : QueueOutcome::Refused);
+        if (delivered)
+        {
+            receipt->Settle(QueueOutcome::Delivered);
+        }
+        else
+        {
+            receipt->Refuse();
+        }
     }
     return delivered;
 }

@@ -173,6 +173,17 @@ MessageRegistration WorkspaceRegistry::AddMessage(const std::string &name,
     return {MessageRegistrationResult::Attached, found->second.Global};
 }
 
+void WorkspaceRegistry::ReleaseMessage(const std::string &name, std::uint64_t owner)
+{
+    MessageMap::node_type removed;  // destroyed after the lock is given back
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = _messages.find(name);
+    if (found != _messages.end() && found->second.OwnedBy.erase(owner) > 0 && found->second.OwnedBy.empty())
+    {
+        removed = _messages.extract(found);
+    }
+}
+
 std::shared_ptr<PublishSubscribeMessage> WorkspaceRegistry::FindMessage(const std::string &name) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);

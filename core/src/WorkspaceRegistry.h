@@ -47,6 +47,8 @@ public:
     MessageRegistration AddMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
                                    std::uint64_t owner,
                                    std::shared_ptr<PublishSubscribeMessage> global = nullptr);
+    // Takes the owner off the name, which goes if it has no owner left through that.
+    void ReleaseMessage(const std::string &name, std::uint64_t owner);
     std::shared_ptr<PublishSubscribeMessage> FindMessage(const std::string &name) const;
     std::vector<MessageInfo> Messages() const;
 

@@ -56,20 +56,21 @@ AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &worksp
     const auto mission = _arrivals->Mission->GetGlobalPublishSubscribeMessageRef();
     if (!pose || !mission)
         return;  // the names are taken by messages of other types, which the workspace has logged
-    _onPose = pose->ConnectSomethingPublished(
+    // Quick handlers see each sample, not only the newest.
+    _onPose = pose->ConnectSomethingPublished(Rabit::RabitQuickHandler(
         [arrivals = _arrivals]
         {
             const std::lock_guard lock(arrivals->Mutex);
             if (arrivals->Pose->FetchMessage())
                 arrivals->Count.OnPose(arrivals->Pose->number);
-        });
-    _onMission = mission->ConnectSomethingPublished(
+        }));
+    _onMission = mission->ConnectSomethingPublished(Rabit::RabitQuickHandler(
         [arrivals = _arrivals]
         {
             const std::lock_guard lock(arrivals->Mutex);
             if (arrivals->Mission->FetchMessage())
                 arrivals->Count.OnMissionState(arrivals->Mission->poses);
-        });
+        }));
 }
 
 void AircraftMonitor::Show(FleetRow &row, const CommandTally &tally)

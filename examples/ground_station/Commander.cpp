@@ -18,7 +18,8 @@ Commander::Commander(Settings settings, Rabit::RabitWorkspace &workspace)
     AddPublishSubscribeMessage("SearchArea", _area);
     AddPublishSubscribeMessage("CommandTally", _tally);
     AddPublishSubscribeMessage("CommandList", _list);
-    SetWakeupTimeDelayMSec(static_cast<int>(WorkPeriod.count()));
+    SetPeriodSec(std::chrono::duration<double>(WorkPeriod).count());
+    SetWakeupBetweenTurns(true);  // answers and outcomes are followed at once
 }
 
 void Commander::Startup()
@@ -33,7 +34,7 @@ void Commander::ExecuteUnitOfWork()
     _elapsedS = std::chrono::duration<double>(elapsed).count();
     FollowReceipts();
     TakeMessages();
-    if (!IsQuiet(elapsed))
+    if (IsTurn() && !IsQuiet(elapsed))
         CommandBySettings(elapsed);
     PostIfChanged();
     EndIfDone(elapsed);
@@ -113,7 +114,7 @@ void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std:
         if (Send(command, 0))
             aircraft.ToldToSearch = status.incarnation;
         else
-            _log.Refused(status.node);  // the gateway does not know that queue yet: try again soon
+            _log.Refused(status.node);  // the gateway does not know that queue yet: try again next turn
     }
     if (_settings.Period && elapsed >= *aircraft.NextGoto && SendGoto(status.node, *aircraft.Pose))
         aircraft.NextGoto = elapsed + *_settings.Period;

@@ -74,6 +74,7 @@ public:
     double ElapsedS() const { return _elapsedS; }
 
 private:
+    // Commands by settings are sent this often at most, and refused ones are tried again.
     static constexpr std::chrono::milliseconds WorkPeriod{100};
     // An aircraft is commanded by itself only while its pose is known this well.
     static constexpr double PoseFreshS = 1.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Rabit
 {
@@ -27,16 +28,19 @@ double Seconds(Duration time)
 
 }  // namespace
 
-void AirBudget::SetRate(Mode mode, double bytesPerSecond, Duration now)
+void AirBudget::SetLimits(std::optional<double> budget, std::optional<double> pace, Duration now)
 {
-    const double before = _mode == Mode::Unlimited ? 0.0 : Pace();
-    _mode = mode;
-    _rate = std::max(bytesPerSecond, SmallestRate);
-    if (before > 0.0 && _nextAt > now)
+    const auto raised = [](std::optional<double> rate)
+    { return rate ? std::optional(std::max(*rate, SmallestRate)) : std::nullopt; };
+    const bool wasLimited = !IsUnlimited();
+    const double before = wasLimited ? Spacing() : 0.0;
+    _budget = raised(budget);
+    _pace = raised(pace);
+    if (wasLimited && !IsUnlimited() && _nextAt > now)
     {
         // What is under way takes as long as it does at the new rate; what held it up beside, no longer than
         // anything may.
-        const double ratio = before / Pace();
+        const double ratio = before / Spacing();
         const Duration held = std::min(_heldUp, _nextAt - now);
         const Duration underWay = Scaled(_nextAt - now - held, ratio);
         _heldUp = std::min(Scaled(held, ratio), LongestHoldUp);
@@ -46,32 +50,35 @@ void AirBudget::SetRate(Mode mode, double bytesPerSecond, Duration now)
 
 std::optional<double> AirBudget::Rate() const
 {
-    return IsUnlimited() ? std::nullopt : std::optional(_rate);
+    return _budget && _pace ? std::min(*_budget, *_pace) : _budget ? _budget : _pace;
 }
 
 double AirBudget::Reserved() const
 {
-    return _mode == Mode::Budget ? std::min(_reserved, _rate / 2.0) : 0.0;
+    return _budget ? std::min(_reserved, *_budget / 2.0) : 0.0;
 }
 
-// So that a second, as SlidingSecond has it, is just filled.
-double AirBudget::Pace() const
+// Bytes a second by which datagrams are spaced; of a budget so that a second, as SlidingSecond has it, is
+// just filled.
+double AirBudget::Spacing() const
 {
-    return _mode == Mode::Budget ? (_rate - Reserved()) / Seconds(SlidingSecond::Length) : _rate;
+    const double ofBudget = _budget ? (*_budget - Reserved()) / Seconds(SlidingSecond::Length)
+                                    : std::numeric_limits<double>::max();
+    return std::min(ofBudget, _pace.value_or(ofBudget));
 }
 
 Duration AirBudget::TimeOf(std::size_t bytes) const
 {
-    return Duration(static_cast<Duration::rep>(static_cast<double>(bytes) * 1e9 / Pace()));
+    return Duration(static_cast<Duration::rep>(static_cast<double>(bytes) * 1e9 / Spacing()));
 }
 
 void AirBudget::Spent(std::size_t bytes, Duration now)
 {
-    if (_mode == Mode::Budget)
+    if (_budget)
     {
         _second.Add(0, bytes, now);
     }
-    else if (_mode == Mode::Pace)
+    if (_pace)
     {
         // Nobody wanted to send for so long: nobody was held up.
         _heldUp = now - _nextAt > LongestHoldUp ? Duration(0) : _heldUp;
@@ -88,14 +95,14 @@ Duration AirBudget::WhenFits(std::size_t bytes, Duration now)
         return now;
     }
     const Duration paced = std::max(now, _nextAt);
-    if (_mode == Mode::Pace)
+    if (!_budget)
     {
         return paced;
     }
     const auto fits = [this, bytes](std::uint64_t scheduled, std::uint64_t unscheduled)
     {
         const double others = std::max(static_cast<double>(unscheduled), Reserved());
-        return scheduled == 0 || static_cast<double>(scheduled + bytes) + others <= _rate;
+        return scheduled == 0 || static_cast<double>(scheduled + bytes) + others <= *_budget;
     };
     return std::max(paced, _second.When(fits, now));
 }
@@ -103,12 +110,13 @@ Duration AirBudget::WhenFits(std::size_t bytes, Duration now)
 std::size_t AirBudget::Room(std::size_t most, Duration now)
 {
     const auto scheduled = static_cast<double>(_second.Scheduled(now));
-    if (_mode != Mode::Budget || scheduled == 0.0)
+    if (!_budget || scheduled == 0.0)
     {
         return most;
     }
     const double others = std::max(static_cast<double>(_second.Unscheduled(now)), Reserved());
-    return static_cast<std::size_t>(std::clamp(_rate - scheduled - others, 0.0, static_cast<double>(most)));
+    return static_cast<std::size_t>(
+        std::clamp(*_budget - scheduled - others, 0.0, static_cast<double>(most)));
 }
 
 void AirBudget::Sent(std::size_t bytes, Duration now)
@@ -119,7 +127,7 @@ void AirBudget::Sent(std::size_t bytes, Duration now)
     }
     _nextAt = std::max(_nextAt, now - CatchUp) + TimeOf(bytes);
     _heldUp = Duration(0);
-    if (_mode == Mode::Budget)
+    if (_budget)
     {
         _second.Add(bytes, 0, now);
     }
@@ -127,22 +135,20 @@ void AirBudget::Sent(std::size_t bytes, Duration now)
 
 std::size_t AirBudget::LargestDatagram() const
 {
-    if (IsUnlimited())
+    double fits = static_cast<double>(_largestDatagram);
+    if (_budget)
     {
-        return _largestDatagram;
+        const double thrifty =
+            std::min(static_cast<double>(ThriftyDatagram), *_budget * Seconds(LongestThriftyDatagram));
+        fits = std::min(fits, std::max((*_budget - Reserved()) * Seconds(LongestDatagram), thrifty));
     }
-    double fits = (_rate - Reserved()) * Seconds(LongestDatagram);
-    if (_mode == Mode::Pace && fits > static_cast<double>(SmallestDatagram))
+    if (_pace)
     {
-        fits = std::sqrt(fits * static_cast<double>(SmallestDatagram));
+        const double ofPace = *_pace * Seconds(LongestDatagram);
+        const auto least = static_cast<double>(SmallestDatagram);
+        fits = std::min(fits, ofPace > least ? std::sqrt(ofPace * least) : ofPace);
     }
-    if (_mode == Mode::Budget)
-    {
-        fits = std::max(
-            fits, std::min(static_cast<double>(ThriftyDatagram), _rate * Seconds(LongestThriftyDatagram)));
-    }
-    return std::min(_largestDatagram,
-                    std::max(SmallestDatagram, static_cast<std::size_t>(std::min(fits, 1e9))));
+    return std::min(_largestDatagram, std::max(SmallestDatagram, static_cast<std::size_t>(fits)));
 }
 
 }  // namespace Rabit

@@ -10,13 +10,13 @@
 namespace Rabit
 {
 
-// When this node may put its next datagram on the air. Three modes:
+// When this node may put its next datagram on the air. Two limits, each of which may be absent:
 //
-// - unlimited: at once. Nothing is remembered, and nothing costs time.
 // - a budget: never more than so many bytes in a second, whichever second one looks at.
 // - a pace: so many bytes a second on average, for a rate that is an estimate itself (CapacityEstimate).
 //
-// With a limit datagrams are spaced by their size, so that the next one, whosever it is, never waits for a
+// Without a limit a datagram may go at once. Nothing is remembered then, and nothing costs time. With a limit
+// datagrams are spaced by their size, so that the next one, whosever it is, never waits for a
 // burst. A driver that comes late catches up to 10 ms.
 //
 // Something always goes: a datagram that is larger than what a budget allows goes when nothing was sent for a
@@ -39,11 +39,13 @@ public:
     explicit AirBudget(std::size_t largestDatagram) : _largestDatagram(largestDatagram) {}
 
     // At the beginning.
-    void SetUnlimited() { _mode = Mode::Unlimited; }
-    void SetBudget(double bytesPerSecond, Duration now) { SetRate(Mode::Budget, bytesPerSecond, now); }
-    void SetPace(double bytesPerSecond, Duration now) { SetRate(Mode::Pace, bytesPerSecond, now); }
-    bool IsUnlimited() const { return _mode == Mode::Unlimited; }
-    // Bytes a second; empty: unlimited.
+    void SetUnlimited() { SetLimits({}, {}, Duration(0)); }
+    void SetBudget(double bytesPerSecond, Duration now) { SetLimits(bytesPerSecond, {}, now); }
+    void SetPace(double bytesPerSecond, Duration now) { SetLimits({}, bytesPerSecond, now); }
+    // In bytes a second; empty: there is no such limit.
+    void SetLimits(std::optional<double> budget, std::optional<double> pace, Duration now);
+    bool IsUnlimited() const { return !_budget && !_pace; }
+    // The lower one of the limits, in bytes a second; empty: unlimited.
     std::optional<double> Rate() const;
 
     // Keeps so much of a budget, at most half of it, free from now on for what is not scheduled. Without
@@ -56,6 +58,8 @@ public:
     bool MaySend(std::size_t bytes, Duration now) { return IsUnlimited() || WhenFits(bytes, now) <= now; }
     // The first time, not before now, at which a datagram of this size may go if nothing else does.
     Duration WhenFits(std::size_t bytes, Duration now);
+    // How long the next datagram waits after one of this size. Not without a limit.
+    Duration TimeOf(std::size_t bytes) const;
     // How large a datagram may be that goes now, `most` at most. For who knows that a smaller one may.
     std::size_t Room(std::size_t most, Duration now);
     // A datagram went. Also one that MaySend would not have let go.
@@ -66,21 +70,12 @@ public:
     std::size_t LargestDatagram() const;
 
 private:
-    enum class Mode
-    {
-        Unlimited,
-        Budget,
-        Pace
-    };
-
-    void SetRate(Mode mode, double bytesPerSecond, Duration now);
-    double Pace() const;
+    double Spacing() const;
     double Reserved() const;
-    Duration TimeOf(std::size_t bytes) const;
 
     const std::size_t _largestDatagram;
-    Mode _mode = Mode::Unlimited;
-    double _rate = 0.0;
+    std::optional<double> _budget;
+    std::optional<double> _pace;
     double _reserved = 0.0;
     Duration _nextAt = Duration::min() / 2;  // the last datagram has had its time
     Duration _heldUp{0};                     // since it went, by what was not scheduled

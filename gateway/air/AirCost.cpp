@@ -35,6 +35,11 @@ std::size_t AirCost::Of(std::size_t body, Readers readers) const
     return readers.Destinations * (datagrams * (IpAndUdp + headers) + payload);
 }
 
+std::size_t AirCost::OfFirst(std::size_t body, Readers readers) const
+{
+    return std::min(Of(body, readers), readers.Destinations * (IpAndUdp + _maxDatagram));
+}
+
 std::size_t AirCost::BodyWithin(std::size_t bytesOnAir, bool directed) const
 {
     const std::size_t datagram =

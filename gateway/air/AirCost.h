@@ -33,6 +33,8 @@ public:
     // goes in fragments.
     std::size_t Of(std::size_t body, Readers readers) const;
     std::size_t Of(std::size_t body) const { return Of(body, Readers{}); }
+    // Of its first datagram alone.
+    std::size_t OfFirst(std::size_t body, Readers readers) const;
     // The largest body whose sample costs at most so much for one destination, in one datagram; 0: none.
     std::size_t BodyWithin(std::size_t bytesOnAir, bool directed) const;
 

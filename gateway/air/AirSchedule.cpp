@@ -12,6 +12,12 @@ namespace
 // What presence may send in a row before others, in bytes: a quarter of a second of the budget, and no more
 // than this.
 constexpr double LargestPresenceBurst = 65536.0;
+// A driver that came late has caught up 10 ms (AirBudget), so a datagram may have to wait longer than its
+// spacing, until what was caught up leaves the last second.
+constexpr AirSchedule::Duration PromiseMargin = std::chrono::milliseconds(20);
+// A promised datagram goes early by so much at most. That is less than the shortest promise
+// (BeatShare::Quickest), so that others get their turn, too.
+constexpr AirSchedule::Duration LongestLead = AirBudget::LongestThriftyDatagram;
 
 }  // namespace
 
@@ -20,21 +26,9 @@ AirSchedule::AirSchedule(std::size_t largestDatagram) : _budget(largestDatagram)
     LimitChanged();
 }
 
-void AirSchedule::SetUnlimited()
+void AirSchedule::SetLimits(std::optional<double> budget, std::optional<double> pace, Duration now)
 {
-    _budget.SetUnlimited();
-    LimitChanged();
-}
-
-void AirSchedule::SetBudget(double bytesPerSecond, Duration now)
-{
-    _budget.SetBudget(bytesPerSecond, now);
-    LimitChanged();
-}
-
-void AirSchedule::SetPace(double bytesPerSecond, Duration now)
-{
-    _budget.SetPace(bytesPerSecond, now);
+    _budget.SetLimits(budget, pace, now);
     LimitChanged();
 }
 
@@ -91,6 +85,7 @@ void AirSchedule::Remove(StreamId id)
 {
     AirStream &stream = At(id);
     StopWaiting(stream);
+    _promised = _promised == &stream ? nullptr : _promised;
     stream.IsThere = false;
     _free.push_back(stream.Index);
 }
@@ -122,6 +117,13 @@ void AirSchedule::NotReady(StreamId id)
     StopWaiting(At(id));
 }
 
+void AirSchedule::Promise(StreamId id, std::size_t bytes, Duration deadline)
+{
+    _promised = &At(id);
+    _promised->Bytes = bytes;
+    _deadline = deadline;
+}
+
 ClassShares::Waiting AirSchedule::Waiting() const
 {
     ClassShares::Waiting waiting{};
@@ -143,13 +145,22 @@ AirStream *AirSchedule::KeptForLong(Duration now) const
     return _kept != nullptr && now - _keptSince >= Patience ? _kept : nullptr;
 }
 
+// From when on the promised datagram goes before one of the other stream; Never: it does not.
+AirSchedule::Duration AirSchedule::MustGoBy(const AirStream &other, Duration now) const
+{
+    const bool isOtherFirst = &other == _kept && now - _keptSince >= LongestPatience;
+    if (_promised == nullptr || _promised == &other || isOtherFirst || _budget.IsUnlimited())
+    {
+        return Never;
+    }
+    return _deadline - PromiseMargin - std::min(_budget.TimeOf(other.Bytes), LongestLead);
+}
+
 AirStream &AirSchedule::Chosen(Duration now)
 {
-    if (AirStream *kept = KeptForLong(now))
-    {
-        return *kept;
-    }
-    return QueueOf(_shares.Next(Waiting())).First();
+    AirStream *const kept = KeptForLong(now);
+    AirStream &first = kept != nullptr ? *kept : QueueOf(_shares.Next(Waiting())).First();
+    return now >= MustGoBy(first, now) ? *_promised : first;
 }
 
 // A command that fits before the chosen one does. `when`: in: when the chosen one fits; out: when the answer
@@ -162,7 +173,7 @@ AirStream *AirSchedule::Passing(const AirStream &chosen, Duration now, Duration 
         return nullptr;
     }
     const Duration fits = _budget.WhenFits(commands.First().Bytes, now);
-    if (fits >= when)
+    if (fits >= when || fits >= MustGoBy(commands.First(), now))
     {
         return nullptr;
     }
@@ -201,6 +212,7 @@ void AirSchedule::Sent(StreamId id, std::size_t bytes, Duration now)
 {
     AirStream &stream = At(id);
     StopWaiting(stream);
+    _promised = _promised == &stream ? nullptr : _promised;
     if (bytes == 0)
     {
         return;
@@ -221,6 +233,12 @@ AirSchedule::Duration AirSchedule::NextDue(Duration now)
     const AirStream &chosen = Chosen(now);
     Duration when = _budget.WhenFits(chosen.Bytes, now);
     Passing(chosen, now, when);
+    if (const Duration promised = MustGoBy(chosen, now); promised < when)
+    {
+        // Next has to see first that the chosen one is kept, or the promised ones would pass it for ever.
+        const Duration spaced = _budget.WhenFits(0, now);
+        when = _kept == nullptr && spaced > now ? std::min(spaced, promised) : promised;
+    }
     return when <= now ? now : std::max(when, now + Grain);
 }
 

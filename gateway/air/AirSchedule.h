@@ -35,7 +35,11 @@ namespace Rabit
 //
 // Between classes ClassShares decides, between the streams of a class FairQueue, and the time is AirBudget's.
 // Nobody's share is kept for who has nothing to send. What is chosen and does not fit into the budget yet
-// keeps its turn; for the first 250 ms commands may pass it if they fit, then nothing.
+// keeps its turn; for the first 250 ms commands may pass it if they fit, for a second what is promised, then
+// nothing.
+//
+// One stream may promise its next datagram by a deadline (Promise). A datagram that would end after the
+// deadline lets the promised one go first, whatever the classes' shares are.
 //
 // All calls take O(log n) for n streams, and none allocates but AddStream; without a limit a call is some
 // comparisons. Pure; `now` never goes back; not to be used by two threads at once. A stream that is not there
@@ -46,6 +50,7 @@ public:
     using Duration = std::chrono::nanoseconds;
     static constexpr Duration Never = Duration::max();
     static constexpr Duration Patience = std::chrono::milliseconds(250);
+    static constexpr Duration LongestPatience = std::chrono::seconds(1);
     // A driver need not wake more often than this; what it misses meanwhile it catches up.
     static constexpr Duration Grain = std::chrono::milliseconds(1);
     static constexpr double SmallestWeight = 0.01;
@@ -54,9 +59,11 @@ public:
     // largestDatagram: on the air, with its headers. Unlimited at the beginning.
     explicit AirSchedule(std::size_t largestDatagram);
 
-    void SetUnlimited();
-    void SetBudget(double bytesPerSecond, Duration now);
-    void SetPace(double bytesPerSecond, Duration now);
+    // AirBudget::SetLimits
+    void SetLimits(std::optional<double> budget, std::optional<double> pace, Duration now);
+    void SetUnlimited() { SetLimits({}, {}, Duration(0)); }
+    void SetBudget(double bytesPerSecond, Duration now) { SetLimits(bytesPerSecond, {}, now); }
+    void SetPace(double bytesPerSecond, Duration now) { SetLimits({}, bytesPerSecond, now); }
     void Reserve(double bytesPerSecond);
     void Spent(std::size_t bytes, Duration now) { _budget.Spent(bytes, now); }
     const AirBudget &Budget() const { return _budget; }
@@ -70,6 +77,12 @@ public:
     void Ready(StreamId id, std::size_t bytes);
     // It has nothing any more.
     void NotReady(StreamId id);
+
+    // With a limit: the stream sends a datagram of so many bytes, more than 0, by `deadline`, whether it is
+    // ready before or not. It goes early, by 420 ms at most, where
+    // another datagram would make it late. Only a datagram that has been kept for LongestPatience goes before
+    // it. Holds until the stream has sent. One stream at a time: a later promise replaces an earlier one.
+    void Promise(StreamId id, std::size_t bytes, Duration deadline);
 
     // Who is to send one datagram of now; empty: nobody, before NextDue. The same one until something
     // changes.
@@ -97,6 +110,7 @@ private:
     void StopWaiting(AirStream &stream);
     bool IsAnyoneReady() const;
     AirStream *KeptForLong(Duration now) const;
+    Duration MustGoBy(const AirStream &other, Duration now) const;
     AirStream &Chosen(Duration now);
     AirStream *Passing(const AirStream &chosen, Duration now, Duration &when);
 
@@ -108,6 +122,8 @@ private:
     std::array<std::uint64_t, TrafficClassCount> _sent{};
     AirStream *_kept = nullptr;  // chosen, and does not fit yet
     Duration _keptSince{0};
+    AirStream *_promised = nullptr;
+    Duration _deadline{0};  // of that one
 };
 
 }  // namespace Rabit

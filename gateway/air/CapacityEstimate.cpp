@@ -67,7 +67,9 @@ std::optional<double> CapacityEstimate::Carried(const DelayReports::Report &from
 std::optional<double> CapacityEstimate::CarriedOfBurst(const DelayReports::Report &from,
                                                        const DelayReports::Report &to) const
 {
-    if (to.ArrivedAt - from.ArrivedAt < ShortestSpan)
+    // Of two datagrams of one burst it is not known how much went between them.
+    const bool areOfOneBurst = from.Delay > Goal && to.SentAt() - from.SentAt() < 2 * KnownTo;
+    if (to.ArrivedAt - from.ArrivedAt < ShortestSpan || areOfOneBurst)
     {
         return std::nullopt;
     }

@@ -38,7 +38,8 @@ public:
     // period: of the announcements.
     explicit UnscheduledShare(Duration period) : _period(period) {}
 
-    void Add(std::size_t bytes, Duration now)
+    // So many bytes were said after `since`, when this was last looked at, until now.
+    void Add(std::size_t bytes, Duration since, Duration now)
     {
         while (!_said.empty() && now - _said.front().At > _period + Late + Together)
         {
@@ -46,7 +47,7 @@ public:
         }
         if (_said.empty() || now - _said.back().At >= Together)
         {
-            _said.push_back({now, 0});
+            _said.push_back({since, now, 0});
         }
         _said.back().Bytes += bytes;
     }
@@ -65,19 +66,21 @@ public:
 private:
     static constexpr Duration Together = std::chrono::milliseconds(100);
 
+    // When something was said: after Since, at At at the latest.
     struct Said
     {
+        Duration Since{0};
         Duration At{0};
         std::size_t Bytes = 0;
     };
 
-    // What began to be said then.
+    // Bytes that may have begun to be said then.
     std::size_t Between(Duration from, Duration to) const
     {
         std::size_t bytes = 0;
         for (const Said &said : _said)
         {
-            bytes += said.At >= from && said.At <= to ? said.Bytes : 0;
+            bytes += said.At >= from && said.Since <= to ? said.Bytes : 0;
         }
         return bytes;
     }

@@ -48,6 +48,7 @@ void PeerClock::OnBeat(const Reading &peer, Duration arrival)
 {
     _lastDifference = arrival - peer.Source;
     _lastSource = peer.Source;
+    _stoodStillHere = LastDelay() < -Tolerance;
     _difference.Add(_lastDifference, arrival);
     _sourceToWall = peer.Wall - peer.Source;
     Estimate();

@@ -72,6 +72,10 @@ public:
     // When a beat with that source time was sent, by this node's monotonic clock; empty before the first
     // beat.
     std::optional<Duration> SentAt(Duration source) const;
+    // Whether the last beat came so much earlier than all that the filter knew that this node's own clock
+    // seems to have stood still. If it has, the peer takes this node's beats for old ones until one echoes a
+    // beat that the peer has sent since. A queue on the way that has emptied looks alike.
+    bool StoodStillHere() const { return _stoodStillHere; }
     // How much later the last beat came than the quickest that the filter knows.
     Duration LastDelay() const { return _lastDifference - _difference.Value().value_or(_lastDifference); }
 
@@ -100,6 +104,7 @@ private:
     MinimumFilter _roundTrip;
     Duration _lastDifference{0};
     Duration _lastSource{0};
+    bool _stoodStillHere = false;
     Duration _stoodStill{0};
     Duration _stoodStillUntil{0};
     Duration _sourceToWall{0};

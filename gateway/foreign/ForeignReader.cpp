@@ -48,12 +48,14 @@ AcceptRule QueueRule(const ForeignRule &rule)
 }  // namespace
 
 ForeignReader::ForeignReader(const ForeignRule &rule, const MessageType &type, int domain,
-                             RabitWorkspace &workspace, std::function<void()> wake)
+                             RabitWorkspace &workspace, std::function<void()> wake,
+                             RabitHandlerThread *handlers)
     : _rule(rule),
       _type(type),
       _domain(domain),
       _workspace(workspace),
       _wake(wake),
+      _handlers(handlers),
       _scratch(type.Create()),
       _queue(QueueRule(rule), workspace, std::move(wake))
 {
@@ -155,6 +157,7 @@ void ForeignReader::Post(SampleBytes bytes, const SampleInfo &info, Duration now
     {
         const double stamp =
             _workspace.GetClock().GpsTimeSeconds() - duration<double>(now - postedAt).count();
+        const RabitHandlerThread::Scope scope(_handlers, _rule.Local, _global);
         _global->PostMessage(_scratch.get(), PostTime{stamp, postedAt});
     }
     const std::lock_guard lock(_mutex);
@@ -243,7 +246,7 @@ ForeignReader::Duration ForeignReader::Service(Duration now)
     return next;
 }
 
-// The queue's handlers run here, with no lock held.
+// The queue's handlers are told here, with no lock held.
 void ForeignReader::Deliver()
 {
     _changed |= _queue.Find();
@@ -272,6 +275,7 @@ void ForeignReader::Deliver()
     }
     if (told)
     {
+        const RabitHandlerThread::Scope scope(_handlers, _rule.Local, told);
         told->NotifyEnqueued();
     }
 }

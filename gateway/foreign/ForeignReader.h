@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/ForeignRule.h>
 #include <rabit/idl/MessageType.h>
@@ -25,6 +26,7 @@ namespace Rabit
 
 // Reads one topic of programs that are no nodes. The newest sample is posted on the transport's thread,
 // without a lock held; samples for a queue wait here until the gateway's thread has put them there. The
+// program's own handlers of either are called by `handlers`, so that a slow one holds up neither thread. The
 // gateway's thread alone calls what is public.
 class ForeignReader
 {
@@ -34,10 +36,10 @@ public:
     // Between looks at who writes the topic.
     static constexpr Duration LookPeriod = std::chrono::milliseconds(250);
 
-    // Rule, type and workspace must outlive the object. `wake` is called when there is something to do, on
-    // any thread.
+    // Rule, type, workspace and handlers must outlive the object. `wake` is called when there is something to
+    // do, on any thread. Without `handlers` all handlers are called on the two threads above.
     ForeignReader(const ForeignRule &rule, const MessageType &type, int domain, RabitWorkspace &workspace,
-                  std::function<void()> wake);
+                  std::function<void()> wake, RabitHandlerThread *handlers = nullptr);
     ~ForeignReader();
 
     // Opens the reader; throws TransportError. The session must outlive the object.
@@ -76,6 +78,7 @@ private:
     const int _domain;
     RabitWorkspace &_workspace;
     const std::function<void()> _wake;
+    RabitHandlerThread *const _handlers;
     std::unique_ptr<RabitMessage> _scratch;            // of the handler, of which there is one at a time
     std::shared_ptr<PublishSubscribeMessage> _global;  // unchanged once the reader is open
     std::string _localProblem;                         // likewise

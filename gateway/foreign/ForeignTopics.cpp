@@ -14,8 +14,8 @@ void ForeignTopics::Open(TransportSession &session, RabitManager &manager, Durat
         const MessageType &type = *MessageTypeRegistry::Find(rule.Type);
         if (rule.Way == ForeignRule::Direction::Subscribe)
         {
-            _readers.emplace_back(rule, type, _config.Domain, manager.GetWorkspace(),
-                                  manager.WakeUpHandler());
+            _readers.emplace_back(rule, type, _config.Domain, manager.GetWorkspace(), manager.WakeUpHandler(),
+                                  _handlers);
             _readers.back().Open(session, now);
             continue;
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitManager.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/transport/Transport.h>
@@ -22,8 +23,10 @@ class ForeignTopics
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // The configuration, the clock and the workspace of the manager must outlive the object.
-    ForeignTopics(const GatewayConfig &config, const SourceClock &source) : _config(config), _source(source)
+    // The configuration, the clock, the workspace of the manager and the handlers must outlive the object.
+    // Null: see ForeignReader.
+    ForeignTopics(const GatewayConfig &config, const SourceClock &source, RabitHandlerThread *handlers)
+        : _config(config), _source(source), _handlers(handlers)
     {
     }
 
@@ -44,6 +47,7 @@ private:
 
     const GatewayConfig &_config;
     const SourceClock &_source;
+    RabitHandlerThread *const _handlers;
     std::deque<ForeignReader> _readers;
     std::deque<ForeignPublisher> _publishers;
 };

@@ -23,11 +23,19 @@ namespace
 constexpr std::uint32_t MaxCounter = std::numeric_limits<std::uint32_t>::max() - 1;
 // In the year 2097: a wall clock that shows this or more would use up the counter.
 constexpr std::int64_t FarthestSecond = std::int64_t{LinkLargestClaim};
+constexpr std::int64_t NanosecondsInSecond = 1'000'000'000;
 
-std::int64_t SecondsOfWallClock()
+std::int64_t NanosecondsOfWallClock()
 {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<std::chrono::seconds>(now).count();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+// The low half of an incarnation. 16 bits of the second are steps of 15 us: no process restarts faster.
+std::uint32_t LowHalf(std::int64_t nanoseconds, std::uint64_t random)
+{
+    const std::int64_t fraction = (nanoseconds % NanosecondsInSecond << 16) / NanosecondsInSecond;
+    return static_cast<std::uint32_t>(fraction << 16) | static_cast<std::uint32_t>(random >> 48);
 }
 
 std::string FileName(const std::string &node)
@@ -90,7 +98,7 @@ std::string SystemError(const std::string &what, const std::filesystem::path &pa
 }  // namespace
 
 IncarnationStore::IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node)
-    : IncarnationStore(stateDirectory, node, SecondsOfWallClock)
+    : IncarnationStore(stateDirectory, node, NanosecondsOfWallClock)
 {
 }
 
@@ -112,10 +120,11 @@ std::uint64_t IncarnationStore::Above(std::uint64_t floor)
     }
     const auto known = std::max(_last, static_cast<std::uint32_t>(floor >> 32));
     const auto next = known < MaxCounter ? known + 1 : MaxCounter;
-    const std::int64_t seconds = std::max<std::int64_t>(_wallClock(), 0);
+    const std::int64_t now = std::max<std::int64_t>(_wallClock(), 0);
+    const std::int64_t seconds = now / NanosecondsInSecond;
     _last = seconds < FarthestSecond ? std::max(next, static_cast<std::uint32_t>(seconds)) : next;
     _unsaved = !_file.empty();
-    return (static_cast<std::uint64_t>(_last) << 32) | (_random() >> 32);
+    return (static_cast<std::uint64_t>(_last) << 32) | LowHalf(now, _random());
 }
 
 void IncarnationStore::Save()

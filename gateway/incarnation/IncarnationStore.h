@@ -13,14 +13,18 @@
 namespace Rabit
 {
 
-// The incarnations of one node: a counter in the high 32 bits that rises at every start, and a random number
-// in the low 32. The counter is kept in a small file, which is written and synced before anybody else is told
-// the incarnation.
+// The incarnations of one node. The high 32 bits are a counter that rises at every start. The next 16 are the
+// fraction of the wall clock's second, and the last 16 are random. The counter is kept in a small file, which
+// is written and synced before anybody else is told the incarnation.
 //
 // The counter never falls below the wall clock's seconds since 1970 if the clock is ahead of it (a clock that
 // shows 2097 or later is not believed). So the loss of the file is harmless as long as the wall clock is
-// right; without a file the seconds are all there is. If both are wrong, peers that remember a higher
-// incarnation make the node take one above it (rules R1 and S6 of the links).
+// right. Without a file the wall clock is all there is: incarnations then rise from start to start by the
+// fraction, within one second too.
+//
+// Without a file, a wall clock that was set back between two starts gives a lower incarnation. Peers believe
+// it at once after a goodbye, else when the former life is STALE (PeerTable). The links do not wait: peers
+// that remember a higher incarnation make the node take one above it (rules R1 and S6 of the links).
 //
 // Giving out a number and storing it are two calls, because a disk may take seconds to sync: the first is
 // made under the lock of the links, the second is not.
@@ -30,7 +34,7 @@ namespace Rabit
 class IncarnationStore : public IncarnationSource
 {
 public:
-    // Seconds since 1970 by the wall clock. Replaced in tests.
+    // Nanoseconds since 1970 by the wall clock. Replaced in tests.
     using WallClock = std::function<std::int64_t()>;
 
     // Keeps the counter in `<stateDirectory>/<node>.incarnation`; characters of the name other than letters,

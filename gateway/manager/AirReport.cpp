@@ -1,6 +1,7 @@
 #include "manager/AirReport.h"
 
 #include <algorithm>
+#include <string>
 
 #include "manager/ImportanceOf.h"
 
@@ -29,6 +30,16 @@ double &RateOf(TrafficClass traffic, Gateway::AirStatus &air)
     return air.presence;
 }
 
+// The words stay the same while sizes differ, so that the log says it once.
+void AddTooLarge(const std::string &message, double budget, Gateway::Fleet &fleet)
+{
+    Gateway::Problem &problem = fleet.problems.emplace_back();
+    problem.subject = "publish " + message;
+    problem.reason = "one value takes more than a second of the budget of " +
+                     std::to_string(static_cast<long long>(budget)) +
+                     " B/s, and newer values wait meanwhile; post smaller ones, or raise `radio: budget`";
+}
+
 }  // namespace
 
 void AirReport::Rate::Look(std::uint64_t bytes, double seconds)
@@ -55,6 +66,10 @@ void AirReport::Fill(const TransportCounters &counters, std::optional<double> ca
     double divided = 0.0;
     for (std::size_t i = 0; i < fleet.publications.size() && i < _publications.size(); ++i)
     {
+        if (air.budget > 0.0 && static_cast<double>(publishers[i].SampleBytes(_cost)) > air.budget)
+        {
+            AddTooLarge(fleet.publications[i].message, air.budget, fleet);
+        }
         const double rate = _publications[i].Sent.PerSecond;
         fleet.publications[i].bytes_per_s = rate;
         RateOf(ImportanceOf(_config.Publish[i]), air) += rate;
@@ -80,9 +95,8 @@ void AirReport::Measure(const TransportCounters &counters, const std::deque<Topi
     {
         Publication &publication = _publications[i];
         const std::uint64_t written = fleet.publications[i].written;
-        const std::size_t each = publishers[i].NextBytes(_cost);
-        publication.Sent.Look(
-            publication.Sent.Bytes + (written - publication.Written) * (each > 1 ? each : 0), seconds);
+        const std::size_t each = publishers[i].SampleBytes(_cost);
+        publication.Sent.Look(publication.Sent.Bytes + (written - publication.Written) * each, seconds);
         publication.Written = written;
     }
     for (auto &[name, rate] : _links)

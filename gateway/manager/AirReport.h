@@ -31,7 +31,8 @@ public:
     AirReport(const GatewayConfig &config, const AirCost &cost) : _config(config), _cost(cost) {}
 
     // Fills fleet.air, and the rates of its links and publications, which are there already, the latter in
-    // the order of the publishers. `capacity`: bytes a second that the air carries; empty: not limited by it.
+    // the order of the publishers. Adds a problem for each publication whose newest value takes more than a
+    // second of the budget. `capacity`: bytes a second that the air carries; empty: not limited by it.
     void Fill(const TransportCounters &counters, std::optional<double> capacity,
               const std::deque<TopicPublisher> &publishers, Gateway::Fleet &fleet, Duration now);
 

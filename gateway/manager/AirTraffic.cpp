@@ -6,6 +6,7 @@
 #include "air/BeatShare.h"
 #include "manager/ImportanceOf.h"
 #include "manager/TransportSettingsOf.h"
+#include "report/FleetReport.h"
 #include "wire/BeatFormat.h"
 
 namespace Rabit
@@ -55,7 +56,7 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
       _cost(config.MaxDatagram),
       _schedule(LargestDatagramOf(config)),
       _unscheduled(TransportSettingsOf(config, 0).AnnouncementPeriod),
-      _beat(_schedule.AddStream(TrafficClass::Presence)),
+      _beat(_schedule.AddStream(TrafficClass::Presence, AirSchedule::LargestWeight)),
       _typeTexts(_schedule.AddStream(TrafficClass::Bulk)),
       _linkStreams(config.Send, links, _schedule,
                    [&presence](std::string_view node) { return presence.SessionsOf(node); }),
@@ -157,7 +158,7 @@ void AirTraffic::Watch(Duration now)
     _estimate.Sent(bytes, IsLimited() ? now : std::max(_servedAt, before));
     if (IsLimited())
     {
-        _unscheduled.Add(bytes, now);
+        _unscheduled.Add(bytes, before, now);
         _schedule.Spent(bytes, now);
     }
 }
@@ -176,10 +177,21 @@ std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
     return _presence.SendBeat(now, std::min(most, BeatFormat::Largest));
 }
 
-// So that beats take so many bytes a second.
-void AirTraffic::SetBeatPeriod(double bytesPerSecond, Duration slowest)
+// So that beats take their share of the budget, and of what the air carries if that is less.
+void AirTraffic::SetBeatPeriod(std::optional<double> budget, std::optional<double> carried)
 {
-    _presence.SetBeatPeriod(BeatShare::PeriodOf(_beatBytes, bytesPerSecond, slowest));
+    Duration period = BeatShare::Quickest;
+    if (budget)
+    {
+        const double share = BeatShare::OfBudget * *budget;
+        period = BeatShare::PeriodOf(_beatBytes, share, _config.Radio.SlowestBeat);
+    }
+    if (carried)
+    {
+        const double share = BeatShareOfPace * *carried;
+        period = std::max(period, BeatShare::PeriodOf(_beatBytes, share, SlowestBeatOfPace));
+    }
+    _presence.SetBeatPeriod(period);
 }
 
 void AirTraffic::SetLimit(Duration now)
@@ -187,22 +199,12 @@ void AirTraffic::SetLimit(Duration now)
     _limitSetAt = now;
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
+    SetBeatPeriod(budget, carried);
     if (budget)
     {
         _schedule.Reserve(_unscheduled.Rate(now));
-        _schedule.SetBudget(std::min(*budget, carried.value_or(*budget)), now);
-        SetBeatPeriod(BeatShare::OfBudget * *budget, _config.Radio.SlowestBeat);
     }
-    else if (carried)
-    {
-        _schedule.SetPace(*carried, now);
-        SetBeatPeriod(BeatShareOfPace * *carried, SlowestBeatOfPace);
-    }
-    else
-    {
-        _schedule.SetUnlimited();
-        _presence.SetBeatPeriod(BeatShare::Quickest);
-    }
+    _schedule.SetLimits(budget, carried, now);
 }
 
 Duration AirTraffic::ServeUnlimited(Duration now)
@@ -222,7 +224,8 @@ Duration AirTraffic::ServeUnlimited(Duration now)
     return next;
 }
 
-// A pace is a guess. That who is not heard is taken for lost is certain.
+// With a budget the schedule keeps the promise (LookAtBeat). A pace is an estimate, but a node that is not
+// heard is certainly shown LOST: the beat goes, whatever the pace says.
 void AirTraffic::KeepPromise(Duration now)
 {
     if (!_config.Radio.Budget && now >= _presence.BeatPromised())
@@ -241,6 +244,10 @@ void AirTraffic::LookAtBeat(Duration now)
     if (now >= _presence.BeatDue() || IsBeatWorth(now))
     {
         _schedule.Ready(_beat, BeatBytes(now));
+    }
+    if (_config.Radio.Budget)
+    {
+        _schedule.Promise(_beat, BeatBytes(now), _presence.BeatPromised());
     }
 }
 
@@ -328,12 +335,12 @@ void AirTraffic::Send(StreamId id, Duration now)
     {
         _types.SendOne(_cost.BodyWithin(most, true), now);
     }
-    else if (!_linkStreams.Send(id, most, sent))
+    else if (!_linkStreams.Send(id, most, now, sent))
     {
         publisher = static_cast<std::size_t>(
             std::find(_publisherStreams.begin(), _publisherStreams.end(), id) - _publisherStreams.begin());
         _publishers[publisher].Fetch();
-        _publishers[publisher].Write(now);
+        _publishers[publisher].WriteNext(now);
     }
     const std::size_t bytes = TakeSent();
     _estimate.Sent(bytes, now);
@@ -364,12 +371,10 @@ void AirTraffic::Report(Gateway::Fleet &fleet, Duration now)
     _links.VisitPaths(
         [&fleet](std::string_view node, const LinkPathState &path)
         {
-            for (Gateway::NodeStatus &status : fleet.nodes)
+            Gateway::NodeStatus *const status = FleetReport::NodeIn(fleet, node);
+            if (status != nullptr && path.DeliveryRate > 0)
             {
-                if (status.node == node && path.DeliveryRate > 0)
-                {
-                    status.delivery_rate = path.DeliveryRate;
-                }
+                status->delivery_rate = path.DeliveryRate;
             }
         });
     _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, fleet, now);

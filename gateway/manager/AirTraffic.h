@@ -74,7 +74,7 @@ private:
     void LookAtDiscovery(std::uint64_t sent);
     void YieldToDiscovery(Duration now);
     void Watch(Duration now);
-    void SetBeatPeriod(double bytesPerSecond, Duration slowest);
+    void SetBeatPeriod(std::optional<double> budget, std::optional<double> carried);
     void SetLimit(Duration now);
     Duration ServeUnlimited(Duration now);
     Duration ServeLimited();

@@ -1,3 +1,4 @@
+#include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
@@ -31,6 +32,7 @@
 #include "queues/OutgoingQueues.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
+#include "report/HandlerWatch.h"
 #include "report/LinkStrains.h"
 #include "report/Loneliness.h"
 #include "report/OtherGateways.h"
@@ -44,8 +46,9 @@ namespace
 
 using Duration = std::chrono::nanoseconds;
 
-constexpr std::int64_t NanosecondsInSecond = 1000000000;
 constexpr Duration FleetPeriod = std::chrono::seconds(1);
+// Between two posts of Gateway/Fleet, however much happens: each takes time for every node and row.
+constexpr Duration ShortestFleetGap = std::chrono::milliseconds(100);
 // Less than this is not worth a sleep of its own.
 constexpr Duration ShortestSleep = std::chrono::microseconds(200);
 // There and back, on a radio that is only thin: a datagram and its answer may take that long.
@@ -69,46 +72,12 @@ const GatewayConfig &Validated(const GatewayConfig &config)
 class GatewayManager::Parts
 {
 public:
+    // The object exists once the delegate returns. So if Open throws, whatever it is, the destructor closes
+    // what was opened, endpoints before the session.
     Parts(const GatewayConfig &config, std::shared_ptr<Transport> transport, GatewayManager &manager,
           const RandomSource &random, Exploration &exploration)
-        : _config(Validated(config)),
-          _manager(manager),
-          _workspace(manager.GetWorkspace()),
-          _transport(std::move(transport)),
-          _incarnations(
-              config.StateDir, CounterName(config),
-              [this] {
-                  return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()) /
-                         NanosecondsInSecond;
-              },
-              random),
-          _remote(config.Node),
-          _links(_config, _workspace, _incarnations, random(), manager.WakeUpHandler()),
-          _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links, _config.Tap)),
-          _incarnation(_links.Incarnation()),
-          _source(_workspace.GetClock()),
-          _presence(
-              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
-              [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
-          _subscriptions(_config.Subscribe, _origins, _workspace),
-          _states(_presence, _subscriptions, random),
-          _fleet(std::make_shared<Gateway::Fleet>()),
-          _exploration(exploration)
+        : Parts(Closed(), config, std::move(transport), manager, random, exploration)
     {
-        if (!_transport)
-        {
-            throw std::invalid_argument("GatewayManager needs a transport");
-        }
-        const std::vector<std::string> forwarders = _workspace.GetListOfQueueForwarders();
-        if (std::find(forwarders.begin(), forwarders.end(), _config.Name) != forwarders.end())
-        {
-            throw NameTaken();
-        }
-        if (!manager.AddPublishSubscribeMessage(FleetMessageNameOf(_config), _fleet))
-        {
-            throw ConfigError(_config.File, 0,
-                              "the local message `" + FleetMessageNameOf(_config) + "` is of another type");
-        }
         Open();
     }
 
@@ -135,6 +104,10 @@ public:
         _air.Close();
         _publishers.clear();
         _session.reset();
+        if (_handlers)
+        {
+            _handlers->Stop();
+        }
     }
 
     // Returns when to be called again at the latest.
@@ -186,7 +159,11 @@ public:
             const Duration beat = _presence.BeatDue();
             next = beat > now ? std::min(next, beat) : next;
         }
-        if (change.State || change.Offers || _foreign.TakeChange() || now >= _nextFleet)
+        if (change.State || change.Offers || _foreign.TakeChange())
+        {
+            _nextFleet = std::min(_nextFleet, _earliestFleet);
+        }
+        if (now >= _nextFleet)
         {
             if (_config.Tap)
             {
@@ -194,6 +171,7 @@ public:
             }
             PostFleet(now);
             _nextFleet = now + FleetPeriod;
+            _earliestFleet = now + ShortestFleetGap;
         }
         return std::min(next, _nextFleet);
     }
@@ -201,6 +179,48 @@ public:
     Duration Now() const { return _workspace.GetClock().Monotonic(); }
 
 private:
+    struct Closed
+    {
+    };
+
+    Parts(Closed /*tag*/, const GatewayConfig &config, std::shared_ptr<Transport> transport,
+          GatewayManager &manager, const RandomSource &random, Exploration &exploration)
+        : _config(Validated(config)),
+          _manager(manager),
+          _workspace(manager.GetWorkspace()),
+          _transport(std::move(transport)),
+          _incarnations(
+              config.StateDir, CounterName(config),
+              [this] { return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()); }, random),
+          _remote(config.Node),
+          _links(_config, _workspace, _incarnations, random(), manager.WakeUpHandler(), Handlers()),
+          _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links, _config.Tap)),
+          _incarnation(_links.Incarnation()),
+          _source(_workspace.GetClock()),
+          _presence(
+              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
+              [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
+          _subscriptions(_config.Subscribe, _origins, _workspace, Handlers()),
+          _states(_presence, _subscriptions, random),
+          _fleet(std::make_shared<Gateway::Fleet>()),
+          _exploration(exploration)
+    {
+        if (!_transport)
+        {
+            throw std::invalid_argument("GatewayManager needs a transport");
+        }
+        const std::vector<std::string> forwarders = _workspace.GetListOfQueueForwarders();
+        if (std::find(forwarders.begin(), forwarders.end(), _config.Name) != forwarders.end())
+        {
+            throw NameTaken();
+        }
+        if (!manager.AddPublishSubscribeMessage(FleetMessageNameOf(_config), _fleet))
+        {
+            throw ConfigError(_config.File, 0,
+                              "the local message `" + FleetMessageNameOf(_config) + "` is of another type");
+        }
+    }
+
     void Open()
     {
         try
@@ -209,7 +229,6 @@ private:
         }
         catch (const TransportError &error)
         {
-            Close();
             const std::string setting = error.Setting().empty() ? "interfaces" : error.Setting();
             throw ConfigError(_config.File, LineOfSetting(_config, setting), error.what());
         }
@@ -246,7 +265,6 @@ private:
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
         if (!_forwards)
         {
-            Close();
             throw NameTaken();
         }
     }
@@ -287,6 +305,8 @@ private:
             _exploration.FindSubscribers(*requests.LookedFor, *_session);
         }
     }
+
+    RabitHandlerThread *Handlers() const { return _handlers.get(); }
 
     ConfigError NameTaken() const
     {
@@ -378,7 +398,11 @@ private:
         _foreign.Report(now, fleet);
         OtherGateways::AddSharedNodes(_workspace, _config.Name, fleet);
         _presence.SetStrains(_strains.Look(fleet, _presence.Peers(), now));
-        fleet.PostMessage();
+        {
+            const auto global = fleet.GetGlobalPublishSubscribeMessageRef();
+            const RabitHandlerThread::Scope scope(Handlers(), _fleetName, global);
+            fleet.PostMessage();
+        }
         Log(_problemLog.Look(fleet.problems, now));
     }
 
@@ -412,7 +436,7 @@ private:
         }
         for (const auto &problems :
              {Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
-              _outgoing->Problems(), _links.Problems(), _presence.Problems(now)})
+              _outgoing->Problems(), _links.Problems(), _presence.Problems(now), _slow.Problems(now)})
         {
             fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
         }
@@ -425,6 +449,10 @@ private:
     IncarnationStore _incarnations;
     OriginTable _origins;
     RemoteQueues _remote;
+    HandlerWatch _slow{_workspace.GetClock()};
+    // Calls the program's own handlers of what comes from other nodes. None where the network is stepped.
+    const std::unique_ptr<RabitHandlerThread> _handlers{
+        _transport && !_transport->IsStepped() ? std::make_unique<RabitHandlerThread>(&_slow) : nullptr};
     LinkDriver _links;
     const std::shared_ptr<OutgoingQueues> _outgoing;
     const std::uint64_t _incarnation;
@@ -432,16 +460,18 @@ private:
     Presence _presence;
     Subscriptions _subscriptions;
     StateExchange _states;
-    ForeignTopics _foreign{_config, _source};
+    ForeignTopics _foreign{_config, _source, Handlers()};
     std::shared_ptr<Gateway::Fleet> _fleet;
     LinkStrains _strains;
     Exploration &_exploration;
     std::optional<Duration> _exploredAt;
     const std::string _logName =
         _config.Name == GatewayConfig().Name ? "gateway: " : "gateway " + _config.Name + ": ";
-    ProblemLog _problemLog{FleetMessageNameOf(_config)};
+    const std::string _fleetName = FleetMessageNameOf(_config);
+    ProblemLog _problemLog{_fleetName};
     bool _forwards = false;
     Duration _nextFleet{0};
+    Duration _earliestFleet{0};
     Duration _openedAt{0};
     std::optional<std::time_t> _keysEndAt;
     std::unique_ptr<TransportSession> _session;

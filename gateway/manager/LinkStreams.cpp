@@ -27,9 +27,8 @@ LinkStreams::LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, 
 void LinkStreams::Look(std::size_t most, Duration now)
 {
     ++_looks;
-    _most = most;
     _now = now;
-    _links.VisitStreams(_visit);
+    _links.VisitStreams(most, _visit);
     for (Stream *stream : _byIndex)
     {
         if (stream != nullptr && stream->IsReady && stream->SeenIn != _looks)
@@ -51,7 +50,7 @@ void LinkStreams::Visit(const LinkStream &link)
     stream.SeenIn = _looks;
     stream.ReadyAt = _now;
     stream.IsReady = true;
-    _schedule.Ready(stream.Id, std::min(link.Bytes, _most) * _copies(link.Destination));
+    _schedule.Ready(stream.Id, link.Bytes * _copies(link.Destination));
 }
 
 LinkStreams::Stream &LinkStreams::StreamOf(const LinkStream &link)
@@ -81,14 +80,16 @@ LinkStreams::Stream &LinkStreams::StreamOf(const LinkStream &link)
     return stream;
 }
 
-bool LinkStreams::Send(StreamId id, std::size_t most, bool &sent)
+bool LinkStreams::Send(StreamId id, std::size_t most, Duration now, bool &sent)
 {
     if (id.Index >= _byIndex.size() || _byIndex[id.Index] == nullptr || !(_byIndex[id.Index]->Id == id))
     {
         return false;
     }
     const Stream &stream = *_byIndex[id.Index];
-    sent = _links.SendOne(*stream.Node, *stream.Queue, most);
+    // The size that a link says of its next datagram is an estimate.
+    const std::size_t copies = _copies(*stream.Node);
+    sent = _links.SendOne(*stream.Node, *stream.Queue, _schedule.Room(most * copies, now) / copies);
     return true;
 }
 

@@ -35,8 +35,9 @@ public:
 
     // Tells the schedule what the links could send now, in datagrams of at most so many bytes on the air.
     void Look(std::size_t most, Duration now);
-    // One of these was chosen: sends one datagram. False: it is none of these. `sent`: whether there was one.
-    bool Send(StreamId id, std::size_t most, bool &sent);
+    // One of these was chosen: sends one datagram, of at most so many bytes and no more than the budget has
+    // room for now. False: it is none of these. `sent`: whether there was one.
+    bool Send(StreamId id, std::size_t most, Duration now, bool &sent);
 
 private:
     struct Stream
@@ -62,7 +63,6 @@ private:
     std::map<std::string, Queues, std::less<>> _nodes;
     std::vector<Stream *> _byIndex;  // of the schedule's streams; null: not one of these
     std::uint64_t _looks = 0;
-    std::size_t _most = 0;
     Duration _now{0};
     Duration _nextSweep{0};
 };

@@ -51,19 +51,19 @@ InstanceWriter::InstanceWriter(const MessageType &type, std::unique_ptr<Transpor
 {
 }
 
-WriteResult InstanceWriter::Write(const RabitMessage &message, std::int64_t sourceTime)
+WriteResult InstanceWriter::Write(const RabitMessage &message, std::int64_t sourceTime, Way way)
 {
     const MessageEncoder encoder(_type, message);
     if (!_type.HasKey())
     {
-        return _writer->Write(encoder, sourceTime);
+        return (*_writer.*way)(encoder, sourceTime);
     }
     if (DisposeFormer() == WriteResult::TimedOut)
     {
         return WriteResult::TimedOut;
     }
     KeyWatch watched(_type, encoder, !_present.empty(), _presentKey);
-    const WriteResult result = _writer->Write(watched, sourceTime);
+    const WriteResult result = (*_writer.*way)(watched, sourceTime);
     if (result != WriteResult::Ok || watched.Other.empty())
     {
         return result;
@@ -71,7 +71,10 @@ WriteResult InstanceWriter::Write(const RabitMessage &message, std::int64_t sour
     _former = std::exchange(_present, std::move(watched.Other));
     _formerEnd = sourceTime;
     _presentKey = watched.Key;
-    DisposeFormer();  // or it is owed
+    if (_writer->HeldBytes() == 0)
+    {
+        DisposeFormer();  // or it is owed
+    }
     return result;
 }
 

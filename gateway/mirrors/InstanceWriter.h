@@ -4,6 +4,7 @@
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -23,7 +24,18 @@ public:
     InstanceWriter(const MessageType &type, std::unique_ptr<TransportWriter> writer);
 
     // Ok if the value was written; TimedOut also if it was not tried, for want of a disposal that is owed.
-    WriteResult Write(const RabitMessage &message, std::int64_t sourceTime);
+    WriteResult Write(const RabitMessage &message, std::int64_t sourceTime)
+    {
+        return Write(message, sourceTime, &TransportWriter::Write);
+    }
+    // The same with the first datagram alone (TransportWriter::WriteHeld). While others are held, a disposal
+    // is owed.
+    WriteResult WriteHeld(const RabitMessage &message, std::int64_t sourceTime)
+    {
+        return Write(message, sourceTime, &TransportWriter::WriteHeld);
+    }
+    std::size_t HeldBytes() const { return _writer->HeldBytes(); }
+    void SendHeld() { _writer->SendHeld(); }
     bool OwesDisposal() const { return !_former.empty(); }
     // Ok if none is owed.
     WriteResult DisposeFormer();
@@ -32,6 +44,9 @@ public:
 
 private:
     using Bytes = std::vector<std::uint8_t>;
+    using Way = WriteResult (TransportWriter::*)(const SampleEncoder &, std::int64_t);
+
+    WriteResult Write(const RabitMessage &message, std::int64_t sourceTime, Way way);
 
     const MessageType &_type;
     const std::unique_ptr<TransportWriter> _writer;

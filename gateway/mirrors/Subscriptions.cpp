@@ -15,8 +15,8 @@ namespace Rabit
 {
 
 Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
-                             RabitWorkspace &workspace)
-    : _rules(rules.begin(), rules.end()), _origins(origins), _workspace(workspace)
+                             RabitWorkspace &workspace, RabitHandlerThread *handlers)
+    : _rules(rules.begin(), rules.end()), _origins(origins), _workspace(workspace), _handlers(handlers)
 {
 }
 
@@ -30,8 +30,8 @@ void Subscriptions::Open(TransportSession &session)
 
 void Subscriptions::Open(const SubscribeRule &rule, TransportSession &session)
 {
-    auto subscriber =
-        std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins, _workspace);
+    auto subscriber = std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
+                                                        _workspace, _handlers);
     subscriber->Open(session);
     _subscriptions.push_back({&rule, std::move(subscriber)});
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/transport/Transport.h>
@@ -27,9 +28,9 @@ namespace Rabit
 class Subscriptions
 {
 public:
-    // Origins and workspace must outlive the object.
+    // Origins, workspace and handlers must outlive the object. Null: see TopicSubscriber.
     Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
-                  RabitWorkspace &workspace);
+                  RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr);
 
     // Throws TransportError.
     void Open(TransportSession &session);
@@ -76,6 +77,7 @@ private:
     std::deque<SubscribeRule> _rules;  // they stay where they are
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
+    RabitHandlerThread *const _handlers;
     std::vector<Subscription> _subscriptions;  // of each rule, in their order, while open
     std::map<std::string, Known> _known;
 };

@@ -35,9 +35,13 @@ TopicPublisher::Duration TopicPublisher::NextGap() const
 TopicPublisher::Duration TopicPublisher::Service(Duration now)
 {
     Fetch();
+    while (!_isWhole)
+    {
+        WriteNext(now);  // since there was a limit
+    }
     if (now >= DueAt(now))
     {
-        Write(now);
+        Write(now, &InstanceWriter::Write);
     }
     return std::max(DueAt(now), now);
 }
@@ -67,14 +71,30 @@ void TopicPublisher::Fetch()
 
 std::size_t TopicPublisher::NextBytes(const AirCost &cost) const
 {
+    if (const std::size_t held = _writer.HeldBytes(); held > 0)
+    {
+        return held;
+    }
     const int copies = _writer.Destinations();
     return copies <= 0 ? 1
+                       : cost.OfFirst(_type.SerializedSize(*_local) - AirCost::Encapsulation,
+                                      {.Destinations = static_cast<std::size_t>(copies)});
+}
+
+std::size_t TopicPublisher::SampleBytes(const AirCost &cost) const
+{
+    const int copies = _writer.Destinations();
+    return copies <= 0 ? 0
                        : cost.Of(_type.SerializedSize(*_local) - AirCost::Encapsulation,
                                  {.Destinations = static_cast<std::size_t>(copies)});
 }
 
 TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
 {
+    if (!_isWhole)
+    {
+        return now;
+    }
     const Duration value = ValueDueAt(now);
     return _writer.OwesDisposal() ? std::min(value, _lastWrite + NextGap()) : value;
 }
@@ -92,12 +112,51 @@ TopicPublisher::Duration TopicPublisher::ValueDueAt(Duration now) const
     return repeat ? std::max(*repeat, mayWriteAt) : Duration::max();
 }
 
-void TopicPublisher::Write(Duration now)
+void TopicPublisher::WriteNext(Duration now)
 {
-    const WriteResult result = now >= ValueDueAt(now) ? WriteValue(now) : _writer.DisposeFormer();
+    if (_isWhole)
+    {
+        Write(now, &InstanceWriter::WriteHeld);
+        return;
+    }
+    _writer.SendHeld();
+    if (!IsUnderWay())
+    {
+        Written(now);
+    }
+}
+
+void TopicPublisher::Write(Duration now, Way way)
+{
+    const bool isValue = now >= ValueDueAt(now);
+    const WriteResult result = isValue ? WriteValue(way) : _writer.DisposeFormer();
     _failures += result == WriteResult::Ok ? 0 : 1;
-    _timedOut = result == WriteResult::TimedOut || _writer.OwesDisposal();
+    _timedOut = result == WriteResult::TimedOut || (_writer.OwesDisposal() && !IsUnderWay());
     _lastWrite = now;
+    if (!isValue || result == WriteResult::TimedOut)
+    {
+        return;
+    }
+    if (result != WriteResult::Ok)
+    {
+        _writtenTime.reset();
+    }
+    _isWhole = !IsUnderWay();
+    if (_isWhole)
+    {
+        Written(now);
+    }
+}
+
+// To the last datagram. Peers that heard of a State before would ask for what is under way.
+void TopicPublisher::Written(Duration now)
+{
+    _isWhole = true;
+    if (_rule.Qos == QosProfile::State)
+    {
+        const std::uint32_t version = _writtenTime ? StateVersion::Of(*_writtenTime) : StateVersion::None;
+        _repeat.Written(std::exchange(_version, version) != version, now);
+    }
 }
 
 // Of two States within a step of StateVersion the second is stamped as if it came with the next step.
@@ -115,28 +174,23 @@ std::int64_t TopicPublisher::TimeOfPost() const
 
 void TopicPublisher::AskedFor(Duration now)
 {
-    if (_version != StateVersion::None)
+    if (_version != StateVersion::None && _isWhole)
     {
         _repeat.Ask(now);
     }
 }
 
-WriteResult TopicPublisher::WriteValue(Duration now)
+WriteResult TopicPublisher::WriteValue(Way way)
 {
     _taken += _pending ? 1 : 0;
-    const WriteResult result = _writer.Write(*_local, _time);
+    const WriteResult result = (_writer.*way)(*_local, _time);
+    _writtenTime = _time;
     _written += result == WriteResult::Ok ? 1 : 0;
     // A value that the network did not take in time is tried again; one that can never be sent would only
     // fail again.
     _taken -= _pending && result == WriteResult::TimedOut ? 1 : 0;
     _pending = result == WriteResult::TimedOut;
     _everWritten = true;
-    if (_rule.Qos == QosProfile::State && !_pending)
-    {
-        const std::uint32_t version =
-            result == WriteResult::Ok ? StateVersion::Of(_time) : StateVersion::None;
-        _repeat.Written(std::exchange(_version, version) != version, now);
-    }
     return result;
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "air/AirCost.h"
@@ -63,15 +64,23 @@ public:
     void Fetch();
     // When there is something to write, of what was fetched; Duration::max(): nothing.
     Duration DueAt(Duration now) const;
-    // What it takes on the air, all its copies; at least 1.
+    // What its next datagram takes on the air, all its copies; at least 1. A sample that takes several ones
+    // goes one by one, and nothing else of this message goes before its last.
     std::size_t NextBytes(const AirCost &cost) const;
-    // Writes what is due, one sample.
-    void Write(Duration now);
+    // Bytes on the air of the sample that was fetched last, all datagrams together; 0: nobody gets it.
+    std::size_t SampleBytes(const AirCost &cost) const;
+    // Writes what is due, one datagram.
+    void WriteNext(Duration now);
 
     Gateway::PublicationStatus Status() const;
 
 private:
-    WriteResult WriteValue(Duration now);
+    using Way = WriteResult (InstanceWriter::*)(const RabitMessage &, std::int64_t);
+
+    bool IsUnderWay() const { return _writer.HeldBytes() > 0; }
+    void Write(Duration now, Way way);
+    WriteResult WriteValue(Way way);
+    void Written(Duration now);
     std::int64_t TimeOfPost() const;
     Duration ValueDueAt(Duration now) const;
     Duration MinimumGap() const;
@@ -86,7 +95,9 @@ private:
     bool _pending = false;                       // fetched and not written yet
     bool _timedOut = false;                      // the last write, or the disposal after it
     bool _everWritten = false;
-    std::int64_t _time = 0;  // source time of what was fetched last
+    std::int64_t _time = 0;                    // source time of what was fetched last
+    std::optional<std::int64_t> _writtenTime;  // of what was written last; empty: that can never be written
+    bool _isWhole = true;                      // it has gone to its last datagram, as far as is known
     std::uint32_t _version = StateVersion::None;
     RepeatPace _repeat;
     Duration _lastWrite{0};

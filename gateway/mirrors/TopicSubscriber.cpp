@@ -22,8 +22,14 @@ constexpr std::size_t MostSources = PeerTable::MaximumPeers + 1;
 }  // namespace
 
 TopicSubscriber::TopicSubscriber(const SubscribeRule &rule, const MessageType &type,
-                                 const OriginTable &origins, RabitWorkspace &workspace)
-    : _rule(rule), _type(type), _origins(origins), _workspace(workspace), _scratch(type.Create())
+                                 const OriginTable &origins, RabitWorkspace &workspace,
+                                 RabitHandlerThread *handlers)
+    : _rule(rule),
+      _type(type),
+      _origins(origins),
+      _workspace(workspace),
+      _handlers(handlers),
+      _scratch(type.Create())
 {
 }
 
@@ -73,6 +79,7 @@ std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_v
     auto source = std::make_shared<Source>();
     source->Counters.message = _rule.Message;
     source->Counters.node = node;
+    source->LocalName = source->Counters.node + "/" + _rule.Message;
     source->IsWanted = MatchesAny(_rule.From, node);
     const auto offered = _offers.find(node);
     source->Offer = offered == _offers.end() ? std::nullopt : std::optional(offered->second);
@@ -123,16 +130,11 @@ std::uint64_t TopicSubscriber::CrowdedOut() const
 
 void TopicSubscriber::Register(Source &source)
 {
-    const std::string name = source.Counters.node + "/" + _rule.Message;
-    const std::shared_ptr<RabitMessage> message = _type.CreateShared();
-    std::string problem;
-    if (!_workspace.AddPublishSubscribeMessage(name, message))
-    {
-        problem = "the local message `" + name + "` is of another type than `" + _type.Name() + "`";
-    }
+    source.Local.emplace(_workspace, source.LocalName, _type.CreateShared());
     const std::lock_guard lock(_mutex);
-    source.Global = problem.empty() ? message->GetGlobalPublishSubscribeMessageRef() : nullptr;
-    source.Problem = problem;
+    source.Problem = source.Local->Global() ? ""
+                                            : "the local message `" + source.LocalName +
+                                                  "` is of another type than `" + _type.Name() + "`";
 }
 
 bool TopicSubscriber::IsRepetition(const Source &source, const SampleInfo &info)
@@ -200,16 +202,18 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     {
         return Outcome::Undecodable;
     }
-    if (!source.Global)
+    if (!source.Local || !source.Local->Global())
     {
         Register(source);
     }
-    if (!source.Global)
+    if (!source.Local->Global())
     {
         return Outcome::NotPostable;
     }
     const double stamp = GpsTime::ToGps(info.SourceTime + origin->SourceToWall.count());
-    source.Global->PostMessage(_scratch.get(), PostTime{stamp, *posted});
+    const std::shared_ptr<PublishSubscribeMessage> &global = source.Local->Global();
+    const RabitHandlerThread::Scope scope(_handlers, source.LocalName, global);
+    global->PostMessage(_scratch.get(), PostTime{stamp, *posted});
     source.Posted = Sample{info.Incarnation, info.SourceTime};
     return Outcome::Posted;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/RabitHandlerThread.h>
+#include <rabit/RabitMessageLease.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/idl/MessageType.h>
@@ -24,8 +26,9 @@ namespace Rabit
 {
 
 // Mirrors one topic to local messages `<node>/<message>`, one for each node that writes it. Decodes each
-// sample once, on the transport's thread, and posts it there, without a lock held. The reader is best effort
-// and volatile whatever the node announces: what is lost of a State is asked for (StateRepair).
+// sample once, on the transport's thread, and posts it there, without a lock held. The program's own handlers
+// of the message are called by `handlers`, so that a slow one does not hold up that thread. The reader is
+// best effort and volatile whatever the node announces: what is lost of a State is asked for (StateRepair).
 //
 // What is not posted: samples of a node that the rule does not name, whatever partition it writes into, that
 // has not been heard as live or is in another life by now, of one that does not announce the profile that the
@@ -39,9 +42,10 @@ namespace Rabit
 class TopicSubscriber
 {
 public:
-    // `origins` and the workspace must outlive the object.
+    // `origins`, the workspace and `handlers` must outlive the object. Null: all handlers are called on the
+    // transport's thread.
     TopicSubscriber(const SubscribeRule &rule, const MessageType &type, const OriginTable &origins,
-                    RabitWorkspace &workspace);
+                    RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr);
     ~TopicSubscriber();
 
     // Opens the reader; throws TransportError.
@@ -56,8 +60,8 @@ public:
     // Samples of that node that were posted, and DDS writers that match now.
     std::uint64_t ReceivedFrom(const std::string &node) const;
     int MatchedWriters() const;
-    // The node is forgotten: so are its counters and its offer. Its local message stays, as every message
-    // does.
+    // The node is forgotten: so are its counters and its offer. Its local message leaves the workspace,
+    // unless somebody has registered it besides.
     void Forget(const std::string &node);
     // Samples dropped because they came from a node beyond those that are kept.
     std::uint64_t CrowdedOut() const;
@@ -78,7 +82,8 @@ private:
     {
         Gateway::TopicStatus Counters;
         bool IsWanted = false;  // the rule names it
-        std::shared_ptr<PublishSubscribeMessage> Global;
+        std::string LocalName;
+        std::optional<RabitMessageLease> Local;
         std::string Problem;
         std::optional<Sample> Posted;
         std::optional<Sample> Taken;      // guarded, as the counters are
@@ -110,6 +115,7 @@ private:
     const MessageType &_type;
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
+    RabitHandlerThread *const _handlers;
     // Only the handler uses it, and a reader's handlers never run two at once.
     std::unique_ptr<RabitMessage> _scratch;
 

@@ -3,7 +3,6 @@
 #include <cctype>
 #include <cstddef>
 #include <map>
-#include <mutex>
 #include <string>
 
 #include "names/Fnv1a.h"
@@ -61,9 +60,7 @@ std::uint64_t DefinitionHash(const std::string &name, const std::string &idlText
 std::uint64_t DefinitionHash(const MessageType &type)
 {
     // Asked for every message that is sent. Types live as long as the process, so entries stay true.
-    static std::mutex mutex;
-    static std::map<const MessageType *, std::uint64_t> hashes;
-    const std::lock_guard lock(mutex);
+    static thread_local std::map<const MessageType *, std::uint64_t> hashes;
     const auto found = hashes.find(&type);
     return found != hashes.end()
                ? found->second

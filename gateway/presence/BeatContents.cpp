@@ -99,7 +99,7 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     AddWants(beat, now, room);
     AddTypes(beat, now, room);
     Gateway::BeatNews &news = NewsOf(beat);
-    news.echoes = _peers.NextEchoes(now, std::min(BeatFormat::MostEchoes, room / BeatFormat::Echo));
+    news.echoes = _peers.NextEchoes(now, BeatFormat::MostEchoes, room / BeatFormat::Echo);
     room -= news.echoes.size() * BeatFormat::Echo;
     news.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
     room -= news.delays.size() * BeatFormat::Delay;

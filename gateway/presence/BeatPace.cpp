@@ -46,11 +46,32 @@ void BeatPace::Sent(Duration now)
         _gap = std::min({2 * _gap, _period, _longestGap});
         _broughtForward = now;
     }
-    else if (!_broughtForward || now - *_broughtForward >= Quiet)
+    else
+    {
+        CalmDown(now);
+    }
+    Begin(now);
+}
+
+void BeatPace::SentEarly(Duration now)
+{
+    CalmDown(now);
+    Begin(now);
+}
+
+void BeatPace::CalmDown(Duration now)
+{
+    if (!_broughtForward || now - *_broughtForward >= Quiet)
     {
         _gap = ShortestGap;
     }
+}
+
+// The time until the next beat.
+void BeatPace::Begin(Duration now)
+{
     _last = now;
+    _promised = now + _period;
     _stateDue.reset();
     _due = now + std::min(_step, _period);
     _step = _step < _period ? 2 * _step : Duration::max();

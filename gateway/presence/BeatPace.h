@@ -44,7 +44,7 @@ public:
     // When the next beat is due if nobody has anything to ask.
     Duration Due() const { return _stateDue ? std::min(_due, *_stateDue) : _due; }
     // What the last one has told the others: one comes by then, whatever there is to say.
-    Duration Promised() const { return _last ? *_last + _period : Duration(0); }
+    Duration Promised() const { return _promised; }
     // Before this there is none at all.
     Duration Earliest() const { return _last ? *_last + ShortestGap : Duration(0); }
     // Before this none is brought forward because there is something to ask for.
@@ -58,10 +58,17 @@ public:
     void StateWritten(Duration now);
     // A beat was sent.
     void Sent(Duration now);
+    // A beat was sent before it was due, because it would have been late otherwise. Nobody has brought it
+    // forward.
+    void SentEarly(Duration now);
 
 private:
+    void CalmDown(Duration now);
+    void Begin(Duration now);
+
     Duration _period = DefaultPeriod;
     Duration _due{0};
+    Duration _promised{0};
     Duration _step = Duration::max();  // to the beat after the next one; more than the period: the period
     Duration _gap = ShortestGap;
     Duration _longestGap = LongestPeriod;

@@ -19,8 +19,8 @@ namespace
 
 using Gateway::NodeState;
 
-// One straggler of an earlier life is no twin; this many beats are. Without more for this long it is
-// forgotten.
+// Beats of another incarnation that prove a twin, each after a beat of the present one: a former life that
+// was killed is not heard again, and one straggler of it is no proof. A twin is forgotten after this silence.
 constexpr int BeatsOfATwin = 3;
 constexpr PeerTable::Duration TwinMemory = std::chrono::seconds(5);
 
@@ -112,11 +112,12 @@ bool PeerTable::ForgetOne(Change &change)
 }
 
 // A higher incarnation is a later life. A lower one is an earlier life's straggler, unless the later life has
-// fallen silent: a node that lost its counter and its clock comes back with a lower number.
+// said goodbye or has fallen silent: a node that lost its counter and its clock comes back with a lower
+// number.
 bool PeerTable::IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now)
 {
-    return incarnation > peer.Incarnation ||
-           (incarnation < peer.Incarnation && now - peer.LastHeard > peer.StaleAfter());
+    const bool isOver = peer.State == NodeState::LOST || now - peer.LastHeard > peer.StaleAfter();
+    return incarnation > peer.Incarnation || (incarnation < peer.Incarnation && isOver);
 }
 
 void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
@@ -133,6 +134,7 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.Beats = BeatCount();
     peer.LastBeatSource = Duration(-1);
     peer.LastEchoed.reset();
+    peer.DoubtsThisNode = false;
     peer.States.clear();
     peer.Place.clear();
 }
@@ -154,7 +156,14 @@ bool PeerTable::NoteTwin(Peer &peer, const HeardBeat &heard)
 {
     const Duration now = heard.Arrival;
     peer.TwinPlace = PlaceIn(heard.Beat, peer.TwinPlace);
-    peer.TwinBeats = now - peer.TwinSince > TwinMemory ? 1 : peer.TwinBeats + 1;
+    if (now - peer.TwinSince > TwinMemory)
+    {
+        peer.TwinBeats = 1;
+    }
+    else if (peer.LastBeatArrival >= peer.TwinSince)
+    {
+        ++peer.TwinBeats;
+    }
     peer.TwinSince = now;
     const bool news = !peer.Twice && peer.TwinBeats >= BeatsOfATwin;
     peer.Twice = peer.Twice || news;
@@ -238,6 +247,7 @@ void PeerTable::Measure(Peer &peer, const HeardBeat &heard) const
     const Duration now = heard.Arrival;
     peer.Place = PlaceIn(beat, peer.Place);
     peer.Clock.OnBeat({.Source = source, .Wall = Duration(heard.Utc)}, now);
+    peer.DoubtsThisNode |= peer.Clock.StoodStillHere();
     MeasureRoundTrip(peer, heard);
     peer.LastBeatSource = source;
     peer.LastBeatArrival = now;
@@ -409,33 +419,42 @@ bool PeerTable::IsEchoDue(const Peer &peer, Duration now) const
     return peer.State != NodeState::LOST && (!peer.LastEchoed || now - *peer.LastEchoed >= _echoPeriod);
 }
 
-std::size_t PeerTable::EchoesDue(Duration now, std::size_t most) const
+bool PeerTable::IsEchoUrgent(const Peer &peer)
 {
-    const auto due = std::count_if(_peers.begin(), _peers.end(),
-                                   [&](const auto &entry) { return IsEchoDue(entry.second, now); });
-    return std::min(static_cast<std::size_t>(due), most);
+    return peer.State != NodeState::LOST && peer.DoubtsThisNode;
 }
 
-std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t most)
+std::size_t PeerTable::EchoesDue(Duration now, std::size_t usual) const
+{
+    std::size_t urgent = 0;
+    std::size_t due = 0;
+    for (const auto &[name, peer] : _peers)
+    {
+        urgent += IsEchoUrgent(peer) ? 1 : 0;
+        due += !IsEchoUrgent(peer) && IsEchoDue(peer, now) ? 1 : 0;
+    }
+    return urgent + std::min(due, usual);
+}
+
+std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t usual, std::size_t most)
 {
     std::vector<Gateway::BeatEcho> echoes;
-    TakeTurns(
-        _peers, _lastEchoed, most,
-        [&](const std::string &, Peer &peer)
-        {
-            if (!IsEchoDue(peer, now))
-            {
-                return false;
-            }
-            Gateway::BeatEcho echo;
-            echo.node = peer.Tag;
-            echo.beat = static_cast<std::uint32_t>(peer.LastBeatSource.count());
-            echo.held_us = static_cast<std::uint32_t>(
-                std::chrono::duration_cast<std::chrono::microseconds>(now - peer.LastBeatArrival).count());
-            echoes.push_back(echo);
-            peer.LastEchoed = now;
-            return true;
-        });
+    const auto take = [&](Peer &peer)
+    {
+        Gateway::BeatEcho echo;
+        echo.node = peer.Tag;
+        echo.beat = static_cast<std::uint32_t>(peer.LastBeatSource.count());
+        echo.held_us = static_cast<std::uint32_t>(
+            std::chrono::duration_cast<std::chrono::microseconds>(now - peer.LastBeatArrival).count());
+        echoes.push_back(echo);
+        peer.LastEchoed = now;
+        peer.DoubtsThisNode = false;
+        return true;
+    };
+    TakeTurns(_peers, _lastReassured, most,
+              [&](const std::string &, Peer &peer) { return IsEchoUrgent(peer) && take(peer); });
+    TakeTurns(_peers, _lastEchoed, std::min(usual, most - echoes.size()),
+              [&](const std::string &, Peer &peer) { return IsEchoDue(peer, now) && take(peer); });
     return echoes;
 }
 

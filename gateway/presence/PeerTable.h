@@ -38,7 +38,8 @@ public:
     static constexpr Duration ShortestPeriod = std::chrono::milliseconds(100);
     static constexpr Duration LongestPeriod = std::chrono::seconds(60);
     // A node's beat goes back to it so often, or with each so manieth of our beats where that is more seldom.
-    // The round trip of one that has just come is measured at once.
+    // The round trip of one that has just come is measured at once. A peer that takes this node's beats for
+    // old ones, since this node's clock stood still, is echoed with the next beat.
     static constexpr Duration EchoPeriod = std::chrono::seconds(4);
     static constexpr int EchoEachBeats = 8;
     // Another announcement in the same life is taken so long after the one before at the earliest.
@@ -54,9 +55,9 @@ public:
     {
         std::string Node;
         std::uint64_t Incarnation = 0;
-        std::uint32_t Tag = 0;  // of node and incarnation (names/NodeTag.h)
-        bool IsTool = false;    // UP as long as it is kept; it has no offers and no states
-        bool IsReplay = false;  // what it posts was recorded before
+        std::uint32_t Tag = 0;            // of node and incarnation (names/NodeTag.h)
+        bool IsTool = false;              // UP as long as it is kept; it has no offers and no states
+        bool IsReplay = false;            // what it posts was recorded before
         std::vector<LinkStrain> Strains;  // that its newest beat tells of
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
@@ -87,9 +88,9 @@ public:
         Duration LastBeatSource{0};
         Duration LastBeatArrival{0};
         std::optional<Duration> LastEchoed;
-        // Beats of another incarnation since the last check for twins.
-        int TwinBeats = 0;
-        Duration TwinSince{0};
+        bool DoubtsThisNode = false;  // it needs an echo to believe that this node's beats are new
+        int TwinBeats = 0;      // beats of another incarnation, as far as they alternate with this one's
+        Duration TwinSince{0};  // when the last of them came
     };
 
     // Whether a node must be remembered although it is gone.
@@ -142,9 +143,10 @@ public:
     void NoteSent(std::int64_t source, Duration now) { _sent.Add(source, now); }
     // How often this node beats.
     void SetBeatPeriod(Duration period) { _echoPeriod = std::max(EchoPeriod, EchoEachBeats * period); }
-    // How many echoes are due, no more than `most`; and those, of the nodes whose turn it is.
-    std::size_t EchoesDue(Duration now, std::size_t most) const;
-    std::vector<Gateway::BeatEcho> NextEchoes(Duration now, std::size_t most);
+    // How many echoes are due: all for peers that doubt this node, and no more than `usual` others.
+    std::size_t EchoesDue(Duration now, std::size_t usual) const;
+    // Those, `most` at most: first for the peers that doubt this node, then for the others whose turn it is.
+    std::vector<Gateway::BeatEcho> NextEchoes(Duration now, std::size_t usual, std::size_t most);
 
 private:
     Peer *GetOrMake(const std::string &node, Change &change);
@@ -159,6 +161,7 @@ private:
     static bool NoteTwin(Peer &peer, const HeardBeat &heard);
     static void BeginLife(Peer &peer, const HeardBeat &heard);
     bool IsEchoDue(const Peer &peer, Duration now) const;
+    static bool IsEchoUrgent(const Peer &peer);
     void TakeIn(Peer &peer, const HeardBeat &heard, Change &change);
     void Measure(Peer &peer, const HeardBeat &heard) const;
     void MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const;
@@ -180,6 +183,7 @@ private:
     std::uint64_t _malformed = 0;
     Duration _echoPeriod = EchoPeriod;
     std::string _lastEchoed;
+    std::string _lastReassured;  // of those that doubt this node
     int _ownTwinBeats = 0;
     Duration _ownTwinSince{0};
     bool _ownTwice = false;

@@ -254,7 +254,6 @@ void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, S
 
 void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
 {
-    _sessions.On(event);
     if (event.What == PeerEvent::Kind::Left)
     {
         Note(_peers.OnLeft(event.Node, event.Incarnation), event.Node, served);
@@ -377,19 +376,26 @@ std::size_t Presence::BeatCopies() const
     return static_cast<std::size_t>(std::max(_writer ? _writer->Destinations() : 0, 1));
 }
 
+std::size_t Presence::SessionsOf(std::string_view node) const
+{
+    const PeerTable::Peer *const peer = _peers.Find(std::string(node));
+    return peer != nullptr && peer->Twice ? 2 : 1;
+}
+
 std::size_t Presence::SendBeat(Duration now, std::size_t most)
 {
     if (!_writer)
     {
         return 0;
     }
+    const bool isDue = now >= BeatDue();
     const PostTime time = _clock.Now();
     Gateway::Beat beat = MakeBeat(time);
     _contents.Fill(beat, time.Monotonic, most);
     _owesNews = false;
     _peers.NoteSent(beat.source_ns, time.Monotonic);
     static_cast<void>(Write(beat, time));
-    _pace.Sent(now);
+    isDue ? _pace.Sent(now) : _pace.SentEarly(now);
     return GatewayTopics::TypeOf<Gateway::Beat>().SerializedSize(beat) - Encapsulation;
 }
 

@@ -19,7 +19,6 @@
 #include "presence/BeatContents.h"
 #include "presence/BeatPace.h"
 #include "presence/Introductions.h"
-#include "presence/NodeSessions.h"
 #include "presence/OriginTable.h"
 #include "presence/OtherFormats.h"
 #include "presence/PeerTable.h"
@@ -66,8 +65,8 @@ public:
     {
         std::uint32_t Peer = 0;  // its tag (names/NodeTag.h)
         std::string Node;
-        Duration Delay{0};       // of the newest that had come, against the quickest
-        Duration ArrivedAt{0};   // when it came there, and the way back, by this node's monotonic clock
+        Duration Delay{0};      // of the newest that had come, against the quickest
+        Duration ArrivedAt{0};  // when it came there, and the way back, by this node's monotonic clock
     };
 
     struct Served
@@ -103,9 +102,11 @@ public:
     Duration BeatPromised() const { return _pace.Promised(); }
     // What the next beat takes at most, as the bytes of its body (CDR without the encapsulation).
     std::size_t BeatSize(Duration now) const { return _contents.Size(now); }
-    // How many datagrams it takes, and what goes to that node alone.
+    // How many datagrams it takes.
     std::size_t BeatCopies() const;
-    std::size_t SessionsOf(std::string_view node) const { return _sessions.Of(node); }
+    // How many sessions get what is sent to that node alone (TransportWriter::WriteTo): two while two live
+    // nodes have its name.
+    std::size_t SessionsOf(std::string_view node) const;
     // Sends exactly one beat, whose body takes at most so many bytes, but always what an empty one takes; the
     // rest of what is to be said follows in the next ones. Returns the bytes of its body; 0 before Open.
     std::size_t SendBeat(Duration now, std::size_t most = BeatFormat::Largest);
@@ -173,7 +174,6 @@ private:
     const std::function<void()> _wake;
 
     PeerTable _peers;
-    NodeSessions _sessions;
     Introductions _introductions;
     ReaderWatch _watch;
     Served _served;

@@ -44,6 +44,7 @@ public:
 
     // Whether that node may put messages into it. Any thread, at any time.
     bool AcceptsFrom(std::string_view node) const;
+    bool AcceptsType(std::string_view type) const { return _types.find(type) != _types.end(); }
     // Any thread, at any time.
     Decoded Decode(std::string_view type, std::span<const std::uint8_t> payload) const;
 

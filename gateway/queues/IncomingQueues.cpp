@@ -17,52 +17,63 @@ IncomingQueues::IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorksp
     }
 }
 
-IncomingQueues::Decoded IncomingQueues::Decode(const Undecoded &message) const
+std::shared_ptr<void> IncomingQueues::Decode(const Undecoded &message) const
 {
-    Decoded decoded{.Source = message.Source, .Queue = message.Queue, .Size = message.Size, .What = {}};
-    const auto queue = _accepted.find(message.Queue);
-    if (queue != _accepted.end())
-    {
-        decoded.What = queue->second.Decode(message.Type, message.Owner->View().first(message.Size));
-    }
-    return decoded;
+    const AcceptedQueue &queue = _accepted.at(message.Queue);
+    return std::make_shared<AcceptedQueue::Decoded>(
+        queue.Decode(message.Type, message.Owner->View().first(message.Size)));
 }
 
-LocalQueueResult IncomingQueues::Deliver(std::string_view source, std::string_view queue,
-                                         std::string_view type, std::span<const std::uint8_t> payload,
-                                         const LinkPayload &owner, bool redelivered)
+bool IncomingQueues::Accepts(std::string_view source, std::string_view queue)
 {
     const auto found = _accepted.find(queue);
+    const bool accepts = found != _accepted.end() && found->second.AcceptsFrom(source);
+    if (!accepts)
+    {
+        _unwanted.Refused(source, queue, _workspace.GetClock().Monotonic());
+    }
+    return accepts;
+}
+
+bool IncomingQueues::AcceptsType(std::string_view queue, std::string_view type) const
+{
+    const auto found = _accepted.find(queue);
+    return found != _accepted.end() && found->second.AcceptsType(type);
+}
+
+LocalQueueResult IncomingQueues::Deliver(const LinkDelivery &delivery)
+{
+    const auto found = _accepted.find(delivery.Queue);
     if (found == _accepted.end())
     {
         return LocalQueueResult::Unknown;
     }
-    if (!found->second.AcceptsFrom(source))
-    {
-        _unwanted.Refused(source, queue, _workspace.GetClock().Monotonic());
-        return LocalQueueResult::Unknown;
-    }
     AcceptedQueue &accepted = found->second;
     LocalQueueResult result = LocalQueueResult::Full;
-    if (_offered != nullptr && _offered->Source == source && _offered->Queue == queue &&
-        _offered->Size == payload.size())
+    if (delivery.Prepared)
     {
-        result = accepted.Deliver(std::exchange(_offered, nullptr)->What, redelivered);
+        result = accepted.Deliver(*std::static_pointer_cast<AcceptedQueue::Decoded>(delivery.Prepared),
+                                  delivery.Redelivered);
     }
-    else if (payload.size() <= _quicklyDecoded)
+    else if (delivery.Payload.size() <= _quicklyDecoded)
     {
-        result = accepted.Deliver(accepted.Decode(type, payload), redelivered);
+        result = accepted.Deliver(accepted.Decode(delivery.Type, delivery.Payload), delivery.Redelivered);
     }
     else if (accepted.Room() > 0)
     {
-        _undecoded.push_back({std::string(source), std::string(queue), std::string(type),
-                              owner ? owner : LinkBytes::CopyOf(payload), payload.size()});
+        _undecoded.push_back({.Source = std::string(delivery.Source),
+                              .Queue = std::string(delivery.Queue),
+                              .Type = std::string(delivery.Type),
+                              .SenderLife = delivery.SenderLife,
+                              .Number = delivery.Number,
+                              .Owner = delivery.Owner ? delivery.Owner : LinkBytes::CopyOf(delivery.Payload),
+                              .Size = delivery.Payload.size()});
         return LocalQueueResult::Later;
     }
     if (result == LocalQueueResult::Ok && _keepsReceived)
     {
-        _received.push_back(
-            {std::string(source), std::string(queue), std::string(type), LinkBytes::CopyOf(payload)});
+        _received.push_back({std::string(delivery.Source), std::string(delivery.Queue),
+                             std::string(delivery.Type), LinkBytes::CopyOf(delivery.Payload)});
     }
     if (result == LocalQueueResult::Ok &&
         std::find(_delivered.begin(), _delivered.end(), accepted.Local()) == _delivered.end())
@@ -75,7 +86,7 @@ LocalQueueResult IncomingQueues::Deliver(std::string_view source, std::string_vi
 std::size_t IncomingQueues::Room(std::string_view queue) const
 {
     const auto found = _accepted.find(queue);
-    return found == _accepted.end() ? 1 : found->second.Room();
+    return found == _accepted.end() ? 0 : found->second.Room();
 }
 
 void IncomingQueues::Find(const std::function<void(const std::string &queue)> &changed)

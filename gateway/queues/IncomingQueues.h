@@ -23,35 +23,31 @@ namespace Rabit
 
 // The local queues into which other nodes may put messages, as the receivers of the links see them.
 //
-// Large messages are decoded while the links are not locked, since one of megabytes would hold up everybody
-// else for as long as that takes: Deliver puts them off (LocalQueueResult::Later), TakeUndecoded gives them
-// out, Decode makes messages of them, and Offer has Deliver take these when the links ask again.
+// A large message is decoded while the links are not locked, since one of megabytes would hold up everybody
+// else for as long as that takes: Deliver answers Later, TakeUndecoded gives the message out, and Decode
+// makes what LinkNode::Prepared takes.
 //
-// Threads: Decode on any; the rest under the lock of who drives the links.
+// Threads: Decode on any; the rest under the lock of the links' driver.
 class IncomingQueues final : public LocalQueues
 {
 public:
     using Queue = AcceptedQueue::Queue;
 
-    // A payload up to this size is decoded while the links are locked: a few microseconds, and less than it
-    // costs to put it off.
+    // A payload up to this size is decoded while the links are locked: that takes a few microseconds, less
+    // than to put it off.
     static constexpr std::size_t QuicklyDecoded = 4096;
 
-    // A message that was put off.
+    // A message that was put off; SenderLife and Number as in LinkDelivery.
     struct Undecoded
     {
         std::string Source, Queue, Type;
+        std::uint64_t SenderLife = 0;
+        std::uint64_t Number = 0;
         LinkPayload Owner;
         std::size_t Size = 0;  // the first bytes of Owner are the payload
     };
-    struct Decoded
-    {
-        std::string_view Source, Queue;  // of the Undecoded
-        std::size_t Size = 0;
-        AcceptedQueue::Decoded What;
-    };
 
-    // A message that was put into a queue, for who records.
+    // A message that was put into a queue, for a recorder.
     struct Received
     {
         std::string Source, Queue, Type;
@@ -63,11 +59,9 @@ public:
                    const std::function<void()> &wake, std::size_t quicklyDecoded = QuicklyDecoded,
                    bool keepsReceived = false);
 
-    // Makes a message of what was put off, or says why there is none. Any thread.
-    Decoded Decode(const Undecoded &message) const;
-    // What Deliver may take in place of decoding, until Offer(nullptr).
-    void Offer(const Decoded *message) { _offered = message; }
-    // What was put off since the last call; into the empty list.
+    // Returns LinkDelivery::Prepared of a message that was put off. Any thread.
+    std::shared_ptr<void> Decode(const Undecoded &message) const;
+    // Messages that were put off since the last call; into the empty list. The caller decodes them.
     void TakeUndecoded(std::vector<Undecoded> &messages) { messages.swap(_undecoded); }
     bool AnyUndecoded() const { return !_undecoded.empty(); }
 
@@ -82,9 +76,9 @@ public:
     void TakeReceived(std::vector<Received> &messages) { messages.swap(_received); }
 
     // LocalQueues
-    LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                             std::span<const std::uint8_t> payload, const LinkPayload &owner,
-                             bool redelivered) override;
+    bool Accepts(std::string_view source, std::string_view queue) override;
+    bool AcceptsType(std::string_view queue, std::string_view type) const override;
+    LocalQueueResult Deliver(const LinkDelivery &delivery) override;
     std::size_t Room(std::string_view queue) const override;
 
     // What keeps messages from being delivered, by queue, and who sends what is not accepted of it.
@@ -95,7 +89,6 @@ private:
     const std::size_t _quicklyDecoded;
     const bool _keepsReceived;
     std::map<std::string, AcceptedQueue, std::less<>> _accepted;  // the names: unchanged after construction
-    const Decoded *_offered = nullptr;
     std::vector<Undecoded> _undecoded;
     std::vector<std::shared_ptr<Queue>> _delivered;
     std::vector<Received> _received;

@@ -25,6 +25,9 @@ LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
     return settings;
 }
 
+// Names the handlers of receipts for people.
+const std::string OfReceipt = "a receipt";
+
 QueueOutcome OutcomeOf(LinkOutcome outcome)
 {
     switch (outcome)
@@ -44,11 +47,12 @@ QueueOutcome OutcomeOf(LinkOutcome outcome)
 }  // namespace
 
 LinkDriver::LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
-                       std::uint64_t clockName, std::function<void()> wake)
+                       std::uint64_t clockName, std::function<void()> wake, RabitHandlerThread *handlers)
     : _config(config),
       _workspace(workspace),
       _incarnations(incarnations),
       _wake(std::move(wake)),
+      _handlers(handlers),
       _incoming(config.Accept, workspace, _wake, IncomingQueues::QuicklyDecoded, config.Tap != nullptr),
       _links(std::make_unique<LinkNode>(SettingsOf(config, clockName), static_cast<LinkOutput &>(*this),
                                         static_cast<LocalQueues &>(_incoming), incarnations))
@@ -138,6 +142,7 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
     frame.Source = info.Node;
     News &news = OwnNews();
     bool sooner = false;
+    bool large = false;
     {
         const std::lock_guard lock(_mutex);
         const LinkTime now = Now();
@@ -147,10 +152,14 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
             _anyDelays = true;
         }
         sooner = ServeBy(_outbox.IsEmpty() ? _links->NextDue() : LinkTime(0));
+        large = _incoming.AnyUndecoded();
         TakeNews(news);
     }
     Tell(news);
-    DecodeLarge(news);
+    if (large)
+    {
+        DecodeLarge(news);
+    }
     news.Clear();
     if (sooner)
     {
@@ -161,25 +170,37 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
 
 void LinkDriver::DecodeLarge(News &news)
 {
-    while (!news.Large.empty())
+    std::vector<IncomingQueues::Undecoded> large;
+    for (;;)
     {
-        const std::vector<IncomingQueues::Undecoded> large = std::exchange(news.Large, {});
         news.Clear();
+        large.clear();
+        {
+            const std::lock_guard lock(_mutex);
+            _incoming.TakeUndecoded(large);
+        }
+        if (large.empty())
+        {
+            return;
+        }
         for (const IncomingQueues::Undecoded &message : large)
         {
-            const IncomingQueues::Decoded decoded = _incoming.Decode(message);
-            const std::lock_guard lock(_mutex);
-            _incoming.Offer(&decoded);
-            _links->Retry(message.Source, message.Queue, Now());
-            _incoming.Offer(nullptr);
-            ServeBy(LinkTime(0));
+            std::shared_ptr<void> decoded = _incoming.Decode(message);
+            bool sooner = false;
+            {
+                const std::lock_guard lock(_mutex);
+                _links->Prepared(message.Source, message.Queue, message.SenderLife, message.Number,
+                                 std::move(decoded), Now());
+                sooner = ServeBy(LinkTime(0));
+                TakeNews(news);
+            }
+            if (sooner)
+            {
+                _wake();
+            }
+            Tell(news);
+            news.Clear();
         }
-        {
-            const std::lock_guard lock(_mutex);
-            TakeNews(news);
-        }
-        _wake();
-        Tell(news);
     }
 }
 
@@ -199,10 +220,6 @@ void LinkDriver::TakeNews(News &news)
     if (!_settled.empty())
     {
         news.Settled.swap(_settled);
-    }
-    if (_incoming.AnyUndecoded())
-    {
-        _incoming.TakeUndecoded(news.Large);
     }
 }
 
@@ -224,10 +241,12 @@ void LinkDriver::TellAll(const News &news)
     }
     for (const auto &queue : news.Delivered)
     {
+        const RabitHandlerThread::Scope scope(_handlers, queue->Name(), queue);
         queue->NotifyEnqueued();
     }
     for (const auto &[receipt, outcome] : news.Settled)
     {
+        const RabitHandlerThread::Scope scope(_handlers, OfReceipt, receipt);
         receipt->Settle(outcome);
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitQueueReceipt.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
@@ -36,18 +37,20 @@ namespace Rabit
 // Threads: any thread calls Enqueue; the transport's threads hand in what arrives and put it straight into
 // the local queues; only the gateway's thread, in Service or SendOne, writes to the network. One mutex guards
 // the links; while it is held no large message is decoded, no file is written, and no handler of a queue and
-// nothing of the transport is called, so that a slow network, disk or handler delays nobody.
+// nothing of the transport is called, so that a slow network, disk or handler delays nobody. The program's
+// own handlers of queues and receipts are called by `handlers`.
 class LinkDriver final : private LinkOutput
 {
 public:
     using Duration = std::chrono::nanoseconds;
     using Receipt = std::shared_ptr<RabitQueueReceipt>;
 
-    // All references must outlive the object, and nobody else may use the incarnations. `clockName` tells
-    // this node's monotonic clock from those of its other lives. `wake` makes the gateway's thread call
-    // Service soon; called on any thread.
+    // All references and the handlers must outlive the object, and nobody else may use the incarnations.
+    // `clockName` tells this node's monotonic clock from those of its other lives. `wake` makes the gateway's
+    // thread call Service soon; called on any thread. Without `handlers` all handlers are called on the
+    // threads above.
     LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
-               std::uint64_t clockName, std::function<void()> wake);
+               std::uint64_t clockName, std::function<void()> wake, RabitHandlerThread *handlers = nullptr);
     ~LinkDriver();
 
     // The present life of this node.
@@ -72,7 +75,7 @@ public:
     // than now if something could be sent. The gateway's thread is woken for whatever comes after this call
     // and before WillServe, and after that for what is due before the time that it says.
     Duration Advance();
-    void VisitStreams(const std::function<void(const LinkStream &)> &visit) const;
+    void VisitStreams(std::size_t most, const std::function<void(const LinkStream &)> &visit) const;
     // Writes one datagram, made now, of at most so many bytes on the air as LinkNode::SendOne has it. Returns
     // whether there was one.
     bool SendOne(std::string_view destination, std::string_view queue, std::size_t most);
@@ -127,13 +130,11 @@ private:
     {
         std::vector<std::shared_ptr<IncomingQueues::Queue>> Delivered;  // queues with new messages
         std::vector<std::pair<Receipt, QueueOutcome>> Settled;          // receipts with an outcome
-        std::vector<IncomingQueues::Undecoded> Large;                   // messages to be decoded first
 
         void Clear()
         {
             Delivered.clear();
             Settled.clear();
-            Large.clear();
         }
     };
 
@@ -159,7 +160,8 @@ private:
 
     // Handler of the transport.
     void OnFrame(SampleBytes bytes, const SampleInfo &info);
-    // Without the mutex: decodes large messages that came, and has the links deliver them.
+    // Without the mutex: decodes the large messages that are complete, and has the links deliver them. For
+    // threads that may take that long; every call of the links that may complete a message comes before one.
     void DecodeLarge(News &news);
     void MakeWriter();
     // Writes what the links have sent; without the mutex.
@@ -170,6 +172,7 @@ private:
     RabitWorkspace &_workspace;
     IncarnationStore &_incarnations;
     const std::function<void()> _wake;
+    RabitHandlerThread *const _handlers;
 
     mutable std::mutex _mutex;
     IncomingQueues _incoming;                              // guarded, but for Decode

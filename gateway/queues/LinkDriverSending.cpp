@@ -15,7 +15,7 @@ LinkDriver::Duration LinkDriver::Service()
     News &news = OwnNews();
     {
         const std::lock_guard lock(_mutex);
-        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
+        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue); });
         _links->Run(Now());
         _sending.Swap(_outbox);
         next = _nextService = _links->NextDue();
@@ -57,7 +57,7 @@ LinkDriver::Duration LinkDriver::Advance()
     News &news = OwnNews();
     {
         const std::lock_guard lock(_mutex);
-        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue, Now()); });
+        _incoming.Find([this](const std::string &queue) { _links->OnRoom(queue); });
         _links->Advance(Now());
         next = _links->NextDue();
         _nextService = LinkNever;
@@ -69,10 +69,10 @@ LinkDriver::Duration LinkDriver::Advance()
     return next;
 }
 
-void LinkDriver::VisitStreams(const std::function<void(const LinkStream &)> &visit) const
+void LinkDriver::VisitStreams(std::size_t most, const std::function<void(const LinkStream &)> &visit) const
 {
     const std::lock_guard lock(_mutex);
-    _links->VisitStreams(Now(), visit);
+    _links->VisitStreams(most, Now(), visit);
 }
 
 bool LinkDriver::SendOne(std::string_view destination, std::string_view queue, std::size_t most)

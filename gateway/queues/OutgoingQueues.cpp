@@ -27,13 +27,14 @@ std::pair<std::string, std::string> Split(const std::string &queueName)
     return {queueName.substr(0, slash), queueName.substr(slash + 1)};
 }
 
-bool Settle(const std::shared_ptr<RabitQueueReceipt> &receipt, QueueOutcome outcome)
+// Returns false.
+bool RefuseAtCall(const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     if (receipt)
     {
-        receipt->Settle(outcome);
+        receipt->Refuse();
     }
-    return outcome == QueueOutcome::Delivered;
+    return false;
 }
 
 }  // namespace
@@ -64,7 +65,15 @@ bool OutgoingQueues::Forward(const std::string &queueName, const std::shared_ptr
     {
         const bool added = _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
         Begin(receipt, 1);
-        return Settle(receipt, added ? QueueOutcome::Delivered : QueueOutcome::Refused);
+        if (!added)
+        {
+            return RefuseAtCall(receipt);
+        }
+        if (receipt)
+        {
+            receipt->Settle(QueueOutcome::Delivered);
+        }
+        return true;
     }
     const MessageType *type = MessageTypeRegistry::Of(*message);
     if (type == nullptr)
@@ -152,7 +161,7 @@ bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue
     if (!_links.Enqueue(node, queue, type.Name(), payload, receipt))
     {
         TellRefused(node, queue, type, payload, "too many messages for it wait here");
-        return Settle(receipt, QueueOutcome::Refused);  // counted by the link
+        return RefuseAtCall(receipt);  // counted by the link
     }
     _refusals.Forgive(node, queue);
     return true;
@@ -171,7 +180,7 @@ bool OutgoingQueues::Refuse(const std::string &node, const std::string &queue, Q
                             const std::string &reason, const Receipt &receipt)
 {
     _refusals.Add(node, queue, acceptance, reason);
-    return Settle(receipt, QueueOutcome::Refused);
+    return RefuseAtCall(receipt);
 }
 
 std::vector<Gateway::LinkStatus> OutgoingQueues::Status() const

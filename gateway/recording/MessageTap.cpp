@@ -24,14 +24,14 @@ void MessageTap::Begin()
     _seen = _global->GetNumberOfPosts();
     _postsBefore = _seen;
     _copy = _global->GetCopyOfMessage();
-    _connection = RabitScopedConnection(_global->ConnectSomethingPublished(
+    _connection = RabitScopedConnection(_global->ConnectSomethingPublished(RabitQuickHandler(
         [weak = weak_from_this()]
         {
             if (const auto tap = weak.lock())
             {
                 tap->OnPost();
             }
-        }));
+        })));
     if (_copy->WasPosted())
     {
         Record();

@@ -88,6 +88,7 @@ MessageTaps::~MessageTaps() = default;
 void MessageTaps::Look()
 {
     const std::size_t notRecorded = _notRecorded.size();
+    std::erase_if(_known, [this](const auto &known) { return !_workspace.FindGlobalMessage(known.first); });
     for (const MessageInfo &message : _workspace.GetListOfMessages())
     {
         const auto global = _workspace.FindGlobalMessage(message.Name);

@@ -15,8 +15,7 @@ double Seconds(std::chrono::nanoseconds duration)
     return std::chrono::duration<double>(duration).count();
 }
 
-Gateway::NodeStatus StatusOf(const PeerTable::Peer &peer, std::chrono::nanoseconds now,
-                             const Gateway::Fleet &fleet)
+Gateway::NodeStatus StatusOf(const PeerTable::Peer &peer, std::chrono::nanoseconds now)
 {
     Gateway::NodeStatus status;
     status.node = peer.Node;
@@ -27,18 +26,6 @@ Gateway::NodeStatus StatusOf(const PeerTable::Peer &peer, std::chrono::nanosecon
     status.last_heard_s = std::max(0.0, Seconds(now - peer.LastHeard));
     const auto roundTrip = peer.Clock.RoundTrip();
     status.round_trip_s = roundTrip ? Seconds(*roundTrip) : std::numeric_limits<double>::quiet_NaN();
-    for (const Gateway::LinkStatus &link : fleet.links)
-    {
-        status.outbox += link.node == peer.Node ? link.outbox : 0;
-    }
-    for (const Gateway::TopicStatus &topic : fleet.topics)
-    {
-        if (topic.node == peer.Node)
-        {
-            status.messages_received += topic.received;
-            status.undecodable += topic.undecodable;
-        }
-    }
     return status;
 }
 
@@ -54,12 +41,36 @@ void AddProblem(const std::string &subject, const std::string &node, const std::
 
 }  // namespace
 
+// FillNodes has sorted the rows by name.
+Gateway::NodeStatus *NodeIn(Gateway::Fleet &fleet, std::string_view node)
+{
+    const auto row = std::lower_bound(fleet.nodes.begin(), fleet.nodes.end(), node,
+                                      [](const Gateway::NodeStatus &status, std::string_view name)
+                                      { return status.node < name; });
+    return row == fleet.nodes.end() || row->node != node ? nullptr : &*row;
+}
+
 void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet)
 {
     fleet.nodes.clear();
     for (const PeerTable::Peer *peer : peers.Heard())
     {
-        fleet.nodes.push_back(StatusOf(*peer, now, fleet));
+        fleet.nodes.push_back(StatusOf(*peer, now));
+    }
+    for (const Gateway::LinkStatus &link : fleet.links)
+    {
+        if (Gateway::NodeStatus *const node = NodeIn(fleet, link.node))
+        {
+            node->outbox += link.outbox;
+        }
+    }
+    for (const Gateway::TopicStatus &topic : fleet.topics)
+    {
+        if (Gateway::NodeStatus *const node = NodeIn(fleet, topic.node))
+        {
+            node->messages_received += topic.received;
+            node->undecodable += topic.undecodable;
+        }
     }
 }
 

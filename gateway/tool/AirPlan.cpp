@@ -279,4 +279,21 @@ std::string WhyAboveBudget(const AirPlan &plan)
            "; a max_rate, or a larger budget";
 }
 
+std::vector<std::string> LargerThanASecond(const AirPlan &plan)
+{
+    std::vector<std::string> list;
+    const double budget = plan.Config->Radio.Budget.value_or(0.0);
+    for (const AirItem &item : plan.Items)
+    {
+        const double bytes = item.Bytes * static_cast<double>(item.Copies);
+        if (budget > 0.0 && bytes > budget)
+        {
+            list.push_back("one " + item.What + " takes " + std::to_string(std::llround(bytes)) +
+                           " bytes on the air, which is more than a second of the budget of " +
+                           std::to_string(std::llround(budget)) + " B/s: newer ones wait meanwhile");
+        }
+    }
+    return list;
+}
+
 }  // namespace Rabit::Tool

@@ -65,4 +65,7 @@ std::vector<AirPlan> AirPlansOf(const std::vector<GatewayConfig> &fleet, const A
 // What exceeds the node's budget, in words with what takes most; empty if it fits, or there is no budget.
 std::string WhyAboveBudget(const AirPlan &plan);
 
+// Names the messages that take more than a second of the budget each time; empty if none is known to.
+std::vector<std::string> LargerThanASecond(const AirPlan &plan);
+
 }  // namespace Rabit::Tool

@@ -190,6 +190,14 @@ int Run(const Options &options)
                                        .Nodes = {plan.Config->Node},
                                        .Text = why});
         }
+        for (const std::string &large : LargerThanASecond(plan))
+        {
+            FleetCheck::Add(findings, {.File = plan.Config->File,
+                                       .Line = FleetCheck::LineIn(*plan.Config, "radio.budget"),
+                                       .Nodes = {plan.Config->Node},
+                                       .Text = large,
+                                       .IsProblem = false});
+        }
     }
     bool isRead = ShowFindings(findings, options.Json);
     if (options.Json)

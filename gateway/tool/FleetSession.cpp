@@ -31,7 +31,8 @@ FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &opt
     }
     _explorer->SetOnChange([this] { _wakeup.Notify(); });
     _workspace.AddPublishSubscribeMessage(FleetMessageNameOf(config), _fleet);
-    _fleet->Register_SomethingPublished([this] { _wakeup.Notify(); });
+    _fleet->GetGlobalPublishSubscribeMessageRef()->ConnectSomethingPublished(
+        RabitQuickHandler([this] { _wakeup.Notify(); }));
     _reactor.SetHandleSignals(false);
     _runner = std::thread([this] { _reactor.Run(); });
 }

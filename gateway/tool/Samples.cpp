@@ -168,9 +168,13 @@ void Samples::Follow(const std::string &node)
     {
         return;
     }
-    // The posts of one node come one after the other.
-    message->Register_SomethingPublished(
-        [inbox = _inbox, fetched = std::make_shared<DynamicMessage>(*message), node, &session = _session]
+    // The handler fetches into a message of its own: it runs on the transport's thread.
+    auto fetched = std::make_shared<DynamicMessage>(_type.Type);
+    const auto global = message->GetGlobalPublishSubscribeMessageRef();
+    fetched->SetGlobalPublishSubscribeMessageRef(global);
+    // The posts of one node come one after the other, and the handler sees each of them: it is a quick one.
+    global->ConnectSomethingPublished(RabitQuickHandler(
+        [inbox = _inbox, fetched, node, &session = _session]
         {
             if (!fetched->FetchMessage())
             {
@@ -193,7 +197,7 @@ void Samples::Follow(const std::string &node)
                 inbox->Waiting.push_back(std::move(sample));
             }
             session.Notify();
-        });
+        }));
 }
 
 std::vector<Sample> Samples::Take(double until)

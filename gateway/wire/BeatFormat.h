@@ -31,7 +31,7 @@ inline constexpr std::size_t Largest = 900;
 // What is put into one beat at most; the rest follows in the next ones.
 inline constexpr std::size_t MostStates = 64;
 inline constexpr std::size_t MostWants = 8;
-inline constexpr std::size_t MostEchoes = 2;
+inline constexpr std::size_t MostEchoes = 2;  // and as many as there is room for while peers doubt this node
 inline constexpr std::size_t MostDelays = 16;
 
 // What tools and replays say that they are (wire/BeatExtensions.h).

@@ -219,11 +219,22 @@ TEST(PublishSubscribe, AnOverrideThatAssignsTheWholeObjectKeepsTheMessageAttache
     EXPECT_EQ(pair.Poster->Text, "second");
 }
 
-TEST(PublishSubscribe, AnOverrideThatAssignsTheWholeObjectDoesNotMakeTheGlobalCopyOwnItself)
+TEST(PublishSubscribe, AnOverrideThatUsesCopyBaseKeepsTheMessageAttached)
+{
+    Pair<BaseCopyingMessage> pair;
+    const auto global = pair.Poster->GetGlobalPublishSubscribeMessageRef();
+    pair.Poster->Number = 1;
+    pair.Poster->PostMessage();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+    EXPECT_EQ(pair.Reader->Number, 1);
+    EXPECT_EQ(pair.Reader->GetGlobalPublishSubscribeMessageRef(), global);
+}
+
+TEST(PublishSubscribe, AnOverrideThatUsesCopyBaseDoesNotMakeTheGlobalCopyOwnItself)
 {
     std::weak_ptr<PublishSubscribeMessage> global;
     {
-        Pair<AssigningMessage> pair;
+        Pair<BaseCopyingMessage> pair;
         pair.Poster->PostMessage();
         pair.Reader->FetchMessage();
         global = pair.Poster->GetGlobalPublishSubscribeMessageRef();

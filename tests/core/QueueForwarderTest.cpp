@@ -57,7 +57,7 @@ public:
             }
             if (queues == 0)
             {
-                receipt->Settle(QueueOutcome::Refused);
+                receipt->Refuse();
             }
         }
         return queues > 0;

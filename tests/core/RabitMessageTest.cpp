@@ -2,12 +2,15 @@
 
 #include <rabit/PublishSubscribeMessage.h>
 #include <rabit/RabitMessage.h>
+#include <rabit/RabitWorkspace.h>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 
 namespace
 {
@@ -44,7 +47,96 @@ TEST(RabitMessage, TheBaseCopyTakesTheStampAndTheThreeIntsButNotTheReference)
     EXPECT_EQ(to.GetGlobalPublishSubscribeMessageRef(), nullptr);
 }
 
-TEST(RabitMessage, CopyBaseTakesTheReferenceToo)
+// A message whose contents may be assigned, registered under that name.
+std::shared_ptr<NumberMessage> Registered(RabitWorkspace &workspace, const std::string &name, int number)
+{
+    auto message = std::make_shared<NumberMessage>();
+    message->Number = number;
+    workspace.AddPublishSubscribeMessage(name, message);
+    return message;
+}
+
+TEST(RabitMessage, AssignmentTakesTheContentsAndLeavesTheRegistration)
+{
+    RabitWorkspace workspace;
+    const auto mine = Registered(workspace, "Mine", 1);
+    const auto theirs = Registered(workspace, "Theirs", 2);
+    theirs->MessageType = 3;
+    theirs->PostMessage();
+    *mine = *theirs;
+    EXPECT_EQ(mine->Number, 2);
+    EXPECT_EQ(mine->MessageType, 3);
+    EXPECT_EQ(mine->GetTimeStamp(), theirs->GetTimeStamp());
+    EXPECT_TRUE(mine->WasPosted());
+    EXPECT_EQ(mine->GetGlobalPublishSubscribeMessageRef(), workspace.FindGlobalMessage("Mine"));
+}
+
+TEST(RabitMessage, PostsToItsOwnNameAfterAnAssignment)
+{
+    RabitWorkspace workspace;
+    const auto mine = Registered(workspace, "Mine", 1);
+    const auto theirs = Registered(workspace, "Theirs", 2);
+    *mine = *theirs;
+    mine->PostMessage();
+    NumberMessage posted;
+    EXPECT_TRUE(workspace.ForceFetchMessage("Mine", &posted));
+    EXPECT_EQ(posted.Number, 2);
+    EXPECT_EQ(workspace.FindGlobalMessage("Theirs")->GetNumberOfPosts(), 0u);
+}
+
+TEST(RabitMessage, FetchesWhatIsPostedUnderItsOwnNameAfterAnAssignment)
+{
+    RabitWorkspace workspace;
+    const auto mine = Registered(workspace, "Mine", 1);
+    const auto other = Registered(workspace, "Mine", 4);
+    const auto theirs = Registered(workspace, "Theirs", 2);
+    theirs->PostMessage();
+    *mine = *theirs;
+    other->PostMessage();
+    EXPECT_TRUE(mine->FetchMessage());
+    EXPECT_EQ(mine->Number, 4);
+    EXPECT_FALSE(mine->FetchMessage());
+}
+
+TEST(RabitMessage, AMoveLeavesTheRegistrationOfBoth)
+{
+    RabitWorkspace workspace;
+    const auto mine = Registered(workspace, "Mine", 1);
+    const auto theirs = Registered(workspace, "Theirs", 2);
+    *mine = std::move(*theirs);
+    EXPECT_EQ(mine->Number, 2);
+    EXPECT_EQ(mine->GetGlobalPublishSubscribeMessageRef(), workspace.FindGlobalMessage("Mine"));
+    EXPECT_EQ(theirs->GetGlobalPublishSubscribeMessageRef(), workspace.FindGlobalMessage("Theirs"));
+    NumberMessage made(std::move(*theirs));
+    EXPECT_EQ(made.GetGlobalPublishSubscribeMessageRef(), nullptr);
+}
+
+TEST(RabitMessage, ACopyHasTheContentsAndIsUnregistered)
+{
+    RabitWorkspace workspace;
+    const auto message = Registered(workspace, "Name", 2);
+    message->PostMessage();
+    NumberMessage copy(*message);
+    EXPECT_EQ(copy.Number, 2);
+    EXPECT_EQ(copy.GetTimeStamp(), message->GetTimeStamp());
+    EXPECT_TRUE(copy.WasPosted());
+    EXPECT_EQ(copy.GetGlobalPublishSubscribeMessageRef(), nullptr);
+    EXPECT_THROW(copy.PostMessage(), GlobalPublishSubscribeException);
+}
+
+TEST(RabitMessage, CopyBaseLeavesTheRegistrationOfARegisteredMessage)
+{
+    RabitWorkspace workspace;
+    const auto mine = Registered(workspace, "Mine", 1);
+    const auto theirs = Registered(workspace, "Theirs", 2);
+    mine->CopyBase(theirs.get());
+    EXPECT_EQ(mine->GetGlobalPublishSubscribeMessageRef(), workspace.FindGlobalMessage("Mine"));
+    const NumberMessage unregistered;
+    mine->CopyBase(&unregistered);
+    EXPECT_EQ(mine->GetGlobalPublishSubscribeMessageRef(), workspace.FindGlobalMessage("Mine"));
+}
+
+TEST(RabitMessage, CopyBaseRegistersAnUnregisteredMessage)
 {
     NumberMessage from;
     from.MessageType = 1;

@@ -74,6 +74,49 @@ TEST(RabitQueueReceipt, CallsHandlersOnceWhenTheLastMessageIsSettled)
     EXPECT_EQ(calls, 1);
 }
 
+TEST(RabitQueueReceipt, CountsARefusalAtTheCallAndCallsNoHandler)
+{
+    RabitQueueReceipt receipt;
+    int calls = 0;
+    receipt.ConnectOutcomeKnown([&] { ++calls; });
+    receipt.Begin();
+    receipt.Refuse();
+    EXPECT_EQ(calls, 0);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Refused);
+    EXPECT_EQ(receipt.GetCounts().Refused, 1u);
+    EXPECT_EQ(receipt.GetCounts().Pending, 0u);
+    EXPECT_THROW(receipt.Refuse(), std::logic_error);
+}
+
+TEST(RabitQueueReceipt, CallsHandlersAtTheRefusalThatEndsAWaitForOtherMessages)
+{
+    RabitQueueReceipt receipt;
+    int calls = 0;
+    receipt.ConnectOutcomeKnown([&] { ++calls; });
+    receipt.Begin(2);
+    receipt.Settle(QueueOutcome::Delivered);
+    receipt.Refuse();
+    EXPECT_EQ(calls, 1);
+    receipt.Begin();
+    receipt.Refuse();
+    EXPECT_EQ(calls, 1) << "nothing was settled since";
+}
+
+TEST(RabitQueueReceipt, CallsHandlersForTheOtherMessagesAfterARefusal)
+{
+    RabitQueueReceipt receipt;
+    int calls = 0;
+    receipt.ConnectOutcomeKnown([&] { ++calls; });
+    receipt.Hold();
+    receipt.Begin(2);
+    receipt.Refuse();
+    receipt.Release();
+    EXPECT_EQ(calls, 0);
+    receipt.Settle(QueueOutcome::Delivered);
+    EXPECT_EQ(calls, 1);
+    EXPECT_EQ(receipt.Outcome(), QueueOutcome::Refused);
+}
+
 TEST(RabitQueueReceipt, ItsHandlersMayAskItAndAddToIt)
 {
     RabitQueueReceipt receipt;
@@ -182,6 +225,22 @@ TEST(RabitQueueReceiptWakeup, WakesTheManagerOnceAllIsKnown)
     receipt->Settle(QueueOutcome::Delivered);
     fixture.RunFor(1s);
     EXPECT_EQ(manager.Passes.load(), before + 1);
+}
+
+TEST(RabitQueueReceiptWakeup, AMessageThatIsRefusedAtTheCallWakesNobody)
+{
+    RabitTest::SteppedFixture fixture;
+    RabitTest::ScriptedManager &manager = fixture.Add("Manager");
+    manager.SetWakeupTimeDelaySec(3600);
+    fixture.Reactor.Start();
+    fixture.RunFor(1s);
+    const int before = manager.Passes.load();
+    const auto receipt = NewReceipt();
+    manager.WakeUpManagerOnOutcome(receipt);
+    EXPECT_FALSE(manager.AddMessageToQueue("nothing", std::make_shared<NumberMessage>(), receipt));
+    EXPECT_EQ(receipt->Outcome(), QueueOutcome::Refused);
+    fixture.RunFor(1s);
+    EXPECT_EQ(manager.Passes.load(), before);
 }
 
 TEST(RabitQueueReceiptWakeup, OutlivesItsManager)

@@ -32,7 +32,7 @@ public:
     }
 };
 
-// Assigns the whole object, the reference to the global copy included.
+// Assigns the whole object.
 class AssigningMessage : public Rabit::RabitMessage
 {
 public:
@@ -50,6 +50,30 @@ public:
             return false;
         }
         *this = *other;
+        return true;
+    }
+};
+
+// Copies by CopyBase, which may take the registration, too.
+class BaseCopyingMessage : public NumberMessage
+{
+public:
+    std::unique_ptr<Rabit::RabitMessage> Clone() const override
+    {
+        auto clone = std::make_unique<BaseCopyingMessage>();
+        clone->CopyBase(this);
+        clone->Number = Number;
+        return clone;
+    }
+    bool CopyMessage(Rabit::RabitMessage *msg) override
+    {
+        const auto *other = dynamic_cast<const BaseCopyingMessage *>(msg);
+        if (other == nullptr)
+        {
+            return false;
+        }
+        CopyBase(other);
+        Number = other->Number;
         return true;
     }
 };

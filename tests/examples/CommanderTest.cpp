@@ -31,7 +31,11 @@ public:
                  const std::shared_ptr<Rabit::RabitQueueReceipt> &receipt) override
     {
         if (!Accepts)
+        {
+            receipt->Begin();
+            receipt->Refuse();
             return false;
+        }
         All.emplace_back(queue, message);
         if (const auto *command = dynamic_cast<const Uav::Goto *>(message.get()))
             Sent.emplace_back(queue, *command);
@@ -163,6 +167,22 @@ TEST_F(Commander, TriesARefusedCommandAgainWithTheSameNumber)
     Run(500ms);
     ASSERT_EQ(_gateway->Sent.size(), 1u);
     EXPECT_EQ(_gateway->Sent[0].second.id, 1u);
+}
+
+TEST_F(Commander, TriesARefusedCommandAgainWithItsPeriodHoweverOftenItIsWoken)
+{
+    _gateway->Accepts = false;
+    Start({.Period = 15s});
+    Run(100ms);
+    const std::uint64_t before = _commander->Log().Of("uav1").Refused;
+    for (int i = 0; i < 50; ++i)
+    {
+        _commander->WakeUpManagerEH();
+        _reactor.RunFor(*_clock, 0ms);
+    }
+    EXPECT_EQ(_commander->Log().Of("uav1").Refused, before);
+    Run(1s);
+    EXPECT_EQ(_commander->Log().Of("uav1").Refused, before + 10);
 }
 
 TEST_F(Commander, BooksAnswersAndPublishesTheTally)

@@ -96,6 +96,12 @@ class Row:
         self.wait(plain, r"got rt/fmu/in/trajectory_setpoint \d+ -5", since)
         self.wait(plain, r"got rt/words \d+", since)
 
+    @staticmethod
+    def nothing_is_dropped(node):
+        """That the node took all datagrams of the programs for sound, those with which one ends included."""
+        dropped = [text for _, text in node.lines if "no sound RTPS message" in text]
+        assert not dropped, dropped
+
     def exchange(self):
         node = self.start_node()
         self.wait(node, r"foreign rt/chatter LOST no program writes .*")
@@ -116,12 +122,14 @@ class Row:
 
         # The node comes while the programs are there.
         assert node.terminate() == 0, node.lines[-5:]
+        self.nothing_is_dropped(node)
         other = self.start_plain()
         node = self.start_node()
         self.wait(node, r"message Latched \d+ .*")
         self.wait(node, r"queue Chatter \d+")
         self.wait(other, r"got rt/fmu/in/trajectory_setpoint \d+ -5")
         assert node.terminate() == 0, node.lines[-5:]
+        self.nothing_is_dropped(node)
 
 
 def main():

@@ -123,6 +123,27 @@ TEST(BeatPace, ALongerPeriodHoldsFromTheNextBeatOn)
     EXPECT_EQ(BeatsOf(pace, 1s, 12s), (std::vector<Ns>{1500ms, 6500ms, 11500ms}));
 }
 
+TEST(BeatPace, APromiseIsWhatTheLastBeatHasTold)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    EXPECT_EQ(pace.Promised(), 1500ms);
+    pace.SetPeriod(5s);
+    EXPECT_EQ(pace.Promised(), 1500ms);
+    pace.Sent(1500ms);
+    EXPECT_EQ(pace.Promised(), 6500ms);
+}
+
+TEST(BeatPace, ABeatThatGoesEarlyToBeInTimeIsNotBroughtForward)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.SentEarly(1400ms);
+    EXPECT_EQ(pace.EarliestToAsk(), 1400ms + BeatPace::ShortestGap);
+    EXPECT_EQ(pace.Due(), 1900ms);
+    EXPECT_EQ(pace.Promised(), 1900ms);
+}
+
 TEST(BeatPace, ABeatComesSoonAfterAState)
 {
     BeatPace pace;

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <rabit/ManualClock.h>
+#include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitMessageQueue.h>
 #include <rabit/idl/MessageTypeRegistry.h>
+
+#include <future>
 
 #include "ForeignNetwork.h"
 #include "clocks/GpsTime.h"
@@ -55,7 +58,8 @@ protected:
     {
         if (!reader)
         {
-            reader = std::make_unique<ForeignReader>(rule, type, 7, workspace, [this] { ++wakes; });
+            reader = std::make_unique<ForeignReader>(
+                rule, type, 7, workspace, [this] { ++wakes; }, &handlers);
             reader->Open(session, Now());
             reader->Service(Now());
         }
@@ -97,8 +101,69 @@ protected:
     Foreign::Session session{network};
     ForeignRule rule;
     int wakes = 0;
+    RabitHandlerThread handlers;
     std::unique_ptr<ForeignReader> reader;
 };
+
+// Runs until the test lets it return.
+struct Held
+{
+    void operator()()
+    {
+        Began.set_value();
+        MayReturn.get_future().wait();
+    }
+    std::promise<void> Began;
+    std::promise<void> MayReturn;
+};
+
+TEST_F(ForeignReaderTest, ASlowHandlerDoesNotHoldUpTheTransport)
+{
+    Held held;
+    int calls = 0;
+    local->Register_SomethingPublished(
+        [&]
+        {
+            if (++calls == 1)
+            {
+                held();
+            }
+        });
+    Reader();
+    network.Deliver(type, Of(1), 1);
+    held.Began.get_future().wait();
+    network.Deliver(type, Of(2), 2);
+    ASSERT_TRUE(local->FetchMessage());
+    EXPECT_EQ(local->number, 2u);
+    held.MayReturn.set_value();
+    handlers.Stop();
+    EXPECT_EQ(calls, 2);
+}
+
+TEST_F(ForeignReaderTest, ASlowHandlerOfAQueueDoesNotHoldUpTheGateway)
+{
+    Held held;
+    const auto queue = QueueOf(10);
+    int calls = 0;
+    queue->Register_SomethingEnqueued(
+        [&]
+        {
+            if (++calls == 1)
+            {
+                held();
+            }
+        });
+    Reader();
+    network.Deliver(type, Of(1), 1);
+    Reader().Service(Now());
+    held.Began.get_future().wait();
+    network.Deliver(type, Of(2), 2);
+    Reader().Service(Now());
+    EXPECT_EQ(queue->NoMessagesInQueue(), 2);
+    held.MayReturn.set_value();
+    handlers.Stop();
+    EXPECT_EQ(calls, 2);
+}
 
 TEST_F(ForeignReaderTest, PostsTheNewestSampleWithTheTimeOfItsArrival)
 {

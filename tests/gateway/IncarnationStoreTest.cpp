@@ -13,6 +13,11 @@ namespace Rabit::Test
 namespace
 {
 
+std::int64_t Nanoseconds(std::int64_t seconds)
+{
+    return seconds * 1'000'000'000;
+}
+
 class IncarnationStoreFile : public testing::Test
 {
 protected:
@@ -28,7 +33,7 @@ protected:
     // A start of the process, at this reading of the wall clock.
     IncarnationStore Start(std::int64_t seconds) const
     {
-        return IncarnationStore(_directory, "uav1", [seconds] { return seconds; });
+        return IncarnationStore(_directory, "uav1", [seconds] { return Nanoseconds(seconds); });
     }
     // The incarnation of a whole life.
     std::uint64_t Live(std::int64_t seconds) const
@@ -118,7 +123,7 @@ TEST_F(IncarnationStoreFile, tells_of_a_directory_that_cannot_be_made)
 {
     WriteFile("1\n");
     const std::filesystem::path notADirectory = _directory / "uav1.incarnation" / "state";
-    IncarnationStore store(notADirectory, "uav1", [] { return 1000; });
+    IncarnationStore store(notADirectory, "uav1", [] { return Nanoseconds(1000); });
     EXPECT_EQ(CounterOf(store.Above(0)), 1000U);
     store.Save();
     EXPECT_NE(store.Error().find("uav1.incarnation/state"), std::string::npos) << store.Error();
@@ -127,7 +132,7 @@ TEST_F(IncarnationStoreFile, tells_of_a_directory_that_cannot_be_made)
 
 TEST_F(IncarnationStoreFile, needs_no_file)
 {
-    IncarnationStore store("", "uav1", [] { return 1000; });
+    IncarnationStore store("", "uav1", [] { return Nanoseconds(1000); });
     EXPECT_EQ(CounterOf(store.Above(0)), 1000U);
     EXPECT_EQ(store.Error(), "");
     EXPECT_TRUE(store.File().empty());
@@ -135,13 +140,27 @@ TEST_F(IncarnationStoreFile, needs_no_file)
 
 TEST_F(IncarnationStoreFile, has_random_low_bits)
 {
-    const std::uint64_t first = IncarnationStore("", "uav1", [] { return 1000; }).Above(0);
+    const std::uint64_t first = IncarnationStore("", "uav1", [] { return Nanoseconds(1000); }).Above(0);
     bool differs = false;
     for (int i = 0; i < 10 && !differs; ++i)
     {
-        differs = IncarnationStore("", "uav1", [] { return 1000; }).Above(0) != first;
+        differs = IncarnationStore("", "uav1", [] { return Nanoseconds(1000); }).Above(0) != first;
     }
     EXPECT_TRUE(differs);
+}
+
+TEST_F(IncarnationStoreFile, rises_within_a_second_without_a_file)
+{
+    constexpr std::int64_t Start = 1'700'000'000'000'000'000;
+    constexpr std::int64_t Step = 20'000'000;  // faster than any process restarts
+    std::uint64_t last = 0;
+    for (std::int64_t now = Start; now < Start + Nanoseconds(2); now += Step)
+    {
+        const std::uint64_t incarnation = IncarnationStore("", "uav1", [now] { return now; }).Above(0);
+        EXPECT_GT(incarnation, last) << now;
+        EXPECT_EQ(CounterOf(incarnation), static_cast<std::uint64_t>(now / Nanoseconds(1)));
+        last = incarnation;
+    }
 }
 
 TEST_F(IncarnationStoreFile, never_gives_out_the_highest_counter)
@@ -155,7 +174,7 @@ TEST_F(IncarnationStoreFile, does_not_believe_a_clock_that_would_use_up_the_coun
 {
     EXPECT_EQ(CounterOf(Live(1000)), 1000U);
     EXPECT_EQ(CounterOf(Live(0xf0000000LL)), 1001U);
-    EXPECT_EQ(CounterOf(Live(1LL << 40)), 1002U);
+    EXPECT_EQ(CounterOf(Live(1LL << 33)), 1002U);
 }
 
 TEST_F(IncarnationStoreFile, a_node_name_cannot_leave_the_directory)

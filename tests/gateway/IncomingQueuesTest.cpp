@@ -13,6 +13,11 @@ namespace Rabit
 namespace
 {
 
+LinkDelivery DeliveryOf(std::string_view source, const std::vector<std::uint8_t> &payload)
+{
+    return {.Source = source, .Queue = "Orders", .Type = "Uav::Goto", .Payload = payload};
+}
+
 std::vector<std::uint8_t> GotoBytes(std::uint32_t id)
 {
     Uav::Goto message;
@@ -40,7 +45,7 @@ protected:
 
     LocalQueueResult Deliver(std::size_t item)
     {
-        return incoming.Deliver("uav1", "Orders", "Uav::Goto", payloads[item], nullptr, false);
+        return incoming.Deliver(DeliveryOf("uav1", payloads[item]));
     }
 
     std::uint32_t Take()
@@ -55,27 +60,37 @@ protected:
     std::vector<std::vector<std::uint8_t>> payloads;
 };
 
-TEST_F(IncomingQueuesTest, WhoSendsToAQueueThatAcceptsNothingOfItIsNamedForSomeSeconds)
+TEST_F(IncomingQueuesTest, ASenderToAQueueThatAcceptsNothingOfItIsNamedForSomeSeconds)
 {
     const auto clock = std::make_shared<ManualClock>(1.4e9, std::chrono::seconds(1000));
     RabitWorkspace stepped(clock);
     std::vector<AcceptRule> rules = Rules();
     rules[0].From = {"ground"};
-    stepped.AddManagerMessageQueue("Orders", local);
     IncomingQueues strict(rules, stepped, [] {});
-    strict.Find([](const std::string &) {});
-    EXPECT_EQ(strict.Deliver("ground", "Orders", "Uav::Goto", payloads[0], nullptr, false),
-              LocalQueueResult::Ok);
-    EXPECT_TRUE(strict.Problems().empty());
-    EXPECT_EQ(strict.Deliver("uav2", "Orders", "Uav::Goto", payloads[0], nullptr, false),
-              LocalQueueResult::Unknown);
-    ASSERT_EQ(strict.Problems().size(), 1u);
+    EXPECT_TRUE(strict.Accepts("ground", "Orders"));
+    EXPECT_TRUE(strict.Problems().empty() || strict.Problems()[0].node.empty());
+    EXPECT_FALSE(strict.Accepts("uav2", "Orders"));
+    ASSERT_FALSE(strict.Problems().empty());
     EXPECT_EQ(strict.Problems()[0].subject, "accept Orders");
     EXPECT_EQ(strict.Problems()[0].node, "uav2");
     EXPECT_EQ(strict.Problems()[0].reason,
               "uav2 sends messages to queue `Orders`, which accepts none of it: they are refused");
     clock->Advance(UnwantedSenders::Memory);
-    EXPECT_TRUE(strict.Problems().empty());
+    EXPECT_TRUE(strict.Problems()[0].node.empty());
+}
+
+TEST_F(IncomingQueuesTest, ASenderToAQueueThatThereIsNotIsNamed)
+{
+    EXPECT_FALSE(incoming.Accepts("uav2", "Nowhere"));
+    ASSERT_EQ(incoming.Problems().size(), 1u);
+    EXPECT_EQ(incoming.Problems()[0].subject, "accept Nowhere");
+}
+
+TEST_F(IncomingQueuesTest, AcceptsTheTypesOfTheQueueAlone)
+{
+    EXPECT_TRUE(incoming.AcceptsType("Orders", "Uav::Goto"));
+    EXPECT_FALSE(incoming.AcceptsType("Orders", "Uav::Pose"));
+    EXPECT_FALSE(incoming.AcceptsType("Nowhere", "Uav::Goto"));
 }
 
 TEST(UnwantedSenders, ThereIsRoomForSomeAtATime)
@@ -102,9 +117,13 @@ protected:
         large.Find([](const std::string &) {});
     }
 
-    LocalQueueResult Deliver(std::size_t item)
+    LocalQueueResult Deliver(std::size_t item, std::shared_ptr<void> prepared = nullptr)
     {
-        return large.Deliver("uav1", "Orders", "Uav::Goto", payloads[item], nullptr, false);
+        LinkDelivery delivery = DeliveryOf("uav1", payloads[item]);
+        delivery.SenderLife = 7;
+        delivery.Number = item + 1;
+        delivery.Prepared = std::move(prepared);
+        return large.Deliver(delivery);
     }
     std::vector<IncomingQueues::Undecoded> PutOff()
     {
@@ -123,39 +142,26 @@ TEST_F(LargeMessagesTest, AreDeliveredOnceTheyAreDecoded)
     const auto messages = PutOff();
     ASSERT_EQ(messages.size(), 1u);
     EXPECT_FALSE(large.AnyUndecoded());
-    const IncomingQueues::Decoded decoded = large.Decode(messages[0]);
-    large.Offer(&decoded);
-    EXPECT_EQ(Deliver(0), LocalQueueResult::Ok);
-    large.Offer(nullptr);
+    EXPECT_EQ(Deliver(0, large.Decode(messages[0])), LocalQueueResult::Ok);
     EXPECT_EQ(Take(), 1u);
-    EXPECT_EQ(decoded.What.Message.use_count(), 1);
 }
 
-TEST_F(LargeMessagesTest, AreTakenOnceOnly)
+TEST_F(LargeMessagesTest, AreGivenOutWithWhatNamesThem)
 {
-    Deliver(0);
+    Deliver(1);
     const auto messages = PutOff();
-    const IncomingQueues::Decoded decoded = large.Decode(messages.at(0));
-    large.Offer(&decoded);
-    EXPECT_EQ(Deliver(0), LocalQueueResult::Ok);
-    EXPECT_EQ(Deliver(1), LocalQueueResult::Later) << "the next one is another message";
-}
-
-TEST_F(LargeMessagesTest, AreNotTakenForThoseOfAnotherNode)
-{
-    Deliver(0);
-    const auto messages = PutOff();
-    const IncomingQueues::Decoded decoded = large.Decode(messages.at(0));
-    large.Offer(&decoded);
-    EXPECT_EQ(large.Deliver("uav2", "Orders", "Uav::Goto", payloads[1], nullptr, false),
-              LocalQueueResult::Later);
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_EQ(messages[0].Source, "uav1");
+    EXPECT_EQ(messages[0].Queue, "Orders");
+    EXPECT_EQ(messages[0].SenderLife, 7u);
+    EXPECT_EQ(messages[0].Number, 2u);
 }
 
 TEST_F(LargeMessagesTest, AreNotDecodedForAFullQueue)
 {
     for (int i = 0; i < 10; ++i)
     {
-        incoming.Deliver("uav1", "Orders", "Uav::Goto", payloads[0], nullptr, false);
+        incoming.Deliver(DeliveryOf("uav1", payloads[0]));
     }
     EXPECT_EQ(Deliver(0), LocalQueueResult::Full);
     EXPECT_FALSE(large.AnyUndecoded());
@@ -165,23 +171,7 @@ TEST_F(LargeMessagesTest, ThatDoNotDecodeAreRefused)
 {
     payloads[0].resize(5);
     EXPECT_EQ(Deliver(0), LocalQueueResult::Later);
-    const auto messages = PutOff();
-    const IncomingQueues::Decoded decoded = large.Decode(messages.at(0));
-    large.Offer(&decoded);
-    EXPECT_EQ(Deliver(0), LocalQueueResult::Undecodable);
-}
-
-TEST_F(IncomingQueuesTest, TakesNothingOfANodeThatIsNotInFrom)
-{
-    IncomingQueues choosy({{.Queue = "Orders", .Types = {"Uav::Goto"}, .From = {"ground*"}}}, workspace,
-                          [] {});
-    choosy.Find([](const std::string &) {});
-    EXPECT_EQ(choosy.Deliver("uav1", "Orders", "Uav::Goto", payloads[0], nullptr, false),
-              LocalQueueResult::Unknown);
-    EXPECT_EQ(Take(), 0u);
-    EXPECT_EQ(choosy.Deliver("ground2", "Orders", "Uav::Goto", payloads[0], nullptr, false),
-              LocalQueueResult::Ok);
-    EXPECT_EQ(Take(), 1u);
+    EXPECT_EQ(Deliver(0, large.Decode(PutOff().at(0))), LocalQueueResult::Undecodable);
 }
 
 TEST_F(IncomingQueuesTest, NamesEachQueueThatGotMessagesOnce)

@@ -19,6 +19,8 @@ struct Network
     int Disposals = 0;
     std::vector<std::int64_t> Times;
     int Readers = 0;
+    std::size_t Parts = 1;  // datagrams of a sample
+    std::size_t Held = 0;   // of them, those that wait
 };
 
 class Writer final : public TransportWriter
@@ -32,6 +34,14 @@ public:
         std::vector<std::uint8_t> bytes(sample.EncodedSize());
         return sample.Encode(bytes) ? _network.Result : WriteResult::Failed;
     }
+    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t time) override
+    {
+        const WriteResult result = Write(sample, time);
+        _network.Held = result == WriteResult::Ok ? _network.Parts - 1 : 0;
+        return result;
+    }
+    std::size_t HeldBytes() const override { return _network.Held > 0 ? 1400 : 0; }
+    void SendHeld() override { _network.Held -= _network.Held > 0 ? 1 : 0; }
     WriteResult Dispose(const SampleEncoder &, std::int64_t) override
     {
         ++_network.Disposals;

@@ -225,6 +225,15 @@ TEST_F(PeerTableTest, ALowerIncarnationIsTakenOnceTheHigherOneHasFallenSilent)
     EXPECT_EQ(table.Find("uav1")->Incarnation, 5u);
 }
 
+TEST_F(PeerTableTest, ALowerIncarnationIsTakenAtOnceAfterTheGoodbyeOfTheHigherOne)
+{
+    Hear("uav1", 6, 1s);
+    table.OnLeft("uav1", 6);
+    EXPECT_TRUE(Hear("uav1", 5, 1100ms).NewLife);
+    EXPECT_EQ(table.Find("uav1")->Incarnation, 5u);
+    EXPECT_EQ(StateOf("uav1"), NodeState::UP);
+}
+
 TEST_F(PeerTableTest, ANodeThatSaysGoodbyeIsLostAtOnce)
 {
     Hear("uav1", 5, 1s);
@@ -316,6 +325,16 @@ TEST_F(PeerTableTest, ARestartIsNotTakenForTwoNodes)
     EXPECT_FALSE(table.Find("uav1")->Twice);
 }
 
+TEST_F(PeerTableTest, ARestartWithALowerIncarnationIsNotTakenForTwoNodes)
+{
+    Hear("uav1", 6, 1s);
+    for (int i = 1; i <= 10; ++i)
+    {
+        Hear("uav1", 5, 1s + i * 100ms);
+        EXPECT_FALSE(table.Find("uav1")->Twice);
+    }
+}
+
 TEST_F(PeerTableTest, ALiveNodeWithThisNodesNameIsReportedUntilItIsGone)
 {
     for (int i = 1; i <= 3; ++i)
@@ -389,38 +408,77 @@ TEST_F(PeerTableTest, EchoesTakeTurnsWhenThereAreMoreNodesThanRoom)
         }
         return names;
     };
-    EXPECT_EQ(namesOf(table.NextEchoes(1s, 2)), "ab");
-    EXPECT_EQ(namesOf(table.NextEchoes(1500ms, 2)), "c");
-    EXPECT_EQ(namesOf(table.NextEchoes(4999ms, 8)), "");
+    EXPECT_EQ(namesOf(table.NextEchoes(1s, 2, 2)), "ab");
+    EXPECT_EQ(namesOf(table.NextEchoes(1500ms, 2, 2)), "c");
+    EXPECT_EQ(namesOf(table.NextEchoes(4999ms, 2, 8)), "");
     // Those that are due again.
     for (const char *node : {"a", "b", "c"})
     {
         Hear(node, 1, 5s);
     }
-    EXPECT_EQ(namesOf(table.NextEchoes(5s, 8)), "ab");
-    EXPECT_EQ(namesOf(table.NextEchoes(5500ms, 8)), "c");
+    EXPECT_EQ(namesOf(table.NextEchoes(5s, 2, 8)), "ab");
+    EXPECT_EQ(namesOf(table.NextEchoes(5500ms, 2, 8)), "c");
 }
 
 TEST_F(PeerTableTest, WhoBeatsSeldomEchoesWithEachEighthBeat)
 {
     table.SetBeatPeriod(2s);
     Hear("uav1", 1, 1s);
-    EXPECT_EQ(table.NextEchoes(1s, 2).size(), 1u);
+    EXPECT_EQ(table.NextEchoes(1s, 2, 2).size(), 1u);
     Hear("uav1", 1, 16s);
     EXPECT_EQ(table.EchoesDue(16999ms, 2), 0u);
-    EXPECT_EQ(table.NextEchoes(17s, 2).size(), 1u);
+    EXPECT_EQ(table.NextEchoes(17s, 2, 2).size(), 1u);
     table.SetBeatPeriod(100ms);
     Hear("uav1", 1, 20s);
     EXPECT_EQ(table.EchoesDue(20999ms, 2), 0u);
     EXPECT_EQ(table.EchoesDue(21s, 2), 1u);
 }
 
+// All peers' beats come 10 s earlier than before by this node's clock, and theirs say that its beats are old.
+TEST_F(PeerTableTest, AllPeersAreEchoedAtOnceWhenThisNodesClockStoodStill)
+{
+    const auto nameOf = [](int i) { return std::string("n").append(std::to_string(i)); };
+    for (Ns now = 1s; now < 20s; now += 500ms)
+    {
+        for (int i = 0; i < 50; ++i)
+        {
+            Hear(nameOf(i), 1, now);
+        }
+        table.NextEchoes(now, 2, 60);
+    }
+    for (int i = 0; i < 50; ++i)
+    {
+        table.OnBeat(BeatOf(nameOf(i), 1, 30s, 20s));
+    }
+    EXPECT_EQ(table.EchoesDue(20s, 0), 50u);
+    EXPECT_EQ(table.NextEchoes(20s, 2, 30).size(), 30u);
+    EXPECT_EQ(table.EchoesDue(20s, 0), 20u);
+    EXPECT_EQ(table.NextEchoes(20s, 0, 30).size(), 20u);
+    EXPECT_EQ(table.EchoesDue(20s, 0), 0u) << "once is enough";
+    for (int i = 0; i < 50; ++i)
+    {
+        table.OnBeat(BeatOf(nameOf(i), 1, 30500ms, 20500ms));
+    }
+    EXPECT_EQ(table.EchoesDue(20500ms, 0), 0u);
+}
+
+TEST_F(PeerTableTest, BeatsThatComeALittleEarlierThanBeforeAreNoReasonForEchoes)
+{
+    for (Ns now = 1s; now < 20s; now += 500ms)
+    {
+        Hear("uav1", 1, now);
+    }
+    EXPECT_EQ(table.NextEchoes(20s, 2, 60).size(), 1u);
+    table.OnBeat(BeatOf("uav1", 1, 20090ms, 20s));
+    EXPECT_EQ(table.EchoesDue(20s, 2), 0u);
+}
+
 TEST_F(PeerTableTest, ANewLifeIsEchoedAtOnce)
 {
     Hear("uav1", 5, 1s);
-    EXPECT_EQ(table.NextEchoes(1s, 2).size(), 1u);
+    EXPECT_EQ(table.NextEchoes(1s, 2, 2).size(), 1u);
     Hear("uav1", 6, 2s);
-    EXPECT_EQ(table.NextEchoes(2s, 2).size(), 1u);
+    EXPECT_EQ(table.NextEchoes(2s, 2, 2).size(), 1u);
 }
 
 class OffersTest : public PeerTableTest

@@ -72,7 +72,7 @@ TEST_F(PeerTableToolsTest, AToolsBeatsGoBackToItSoThatItMayMeasureTheRoundTrip)
 {
     HearTool("tool", 1s);
     ASSERT_EQ(table.EchoesDue(1s, 8), 1u);
-    EXPECT_EQ(table.NextEchoes(1s, 8).front().node, table.Find("tool")->Tag);
+    EXPECT_EQ(table.NextEchoes(1s, 8, 8).front().node, table.Find("tool")->Tag);
 }
 
 TEST_F(PeerTableToolsTest, AToolThatLeavesIsForgottenAtOnce)

@@ -175,8 +175,8 @@ TEST_F(CrashLoopTest, DoesNotKeepANewcomerWaiting)
         return true;
     };
     EXPECT_TRUE(fleet.RunUntil(hearsAll, 1s));
-    // Until it has asked for ten announcements and then for ten States, in beats that follow each other less and
-    // less quickly, and its readers are known to all.
+    // Until it has asked for ten announcements and then for ten States, in beats that follow each other less
+    // and less quickly, and its readers are known to all.
     EXPECT_TRUE(fleet.RunUntil(hasAll, 2500ms));
 }
 
@@ -295,6 +295,49 @@ TEST_F(AnnouncementTest, IsNotSaidOftenHoweverOftenItIsAskedFor)
     EXPECT_GE(parts, 8);
     EXPECT_LE(parts, 10);
     EXPECT_LE(beats, 20 + 10);
+}
+
+// The others believe its beats only once one echoes theirs, since beats that were held up on the way look
+// alike.
+TEST(PresenceAfterAStandstill, ANodeOfAHundredIsUpForAllWithinSomeBeats)
+{
+    for (const double budget : {0.0, 5000.0})
+    {
+        SimulatedFleet fleet;
+        GatewayConfig config = AircraftConfig("uav1");
+        if (budget > 0.0)
+        {
+            config.Radio.Budget = budget;
+        }
+        fleet.Add(config);
+        SimulatedNode &first = fleet.Add(AircraftConfig("a"));
+        SimulatedNode &last = fleet.Add(GroundConfig());
+        std::vector<std::unique_ptr<HandNode>> others;
+        for (int i = 0; i < 98; ++i)
+        {
+            others.push_back(
+                std::make_unique<HandNode>(fleet.Network, std::string("n").append(std::to_string(i)), 1));
+        }
+        const auto beat = [&](std::chrono::nanoseconds duration, const std::function<bool()> &until)
+        {
+            for (auto passed = 0ms; passed < duration && !until(); passed += 500ms)
+            {
+                for (const auto &other : others)
+                {
+                    other->Write(other->Beat());
+                }
+                fleet.RunUntil(until, 500ms);
+            }
+        };
+        beat(60s, [] { return false; });
+        ASSERT_EQ(first.StateOf("uav1"), "UP");
+        fleet.StandStill("uav1", 10s);
+        EXPECT_EQ(first.StateOf("uav1"), "LOST");
+        EXPECT_EQ(last.StateOf("uav1"), "LOST");
+        const auto since = fleet.Network.Now();
+        beat(60s, [&] { return first.StateOf("uav1") == "UP" && last.StateOf("uav1") == "UP"; });
+        EXPECT_LE(fleet.Network.Now() - since, 3s) << "with a budget of " << budget;
+    }
 }
 
 }  // namespace

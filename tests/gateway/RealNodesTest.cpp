@@ -233,6 +233,36 @@ TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
     EXPECT_TRUE(alive);
 }
 
+// The transport receives both messages on one thread.
+TEST_P(RealNodesTest, ASlowHandlerDoesNotHoldUpWhatComesNext)
+{
+    using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
+    Node first(GetParam().first, "first", "second", condition, {"Slow", "Next"});
+    Node second(GetParam().second, "second", "first", condition);
+    const auto slow = std::make_shared<Queue>(100, "Slow");
+    const auto next = std::make_shared<Queue>(100, "Next");
+    bool began = false;
+    bool mayReturn = false;
+    bool came = false;
+    slow->Register_SomethingEnqueued(
+        [&]
+        {
+            condition.Set([&] { began = true; });
+            EXPECT_TRUE(condition.Wait([&] { return mayReturn; }));
+        });
+    next->ConnectSomethingEnqueued(RabitQuickHandler([&] { condition.Set([&] { came = true; }); }));
+    first.Workspace.AddManagerMessageQueue("Slow", slow);
+    first.Workspace.AddManagerMessageQueue("Next", next);
+    while (!second.Workspace.AddMessageToQueue("first/Slow", std::make_shared<Uav::Goto>()))
+    {
+        std::this_thread::yield();  // not announced yet
+    }
+    EXPECT_TRUE(condition.Wait([&] { return began; }));
+    EXPECT_TRUE(second.Workspace.AddMessageToQueue("first/Next", std::make_shared<Uav::Goto>()));
+    EXPECT_TRUE(condition.Wait([&] { return came; }));
+    condition.Set([&] { mayReturn = true; });
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends, RealNodesTest, ::testing::ValuesIn(AllBackendPairs()), NameOfPair);
 
 }  // namespace

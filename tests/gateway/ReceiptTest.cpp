@@ -121,6 +121,50 @@ TEST_F(ReceiptTest, SaysRefusedForAnUnknownNode)
     EXPECT_EQ(Send("*/NoSuchQueue")->Outcome(), QueueOutcome::Refused);
 }
 
+TEST_F(ReceiptTest, ARefusalAtTheCallTellsNoHandler)
+{
+    Cut();
+    for (int i = 0; i < 10; ++i)
+    {
+        Send();  // fills the outbox
+    }
+    for (const char *address : {"uav1/MissionControl", "uav1/NoSuchQueue", "uav7/MissionControl",
+                                "*/NoSuchQueue", "ground/NoSuchQueue", "NoSuchQueue"})
+    {
+        const auto receipt = std::make_shared<RabitQueueReceipt>();
+        int known = 0;
+        receipt->ConnectOutcomeKnown([&known] { ++known; });
+        EXPECT_FALSE(ground.Workspace.AddMessageToQueue(address, std::make_shared<Uav::Goto>(), receipt))
+            << address;
+        EXPECT_EQ(receipt->Outcome(), QueueOutcome::Refused) << address;
+        EXPECT_EQ(known, 0) << address;
+    }
+}
+
+TEST_F(ReceiptTest, OfAMessageToAllThatOneOfThemRefusesTellsItsHandlersOnceTheOthersAreSettled)
+{
+    fleet.Add(AircraftConfig("uav2")).AddIdleManager("MissionControl");
+    fleet.RunFor(2s);
+    Cut();
+    for (int i = 0; i < 10; ++i)
+    {
+        Send();  // fills the outbox of uav1
+    }
+    const auto receipt = std::make_shared<RabitQueueReceipt>();
+    int known = 0;
+    receipt->ConnectOutcomeKnown([&known] { ++known; });
+    EXPECT_FALSE(
+        ground.Workspace.AddMessageToQueue("*/MissionControl", std::make_shared<Uav::Goto>(), receipt));
+    EXPECT_EQ(receipt->GetCounts().Refused, 1u);
+    EXPECT_EQ(receipt->GetCounts().Pending, 1u);
+    EXPECT_EQ(known, 0);
+    fleet.Network.SetFaults("*", "*", {});
+    fleet.RunFor(3s);
+    EXPECT_EQ(receipt->GetCounts().Delivered, 1u);
+    EXPECT_EQ(receipt->Outcome(), QueueOutcome::Refused);
+    EXPECT_EQ(known, 1);
+}
+
 TEST_F(ReceiptTest, OfAMessageToAllCountsEachNode)
 {
     fleet.Add(AircraftConfig("uav2")).AddIdleManager("MissionControl");

@@ -123,7 +123,7 @@ public:
         return text;
     }
 
-    const std::chrono::nanoseconds Ahead;
+    std::chrono::nanoseconds Ahead;  // of the network's clock
     const std::shared_ptr<ManualClock> Clock;
     RabitWorkspace Workspace;
     RabitSteppedReactor Reactor;
@@ -169,6 +169,17 @@ public:
 
     // Ends a node in an orderly way.
     void Stop(const std::string &node) { _nodes.erase(node); }
+
+    // A node stands still for so long while the others run on, as a virtual machine that is paused: its
+    // monotonic clock does not advance, and what comes meanwhile waits for it.
+    void StandStill(const std::string &node, std::chrono::nanoseconds duration)
+    {
+        auto still = std::move(_nodes.at(node));
+        _nodes.erase(node);
+        RunFor(duration);
+        still->Ahead -= duration;
+        _nodes[node] = std::move(still);
+    }
 
     void RunFor(std::chrono::nanoseconds duration)
     {

@@ -168,6 +168,49 @@ TEST_F(StatePublisherTest, WhileTheNetworkDoesNotTakeANewValueTheFormerVersionIs
     EXPECT_NE(publisher.Version(), version);
 }
 
+// A limit decides when each of its datagrams goes.
+TEST_F(StatePublisherTest, ALargeStateIsToldWithItsLastDatagramAndNothingOvertakesIt)
+{
+    network.Parts = 3;
+    pose->PostMessage();
+    publisher.Fetch();
+    ASSERT_LE(publisher.DueAt(Now()), Now());
+    publisher.WriteNext(Now());
+    EXPECT_EQ(publisher.Version(), StateVersion::None);
+    clock->AdvanceTo(Now() + 1s);
+    pose->PostMessage();
+    publisher.Fetch();
+    EXPECT_EQ(publisher.NextBytes(AirCost(1400)), 1400u);
+    for (const std::size_t left : {1u, 0u})
+    {
+        EXPECT_LE(publisher.DueAt(Now()), Now());
+        publisher.WriteNext(Now());
+        EXPECT_EQ(network.Held, left);
+    }
+    EXPECT_EQ(network.Writes, 1);
+    const std::uint32_t first = publisher.Version();
+    EXPECT_EQ(first, StateVersion::Of(network.Times.at(0)));
+    publisher.WriteNext(Now());
+    EXPECT_EQ(network.Writes, 2);
+    publisher.AskedFor(Now());  // for the first one, by a peer that lacks it
+    EXPECT_EQ(publisher.Version(), first);
+    publisher.WriteNext(Now());
+    publisher.WriteNext(Now());
+    EXPECT_EQ(publisher.Version(), StateVersion::Of(network.Times.at(1)));
+    EXPECT_EQ(publisher.DueAt(Now()), std::chrono::nanoseconds::max()) << "what was under way is the answer";
+}
+
+TEST_F(StatePublisherTest, ALargeStateGoesAtOnceWhenThereIsNoLimitAnyMore)
+{
+    network.Parts = 3;
+    pose->PostMessage();
+    publisher.Fetch();
+    publisher.WriteNext(Now());
+    EXPECT_EQ(Run(1ms, 1ms), 0);
+    EXPECT_EQ(network.Held, 0u);
+    EXPECT_EQ(publisher.Version(), StateVersion::Of(network.Times.at(0)));
+}
+
 TEST_F(StatePublisherTest, WhatCanNeverBeWrittenIsNotAskedFor)
 {
     Post();

@@ -107,7 +107,7 @@ TEST(TopicPublisher, ANewerPostReplacesTheOneThatWaitsAndIsCounted)
     EXPECT_EQ(publisher.DueAt(10s), 10s);
     EXPECT_EQ(publisher.Status().offered, 6u);
     EXPECT_EQ(publisher.Status().replaced, 5u);
-    publisher.Write(10s);
+    publisher.WriteNext(10s);
     EXPECT_EQ(static_cast<const Uav::Pose &>(*publisher.Local()).number, 5u);
     EXPECT_EQ(publisher.Status().written, 1u);
     EXPECT_EQ(publisher.Status().replaced, 5u);

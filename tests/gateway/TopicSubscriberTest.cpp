@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 #include <rabit/ManualClock.h>
+#include <rabit/RabitHandlerThread.h>
 
+#include <future>
 #include <memory>
 #include <vector>
 
@@ -59,7 +61,7 @@ protected:
         subscriber.SetOffer("uav1", QosProfile::State);
     }
 
-    void Hear(std::uint32_t number, std::int64_t time)
+    void Hear(std::uint32_t number, std::int64_t time, const std::string &node = "uav1")
     {
         Contact contact;
         contact.number = number;
@@ -68,6 +70,7 @@ protected:
         std::vector<std::uint8_t> bytes(sample.EncodedSize());
         ASSERT_TRUE(sample.Encode(bytes));
         SampleInfo info = InfoOf(number, time);
+        info.Node = node;
         session.Handler(bytes, info);
     }
 
@@ -133,6 +136,39 @@ TEST_F(TopicSubscriberTest, TheEndOfAnInstanceBeforeItsSuccessorLeavesTheValueUn
     EXPECT_EQ(mirrored->number, 1u);
     Hear(2, 2'000'000'000);
     EXPECT_EQ(Posted(), 2);
+}
+
+// The transport's thread must go on: beats of other nodes come on it.
+TEST_F(TopicSubscriberTest, ASlowHandlerHoldsUpNeitherTheTransportNorWhatComesNext)
+{
+    RabitHandlerThread handlers;
+    TopicSubscriber other(rule, Contact::IdlType(), origins, workspace, &handlers);
+    other.Open(session);
+    other.SetOffer("uav1", QosProfile::State);
+    std::promise<void> began;
+    std::promise<void> mayReturn;
+    std::vector<std::uint32_t> seen;
+    mirrored->Register_SomethingPublished(
+        [&]
+        {
+            if (seen.empty())
+            {
+                began.set_value();
+                mayReturn.get_future().wait();
+            }
+            Contact contact;
+            workspace.FetchMessage("uav1/Contact", &contact);
+            seen.push_back(contact.number);
+        });
+    Hear(1, 1'000'000'000);
+    began.get_future().wait();
+    Hear(2, 2'000'000'000);
+    Hear(3, 3'000'000'000);
+    EXPECT_EQ(Posted(), 3);
+    EXPECT_EQ(other.ReceivedFrom("uav1"), 3u);
+    mayReturn.set_value();
+    handlers.Stop();
+    EXPECT_EQ(seen, (std::vector<std::uint32_t>{3, 3}));
 }
 
 TEST_F(TopicSubscriberTest, TheEndOfTheLastWriterLeavesTheLastValue)
@@ -226,6 +262,30 @@ TEST_F(TopicSubscriberTest, WhatWasTakenInIsKnownOfThePresentLife)
     EXPECT_EQ(subscriber.TakenIn("uav1", 5), 1'000'000'000) << "that life is not the present one";
     subscriber.Forget("uav1");
     EXPECT_FALSE(subscriber.TakenIn("uav1", 5));
+}
+
+TEST_F(TopicSubscriberTest, TheMessageOfAForgottenNodeLeavesTheWorkspaceAndReturnsWithTheNode)
+{
+    origins.Set("uav2", {.Incarnation = 5, .Source = {}, .SourceToWall = 0s});
+    subscriber.SetOffer("uav2", QosProfile::State);
+    Hear(1, 1'000'000'000, "uav2");
+    ASSERT_NE(workspace.FindGlobalMessage("uav2/Contact"), nullptr);
+    subscriber.Forget("uav2");
+    EXPECT_EQ(workspace.FindGlobalMessage("uav2/Contact"), nullptr);
+    subscriber.SetOffer("uav2", QosProfile::State);
+    Hear(2, 2'000'000'000, "uav2");
+    Contact contact;
+    ASSERT_TRUE(workspace.FetchMessage("uav2/Contact", &contact));
+    EXPECT_EQ(contact.number, 2u);
+}
+
+TEST_F(TopicSubscriberTest, TheMessageOfAForgottenNodeStaysForWhoeverRegisteredIt)
+{
+    Hear(1, 1'000'000'000);
+    subscriber.Forget("uav1");
+    subscriber.SetOffer("uav1", QosProfile::State);
+    Hear(2, 2'000'000'000);
+    EXPECT_EQ(Posted(), 2);
 }
 
 // To ask for it again would bring the same.

@@ -6,6 +6,7 @@
 #include <rabit/PublishSubscribeMessage.h>
 
 #include <limits>
+#include <utility>
 
 namespace
 {
@@ -78,12 +79,26 @@ TEST(MessageFunctions, CopyMessageKeepsTheGlobalReference)
     EXPECT_EQ(target.GetGlobalPublishSubscribeMessageRef(), global);
 }
 
-TEST(MessageFunctions, CloneTakesTheGlobalReference)
+TEST(MessageFunctions, AssignmentKeepsTheGlobalReference)
 {
     Constructs::Numbers source;
-    const auto global = std::make_shared<Rabit::PublishSubscribeMessage>(source.Clone());
-    source.SetGlobalPublishSubscribeMessageRef(global);
-    EXPECT_EQ(source.Clone()->GetGlobalPublishSubscribeMessageRef(), global);
+    Constructs::Numbers target;
+    source.SetGlobalPublishSubscribeMessageRef(
+        std::make_shared<Rabit::PublishSubscribeMessage>(source.Clone()));
+    const auto global = std::make_shared<Rabit::PublishSubscribeMessage>(target.Clone());
+    target.SetGlobalPublishSubscribeMessageRef(global);
+    target = source;
+    EXPECT_EQ(target.GetGlobalPublishSubscribeMessageRef(), global);
+    target = std::move(source);
+    EXPECT_EQ(target.GetGlobalPublishSubscribeMessageRef(), global);
+}
+
+TEST(MessageFunctions, ACloneIsUnregistered)
+{
+    Constructs::Numbers source;
+    source.SetGlobalPublishSubscribeMessageRef(
+        std::make_shared<Rabit::PublishSubscribeMessage>(source.Clone()));
+    EXPECT_EQ(source.Clone()->GetGlobalPublishSubscribeMessageRef(), nullptr);
 }
 
 TEST(MessageFunctions, DefaultsAreThoseOfTheIdl)

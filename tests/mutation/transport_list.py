@@ -283,4 +283,9 @@ MUTATIONS = [
              "while (const auto oldest = _kept.OldestUpTo(instance, _receivedByAll))",
              "while (const auto oldest = std::optional<std::uint64_t>())",
              f"{CONFORMANCE}:*WhatWasDisposedBefore*"),
+    # Which sessions a node's name stands for
+    Mutation("what is written to a node goes to its former session, too", "transport/common/PeerSessions.h",
+             "session->Supersede();", "", f"{CONFORMANCE}:*WhatIsWrittenToANode*"),
+    Mutation("a live session is not written to once another one of its name appears", "transport/common/PeerSessions.h",
+             "_superseded.store(false,", "_superseded.store(true,", f"{CONFORMANCE}:*WhatIsWrittenToANode*"),
 ]

@@ -52,6 +52,10 @@ void DiscoveryOutbox::Put(std::span<const std::uint8_t> message, DiscoveryPart p
     {
         part = ForAll(std::move(part));
     }
+    if (_slots.size() >= _sweepAt)
+    {
+        ForgetOld(now);
+    }
     if (_slots.size() >= MostSlots)
     {
         ForgetRested(now);
@@ -90,6 +94,17 @@ void DiscoveryOutbox::SetDue(Slots::iterator slot, TimePoint due)
     }
     current = {due, ++_turn};
     _due.emplace(*current, slot);
+}
+
+// A node that starts again and again is another peer each time.
+void DiscoveryOutbox::ForgetOld(TimePoint now)
+{
+    const auto isOld = [now](TimePoint last) { return now - last >= Forgotten; };
+    std::erase_if(_slots, [&](const auto &slot) { return !slot.second.Due && isOld(slot.second.AskedAt); });
+    std::erase_if(_questions, [&](const auto &asked) { return isOld(asked.second.Last); });
+    std::erase_if(_heard, [&](const auto &peer) { return isOld(peer.second); });
+    std::erase_if(_knowUs, [&](const auto &peer) { return !_heard.contains(peer.first); });
+    _sweepAt = std::max(FewestToSweep, 2 * _slots.size());
 }
 
 void DiscoveryOutbox::ForgetRested(TimePoint now)

@@ -59,6 +59,10 @@ public:
     // What nobody wanted to say for so long is not said again, but anew.
     static constexpr std::chrono::milliseconds Rest{8000};
     static constexpr std::size_t MostSlots = 16384;
+    // A subject that was not said for so long is forgotten, and so is a peer that said nothing for so long.
+    // That is done whenever the number of subjects has doubled. Longer than leases.
+    static constexpr std::chrono::minutes Forgotten{5};
+    static constexpr std::size_t FewestToSweep = 64;
     // Bytes in a second, headers of IP and UDP included, and how many may go at once after a rest.
     static constexpr double FirstRate = 2000.0;
     static constexpr double LeastRate = 400.0;
@@ -149,6 +153,7 @@ private:
 
     void PutHeader(std::span<const std::uint8_t> message);
     void ForgetRested(TimePoint now);
+    void ForgetOld(TimePoint now);
     // When the rate lets the next one go.
     TimePoint Free() const;
     void Fill(TimePoint now);
@@ -185,6 +190,7 @@ private:
     Slots _slots;
     std::map<std::pair<TimePoint, std::uint64_t>, Slots::iterator> _due;
     std::uint64_t _turn = 0;
+    std::size_t _sweepAt = FewestToSweep;  // so many slots
 };
 
 }  // namespace Rabit

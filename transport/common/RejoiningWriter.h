@@ -36,6 +36,24 @@ public:
         const UseGate::Use use(_shared->Gate);
         return use.Allowed() && _inner != nullptr ? _inner->Write(sample, sourceTime) : NotJoined();
     }
+    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime) override
+    {
+        const UseGate::Use use(_shared->Gate);
+        return use.Allowed() && _inner != nullptr ? _inner->WriteHeld(sample, sourceTime) : NotJoined();
+    }
+    std::size_t HeldBytes() const override
+    {
+        const UseGate::Use use(_shared->Gate);
+        return use.Allowed() && _inner != nullptr ? _inner->HeldBytes() : 0;
+    }
+    void SendHeld() override
+    {
+        const UseGate::Use use(_shared->Gate);
+        if (use.Allowed() && _inner != nullptr)
+        {
+            _inner->SendHeld();
+        }
+    }
     WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
                         std::int64_t sourceTime) override
     {

@@ -1,27 +1,16 @@
 #include "common/SessionLog.h"
 
-#include <iostream>
-
 namespace Rabit
 {
 
-namespace
-{
-
-void WriteToStandardError(const std::string &line)
-{
-    std::cerr << line + "\n";
-}
-
-}  // namespace
-
-SessionLog::SessionLog(const TransportSettings &settings)
-    : _node(settings.Node), _sink(settings.Log ? settings.Log : WriteToStandardError)
-{
-}
+SessionLog::SessionLog(const TransportSettings &settings) : _node(settings.Node), _sink(settings.Log) {}
 
 void SessionLog::Line(const std::string &line) noexcept
 {
+    if (!_sink)
+    {
+        return;
+    }
     try
     {
         _sink("transport of " + _node + ": " + line);

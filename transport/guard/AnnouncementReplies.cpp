@@ -16,6 +16,11 @@ bool AnnouncementReplies::OnAnnouncement(const GuidPrefix &peer, TimePoint now)
     const auto found = _peers.find(peer);
     if (found == _peers.end())
     {
+        if (_peers.size() >= MostPeers)
+        {
+            std::erase_if(
+                _peers, [this, now](const auto &entry) { return now - entry.second.Announced >= _silence; });
+        }
         if (_peers.size() < MostPeers)
         {
             _peers.emplace(peer, Peer{.Announced = now});

@@ -16,6 +16,8 @@ constexpr std::size_t MostWriters = 4096;
 constexpr std::size_t MostReaders = 4096;
 // Longer than the announcement periods and leases in use.
 constexpr std::chrono::seconds Forgotten{60};
+// Where there is room, they are remembered for longer: who comes back is heard at once.
+constexpr std::chrono::minutes LongSilence{5};
 // What is said otherwise is believed when it was said so often.
 constexpr int OftenEnough = 3;
 // In which participants announce themselves, whatever was seen of it: forged repeats would shorten it, and an
@@ -27,8 +29,11 @@ constexpr std::chrono::milliseconds LongestPeriod{15'000};
 constexpr std::int64_t LargestFirst = std::int64_t{1} << 22;
 // After so long without a word of a writer, more may have been lost of it than its pace tells.
 constexpr std::chrono::seconds Silence{2};
-// What may be lost at once, or taken back, whatever the pace.
+// Samples of a reliable writer that may be lost at once, whatever its rate.
 constexpr std::int64_t LargestStep = 16;
+// The same of a best-effort writer. It may write most of its samples to other nodes alone, so that none of
+// those numbers is seen here. A forged number up to here costs the writer two samples (SampleNumbers).
+constexpr std::int64_t LargestBestEffortStep = 1'000'000;
 // What may have been lost of a writer that was not heard for as long as Silence, whatever its pace before: so
 // many samples a second, and so many in all. What was announced comes by multicast and goes on while all the
 // rest is lost (an address that was away, a link in one direction), so such a gap is ordinary, and who writes
@@ -66,6 +71,10 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
         known.Placed = now;
         known.Heard = now;
         return true;
+    }
+    if (_peers.size() >= _sweepAt)
+    {
+        ForgetSilent(now);
     }
     if (_peers.size() >= MostPeers && !MakeRoom(now))
     {
@@ -165,6 +174,20 @@ bool KnownPeers::MakeRoom(TimePoint now)
     return true;
 }
 
+// A node that starts again and again is a new peer each time.
+void KnownPeers::ForgetSilent(TimePoint now)
+{
+    std::erase_if(_peers,
+                  [this, now](const auto &peer)
+                  {
+                      const bool isSilent = now - peer.second.Heard >= LongSilence;
+                      _highestAnnouncement =
+                          isSilent ? std::max(_highestAnnouncement, peer.second.Ours) : _highestAnnouncement;
+                      return isSilent;
+                  });
+    _sweepAt = std::max(FewestToSweep, 2 * _peers.size());
+}
+
 bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)
 {
     const auto found = _peers.find(peer);
@@ -249,11 +272,12 @@ bool KnownPeers::IsPlausible(Numbers &numbers, std::int64_t number, TimePoint no
     {
         return true;
     }
+    const std::int64_t step = numbers.IsBestEffort ? LargestBestEffortStep : LargestStep;
     const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Said).count();
     const std::int64_t lost =
         now - numbers.Said >= Silence ? std::min(LostInASecond * elapsed / 1000, LargestLoss) : 0;
     if (numbers.Highest > 0 &&
-        number - numbers.Highest <= LargestStep + std::max(lost, 2 * numbers.Pace * elapsed / 1000))
+        number - numbers.Highest <= step + std::max(lost, 2 * numbers.Pace * elapsed / 1000))
     {
         return true;
     }

@@ -18,8 +18,8 @@ namespace Rabit::Rtps
 // that never were, and pass over all that come until they reach that number. So a jump is believed if the
 // writer's pace explains it, or the time for which it was not heard, or if several numbers in a row agree on
 // it with none in between that does not.
-// Bounded: what is full takes nobody new, a table of peers until somebody in it was silent for a minute. Not
-// thread-safe.
+// Bounded: a full table of peers takes no new one until one in it was silent for a minute. A table that has
+// doubled forgets all peers that were silent for five. A full table of writers forgets one. Not thread-safe.
 class KnownPeers
 {
 public:
@@ -71,6 +71,8 @@ public:
     std::size_t Size() const { return _peers.size(); }
 
 private:
+    static constexpr std::size_t FewestToSweep = 16;
+
     // What was said of something, and what was said otherwise since: how many times in a row.
     struct Word
     {
@@ -112,6 +114,7 @@ private:
     };
 
     bool MakeRoom(TimePoint now);
+    void ForgetSilent(TimePoint now);
     // Whether this is what was said before; if not, whether it was said often enough.
     static bool IsKnown(Word &word, std::uint64_t digest);
     static bool IsRepeated(Word &word, std::uint64_t digest);
@@ -121,6 +124,7 @@ private:
     static void Move(Numbers &numbers, std::int64_t number, TimePoint now);
 
     std::map<GuidPrefix, Peer> _peers;
+    std::size_t _sweepAt = FewestToSweep;  // so many peers
     // Of all given, for peers and writers that were forgotten.
     std::int64_t _highestAnnouncement = 0;
     std::uint32_t _highestCount = 0;

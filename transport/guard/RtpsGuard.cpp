@@ -99,7 +99,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from,
 {
     if (!HasRtpsHeader(datagram))
     {
-        return false;
+        return IsWakeUpOfCycloneDds(datagram);
     }
     Passage passage;
     passage.Datagram = datagram;

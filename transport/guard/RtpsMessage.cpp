@@ -22,6 +22,11 @@ bool HasRtpsHeader(std::span<const std::uint8_t> datagram)
            datagram[4] == MajorVersion && SenderOf(datagram) != GuidPrefix{};
 }
 
+bool IsWakeUpOfCycloneDds(std::span<const std::uint8_t> datagram)
+{
+    return datagram.size() == 1 && datagram[0] == 0;
+}
+
 GuidPrefix SenderOf(std::span<const std::uint8_t> datagram)
 {
     GuidPrefix prefix;

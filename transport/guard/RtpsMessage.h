@@ -54,6 +54,10 @@ struct Submessage
 // Whether this is a message of RTPS 2 whose sender has a name.
 bool HasRtpsHeader(std::span<const std::uint8_t> datagram);
 
+// True if this is the datagram by which Cyclone DDS wakes its own receiving threads when it ends: one zero
+// byte. It also goes to the multicast address of discovery, and so to all participants of the domain.
+bool IsWakeUpOfCycloneDds(std::span<const std::uint8_t> datagram);
+
 // The name of the participant that sent the message. It must have a header.
 GuidPrefix SenderOf(std::span<const std::uint8_t> datagram);
 

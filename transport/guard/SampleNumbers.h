@@ -45,7 +45,7 @@ private:
     TimePoint _wentOn{};
     std::uint64_t _doubtful = 0;  // far from the latest, so that another must agree first
     TimePoint _settled{};
-    Sample _below;                // the last of those that went on below
+    Sample _below;  // the last of those that went on below
     int _belowInARow = 0;
 };
 

@@ -1,5 +1,6 @@
-// What RabitMessage.h needs of PublishSubscribeMessage.h, without the headers of Boost that programs expect of that
-// one: they are most of what a message's header costs to compile. Programs include PublishSubscribeMessage.h.
+// RabitMessage.h needs this part of PublishSubscribeMessage.h. It leaves out the headers of Boost that
+// programs expect of that one: they are most of what a message's header costs to compile. Programs include
+// PublishSubscribeMessage.h.
 #pragma once
 
 #include <rabit/RabitClock.h>
@@ -43,8 +44,9 @@ public:
     // The dynamic type of the message.
     std::type_index MsgTypeIndex() const { return _type; }
 
-    // Has the handler called after each post, on the posting thread and without a lock. For as long as this
-    // object lives: use ConnectSomethingPublished to be able to end it.
+    // Has the handler called after each post, on the posting thread, or on the RabitHandlerThread that this
+    // has for it, and without a lock. For as long as this object lives: use ConnectSomethingPublished to be
+    // able to end it.
     void Register_SomethingPublished(const boost::function<void()> &handler);
     // The same, with a connection that ends it.
     RabitConnection ConnectSomethingPublished(RabitHandler handler);
@@ -54,12 +56,12 @@ public:
     std::unique_ptr<RabitMessage> GetCopyOfMessage();
 
     // Stamps the message with the current time, copies it to the global copy, then calls the handlers. Time
-    // stamps of one name strictly increase, by the least step of a double if the clock did not move on, unless
-    // the wall clock was set back: then they follow it. By the system's clock a burst of posts, from however
-    // many threads, runs ahead by 4 us at most: then a post waits. (By another clock, which may stand still,
-    // it runs ahead as far as it must.)
-    // Throws std::invalid_argument, changing nothing, if the message is of another type and refuses the copy.
-    // If CopyMessage throws, that passes to the caller and the post did not happen.
+    // stamps of one name strictly increase, by the least step of a double if the clock did not move on,
+    // unless the wall clock was set back: then they follow it. By the system's clock a burst of posts, from
+    // however many threads, runs ahead by 4 us at most: then a post waits. (By another clock, which may stand
+    // still, it runs ahead as far as it must.) Throws std::invalid_argument, changing nothing, if the message
+    // is of another type and refuses the copy. If CopyMessage throws, that passes to the caller and the post
+    // did not happen.
     void PostMessage(RabitMessage *msg);
     // Posts with a time given by the caller: for messages that were posted elsewhere and keep the time of
     // their origin. The time may repeat or go back; the post is never missed for that.

@@ -26,10 +26,11 @@ public:
     // Whether this name is one that Forward is for.
     virtual bool Handles(const std::string &queueName) const = 0;
     // Takes the message, which is not null and is shared with the caller, who must not change it any more.
-    // The result is what AddMessageToQueue returns: false if it is refused. The receipt, if it is not null,
-    // gets a Begin and one outcome for each queue that the message was meant for, refusals included; the
-    // outcome may come at any later time, on any thread. Nothing is told to it before Forward is called or if
-    // Forward throws.
+    // The result is what AddMessageToQueue returns: false if the message is refused.
+    //
+    // The receipt, if it is not null, gets a Begin for each queue that the message is meant for, refusals
+    // included. A refusal that makes Forward return false is a Refuse. Any other outcome is a Settle, at any
+    // later time and on any thread. Nothing is told to the receipt if Forward throws.
     virtual bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
                          const std::shared_ptr<RabitQueueReceipt> &receipt) = 0;
 

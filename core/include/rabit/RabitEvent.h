@@ -13,6 +13,20 @@ namespace Rabit
 // What is called when an event happens.
 using RabitHandler = std::function<void()>;
 
+// Marks a handler that never waits for anything and takes microseconds, such as one that wakes a manager: it
+// is called on the thread that fires, always. Handlers without the mark may be called elsewhere
+// (RabitHandlerThread). Converts to a RabitHandler; a boost::function made of it loses the mark.
+class RabitQuickHandler
+{
+public:
+    // Throws std::invalid_argument if the handler is empty.
+    explicit RabitQuickHandler(RabitHandler handler);
+    void operator()() const { _handler(); }
+
+private:
+    RabitHandler _handler;
+};
+
 namespace Detail
 {
 struct EventSlot;
@@ -59,7 +73,8 @@ private:
 //
 // Handlers run on the thread that fires, in the order of their connection, with no lock held: they may
 // connect, disconnect, post and fire. What a handler throws is caught and logged, and the other handlers
-// still run. All methods may be called from any thread.
+// still run. All methods may be called from any thread. A thread that must not be held up hands all but
+// RabitQuickHandlers over to another one (RabitHandlerThread).
 class RabitEvent
 {
 public:
@@ -112,11 +127,21 @@ namespace Detail
 
 struct EventSlot
 {
-    EventSlot(RabitHandler handler, const void *owner) : Handler(std::move(handler)), Owner(owner) {}
+    EventSlot(RabitHandler handler, const void *owner)
+        : Handler(std::move(handler)),
+          IsQuick(Handler.target<RabitQuickHandler>() != nullptr),
+          Owner(owner)
+    {
+    }
     const RabitHandler Handler;
+    const bool IsQuick;
     const void *Owner;  // guarded by the event's mutex
     std::atomic<bool> Connected{true};
+    std::atomic<bool> Waits{false};  // handed over to a RabitHandlerThread, and not begun yet
 };
+
+// Logs what the handler throws.
+void CallHandler(const EventSlot &slot);
 
 struct EventState
 {

@@ -19,6 +19,10 @@ enum class RabitLogLevel
 // The one place through which the library says something. Warnings and errors go to stderr, one line each,
 // unless the program sets another sink; nothing else is printed.
 //
+// stderr never blocks the thread that logs. A line that stderr does not take at once (a full pipe that nobody
+// reads, a stopped terminal, a full disk, a closed descriptor) is dropped. The next line that is written says
+// how many were dropped. A line longer than PIPE_BUF (4096 bytes on Linux) is cut and ends in "... (cut)".
+//
 // All functions may be called from any thread. None throws.
 class RabitLog
 {
@@ -37,6 +41,9 @@ public:
     static void SetLevel(RabitLogLevel level);
     static RabitLogLevel GetLevel();
     static void Write(RabitLogLevel level, const std::string &text) noexcept;
+    // Writes a line to stderr as it is, whatever sink and level are set, for the last words of a program. It
+    // never blocks either.
+    static void Print(const std::string &line) noexcept;
 };
 
 }  // namespace Rabit

@@ -176,7 +176,9 @@ public:
     {
         return _workspace.AddMessageToQueue(std::move(name), std::move(msg), std::move(receipt));
     }
-    // Has this manager woken when all messages added with the receipt have come to an outcome.
+    // Has this manager woken when all messages added with the receipt have come to an outcome. Call it before
+    // the first message is added: an outcome that came earlier wakes nobody. Neither does a message that is
+    // refused at the call (RabitQueueReceipt).
     void WakeUpManagerOnOutcome(const std::shared_ptr<RabitQueueReceipt> &receipt);
 
     // Starts the thread and returns. Throws std::logic_error if it was started and not joined.

@@ -24,8 +24,12 @@ class PublishSubscribeMessage;
 // fetch) and what they put into queues.
 //
 // A message object belongs to one thread at a time, usually its manager's; sharing happens through the global
-// copy (PublishSubscribeMessage) to which registering under a name attaches it. Copying a message
-// (constructor and assignment) copies everything, its attachment included.
+// copy (PublishSubscribeMessage) to which registering under a name attaches it.
+//
+// A registration belongs to the object, not to its contents. Assignment, copy or move, takes the contents of
+// the other message and keeps the registration of this one: after `*mine = *theirs`, `mine` posts to its own
+// name. A message made from another by copy or move is unregistered, and so is the Clone of a generated
+// message. CopyBase alone hands a registration on.
 class RabitMessage
 {
 public:
@@ -36,14 +40,15 @@ public:
 
     // Stamped with the current time of the system clock.
     RabitMessage();
-    RabitMessage(const RabitMessage &) = default;
-    RabitMessage &operator=(const RabitMessage &) = default;
+    RabitMessage(const RabitMessage &other) noexcept;
+    RabitMessage &operator=(const RabitMessage &other) noexcept;
     virtual ~RabitMessage();
 
     // A deep copy, of the same dynamic type.
     virtual std::unique_ptr<RabitMessage> Clone() const = 0;
     // Takes over the contents of a message of the same type; returns false and changes nothing if it is of
     // another. The base copies the time stamp and the three ints. Overrides may assign the whole object.
+    // The registration stays as it is.
     virtual bool CopyMessage(RabitMessage *msg);
     // Back to default values. The base zeroes the three ints and the time stamp.
     virtual void Clear();
@@ -58,7 +63,8 @@ public:
     std::shared_ptr<PublishSubscribeMessage> GetGlobalPublishSubscribeMessageRef();
     void SetGlobalPublishSubscribeMessageRef(std::shared_ptr<PublishSubscribeMessage> val);
 
-    // What the base's CopyMessage copies, and the attachment: for use in Clone.
+    // Assigns the base of another message. If this message is unregistered, it also takes the registration of
+    // the other. For a Clone that makes a new object with it: that clone posts to the name of its original.
     void CopyBase(const RabitMessage *msg);
     // The dynamic type.
     std::type_index GetTypeIndex();
@@ -88,8 +94,9 @@ public:
 
     // These four work on the global copy and throw GlobalPublishSubscribeException if there is none.
     //
-    // Has the handler called after each post of this name: on the posting thread, with no lock held, for as
-    // long as the name exists. Returns true.
+    // Has the handler called after each post of this name, with no lock held, for as long as the name exists:
+    // on the posting thread. A gateway that posts for other nodes has a thread of its own for handlers. One
+    // call there may stand for several posts (RabitHandlerThread). Returns true.
     bool Register_SomethingPublished(const boost::function<void()> &handler);
     // Stamps this message with the current time, copies it to the global copy and calls the handlers.
     void PostMessage();
@@ -150,6 +157,21 @@ inline bool PublishSubscribeMessage::FetchMessage(RabitMessage *msg)
         return false;
     }
     return FetchIfChanged(msg);
+}
+
+inline RabitMessage::RabitMessage(const RabitMessage &other) noexcept
+{
+    RabitMessage::operator=(other);
+}
+
+inline RabitMessage &RabitMessage::operator=(const RabitMessage &other) noexcept
+{
+    MessageType = other.MessageType;
+    MessageSource = other.MessageSource;
+    MessageDestination = other.MessageDestination;
+    CopyStampFrom(other);
+    _redelivered = other._redelivered;
+    return *this;
 }
 
 inline void RabitMessage::CopyStampFrom(const RabitMessage &msg)

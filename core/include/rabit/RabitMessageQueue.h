@@ -25,8 +25,10 @@ namespace Rabit
 // A named, bounded first-in-first-out queue for any number of threads: the receiver gets each and every
 // message.
 //
-// Handlers run on the thread that added (or took), after it did, with no lock held; what they throw is caught
-// and logged. Elements are destroyed outside the lock.
+// Handlers run on the thread that added (or took), or on the RabitHandlerThread that this has for them, after
+// it did, with no lock held; what they throw is caught and logged. For messages of other nodes that is a
+// thread of the gateway's, and one call may stand for several messages. Elements are destroyed outside the
+// lock.
 template <typename T>
 class RabitMessageQueue
 {
@@ -46,6 +48,7 @@ public:
     RabitMessageQueue &operator=(const RabitMessageQueue &) = delete;
 
     std::string GetMessageQueueName() { return _name; }
+    const std::string &Name() const { return _name; }
     int GetMaxNoMessagesAllowedInQueue() { return static_cast<int>(_ring.Capacity()); }
 
     // Have the handler called after each message that was added, or taken, for as long as the queue lives.

@@ -27,6 +27,9 @@ enum class QueueOutcome
 // the other side acknowledged it, or when it is certain that it never will. A receipt given to several calls,
 // or to one that sends to several nodes (`*/queue`), stands for all of them together.
 //
+// AddMessageToQueue returns false for a message that is refused at the call. The receipt counts that message
+// as Refused and calls no handler for it: a manager that tries again when it is woken would never sleep.
+//
 // Threads: all methods may be called from any thread. Lifetime: shared; dropping a receipt drops the answer,
 // not the message.
 class RabitQueueReceipt
@@ -51,26 +54,35 @@ public:
     QueueOutcome Outcome() const;
     Counts GetCounts() const;
 
-    // Has the handler called whenever the last pending message gets its outcome: with no lock held, on the
-    // thread that learns it (for a local queue the caller's, else often one of the network's), so it must be
-    // quick. Throws std::invalid_argument if it is empty.
+    // Has the handler called whenever no message is pending any more and at least one got its outcome since
+    // the last call of the handlers. Messages that were refused at the call do not count for that. The
+    // handler runs with no lock held: for a local queue on the thread of the caller, else on a thread of the
+    // gateway's that calls handlers; if it is a RabitQuickHandler, on the thread that learns the outcome,
+    // often one of the network's. Throws std::invalid_argument if it is empty.
     RabitConnection ConnectOutcomeKnown(RabitHandler handler);
 
-    // For who delivers (the workspace, a QueueForwarder): `messages` more are on their way; and one of them
-    // came to this outcome, which is not Pending (throws std::invalid_argument) and is preceded by a Begin
-    // (throws std::logic_error).
+    // The methods below are for the code that delivers: the workspace, a QueueForwarder.
+    //
+    // Counts `messages` more as pending. Each of them then gets one Settle or one Refuse; without its Begin
+    // these two throw std::logic_error.
     void Begin(std::uint32_t messages = 1);
+    // One message came to this outcome. Throws std::invalid_argument if the outcome is Pending.
     void Settle(QueueOutcome outcome);
-    // For who hands one message to several: from Hold to Release the outcome is Pending and not known,
-    // whatever is settled, because more messages may begin.
+    // One message is refused at the call: AddMessageToQueue will return false.
+    void Refuse();
+    // Between Hold and Release the outcome is Pending, and no handler is called: one message goes to several
+    // queues, and more of them may begin.
     void Hold();
     void Release();
 
 private:
+    void End(QueueOutcome outcome, bool isNews);
+    RabitEvent::Handlers HandlersIfKnown();
+
     const std::shared_ptr<std::mutex> _mutex = std::make_shared<std::mutex>();
     Counts _counts;
     std::uint32_t _holds = 0;
-    bool _settledWhileHeld = false;
+    bool _news = false;  // a message was settled since the handlers were called
     RabitEvent _known{_mutex};
 };
 

@@ -184,7 +184,7 @@ public:
     // MessageRegistration. The message is kept alive as long as the name. True if it is attached now; false
     // if the name belongs to a message of another type (also logged).
     bool AddPublishSubscribeMessage(std::string name, std::shared_ptr<RabitMessage> msg);
-    // The same, telling what happened.
+    // The same, telling what happened. RabitMessageLease registers a name that goes again.
     MessageRegistration RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg);
     // The global copy of that name; null if there is none.
     std::shared_ptr<PublishSubscribeMessage> FindGlobalMessage(const std::string &name) const;
@@ -211,6 +211,7 @@ private:
     friend class RabitSteppedReactor;
     friend class RabitManager;
     friend class ManagerLease;
+    friend class RabitMessageLease;
 
     void AddManagerName(const std::string &managerName, std::uint64_t owner);
     std::shared_ptr<RabitManagerTrace> TraceOf(const std::string &managerName) const;

@@ -43,6 +43,7 @@ bool Assembly::Append(std::span<const std::uint8_t> part, LinkTime now)
     }
     std::copy(part.begin(), part.end(), _bytes->Writable().begin() + static_cast<std::ptrdiff_t>(_size));
     _size += part.size();
+    _grownAt = now;
     return true;
 }
 
@@ -55,7 +56,7 @@ bool Assembly::MakeRoom(std::size_t size, LinkTime now)
     }
     const std::size_t wanted =
         std::max(size, std::min(static_cast<std::size_t>(_total), std::max(2 * has, FirstRoom)));
-    if (!_memory.Take(this, wanted - has, now))
+    if (!_memory.Take(*this, wanted - has, now))
     {
         return false;
     }
@@ -74,7 +75,7 @@ void Assembly::Drop()
 {
     if (_bytes)
     {
-        _memory.Give(this, _bytes->Size());
+        _memory.Give(*this, _bytes->Size());
     }
     _bytes.reset();
     _open = false;

@@ -41,6 +41,8 @@ public:
     std::span<const std::uint8_t> Bytes() const;
     LinkPayload Owner() const { return _bytes; }
     std::size_t Size() const { return _size; }
+    // When a part was added last.
+    LinkTime GrownAt() const { return _grownAt; }
 
 private:
     bool MakeRoom(std::size_t size, LinkTime now);
@@ -51,6 +53,7 @@ private:
     std::string _type;
     std::uint64_t _total = 0;
     std::size_t _size = 0;
+    LinkTime _grownAt{0};
     std::shared_ptr<LinkBytes> _bytes;  // the first _size of them count
 };
 

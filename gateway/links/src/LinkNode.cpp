@@ -193,9 +193,9 @@ LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view qu
 
 // Rules R1 and S6, and the rule for hellos: a peer that remembers a higher life of this node than its present
 // one makes it take a yet higher one. Nothing received or sent in the old one is continued.
-void LinkNode::HeardOfMyself(std::string_view from, std::uint64_t incarnation, LinkTime now)
+void LinkNode::HeardOfMyself(const LinkPeer *from, std::uint64_t incarnation, LinkTime now)
 {
-    if (incarnation <= IncarnationTo(from))
+    if (incarnation <= (from == nullptr ? _context->Incarnation : from->OwnLife()))
     {
         return;
     }
@@ -220,14 +220,13 @@ void LinkNode::HeardOfMyself(std::string_view from, std::uint64_t incarnation, L
 
 // Whether the frame can be what it says it is, and is for this node. Changes nothing but the frame and
 // counters.
-bool LinkNode::Accepts(LinkFrame &frame, LinkTime now)
+bool LinkNode::Accepts(LinkFrame &frame, const LinkPeer *peer, LinkTime now)
 {
     if (!IsWellFormed(frame) || frame.Source == _context->Settings.Node)
     {
         ++_context->Counters.Malformed;
         return false;
     }
-    const LinkPeer *peer = FindPeer(frame.Source);
     if (frame.Short)
     {
         if (peer == nullptr || !peer->Expand(frame, now))
@@ -262,12 +261,13 @@ void LinkNode::OnUnknownShort(const LinkFrame &frame, LinkTime now)
 
 bool LinkNode::OnFrame(LinkFrame &frame, LinkTime now)
 {
-    if (!Accepts(frame, now))
+    LinkPeer *peer = FindPeer(frame.Source);
+    if (!Accepts(frame, peer, now))
     {
         return false;
     }
-    HeardOfMyself(frame.Source, frame.ReceiverLife, now);  // rules R1 and S6
-    LinkPeer *peer = FindOrAddPeer(frame.Source, now);
+    HeardOfMyself(peer, frame.ReceiverLife, now);  // rules R1 and S6
+    peer = peer != nullptr ? peer : FindOrAddPeer(frame.Source, now);
     if (peer == nullptr)
     {
         ++_context->Counters.TooManyPeers;
@@ -281,35 +281,80 @@ void LinkNode::HeardOf(std::string_view node, std::uint64_t incarnation, LinkTim
 {
     LinkPeer *peer = FindPeer(node);
     if (peer != nullptr && peer->Incarnation() != 0 && incarnation > peer->Incarnation() &&
-        IsPossibleIncarnation(incarnation))
+        (incarnation >> 32) <= LinkLargestClaim)
     {
         peer->HeardOf(incarnation, now);
     }
 }
 
-void LinkNode::OnRoom(std::string_view queue, LinkTime now)
+void LinkNode::OnRoom(std::string_view queue)
 {
-    for (const auto &[name, peer] : _peers)
+    auto turn = _turns.find(queue);
+    if (turn == _turns.end())
     {
-        if (LinkReceiver *receiver = peer->FindReceiver(queue))
+        turn = _turns.emplace(std::string(queue), Turn()).first;
+    }
+    turn->second.RoomCame = true;
+    _roomCame = true;
+}
+
+// The links that wait for a queue with room take turns, a message each.
+void LinkNode::ServeRooms(LinkTime now)
+{
+    if (!std::exchange(_roomCame, false))
+    {
+        return;
+    }
+    for (auto &[queue, turn] : _turns)
+    {
+        if (!std::exchange(turn.RoomCame, false))
         {
-            receiver->OnRoom(now);
+            continue;
+        }
+        _waiting.clear();
+        for (const auto &[name, peer] : _peers)
+        {
+            LinkReceiver *receiver = peer->FindReceiver(queue);
+            if (receiver != nullptr && receiver->IsWaiting())
+            {
+                _waiting.emplace_back(&name, receiver);
+            }
+        }
+        for (const auto &[name, receiver] : _waiting)
+        {
+            receiver->OnRoom(_waiting.size(), now);
+        }
+        std::stable_partition(_waiting.begin(), _waiting.end(),
+                              [&turn = turn](const auto &waiting) { return *waiting.first > turn.Last; });
+        for (bool any = true; any;)
+        {
+            any = false;
+            for (const auto &[name, receiver] : _waiting)
+            {
+                if (receiver->TakeTurn(now))
+                {
+                    turn.Last = *name;
+                    any = true;
+                }
+            }
         }
     }
 }
 
-void LinkNode::Retry(std::string_view source, std::string_view queue, LinkTime now)
+void LinkNode::Prepared(std::string_view source, std::string_view queue, std::uint64_t senderLife,
+                        std::uint64_t number, std::shared_ptr<void> prepared, LinkTime now)
 {
     const LinkPeer *peer = FindPeer(source);
     LinkReceiver *receiver = peer == nullptr ? nullptr : peer->FindReceiver(queue);
     if (receiver != nullptr)
     {
-        receiver->Retry(now);
+        receiver->Prepared(senderLife, number, std::move(prepared), now);
     }
 }
 
 void LinkNode::Run(LinkTime now)
 {
+    ServeRooms(now);
     for (const auto &[name, peer] : _peers)
     {
         peer->Run(now);
@@ -318,7 +363,7 @@ void LinkNode::Run(LinkTime now)
 
 LinkTime LinkNode::NextDue() const
 {
-    LinkTime due = LinkNever;
+    LinkTime due = _roomCame ? LinkTime(0) : LinkNever;
     for (const auto &[name, peer] : _peers)
     {
         due = std::min(due, peer->NextDue());

@@ -12,13 +12,15 @@ namespace Rabit
 
 void LinkNode::Advance(LinkTime now)
 {
+    ServeRooms(now);
     for (const auto &[name, peer] : _peers)
     {
         peer->Advance(now);
     }
 }
 
-void LinkNode::VisitStreams(LinkTime now, const std::function<void(const LinkStream &)> &visit) const
+void LinkNode::VisitStreams(std::size_t most, LinkTime now,
+                            const std::function<void(const LinkStream &)> &visit) const
 {
     for (const auto &[name, peer] : _peers)
     {
@@ -28,7 +30,7 @@ void LinkNode::VisitStreams(LinkTime now, const std::function<void(const LinkStr
         }
         for (const auto &[queue, sender] : peer->AllSenders())
         {
-            if (const std::size_t bytes = peer->DataBytes(*sender, now))
+            if (const std::size_t bytes = peer->DataBytes(*sender, most, now))
             {
                 visit({.Destination = name, .Queue = queue, .Bytes = bytes});
             }

@@ -73,8 +73,34 @@ std::uint64_t LinkOutbox::CutSkip()
 
 OutboxMessage LinkOutbox::TakeSent()
 {
-    _bytes -= _sent.Front().Bytes;
+    if (_sent.Front().IsSettled)
+    {
+        --_settled;
+    }
+    else
+    {
+        _bytes -= _sent.Front().Bytes;
+    }
     return _sent.PopFront();
+}
+
+const OutboxMessage *LinkOutbox::FirstUnsettled() const
+{
+    return _settled < _sent.Size() ? &_sent[_settled] : nullptr;
+}
+
+OutboxMessage *LinkOutbox::FirstUnsettled()
+{
+    return _settled < _sent.Size() ? &_sent[_settled] : nullptr;
+}
+
+void LinkOutbox::Settle(OutboxMessage &message)
+{
+    message.IsSettled = true;
+    message.IsSkipped = true;
+    message.Payload.reset();
+    _bytes -= message.Bytes;
+    ++_settled;
 }
 
 OutboxMessage LinkOutbox::TakeWaiting()

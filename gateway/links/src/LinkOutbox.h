@@ -14,7 +14,7 @@
 namespace Rabit
 {
 
-// An accepted message whose outcome is not known.
+// An accepted message whose outcome is not known, or whose numbers the receiver must still hear of.
 struct OutboxMessage
 {
     std::uint64_t Id = 0;
@@ -32,6 +32,7 @@ struct OutboxMessage
     bool IsWhole = false;     // the last of them ends it: with its last bytes, or as SKIP
     bool IsSkipped = false;   // it expired after something of it was sent
     bool MayArrive = false;   // its last bytes were sent
+    bool IsSettled = false;   // its outcome was told; its numbers wait for the receiver
 };
 
 // A part that was sent, by its number.
@@ -58,11 +59,14 @@ public:
     explicit LinkOutbox(const LinkOptions &options) : _options(options) {}
 
     bool Empty() const { return _sent.Empty() && _waiting.Empty(); }
-    std::size_t Count() const { return _sent.Size() + _waiting.Size(); }
+    // Messages without an outcome.
+    std::size_t Count() const { return UnsettledCount() + _waiting.Size(); }
     std::size_t Bytes() const { return _bytes; }
     // Of the room that there is, for messages or for bytes, whichever is fuller; 1: full.
     double Fill() const;
     std::size_t SentCount() const { return _sent.Size(); }
+    // Of the sent ones, those without an outcome.
+    std::size_t UnsettledCount() const { return _sent.Size() - _settled; }
     bool HasWaiting() const { return !_waiting.Empty(); }
 
     // Whether a message of this size fits, and if not, why.
@@ -98,6 +102,12 @@ public:
     // The newest sent message, which is there in part, ends with one more part, a SKIP.
     std::uint64_t CutSkip();
 
+    // The oldest sent message without an outcome; null: none. Then tells its outcome: its payload and its
+    // place in the outbox are given up, and its numbers are skipped.
+    OutboxMessage *FirstUnsettled();
+    const OutboxMessage *FirstUnsettled() const;
+    void Settle(OutboxMessage &message);
+
     // The oldest that was never sent. There must be one.
     const OutboxMessage &FirstWaiting() const { return _waiting.Front(); }
     // Takes out the oldest part / sent message / message never sent. There must be one.
@@ -112,7 +122,8 @@ private:
     RingBuffer<OutboxMessage> _sent;
     RingBuffer<OutboxMessage> _waiting;
     RingBuffer<SentPart> _parts;
-    std::size_t _bytes = 0;
+    std::size_t _bytes = 0;    // of messages without an outcome
+    std::size_t _settled = 0;  // the oldest of the sent ones
     std::uint64_t _nextSequence = 1;
     std::uint64_t _nextMessage = 1;
 };

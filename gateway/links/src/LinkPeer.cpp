@@ -23,7 +23,7 @@ LinkPeer::LinkPeer(LinkContext &context, std::string name, LinkTime now)
       _name(std::move(name)),
       _ownLife(context.Incarnation),
       _heardAt(now),
-      _helloStep(2 * context.Settings.HelloGap),
+      _helloGap(context.Settings.HelloGap),
       _path(context.Settings)
 {
 }
@@ -51,6 +51,12 @@ bool LinkPeer::Expand(LinkFrame &frame, LinkTime now) const
     return frame.Time >= 0 && frame.Echo.Time >= 0;
 }
 
+bool LinkPeer::IsIncredible(const LinkFrame &frame) const
+{
+    return frame.SenderLife > _incarnation && (frame.SenderLife >> 32) > LinkLargestClaim &&
+           frame.Echo.Clock != _context.Clock;
+}
+
 bool LinkPeer::AreAcksPossible(const LinkFrame &frame) const
 {
     if (frame.SenderLife != _incarnation || frame.ReceiverLife != _ownLife)
@@ -75,11 +81,17 @@ bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
         _incarnation = incarnation;
         _token = {};
         _knowsMe = false;
+        _helloGap = _context.Settings.HelloGap;
         _receiverOf.clear();
         _unknownLinks.clear();
+        _refusals.clear();
         if (restarted)
         {
             ++_context.Counters.PeerRestarts;
+            for (const auto &[queue, receiver] : _receivers)
+            {
+                receiver->SourceEnded();
+            }
             for (const auto &[queue, sender] : _senders)
             {
                 sender->Restart();
@@ -109,6 +121,7 @@ void LinkPeer::HeardNow(LinkTime now)
     _heardAt = now;
     _unansweredSince = LinkNever;
     _silent = false;
+    _droppedBeyondGaps = false;
 }
 
 bool LinkPeer::TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now)
@@ -123,6 +136,12 @@ bool LinkPeer::TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now)
 
 void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
 {
+    if (IsIncredible(frame))
+    {
+        ++_context.Counters.FalseClaims;
+        HelloSoon(now);
+        return;
+    }
     if (!HeardOf(frame.SenderLife, now))  // rules S5 and R2
     {
         ++_context.Counters.Stale;
@@ -137,6 +156,7 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
         HelloSoon(now);
         return;
     }
+    _helloGap = _context.Settings.HelloGap;
     _knowsMe = frame.Echo.Clock == _context.Clock || (_knowsMe && frame.Echo.Clock == 0);
     if (frame.Ask && !frame.HasData)
     {
@@ -209,6 +229,11 @@ LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
         return nullptr;
     }
     LinkReceiver *receiver = FindReceiver(data.Queue);
+    if (receiver == nullptr && !_context.Queues.Accepts(_name, data.Queue))
+    {
+        Refuse(data);
+        return nullptr;
+    }
     if (receiver == nullptr)
     {
         if (_receivers.size() >= _context.Settings.MaxLinksPerPeer)
@@ -220,7 +245,7 @@ LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
         receiver = _receivers.emplace(queue, std::make_unique<LinkReceiver>(_context, _name, queue))
                        .first->second.get();
     }
-    // Who gives one queue many numbers must not fill the memory with them.
+    // A peer that gives one queue many numbers must not fill the memory with them.
     if (_receiverOf.size() >= 4 * _context.Settings.MaxLinksPerPeer)
     {
         _receiverOf.clear();
@@ -229,10 +254,33 @@ LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
     return receiver;
 }
 
+// All parts are refused, whatever came before them and whatever is between them: nothing but the numbers has
+// to be remembered, and these only until they are acknowledged.
+void LinkPeer::Refuse(const LinkData &data)
+{
+    std::uint64_t refused = 0;
+    for (const LinkItem &item : data.Items)
+    {
+        refused += (item.Flags & LinkFlagLast) != 0 ? 1 : 0;
+    }
+    _context.Counters.RefusedUnknown += refused;
+    auto refusal = std::find_if(_refusals.begin(), _refusals.end(),
+                                [&data](const Refusal &known) { return known.Link == data.Link; });
+    if (refusal == _refusals.end())
+    {
+        if (_refusals.size() >= MostUnknownLinks)
+        {
+            return;  // the peer will ask again
+        }
+        refusal = _refusals.insert(refusal, {.Link = data.Link, .Oldest = data.Oldest});
+    }
+    refusal->Oldest = std::max(refusal->Oldest, data.Oldest);
+    refusal->Through = std::max(refusal->Through, data.Items.back().Through);
+}
+
 void LinkPeer::HelloSoon(LinkTime now)
 {
-    const LinkTime earliest =
-        _lastHelloAt == LinkNever ? now : std::max(now, _lastHelloAt + _context.Settings.HelloGap);
+    const LinkTime earliest = _lastHelloAt == LinkNever ? now : std::max(now, _lastHelloAt + _helloGap);
     _helloAt = std::min(_helloAt, earliest);
 }
 
@@ -240,8 +288,10 @@ void LinkPeer::OnOwnRaise(LinkTime now)
 {
     _ownLife = _context.Incarnation;
     _knowsMe = false;
+    _helloGap = _context.Settings.HelloGap;
     _receiverOf.clear();
     _unknownLinks.clear();
+    _refusals.clear();
     for (const auto &[queue, receiver] : _receivers)
     {
         receiver->DropSession();

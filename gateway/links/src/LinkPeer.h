@@ -75,15 +75,16 @@ public:
     // Acknowledgements and hellos that are due: their bytes, about; 0: none. And sends them.
     std::size_t UrgentBytes(LinkTime now) const;
     bool SendUrgent(LinkTime now);
-    // The next datagram of one link: its bytes, about; 0: it has none now. And sends it, of at most so many
-    // bytes.
-    std::size_t DataBytes(const LinkSender &sender, LinkTime now) const;
+    // The next datagram of one link: its bytes, about, if it has at most so many on the air; 0: it has none
+    // now. And sends it, of at most so many bytes.
+    std::size_t DataBytes(const LinkSender &sender, std::size_t most, LinkTime now) const;
     bool SendData(LinkSender &sender, std::size_t most, LinkTime now);
     LinkTime NextDue() const;
     std::string Describe() const;
 
 private:
-    // The receiver of the data; null: the number means nothing yet, or there are too many.
+    // The receiver of the data; null: the number means nothing yet, the queue is not accepted, or there are
+    // too many.
     LinkReceiver *ReceiverOf(const LinkData &data);
     void OnData(const LinkFrame &frame, LinkTime now);
     void OnAcks(const LinkFrame &frame, LinkTime now);
@@ -92,6 +93,9 @@ private:
     bool TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now);
     void HeardNow(LinkTime now);
 
+    // True if the frame says an incarnation that no wall clock gives yet, and does not prove by an echo that
+    // its sender hears this node.
+    bool IsIncredible(const LinkFrame &frame) const;
     bool HasPending() const;
     bool IsOpen() const;
     bool IsSilentAt(LinkTime now) const
@@ -101,10 +105,21 @@ private:
     // When an acknowledgement or a hello is due.
     LinkTime UrgentDue() const;
     LinkFrame &BeginFrame(bool mayBeShort, LinkTime now);
-    void AddAcks(LinkFrame &frame);
+    // Adds the acknowledgements that are waiting, due or not, as far as the frame takes no more than `most`
+    // bytes; with `one`, the first in any case. Call AcksSent when the frame was sent with them.
+    void AddAcks(LinkFrame &frame, std::size_t most, bool one);
+    void AcksSent(const LinkFrame &frame);
+    void Refuse(const LinkData &data);
     void Send(const LinkFrame &frame, bool asks, LinkTime now);
     void SendHello(LinkTime now);
-    LinkTime NextHelloStep();
+
+    // Parts for a queue that this node does not accept, up to a number.
+    struct Refusal
+    {
+        std::uint32_t Link = 0;
+        std::uint64_t Oldest = 0;
+        std::uint64_t Through = 0;
+    };
 
     LinkContext &_context;
     const std::string _name;
@@ -116,7 +131,7 @@ private:
     LinkTime _unansweredSince = LinkNever;  // since when something that was sent wants an answer
     bool _silent = false;                   // for SilentAfter
     LinkTime _helloAt = LinkNever;
-    LinkTime _helloStep;                // until the hello after the next, while a token is wanted
+    LinkTime _helloGap;  // until the next one at least; doubles until a frame of both present lives comes
     LinkTime _lastHelloAt = LinkNever;  // LinkNever: none was sent
     PathControl _path;
     Senders _senders;
@@ -125,6 +140,10 @@ private:
     Receivers _receivers;
     std::map<std::uint32_t, LinkReceiver *> _receiverOf;  // by the peer's numbers
     std::vector<std::uint32_t> _unknownLinks;             // numbers that the peer must say the queues of
+    std::vector<Refusal> _refusals;                       // to be acknowledged
+    // Of the frame that is being made: the receivers of its first acknowledgements; reused.
+    std::vector<LinkReceiver *> _acknowledged;
+    bool _droppedBeyondGaps = false;  // since the peer was heard
 };
 
 }  // namespace Rabit

@@ -33,9 +33,13 @@ void LinkPeer::Advance(LinkTime now)
 {
     const bool wasSilent = _silent;
     _silent = IsSilentAt(now);
-    for (const auto &[queue, receiver] : _receivers)
+    if (IsUnheardAt(now) && !_droppedBeyondGaps)
     {
-        receiver->Advance(now);
+        for (const auto &[queue, receiver] : _receivers)
+        {
+            receiver->DropBeyondGap();
+        }
+        _droppedBeyondGaps = true;
     }
     for (LinkSender *sender : _byNumber)
     {
@@ -63,7 +67,7 @@ void LinkPeer::Run(LinkTime now)
 
 LinkTime LinkPeer::UrgentDue() const
 {
-    LinkTime due = _unknownLinks.empty() ? _helloAt : LinkTime(0);
+    LinkTime due = _unknownLinks.empty() && _refusals.empty() ? _helloAt : LinkTime(0);
     for (const auto &[queue, receiver] : _receivers)
     {
         due = std::min(due, receiver->AckDue());
@@ -88,15 +92,20 @@ bool LinkPeer::SendUrgent(LinkTime now)
         return false;
     }
     LinkFrame &frame = BeginFrame(true, now);
-    AddAcks(frame);
+    AddAcks(frame, _context.Settings.MaxDatagram, true);
+    AcksSent(frame);
     Send(frame, false, now);
     return true;
 }
 
-std::size_t LinkPeer::DataBytes(const LinkSender &sender, LinkTime now) const
+std::size_t LinkPeer::DataBytes(const LinkSender &sender, std::size_t most, LinkTime now) const
 {
-    return IsOpen() && sender.IsReady(now) ? sender.NextBytes() + AboutAnAck + _context.Settings.AirOverhead
-                                           : 0;
+    if (!IsOpen() || !sender.IsReady(now))
+    {
+        return 0;
+    }
+    const std::size_t head = AboutAnAck + _context.Settings.AirOverhead;
+    return sender.NextBytes(most > head ? most - head : 1) + head;
 }
 
 bool LinkPeer::SendData(LinkSender &sender, std::size_t most, LinkTime now)
@@ -106,8 +115,15 @@ bool LinkPeer::SendData(LinkSender &sender, std::size_t most, LinkTime now)
         return false;
     }
     LinkFrame &frame = BeginFrame(true, now);
-    AddAcks(frame);
+    AddAcks(frame, most / 2, false);
     const LinkSender::Filled filled = sender.Fill(frame, most, now);
+    // A part that was cut for a whole datagram leaves no room for them: they go with the next frame.
+    if (!frame.Acks.empty() && frame.HasData && frame.Data.Items.front().Payload.size() > most / 4 &&
+        LinkFrameCodec::EncodedSize(frame) > most)
+    {
+        frame.Acks.clear();
+    }
+    AcksSent(frame);
     const bool hasParts = filled == LinkSender::Filled::Parts;
     if (filled == LinkSender::Filled::Nothing && frame.Acks.empty())
     {
@@ -147,20 +163,77 @@ LinkFrame &LinkPeer::BeginFrame(bool mayBeShort, LinkTime now)
     return frame;
 }
 
-// All acknowledgements that are waiting, due or not: they cost little in a frame that goes anyway.
-void LinkPeer::AddAcks(LinkFrame &frame)
+void LinkPeer::AddAcks(LinkFrame &frame, std::size_t most, bool one)
 {
+    _acknowledged.clear();
+    std::size_t bytes = LinkFrameCodec::HeaderSize(frame) + 1;
+    // Keeps the last acknowledgement of the frame if there is room for it.
+    const auto keep = [&frame, &bytes, most, one]
+    {
+        bytes += LinkFrameCodec::AckSize(frame.Acks.back());
+        const bool fits = bytes <= most || (one && frame.Acks.size() == 1);
+        if (!fits || frame.Acks.size() > LinkMaxAcks)
+        {
+            frame.Acks.pop_back();
+            return false;
+        }
+        return true;
+    };
     for (const auto &[queue, receiver] : _receivers)
     {
-        if (receiver->AckDue() != LinkNever && frame.Acks.size() < LinkMaxAcks)
+        if (receiver->AckDue() == LinkNever)
         {
-            receiver->Acknowledge(frame.Acks.emplace_back(), _incarnation);
+            continue;
+        }
+        receiver->Describe(frame.Acks.emplace_back(), _incarnation);
+        if (!keep())
+        {
+            return;
+        }
+        _acknowledged.push_back(receiver.get());
+    }
+    for (const std::uint32_t link : _unknownLinks)
+    {
+        frame.Acks.emplace_back().Link = link;
+        if (!keep())
+        {
+            return;
         }
     }
-    while (!_unknownLinks.empty() && frame.Acks.size() < LinkMaxAcks)
+    for (const Refusal &refusal : _refusals)
     {
-        frame.Acks.emplace_back().Link = _unknownLinks.back();
-        _unknownLinks.pop_back();
+        LinkAck &ack = frame.Acks.emplace_back();
+        ack.Link = refusal.Link;
+        ack.Open = true;
+        ack.Cumulative = refusal.Through;
+        ack.Oldest = std::max(
+            refusal.Oldest, refusal.Through + 1 - std::min<std::uint64_t>(refusal.Through, LinkWindowParts));
+        ack.Refused.fill(~std::uint64_t{0});
+        ack.Credit = LinkMaxWindow;
+        if (!keep())
+        {
+            return;
+        }
+    }
+}
+
+void LinkPeer::AcksSent(const LinkFrame &frame)
+{
+    for (std::size_t i = 0; i < frame.Acks.size(); ++i)
+    {
+        const LinkAck &ack = frame.Acks[i];
+        if (i < _acknowledged.size())
+        {
+            _acknowledged[i]->Acknowledged(ack);
+        }
+        else if (ack.Open)
+        {
+            std::erase_if(_refusals, [&ack](const Refusal &refusal) { return refusal.Link == ack.Link; });
+        }
+        else
+        {
+            std::erase(_unknownLinks, ack.Link);
+        }
     }
 }
 
@@ -173,31 +246,20 @@ void LinkPeer::Send(const LinkFrame &frame, bool asks, LinkTime now)
     _context.Output.Send(frame);
 }
 
+// Hellos to a peer that does not make sense of this node, or is not there, become more and more seldom.
 void LinkPeer::SendHello(LinkTime now)
 {
     LinkFrame &frame = BeginFrame(false, now);
-    AddAcks(frame);
+    AddAcks(frame, _context.Settings.MaxDatagram, false);
+    AcksSent(frame);
     const bool wanted = !IsOpen() && HasPending();
     frame.Ask = wanted;
     _lastHelloAt = now;
-    _helloAt = wanted ? now + NextHelloStep() : LinkNever;
+    _helloGap = std::min(2 * _helloGap, _context.Settings.HelloPeriod);
+    const LinkTime step = _silent ? _context.Settings.SilentHelloPeriod : _helloGap;
+    _helloAt = wanted ? now + step : LinkNever;
     ++_context.Counters.HellosSent;
     Send(frame, wanted, now);
-}
-
-// The first hello often comes before the network has matched the two nodes, and is lost.
-LinkTime LinkPeer::NextHelloStep()
-{
-    if (_silent)
-    {
-        return _context.Settings.SilentHelloPeriod;
-    }
-    const LinkTime period = _context.Settings.HelloPeriod;
-    const LinkTime first = 2 * _context.Settings.HelloGap;
-    const bool begins = _token.Known() || _unansweredSince == LinkNever;
-    const LinkTime step = begins ? first : std::min(std::max(_helloStep, first), period);
-    _helloStep = 2 * step;
-    return step;
 }
 
 LinkTime LinkPeer::NextDue() const
@@ -207,9 +269,10 @@ LinkTime LinkPeer::NextDue() const
     {
         due = std::min(due, sender->NextDue(IsOpen()));
     }
-    for (const auto &[queue, receiver] : _receivers)
+    if (!_droppedBeyondGaps && std::any_of(_receivers.begin(), _receivers.end(),
+                                           [](const auto &entry) { return entry.second->KeepsParts(); }))
     {
-        due = std::min(due, receiver->NextDue());
+        due = std::min(due, _heardAt + _context.Settings.SilentAfter);
     }
     return due;
 }

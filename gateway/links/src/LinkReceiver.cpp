@@ -82,7 +82,26 @@ void LinkReceiver::DropSession()
     _unacknowledged = 0;
     _unacknowledgedBytes = 0;
     _heldBack = false;
+    _toldCredit = 0;
     _noMemory = false;
+    _givenOut = 0;
+    _prepared.reset();
+}
+
+void LinkReceiver::DropBeyondGap()
+{
+    _kept.DropBeyondGap(_cumulative);
+}
+
+// A message that is here to its end may still go into the queue.
+void LinkReceiver::SourceEnded()
+{
+    DropBeyondGap();
+    if (_kept.Empty())
+    {
+        _assembly.Drop();
+        _noMemory = false;
+    }
 }
 
 void LinkReceiver::OnItem(const LinkFrame &frame, const LinkItem &item, LinkTime soon, LinkTime now)
@@ -162,7 +181,8 @@ std::string_view LinkReceiver::TypeOf(const LinkItem &item)
         std::string &name = _types[item.TypeNumber];
         if (name != item.Type)
         {
-            name.assign(item.Type);
+            // Deliver refuses a message without a type name, so other names need not be remembered.
+            name.assign(_context.Queues.AcceptsType(_queue, item.Type) ? item.Type : std::string_view());
         }
         return name;
     }
@@ -182,10 +202,15 @@ void LinkReceiver::Keep(const ReceivedPart &part)
     }
 }
 
-void LinkReceiver::ConsumeKept(LinkTime now)
+void LinkReceiver::ConsumeKept(LinkTime now, bool turn)
 {
+    const std::uint64_t before = _counters.Delivered;
     for (_kept.DropThrough(_cumulative); !_kept.Empty(); _kept.DropThrough(_cumulative))
     {
+        if (turn && _counters.Delivered != before)
+        {
+            return;
+        }
         const ReceivedPart part = _kept.First();
         if (part.Sequence > _cumulative + 1)
         {
@@ -211,22 +236,46 @@ void LinkReceiver::Advance(const ReceivedPart &part, OutcomeHistory::Entry entry
         _history.Set(_cumulative + 1, entry);
     }
     _heldBack = false;
+    _noMemory = false;
+    _givenOut = 0;
+    _prepared.reset();
 }
 
-void LinkReceiver::OnRoom(LinkTime now)
+void LinkReceiver::OnRoom(std::size_t waiting, LinkTime now)
 {
-    if (HasSession() && (_heldBack || !_kept.Empty()))
-    {
-        _roomCame = true;
-    }
-    if (HasSession() && _heldBack)
+    _sharers = waiting;
+    if (_heldBack && Credit() > _toldCredit)
     {
         AcknowledgeBy(now + _context.Settings.AckDelay);
     }
 }
 
-void LinkReceiver::Retry(LinkTime now)
+bool LinkReceiver::TakeTurn(LinkTime now)
 {
+    const std::uint64_t delivered = _counters.Delivered;
+    const std::uint64_t before = _cumulative;
+    const LinkTime ackAt = _ackAt;
+    ConsumeKept(now, true);
+    if (_cumulative != before)
+    {
+        AcknowledgeBy(now + _context.Settings.AckDelay);
+    }
+    else if (_heldBack)
+    {
+        _ackAt = ackAt;  // somebody else took the room: no news for the sender
+    }
+    return _counters.Delivered != delivered;
+}
+
+void LinkReceiver::Prepared(std::uint64_t senderLife, std::uint64_t number, std::shared_ptr<void> prepared,
+                            LinkTime now)
+{
+    if (senderLife != _senderLife || number != _givenOut || _prepared)
+    {
+        return;
+    }
+    _givenOut = prepared ? number : 0;
+    _prepared = std::move(prepared);
     const std::uint64_t before = _cumulative;
     ConsumeKept(now);
     if (_cumulative != before)
@@ -235,21 +284,12 @@ void LinkReceiver::Retry(LinkTime now)
     }
 }
 
-void LinkReceiver::Advance(LinkTime now)
-{
-    if (_roomCame)
-    {
-        _roomCame = false;
-        Retry(now);
-    }
-}
-
 void LinkReceiver::AcknowledgeBy(LinkTime when)
 {
     _ackAt = std::min(_ackAt, when);
 }
 
-void LinkReceiver::Acknowledge(LinkAck &ack, std::uint64_t sourceLife)
+void LinkReceiver::Describe(LinkAck &ack, std::uint64_t sourceLife) const
 {
     ack = {};
     ack.Link = _link;
@@ -265,10 +305,24 @@ void LinkReceiver::Acknowledge(LinkAck &ack, std::uint64_t sourceLife)
         {
             ack.Held = _kept.HeldAfter(_cumulative);
         }
-        ack.Credit =
-            _noMemory ? 0 : static_cast<std::uint32_t>(std::min(_context.Queues.Room(_queue), LinkMaxWindow));
-        _heldBack = ack.Credit == 0;
+        ack.Credit = Credit();
     }
+}
+
+// One complete message may wait here for its turn, so that a link whose messages are large takes part in the
+// turns of a full queue.
+std::uint32_t LinkReceiver::Credit() const
+{
+    const std::size_t share =
+        std::clamp<std::size_t>(_context.Queues.Room(_queue) / _sharers, 1, LinkMaxWindow);
+    return _noMemory ? 0 : static_cast<std::uint32_t>(share);
+}
+
+void LinkReceiver::Acknowledged(const LinkAck &ack)
+{
+    _heldBack = ack.Open ? ack.Credit <= 1 : _heldBack;
+    _toldCredit = ack.Credit;
+    _sharers = 1;
     _ackAt = LinkNever;
     _unacknowledged = 0;
     _unacknowledgedBytes = 0;

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -26,20 +27,30 @@ public:
 
     // Data of the present lives of both nodes. `ackDelay`: how long the acknowledgement may wait for more.
     void OnData(const LinkFrame &frame, LinkTime ackDelay, LinkTime now);
-    // The local queue has room again.
-    void OnRoom(LinkTime now);
-    // Delivers what could not be delivered before, if now it can.
-    void Retry(LinkTime now);
-    // What was received is not continued: a new life of this node or of the source.
+    // True if parts wait here, or the sender was told that there is no room.
+    bool IsWaiting() const { return HasSession() && (_heldBack || !_kept.Empty()); }
+    // The local queue has room again, for which so many links wait: the sender is told soon of its share.
+    void OnRoom(std::size_t waiting, LinkTime now);
+    // Consumes what waits, up to one message that goes into the local queue. True if one did.
+    bool TakeTurn(LinkTime now);
+    // See LinkNode::Prepared.
+    void Prepared(std::uint64_t senderLife, std::uint64_t number, std::shared_ptr<void> prepared,
+                  LinkTime now);
+    // Ends the session: a new incarnation of this node or of the source does not continue it.
     void DropSession();
+    // The source has been silent: gives back the memory of parts that wait for an earlier one. The sender
+    // sends them again if it returns.
+    void DropBeyondGap();
+    // The incarnation of the source is over: nothing more comes of what is incomplete.
+    void SourceEnded();
+    bool KeepsParts() const { return !_kept.Empty(); }
 
-    // Does what is due, except acknowledging.
-    void Advance(LinkTime now);
     // When it has to be acknowledged; LinkNever: not at all.
     LinkTime AckDue() const { return _ackAt; }
-    LinkTime NextDue() const { return _roomCame ? LinkTime(0) : _ackAt; }
-    // The acknowledgement of now, which is then no longer due. `sourceLife`: the present life of the source.
-    void Acknowledge(LinkAck &ack, std::uint64_t sourceLife);
+    // Makes the acknowledgement of now. `sourceLife`: the present incarnation of the source.
+    void Describe(LinkAck &ack, std::uint64_t sourceLife) const;
+    // That acknowledgement was sent.
+    void Acknowledged(const LinkAck &ack);
 
     // The source's number for the link.
     std::uint32_t Link() const { return _link; }
@@ -63,7 +74,10 @@ private:
     LinkTime AliveUntil(const LinkItem &item, const LinkEcho &echo, LinkTime now) const;
     std::string_view TypeOf(const LinkItem &item);
     void Keep(const ReceivedPart &part);
-    void ConsumeKept(LinkTime now);
+    // Consumes kept parts; with `turn`, no more once a message went into the queue.
+    void ConsumeKept(LinkTime now, bool turn = false);
+    Result HoldBack(LinkTime now);
+    bool Append(const ReceivedPart &part, LinkTime now);
     Result Consume(const ReceivedPart &part, LinkTime now);
     Result ConsumePiece(const ReceivedPart &part, LinkTime now);
     Result ConsumeLast(const ReceivedPart &part, LinkTime now);
@@ -71,6 +85,7 @@ private:
                    const LinkPayload &owner, LinkTime now);
     void Advance(const ReceivedPart &part, OutcomeHistory::Entry entry);
     void AcknowledgeBy(LinkTime when);
+    std::uint32_t Credit() const;
 
     LinkContext &_context;
     const std::string _source;
@@ -85,14 +100,18 @@ private:
     LinkTime _openedAt{0};
     std::map<std::uint32_t, std::string> _types;
     ReorderBuffer _kept;
-    Assembly _assembly;
+    Assembly _assembly;  // of the message whose turn it is
 
     LinkTime _ackAt = LinkNever;
     std::size_t _unacknowledged = 0;       // parts that came since the last acknowledgement
     std::size_t _unacknowledgedBytes = 0;  // of their payloads
-    bool _heldBack = false;                // the sender was last told that there is no room
+    bool _heldBack = false;                // the sender was last told that there is no room, or nearly none
+    std::uint32_t _toldCredit = 0;         // by the last acknowledgement
+    std::size_t _sharers = 1;              // links that waited for the room that the sender is told of next
     bool _noMemory = false;                // for the next piece of a large message
-    bool _roomCame = false;                // Retry is due
+    // Number of the message that the driver prepares or has prepared; 0: none. It is the next one.
+    std::uint64_t _givenOut = 0;
+    std::shared_ptr<void> _prepared;  // null while the driver prepares it
 
     LinkReceiverCounters _counters;
 };

@@ -37,21 +37,36 @@ LinkReceiver::Result LinkReceiver::ConsumePiece(const ReceivedPart &part, LinkTi
     {
         _assembly.BeginRefused();
     }
-    _noMemory = !_assembly.Append(part.Payload, now);
-    if (_noMemory)
+    if (!Append(part, now))
     {
-        // As with a full queue: the sender probes until there is room.
-        ++_counters.HeldBackMemory;
-        _heldBack = true;
-        AcknowledgeBy(now);
-        return Result::NotNow;
+        return HoldBack(now);
     }
     Advance(part, OutcomeHistory::Entry::Delivered);
     return Result::Consumed;
 }
 
+// False: there is no memory for it now. As with a full queue, the sender probes until there is.
+bool LinkReceiver::Append(const ReceivedPart &part, LinkTime now)
+{
+    _noMemory = !_assembly.Append(part.Payload, now);
+    _counters.HeldBackMemory += _noMemory ? 1 : 0;
+    return !_noMemory;
+}
+
+// Rule R7: acknowledge, do not advance.
+LinkReceiver::Result LinkReceiver::HoldBack(LinkTime now)
+{
+    _heldBack = true;
+    AcknowledgeBy(now);
+    return Result::NotNow;
+}
+
 LinkReceiver::Result LinkReceiver::ConsumeLast(const ReceivedPart &part, LinkTime now)
 {
+    if (part.Sequence == _givenOut && !_prepared)
+    {
+        return Result::NotNow;  // the driver reads its bytes
+    }
     if (part.AliveUntil <= now)
     {
         // The sender gets a fresh token with the acknowledgement, and sends the part again with less time
@@ -69,13 +84,9 @@ LinkReceiver::Result LinkReceiver::ConsumeLast(const ReceivedPart &part, LinkTim
     {
         _assembly.BeginRefused();
     }
-    _noMemory = !_assembly.Append(part.Payload, now);
-    if (_noMemory)
+    if (!Append(part, now))
     {
-        ++_counters.HeldBackMemory;
-        _heldBack = true;
-        AcknowledgeBy(now);
-        return Result::NotNow;
+        return HoldBack(now);
     }
     if (!_assembly.IsComplete())
     {
@@ -100,19 +111,25 @@ LinkReceiver::Result LinkReceiver::Deliver(const ReceivedPart &part, std::string
                                            std::span<const std::uint8_t> payload, const LinkPayload &owner,
                                            LinkTime now)
 {
-    const bool redelivered = Has(part, LinkFlagRedelivered);
     const LocalQueueResult result =
         type.empty() ? LocalQueueResult::WrongType
-                     : _context.Queues.Deliver(_source, _queue, type, payload, owner, redelivered);
+                     : _context.Queues.Deliver({.Source = _source,
+                                                .Queue = _queue,
+                                                .Type = type,
+                                                .SenderLife = _senderLife,
+                                                .Number = part.Sequence,
+                                                .Payload = payload,
+                                                .Owner = owner,
+                                                .Redelivered = Has(part, LinkFlagRedelivered),
+                                                .Prepared = _prepared});
     switch (result)
     {
         case LocalQueueResult::Full:
-            // Rule R7: acknowledge, no credit, do not advance. OnRoom makes room known.
             ++_counters.HeldBackFull;
-            _heldBack = true;
-            AcknowledgeBy(now);
-            return Result::NotNow;
+            return HoldBack(now);  // OnRoom makes room known
         case LocalQueueResult::Later:
+            _givenOut = part.Sequence;
+            _prepared.reset();
             return Result::NotNow;
         case LocalQueueResult::Ok:
             // Rule R8.

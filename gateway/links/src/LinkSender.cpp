@@ -11,7 +11,7 @@ namespace
 {
 
 // After so many bytes of probes in vain, whether there is a path is found out with less: others need the air.
-constexpr std::size_t BytesInVain = 10'000;
+constexpr std::size_t BytesInVain = 2'000;
 
 }  // namespace
 
@@ -73,7 +73,12 @@ void LinkSender::Advance(bool open, LinkTime now)
 {
     ExpireWaiting(now);
     ExpireSent(now);
-    if (_outbox.Empty() || !open)
+    if (!open)
+    {
+        SettleExpired(now);
+        return;
+    }
+    if (_outbox.Empty())
     {
         return;
     }
@@ -112,6 +117,25 @@ void LinkSender::ExpireSent(LinkTime now)
     ++_lost;
 }
 
+// Rule S7: an answer may never come. A message that was sent as a whole may have arrived.
+void LinkSender::SettleExpired(LinkTime now)
+{
+    for (OutboxMessage *first = _outbox.FirstUnsettled(); first != nullptr && now >= first->ExpiresAt;
+         first = _outbox.FirstUnsettled())
+    {
+        const bool mayHaveArrived = first->MayArrive;
+        _outbox.Settle(*first);
+        if (mayHaveArrived)
+        {
+            Report(*first, LinkOutcome::InDoubt);
+        }
+        else
+        {
+            ReportExpired(*first);
+        }
+    }
+}
+
 // Nothing was acknowledged for a round trip and more: ask again with one datagram (the tail loss probe of RFC
 // 8985), later and later. What is lost will show when it is answered: a path that has only become slow must
 // not get everything once more.
@@ -136,9 +160,13 @@ void LinkSender::OnProbeTimer()
 
 bool LinkSender::IsTurnedAway() const
 {
+    return _outbox.SentCount() > 0 && (_outbox.FirstMessage() >= _creditLimit || IsFirstHeld());
+}
+
+bool LinkSender::IsFirstHeld() const
+{
     const std::uint64_t first = _outbox.FirstSequence();
-    return _outbox.SentCount() > 0 && (_outbox.FirstMessage() >= _creditLimit ||
-                                       (first < _outbox.NextSequence() && _outbox.Part(first).IsHeld));
+    return first < _outbox.NextSequence() && _outbox.Part(first).IsHeld;
 }
 
 void LinkSender::ArmProbe(bool turnedAway, LinkTime now)
@@ -149,8 +177,10 @@ void LinkSender::ArmProbe(bool turnedAway, LinkTime now)
         return;
     }
     const LinkTime plain = _path.ProbeTimeout(_doublings);
-    // A queue that is full makes room known: then asking is for the case that this got lost.
-    const LinkTime slow = std::min<LinkTime>(plain * (1LL << std::min(_stalls, 8)),
+    // A queue that is full makes room known: then asking is for the case that this got lost, the more so if
+    // the receiver has the message already.
+    const int stalls = _stalls + (IsFirstHeld() ? 2 : 0);
+    const LinkTime slow = std::min<LinkTime>(plain * (1LL << std::min(stalls, 8)),
                                              std::max(plain, _context.Settings.MaxResend));
     _probeAt = now + (turnedAway ? slow : plain);
 }
@@ -209,12 +239,13 @@ LinkTime LinkSender::NextDue(bool open) const
     {
         return LinkNever;
     }
-    LinkTime due = _outbox.HasMore() ? _outbox.Next().ExpiresAt : LinkNever;
+    const LinkTime due = _outbox.HasMore() ? _outbox.Next().ExpiresAt : LinkNever;
     if (open)
     {
-        due = std::min({due, ReadyAt(), _probeAt, _lostAt});
+        return std::min({due, ReadyAt(), _probeAt, _lostAt});
     }
-    return due;
+    const OutboxMessage *first = _outbox.FirstUnsettled();
+    return first == nullptr ? due : std::min(due, first->ExpiresAt);
 }
 
 void LinkSender::OnPeerHeard(LinkTime now)
@@ -250,6 +281,10 @@ void LinkSender::Restart()
     {
         SentPart part = _outbox.TakePart();
         LeavePath(part);
+    }
+    while (_outbox.SentCount() > 0 && _outbox.Message(_outbox.FirstMessage()).IsSettled)
+    {
+        _outbox.TakeSent();
     }
     while (_outbox.SentCount() > 0 && !_options.RedeliverInDoubt)
     {
@@ -301,6 +336,10 @@ void LinkSender::Close()
     while (_outbox.SentCount() > 0)
     {
         const OutboxMessage message = _outbox.TakeSent();
+        if (message.IsSettled)
+        {
+            continue;
+        }
         if (message.MayArrive)
         {
             Report(message, LinkOutcome::InDoubt);
@@ -349,7 +388,7 @@ LinkSenderCounters LinkSender::Counters() const
     counters.Pending = _outbox.Count();
     counters.PendingBytes = _outbox.Bytes();
     counters.Fill = _outbox.Fill();
-    counters.Unacknowledged = _outbox.SentCount();
+    counters.Unacknowledged = _outbox.UnsettledCount();
     counters.UnacknowledgedParts = static_cast<std::size_t>(_outbox.NextSequence() - _outbox.FirstSequence());
     counters.RoundTrip = _path.Times().Smoothed();
     return counters;

@@ -29,13 +29,14 @@ public:
     // Rule S1. `type` must live as long as this object.
     LinkRefusal Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now);
 
-    // Rule S3 and the timers: everything that is due except sending. `open`: the peer has given a token and
-    // is not silent.
+    // Rules S3 and S7 and the timers: everything that is due except sending. `open`: the peer has given a
+    // token and is not silent.
     void Advance(bool open, LinkTime now);
     // Whether a datagram may go out now, if the peer is open.
     bool IsReady(LinkTime now) const;
-    // Bytes of parts that the next datagram would carry, about and at most what one can.
-    std::size_t NextBytes() const;
+    // Bytes of parts that the next datagram would carry, about, and at most so many. What goes again first is
+    // not cut anew.
+    std::size_t NextBytes(std::size_t most) const;
     enum class Filled
     {
         Nothing,
@@ -66,7 +67,7 @@ public:
     // Reports everything pending as never to be delivered, or in doubt.
     void Close();
 
-    bool HasPending() const { return !_outbox.Empty(); }
+    bool HasPending() const { return _outbox.Count() > 0; }
     std::uint32_t Number() const { return _number; }
     const std::string &Queue() const { return _queue; }
     LinkSenderCounters Counters() const;
@@ -77,6 +78,7 @@ private:
 
     void ExpireWaiting(LinkTime now);
     void ExpireSent(LinkTime now);
+    void SettleExpired(LinkTime now);
     void OnProbeTimer();
     // So much was sent without an answer that more goes only to who shows that he hears.
     bool IsInVain() const;
@@ -106,6 +108,8 @@ private:
     void ArmProbe(bool turnedAway, LinkTime now);
     // The receiver has no room, for the first message or for what it has already.
     bool IsTurnedAway() const;
+    // The receiver has the first part, and waits for room.
+    bool IsFirstHeld() const;
     void Report(const OutboxMessage &message, LinkOutcome outcome);
     void ReportExpired(const OutboxMessage &message);
 

@@ -57,6 +57,7 @@ void LinkSender::OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, Lin
     }
     _isKnown = true;
     const std::uint64_t first = _outbox.FirstSequence();
+    const bool wasHeld = IsFirstHeld();
     TakeUpTo(ack, now);
     const bool progress = _outbox.FirstSequence() != first;
     if (time >= _ackTime)
@@ -72,7 +73,7 @@ void LinkSender::OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, Lin
     }
     const bool turnedAway = IsTurnedAway();
     _stalls = progress || !turnedAway ? 0 : _stalls;
-    if (progress || (_doublings == 0 && !turnedAway))
+    if (progress || (_doublings == 0 && !turnedAway) || (IsFirstHeld() && !wasHeld))
     {
         ArmProbe(turnedAway, now);
     }
@@ -94,6 +95,10 @@ void LinkSender::TakeUpTo(const LinkAck &ack, LinkTime now)
             continue;
         }
         const OutboxMessage message = _outbox.TakeSent();
+        if (message.IsSettled)
+        {
+            continue;
+        }
         if (OutcomeHistory::Test(ack.Delivered, sequence))
         {
             Report(message, LinkOutcome::Delivered);

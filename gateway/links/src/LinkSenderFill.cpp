@@ -52,17 +52,20 @@ bool LinkSender::IsReady(LinkTime now) const
     return ReadyAt() <= now;
 }
 
-std::size_t LinkSender::NextBytes() const
+std::size_t LinkSender::NextBytes(std::size_t most) const
 {
-    const std::size_t most = _probe && IsInVain() ? SmallProbe : _context.Settings.MaxDatagram;
+    most = std::min(most, _probe && IsInVain() ? SmallProbe : _context.Settings.MaxDatagram);
     std::size_t bytes = 0;
-    if (_lost > 0 || _probe)
+    std::size_t least = 1;
+    if (_lost > 0 || (_probe && !IsInVain()))
     {
         for (std::uint64_t sequence = _outbox.FirstSequence();
              sequence < _outbox.NextSequence() && bytes < most; ++sequence)
         {
             const SentPart &part = _outbox.Part(sequence);
-            bytes += part.IsLost || (_probe && !part.IsHeld) ? part.Length + LengthBytes : 0;
+            const bool goes = part.IsLost || (_probe && !part.IsHeld);
+            least = goes && bytes == 0 ? part.Length + LengthBytes : least;
+            bytes += goes ? part.Length + LengthBytes : 0;
         }
     }
     if (bytes < most && MayCut())
@@ -75,7 +78,7 @@ std::size_t LinkSender::NextBytes() const
     }
     // At the beginning of a link the queue, the types and both lives are named.
     bytes += _isKnown ? 0 : _queue.size() + AboutNames;
-    return std::clamp<std::size_t>(bytes, 1, most);
+    return std::clamp(bytes, least, std::max(most, least));
 }
 
 LinkSender::Filled LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime now)

@@ -101,7 +101,7 @@ private:
     std::size_t _roundAcknowledged = 0;
     std::size_t _roundLost = 0;
     std::size_t _roundSent = 0;  // as far as it was paced
-    bool _wasFull = false;  // the window was used up in this round
+    bool _wasFull = false;       // the window was used up in this round
 
     double _rate = 0;
     double _lossRate = 0;

@@ -96,6 +96,19 @@ void ReorderBuffer::Clear()
     }
 }
 
+void ReorderBuffer::DropBeyondGap(std::uint64_t cumulative)
+{
+    auto part = _parts.begin();
+    for (; part != _parts.end() && part->first <= cumulative + 1; ++part)
+    {
+        cumulative = std::max(cumulative, part->second.Through);
+    }
+    while (part != _parts.end())
+    {
+        Drop(part++);
+    }
+}
+
 LinkBitmap ReorderBuffer::HeldAfter(std::uint64_t cumulative) const
 {
     LinkBitmap bits{};

@@ -51,6 +51,8 @@ public:
     // Drops what ends at this number or before it.
     void DropThrough(std::uint64_t sequence);
     void Clear();
+    // Drops the parts that wait for one between them and `cumulative`.
+    void DropBeyondGap(std::uint64_t cumulative);
     // Bit i: part cumulative + 1 + i is here.
     LinkBitmap HeldAfter(std::uint64_t cumulative) const;
     std::size_t Bytes() const { return _bytes; }

@@ -1,10 +1,11 @@
+#include <rabit/RabitLog.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/node/RunProgram.h>
 
 #include <CLI/CLI.hpp>
 
 #include <exception>
-#include <iostream>
+#include <string>
 
 namespace Rabit
 {
@@ -22,17 +23,17 @@ int RunProgram(CLI::App &app, int argc, char **argv, const std::function<int()> 
     }
     catch (const ConfigError &error)
     {
-        std::cerr << error.what() << '\n';
+        RabitLog::Print(error.what());
         return ExitBadInput;
     }
     catch (const std::exception &error)
     {
-        std::cerr << argv[0] << ": " << error.what() << '\n';
+        RabitLog::Print(std::string(argv[0]) + ": " + error.what());
         return ExitFailed;
     }
     catch (...)
     {
-        std::cerr << argv[0] << ": ended by an exception of an unknown type\n";
+        RabitLog::Print(std::string(argv[0]) + ": ended by an exception of an unknown type");
         return ExitFailed;
     }
 }

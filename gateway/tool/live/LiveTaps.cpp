@@ -45,6 +45,7 @@ public:
     {
     }
 
+    bool Shows(const std::shared_ptr<PublishSubscribeMessage> &global) const { return _global == global; }
     void SetChannel(std::uint32_t channel) { _channel = channel; }
     // `type` knows the message in JSON.
     void SetPanels(std::vector<Made> panels, std::shared_ptr<const DynamicType> type)
@@ -57,14 +58,14 @@ public:
     void Begin()
     {
         const std::lock_guard lock(_mutex);
-        _connection = RabitScopedConnection(_global->ConnectSomethingPublished(
+        _connection = RabitScopedConnection(_global->ConnectSomethingPublished(RabitQuickHandler(
             [weak = weak_from_this()]
             {
                 if (const auto tap = weak.lock())
                 {
                     tap->OnPost();
                 }
-            }));
+            })));
         if (_copy->WasPosted())
         {
             Show();
@@ -143,6 +144,13 @@ LiveTaps::~LiveTaps() = default;
 
 void LiveTaps::Look()
 {
+    // The name of a forgotten node's message goes, and may come again with another global copy.
+    std::erase_if(_taps,
+                  [this](const auto &entry)
+                  {
+                      const auto global = _session.Workspace().FindGlobalMessage(entry.first);
+                      return !global || (entry.second && !entry.second->Shows(global));
+                  });
     for (const MessageInfo &message : _session.Workspace().GetListOfMessages())
     {
         if (message.Name.find('/') != std::string::npos && _taps.count(message.Name) == 0 &&

@@ -39,6 +39,7 @@ class WiredTransport final : public Transport
 public:
     explicit WiredTransport(Wire &wire) : _wire(wire) {}
     std::string Name() const override { return "wired"; }
+    bool IsStepped() const override { return true; }
     std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
 
 private:

@@ -314,6 +314,28 @@ TEST(AirBudget, WithAPaceDatagramsGrowMoreSlowlyThanTheRate)
     EXPECT_EQ(budget.LargestDatagram(), Largest);
 }
 
+TEST(AirBudget, APaceBelowABudgetSpacesDatagramsAndFillsNoSecond)
+{
+    AirBudget budget(Largest);
+    budget.SetLimits(12500, 500, 0ns);
+    budget.Reserve(250);
+    budget.Sent(150, 1s);
+    EXPECT_EQ(budget.WhenFits(104, 1s), 1290ms) << "a late driver catches up 10 ms";
+    EXPECT_EQ(budget.Rate(), 500);
+}
+
+TEST(AirBudget, ABudgetBelowAPaceHolds)
+{
+    AirBudget budget(Largest);
+    budget.SetLimits(1000, 50000, 0ns);
+    Traffic traffic;
+    traffic.Run(
+        budget, [](std::size_t) { return 100; }, 0s, 10s);
+    EXPECT_LE(traffic.MostInASecond(), 1000U);
+    EXPECT_GE(traffic.Total(), 9000U);
+    EXPECT_EQ(budget.Rate(), 1000);
+}
+
 TEST(AirBudget, TheRoomIsWhatMayGoNow)
 {
     AirBudget budget(Largest);

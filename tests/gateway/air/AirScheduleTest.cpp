@@ -457,5 +457,125 @@ TEST_F(AirScheduleTest, WithTenTimesTheBudgetOfferedACommandWaitsForOneDatagramA
     EXPECT_LE(waits[waits.size() / 2], datagram);
 }
 
+// A beat of 150 bytes that is promised every 600 ms of a budget of 5000 B/s.
+class PromiseTest : public AirScheduleTest
+{
+protected:
+    static constexpr Duration Period = 600ms;
+
+    PromiseTest()
+    {
+        Schedule.SetBudget(5000, 0ns);
+        Beat = Schedule.AddStream(TrafficClass::Presence, AirSchedule::LargestWeight);
+    }
+
+    void SendBeat(Duration now)
+    {
+        Longest = std::max(Longest, now - SentAt);
+        Shortest = std::min(Shortest, now - SentAt);
+        ++Beats;
+        SentAt = now;
+        Schedule.Sent(Beat, 150, now);
+        Schedule.Promise(Beat, 150, now + Period);
+    }
+
+    // Sends what the schedule chooses, the beat when it is due at the latest.
+    void Run(Duration from, Duration to)
+    {
+        SentAt = from - Period;
+        SendBeat(from);
+        Duration now = from;
+        while (now < to)
+        {
+            if (now >= SentAt + Period)
+            {
+                Schedule.Ready(Beat, 150);
+            }
+            while (const auto next = Schedule.Next(now))
+            {
+                *next == Beat ? SendBeat(now) : Send(*next, now);
+            }
+            const Duration due = Schedule.NextDue(now);
+            ASSERT_GT(due, now);
+            now = now < SentAt + Period ? std::min(due, SentAt + Period) : due;
+            ++Wakes;
+        }
+    }
+
+    StreamId Beat;
+    Duration SentAt{0};
+    Duration Longest{0};
+    Duration Shortest = 1h;
+    int Beats = 0;
+    int Wakes = 0;
+};
+
+TEST_F(PromiseTest, IsKeptBesideAnyNumberOfAcknowledgements)
+{
+    Add(TrafficClass::Command, 160);
+    Add(TrafficClass::Bulk, Schedule.Budget().LargestDatagram());
+    for (const int peers : {20, 50})
+    {
+        for (int i = 0; i < peers; ++i)
+        {
+            Add(TrafficClass::Presence, 120);
+        }
+        Run(peers * 100s, peers * 100s + 100s);
+        EXPECT_LE(Longest, Period) << peers;
+        // One goes early by the time of another datagram.
+        EXPECT_GE(Shortest, Period - 300ms) << peers;
+        EXPECT_LE(Beats, 300) << peers;
+        Beats = 0;
+    }
+}
+
+TEST_F(PromiseTest, GoesEarlyBeforeADatagramThatWouldMakeItLate)
+{
+    const StreamId bulk = Add(TrafficClass::Bulk, 1000);
+    Schedule.Promise(Beat, 150, 10s);
+    EXPECT_EQ(Schedule.Next(9700ms), bulk);
+    EXPECT_EQ(Schedule.Next(9900ms), Beat) << "although it is not ready: the other one takes 200 ms";
+    Schedule.Sent(Beat, 150, 9900ms);
+    EXPECT_EQ(Schedule.Next(10s), bulk) << "a promise is kept once";
+}
+
+TEST_F(PromiseTest, ACommandDoesNotPassIt)
+{
+    Add(TrafficClass::State, 3000);
+    Add(TrafficClass::Command, 160);
+    Run(1s, 60s);
+    EXPECT_LE(Longest, Period + 1s) << "what is kept goes before it";
+}
+
+TEST_F(PromiseTest, DoesNotStarveWhatNeedsMoreThanItsPeriod)
+{
+    const StreamId large = Add(TrafficClass::State, 4000);
+    const StreamId larger = Add(TrafficClass::Bulk, 9000);
+    Run(1s, 101s);
+    EXPECT_GE(Schedule.SentBytes(large), 20u * 4000);
+    EXPECT_GE(Schedule.SentBytes(larger), 5u * 9000);
+    EXPECT_GE(Beats, 60);
+    EXPECT_LE(Wakes, 2000);
+}
+
+TEST_F(PromiseTest, HoldsWithoutALimitOnlyOnceThereIsOne)
+{
+    Schedule.SetUnlimited();
+    const StreamId bulk = Add(TrafficClass::Bulk, 1000);
+    Schedule.Promise(Beat, 150, 1s);
+    EXPECT_EQ(Schedule.Next(2s), bulk);
+    Schedule.SetBudget(5000, 2s);
+    EXPECT_EQ(Schedule.Next(2s), Beat);
+}
+
+TEST_F(PromiseTest, EndsWithItsStream)
+{
+    const StreamId bulk = Add(TrafficClass::Bulk, 1000);
+    Schedule.Promise(Beat, 150, 1s);
+    Schedule.Remove(Beat);
+    EXPECT_EQ(Schedule.Next(2s), bulk);
+    EXPECT_THROW(Schedule.Promise(Beat, 150, 3s), std::out_of_range);
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -355,5 +355,31 @@ TEST_F(CapacityEstimateTest, TheQueueIsWhatWasSentSinceAReportAndNotCarried)
     EXPECT_NEAR(Seconds(Estimate.Queue(40060ms)), before - 0.06 + 1000 / carried, 0.04);
 }
 
+// A message of 13 kB goes at once, over a radio of 30 kB/s. The peer reports of four datagrams of it. How
+// much of the burst went between two of them is not known, and it is not nothing.
+TEST_F(CapacityEstimateTest, BetweenTwoDatagramsOfOneBurstNothingIsMeasured)
+{
+    for (Duration now = 0s; now < 8s; now += 100ms)
+    {
+        Estimate.Sent(100, now);
+        if (now % 2s == 0s)
+        {
+            Estimate.Reported(0, 2ms, now, now + 400ms);
+        }
+    }
+    Estimate.Sent(13000, 8s);
+    struct Late
+    {
+        Duration Delay;
+        Duration CameAt;
+    };
+    for (const Late &late :
+         {Late{83ms, 8113ms}, Late{171ms, 8205ms}, Late{301ms, 8554ms}, Late{475ms, 8713ms}})
+    {
+        Estimate.Reported(0, late.Delay, 8s + late.Delay, late.CameAt);
+    }
+    EXPECT_GE(Estimate.Rate(9s).value_or(1e9), 10e3);
+}
+
 }  // namespace
 }  // namespace Rabit

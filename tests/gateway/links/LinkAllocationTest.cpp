@@ -37,11 +37,9 @@ public:
         Other->Node->OnFrame(_frame, *Now);
     }
     void OnOutcome(std::uint64_t, std::string_view, std::string_view, LinkOutcome) override { ++Outcomes; }
-    LocalQueueResult Deliver(std::string_view, std::string_view, std::string_view,
-                             std::span<const std::uint8_t>, const LinkPayload &, bool) override
-    {
-        return LocalQueueResult::Ok;
-    }
+    bool Accepts(std::string_view, std::string_view) override { return true; }
+    bool AcceptsType(std::string_view, std::string_view) const override { return true; }
+    LocalQueueResult Deliver(const LinkDelivery &) override { return LocalQueueResult::Ok; }
     std::size_t Room(std::string_view) const override { return 1000; }
     std::uint64_t Above(std::uint64_t floor) override { return floor + (1ULL << 32); }
 

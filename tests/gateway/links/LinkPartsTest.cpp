@@ -1,4 +1,5 @@
 // The small parts that the rules are made of.
+#include "Assembly.h"
 #include "AssemblyMemory.h"
 #include "OutcomeHistory.h"
 #include "RingBuffer.h"
@@ -102,19 +103,19 @@ TEST(RoundTrip, follows_rfc_6298)
 TEST(AssemblyMemory, lets_one_go_beyond_the_limit_and_another_one_when_that_stands_still)
 {
     AssemblyMemory memory(100);
-    const int a = 0;
-    const int b = 0;
-    EXPECT_TRUE(memory.Take(&a, 60, 0s));
-    EXPECT_TRUE(memory.Take(&b, 40, 0s));
-    EXPECT_TRUE(memory.Take(&a, 1, 0s));
-    EXPECT_FALSE(memory.Take(&b, 1, 0s));
-    EXPECT_TRUE(memory.Take(&a, 50, 9s));
-    EXPECT_FALSE(memory.Take(&b, 1, 18s)) << "a went on 9 s ago";
-    EXPECT_TRUE(memory.Take(&b, 1, 19s));
-    EXPECT_FALSE(memory.Take(&a, 1, 19s));
-    memory.Give(&b, 41);
-    EXPECT_TRUE(memory.Take(&a, 1, 19s));
-    memory.Give(&a, 112);
+    Assembly a(memory);
+    Assembly b(memory);
+    EXPECT_TRUE(memory.Take(a, 60, 0s));
+    EXPECT_TRUE(memory.Take(b, 40, 0s));
+    EXPECT_TRUE(memory.Take(a, 1, 0s));
+    EXPECT_FALSE(memory.Take(b, 1, 0s));
+    EXPECT_TRUE(memory.Take(a, 50, 9s));
+    EXPECT_FALSE(memory.Take(b, 1, 18s)) << "a went on 9 s ago";
+    EXPECT_TRUE(memory.Take(b, 1, 19s));
+    EXPECT_FALSE(memory.Take(a, 1, 19s));
+    memory.Give(b, 41);
+    EXPECT_TRUE(memory.Take(a, 1, 19s));
+    memory.Give(a, 112);
     EXPECT_EQ(memory.Used(), 0U);
 }
 

@@ -10,6 +10,7 @@ namespace
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::Pair;
 using testing::SizeIs;
 
 class LinkReceiverRules : public testing::Test
@@ -530,7 +531,7 @@ TEST_F(LinkReceiverRules, R3_a_session_that_is_dropped_gives_its_memory_back)
 
 // Rule R7
 
-TEST_F(LinkReceiverRules, R7_a_full_queue_holds_the_stream_back_and_gives_no_credit)
+TEST_F(LinkReceiverRules, R7_a_full_queue_holds_the_stream_back_and_gives_credit_for_one_message_that_waits)
 {
     OpenSession();
     a.Answer = LocalQueueResult::Full;
@@ -538,7 +539,7 @@ TEST_F(LinkReceiverRules, R7_a_full_queue_holds_the_stream_back_and_gives_no_cre
     a.Hear(Data(2, {"2", "3"}));
     const LinkAck ack = Acknowledgement();
     EXPECT_EQ(ack.Cumulative, 1U);
-    EXPECT_EQ(ack.Credit, 0U);
+    EXPECT_EQ(ack.Credit, 1U);
     EXPECT_EQ(ack.Held[0], 0b11U) << "it need not be sent again";
     EXPECT_TRUE(a.ReceiverCounters().HeldBack);
     EXPECT_EQ(a.ReceiverCounters().HeldBackFull, 1U) << "what comes behind is not even tried";
@@ -553,15 +554,16 @@ TEST_F(LinkReceiverRules, R7_room_is_made_known)
     Acknowledgement();
     a.Answer = LocalQueueResult::Ok;
     a.RoomLeft = 4;
-    a.Node->OnRoom("other", a.Now);
+    a.Node->OnRoom("other");
     a.Pass(100ms);
     EXPECT_THAT(a.TakeAcks(), IsEmpty());
-    a.Node->OnRoom("q", a.Now);
+    a.Node->OnRoom("q");
+    a.Pass(0ms);
     a.Pass(2ms);
     const auto acks = a.TakeAcks();
     ASSERT_THAT(acks, SizeIs(1));
     EXPECT_EQ(acks[0].Ack().Credit, 4U);
-    a.Node->OnRoom("q", a.Now);
+    a.Node->OnRoom("q");
     a.Pass(100ms);
     EXPECT_THAT(a.TakeAcks(), IsEmpty()) << "once is enough";
 }
@@ -575,7 +577,7 @@ TEST_F(LinkReceiverRules, R7_what_waited_for_room_is_delivered_when_there_is_roo
     Acknowledgement();
     a.Answer = LocalQueueResult::Ok;
     a.RoomLeft = 4;
-    a.Node->OnRoom("q", a.Now);
+    a.Node->OnRoom("q");
     EXPECT_LE(a.Node->NextDue(), a.Now);
     a.Pass(0ms);
     EXPECT_THAT(Texts(), ElementsAre("2", "3"));
@@ -591,17 +593,84 @@ TEST_F(LinkReceiverRules, R7_what_waited_for_room_is_tried_again_when_the_sender
     EXPECT_THAT(Texts(), ElementsAre("2"));
 }
 
-TEST_F(LinkReceiverRules, R7_what_is_to_come_later_is_asked_for_by_retry)
+// A driver that decodes large messages elsewhere.
+class LinkReceiverPreparation : public LinkReceiverRules
+{
+protected:
+    void GiveOut(std::uint64_t first, const std::vector<std::string> &parts)
+    {
+        a.Answer = LocalQueueResult::Later;
+        a.Hear(b.Parts(first, parts, a.Now));
+        a.Answer = LocalQueueResult::Ok;
+    }
+    void Prepare(std::uint64_t number, std::uint64_t life = PlayedPeer().Life)
+    {
+        a.Node->Prepared("b", "q", life, number, std::make_shared<int>(), a.Now);
+    }
+};
+
+TEST_F(LinkReceiverPreparation, R7_what_is_prepared_is_not_offered_again_before_it_is_ready)
 {
     OpenSession();
-    a.Answer = LocalQueueResult::Later;
+    a.Offered.clear();
+    GiveOut(2, {"ab", "c"});
     a.Hear(b.Parts(2, {"ab", "c"}, a.Now));
+    a.Node->OnRoom("q");
+    a.Pass(1ms);
+    EXPECT_THAT(a.Offered, ElementsAre(Pair(b.Life, 3U)));
     EXPECT_THAT(Texts(), IsEmpty());
-    a.Answer = LocalQueueResult::Ok;
-    a.Node->Retry("b", "q", a.Now);
+    Prepare(3);
     EXPECT_THAT(Texts(), ElementsAre("abc"));
-    a.Node->Retry("b", "q", a.Now);
+    Prepare(3);
     EXPECT_THAT(Texts(), IsEmpty());
+}
+
+TEST_F(LinkReceiverPreparation, R7_what_was_prepared_of_one_message_is_not_taken_for_another_of_its_size)
+{
+    OpenSession();
+    GiveOut(2, {"ab", "c"});
+    Prepare(3);
+    ASSERT_THAT(Texts(), ElementsAre("abc"));
+    GiveOut(4, {"de", "f"});
+    Prepare(3);
+    EXPECT_THAT(Texts(), IsEmpty());
+    Prepare(5, b.Life + 1);
+    EXPECT_THAT(Texts(), IsEmpty());
+    Prepare(5);
+    EXPECT_THAT(Texts(), ElementsAre("def"));
+}
+
+TEST_F(LinkReceiverPreparation, R7_what_was_prepared_for_a_queue_that_is_full_now_is_kept_for_the_next_turn)
+{
+    OpenSession();
+    GiveOut(2, {"ab", "c"});
+    a.Answer = LocalQueueResult::Full;
+    Prepare(3);
+    a.Answer = LocalQueueResult::Ok;
+    a.Node->OnRoom("q");
+    a.Pass(0ms);
+    EXPECT_THAT(Texts(), ElementsAre("abc"));
+}
+
+TEST_F(LinkReceiverPreparation, R7_what_could_not_be_prepared_is_offered_again)
+{
+    OpenSession();
+    GiveOut(2, {"ab", "c"});
+    a.Node->Prepared("b", "q", b.Life, 3, nullptr, a.Now);
+    EXPECT_THAT(Texts(), ElementsAre("abc"));
+}
+
+TEST_F(LinkReceiverPreparation, R7_what_expires_while_it_is_prepared_is_not_delivered)
+{
+    OpenSession();
+    GiveOut(2, {"ab", "c"});
+    StoredFrame skip = Data(2, {""});
+    MakeSkip(skip.Items[0], 2, 3);
+    a.Hear(skip);
+    Prepare(3);
+    EXPECT_THAT(Texts(), IsEmpty());
+    a.Hear(Data(4, {"4"}));
+    EXPECT_THAT(Texts(), ElementsAre("4"));
 }
 
 // Rule R8

@@ -39,10 +39,11 @@ public:
         {
             Outcomes.push_back(outcome);
         }
-        LocalQueueResult Deliver(std::string_view, std::string_view, std::string_view,
-                                 std::span<const std::uint8_t> payload, const LinkPayload &, bool) override
+        bool Accepts(std::string_view, std::string_view) override { return true; }
+        bool AcceptsType(std::string_view, std::string_view) const override { return true; }
+        LocalQueueResult Deliver(const LinkDelivery &delivery) override
         {
-            Delivered.emplace_back(Net.Now, std::string(payload.begin(), payload.end()));
+            Delivered.emplace_back(Net.Now, std::string(delivery.Payload.begin(), delivery.Payload.end()));
             return LocalQueueResult::Ok;
         }
         std::size_t Room(std::string_view) const override { return 1000; }

@@ -115,6 +115,13 @@ public:
     // How the local queues answer, and how much room they say there is.
     LocalQueueResult Answer = LocalQueueResult::Ok;
     std::size_t RoomLeft = 1000;
+    // Messages that the local queues take before they are full; counts down.
+    std::size_t Places = 1'000'000;
+    // Queues whose names begin so, and this type, are not accepted.
+    static constexpr std::string_view NoQueue = "none";
+    static constexpr std::string_view NoType = "NoType";
+    // Incarnation and number of each message that was offered to a local queue.
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> Offered;
 
     // One with data and acknowledgements is among both.
     void Send(const LinkFrame &frame) override
@@ -136,14 +143,21 @@ public:
     {
         _outcomes.emplace_back(id, outcome);
     }
-    LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                             std::span<const std::uint8_t> payload, const LinkPayload &,
-                             bool redelivered) override
+    bool Accepts(std::string_view, std::string_view queue) override { return !queue.starts_with(NoQueue); }
+    bool AcceptsType(std::string_view, std::string_view type) const override { return type != NoType; }
+    LocalQueueResult Deliver(const LinkDelivery &delivery) override
     {
+        Offered.push_back({delivery.SenderLife, delivery.Number});
+        if (Answer == LocalQueueResult::Ok && Places == 0)
+        {
+            return LocalQueueResult::Full;
+        }
         if (Answer == LocalQueueResult::Ok)
         {
-            _delivered.push_back({std::string(source), std::string(queue), std::string(type),
-                                  std::string(payload.begin(), payload.end()), redelivered});
+            --Places;
+            _delivered.push_back(
+                {std::string(delivery.Source), std::string(delivery.Queue), std::string(delivery.Type),
+                 std::string(delivery.Payload.begin(), delivery.Payload.end()), delivery.Redelivered});
         }
         return Answer;
     }

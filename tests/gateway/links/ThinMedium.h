@@ -42,13 +42,14 @@ public:
         {
             ++Outcomes[static_cast<std::size_t>(outcome)];
         }
-        LocalQueueResult Deliver(std::string_view, std::string_view queue, std::string_view,
-                                 std::span<const std::uint8_t> payload, const LinkPayload &, bool) override
+        bool Accepts(std::string_view, std::string_view) override { return true; }
+        bool AcceptsType(std::string_view, std::string_view) const override { return true; }
+        LocalQueueResult Deliver(const LinkDelivery &delivery) override
         {
             LinkTime::rep enqueuedAt = 0;
-            std::memcpy(&enqueuedAt, payload.data(), sizeof enqueuedAt);
-            Delays[std::string(queue)].push_back(Medium.Now - LinkTime(enqueuedAt));
-            DeliveredBytes += payload.size();
+            std::memcpy(&enqueuedAt, delivery.Payload.data(), sizeof enqueuedAt);
+            Delays[std::string(delivery.Queue)].push_back(Medium.Now - LinkTime(enqueuedAt));
+            DeliveredBytes += delivery.Payload.size();
             return LocalQueueResult::Ok;
         }
         std::size_t Room(std::string_view) const override { return 1000; }

@@ -169,5 +169,15 @@ TEST(AirPlan, WhatExceedsTheBudgetIsToldWithWhatTakesMost)
         HasSubstr("the budget is 1000 B/s, and 1351 B/s would go on the air, most of it Pose with 1280 B/s"));
 }
 
+TEST(AirPlan, NamesWhatTakesMoreThanASecondOfTheBudgetEachTime)
+{
+    std::vector<GatewayConfig> fleet{NodeOf("a")};
+    EXPECT_THAT(LargerThanASecond(AirPlansOf(fleet, InputOf(0.1, 20'000))[0]), IsEmpty()) << "no budget";
+    fleet[0].Radio.Budget = 5000.0;
+    EXPECT_THAT(LargerThanASecond(AirPlansOf(fleet, InputOf(0.1, 4000))[0]), IsEmpty());
+    EXPECT_THAT(LargerThanASecond(AirPlansOf(fleet, InputOf(0.1, 20'000))[0]),
+                ElementsAre(HasSubstr("one Pose takes 21")));
+}
+
 }  // namespace
 }  // namespace Rabit::Tool

@@ -1,11 +1,14 @@
 // Messages of a type that no code was generated for, as messages of Rabit.
+#include <rabit/PublishSubscribeMessage.h>
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/dynamic/DynamicType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "basics.idl.h"
 
@@ -39,6 +42,20 @@ TEST(DynamicMessage, StartsWithDefaults)
     const DynamicMessage message(TypeNamed("Late::Report"));
     EXPECT_EQ(message.ToJson(), R"({"number":7,"words":""})");
     EXPECT_EQ(message.ToString(), R"(Late::Report {number: 7, words: ""})");
+}
+
+TEST(DynamicMessage, KeepsItsRegistrationWhenItIsAssignedAndItsCloneIsUnregistered)
+{
+    DynamicMessage source(TypeNamed("Late::Report"));
+    source.SetGlobalPublishSubscribeMessageRef(std::make_shared<PublishSubscribeMessage>(source.Clone()));
+    DynamicMessage target(TypeNamed("Late::Report"));
+    const auto global = std::make_shared<PublishSubscribeMessage>(target.Clone());
+    target.SetGlobalPublishSubscribeMessageRef(global);
+    target = source;
+    EXPECT_EQ(target.GetGlobalPublishSubscribeMessageRef(), global);
+    target = std::move(source);
+    EXPECT_EQ(target.GetGlobalPublishSubscribeMessageRef(), global);
+    EXPECT_EQ(target.Clone()->GetGlobalPublishSubscribeMessageRef(), nullptr);
 }
 
 TEST(DynamicType, TellsTheSizeThatAllItsSamplesHave)

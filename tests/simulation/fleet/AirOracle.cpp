@@ -31,8 +31,8 @@ constexpr Time OnTheWay = 1s;
 constexpr int InARow = 5;
 constexpr int InARowWhenItDoesNotFit = 6;
 // What part of the medium tracks are to have at the least: a quarter, as the plans have it. When the medium
-// carries less than in the plan, notes take all that their class may have: telemetry has 3 parts of 43, and a
-// quarter of all goes to presence first (gateway/RADIO.md).
+// carries less than in the plan, or the node has a large note to send, notes take all that their class may
+// have: telemetry has 3 parts of 43, and a quarter of all goes to presence first (gateway/RADIO.md).
 constexpr double ShareOfTracks = 1.0 / 4;
 constexpr double ShareWhenItDoesNotFit = 3.0 / 43 * 3 / 4;
 // All that is said for each byte that was to be said, and for each start and each other node.
@@ -288,15 +288,21 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
         return;
     }
     const Time since = std::max(pair.Since + _plan->UpWithin + Adapts, _senders[node].AdaptedAt);
-    const bool fits = _rate >= _plan->BytesPerSecond;
-    const double share = fits ? ShareOfTracks : ShareWhenItDoesNotFit;
     const double carried = static_cast<double>(_rate) / static_cast<double>(_senders.size());
     const double ofNode = std::min(carried, _plan->Budget ? static_cast<double>(*_plan->Budget) : carried);
-    const double seconds = static_cast<double>(TrackOnAir) / share / ofNode;
-    const Time pause = std::max(_world.Plan.Machines[node].TrackPeriod, Time(std::llround(seconds * 1e9)));
     const bool discovers = _world.Now <= _discoverySince + Discovers;
-    const Time most = std::max(_plan->PoseAge, OnTheWay) + (fits ? InARow : InARowWhenItDoesNotFit) * pause +
-                      (discovers ? TimeOf(Discovery) + DiscoveryIsOver : Time(0));
+    const auto allowed = [&](double share, int inARow)
+    {
+        const double seconds = static_cast<double>(TrackOnAir) / share / ofNode;
+        const Time pause =
+            std::max(_world.Plan.Machines[node].TrackPeriod, Time(std::llround(seconds * 1e9)));
+        return std::max(_plan->PoseAge, OnTheWay) + inARow * pause +
+               (discovers ? TimeOf(Discovery) + DiscoveryIsOver : Time(0));
+    };
+    const Time besideCommands = allowed(ShareWhenItDoesNotFit, InARowWhenItDoesNotFit);
+    const std::optional<Time> &large = _senders[node].LargeAt;
+    const bool fits = _rate >= _plan->BytesPerSecond && !(large && _world.Now - *large <= besideCommands);
+    const Time most = fits ? allowed(ShareOfTracks, InARow) : besideCommands;
     // What was before is not promised.
     if (age > most && _world.Now - since > most)
     {

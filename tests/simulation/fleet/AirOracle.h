@@ -33,6 +33,8 @@ public:
     void OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet);
     // A track of that age (true time) has come.
     void OnTrack(std::size_t observerLife, std::size_t node, Time age);
+    // A large note of that node waits or is on its way.
+    void OnLargeNotes(std::size_t node) { _senders[node].LargeAt = _world.Now; }
     // Of the newest track that an observer has of a node that is live, now and then.
     void OnNewestTrack(std::size_t observer, std::size_t node, Time age);
     // What was to be said so far, in bytes on the air if it were said once.
@@ -65,6 +67,7 @@ private:
         std::deque<std::pair<Time, std::uint64_t>> Second;  // when, bytes
         std::uint64_t Bytes = 0;                            // of those
         Time AdaptedAt{0};                                  // to the present rate of the medium
+        std::optional<Time> LargeAt;                        // a large note was seen to wait
         bool MayFlood = false;  // the medium has become slower, and this node could not see it yet
     };
 

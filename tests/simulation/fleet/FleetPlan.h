@@ -19,6 +19,9 @@ using Time = std::chrono::nanoseconds;
 // A track on the air, bytes, with all headers.
 constexpr std::uint64_t TrackOnAir = 104;
 
+// The part of all notes that may be as large as FleetPlan::LargestNote.
+constexpr double LargeNotes = 0.02;
+
 // One machine with a node on it.
 struct MachinePlan
 {
@@ -93,6 +96,7 @@ struct FleetPlan
     std::vector<SimulatedFaults> Start;  // from i to j at index i * Machines.size() + j
     std::vector<FaultEvent> Faults;
     std::vector<Burst> Bursts;
+    std::int64_t LargestNote = 60'000;  // bytes, to all its receivers together
     std::vector<ModePost> Modes;
     Time CalmAt{0};  // the faults stop here
     // Whether a life may begin with a lower incarnation than the one before: storage is lost or there is

@@ -47,6 +47,8 @@ public:
     SeedResult Run();
 
 private:
+    // The reading that the monotonic clock of the process of that life has now.
+    Time ClockOf(std::size_t life) const { return _clocks[life].At(_world.Now); }
     void MakeAgenda();
     Time NextStep() const;
     void StepTo(Time time);
@@ -66,10 +68,10 @@ private:
     const FleetPlan _plan;
     SimRandom _random;
     FleetWorld _world;
+    SimulatedNetwork _network;
     NoteOracle _notes;
     MirrorOracle _mirrors;
     PresenceOracle _presence;
-    SimulatedNetwork _network;
     Paths _paths;
     AirOracle _air;
     ScratchDirectory _scratch;
@@ -96,10 +98,10 @@ FleetSimulation::FleetSimulation(std::uint64_t seed, std::ostream *trace)
     : _plan(seed),
       _random(seed ^ 0x5851f42d4c957f2dULL),
       _world{.Plan = _plan, .Trace = trace, .Lives = {}, .Failure = {}},
-      _notes(_world),
+      _network(seed),
+      _notes(_world, _network, [this](std::size_t life) { return ClockOf(life); }),
       _mirrors(_world),
       _presence(_world),
-      _network(seed),
       _paths(_world, _network, _presence),
       _air(_world, _network),
       _scratch(seed),
@@ -107,7 +109,7 @@ FleetSimulation::FleetSimulation(std::uint64_t seed, std::ostream *trace)
                .Mirrors = _mirrors,
                .Presence = _presence,
                .Air = _air,
-               .ClockOf = [this](std::size_t life) { return _clocks[life].At(_world.Now); }}
+               .ClockOf = [this](std::size_t life) { return ClockOf(life); }}
 {
     for (std::size_t i = 0; i < _plan.Machines.size(); ++i)
     {
@@ -352,6 +354,10 @@ void FleetSimulation::Look()
 {
     for (std::size_t i = 0; i < _nodes.size(); ++i)
     {
+        if (_notes.HasLargePending(i))
+        {
+            _air.OnLargeNotes(i);
+        }
         for (std::size_t j = 0; j < _nodes.size(); ++j)
         {
             if (i != j && _nodes[i]->IsAlive() && _nodes[j]->IsAlive())
@@ -455,7 +461,9 @@ std::vector<Figure> FleetSimulation::Figures() const
             {"delivered", notes.Delivered},
             {"expired", notes.Expired},
             {"in doubt", notes.InDoubt},
+            {"given up in silence", notes.GivenUp},
             {"delivered again (opted in)", notes.DeliveredAgain},
+            {"large notes delivered", notes.LargeDelivered},
             {"tracks seen", _mirrors.Fetched(MirrorOracle::Topic::Track)},
             {"modes seen", _mirrors.Fetched(MirrorOracle::Topic::Mode)},
             {"nodes shown as STALE", _presence.Stale()},

@@ -3,11 +3,13 @@
 #include "FleetWorld.h"
 
 #include <rabit/RabitQueueReceipt.h>
+#include <rabit/simulated/SimulatedNetwork.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <utility>
@@ -34,11 +36,15 @@ public:
         std::uint64_t Delivered = 0;
         std::uint64_t Expired = 0;
         std::uint64_t InDoubt = 0;
+        std::uint64_t GivenUp = 0;  // of those: expired while nothing came from the receiver
         std::uint64_t DeliveredAgain = 0;
         std::uint64_t SentToAll = 0;
+        std::uint64_t LargeDelivered = 0;  // of several parts each
     };
 
-    explicit NoteOracle(FleetWorld &world);
+    // `clockOf`: the reading that the monotonic clock of the process of a life has now.
+    NoteOracle(FleetWorld &world, const SimulatedNetwork &network,
+               std::function<Time(std::size_t life)> clockOf);
 
     // A life begins or ends: what is on its way to or from the node may be in doubt.
     void OnEpoch(std::size_t node) { ++_epochs[node]; }
@@ -61,6 +67,8 @@ public:
     std::size_t Notes() const { return _records.size(); }
     // Accepted notes of lives that go on, to nodes of which `alive` is true, without an outcome.
     std::size_t Undrained(const std::vector<bool> &alive) const;
+    // Whether a large note of the node, of several parts, is accepted and without an outcome.
+    bool HasLargePending(std::size_t node) const { return _largePending[node] > 0; }
     Time LastOutcomeAt() const { return _lastOutcomeAt; }
     // What nobody can hear any more was said to be delivered: call at the end of the run.
     void CheckDelivered();
@@ -113,11 +121,18 @@ private:
         return record.EpochsThen[source] + record.KnownThen[destination] != EpochOf(source, destination);
     }
 
+    // Whether the note's time is over and nothing of the links has come from the destination for so long that
+    // the sender gives it up.
+    bool IsGivenUp(const Record &record) const;
+
     FleetWorld &_world;
+    const SimulatedNetwork &_network;
+    const std::function<Time(std::size_t life)> _clockOf;
     std::array<std::uint32_t, MostNodes> _epochs{};
     std::deque<Record> _records;                                      // stays in place
     std::map<std::pair<std::size_t, std::size_t>, LinkState> _links;  // by source and destination
     std::map<std::pair<std::size_t, std::size_t>, Stream> _streams;   // the same
+    std::array<std::size_t, MostNodes> _largePending{};               // by sender
     Counts _counts;
     Time _lastOutcomeAt{0};
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace Rabit::Sim
 {
@@ -19,8 +20,8 @@ constexpr int LostAfter = 7;
 // What a beat takes at most with a small budget.
 constexpr double LargestBeat = 400;
 
-// The longest that a node lets pass between two beats: with a budget what a twentieth of it allows, without
-// one a second where datagrams come late, which may be the weather's fault.
+// The longest that a node lets pass between two beats: a second where datagrams come late, which may be the
+// weather's fault, or with a budget what a twentieth of it allows, if that is longer.
 Time LongestPause(const FleetPlan &plan)
 {
     if (!plan.Thin || !plan.Thin->Budget)
@@ -28,8 +29,7 @@ Time LongestPause(const FleetPlan &plan)
         return 1s;
     }
     const std::chrono::duration<double> pause(LargestBeat * 20 / static_cast<double>(*plan.Thin->Budget));
-    return std::clamp<Time>(std::chrono::duration_cast<Time>(pause), 500ms,
-                            GatewayConfig().Radio.SlowestBeat);
+    return std::clamp<Time>(std::chrono::duration_cast<Time>(pause), 1s, GatewayConfig().Radio.SlowestBeat);
 }
 
 }  // namespace
@@ -79,6 +79,7 @@ void PresenceOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fle
             {
                 continue;
             }
+            SayWhatIsShown(observer, node, status.state);
             const Path &path = _paths[node * _machines.size() + observer];
             Time silence = _machines[node].Alive ? Time(0) : _world.Now - _machines[node].EndedAt;
             silence = path.Cuts > 0 ? std::max(silence, _world.Now - path.CutAt) : silence;
@@ -93,6 +94,18 @@ void PresenceOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fle
                                     " s of silence");
             }
         }
+    }
+}
+
+void PresenceOracle::SayWhatIsShown(std::size_t observer, std::size_t node, Gateway::NodeState state)
+{
+    const auto [shown, isNew] = _shown.try_emplace({observer, node}, state);
+    if (isNew || std::exchange(shown->second, state) != state)
+    {
+        const char *const name = state == Gateway::NodeState::UP      ? "UP"
+                                 : state == Gateway::NodeState::STALE ? "STALE"
+                                                                      : "LOST";
+        _world.Say(_world.NameOf(observer) + " shows " + _world.NameOf(node) + " as " + name);
     }
 }
 

@@ -3,6 +3,8 @@
 #include "FleetWorld.h"
 
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "gateway.idl.h"
@@ -39,6 +41,9 @@ private:
         int Cuts = 0;
         Time CutAt{0};
     };
+    // For a trace.
+    void SayWhatIsShown(std::size_t observer, std::size_t node, Gateway::NodeState state);
+
     struct Machine
     {
         bool Alive = false;
@@ -48,6 +53,7 @@ private:
     FleetWorld &_world;
     std::vector<Path> _paths;
     std::vector<Machine> _machines;
+    std::map<std::pair<std::size_t, std::size_t>, Gateway::NodeState> _shown;  // by observer and node
     std::uint64_t _stale = 0;
     std::uint64_t _lost = 0;
 };

@@ -11,7 +11,10 @@ namespace
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t NoteOnAir = 400;  // bytes, with its acknowledgement, and the few that are large
+// Bytes of a note with its acknowledgement, on the average; without those that are large.
+constexpr double NoteOnAir = 400;
+// A large note takes a node's whole share of the medium for so long at most.
+constexpr std::int64_t LargeNoteSeconds = 4;
 
 // A kind of radio: what it carries, and what must hold with so many nodes on it.
 struct Radio
@@ -122,7 +125,11 @@ void FleetPlan::DrawThin(SimRandom &random)
         at += radio.UpWithin;
     }
     CalmAt = at;
-    const auto notes = static_cast<std::int64_t>(static_cast<std::uint64_t>(CalmAt / 1s) * share / NoteOnAir);
+    LargestNote =
+        std::clamp<std::int64_t>(static_cast<std::int64_t>(4 * share) * LargeNoteSeconds, 3'000, LargestNote);
+    const double onAir = NoteOnAir + LargeNotes * static_cast<double>(LargestNote) / 2;
+    const auto notes =
+        static_cast<std::int64_t>(static_cast<double>(CalmAt / 1s) * static_cast<double>(share) / onAir);
     std::int64_t sent = 0;
     while (sent < std::min<std::int64_t>(notes, 300))
     {

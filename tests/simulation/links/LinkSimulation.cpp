@@ -23,6 +23,7 @@ using namespace std::chrono_literals;
 // All that is accepted must have its outcome this long after the faults have stopped (invariant 11).
 constexpr LinkTime DrainTime = 60s;
 constexpr LinkTime LongestStraggle = 90s;
+constexpr LinkTime LongestPreparation = 50ms;
 // What a part costs beside its payload when it goes alone: two datagrams' headers, the frame's and the
 // acknowledgement's. And the frame's head alone, at most.
 constexpr double BytesOfAPart = 350;
@@ -38,6 +39,7 @@ enum class EventKind
     Fault,
     Burst,
     Consume,
+    Prepare,
     Calm
 };
 
@@ -124,7 +126,13 @@ Simulation::Simulation(std::uint64_t seed, std::ostream *trace)
              .Random = _random,
              .LifeClocks = _lifeClocks,
              .Transmit = [this](Packet packet) { Transmit(std::move(packet)); },
-             .QueueFilled = [this](std::size_t node, std::size_t queue) { ScheduleConsume(node, queue); }},
+             .QueueFilled = [this](std::size_t node, std::size_t queue) { ScheduleConsume(node, queue); },
+             .Prepare =
+                 [this](std::size_t node, std::size_t index)
+             {
+                 const LinkTime takes(_random.Between(0, LinkTime(LongestPreparation).count()));
+                 Schedule(_world.Now + takes, EventKind::Prepare, node, index);
+             }},
       _wakeAt(_plan.Nodes.size(), LinkNever),
       _stalledUntil(_plan.Nodes.size(), LinkTime(0)),
       _consuming(_plan.Nodes.size() * _plan.Queues.size(), false),
@@ -208,6 +216,7 @@ SimResult Simulation::Run()
     _statistics.RefusedThere = _oracle.OutcomesOf(LinkOutcome::RefusedThere);
     _statistics.DeliveredAgain = _oracle.RedeliveredTwice();
     _statistics.ThinMedia = _plan.Medium.BitsPerSecond > 0 ? 1 : 0;
+    _statistics.GivenUp = _oracle.GivenUp();
     _statistics.LargeDelivered = _oracle.LargeDelivered();
     _statistics.PayloadDelivered = _oracle.DeliveredBytes();
     for (const auto &node : _nodes)
@@ -307,6 +316,14 @@ void Simulation::Handle(const Event &event)
         }
         case EventKind::Consume:
             OnConsume(event.A, event.B);
+            break;
+        case EventKind::Prepare:
+            _nodes[event.A]->FinishPreparation(event.B);
+            ++_statistics.Prepared;
+            if (_nodes[event.A]->IsAlive())
+            {
+                Pump(event.A);
+            }
             break;
         case EventKind::Calm:
             OnCalm();
@@ -541,7 +558,7 @@ void Simulation::OnDatagram(std::size_t slot)
     if (node.Receive(packet) && _nodes[packet.From]->IsAlive() &&
         _nodes[packet.From]->Links().IncarnationTo(_plan.Nodes[packet.To].Name) == packet.SenderLife)
     {
-        _oracle.Knows(packet.To, packet.From);
+        _oracle.Knows(packet.To, packet.From, _nodes[packet.To]->LocalNow());
     }
     Pump(packet.To);
     if (_random.Chance(_plan.MalformedPart))

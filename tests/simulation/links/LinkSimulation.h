@@ -30,6 +30,8 @@ struct SimStatistics
     std::uint64_t Overflows = 0;       // datagrams that a node's queue had no room for
     std::uint64_t LargeDelivered = 0;  // messages that came in several parts
     std::uint64_t PartsHeld = 0;       // parts that a receiver held beyond a gap or for want of room
+    std::uint64_t Prepared = 0;        // large messages that a driver decoded while the links went on
+    std::uint64_t GivenUp = 0;         // in doubt since they expired while the receiver was silent
     std::uint64_t BytesSent = 0;
     std::uint64_t PayloadDelivered = 0;
     std::uint64_t Crashes = 0;

@@ -48,7 +48,11 @@ public:
     // does not know that of the other.
     void Forgets(std::size_t node, std::size_t peer);
     // A node has taken a frame of the present incarnation of another one.
-    void Knows(std::size_t node, std::size_t peer) { _knownEpoch[node][peer] = EpochTo(peer, node); }
+    void Knows(std::size_t node, std::size_t peer, LinkTime nodeNow)
+    {
+        _knownEpoch[node][peer] = EpochTo(peer, node);
+        _heardAt[node][peer] = nodeNow;
+    }
 
     // The payload and type of the next message of a link.
     std::vector<std::uint8_t> MakePayload(SimRandom &random) const;
@@ -78,6 +82,7 @@ public:
         return _outcomes[static_cast<std::size_t>(outcome)];
     }
     std::uint64_t RedeliveredTwice() const { return _redeliveredTwice; }
+    std::uint64_t GivenUp() const { return _givenUp; }
     std::uint64_t Refused() const { return _refused; }
     std::uint64_t AcceptedBytes() const { return _acceptedBytes; }
     std::uint64_t DeliveredBytes() const { return _deliveredBytes; }
@@ -125,10 +130,12 @@ private:
     std::vector<std::uint32_t> _nodeEpoch;                // by node
     std::vector<std::vector<std::uint32_t>> _pairEpoch;   // by node and peer: how often it forgot the peer
     std::vector<std::vector<std::uint32_t>> _knownEpoch;  // by node and peer
+    std::vector<std::vector<LinkTime>> _heardAt;          // by node and peer, by the clock of the node
     std::vector<LinkState> _links;
     std::vector<std::size_t> _linkIndex;  // by source, destination and queue
     std::uint64_t _outcomes[4] = {};
     std::uint64_t _redeliveredTwice = 0;
+    std::uint64_t _givenUp = 0;
     std::uint64_t _refused = 0;
     std::uint64_t _acceptedBytes = 0;
     std::uint64_t _deliveredBytes = 0;

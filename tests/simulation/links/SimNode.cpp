@@ -57,6 +57,7 @@ void SimNode::Start(bool storageLost)
 void SimNode::Crash()
 {
     _links.reset();
+    _firstPreparation = _preparations.size();
     _world.Oracle.EndLife(_index);
     _world.Oracle.NewEpoch(_index);
 }
@@ -145,7 +146,7 @@ bool SimNode::Consume(std::size_t queue)
         if (_toldFull[queue] && (_calm || !_world.Random.Chance(plan.PopEventLoss)))
         {
             _toldFull[queue] = false;
-            _links->OnRoom(plan.Name, LocalNow());
+            _links->OnRoom(plan.Name);
         }
     }
     if (!_calm && length < plan.Capacity && _world.Random.Chance(plan.LocalFill))
@@ -184,23 +185,51 @@ void SimNode::OnOutcome(std::uint64_t id, std::string_view destination, std::str
     _world.Oracle.OnOutcome(_index, id, destination, queue, outcome, LocalNow());
 }
 
-LocalQueueResult SimNode::Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                                  std::span<const std::uint8_t> payload, const LinkPayload & /*owner*/,
-                                  bool redelivered)
+bool SimNode::Accepts(std::string_view /*source*/, std::string_view /*queue*/)
 {
-    Record *record = _world.Oracle.Find(_index, source, queue, type, payload);
+    return true;
+}
+
+// The oracle wants to see each message that is refused.
+bool SimNode::AcceptsType(std::string_view /*queue*/, std::string_view /*type*/) const
+{
+    return true;
+}
+
+LocalQueueResult SimNode::Deliver(const LinkDelivery &delivery)
+{
+    Record *record =
+        _world.Oracle.Find(_index, delivery.Source, delivery.Queue, delivery.Type, delivery.Payload);
     if (record == nullptr)
     {
         return LocalQueueResult::Full;
     }
-    if (type != GoodType)
+    if (delivery.Type != GoodType)
     {
         record->RefusedByQueue = true;
-        return type == WrongType     ? LocalQueueResult::WrongType
-               : type == UnknownType ? LocalQueueResult::Unknown
-                                     : LocalQueueResult::Undecodable;
+        return delivery.Type == WrongType     ? LocalQueueResult::WrongType
+               : delivery.Type == UnknownType ? LocalQueueResult::Unknown
+                                              : LocalQueueResult::Undecodable;
     }
-    const std::size_t index = QueueOf(queue);
+    if (delivery.Prepared)
+    {
+        const auto &prepared = *std::static_pointer_cast<std::vector<std::uint8_t>>(delivery.Prepared);
+        if (!std::equal(prepared.begin(), prepared.end(), delivery.Payload.begin(), delivery.Payload.end()))
+        {
+            _world.Oracle.Fail(8, "one message was prepared and another one is delivered");
+        }
+    }
+    else if (delivery.Payload.size() > _world.Plan.Settings.MaxDatagram)
+    {
+        _preparations.push_back({.Source = std::string(delivery.Source),
+                                 .Queue = std::string(delivery.Queue),
+                                 .SenderLife = delivery.SenderLife,
+                                 .Number = delivery.Number,
+                                 .Payload = {delivery.Payload.begin(), delivery.Payload.end()}});
+        _world.Prepare(_index, _preparations.size() - 1);
+        return LocalQueueResult::Later;
+    }
+    const std::size_t index = QueueOf(delivery.Queue);
     if (_queueLengths[index] >= _world.Plan.Queues[index].Capacity)
     {
         _toldFull[index] = true;
@@ -210,8 +239,19 @@ LocalQueueResult SimNode::Deliver(std::string_view source, std::string_view queu
     {
         _world.QueueFilled(_index, index);
     }
-    _world.Oracle.OnDelivered(*record, redelivered, _world.LifeClocks[record->Life].At(_world.Now));
+    _world.Oracle.OnDelivered(*record, delivery.Redelivered, _world.LifeClocks[record->Life].At(_world.Now));
     return LocalQueueResult::Ok;
+}
+
+void SimNode::FinishPreparation(std::size_t index)
+{
+    if (!IsAlive() || index < _firstPreparation)
+    {
+        return;  // of a process that is gone
+    }
+    Preparation &done = _preparations[index];
+    _links->Prepared(done.Source, done.Queue, done.SenderLife, done.Number,
+                     std::make_shared<std::vector<std::uint8_t>>(std::move(done.Payload)), LocalNow());
 }
 
 std::size_t SimNode::Room(std::string_view queue) const

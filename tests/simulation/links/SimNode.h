@@ -28,6 +28,8 @@ struct SimWorld
     std::function<void(Packet)> Transmit;
     // A queue of a node is no longer empty.
     std::function<void(std::size_t node, std::size_t queue)> QueueFilled;
+    // The node's preparation of that index will be finished some time later.
+    std::function<void(std::size_t node, std::size_t index)> Prepare;
 };
 
 // One node: a machine with a wall clock and perhaps a counter file, on which a process with a LinkNode and
@@ -54,6 +56,8 @@ public:
     void ReceiveSpoiled(const Packet &packet);
     // A message is taken out of a queue, and local producers may put one in. Returns whether there are more.
     bool Consume(std::size_t queue);
+    // As a driver does when it has decoded a large message.
+    void FinishPreparation(std::size_t index);
     // From now on no pop event is lost, the room is told rightly, and there are no local producers.
     void SetCalm() { _calm = true; }
 
@@ -63,13 +67,22 @@ public:
     void Send(const LinkFrame &frame) override;
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
-    LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                             std::span<const std::uint8_t> payload, const LinkPayload &owner,
-                             bool redelivered) override;
+    bool Accepts(std::string_view source, std::string_view queue) override;
+    bool AcceptsType(std::string_view queue, std::string_view type) const override;
+    LocalQueueResult Deliver(const LinkDelivery &delivery) override;
     std::size_t Room(std::string_view queue) const override;
     std::uint64_t Above(std::uint64_t floor) override;
 
 private:
+    // A large message that the driver decodes while the links go on.
+    struct Preparation
+    {
+        std::string Source, Queue;
+        std::uint64_t SenderLife = 0;
+        std::uint64_t Number = 0;
+        std::vector<std::uint8_t> Payload;
+    };
+
     std::size_t NodeOf(std::string_view name) const;
     std::size_t QueueOf(std::string_view name) const;
 
@@ -80,6 +93,8 @@ private:
     std::vector<std::size_t> _queueLengths;
     mutable std::vector<bool>
         _toldFull;  // by queue: the links were told of no room since they were told of room
+    std::vector<Preparation> _preparations;  // of all processes of the node
+    std::size_t _firstPreparation = 0;       // of the present one
     std::uint64_t _storedCounter = 0;
     std::int64_t _wallSeconds;
     bool _calm = false;

@@ -31,6 +31,8 @@ Rabit::Sim::SeedResult Run(std::uint64_t seed, std::ostream *trace)
              {"datagrams that overflowed a queue", s.Overflows},
              {"messages delivered in several parts", s.LargeDelivered},
              {"parts held by a receiver", s.PartsHeld},
+             {"large messages prepared", s.Prepared},
+             {"messages given up while the receiver was silent", s.GivenUp},
              {"bytes sent", s.BytesSent},
              {"bytes of messages delivered", s.PayloadDelivered},
              {"crashes", s.Crashes},

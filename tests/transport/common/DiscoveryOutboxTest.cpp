@@ -711,7 +711,7 @@ TEST_F(DiscoveryOutboxTest, PeersWithoutEndDoNotFillTheMemory)
         Outbox.Put(message, part, {.Address = 1, .Group = {}}, Start + at);
         at += 500ms;
         Run(at);
-        ASSERT_LE(Outbox.Size(), DiscoveryOutbox::MostSlots);
+        ASSERT_LE(Outbox.Size(), 1300u) << "600 come in five minutes";
     }
 }
 

@@ -47,9 +47,11 @@ protected:
     void ExpectCostOfWriting(bool multicast, int destinations);
     // That a sample written to one node reaches its reader alone, in one datagram.
     void ExpectThatOneNodeCanBeWrittenTo(bool multicast);
+    // That of a large sample one datagram goes at a time.
+    void ExpectThatALargeSampleCanBeHeld(bool multicast);
     // That best-effort readers of a reliable writer cost it its samples and nothing else.
     void ExpectNothingButSamplesForBestEffortReaders(bool multicast, int destinations);
-    SessionPtr OpenWith(const std::string &node, bool multicast);
+    SessionPtr OpenWith(const std::string &node, bool multicast, std::uint64_t incarnation = 1);
     bool LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,
                                TransportWriter &writer, std::uint32_t present);
 

@@ -22,9 +22,10 @@ constexpr std::uint64_t Most = Least + 16 + 40;
 
 }  // namespace
 
-Conformance::SessionPtr Conformance::OpenWith(const std::string &node, bool multicast)
+Conformance::SessionPtr Conformance::OpenWith(const std::string &node, bool multicast,
+                                              std::uint64_t incarnation)
 {
-    TransportSettings settings = Net().SettingsFor(node, 1);
+    TransportSettings settings = Net().SettingsFor(node, incarnation);
     settings.Multicast = multicast;
     if (!multicast)
     {
@@ -143,6 +144,102 @@ TEST_P(Conformance, OneNodeCanBeWrittenToWhereEachReaderGetsItsOwn)
 TEST_P(Conformance, OneNodeCanBeWrittenToWhereAllGetThemByMulticast)
 {
     ExpectThatOneNodeCanBeWrittenTo(true);
+}
+
+void Conformance::ExpectThatALargeSampleCanBeHeld(bool multicast)
+{
+    const auto writing = OpenWith("uav1", multicast);
+    const auto first = OpenWith("ground", multicast);
+    const auto second = OpenWith("uav2", multicast);
+    const auto writer = writing->CreateWriter(TextTopic(), State(), {});
+    const auto beats = writing->CreateWriter(TextTopic("Beats"), Telemetry(), {});
+    SampleRecorder here;
+    SampleRecorder there;
+    SampleRecorder beat;
+    const auto reader = first->CreateReader(TextTopic(), Telemetry(), {}, here.Handler());
+    const auto other = second->CreateReader(TextTopic(), Telemetry(), {}, there.Handler());
+    const auto beatReader = second->CreateReader(TextTopic("Beats"), Telemetry(), {}, beat.Handler());
+    ASSERT_TRUE(Until(
+        [&]
+        {
+            return writer->MatchedReaders() == 2 && beats->MatchedReaders() == 1 &&
+                   reader->MatchedWriters() == 1 && other->MatchedWriters() == 1 &&
+                   beatReader->MatchedWriters() == 1;
+        }));
+    const std::string large(20'000, 'x');
+    const auto writeHeld = [&](const SampleEncoder &sample)
+    {
+        WriteResult result = WriteResult::TimedOut;
+        Until([&] { return (result = writer->WriteHeld(sample, 1)) != WriteResult::TimedOut; });
+        return result;
+    };
+    const auto sentBytes = [&] { return writing->Counters().SampleBytes; };
+
+    std::uint64_t before = sentBytes();
+    ASSERT_EQ(writeHeld(MakeSample(0, large)), WriteResult::Ok);
+    EXPECT_LE(sentBytes() - before, 2 * 1500u);
+    EXPECT_GT(sentBytes(), before);
+    int parts = 1;
+    for (std::size_t next = writer->HeldBytes(); next > 0; next = writer->HeldBytes(), ++parts)
+    {
+        EXPECT_LE(next, 2 * 1500u);
+        EXPECT_EQ(std::min(here.Count(), there.Count()), 0u);
+        before = sentBytes();
+        writer->SendHeld();
+        EXPECT_EQ(sentBytes() - before, next);
+        if (parts == 5)
+        {
+            EXPECT_TRUE(Until(
+                [&]
+                {
+                    EXPECT_EQ(WriteOnceTaken(*beats, MakeSample(0, "beat"), 1), WriteResult::Ok);
+                    return beat.Count() > 0;
+                }));
+            EXPECT_EQ(there.Count(), 0u);
+        }
+    }
+    EXPECT_GE(parts, 15);
+    EXPECT_TRUE(Until([&] { return here.Count() == 1 && there.Count() == 1; }));
+    EXPECT_EQ(here.Texts(), std::vector<std::string>{large});
+    EXPECT_EQ(there.Texts(), std::vector<std::string>{large});
+
+    ASSERT_EQ(writeHeld(MakeSample(0, "small")), WriteResult::Ok);
+    writer->SendHeld();  // where each reader gets its own, the second one is held
+    EXPECT_EQ(writer->HeldBytes(), 0u);
+    EXPECT_TRUE(Until([&] { return here.Count() == 2 && there.Count() == 2; }));
+
+    // The next sample does not overtake what is held.
+    ASSERT_EQ(writeHeld(MakeSample(0, large)), WriteResult::Ok);
+    EXPECT_GT(writer->HeldBytes(), 0u);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "next"), 2), WriteResult::Ok);
+    EXPECT_EQ(writer->HeldBytes(), 0u);
+    EXPECT_TRUE(Until([&] { return here.Count() == 4 && there.Count() == 4; }));
+    EXPECT_EQ(here.Texts(), (std::vector<std::string>{large, "small", large, "next"}));
+    writer->SendHeld();  // nothing
+}
+
+TEST_P(Conformance, ALargeSampleCanBeHeldWhereEachReaderGetsItsOwn)
+{
+    ExpectThatALargeSampleCanBeHeld(false);
+}
+
+TEST_P(Conformance, ALargeSampleCanBeHeldWhereAllGetItByMulticast)
+{
+    ExpectThatALargeSampleCanBeHeld(true);
+}
+
+TEST_P(Conformance, AWriterMayEndWithASampleThatIsHeld)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    auto writer = writing->CreateWriter(TextTopic(), State(), {});
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(TextTopic(), Telemetry(), {}, recorder.Handler());
+    ASSERT_TRUE(Matched(writer, reader));
+    writer->WriteHeld(MakeSample(0, std::string(20'000, 'x')), 1);
+    writer.reset();
+    Net().Settle();
+    EXPECT_EQ(recorder.Count(), 0u);
 }
 
 TEST_P(Conformance, AReliableOrKeyedWriterDoesNotWriteToOneNode)
@@ -294,6 +391,51 @@ TEST_P(Conformance, OneWriterWritesToManyNodesEachAloneWhileOneOfThemGoesAndRetu
     {
         EXPECT_THAT(nodes[i].Heard.Texts(), testing::Each(nameOf(i)));
     }
+}
+
+// The first is what a killed node leaves behind until its lease runs out, or a live node of the same name.
+TEST_P(Conformance, WhatIsWrittenToANodeGoesToItsNewestSessionAndToThoseHeardSinceThatAppeared)
+{
+    const auto writing = OpenWith("ground", false);
+    const auto writer = writing->CreateWriter(TextTopic(), Telemetry(), {});
+    SampleRecorder atGround;
+    const auto hearing = writing->CreateReader(TextTopic("Voice"), Telemetry(), {}, atGround.Handler());
+    const auto first = OpenWith("uav1", false, 12);
+    SampleRecorder atFirst;
+    const auto firstReader = first->CreateReader(TextTopic(), Telemetry(), {}, atFirst.Handler());
+    const auto voice = first->CreateWriter(TextTopic("Voice"), Telemetry(), {});
+    ASSERT_TRUE(Matched(writer, firstReader));
+    ASSERT_TRUE(Matched(voice, hearing));
+    // Its number is lower: a clock was set back between the two.
+    const auto second = OpenWith("uav1", false, 11);
+    SampleRecorder atSecond;
+    const auto secondReader = second->CreateReader(TextTopic(), Telemetry(), {}, atSecond.Handler());
+    ASSERT_TRUE(Until([&] { return writer->MatchedReaders() == 2 && secondReader->MatchedWriters() == 1; }));
+    const auto datagramsForOne = [&]
+    {
+        const std::uint64_t before = writing->Counters().SampleDatagrams;
+        EXPECT_EQ(writer->WriteTo("uav1", MakeSample(0, "one"), 1), WriteResult::Ok);
+        return writing->Counters().SampleDatagrams - before;
+    };
+    EXPECT_TRUE(Until(
+        [&]
+        {
+            EXPECT_EQ(datagramsForOne(), 1u);
+            return atSecond.Count() >= 3;
+        }));
+    EXPECT_EQ(atFirst.Count(), 0u);
+    EXPECT_TRUE(Until(
+        [&]
+        {
+            EXPECT_EQ(WriteOnceTaken(*voice, MakeSample(0, "I live"), 1), WriteResult::Ok);
+            return atGround.Count() >= 1;
+        }));
+    EXPECT_TRUE(Until(
+        [&]
+        {
+            EXPECT_EQ(datagramsForOne(), 2u);
+            return atFirst.Count() >= 3;
+        }));
 }
 
 }  // namespace Rabit::Conformance

@@ -31,6 +31,21 @@ TEST_F(AnnouncementRepliesTest, WhoGoesOnAnnouncingAndSaysNothingToUsIsAnswered)
     EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 500ms));
 }
 
+TEST_F(AnnouncementRepliesTest, ThoseWhoFellSilentMakeRoom)
+{
+    for (std::size_t i = 0; i < AnnouncementReplies::MostPeers; ++i)
+    {
+        AnnouncementReplies::TimePoint at = Now + i * 1ms;
+        auto peer = Sender;
+        peer[0] = static_cast<std::uint8_t>(i);
+        peer[1] = static_cast<std::uint8_t>(i >> 8);
+        peer[2] = 7;
+        Replies.OnAnnouncement(peer, at);
+    }
+    Replies.OnAnnouncement(Sender, Now + 1min);
+    EXPECT_TRUE(Replies.OnAnnouncement(Sender, Now + 1min + 250ms));
+}
+
 TEST_F(AnnouncementRepliesTest, WhoSaysSomethingToUsHasHeardUs)
 {
     Replies.OnAnnouncement(Sender, Now);

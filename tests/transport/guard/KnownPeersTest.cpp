@@ -208,6 +208,16 @@ TEST_F(KnownPeersTest, NumbersDoNotJump)
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 42, Now));
 }
 
+// A node writes the samples of its links to one other node each, all by one best-effort writer.
+TEST_F(KnownPeersTest, ABestEffortWriterMayHaveWrittenMostOfItsSamplesToOthers)
+{
+    constexpr EntityId Writer = 0x00000303u;
+    EXPECT_TRUE(Peers.EndpointAnnounced(Sender, Writer, 7, true));
+    EXPECT_TRUE(Peers.Reaches(Sender, Writer, 10, Now));
+    EXPECT_TRUE(Peers.Reaches(Sender, Writer, 10'000, Now + 100ms));
+    EXPECT_FALSE(Peers.Reaches(Sender, Writer, std::int64_t{1} << 36, Now + 100ms));
+}
+
 // What comes by multicast goes on while all samples are lost, so the peer is not silent. Two beats a second
 // are not refused until eight of them agree.
 TEST_F(KnownPeersTest, AWriterThatWasNotHeardForAWhileGoesOnWhereItIs)
@@ -450,6 +460,18 @@ TEST_F(KnownPeersTest, StrangersPushNobodyOutWhoIsHeard)
     EXPECT_TRUE(Peers.Announced(Stranger(6000), 1, Now + 61s));
     EXPECT_TRUE(Peers.Hears(Sender, Now + 61s));
     EXPECT_EQ(Peers.Size(), 1024u);
+}
+
+TEST_F(KnownPeersTest, ThoseWhoComeAndGoAreForgottenAfterFiveMinutes)
+{
+    for (int i = 0; i < 600; ++i)
+    {
+        const auto now = Now + i * 10s;
+        EXPECT_TRUE(Peers.Hears(Sender, now));
+        EXPECT_TRUE(Peers.Announced(Stranger(i), 1, now));
+        EXPECT_LE(Peers.Size(), 70u) << "of 30 in five minutes, twice";
+    }
+    EXPECT_TRUE(Peers.Hears(Stranger(570), Now + 6000s)) << "silent for 300 s";
 }
 
 TEST_F(KnownPeersTest, OfTooManyWritersTheOneThatWasSilentForLongestIsForgotten)

@@ -73,6 +73,14 @@ TEST_F(RtpsGuardTest, WhatIsForAnotherParticipantIsKeptFromTheVendor)
     EXPECT_TRUE(Guard.Handed.empty());
 }
 
+TEST_F(RtpsGuardTest, TheByteWithWhichCycloneDdsEndsIsDroppedInSilence)
+{
+    EXPECT_TRUE(Guard.Admit({0}));
+    EXPECT_TRUE(Guard.Handed.empty());
+    EXPECT_TRUE(Guard.Stops({1}));
+    EXPECT_TRUE(Guard.Stops({0, 0}));
+}
+
 TEST_F(RtpsGuardTest, OtherProtocolsAreStopped)
 {
     Bytes message = Message(Data, DataBody(11), 5);

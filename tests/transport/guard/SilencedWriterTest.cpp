@@ -74,7 +74,7 @@ TEST_F(SilencedWriterTest, IsHeldToItsOwnNumbersAgain)
 {
     Announce(1);
     EXPECT_TRUE(GivesTheThird(Sample(27, 13)));
-    EXPECT_TRUE(Guard.Stops(Sample(13 + 17, 13)));
+    EXPECT_TRUE(Guard.Stops(Sample(13 + 1'000'001, 13)));
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ def meet(*nodes):
     for node in nodes:
         for other in nodes:
             if other is not node:
-                node.wait_for(f"peer node={other.name} state=UP")
+                node.wait_for(f"peer node={other.name} state=UP .*")
 
 
 def never(node, *patterns):
@@ -151,7 +151,7 @@ def goes_on(uav1, ground):
     for node, other in ((uav1, "ground"), (ground, "uav1")):
         delivered = f"delivered from={other} .*"
         node.wait_for(delivered, len(node.find(delivered)) + 10)
-        never(node, f"peer node={other} state=(STALE|LOST)", "problem .*live node.*")
+        never(node, f"peer node={other} state=(STALE|LOST) .*", "problem .*live node.*")
 
 
 NOTES = ["--to", "uav1", "--count", 1000000, "--rate", 50]
@@ -166,7 +166,7 @@ def says_it_is_ground(case):
         return
     uav1, ground = exchange(case)
     thief = case.thief("ground", *NOTES)
-    thief.wait_for("peer node=uav1 state=UP")
+    thief.wait_for("peer node=uav1 state=UP .*")
     # Nobody answers the thief. It hears what is answered to a newcomer.
     case.node("uav3")
     thief.wait_for("accepted to=uav1 .*", 20)
@@ -202,7 +202,7 @@ def does_not_ask(case):
     thief = case.thief("uav2", *NOTES)
     uav1.wait_for("delivered from=uav2 .*", 10)
     uav1.process.kill()
-    thief.wait_for("peer node=uav1 state=LOST")
+    thief.wait_for("peer node=uav1 state=LOST .*")
     thief.wait_for("accepted to=uav1 .*", len(thief.find("accepted to=uav1 .*")) + 50)
     uav1, ground = exchange(case)
     refused = thief.wait_for("outcome to=uav1 .* is=\"refused\"", 10)

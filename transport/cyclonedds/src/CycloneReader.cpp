@@ -133,6 +133,10 @@ void CycloneReader::HandOver(const OpaqueSample &sample, const WriterId &writer)
         HandOverEnd(sample, info);
         return;
     }
+    if (_lastNode != nullptr)
+    {
+        _lastNode->Hear();
+    }
     if (_topic.KeyOf)
     {
         _instances.Alive(info.Key, writer);

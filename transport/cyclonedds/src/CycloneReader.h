@@ -58,10 +58,10 @@ private:
     const TopicRegistry::Use _use;
     const SampleHandler _handler;
     HandlerGate _gate;
-    InstanceTable _instances;                              // under the gate
-    std::set<WriterId> _inStep;                            // with this reader; under the gate
-    WriterId _lastWriter{};                                // under the gate
-    std::shared_ptr<const ParticipantIdentity> _lastNode;  // of _lastWriter; under the gate
+    InstanceTable _instances;                      // under the gate
+    std::set<WriterId> _inStep;                    // with this reader; under the gate
+    WriterId _lastWriter{};                        // under the gate
+    std::shared_ptr<const PeerSession> _lastNode;  // of _lastWriter; under the gate
     Cache _cache{};
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;

@@ -74,6 +74,12 @@ WriteResult CycloneWriter::Write(const SampleEncoder &sample, std::int64_t sourc
     return Send(sample, sourceTime, false);
 }
 
+WriteResult CycloneWriter::WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    HeldDatagrams::Scope holding(_held);
+    return Send(sample, sourceTime, false);
+}
+
 WriteResult CycloneWriter::WriteTo(const std::string &node, const SampleEncoder &sample,
                                    std::int64_t sourceTime)
 {
@@ -140,6 +146,7 @@ WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourc
     {
         return Fail("the session is closed");
     }
+    _held.SendAll();
     const std::size_t size = encoder.EncodedSize();
     if (size > MaxSample)
     {

@@ -8,6 +8,7 @@
 
 #include "Entity.h"
 #include "SessionCore.h"
+#include "common/HeldDatagrams.h"
 
 struct ddsi_sertype;
 
@@ -22,6 +23,9 @@ public:
                   const std::vector<std::string> &partitions);
 
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    std::size_t HeldBytes() const override { return _held.NextBytes(); }
+    void SendHeld() override { _held.SendNext(); }
     WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
                         std::int64_t sourceTime) override;
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override;
@@ -37,6 +41,7 @@ private:
     const TopicDescription _topic;
     const TopicQos _qos;
     const TopicRegistry::Use _use;
+    HeldDatagrams _held;
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;
     Entity _writer;  // the last, so that no listener runs when the others go

@@ -146,7 +146,10 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         // gone.
         << "<MultipleReceiveThreads>false</MultipleReceiveThreads>"
         << "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
-        << "<Watermarks><WhcHigh>128MB</WhcHigh></Watermarks></Internal></Domain>";
+        << "<Watermarks><WhcHigh>128MB</WhcHigh></Watermarks></Internal>"
+        // The vendor fills a receive buffer from end to end and then takes another, a megabyte each by
+        // default.
+        << "<Sizing><ReceiveBufferSize>256KiB</ReceiveBufferSize></Sizing></Domain>";
     if (!settings.BackendConfig.empty())
     {
         xml << "," << Read(settings.BackendConfig);

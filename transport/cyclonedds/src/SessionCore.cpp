@@ -194,13 +194,13 @@ void SessionCore::Close()
     _peerGate.Close();
 }
 
-std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const WriterId &writer) const
+std::shared_ptr<const PeerSession> SessionCore::IdentityOf(const WriterId &writer) const
 {
     const Prefix prefix = PrefixOf(writer);
     const std::lock_guard lock(_mutex);
-    if (const auto found = _peers.find(prefix); found != _peers.end())
+    if (Identity known = _peers.Find(prefix))
     {
-        return found->second;
+        return known;
     }
     const auto gone = _gone.find(prefix);
     return gone == _gone.end() ? nullptr : gone->second.Who;
@@ -210,12 +210,9 @@ std::vector<ddsi_guid_t> SessionCore::ParticipantsOf(const std::string &node) co
 {
     const std::lock_guard lock(_mutex);
     std::vector<ddsi_guid_t> participants;
-    for (const auto &[prefix, identity] : _peers)
+    for (const Prefix &prefix : _peers.Of(node))
     {
-        if (identity->Node == node)
-        {
-            participants.push_back(ParticipantOf(prefix));
-        }
+        participants.push_back(ParticipantOf(prefix));
     }
     return participants;
 }
@@ -288,20 +285,24 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
     }
     char *name = nullptr;
     dds_qget_entity_name(qos, &name);
-    const auto identity = std::make_shared<const ParticipantIdentity>(
-        ParticipantIdentity{name != nullptr ? name : "", *incarnation});
+    const ParticipantIdentity announced{name != nullptr ? name : "", *incarnation};
     dds_free(name);
-    if (!_proof.MayBe(identity->Node, prefix))
+    if (!_proof.MayBe(announced.Node, prefix))
     {
         return;
     }
     const PeerPlace place = PlaceOf(prefix);
+    Identity identity;
     {
         // A prefix belongs to one life of one participant: the one who has left does not come back.
         const std::lock_guard lock(_mutex);
         const auto gone = _gone.find(prefix);
-        if ((gone != _gone.end() && gone->second.How == PeerEvent::Kind::Left) ||
-            !_peers.emplace(prefix, identity).second)
+        if (gone != _gone.end() && gone->second.How == PeerEvent::Kind::Left)
+        {
+            return;
+        }
+        identity = _peers.Add(prefix, announced);
+        if (identity == nullptr)
         {
             return;
         }
@@ -318,13 +319,11 @@ void SessionCore::PeerGone(const Prefix &prefix)
     Identity identity;
     {
         const std::lock_guard lock(_mutex);
-        const auto found = _peers.find(prefix);
-        if (found == _peers.end())
+        identity = _peers.Remove(prefix);
+        if (identity == nullptr)
         {
             return;
         }
-        identity = found->second;
-        _peers.erase(found);
         _places.erase(prefix);
         if (_gone.insert_or_assign(prefix, Gone{identity, how}).second)
         {

@@ -20,6 +20,7 @@
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
 #include "common/PeerProof.h"
+#include "common/PeerSessions.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -45,8 +46,8 @@ public:
 
     dds_entity_t Participant() const { return _participant.Get(); }
     // Who a writer's participant is or was; nullptr if it is not a Rabit node, or unknown.
-    std::shared_ptr<const ParticipantIdentity> IdentityOf(const WriterId &writer) const;
-    // Those of a node's sessions.
+    std::shared_ptr<const PeerSession> IdentityOf(const WriterId &writer) const;
+    // The participants to which goes what is written to the node (PeerSessions).
     std::vector<ddsi_guid_t> ParticipantsOf(const std::string &node) const;
     // Where the Rabit nodes are that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
@@ -54,7 +55,7 @@ public:
     TopicRegistry &Topics() { return _topics; }
 
 private:
-    using Identity = std::shared_ptr<const ParticipantIdentity>;
+    using Identity = std::shared_ptr<const PeerSession>;
 
     struct Gone
     {
@@ -77,7 +78,7 @@ private:
     std::atomic<bool> _closed{false};
     Prefix _own{};  // set before anything is discovered
     mutable std::mutex _mutex;
-    std::map<Prefix, Identity> _peers;    // Rabit nodes; guarded by _mutex
+    PeerSessions<Prefix> _peers;          // Rabit nodes; guarded by _mutex
     std::map<Prefix, PeerPlace> _places;  // of those; guarded by _mutex
     std::map<Prefix, Gone> _gone;         // the last that went; guarded by _mutex
     std::deque<Prefix> _goneOrder;        // guarded by _mutex

@@ -14,6 +14,7 @@
 #include "DomainConfig.h"
 #include "VendorLog.h"
 #include "VendorTraffic.h"
+#include "common/HeldDatagrams.h"
 #include "common/MulticastUse.h"
 #include "common/RtpsTraffic.h"
 #include "common/SendingSamples.h"
@@ -111,6 +112,21 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     }
     announcing.Any ? domain._outbox.Announced({datagram, size}) : domain._outbox.Sent(size);
     return true;
+}
+
+// The writer whose it is ends before the domain.
+bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t size,
+                        const RabitCycloneRoute *route)
+{
+    const auto &domain = *static_cast<const VendorDomain *>(self);
+    HeldDatagrams::Scope *const held = HeldDatagrams::OfThisThread();
+    return held != nullptr &&
+           held->Keep(HeldDatagrams::IpAndUdp + size,
+                      [&domain, to = *route, bytes = std::vector<std::uint8_t>(datagram, datagram + size)]
+                      {
+                          const SendingSamples sending;
+                          RabitCycloneSend(domain._watch, &to, false, bytes.data(), bytes.size());
+                      });
 }
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
@@ -239,6 +255,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                                         return !IsOfSamplesSent({head, size});
                                     },
                                 .may = &MaySend,
+                                .holds = [] { return HeldDatagrams::OfThisThread() != nullptr; },
+                                .hold = &Hold,
                                 .sent = &OnSent,
                                 .received = &OnReceived});
     if (_watch == nullptr)

@@ -38,6 +38,8 @@ public:
 private:
     static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
                         const RabitCycloneRoute *route);
+    static bool Hold(void *self, const unsigned char *datagram, std::size_t size,
+                     const RabitCycloneRoute *route);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);

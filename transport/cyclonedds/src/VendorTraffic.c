@@ -50,7 +50,7 @@ static _Thread_local struct Targets targets;
 
 static struct Watch Find(const struct ddsi_domaingv *domain)
 {
-    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL}, NULL};
+    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL, NULL, NULL}, NULL};
     pthread_rwlock_rdlock(&lock);
     for (const struct Watch *watch = first; watch != NULL; watch = watch->next)
     {
@@ -108,6 +108,28 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
     return watch->write(connection, destination, 1, &whole, flags);
 }
 
+/* Whether it is kept. */
+static bool Hold(const struct Watch *watch, ddsi_tran_conn_t connection, const ddsi_locator_t *destination,
+                 size_t parts, const ddsrt_iovec_t *part)
+{
+    if (!watch->calls.holds() || destination->kind != NN_LOCATOR_KIND_UDPv4)
+    {
+        return false;
+    }
+    const size_t size = SizeOf(parts, part);
+    unsigned char *const datagram = malloc(size);
+    if (datagram == NULL)
+    {
+        return false;
+    }
+    Gather(datagram, size, parts, part);
+    struct RabitCycloneRoute route = {.connection = connection, .port = destination->port};
+    memcpy(route.address, destination->address + AddressAt, sizeof route.address);
+    const bool held = watch->calls.hold(watch->calls.argument, datagram, size, &route);
+    free(datagram);
+    return held;
+}
+
 static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *destination, size_t parts,
                         const ddsrt_iovec_t *part, uint32_t flags)
 {
@@ -116,6 +138,10 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
     if (watch.write == NULL)
     {
         return -1;
+    }
+    if (Hold(&watch, connection, destination, parts, part))
+    {
+        return (ssize_t)SizeOf(parts, part);
     }
     unsigned char head[HeadSize];
     const size_t filled = Gather(head, sizeof head, parts, part);

@@ -30,6 +30,11 @@ extern "C"
         bool (*isDiscovery)(const unsigned char *head, size_t headSize);
         bool (*may)(void *argument, unsigned char *datagram, size_t size,
                     const struct RabitCycloneRoute *route);
+        /* Whether datagrams that this thread sends now are asked about by hold: whether one waits for its
+           turn instead of being sent. */
+        bool (*holds)(void);
+        bool (*hold)(void *argument, const unsigned char *datagram, size_t size,
+                     const struct RabitCycloneRoute *route);
         /* It was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
         /* It came, into a buffer of that capacity, in which it may be changed in place. Returns how long what

@@ -111,6 +111,10 @@ void FastDdsReader::HandOver(const Change &change)
         HandOverEnd(change, info);
         return;
     }
+    if (_lastNode != nullptr)
+    {
+        _lastNode->Hear();
+    }
     if (_topic.KeyOf)
     {
         _instances.Alive(info.Key, info.Writer);

@@ -55,9 +55,9 @@ private:
     HandlerGate _gate;
     const std::shared_ptr<PayloadPool> _pool;
     eprosima::fastrtps::rtps::ReaderHistory _history;
-    InstanceTable _instances;                              // under the gate
-    Guid _lastWriter;                                      // under the gate
-    std::shared_ptr<const ParticipantIdentity> _lastNode;  // of _lastWriter; under the gate
+    InstanceTable _instances;                      // under the gate
+    Guid _lastWriter;                              // under the gate
+    std::shared_ptr<const PeerSession> _lastNode;  // of _lastWriter; under the gate
     mutable std::mutex _mutex;
     std::set<Guid> _matched;  // guarded by _mutex
     eprosima::fastrtps::rtps::RTPSReader *_reader = nullptr;

@@ -65,6 +65,12 @@ WriteResult FastDdsWriter::Write(const SampleEncoder &sample, std::int64_t sourc
     return Send(sample, sourceTime, false);
 }
 
+WriteResult FastDdsWriter::WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime)
+{
+    HeldDatagrams::Scope holding(_held);
+    return Send(sample, sourceTime, false);
+}
+
 WriteResult FastDdsWriter::WriteTo(const std::string &node, const SampleEncoder &sample,
                                    std::int64_t sourceTime)
 {
@@ -98,6 +104,7 @@ WriteResult FastDdsWriter::Send(const SampleEncoder &sample, std::int64_t source
     {
         return Fail("the session is closed");
     }
+    _held.SendAll();
     const std::size_t size = sample.EncodedSize();
     if (size > MaxSample)
     {

@@ -14,6 +14,7 @@
 #include "KeepLastHistory.h"
 #include "PayloadPool.h"
 #include "SessionCore.h"
+#include "common/HeldDatagrams.h"
 
 namespace Rabit::FastDds
 {
@@ -28,6 +29,9 @@ public:
     ~FastDdsWriter() override;
 
     WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime) override;
+    std::size_t HeldBytes() const override { return _held.NextBytes(); }
+    void SendHeld() override { _held.SendNext(); }
     WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
                         std::int64_t sourceTime) override;
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override;
@@ -60,6 +64,7 @@ private:
     const TopicRegistry::Use _use;
     const std::shared_ptr<PayloadPool> _pool;
     KeepLastHistory _history;
+    HeldDatagrams _held;
     mutable std::mutex _mutex;
     std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex
     std::atomic<const Targets *> _targets = nullptr;  // while it writes to them, with the vendor's lock held

@@ -19,6 +19,7 @@
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
 #include "common/DiscoveryOutbox.h"
+#include "common/HeldDatagrams.h"
 #include "common/KeyExchangeOutbox.h"
 #include "common/SendingSamples.h"
 
@@ -163,7 +164,7 @@ public:
             WriteWithoutDestination(datagram, _shortened);
             datagram = _shortened;
         }
-        return SendChosen(sender, datagram, message.HasSamples, timeout);
+        return Hold(sender, datagram) || SendChosen(sender, datagram, message.HasSamples, timeout);
     }
 
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
@@ -248,6 +249,23 @@ private:
         ListIterator last(_chosen.cend());
         return sender->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), &first, &last,
                             timeout);
+    }
+    // Whether it waits for its turn, with _sending held (HeldDatagrams). The writer whose it is ends before
+    // this.
+    bool Hold(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram)
+    {
+        HeldDatagrams::Scope *const held = HeldDatagrams::OfThisThread();
+        const std::size_t datagrams = held != nullptr ? DatagramsTo(sender) : 0;
+        return datagrams > 0 &&
+               held->Keep(datagrams * (HeldDatagrams::IpAndUdp + datagram.size()),
+                          [this, sender, destinations = _chosen,
+                           bytes = std::vector<std::uint8_t>(datagram.begin(), datagram.end())]
+                          {
+                              constexpr std::chrono::milliseconds LongestWait{100};
+                              const std::lock_guard lock(_sending);
+                              _chosen = destinations;
+                              SendChosen(sender, bytes, true, std::chrono::steady_clock::now() + LongestWait);
+                          });
     }
     void SendOwed()
     {

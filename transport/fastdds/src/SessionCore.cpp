@@ -136,25 +136,17 @@ bool SessionCore::IsOwn(const GuidPrefix &prefix) const
     return prefix == _participant.load()->getGuid().guidPrefix;
 }
 
-std::shared_ptr<const ParticipantIdentity> SessionCore::IdentityOf(const GuidPrefix &prefix) const
+std::shared_ptr<const PeerSession> SessionCore::IdentityOf(const GuidPrefix &prefix) const
 {
     const std::lock_guard lock(_mutex);
-    const auto found = _peers.find(prefix);
-    return found == _peers.end() ? nullptr : found->second;
+    return _peers.Find(prefix);
 }
 
 std::set<SessionCore::GuidPrefix> SessionCore::PrefixesOf(const std::string &node) const
 {
     const std::lock_guard lock(_mutex);
-    std::set<GuidPrefix> prefixes;
-    for (const auto &[prefix, identity] : _peers)
-    {
-        if (identity->Node == node)
-        {
-            prefixes.insert(prefix);
-        }
-    }
-    return prefixes;
+    const std::vector<GuidPrefix> prefixes = _peers.Of(node);
+    return {prefixes.begin(), prefixes.end()};
 }
 
 std::vector<PeerPlace> SessionCore::PeerPlaces() const
@@ -294,7 +286,7 @@ void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
         // who has gone does not come back: a prefix belongs to one life of one participant.
         const std::lock_guard lock(_mutex);
         const auto departed = std::find(_departed.begin(), _departed.end(), prefix);
-        if (departed != _departed.end() || !_peers.emplace(prefix, identity).second)
+        if (departed != _departed.end() || _peers.Add(prefix, *identity) == nullptr)
         {
             return;
         }
@@ -312,7 +304,7 @@ void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
 
 void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
 {
-    std::shared_ptr<const ParticipantIdentity> identity;
+    std::shared_ptr<const PeerSession> session;
     {
         const std::lock_guard lock(_mutex);
         _unproven.erase(prefix);
@@ -325,13 +317,11 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
                 _departed.pop_front();
             }
         }
-        const auto found = _peers.find(prefix);
-        if (found == _peers.end())
+        session = _peers.Remove(prefix);
+        if (session == nullptr)
         {
             return;
         }
-        identity = found->second;
-        _peers.erase(found);
         _places.erase(prefix);
     }
     _peerGate.Run(
@@ -339,7 +329,7 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
         {
             if (_onPeer)
             {
-                _onPeer({how, identity->Node, identity->Incarnation});
+                _onPeer({how, session->Node, session->Incarnation});
             }
         });
 }

@@ -22,6 +22,7 @@
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
 #include "common/PeerProof.h"
+#include "common/PeerSessions.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -49,8 +50,8 @@ public:
     eprosima::fastrtps::rtps::RTPSParticipant &Participant() { return *_participant; }
     bool IsOwn(const GuidPrefix &prefix) const;
     // Who a participant is; nullptr if it is not a Rabit node, or unknown.
-    std::shared_ptr<const ParticipantIdentity> IdentityOf(const GuidPrefix &prefix) const;
-    // Those of a node's sessions.
+    std::shared_ptr<const PeerSession> IdentityOf(const GuidPrefix &prefix) const;
+    // The participants to which goes what is written to the node (PeerSessions).
     std::set<GuidPrefix> PrefixesOf(const std::string &node) const;
     // Where the Rabit nodes are that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
@@ -93,14 +94,13 @@ private:
     const PeerProof _proof;
     std::atomic<bool> _closed{false};
     mutable std::mutex _mutex;
-    std::map<GuidPrefix, std::shared_ptr<const ParticipantIdentity>>
-        _peers;                               // Rabit nodes; guarded by _mutex
+    PeerSessions<GuidPrefix> _peers;          // Rabit nodes; guarded by _mutex
     std::map<GuidPrefix, PeerPlace> _places;  // of those; guarded by _mutex
     // Rabit nodes that have not shown yet who they are; guarded by _mutex
     std::map<GuidPrefix, Newcomer> _unproven;
-    std::set<GuidPrefix> _proven;             // who has shown it; guarded by _mutex
-    std::set<GuidPrefix> _inGroup;            // who listens to the group of discovery; guarded by _mutex
-    std::deque<GuidPrefix> _departed;         // the last that said goodbye; guarded by _mutex
+    std::set<GuidPrefix> _proven;      // who has shown it; guarded by _mutex
+    std::set<GuidPrefix> _inGroup;     // who listens to the group of discovery; guarded by _mutex
+    std::deque<GuidPrefix> _departed;  // the last that said goodbye; guarded by _mutex
     const ParticipantNumber _number;
     ParticipantTimer _announceTimer;
     const std::shared_ptr<DeferredCall> _owed = std::make_shared<DeferredCall>();

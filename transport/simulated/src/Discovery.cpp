@@ -68,7 +68,7 @@ void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from,
         return;
     }
     peer.Birth = ++_lastBirth;
-    peer.Who = datagram.Sender->Who;
+    peer.Who = me->Sessions.Add(from, *datagram.Sender->Who);
     peer.Lease = datagram.Sender->Settings.Lease;
     peer.LastHeard = _now;
     Later(peer.Lease, {Event::Kind::LeaseTimer, me->Id, from, peer.Birth, {}});
@@ -119,6 +119,7 @@ void NetworkCore::LosePeer(const ParticipantPtr &me, ParticipantId id, PeerEvent
     }
     const Peer peer = std::move(found->second);
     me->Peers.erase(found);
+    me->Sessions.Remove(id);
     for (const auto &endpoint : *peer.TheirEndpoints)
     {
         EndpointGone(me, endpoint->Id);

@@ -60,11 +60,19 @@ public:
     // Gives the sample its sequence number and sends it. False if the session is gone.
     // To that node's readers alone, if one is named.
     bool Write(ParticipantState &participant, WriterState &writer, const std::shared_ptr<Sample> &sample,
-               const std::string *node = nullptr);
+               const std::string *node = nullptr, std::uint32_t partsBefore = 0);
+    // Sends the next datagram of a sample that takes more than one, but for its last: Write sends that, and
+    // takes how many went before. False if the session is gone.
+    bool WritePart(const ParticipantState &participant, const WriterState &writer, const Sample &sample);
+    // Bytes of one of them on the air, to all destinations.
+    std::size_t BytesOfPart(const ParticipantState &participant, const WriterState &writer,
+                            const Sample &sample) const;
     int MatchedReaders(const WriterState &writer) const;
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
     Time DiscoveryHeldUp(const std::string &node) const;
+    std::optional<Time> LastArrival(const std::string &from, const std::string &to,
+                                    const std::string &topic) const;
 
 private:
     // What goes together, in packets of one size.
@@ -102,7 +110,9 @@ private:
 
     // Sending.cpp
     void Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing = Time(0));
-    void SendTogether(const ParticipantState &from, Letters letters, bool multicast);
+    // `partsBefore`: datagrams of each letter that went before, and count no more.
+    void SendTogether(const ParticipantState &from, Letters letters, bool multicast,
+                      std::uint32_t partsBefore = 0);
     void SendAlone(const ParticipantState &from, Letter letter);
     void Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to, Datagram datagram,
                   Time processing);
@@ -142,6 +152,7 @@ private:
 
     // Traffic.cpp: what is sent, by the sizes that it has with RTPS.
     static std::uint64_t CountDestinations(const ParticipantState &me, const WriterState &writer);
+    static Cost CostOfPart(const Sample &sample);
     static Cost CostOf(const ParticipantState &me, const Datagram &datagram);
     void Count(const ParticipantState &me, const Cost &cost);
 

@@ -45,6 +45,7 @@ void NetworkCore::HearSample(const ParticipantPtr &me, const ReaderPtr &reader, 
     }
     writer.Started = true;
     writer.Expected = sequence + 1;
+    writer.ArrivedAt = _now;
     HandOver(reader, found->first, writer, datagram.Content);
 }
 
@@ -111,9 +112,35 @@ void NetworkCore::HandOverInOrder(const ReaderPtr &reader, const EndpointId &fro
     }
 }
 
+std::optional<Time> NetworkCore::LastArrival(const std::string &from, const std::string &to,
+                                             const std::string &topic) const
+{
+    const std::lock_guard lock(_mutex);
+    std::optional<Time> last;
+    for (const auto &[id, participant] : _participants)
+    {
+        if (participant->Who->Node != to)
+        {
+            continue;
+        }
+        for (const auto &[entity, reader] : participant->Readers)
+        {
+            for (const auto &[writer, proxy] : reader->Writers)
+            {
+                if (reader->Info->Topic == topic && proxy.Node->Node == from)
+                {
+                    last = std::max(last, proxy.ArrivedAt);
+                }
+            }
+        }
+    }
+    return last;
+}
+
 void NetworkCore::HandOver(const ReaderPtr &reader, const EndpointId &from, const WriterProxy &writer,
                            const SamplePtr &sample)
 {
+    writer.Node->Hear();
     _calls.push_back(
         [reader, sample, id = ToWriterId(from), node = writer.Node]
         {

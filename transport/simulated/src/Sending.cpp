@@ -17,7 +17,8 @@ void NetworkCore::Send(const ParticipantState &from, ParticipantId to, Datagram 
 }
 
 // By multicast: as one datagram; else as one for each participant.
-void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bool multicast)
+void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bool multicast,
+                               std::uint32_t partsBefore)
 {
     Medium *medium = _media.Of(from.NodeNumber);
     for (auto first = letters.begin(); first != letters.end();)
@@ -31,6 +32,7 @@ void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bo
             cost =
                 letter == first || ofThis.Packets * ofThis.Bytes > cost.Packets * cost.Bytes ? ofThis : cost;
         }
+        cost.Packets -= std::min(cost.Packets, partsBefore);
         Count(from, cost);
         if (medium != nullptr && medium->IsInTheWay())
         {

@@ -63,6 +63,13 @@ void SimulatedNetwork::CrashNode(const std::string &node)
     _core->CrashNode(node);
 }
 
+std::optional<std::chrono::nanoseconds> SimulatedNetwork::LastArrival(const std::string &from,
+                                                                      const std::string &to,
+                                                                      const std::string &topic) const
+{
+    return _core->LastArrival(from, to, topic);
+}
+
 SimulatedTraffic SimulatedNetwork::Traffic() const
 {
     return _core->Traffic();

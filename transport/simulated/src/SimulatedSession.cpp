@@ -1,5 +1,7 @@
 #include "SimulatedSession.h"
 
+#include <algorithm>
+#include <mutex>
 #include <utility>
 
 #include "common/SettingsCheck.h"
@@ -34,6 +36,27 @@ public:
         return Send(sample, sourceTime, true);
     }
 
+    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime) override
+    {
+        return Send(sample, sourceTime, true, nullptr, true);
+    }
+    std::size_t HeldBytes() const override
+    {
+        const std::lock_guard lock(_mutex);
+        // One that nobody gets takes something all the same, or it would never go.
+        return _held == nullptr
+                   ? 0
+                   : std::max<std::size_t>(_core->BytesOfPart(*_participant, *_state, *_held), 1);
+    }
+    void SendHeld() override
+    {
+        const std::lock_guard lock(_mutex);
+        if (_held != nullptr)
+        {
+            SendPart();
+        }
+    }
+
     WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
                         std::int64_t sourceTime) override
     {
@@ -64,7 +87,7 @@ private:
     }
 
     WriteResult Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool alive,
-                     const std::string *node = nullptr)
+                     const std::string *node = nullptr, bool hold = false)
     {
         const std::size_t size = encoder.EncodedSize();
         if (size > MaxSample)
@@ -94,11 +117,35 @@ private:
             sample->Bytes.clear();
             sample->Datagrams = 1;
         }
+        const std::lock_guard lock(_mutex);
+        while (_held != nullptr)
+        {
+            SendPart();
+        }
+        if (hold && sample->Datagrams > 1)
+        {
+            _held = sample;
+            _partsSent = 0;
+            return SendPart() ? WriteResult::Ok : Fail("the session is closed");
+        }
         if (!_core->Write(*_participant, *_state, sample, node))
         {
             return Fail("the session is closed");
         }
         return WriteResult::Ok;
+    }
+
+    // Of _held, with _mutex held.
+    bool SendPart()
+    {
+        if (_partsSent + 1 < _held->Datagrams)
+        {
+            const bool sent = _core->WritePart(*_participant, *_state, *_held);
+            ++_partsSent;
+            _held = sent ? _held : nullptr;
+            return sent;
+        }
+        return _core->Write(*_participant, *_state, std::exchange(_held, nullptr), nullptr, _partsSent);
     }
 
     const std::shared_ptr<NetworkCore> _core;
@@ -107,6 +154,9 @@ private:
     const bool _bestEffort;
     const TopicRegistry::Use _use;
     const WriterPtr _state;
+    mutable std::mutex _mutex;  // guards what follows
+    std::shared_ptr<Sample> _held;
+    std::uint32_t _partsSent = 0;  // of it
 };
 
 class SimulatedReader final : public TransportReader

@@ -35,6 +35,12 @@ std::uint64_t NetworkCore::CountDestinations(const ParticipantState &me, const W
                                            : participants.size();
 }
 
+NetworkCore::Cost NetworkCore::CostOfPart(const Sample &sample)
+{
+    return {1, Envelope + Header + Timestamp + Data +
+                   (sample.Bytes.size() + sample.Datagrams - 1) / sample.Datagrams};
+}
+
 NetworkCore::Cost NetworkCore::CostOf(const ParticipantState &me, const Datagram &datagram)
 {
     const auto discovery = [&](std::uint64_t bytes)
@@ -48,9 +54,9 @@ NetworkCore::Cost NetworkCore::CostOf(const ParticipantState &me, const Datagram
         {
             const std::uint32_t *missing = MissingOf(me, datagram);
             const Sample &sample = *datagram.Content;
-            return {missing != nullptr ? *missing : sample.Datagrams,
-                    Envelope + Header + Timestamp + Data +
-                        (sample.Bytes.size() + sample.Datagrams - 1) / sample.Datagrams};
+            Cost cost = CostOfPart(sample);
+            cost.Packets = missing != nullptr ? *missing : sample.Datagrams;
+            return cost;
         }
         case Datagram::Kind::Heartbeat:
             return {1, Envelope + Header + Destination + Heartbeat};

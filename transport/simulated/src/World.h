@@ -20,6 +20,7 @@
 #include "common/HandlerGate.h"
 #include "common/InstanceTable.h"
 #include "common/ParticipantIdentity.h"
+#include "common/PeerSessions.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -134,11 +135,12 @@ struct WriterState
 // How a reader sees a matched writer.
 struct WriterProxy
 {
-    std::shared_ptr<const ParticipantIdentity> Node;
+    std::shared_ptr<const PeerSession> Node;
     bool Reliable = false;
-    bool Started = false;                      // Expected is known
-    std::uint64_t Expected = 0;                // the next to hand over
-    std::map<std::uint64_t, SamplePtr> Early;  // came before Expected did
+    bool Started = false;                               // Expected is known
+    std::uint64_t Expected = 0;                         // the next to hand over
+    std::map<std::uint64_t, SamplePtr> Early;           // came before Expected did
+    std::optional<std::chrono::nanoseconds> ArrivedAt;  // of a best-effort writer: the last sample
 };
 
 struct ReaderState
@@ -160,7 +162,7 @@ struct ReaderState
 struct Peer
 {
     std::uint64_t Birth = 0;  // tells this life of the entry from others, for its timers
-    std::shared_ptr<const ParticipantIdentity> Who;
+    std::shared_ptr<const PeerSession> Who;
     std::chrono::nanoseconds Lease{};
     std::chrono::nanoseconds LastHeard{};
     std::uint64_t TheirVersion = 0;
@@ -190,7 +192,8 @@ struct ParticipantState
     std::uint32_t NodeNumber = 0;  // in the fault plan
     bool Gone = false;             // closed or crashed
     std::map<ParticipantId, Peer> Peers;
-    std::set<ParticipantId> Departed;  // said goodbye: announcements of theirs that come later are void
+    PeerSessions<ParticipantId> Sessions;  // of these
+    std::set<ParticipantId> Departed;      // said goodbye: announcements of theirs that come later are void
     std::map<EndpointId, std::shared_ptr<WriterState>> Writers;
     std::map<EndpointId, std::shared_ptr<ReaderState>> Readers;
     std::uint32_t LastEntity = 0;

@@ -82,7 +82,8 @@ void LetGo(WriterState &writer)
 }  // namespace
 
 bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
-                        const std::shared_ptr<Sample> &sample, const std::string *node)
+                        const std::shared_ptr<Sample> &sample, const std::string *node,
+                        std::uint32_t partsBefore)
 {
     const std::lock_guard lock(_mutex);
     if (participant.Gone)
@@ -95,20 +96,52 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     {
         writer.Disposals.push_back(sample);
     }
+    const auto sessions = node == nullptr ? std::vector<ParticipantId>() : participant.Sessions.Of(*node);
     Letters letters;
     for (const auto &[id, reader] : writer.Readers)
     {
-        const auto peer = participant.Peers.find(id.Participant);
-        if (node == nullptr || (peer != participant.Peers.end() && peer->second.Who->Node == *node))
+        if (node == nullptr || std::find(sessions.begin(), sessions.end(), id.Participant) != sessions.end())
         {
             letters.push_back({id.Participant, MakeData(writer, id, reader, sample)});
         }
     }
-    SendTogether(participant, std::move(letters),
-                 node == nullptr && IsMulticastForData(participant.Settings));
+    SendTogether(participant, std::move(letters), node == nullptr && IsMulticastForData(participant.Settings),
+                 partsBefore);
     LetGo(writer);
     AwaitHeartbeat(writer, _timings.HeartbeatPeriod);
     return true;
+}
+
+// Nobody reads a part: what is lost of a sample is decided with its last one.
+bool NetworkCore::WritePart(const ParticipantState &participant, const WriterState &writer,
+                            const Sample &sample)
+{
+    const std::lock_guard lock(_mutex);
+    if (participant.Gone)
+    {
+        return false;
+    }
+    Medium *const medium = _media.Of(participant.NodeNumber);
+    for (std::uint64_t i = CountDestinations(participant, writer); i > 0; --i)
+    {
+        const Cost cost = CostOfPart(sample);
+        Count(participant, cost);
+        if (medium != nullptr && medium->IsInTheWay())
+        {
+            const auto flight = std::make_shared<Flight>();
+            flight->From = participant.Id;
+            flight->FromNode = participant.NodeNumber;
+            Offer(*medium, flight, cost);
+        }
+    }
+    return true;
+}
+
+std::size_t NetworkCore::BytesOfPart(const ParticipantState &participant, const WriterState &writer,
+                                     const Sample &sample) const
+{
+    const std::lock_guard lock(_mutex);
+    return CountDestinations(participant, writer) * CostOfPart(sample).Bytes;
 }
 
 int NetworkCore::MatchedReaders(const WriterState &writer) const

@@ -130,7 +130,7 @@ struct TransportSettings
     // permissions say. A backend without security throws TransportError.
     std::optional<TransportSecurity> Security{};
     // Takes the session's log lines (handlers that threw, writes that failed, types that differ ...), without
-    // a newline; called on any thread, must be quick and thread-safe. Not set: they go to standard error.
+    // a newline; called on any thread, must be quick and thread-safe. Not set: only the counters tell.
     std::function<void(const std::string &)> Log;
 };
 
@@ -251,15 +251,34 @@ public:
     // Encodes and sends one sample; may wait for the network for at most 100 ms. sourceTime is in nanoseconds
     // since 1970-01-01 UTC and reaches the readers unchanged (to within a microsecond).
     virtual WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
-    // As Write, but the sample reaches the matched readers of that node alone, by unicast: one datagram for
-    // each session of the node. For best-effort writers of topics without a key only, else Failed. For the
-    // other readers it is a sample lost: its number is missing, and their SamplesLost may count it. Ok as
-    // well if the node has no reader that is matched; then nothing is sent.
+    // As Write, but the sample reaches the matched readers of that node alone, by unicast. For best-effort
+    // writers of topics without a key only, else Failed. For the other readers it is a sample lost: its
+    // number is missing, and their SamplesLost may count it. Ok as well if the node has no reader that is
+    // matched; then nothing is sent.
+    //
+    // It goes to the session of the node that appeared last, and to each other one of which a reader of this
+    // session has handed over a sample since; without multicast as one datagram for each. So a node that was
+    // killed and restarted costs one datagram, although its former session is known until the lease runs out.
     virtual WriteResult WriteTo(const std::string & /*node*/, const SampleEncoder & /*sample*/,
                                 std::int64_t /*sourceTime*/)
     {
         return WriteResult::Failed;
     }
+    // As Write, but of a sample that takes several datagrams only the first one goes now. The others are
+    // held, and go in their order, one with each SendHeld, so that others may go between: for a sender that
+    // paces its datagrams. Readers get the sample with its last datagram. The next Write, WriteHeld, WriteTo
+    // or Dispose sends first what is held then; the end of the writer and a session that joins the network
+    // anew drop it. A reliable reader may ask for what is held, and is then sent it by the backend at once.
+    // Only datagrams of UDP are held. A backend that cannot hold them sends all at once.
+    virtual WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime)
+    {
+        return Write(sample, sourceTime);
+    }
+    // Bytes of the next held datagram on the air, as TransportCounters count them, to all its destinations;
+    // 0: none is held.
+    virtual std::size_t HeldBytes() const { return 0; }
+    // Sends it.
+    virtual void SendHeld() {}
     // Says that the instance that this sample names is no more. Only for keyed topics, Failed otherwise.
     // Reliable readers that are matched are told, after what was written before as far as Depth keeps it.
     // Once all of them have acknowledged that, at the latest with the next write, the writer holds nothing of
@@ -402,6 +421,9 @@ public:
     virtual std::string Name() const = 0;
     // Joins the network. The peer handler may be called before this returns. Throws TransportError.
     virtual std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) = 0;
+    // True: handlers run on the thread that steps the network, and nothing may run beside it, so that a run
+    // can be repeated.
+    virtual bool IsStepped() const { return false; }
     // All that is wrong with the settings on this host now, without joining the network: what is Impossible
     // would make Open throw. May wait a second for the names of peers.
     virtual std::vector<SettingsProblem> Check(const TransportSettings & /*settings*/) const { return {}; }

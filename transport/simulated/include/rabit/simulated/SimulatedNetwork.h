@@ -155,6 +155,12 @@ public:
 
     SimulatedTraffic Traffic() const;
 
+    // When a best-effort sample of that topic last came from a node to readers of another one that are matched
+    // with its writer now; one that was overtaken does not count. Nothing if none came, or if no such match is
+    // left.
+    std::optional<std::chrono::nanoseconds> LastArrival(const std::string &from, const std::string &to,
+                                                        const std::string &topic) const;
+
 private:
     friend class SimulatedTransport;
     const std::shared_ptr<Simulated::NetworkCore> _core;

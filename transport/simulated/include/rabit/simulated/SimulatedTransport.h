@@ -20,6 +20,7 @@ public:
     explicit SimulatedTransport(const SimulatedNetwork &network);
     // `simulated`
     std::string Name() const override;
+    bool IsStepped() const override { return true; }
     std::unique_ptr<TransportSession> Open(const TransportSettings &settings, PeerHandler onPeer) override;
     std::vector<SettingsProblem> Check(const TransportSettings &settings) const override;
 

@@ -24,8 +24,8 @@ struct LinkSenderCounters
     std::uint64_t PartsResent = 0;
     std::uint64_t DatagramsSent = 0;
     std::uint64_t BytesSent = 0;  // in these, as on the air
-    std::uint64_t Timeouts = 0;  // times the probe timer ran out with something unacknowledged
-    std::uint64_t Restarts = 0;  // times the stream was started anew (receiver's or own new incarnation)
+    std::uint64_t Timeouts = 0;   // times the probe timer ran out with something unacknowledged
+    std::uint64_t Restarts = 0;   // times the stream was started anew (receiver's or own new incarnation)
     // Present state.
     std::size_t Pending = 0;         // messages without an outcome
     std::size_t PendingBytes = 0;    // bytes of their payloads
@@ -61,18 +61,19 @@ struct LinkReceiverCounters
 // What concerns the node and no single link. The counters only rise.
 struct LinkNodeCounters
 {
-    std::uint64_t Malformed = 0;       // datagrams dropped because a field was impossible
-    std::uint64_t OtherVersion = 0;    // datagrams dropped because they speak another version of the links
-    std::uint64_t Stale = 0;           // datagrams for or from another life (rules R1 and R2)
-    std::uint64_t UnknownShort = 0;    // short frames whose check means nothing here
-    std::uint64_t NotForUs = 0;        // datagrams dropped because another node was addressed
-    std::uint64_t TooManyPeers = 0;    // datagrams dropped because of LinkSettings::MaxPeers
-    std::uint64_t TooManyLinks = 0;    // datagrams dropped because of LinkSettings::MaxLinksPerPeer
-    std::uint64_t NoSuchLink = 0;      // acknowledgements of links that this life of the node does not have
+    std::uint64_t Malformed = 0;     // datagrams dropped because a field was impossible
+    std::uint64_t OtherVersion = 0;  // datagrams dropped because they speak another version of the links
+    std::uint64_t Stale = 0;         // datagrams for or from another life (rules R1 and R2)
+    std::uint64_t UnknownShort = 0;  // short frames whose check means nothing here
+    std::uint64_t NotForUs = 0;      // datagrams dropped because another node was addressed
+    std::uint64_t TooManyPeers = 0;  // datagrams dropped because of LinkSettings::MaxPeers
+    std::uint64_t TooManyLinks = 0;  // datagrams dropped because of LinkSettings::MaxLinksPerPeer
+    std::uint64_t NoSuchLink = 0;    // acknowledgements of links that this life of the node does not have
+    std::uint64_t FalseClaims = 0;  // incarnations above LinkLargestClaim, of this node or unproved of a peer
+    std::uint64_t RefusedUnknown = 0;  // messages for queues that this node does not accept
     std::uint64_t RefusedBadName = 0;  // Enqueue: LinkRefusal::BadName
     std::uint64_t RefusedTooMany = 0;  // Enqueue: LinkRefusal::TooManyPeers and TooManyLinks
     std::uint64_t Raises = 0;        // incarnations taken because a peer knew a higher one (rules R1 and S6)
-    std::uint64_t FalseClaims = 0;   // higher incarnations said of this node that none of its lives had
     std::uint64_t RaisesPutOff = 0;  // messages of a higher one within LinkSettings::RaiseGap, ignored
     std::uint64_t Forgotten = 0;     // peers forgotten, with their links
     std::uint64_t PeerRestarts = 0;  // peers seen with a new incarnation

@@ -2,23 +2,46 @@
 
 #include <rabit/gateway/links/LinkMessages.h>
 #include <rabit/gateway/links/LinkOutcome.h>
+#include <rabit/gateway/links/LinkPayload.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 
 namespace Rabit
 {
 
-// What became of a message that the receiver wanted to put into a local queue.
+// A message whose turn it is on a link. Names and Payload are borrowed for the call.
+struct LinkDelivery
+{
+    std::string_view Source = {};
+    std::string_view Queue = {};
+    std::string_view Type = {};
+    // The sender's incarnation and the number of the message's last part. No two messages of a link have the
+    // same.
+    std::uint64_t SenderLife = 0;
+    std::uint64_t Number = 0;
+    std::span<const std::uint8_t> Payload = {};
+    // Holds the bytes of Payload, which are its first ones. Null: nobody holds them beyond the call.
+    LinkPayload Owner = nullptr;
+    // An earlier incarnation of this node may have put the message into the queue already (only from links
+    // with LinkOptions::RedeliverInDoubt).
+    bool Redelivered = false;
+    // Result of the driver's preparation of this very message (LinkNode::Prepared); null before that.
+    std::shared_ptr<void> Prepared = nullptr;
+};
+
+// Outcome of LocalQueues::Deliver.
 enum class LocalQueueResult : std::uint8_t
 {
-    Ok,    // it is in the queue
-    Full,  // not now: the sender holds it (and all behind it) back until there is room. Also the right answer
-           // for a queue that is accepted but does not exist yet
-    Later,       // the same, but who drives the links is about to ask again, by LinkNode::Retry
-    Unknown,     // this node accepts no such queue
+    Ok,    // the message is in the queue
+    Full,  // not now: the link holds back the message, and all behind it, until there is room. Also the right
+           // answer for a queue that is accepted but does not exist yet
+    Later,    // the driver prepares the message elsewhere and then calls LinkNode::Prepared. Until that call
+              // the link does not offer the message again
+    Unknown,  // this node accepts no such queue
     WrongType,   // the queue does not accept this type, or the type is not known here
     Undecodable  // the payload is not a message of its type
 };
@@ -28,16 +51,16 @@ enum class LocalQueueResult : std::uint8_t
 class LocalQueues
 {
 public:
-    // Puts one message into a local queue, or says why not. Names and payload are borrowed for the call;
-    // `owner` is whose bytes the payload are the first of, null if nobody's who can be held. Full holds the
-    // link back; Unknown, WrongType and Undecodable consume the message for good, and the sender learns of it
-    // as LinkOutcome::RefusedThere. `redelivered`: an earlier life of this node may have put it into the
-    // queue already (only from links with LinkOptions::RedeliverInDoubt).
-    virtual LocalQueueResult Deliver(std::string_view source, std::string_view queue, std::string_view type,
-                                     std::span<const std::uint8_t> payload, const LinkPayload &owner,
-                                     bool redelivered) = 0;
-    // Messages that the queue would take now; a hint for the sender's window, not a promise. For a queue that
-    // this node does not accept: anything above 0, so that the messages come and are refused.
+    // True if that node may send to that queue. A constant of each queue: a link to a queue that is not
+    // accepted has no state here, and each of its messages is refused (LinkOutcome::RefusedThere).
+    virtual bool Accepts(std::string_view source, std::string_view queue) = 0;
+    // True if the accepted queue takes messages of that type. A constant, too: names of other types are not
+    // remembered.
+    virtual bool AcceptsType(std::string_view queue, std::string_view type) const = 0;
+    // Puts one message into an accepted queue, or says why not. Full holds the link back; Unknown, WrongType
+    // and Undecodable consume the message for good, and the sender learns LinkOutcome::RefusedThere.
+    virtual LocalQueueResult Deliver(const LinkDelivery &delivery) = 0;
+    // Messages that the accepted queue would take now; a hint for the sender's window, not a promise.
     virtual std::size_t Room(std::string_view queue) const = 0;
 
 protected:

@@ -38,8 +38,10 @@ using LinkBitmap = std::array<std::uint64_t, LinkWindowParts / 64>;
 // Largest number of messages of one link under way at once.
 inline constexpr std::size_t LinkMaxWindow = 256;
 
-// Counters (the high half of an incarnation) above this are no reason to raise one's own: the wall clock's
-// seconds reach it in 2097. Else one false message would take a node to the top, with no later life above it.
+// Largest counter (the high half of an incarnation) that is believed on a peer's word alone; the seconds of
+// the wall clock reach it in 2097. A node does not take an incarnation above it because a peer says so: one
+// false frame would take it to the top of the range, with no later incarnation above. A peer that says a
+// higher one must prove that it hears this node.
 inline constexpr std::uint32_t LinkLargestClaim = 0xf0000000;
 
 // Largest number of parts in one LinkData, and of acknowledgements in one LinkFrame.

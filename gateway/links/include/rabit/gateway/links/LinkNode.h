@@ -15,11 +15,14 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace Rabit
 {
 
 class LinkPeer;
+class LinkReceiver;
 class LinkSender;
 struct LinkContext;
 
@@ -90,10 +93,14 @@ public:
     // nothing if the links know of it, or do not know the node.
     void HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now);
 
-    // A message was taken out of this local queue, or the queue has come into being.
-    void OnRoom(std::string_view queue, LinkTime now);
-    // Asks the local queue once more for what it would take Later.
-    void Retry(std::string_view source, std::string_view queue, LinkTime now);
+    // A message was taken out of this local queue, or the queue has come into being. The links that wait for
+    // it take turns, a message each; the turn goes on after the link that was served last.
+    void OnRoom(std::string_view queue);
+    // The driver has prepared the message that LocalQueues::Deliver answered Later: it is offered again, with
+    // `prepared`. Null: it could not be prepared now, and is offered again without. Does nothing if that
+    // message is no longer the next one of its link.
+    void Prepared(std::string_view source, std::string_view queue, std::uint64_t senderLife,
+                  std::uint64_t number, std::shared_ptr<void> prepared, LinkTime now);
 
     // Forgets a node and the links to and from it, unless messages for it wait here (false). What it had sent
     // and was not told the outcome of will be in doubt there. Without this call a node is forgotten when
@@ -110,7 +117,9 @@ public:
     // In place of Run, for a scheduler that decides what goes out next: Advance does everything that is due
     // except sending; VisitStreams tells what could be sent now; SendOne sends one datagram of one of these.
     void Advance(LinkTime now);
-    void VisitStreams(LinkTime now, const std::function<void(const LinkStream &)> &visit) const;
+    // In datagrams of at most so many bytes as on the air. A part that was cut for a larger one goes whole.
+    void VisitStreams(std::size_t most, LinkTime now,
+                      const std::function<void(const LinkStream &)> &visit) const;
     // Of at most so many bytes as on the air, unless a single small message is larger; acknowledgements and
     // hellos are always sent. Returns whether anything was sent. LinkOutput::Send is called at most once.
     bool SendOne(std::string_view destination, std::string_view queue, std::size_t most, LinkTime now);
@@ -154,16 +163,27 @@ private:
     LinkRefusal FindOrAddSender(std::string_view destination, std::string_view queue,
                                 const LinkOptions &options, LinkTime now, LinkPeer *&peer,
                                 LinkSender *&sender);
-    bool Accepts(LinkFrame &frame, LinkTime now);
+    bool Accepts(LinkFrame &frame, const LinkPeer *peer, LinkTime now);
     void OnUnknownShort(const LinkFrame &frame, LinkTime now);
     bool ForgetOne(LinkTime now);
     void Forget(Peers::iterator peer);
-    void HeardOfMyself(std::string_view from, std::uint64_t incarnation, LinkTime now);
+    void HeardOfMyself(const LinkPeer *from, std::uint64_t incarnation, LinkTime now);
+    void ServeRooms(LinkTime now);
+
+    // A local queue and the node whose link to it was served last.
+    struct Turn
+    {
+        std::string Last;
+        bool RoomCame = false;
+    };
 
     IncarnationSource &_incarnations;
     std::unique_ptr<LinkContext> _context;
     Peers _peers;
-    std::set<std::string, std::less<>> _types;  // type names that messages in outboxes point to
+    std::set<std::string, std::less<>> _types;        // type names that messages in outboxes point to
+    std::map<std::string, Turn, std::less<>> _turns;  // by queue
+    bool _roomCame = false;                           // in any of them
+    std::vector<std::pair<const std::string *, LinkReceiver *>> _waiting;  // reused
     std::uint64_t _nextId = 1;
     LinkTime _mayRaiseAt{LinkTime::min()};
 };

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <rabit/RabitClock.h>
+#include <rabit/RabitHandlerThread.h>
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway.idl.h"
+
+namespace Rabit
+{
+
+// Tells which of the program's own handlers take long: the other handlers of what comes from other nodes wait
+// for them. Thread-safe; calls nobody but the clock.
+class HandlerWatch final : public RabitHandlerThread::Watch
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // Handlers that take less are no problem.
+    static constexpr Duration Slow = std::chrono::seconds(1);
+    // A row stays so long after its handler has returned, for people and for the log, which waits for 2 s.
+    static constexpr Duration Memory = std::chrono::seconds(10);
+    // Rows at most: the newest ones.
+    static constexpr std::size_t MostRows = 16;
+
+    // The clock, which must outlive the object, is read as monotonic time.
+    explicit HandlerWatch(const RabitClock &clock) : _clock(clock) {}
+
+    void Begins(const std::string &subject) override;
+    void Returned() override;
+    std::vector<Gateway::Problem> Problems(Duration now) const;
+
+private:
+    struct Call
+    {
+        std::string Subject;
+        Duration Since{0};
+    };
+    struct Past
+    {
+        Duration Took{0};
+        Duration ReturnedAt{0};
+    };
+
+    const RabitClock &_clock;
+    mutable std::mutex _mutex;
+    std::optional<Call> _running;       // guarded, as what follows
+    std::map<std::string, Past> _past;  // by subject
+};
+
+}  // namespace Rabit
