@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, builds the release preset and runs all tests.
 # Arguments are handed to ctest, for instance: tests/run.sh -L core. Without any, all tests are run but those with the
-# label mutation, which test the tests, and those with the labels field_long, fuzz_long and package_long: each set takes
-# five minutes or more.
+# label mutation, which test the tests, and those with the labels field_long, fuzz_long, package_long and soak: each
+# set takes five minutes or more, soak an hour.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$root/docker/install-packages.sh"
 "$root/docker/install-packages.sh" "$root/docker/packages-check.txt"
 "$root/docker/build-preset.sh" release
 cd "$root"
-[ $# -gt 0 ] || set -- -LE 'mutation|field_long|fuzz_long|package_long'
+[ $# -gt 0 ] || set -- -LE 'mutation|field_long|fuzz_long|package_long|soak'
 exec ctest --preset release -j4 --progress "$@"

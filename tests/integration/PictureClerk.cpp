@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "Padding.h"
 #include "ledger.idl.h"
 
 namespace TestNode
@@ -56,18 +57,25 @@ void PictureClerk::LookWhetherThere()
 
 void PictureClerk::Send()
 {
-    while (_isThere && _sent < _options.Count)
+    while (_isThere && _sent < _options.Count && Now() >= _next)
     {
         auto picture = std::make_shared<Ledger::Note>();
         picture->from = _options.Node;
-        picture->id = _sent + 1;
-        picture->padding.assign(_options.Size, 0x5a);
+        picture->life = _options.Life;
+        picture->id = ++_lastId;
+        picture->padding = Padding(_lastId, _options.Size);
         const auto receipt = std::make_shared<Rabit::RabitQueueReceipt>();
+        const std::string rest = " to=" + _options.To + " id=" + std::to_string(_lastId);
+        _ledger.Line("picture_intent" + rest + " expire_s=0 octets=" + std::to_string(_options.Size));
         if (!AddMessageToQueue(_options.To + '/' + PicturesQueue, picture, receipt))
+        {
+            _ledger.Line("picture_refused" + rest);
             return;  // tried again in the next unit of work
+        }
         ++_sent;
-        _ledger.Line("picture_sent to=" + _options.To + " id=" + std::to_string(_sent));
-        _receipts.emplace_back(_sent, receipt);
+        _next = Now() + _options.PeriodNs;
+        _ledger.Line("picture_sent" + rest);
+        _receipts.emplace_back(_lastId, receipt);
     }
 }
 
@@ -87,8 +95,11 @@ void PictureClerk::Take()
     std::shared_ptr<Rabit::RabitMessage> message;
     while (_pictures->GetMessage(message))
     {
-        if (const auto *picture = dynamic_cast<const Ledger::Note *>(message.get()))
-            _ledger.Line("picture from=" + picture->from + " id=" + std::to_string(picture->id));
+        const auto *picture = dynamic_cast<const Ledger::Note *>(message.get());
+        if (picture != nullptr && IsPadding(picture->padding, picture->id))
+            _ledger.Line("picture from=" + picture->from + " life=" + std::to_string(picture->life) + " id=" +
+                         std::to_string(picture->id) + " octets=" + std::to_string(picture->padding.size()) +
+                         (picture->IsRedelivered() ? " redelivered=1" : ""));
         else
             _ledger.Line("garbled");
     }

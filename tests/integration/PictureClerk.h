@@ -21,13 +21,15 @@ struct PictureOptions
 {
     std::string Node;
     std::string LedgerFile;
+    std::uint64_t Life = 0;
     std::string To;  // empty: sends none
     std::uint64_t Count = 1;
     std::size_t Size = 60'000;  // octets
+    std::int64_t PeriodNs = 0;  // from one to the next; 0: as the link takes them
 };
 
-// Sends large messages of the class bulk, one after the other as its link takes them, and takes those of
-// others. Of each it writes `picture_sent to= id=`, `picture_outcome to= id= is=` and `picture from= id=`.
+// Sends large messages of the class bulk and takes those of others. For each it writes the lines of a note,
+// with the names `picture_intent`, `picture_sent`, `picture_refused`, `picture_outcome` and `picture`.
 class PictureClerk : public Rabit::RabitManager
 {
 public:
@@ -49,7 +51,9 @@ private:
     std::shared_ptr<RabitQueue> _pictures;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     bool _isThere = false;
-    std::uint64_t _sent = 0;
+    std::uint64_t _sent = 0;    // accepted
+    std::uint64_t _lastId = 0;  // of those given to the link, refused ones among them
+    std::int64_t _next = 0;
     std::deque<std::pair<std::uint64_t, std::shared_ptr<Rabit::RabitQueueReceipt>>> _receipts;
 };
 

@@ -25,6 +25,7 @@ StateClerk::StateClerk(const StateOptions &options)
     for (std::size_t i = 0; i < _options.Count && _options.Posts > 0; ++i)
     {
         _own.push_back(std::make_shared<Ledger::Tick>());
+        _own.back()->padding.assign(_options.Size, 0x5a);
         AddPublishSubscribeMessage(NameOf(i), _own.back());
     }
     SetWakeupTimeDelayMSec(WorkPeriodMSec);

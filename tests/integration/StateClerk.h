@@ -24,6 +24,7 @@ struct StateOptions
     std::size_t Count = 0;      // of States that each node publishes, the same on all nodes; 0: none
     std::uint64_t Posts = 0;    // of each; 0: the node only follows those of the others
     std::int64_t PeriodNs = 0;  // from one to the next
+    std::size_t Size = 0;       // octets of padding in each
 };
 
 // Publishes States, which it posts in turn for a while and then leaves as they are, and follows those of the

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <chrono>
 #include <exception>
 #include <iostream>
 #include <utility>
@@ -40,6 +41,9 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
         "With keys, only sign");
     app.add_option("--budget", config.Radio.Budget, "Bytes a second that the node may put on the air");
     app.add_option("--slowest-beat", config.Radio.SlowestBeat, "Milliseconds");
+    app.add_option_function<int>(
+        "--lease", [&config](int seconds) { config.Lease = std::chrono::seconds(seconds); },
+        "DDS lease, in seconds");
 }
 
 void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers,

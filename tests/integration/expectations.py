@@ -22,6 +22,7 @@ class Run:
     def __init__(self, ledgers, faults):
         self.lives = {node: judge.read_ledger(text) for node, text in ledgers.items()}
         self.faults = faults
+        self.ended = None  # when the nodes were stopped, in s
         self.air = None  # the radio's counters at the end, in a scenario with a medium
 
     def losing_since(self):
@@ -59,16 +60,23 @@ def least(run, wanted):
     total = collections.Counter()
     for life in run.all_lives():
         for to in {event["to"] for event in life.of("link")}:
-            total.update(life.counters(to))
+            total.update(life.counters(to) or {})
     return [f"{key}: at least {count} wanted, {total[key]} counted" for key, count in wanted.items()
             if total[key] < count]
 
 
+def _all_named(wanted, names):
+    """The items, with one for each of the names in place of `*`."""
+    return [(name, wanted.get(name, wanted.get("*"))) for name in sorted({*names, *wanted} - {"*"})
+            if name in wanted or "*" in wanted]
+
+
 def states(run, wanted):
-    """{node: {other: [state, ...]}}: how the node's last life saw the other, from its first UP on; [] is never."""
+    """{node: {other: [state, ...]}}: how the node's last life saw the other, from its first UP on; [] is never. `*` is each
+    node that is not named."""
     wrong = []
-    for node, others in wanted.items():
-        for other, expected in others.items():
+    for node, others in _all_named(wanted, run.lives):
+        for other, expected in _all_named(others, set(run.lives) - {node}):
             seen = [e["state"] for life in run.lives[node][-1:] for e in life.of("peer") if e["node"] == other]
             seen = seen[seen.index("UP"):] if "UP" in seen else []
             if seen != expected:
@@ -96,7 +104,7 @@ def resent_at_most(run, wanted):
     for life in run.all_lives():
         for to in sorted({event["to"] for event in life.of("link")}):
             counters = life.counters(to)
-            if counters["resent"] > wanted * counters["accepted"]:
+            if counters and counters["resent"] > wanted * counters["accepted"]:
                 wrong.append(f"{life.node} to {to}: {counters['resent']} resent, {counters['accepted']} accepted")
     return wrong
 
@@ -251,7 +259,91 @@ def state_samples_at_most(run, wanted):
     return wrong
 
 
-ALL = (offered_at_most, least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, foreign_refused, lives,
+def honest_ages(run, wanted):
+    """Seconds: the age of each State that a node shows is at most so far from the time since it was posted, and each node
+    that posts States is seen by all others."""
+    wrong = []
+    posted = {(life.node, event["message"], event["number"]): (life.begin, event.time)
+              for life in run.all_lives() for event in life.of("state_posted")}
+    origins = {node for node, _, _ in posted}
+    for node in run.lives:
+        seen = run.events(node, "state")
+        missing = origins - {node} - {event["from"] for event in seen}
+        wrong += [f"{node} saw no State of {origin}" for origin in sorted(missing)]
+        for event in seen:
+            begun, at = posted.get((event["from"], event["message"], event["number"]), (0, 0))
+            # A later life of the origin posts the same numbers again.
+            if not at or event.time < begun or len(run.lives[event["from"]]) > 1:
+                continue
+            age_s, true_s = float(event["age_s"]), (event.time - at) * 1e-9
+            if abs(age_s - true_s) > wanted:
+                wrong.append(f"{node} and {event['message']} {event['number']} of {event['from']}: age {age_s:.3f} s shown, "
+                             f"posted {true_s:.3f} s before")
+    return wrong
+
+
+def starved_at_most(run, wanted):
+    """Seconds between two notes of a sender that are taken, while more of its accepted ones wait."""
+    wrong = []
+    for receiver, lives_of_node in run.lives.items():
+        last = {}
+        for event in (e for life in lives_of_node for e in life.of("delivered")):
+            last.setdefault(event["from"], []).append(event.time)
+        for origin, taken in last.items():
+            accepted = sorted(e.time for life in run.lives[origin] for e in life.of("accepted") if e["to"] == receiver)
+            # The note taken at taken[i] waited from its acceptance on, and in vain since the one before was taken.
+            longest = max((now - max(before, since) for before, now, since in zip(taken, taken[1:], accepted[1:])),
+                          default=0) * 1e-9
+            if longest > wanted:
+                wrong.append(f"{origin} to {receiver}: {longest:.1f} s without a turn, at most {wanted} s wanted")
+    return wrong
+
+
+def ticks_begin_within(run, wanted):
+    """Seconds: each life that lasts longer is seen to tick so soon, by all others that live then."""
+    wrong = []
+    for node, lives_of_node in run.lives.items():
+        begins = [life.begin * 1e-9 for life in lives_of_node]
+        for begin, end in zip(begins, [*begins[1:], run.ended]):
+            if not lives_of_node[0].of("tick") or end - begin <= wanted:
+                continue
+            for other in run.lives:
+                if other == node or not any(life.begin * 1e-9 < begin and life is run.lives[other][-1]
+                                            for life in run.lives[other]):
+                    continue
+                if not any(begin < e.time * 1e-9 <= begin + wanted for e in run.events(other, "tick") if e["from"] == node):
+                    wrong.append(f"{other} saw no tick of {node} within {wanted} s after its start")
+    return wrong
+
+
+def no_problem(run, wanted):
+    """[text, ...]: no node has reported a problem with one of these words."""
+    return [f"{node} reported '{event['reason']}'" for node in run.lives for event in run.events(node, "problem")
+            if any(text in event["reason"] for text in wanted)]
+
+
+def back_within(run, wanted):
+    """Seconds: each node that was killed is shown UP by all that live so long after its last start, and is not shown
+    otherwise after that."""
+    wrong = []
+    started = {}
+    for time, what, arguments in run.faults:
+        if what == "start":
+            started[arguments[0]] = time
+    for node, since in started.items():
+        for other in run.lives:
+            if other == node:
+                continue
+            seen = [(e.time * 1e-9, e["state"]) for e in run.lives[other][-1].of("peer") if e["node"] == node]
+            early = [state for time, state in seen if time <= since + wanted]
+            late = [state for time, state in seen if since + wanted < time < run.ended]
+            if early[-1:] != ["UP"] or late:
+                wrong.append(f"{other} saw {node} as {early[-1] if early else 'nothing'} {wanted} s after its last start, "
+                             f"later as {late}")
+    return wrong
+
+
+ALL = (offered_at_most, honest_ages, starved_at_most, ticks_begin_within, no_problem, back_within, least, states, delay_p99_ms, resent_at_most, ticks, timely, refusals_from, problems, foreign_refused, lives,
        last_states, state_samples_at_most)
 
 

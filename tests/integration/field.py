@@ -102,9 +102,10 @@ class Field:
         for other in self.nodes:
             self._write_rules(other)
 
-    def start(self, node, argv, space=None):
-        """Starts a program as that node, or inside another one's namespace. It dies with this process."""
-        process = harness.Process(["ip", "netns", "exec", self.space(space or node), *argv])
+    def start(self, node, argv, space=None, **how):
+        """Starts a program as that node, or inside another one's namespace. It dies with this process. `how` is for
+        harness.Process."""
+        process = harness.Process(["ip", "netns", "exec", self.space(space or node), *argv], **how)
         self.processes[node] = process
         return process
 
@@ -133,6 +134,12 @@ class Field:
     def heal(self):
         """Ends all loss."""
         self.lose(0)
+
+    def shape(self, node, kbit):
+        """Slows down the node's way out. Its packets wait in the kernel, which drops none and so blocks the socket when
+        the socket's buffer is full."""
+        run("tc", "-n", self.space(node), "qdisc", "replace", "dev", "eth0", "root", "tbf", "rate", f"{kbit}kbit", "burst",
+            "2000", "limit", "100000000")
 
     def traffic(self, node):
         """Bytes that the node has sent and received so far."""

@@ -59,16 +59,60 @@ def die_with_parent():
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
 
 
-class Process:
-    """A child process and the lines that it has written so far."""
+class Pauses:
+    """Times at which the machine stood still, or gave no processor time to a process that wanted little: a node on it
+    could not beat either. `seen`: [(begin, end)], by the monotonic clock, in s."""
 
-    def __init__(self, argv, env=None):
+    LOOK_S = 0.1
+    LEAST_S = 0.5
+
+    def __init__(self):
+        self.seen = []
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._look, daemon=True)
+        self._thread.start()
+
+    def _look(self):
+        before = time.monotonic()
+        while not self._ended.wait(self.LOOK_S):
+            now = time.monotonic()
+            if now - before > self.LOOK_S + self.LEAST_S:
+                self.seen.append((before, now))
+            before = now
+
+    def end(self):
+        """What was seen, at the end."""
+        self._ended.set()
+        self._thread.join()
+        return self.seen
+
+
+def full_pipe():
+    """Both ends of a pipe that takes nothing more."""
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+    try:
+        while True:
+            os.write(writing, b"x" * 4096)
+    except BlockingIOError:
+        pass
+    os.set_blocking(writing, True)
+    return reading, writing
+
+
+class Process:
+    """A child process and the lines that it has written so far. With `unread`, its output is a pipe that is full and that
+    nobody reads."""
+
+    def __init__(self, argv, env=None, unread=False):
         self.argv = [str(a) for a in argv]
         self.lines = []  # (time, text)
         self._changed = threading.Condition()
-        self._popen = subprocess.Popen(self.argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                       stderr=subprocess.STDOUT, text=True, bufsize=1, errors="replace",
-                                       env={**os.environ, **(env or {})}, preexec_fn=die_with_parent)
+        self._full_pipe = full_pipe() if unread else None
+        output = self._full_pipe[1] if unread else subprocess.PIPE
+        self._popen = subprocess.Popen(self.argv, stdin=subprocess.PIPE, stdout=output, stderr=subprocess.STDOUT, text=True,
+                                       bufsize=1, errors="replace", env={**os.environ, **(env or {})},
+                                       preexec_fn=die_with_parent)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
@@ -77,7 +121,7 @@ class Process:
         return self._popen.pid
 
     def _read(self):
-        for line in self._popen.stdout:
+        for line in self._popen.stdout or ():
             with self._changed:
                 self.lines.append((time.monotonic(), line.rstrip("\n")))
                 self._changed.notify_all()

@@ -5,18 +5,28 @@ call and `accepted` or `refused` after it: of the last intent of a killed life n
 once and in order. DELIVERED means put into the receiver's queue, so a kill of the receiver may lose what that queue
 held and what was on its way: one unbroken row straight after the last note that the killed life took. The end of
 a sender in the middle of its work may lose the end of its row. Whatever else is missing is a loss, or has expired and
-must be counted as such."""
+must be counted as such. A note whose time is over while its receiver is silent may be in doubt: part of it was sent, and
+nobody can say whether it came."""
 
 import collections
 import re
+import sys
 
 # Between the queue that a note was put into and the line in the ledger lies the receiver's thread.
 PICK_UP_S = 1.0
+
+# A node from which nothing comes for so long is silent to its peers (LinkSettings::SilentAfter).
+SILENT_AFTER_S = 10.0
+
+NOTES = "Notes"
+PICTURES = "Pictures"
 
 PAIR = re.compile(r'(\w+)=("[^"]*"|\S*)')
 
 
 class Event:
+    __slots__ = ("time", "kind", "values")
+
     def __init__(self, time_ns, kind, values):
         self.time = time_ns
         self.kind = kind
@@ -38,44 +48,90 @@ class Life:
         self.room = start.number("room")
         self.begin = start.time
         self.events = []
+        self._by_kind = collections.defaultdict(list)
 
     @property
     def killed(self):
         return not self.events or self.events[-1].kind != "end"
 
+    def add(self, event):
+        self.events.append(event)
+        self._by_kind[event.kind].append(event)
+
     def of(self, kind):
-        return [event for event in self.events if event.kind == kind]
+        return self._by_kind.get(kind, [])
+
+    def counters(self, to, queue=NOTES):
+        """The last counters of the link to that queue of that node, or None."""
+        last = next((event for event in reversed(self.of("link")) if is_link(event, to, queue)), None)
+        return counters_of(last) if last else None
+
+
+class Pictures:
+    """A life's pictures under the names of notes, so that the same rules judge them."""
+
+    KINDS = {"intent": "picture_intent", "accepted": "picture_sent", "refused": "picture_refused",
+             "outcome": "picture_outcome", "delivered": "picture"}
+
+    def __init__(self, life):
+        self._life = life
+        self.node, self.life, self.room, self.killed = life.node, life.life, life.room, life.killed
+
+    def of(self, kind):
+        return self._life.of(self.KINDS[kind])
 
     def counters(self, to):
-        """The last counters of the link to that node, or None."""
-        lines = [event for event in self.of("link") if event["to"] == to]
-        return {key: int(value) for key, value in lines[-1].values.items() if key != "to"} if lines else None
+        return self._life.counters(to, PICTURES)
 
 
-def read_ledger(text):
-    """The lives in the text of one node's ledger. A last line that a kill cut short is left out, and so is one in
-    the middle that the next life was appended to."""
+def is_link(event, to, queue=NOTES):
+    return event["to"] == to and event.values.get("queue", NOTES) == queue
+
+
+def counters_of(link):
+    return {key: int(value) for key, value in link.values.items() if key not in ("to", "queue")}
+
+
+def read_line(line):
+    """The event of a line, or None if the line is none, or was cut short by a kill."""
+    stamp, _, rest = line.partition(" ")
+    if not line.endswith("\n") or not stamp.isdigit():
+        return None
+    kind, _, pairs = rest.strip().partition(" ")
+    return Event(int(stamp), sys.intern(kind), {sys.intern(k): v.strip('"') for k, v in PAIR.findall(pairs)})
+
+
+def read_ledger(lines):
+    """The lives in one node's ledger, given as its text or its lines. A last line that a kill cut short is left out,
+    and so is one in the middle that the next life was appended to."""
     lives = []
-    for line in text.splitlines(keepends=True):
-        stamp, _, rest = line.partition(" ")
-        if not line.endswith("\n") or not stamp.isdigit():
+    for event in map(read_line, lines.splitlines(keepends=True) if isinstance(lines, str) else lines):
+        if event is None:
             continue
-        kind, _, pairs = rest.strip().partition(" ")
-        event = Event(int(stamp), kind, {k: v.strip('"') for k, v in PAIR.findall(pairs)})
-        if kind == "start":
+        if event.kind == "start":
             lives.append(Life(event))
         elif lives:
-            lives[-1].events.append(event)
+            lives[-1].add(event)
     return lives
 
 
 def judge(ledgers):
     """`ledgers`: one text for each node. Returns the list of what is wrong, in words; empty if nothing is."""
-    lives = [life for text in ledgers for life in read_ledger(text)]
+    return judge_lives([life for text in ledgers for life in read_ledger(text)])
+
+
+def judge_lives(lives):
+    """The same of lives that were read already."""
+    wrong = [f"{life.node}: a note arrived garbled" for life in lives if life.of("garbled")]
+    wrong += _judge_queue(lives)
+    return wrong + ["pictures: " + text for text in _judge_queue([Pictures(life) for life in lives])]
+
+
+def _judge_queue(lives):
     by_node = collections.defaultdict(list)
     for life in lives:
         by_node[life.node].append(life)
-    wrong = [f"{life.node}: a note arrived garbled" for life in lives if life.of("garbled")]
+    wrong = []
     senders = {(life.node, life.life): life for life in lives}
     for node, receiver in by_node.items():
         wrong += _phantoms(node, receiver, senders)
@@ -130,6 +186,8 @@ def _judge_row(sender, to, receiver, followed):
     for number, event in arrived.items():
         if number not in intents:
             continue  # a phantom, told elsewhere
+        if intents[number].values.get("octets") != event.values.get("octets"):
+            wrong.append(f"{name}: note {number} arrived with another size")
         expire_s = float(intents[number]["expire_s"])
         age_s = (event.time - intents[number].time) * 1e-9
         if 0 < expire_s < age_s - PICK_UP_S:
@@ -151,7 +209,12 @@ def _judge_row(sender, to, receiver, followed):
             if killed and before in after_kill and len(run) <= room:
                 continue
             wrong.append(f"{name}: {len(run)} accepted notes lost, from {run[0]} to {run[-1]}")
-    wrong += _judge_outcomes(sender, to, name, set(accepted), arrived, killed, open_end)
+    heard = sorted([event.time for event in sender.of("delivered") if event["from"] == to] +
+                   [event.time for event in sender.of("outcome") if event["to"] == to and event["is"] == "delivered"])
+    given_up = {event.number("id") for event in sender.of("outcome")
+                if event["to"] == to and event["is"] == "in doubt" and event.number("id") in intents and
+                _is_given_up(intents[event.number("id")], event.time, heard)}
+    wrong += _judge_outcomes(sender, to, name, set(accepted), arrived, killed, open_end, given_up)
     if open_end:
         return wrong
     if counters is None:
@@ -162,19 +225,28 @@ def _judge_row(sender, to, receiver, followed):
     if told != len(accepted):
         wrong.append(f"{name}: {len(accepted)} notes accepted, outcomes of {told} told")
     if not killed:
-        if counters["delivered"] != len(arrived):
+        arrived_in_doubt = len(given_up & arrived.keys())
+        if counters["delivered"] != len(arrived) - arrived_in_doubt:
             wrong.append(f"{name}: {len(arrived)} notes arrived, {counters['delivered']} said to be delivered")
-        if counters["expired"] != missing:
+        if counters["expired"] != missing - len(given_up) + arrived_in_doubt:
             wrong.append(f"{name}: {missing} accepted notes lost, {counters['expired']} said to be expired")
-        if counters["in_doubt"]:
+        if counters["in_doubt"] != len(given_up):
             wrong.append(f"{name}: {counters['in_doubt']} notes in doubt, though the receiver never ended")
     if not may_expire and counters["expired"]:
         wrong.append(f"{name}: {counters['expired']} notes said to be expired that cannot expire")
     return wrong
 
 
-def _judge_outcomes(sender, to, name, accepted, arrived, killed, open_end):
-    """What the sender was told of each single note. A kill of the receiver may take along what was delivered."""
+def _is_given_up(intent, told_at, heard):
+    """Whether the note's time was over, and nothing had come from its receiver for long, when its outcome was told."""
+    expire_s = float(intent["expire_s"])
+    last = max((time for time in heard if time < told_at), default=0)
+    return 0 < expire_s <= (told_at - intent.time) * 1e-9 and (told_at - last) * 1e-9 >= SILENT_AFTER_S - PICK_UP_S
+
+
+def _judge_outcomes(sender, to, name, accepted, arrived, killed, open_end, given_up):
+    """What the sender was told of each single note. A kill of the receiver may take along what was delivered. The notes
+    in `given_up` may be in doubt."""
     wrong = []
     told = {}
     for event in sender.of("outcome"):
@@ -191,7 +263,7 @@ def _judge_outcomes(sender, to, name, accepted, arrived, killed, open_end):
             wrong.append(f"{name}: note {number} was told to be delivered and never arrived")
         if outcome in ("expired", "refused") and number in arrived:
             wrong.append(f"{name}: note {number} was told to be {outcome} and arrived")
-        if outcome == "in doubt" and not killed and not open_end:
+        if outcome == "in doubt" and not killed and not open_end and number not in given_up:
             wrong.append(f"{name}: note {number} was told to be in doubt, though nobody ended")
     silent = sorted(accepted - told.keys())
     if silent and not open_end:

@@ -26,6 +26,16 @@ def told(*outcomes):
     return [f"{97 * S} outcome to=b id={number} is=\"{outcome}\"" for number, outcome in enumerate(outcomes, 1)]
 
 
+def pictured(number):
+    return [f"1000000000 picture_intent to=b id={number} expire_s=0", f"1000000001 picture_sent to=b id={number}",
+            f"2000000000 picture_outcome to=b id={number} is=\"delivered\""]
+
+
+def picture_counters(count):
+    return [f"{98 * S} link to=b queue=Pictures accepted={count} delivered={count} expired=0 in_doubt=0 undeliverable=0 "
+            "outbox=0 resent=0"]
+
+
 def got(number, at=2, life=10, extra=""):
     return f"{at * S} delivered from=a life={life} id={number}{extra}"
 
@@ -146,6 +156,24 @@ class JudgeTest(unittest.TestCase):
         self.wrong("note 2 was told to be in doubt", sender(THREE + told("delivered", "in doubt", "delivered")),
                    receiver([got(1), got(2), got(3)]))
 
+    def test_accepts_doubt_about_a_note_whose_time_is_over_while_its_receiver_is_silent(self):
+        notes = sent(1, 1, 5) + sent(2, 2, 5) + sent(3, 3, 5)
+        outcomes = [f"{3 * S} outcome to=b id=1 is=delivered", f"{13 * S} outcome to=b id=2 is=\"in doubt\"",
+                    f"{13 * S} outcome to=b id=3 is=\"in doubt\""]
+        self.right(sender(notes + outcomes + counters(3, 1, in_doubt=2)), receiver([got(1), got(2)]))
+
+    def test_finds_doubt_about_a_note_whose_receiver_was_heard_meanwhile(self):
+        notes = sent(1, 1, 5) + sent(2, 2, 5)
+        outcomes = [f"{8 * S} outcome to=b id=1 is=delivered", f"{13 * S} outcome to=b id=2 is=\"in doubt\""]
+        self.wrong("note 2 was told to be in doubt", sender(notes + outcomes + counters(2, 1, in_doubt=1)),
+                   receiver([got(1)]))
+
+    def test_finds_doubt_about_a_note_that_has_time_left(self):
+        notes = sent(1, 1, 60) + sent(2, 2, 60)
+        outcomes = [f"{3 * S} outcome to=b id=1 is=delivered", f"{23 * S} outcome to=b id=2 is=\"in doubt\""]
+        self.wrong("note 2 was told to be in doubt", sender(notes + outcomes + counters(2, 1, in_doubt=1)),
+                   receiver([got(1)]))
+
     def test_finds_a_note_of_which_nothing_was_told(self):
         self.wrong("nothing was told of 1 accepted notes, the first of them 3",
                    sender(THREE + told("delivered", "delivered") + counters(3, 3)),
@@ -191,6 +219,30 @@ class JudgeTest(unittest.TestCase):
 
     def test_leaves_out_a_line_that_a_kill_cut_short(self):
         self.right(sender(sent(1), end=False) + "3000000000 inte", receiver([got(1)]))
+
+    def test_finds_a_note_of_another_size(self):
+        self.wrong("another size",
+                   sender(["1000000000 intent to=b id=1 expire_s=0 octets=8", "1000000001 accepted to=b id=1"]
+                          + told("delivered") + counters(1, 1)),
+                   receiver([got(1, extra=" octets=7")]))
+
+    def test_accepts_pictures_beside_notes(self):
+        self.right(sender(sent(1) + told("delivered") + counters(1, 1) + pictured(1) + picture_counters(1)),
+                   receiver([got(1), "3000000000 picture from=a life=10 id=1"]))
+
+    def test_finds_a_lost_picture(self):
+        self.wrong("pictures: a to b: 1 accepted notes lost",
+                   sender(pictured(1) + picture_counters(1)), receiver([]))
+
+    def test_finds_a_picture_delivered_twice(self):
+        self.wrong("pictures: b: note 1 of a delivered twice",
+                   sender(pictured(1) + picture_counters(1)),
+                   receiver(["3000000000 picture from=a life=10 id=1", "3000000001 picture from=a life=10 id=1"]))
+
+    def test_finds_a_picture_without_an_outcome(self):
+        self.wrong("pictures: a to b: nothing was told of 1 accepted notes",
+                   sender(pictured(1)[:-1] + picture_counters(1)),
+                   receiver(["3000000000 picture from=a life=10 id=1"]))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 // A node that writes down everything that it does and sees, one line per event, for judge.py. README.md lists
 // the lines. Each line is one write(2), so a kill loses at most the line being written.
 #include "LedgerFile.h"
+#include "Padding.h"
 #include "PictureClerk.h"
 #include "StateClerk.h"
 #include "StolenKeys.h"
@@ -21,6 +22,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace
@@ -47,9 +49,12 @@ struct Options
     int QueueRoom = 100;
     double ExpireS = 0;
     double IdleS = 0;
+    double DrainPeriodS = 0;
+    std::int64_t Life = 0;
     bool Ticks = false;
     std::int64_t TickPeriodNs = 100'000'000;
     std::size_t TickPayload = 0;
+    int SlowTicksMs = 0;
     TestNode::PictureOptions Pictures;
     bool TakesPictures = false;
     TestNode::StateOptions States;
@@ -63,7 +68,7 @@ public:
         : RabitManager("Clerk"),
           _options(options),
           _ledger(options.LedgerFile),
-          _life(Now()),
+          _life(options.Life),
           _notes(std::make_shared<RabitQueue>(options.QueueRoom, NotesQueue))
     {
         AddManagerMessageQueue(NotesQueue, _notes);
@@ -98,6 +103,7 @@ public:
 
     void Shutdown() override
     {
+        _nextDrain = 0;
         Take();
         FollowReceipts();
         _fleet->FetchMessage();
@@ -158,18 +164,19 @@ private:
 
     void Take()
     {
-        if (Now() < _life + static_cast<std::int64_t>(_options.IdleS * 1e9))
+        if (Now() < _life + static_cast<std::int64_t>(_options.IdleS * 1e9) || Now() < _nextDrain)
             return;
+        _nextDrain = Now() + static_cast<std::int64_t>(_options.DrainPeriodS * 1e9);
         std::shared_ptr<Rabit::RabitMessage> message;
         while (_notes->GetMessage(message))
         {
             std::ostringstream line;
             const auto *note = dynamic_cast<const Ledger::Note *>(message.get());
-            if (note == nullptr || note->padding.size() != _options.Payload)
+            if (note == nullptr || !TestNode::IsPadding(note->padding, note->id))
                 line << "garbled";
             else
                 line << "delivered from=" << note->from << " life=" << note->life << " id=" << note->id
-                     << (note->IsRedelivered() ? " redelivered=1" : "");
+                     << " octets=" << note->padding.size() << (note->IsRedelivered() ? " redelivered=1" : "");
             _ledger.Line(line.str());
         }
     }
@@ -206,7 +213,9 @@ private:
             const char *name = status.state == Rabit::Gateway::NodeState::UP      ? "UP"
                                : status.state == Rabit::Gateway::NodeState::STALE ? "STALE"
                                                                                   : "LOST";
-            _ledger.Line("peer node=" + status.node + " state=" + name);
+            std::ostringstream line;
+            line << "peer node=" << status.node << " state=" << name << " heard_s=" << status.last_heard_s;
+            _ledger.Line(line.str());
             // A first message before the other node is known is refused, which is right but no use here.
             if (status.state == Rabit::Gateway::NodeState::UP)
                 _ready.insert(status.node);
@@ -214,6 +223,12 @@ private:
             {
                 _ticks[status.node] = std::make_shared<Ledger::Tick>();
                 AddPublishSubscribeMessage(status.node + "/Tick", _ticks[status.node]);
+                if (_options.SlowTicksMs > 0)
+                {
+                    const std::chrono::milliseconds pause(_options.SlowTicksMs);
+                    _ticks[status.node]->Register_SomethingPublished([pause]
+                                                                     { std::this_thread::sleep_for(pause); });
+                }
             }
         }
         for (const auto &problem : _fleet->problems)
@@ -245,7 +260,8 @@ private:
                  << " expired=" << link.expired << " in_doubt=" << link.in_doubt
                  << " undeliverable=" << link.undeliverable << " outbox=" << link.outbox
                  << " resent=" << link.resent;
-            WriteOnChange("link to=" + link.node, line.str());
+            const std::string queue = link.queue == NotesQueue ? "" : " queue=" + link.queue;
+            WriteOnChange("link to=" + link.node + queue, line.str());
         }
     }
 
@@ -263,6 +279,7 @@ private:
     std::map<std::string, Row> _rows;
     std::int64_t _nextTick = 0;
     std::int64_t _nextCounters = 0;
+    std::int64_t _nextDrain = 0;
 };
 
 bool Clerk::SendOne(const std::string &to, Row &row)
@@ -271,12 +288,12 @@ bool Clerk::SendOne(const std::string &to, Row &row)
     note->from = _options.Gateway.Node;
     note->life = static_cast<std::uint64_t>(_life);
     note->id = ++row.LastId;
-    note->padding.assign(_options.Payload, 0x5a);
+    note->padding = TestNode::Padding(note->id, _options.Payload);
     std::ostringstream rest;
     rest << " to=" << to << " id=" << note->id;
-    std::ostringstream expire;
-    expire << " expire_s=" << _options.ExpireS;
-    _ledger.Line("intent" + rest.str() + expire.str());
+    std::ostringstream more;
+    more << " expire_s=" << _options.ExpireS << " octets=" << _options.Payload;
+    _ledger.Line("intent" + rest.str() + more.str());
     const auto receipt = std::make_shared<Rabit::RabitQueueReceipt>();
     const bool accepted = AddMessageToQueue(to + '/' + NotesQueue, note, receipt);
     _ledger.Line((accepted ? "accepted" : "refused") + rest.str());
@@ -298,19 +315,28 @@ void Describe(CLI::App &app, Options &o)
     app.add_option("--rate", o.Rate, "Notes a second to each");
     app.add_option("--accept-from", o.AcceptFrom, "Nodes whose notes are taken; default all");
     app.add_option("--stolen", o.Stolen, "Folder of keys that are used whoever's they are");
-    app.add_option("--payload", o.Payload, "Octets of padding in each note, the same on all nodes");
+    app.add_option("--payload", o.Payload, "Octets of padding in each note that is sent");
     app.add_option("--capacity", o.Capacity, "Notes that may wait in one outbox");
     app.add_option("--expire", o.ExpireS, "Seconds after which a note is too old; 0: never");
     app.add_option("--queue-room", o.QueueRoom, "Notes that fit into the local queue");
     app.add_option("--idle", o.IdleS, "Seconds after the start during which no note is taken");
+    app.add_option("--drain-period", o.DrainPeriodS,
+                   "Seconds from one emptying of the local queue to the next");
     app.add_flag("--ticks", o.Ticks, "Publish ticks and follow those of the others");
-    app.add_option("--tick-period-ns", o.TickPeriodNs, "From one tick to the next; default a tenth of a second");
+    app.add_option("--tick-period-ns", o.TickPeriodNs,
+                   "From one tick to the next; default a tenth of a second");
     app.add_option("--tick-payload", o.TickPayload, "Octets of padding in each tick");
+    app.add_option("--slow-ticks", o.SlowTicksMs,
+                   "Milliseconds that a handler takes for each tick of another node");
     app.add_option("--pictures-to", o.Pictures.To, "Node to send pictures to, as bulk, once it is UP");
     app.add_flag("--take-pictures", o.TakesPictures);
     app.add_option("--pictures", o.Pictures.Count, "How many");
     app.add_option("--picture-bytes", o.Pictures.Size);
-    app.add_option("--states", o.States.Count, "States that each node may publish; follow those of the others");
+    app.add_option("--picture-period-ns", o.Pictures.PeriodNs,
+                   "From one to the next; default as the link takes them");
+    app.add_option("--states", o.States.Count,
+                   "States that each node may publish; follow those of the others");
+    app.add_option("--state-bytes", o.States.Size, "Octets of padding in each");
     app.add_option("--state-posts", o.States.Posts, "How often each of them is posted");
     app.add_option("--state-period-ns", o.States.PeriodNs, "From one post of each to its next");
 }
@@ -329,7 +355,9 @@ void Run(Options &options)
     rule.Window = options.Window;
     rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(options.ExpireS * 1000));
     config.Send.push_back(rule);
+    options.Life = Now();
     options.Pictures.Node = config.Node;
+    options.Pictures.Life = static_cast<std::uint64_t>(options.Life);
     options.Pictures.LedgerFile = options.LedgerFile;
     std::vector<std::unique_ptr<Rabit::RabitManager>> managers;
     managers.push_back(std::make_unique<Clerk>(options));

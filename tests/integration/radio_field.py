@@ -19,6 +19,7 @@ MEDIUM = {
     "delay_ms": 0,
     "jitter_ms": 0,
     "loss": 0,  # percent, at each receiver
+    "duplicate": 0,  # percent of the frames heard, at each receiver
     "seed": 1,
     "static_neighbours": False,
     "pcap": None,  # path of a recording
@@ -132,6 +133,7 @@ class RadioField(field.Field):
                 self._introduce(node, ready["addresses"])
         self.delay(medium["delay_ms"], medium["jitter_ms"])
         self.lose(medium["loss"])
+        self.tell(f"duplicate {medium['duplicate']}")
 
     def _introduce(self, node, addresses):
         for other in self.nodes:

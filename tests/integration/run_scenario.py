@@ -8,19 +8,58 @@ Exit code 0: as it has to be; 1: something is wrong; 77: this machine or this bu
 import argparse
 import collections
 import json
+import os
 import pathlib
 import shutil
 import signal
+import struct
+import subprocess
 import sys
 import time
 
 import expectations
 import field
+import harness
 import judge
 import radio_field
 
 HERE = pathlib.Path(__file__).resolve().parent
 SKIPPED = 77
+
+
+def argument(arguments, flag, default):
+    return arguments[arguments.index(flag) + 1] if flag in arguments else default
+
+
+class LedgerEnd:
+    """Follows a ledger as it grows, without reading any line twice: the last counters of each link of the newest life,
+    and how many lines of each kind there are in all."""
+
+    def __init__(self, path):
+        self._path = path
+        self._offset = 0
+        self.links = {}  # (node, queue) -> counters
+        self.in_life = collections.Counter()
+        self.total = collections.Counter()
+
+    def read(self):
+        if not self._path.exists():
+            return
+        with open(self._path, "rb") as file:
+            file.seek(self._offset)
+            lines, newline, _ = file.read().rpartition(b"\n")
+        self._offset += len(lines) + len(newline)
+        for event in filter(None, map(judge.read_line, (lines + newline).decode().splitlines(keepends=True))):
+            self._follow(event)
+
+    def _follow(self, event):
+        if event.kind == "start":
+            self.links = {}
+            self.in_life = collections.Counter()
+        elif event.kind == "link":
+            self.links[event["to"], event.values.get("queue", judge.NOTES)] = judge.counters_of(event)
+        self.in_life[event.kind] += 1
+        self.total[event.kind] += 1
 
 
 class Fleet:
@@ -32,6 +71,8 @@ class Fleet:
         self._transport = transport
         self._scenario = scenario
         self._nodes = scenario["nodes"]
+        self.ends = {node: LedgerEnd(self._path(node)) for node in self._nodes}
+        self._steps = collections.Counter()  # node -> seconds by which its wall clock was set forward
         self._disks = collections.Counter()  # node -> how often it was given an empty state folder
         self.ended = set()  # by themselves or by the scenario, and well
 
@@ -42,13 +83,35 @@ class Fleet:
         if node in programs:
             self.field.start(node, [self._filled(word) for word in programs[node]], **inside)
             return
-        state = pathlib.Path(self.field.folder, f"{node}.state{self._disks[node]}")
-        state.mkdir(exist_ok=True)
-        state.chmod(0o777)  # in a container the node runs as another user
+        how = dict(inside)
+        if node in self._scenario.get("unread", []):
+            how["unread"] = True
+        if node in self._scenario.get("stepped", []):
+            self.step_clock(node, 0)
+            how["env"] = {"LD_PRELOAD": str(self._bin("libstepped_clock.so")), "STEPPED_CLOCK": str(self._clock(node))}
         name = self._scenario.get("names", {}).get(node, node)
         transport = self._scenario.get("transports", {}).get(node, self._transport)
         self.field.start(node, [self._program, "--node", name, "--ledger", self._path(node), "--transport", transport,
-                                "--state-dir", state, *map(self._filled, self._nodes[node])])
+                                *self._disk(node), *map(self._filled, self._nodes[node])], **how)
+
+    def _disk(self, node):
+        """The node's state folder, if it may have one."""
+        if node in self._scenario.get("stateless", []):
+            return []
+        state = pathlib.Path(self.field.folder, f"{node}.state{self._disks[node]}")
+        state.mkdir(exist_ok=True)
+        state.chmod(0o777)  # in a container the node runs as another user
+        return ["--state-dir", state]
+
+    def step_clock(self, node, seconds):
+        """Sets the wall clock of that node's computer forward or back by so much more."""
+        self._steps[node] += seconds
+        file = os.open(self._clock(node), os.O_WRONLY | os.O_CREAT, 0o644)
+        os.pwrite(file, struct.pack("=q", self._steps[node]), 0)
+        os.close(file)
+
+    def _clock(self, node):
+        return pathlib.Path(self.field.folder, node + ".clock")
 
     def new_disk(self, node):
         self._disks[node] += 1
@@ -65,7 +128,13 @@ class Fleet:
         """@node is that node's address, {here} this folder, {bin} that of the built programs."""
         if word.startswith("@"):
             return self.field.address(word[1:])
-        return word.format(here=HERE, bin=pathlib.Path(self._program).parent) if "{" in word else word
+        return word.format(here=HERE, bin=self._bin()) if "{" in word else word
+
+    def _bin(self, *name):
+        return pathlib.Path(self._program, "..", *name).resolve()
+
+    def paths(self):
+        return {node: self._path(node) for node in self._nodes}
 
     def ledgers(self):
         return {node: self._path(node).read_text() if self._path(node).exists() else "" for node in self._nodes}
@@ -77,7 +146,10 @@ class Fleet:
             if node in self.ended:
                 continue
             if process.running():
-                code = process.terminate()
+                try:
+                    code = process.terminate()
+                except subprocess.TimeoutExpired:
+                    code = f"{process.kill()}, for it did not end on SIGTERM"
                 if code != 0:
                     wrong.append(f"{node} ended with {code}: {[text for _, text in process.lines[-5:]]}")
             else:
@@ -96,14 +168,17 @@ class Fleet:
 
     def _unsettled(self):
         left = []
-        for node, text in self.ledgers().items():
+        for node, end in self.ends.items():
+            end.read()
             arguments = self._nodes[node]
-            wanted = int(arguments[arguments.index("--count") + 1]) if "--count" in arguments else 0
-            lives = judge.read_ledger(text)
+            wanted = int(argument(arguments, "--count", 0))
             for to in (a for flag, a in zip(arguments, arguments[1:]) if flag == "--to"):
-                now = (lives and lives[-1].counters(to)) or collections.Counter()
+                now = end.links.get((to, judge.NOTES), collections.Counter())
                 if now["accepted"] < wanted or now["outbox"]:
                     left.append(f"{node} to {to}: {now['accepted']} of {wanted} accepted, {now['outbox']} open")
+            pictures = int(argument(arguments, "--pictures", 1)) if "--pictures-to" in arguments else 0
+            if end.in_life["picture_outcome"] < pictures:
+                left.append(f"{node}: outcomes of {end.in_life['picture_outcome']} of {pictures} pictures")
         return left
 
     def _path(self, node):
@@ -134,6 +209,12 @@ class Faults:
 
     def stop(self, node):
         self._fleet.stop_one(node)
+
+    def step_clock(self, node, seconds):
+        self._fleet.step_clock(node, seconds)
+
+    def shape(self, node, kbit):
+        self._field.shape(node, kbit)
 
     def move(self, node):
         """As if on another computer: another address, and no memory of earlier lives."""
@@ -211,6 +292,7 @@ def run_in(ground, scenario, options):
     """Runs it in a field that is there: namespaces or containers."""
     fleet = Fleet(ground, options.ledger_node, options.transports.split(",")[0], scenario)
     faults = Faults(fleet)
+    pauses = harness.Pauses()
     began = time.monotonic()
     for node in [*scenario["nodes"], *scenario.get("programs", {})]:
         if node not in scenario.get("late", []):
@@ -222,6 +304,7 @@ def run_in(ground, scenario, options):
     air = ground.counters() if "medium" in scenario else None
     # Before the stop, which the others see as LOST.
     wrong += expectations.states(expectations.Run(fleet.ledgers(), faults.done), scenario.get("states", {}))
+    ended = time.monotonic()
     wrong += fleet.stop()
     ledgers = fleet.ledgers()
     if options.keep:
@@ -230,7 +313,9 @@ def run_in(ground, scenario, options):
     for line in figures(seen):
         print(line)
     print(f"{seconds:.0f} s; bytes sent: " + ", ".join(f"{node} {count}" for node, count in bytes_sent.items()))
-    seen.air = air
+    seen.air, seen.ended = air, ended
+    for begin, end in pauses.end():
+        print(f"the machine stood still for {end - begin:.1f} s, {begin - began:.0f} s after the start")
     if air:
         print(radio_field.summary(air))
     wrong += expectations.check(seen, scenario.get("expect", {}))

@@ -110,6 +110,11 @@ public:
             const double loss = Number(Next(), 0, 100) / 100;
             EachLink([&](LinkSettings &link) { link.Loss = loss; });
         }
+        else if (what == "duplicate")
+        {
+            const double duplicate = Number(Next(), 0, 100) / 100;
+            EachLink([&](LinkSettings &link) { link.Duplicate = duplicate; });
+        }
         else if (what == "deaf" || what == "hear")
         {
             SetDeaf(what == "deaf");

@@ -16,11 +16,13 @@ namespace Rabit::Radio
 //   overhead BYTES                    that each frame takes on the air beyond its own
 //   delay MS [jitter MS] [FROM TO]    after the air
 //   loss PERCENT [FROM TO]
-//   deaf NODE FROM, hear NODE FROM    NODE hears nothing of FROM, and hears it again; the other way is as it
-//   was reorder on|off                    whether jitter may change the order of a link's frames outage
-//   on|off                     nobody hears anything counters                          of the medium and of
-//   each node, since the beginning or the last reset kinds                             {node: {kind: [frames,
-//   bytes on the air]}} reset                             counters from zero
+//   duplicate PERCENT [FROM TO]       of the frames heard, those that come twice
+//   deaf NODE FROM, hear NODE FROM    NODE hears nothing of FROM, and hears it again
+//   reorder on|off                    whether jitter may change the order of a link's frames
+//   outage on|off                     nobody hears anything
+//   counters                          of the medium and of each node, since the beginning or the last reset
+//   kinds                             {node: {kind: [frames, bytes on the air]}}
+//   reset                             counters from zero
 //
 // All but the last three are answered by {"ok": true}.
 class Console

@@ -47,6 +47,15 @@ TEST_F(ConsoleTest, LossIsPercentOfAllLinksOrOfOneWay)
     EXPECT_EQ(medium.LinkOf(1, 0).Loss, 0);
 }
 
+TEST_F(ConsoleTest, DuplicatesArePercentAndLeaveTheLossAsItIs)
+{
+    Tell("loss 20");
+    Tell("duplicate 5 uav1 ground");
+    EXPECT_EQ(medium.LinkOf(1, 0).Duplicate, 0.05);
+    EXPECT_EQ(medium.LinkOf(1, 0).Loss, 0.2);
+    EXPECT_EQ(medium.LinkOf(0, 1).Duplicate, 0);
+}
+
 TEST_F(ConsoleTest, DelayAndJitterAreMillisecondsAndLeaveTheLossAsItIs)
 {
     Tell("loss 20");
@@ -126,6 +135,8 @@ TEST_F(ConsoleTest, WhatIsNotUnderstoodIsAnsweredWithTheReasonAndChangesNothing)
                              "rate 5 6",
                              "rate 1x",
                              "loss 101",
+                             "duplicate 101",
+                             "duplicate -1",
                              "loss -1",
                              "loss 5 uav1",
                              "loss 5 uav1 nobody",

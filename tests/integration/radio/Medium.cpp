@@ -137,10 +137,12 @@ void Medium::SetOutage(Time now, bool on)
 void Medium::SetLink(Time now, std::size_t from, std::size_t to, const LinkSettings &settings)
 {
     if (from >= Count() || to >= Count() || settings.Loss < 0 || settings.Loss > 1 ||
-        settings.Delay < Time{0} || settings.Jitter < Time{0})
+        settings.Duplicate < 0 || settings.Duplicate > 1 || settings.Delay < Time{0} ||
+        settings.Jitter < Time{0})
     {
         throw std::invalid_argument(
-            "a link is between two nodes, with a loss from 0 to 1 and times of at least 0");
+            "a link is between two nodes, with a loss and a share of duplicates from 0 to 1 and times of at "
+            "least 0");
     }
     Run(now);
     LinkAt(from, to).Settings = settings;
@@ -259,6 +261,15 @@ void Medium::Reach(std::size_t from, std::size_t to, const OnAir &sent)
         ++_nodes[to].Counters.Lost;
         return;
     }
+    Arrive(link, to, sent);
+    if (link.Settings.Duplicate > 0 && Random() < link.Settings.Duplicate)
+    {
+        Arrive(link, to, sent);
+    }
+}
+
+void Medium::Arrive(Link &link, std::size_t to, const OnAir &sent)
+{
     Time at = sent.Ends + link.Settings.Delay;
     if (link.Settings.Jitter > Time{0})
     {

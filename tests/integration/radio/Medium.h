@@ -22,7 +22,7 @@ struct MediumSettings
     std::optional<std::int64_t> BitsPerSecond;  // none: unlimited
     std::size_t QueueBytes = 16'000;            // of each node
     std::size_t Overhead = 0;                   // bytes that each frame takes on the air beyond its own
-    std::uint64_t Seed = 1;                     // of losses and jitter
+    std::uint64_t Seed = 1;                     // of losses, duplicates and jitter
 };
 
 // One way between two nodes.
@@ -32,6 +32,7 @@ struct LinkSettings
     Time Delay{0};
     Time Jitter{0};  // up to so much more or less than the delay, evenly
     bool Deaf = false;
+    double Duplicate = 0;  // share of the frames heard that come twice
 };
 
 // A frame that has come to a node at that time.
@@ -142,6 +143,7 @@ private:
     void BeginNext(Time at);
     void Complete();
     void Reach(std::size_t from, std::size_t to, const OnAir &sent);
+    void Arrive(Link &link, std::size_t to, const OnAir &sent);
     Time EndOf(Time since, std::int64_t left) const;
     double Random();
     Link &LinkAt(std::size_t from, std::size_t to) { return _links.at(from * _nodes.size() + to); }

@@ -267,6 +267,34 @@ TEST_F(MediumTest, LossOfOneWayLeavesTheOther)
     EXPECT_EQ(medium->CountersOf(1).Lost, 1u);
 }
 
+TEST_F(MediumTest, ADuplicateComesTwiceAndIsOnTheAirOnce)
+{
+    Make(2, std::nullopt);
+    LinkSettings settings;
+    settings.Duplicate = 1;
+    medium->SetLink(0s, 0, 1, settings);
+    medium->Offer(0ms, 0, Unicast(1, 100));
+    EXPECT_EQ(ArrivalsUntil(1s), (Arrivals{{0ms, 1}, {0ms, 1}}));
+    EXPECT_EQ(medium->CountersOf(0).Unicast.Frames, 1u);
+}
+
+TEST_F(MediumTest, DuplicatesAreAShareOfTheFramesHeard)
+{
+    Make(2, std::nullopt);
+    LinkSettings settings;
+    settings.Duplicate = 0.05;
+    settings.Loss = 0.5;
+    medium->SetLink(0s, 0, 1, settings);
+    constexpr int Frames = 20'000;
+    for (int k = 0; k < Frames; ++k)
+    {
+        medium->Offer(Time(k), 0, Unicast(1, 100));
+    }
+    const auto heard = static_cast<std::size_t>(Frames) - medium->CountersOf(1).Lost;
+    // Four standard deviations of the binomial distribution.
+    EXPECT_NEAR(static_cast<double>(ArrivalsUntil(1s).size() - heard), 500, 90);
+}
+
 TEST_F(MediumTest, TheSameSeedLosesTheSame)
 {
     std::vector<std::uint64_t> lost;

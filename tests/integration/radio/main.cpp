@@ -26,7 +26,7 @@ Rabit::Radio::RadioOptions Parse(int argc, char **argv)
     app.add_option("--queue", options.Medium.QueueBytes, "Bytes that the queue of each node holds");
     app.add_option("--overhead", options.Medium.Overhead, "Bytes that each frame takes beyond its own")
         ->check(CLI::Range(0, 100'000));
-    app.add_option("--seed", options.Medium.Seed, "Of losses and jitter");
+    app.add_option("--seed", options.Medium.Seed, "Of losses, duplicates and jitter");
     app.add_option("--device", options.Device, "Its name in each namespace");
     app.add_option("--pcap", options.Pcap, "Records all that was on the air");
     app.add_option("--control", options.Control, "Unix socket for commands, in place of the standard input");

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Expectations find what is wrong, and have nothing against what is right."""
+
+import unittest
+
+import expectations
+import judge
+
+S = 1_000_000_000
+
+
+def run(faults=(), **ledgers):
+    """`ledgers`: for each node the lines of one life, (second, rest)"""
+    made = expectations.Run({}, list(faults))
+    made.lives = {node: judge.read_ledger([f"{S} start node={node} life=1 room=5\n"]
+                                          + [f"{int(at * S)} {rest}\n" for at, rest in lines])
+                  for node, lines in ledgers.items()}
+    made.ended = 100
+    return made
+
+
+def taken(*times):
+    return [(at, f"delivered from=a life=1 id={number}") for number, at in enumerate(times, 1)]
+
+
+def accepted(*times):
+    return [(at, f"accepted to=b id={number}") for number, at in enumerate(times, 1)]
+
+
+class AgesTest(unittest.TestCase):
+    POSTED = [(10, "state_posted message=State0 number=1")]
+
+    def ages(self, shown_s):
+        seen = [(10.5, f"state from=a message=State0 number=1 age_s={shown_s}")]
+        return expectations.honest_ages(run(a=self.POSTED, b=seen), 0.1)
+
+    def test_accepts_a_right_age(self):
+        self.assertEqual(self.ages(0.45), [])
+
+    def test_finds_an_age_that_is_too_small(self):
+        self.assertIn("age 0.300 s shown, posted 0.500 s before", self.ages(0.3)[0])
+
+    def test_finds_an_age_that_is_too_large(self):
+        self.assertEqual(len(self.ages(3600.5)), 1)
+
+    def test_finds_a_node_whose_states_are_never_seen(self):
+        self.assertEqual(expectations.honest_ages(run(a=self.POSTED, b=[]), 0.1), ["b saw no State of a"])
+
+
+class TurnsTest(unittest.TestCase):
+    def test_accepts_a_pause_in_which_nothing_waits(self):
+        self.assertEqual(expectations.starved_at_most(run(a=accepted(2, 20), b=taken(3, 21)), 5), [])
+
+    def test_finds_a_sender_without_a_turn(self):
+        self.assertEqual(expectations.starved_at_most(run(a=accepted(2, 3), b=taken(3, 21)), 5),
+                         ["a to b: 18.0 s without a turn, at most 5 s wanted"])
+
+
+class WordsTest(unittest.TestCase):
+    def test_finds_a_problem_by_its_words(self):
+        seen = run(b=[(2, 'problem node=a subject="a" reason="two live nodes have this name"')])
+        self.assertEqual(len(expectations.no_problem(seen, ["this name"])), 1)
+        self.assertEqual(expectations.no_problem(seen, ["no announcement"]), [])
+
+
+class BeginningTest(unittest.TestCase):
+    def begin(self, *seen):
+        """a starts at 1 s and again at 10 s, and sees b; b has seen ticks of a at these times."""
+        made = run(b=[(at, f"tick from=a number=1 age_s=0") for at in seen], a=[(2, "tick from=b number=1 age_s=0")])
+        made.lives["a"] += judge.read_ledger([f"{10 * S} start node=a life=10 room=5\n"])
+        made.lives["b"][0].begin = 0
+        return expectations.ticks_begin_within(made, 1.5)
+
+    def test_accepts_a_life_that_is_seen_soon(self):
+        self.assertEqual(self.begin(1.4, 11.4), [])
+
+    def test_finds_a_life_that_is_seen_late(self):
+        self.assertEqual(self.begin(1.4, 9, 11.6), ["b saw no tick of a within 1.5 s after its start"])
+
+
+class ReturnTest(unittest.TestCase):
+    FAULTS = [(10, "kill", ["a"]), (11, "start", ["a"])]
+
+    def back(self, *said):
+        return expectations.back_within(run(self.FAULTS, a=[], b=[(at, f"peer node=a state={state}") for at, state in said]), 4)
+
+    def test_accepts_a_node_that_is_soon_up(self):
+        self.assertEqual(self.back((2, "UP"), (13, "LOST"), (14, "UP")), [])
+
+    def test_finds_a_node_that_is_up_too_late(self):
+        self.assertEqual(len(self.back((2, "UP"), (13, "LOST"), (16, "UP"))), 1)
+
+    def test_finds_a_node_that_does_not_stay_up(self):
+        self.assertEqual(len(self.back((2, "UP"), (30, "STALE"), (31, "UP"))), 1)
+
+
+class StatesTest(unittest.TestCase):
+    def test_a_star_is_each_node_that_is_not_named(self):
+        seen = run(a=[(2, "peer node=b state=UP")], b=[(2, "peer node=a state=UP"), (3, "peer node=a state=STALE")])
+        self.assertEqual(expectations.states(seen, {"*": {"*": ["UP"]}}), ["b saw a as ['UP', 'STALE'], not ['UP']"])
+        self.assertEqual(expectations.states(seen, {"*": {"*": ["UP"]}, "b": {"a": ["UP", "STALE"]}}), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
