@@ -19,8 +19,6 @@ using Duration = AirTraffic::Duration;
 // Between looks at what went, and at what the air carries. What went within is taken to have gone at its end.
 constexpr Duration WatchPeriod = std::chrono::milliseconds(10);
 constexpr Duration LimitPeriod = std::chrono::milliseconds(100);
-// Between looks at whether discovery waits for the air, which has patience for six of them.
-constexpr Duration YieldPeriod = std::chrono::milliseconds(50);
 // Links wait for their turn: when to see again whether one of them has something to do meanwhile, such as to
 // let a message expire.
 constexpr Duration LookPeriod = std::chrono::milliseconds(20);
@@ -100,7 +98,6 @@ void AirTraffic::Reported(CapacityEstimate::Peer peer, Duration delay, Duration 
 {
     Watch(now);
     _estimate.Reported(peer, delay, arrivedAt, now);
-    _session->CameLate(delay);
     SetLimit(now);
 }
 
@@ -124,31 +121,10 @@ void AirTraffic::LookAtDiscovery(std::uint64_t sent)
     }
 }
 
-void AirTraffic::YieldToDiscovery(Duration now)
-{
-    _yieldedAt = now;
-    const Duration gap = _yield.LeastGap(_session->DiscoveryHeldUp(), now);
-    if (gap == std::exchange(_heldBack, gap))
-    {
-        return;
-    }
-    for (TopicPublisher &publisher : _publishers)
-    {
-        if (ImportanceOf(publisher.Rule()) > TrafficClass::Command)
-        {
-            publisher.HoldBack(gap);
-        }
-    }
-}
-
 // What went since the last look, and was not paid for.
 void AirTraffic::Watch(Duration now)
 {
     const Duration before = std::exchange(_watchedAt, now);
-    if (now - _yieldedAt >= YieldPeriod)
-    {
-        YieldToDiscovery(now);
-    }
     const std::size_t bytes = TakeSent();
     if (bytes == 0)
     {

@@ -13,7 +13,6 @@
 #include "air/AirSchedule.h"
 #include "air/CapacityEstimate.h"
 #include "air/DiscoveryBurst.h"
-#include "air/DiscoveryYield.h"
 #include "air/UnscheduledShare.h"
 #include "gateway.idl.h"
 #include "manager/AirReport.h"
@@ -36,9 +35,7 @@ namespace Rabit
 //   published message. A datagram is made when its turn has come, from what is newest then.
 // - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
 //   DDS's own, is paid for, too, and a part of a budget is kept free for it when it is due.
-// - With a budget discovery may take half of it (TransportSession::SetDiscoveryRate). Without one it hears
-//   what peers say of the delay, too, and what is published, but for what is of class command, goes once a
-//   second while discovery waits for the air (DiscoveryYield).
+// - With a budget the exchange of cards may take half of it (TransportSession::SetDiscoveryRate).
 // - Where nothing but an estimate limits it, a beat that is due is not kept waiting.
 // - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, where the
 //   air is known to carry little, an eighth of that, within 500 ms and a second; where it is not, there are
@@ -72,7 +69,6 @@ private:
     // Bytes that went since the last call.
     std::size_t TakeSent();
     void LookAtDiscovery(std::uint64_t sent);
-    void YieldToDiscovery(Duration now);
     void Watch(Duration now);
     void SetBeatPeriod(std::optional<double> budget, std::optional<double> carried);
     void SetLimit(Duration now);
@@ -100,7 +96,6 @@ private:
     AirSchedule _schedule;
     CapacityEstimate _estimate;
     DiscoveryBurst _discovery;
-    DiscoveryYield _yield;
     UnscheduledShare _unscheduled;
     StreamId _beat;
     StreamId _typeTexts;
@@ -117,8 +112,6 @@ private:
     Duration _watchedAt{0};
     Duration _servedAt{0};  // without a limit
     Duration _limitSetAt{0};
-    Duration _yieldedAt{0};
-    Duration _heldBack{0};  // between samples of one message, to discovery's good; 0: not
 };
 
 }  // namespace Rabit

@@ -23,8 +23,7 @@ TopicPublisher::TopicPublisher(const PublishRule &rule, const MessageType &type,
 
 TopicPublisher::Duration TopicPublisher::MinimumGap() const
 {
-    return std::max(_heldBack, _rule.MaxRate > 0.0 ? Duration(static_cast<std::int64_t>(1e9 / _rule.MaxRate))
-                                                   : Duration(0));
+    return _rule.MaxRate > 0.0 ? Duration(static_cast<std::int64_t>(1e9 / _rule.MaxRate)) : Duration(0);
 }
 
 TopicPublisher::Duration TopicPublisher::NextGap() const

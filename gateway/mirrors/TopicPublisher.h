@@ -48,8 +48,6 @@ public:
     // Of the State that was written last, for the beats to tell (StateVersion). None: nothing was, or what
     // was posted last can never be written, or it is telemetry.
     std::uint32_t Version() const { return _version; }
-    // Write no more often than once in this time, or as the rule says; 0: as the rule says.
-    void HoldBack(Duration gap) { _heldBack = gap; }
     // Somebody lacks the State of that version.
     void AskedFor(Duration now);
     // Fetches and writes what is due. Returns when to call again even if nothing is posted (Duration::max():
@@ -101,7 +99,6 @@ private:
     std::uint32_t _version = StateVersion::None;
     RepeatPace _repeat;
     Duration _lastWrite{0};
-    Duration _heldBack{0};
     std::uint64_t _offered = 0;  // posts, of this name, since it was attached
     std::uint64_t _postsBefore = 0;
     std::uint64_t _taken = 0;  // of them, values that were written or never can be

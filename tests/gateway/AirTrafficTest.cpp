@@ -148,47 +148,6 @@ TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenANodeHasCrashedAndCameBac
     EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * 1500);
 }
 
-// Ten a second otherwise. Publications are told of once a second.
-TEST_F(AirTrafficTest, WhatIsPublishedGoesOnceASecondWhileDiscoveryWaitsForTheAir)
-{
-    AddAircraft(AircraftConfig("uav1"));
-    fleet.Add(GroundConfig()).AddIdleManager("Commands");
-    Fly(3s, 50ms, 1s);
-    const auto written = [this] { return aircraft->Fleet().publications.at(0).written; };
-    fleet.Network.PretendDiscoveryIsHeldUp("uav1", 1s);
-    Fly(3s, 50ms, 1s);
-    const std::uint64_t before = written();
-    Fly(10s, 50ms, 1s);
-    EXPECT_GE(written() - before, 9u);
-    EXPECT_LE(written() - before, 11u);
-    fleet.Network.PretendDiscoveryIsHeldUp("uav1", 0s);
-    Fly(3s, 50ms, 1s);
-    const std::uint64_t after = written();
-    Fly(10s, 50ms, 1s);
-    EXPECT_GE(written() - after, 90u);
-}
-
-TEST_F(AirTrafficTest, CommandsDoNotGiveWayToDiscovery)
-{
-    AddAircraft(AircraftConfig("uav1"));
-    IdleManager &commands = fleet.Add(GroundConfig()).AddIdleManager("Commands");
-    Fly(3s, 50ms, 1s);
-    fleet.Network.PretendDiscoveryIsHeldUp("uav1", 1s);
-    std::uint32_t sent = 0;
-    std::uint32_t came = 0;
-    Fly(2s, 50ms, 1s,
-        [&](Duration passed)
-        {
-            if (passed % 100ms == 0s)
-            {
-                SendReport(++sent);
-            }
-            std::shared_ptr<RabitMessage> message;
-            came += commands.GetManagerMessageQueue()->GetMessage(message) ? 1 : 0;
-        });
-    EXPECT_GE(came + 1, sent);
-}
-
 // Each of them lacks the others' announcements, and all beats have much to say.
 TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenBeatsHaveMuchToSay)
 {

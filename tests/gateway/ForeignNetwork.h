@@ -79,6 +79,10 @@ public:
         }
         return _network.Result;
     }
+    WriteResult WriteTo(const std::string &, const SampleEncoder &, std::int64_t) override
+    {
+        return WriteResult::Failed;
+    }
     WriteResult Dispose(const SampleEncoder &, std::int64_t) override
     {
         ++_network.Disposals;

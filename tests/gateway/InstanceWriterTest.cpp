@@ -34,6 +34,10 @@ public:
     {
         return Take("write ", sample, time, _network.Writes);
     }
+    WriteResult WriteTo(const std::string &, const SampleEncoder &, std::int64_t) override
+    {
+        return WriteResult::Failed;
+    }
     WriteResult Dispose(const SampleEncoder &sample, std::int64_t time) override
     {
         return Take("dispose ", sample, time, _network.Disposals);

@@ -42,6 +42,10 @@ public:
     }
     std::size_t HeldBytes() const override { return _network.Held > 0 ? 1400 : 0; }
     void SendHeld() override { _network.Held -= _network.Held > 0 ? 1 : 0; }
+    WriteResult WriteTo(const std::string &, const SampleEncoder &, std::int64_t) override
+    {
+        return WriteResult::Failed;
+    }
     WriteResult Dispose(const SampleEncoder &, std::int64_t) override
     {
         ++_network.Disposals;

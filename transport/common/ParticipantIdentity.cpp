@@ -10,12 +10,19 @@ namespace
 {
 
 constexpr std::string_view Prefix = "rabit=1;incarnation=";
+constexpr std::string_view Card = ";card=1;";
 
 }  // namespace
 
-std::string MakeUserData(std::uint64_t incarnation)
+std::string MakeUserData(std::uint64_t incarnation, bool hasCard)
 {
-    return std::string(Prefix) + std::to_string(incarnation) + ";";
+    return std::string(Prefix) + std::to_string(incarnation) + std::string(hasCard ? Card : ";");
+}
+
+bool HasCard(std::span<const std::uint8_t> userData)
+{
+    const std::string_view text(reinterpret_cast<const char *>(userData.data()), userData.size());
+    return ParseUserData(userData) && text.ends_with(Card);
 }
 
 std::optional<std::uint64_t> ParseUserData(std::span<const std::uint8_t> userData)

@@ -1,7 +1,8 @@
 // What a Rabit node tells of itself in DDS discovery, alike in all DDS backends so that they know each other.
 //
 // The participant's name is the node's name. The participant's USER_DATA (OMG DDS specification, 2.2.3.1) is
-// ASCII: `rabit=1;incarnation=<decimal>;`. A participant without that USER_DATA is a plain DDS program.
+// ASCII: `rabit=1;incarnation=<decimal>;`, followed by `card=1;` if the node exchanges cards
+// (rtps/Meeting.h). A participant without that USER_DATA is a plain DDS program.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +19,12 @@ struct ParticipantIdentity
     std::uint64_t Incarnation = 0;
 };
 
-std::string MakeUserData(std::uint64_t incarnation);
+std::string MakeUserData(std::uint64_t incarnation, bool hasCard = false);
 
 // The incarnation in a participant's USER_DATA; nothing if it is not a Rabit node's. For any bytes.
 std::optional<std::uint64_t> ParseUserData(std::span<const std::uint8_t> userData);
+
+// Whether it is a node that exchanges cards. For any bytes.
+bool HasCard(std::span<const std::uint8_t> userData);
 
 }  // namespace Rabit

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/DiscoveryPace.h"
+#include "common/DiscoveryRate.h"
 #include "common/PeerPlace.h"
 
 namespace Rabit
@@ -26,10 +26,10 @@ class RejoiningBackend
 public:
     virtual ~RejoiningBackend() = default;
     // Joins the network. Of the settings, Interfaces are addresses that this host has; Peers are `address` or
-    // `address:port`. Interfaces are empty only if FindsNetworks(). Discovery heeds `pace`.
+    // `address:port`. Interfaces are empty only if FindsNetworks(). Discovery heeds `rate`.
     // Throws TransportError.
     virtual std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                                 std::shared_ptr<DiscoveryPace> pace) = 0;
+                                                 std::shared_ptr<DiscoveryRate> rate) = 0;
     // Throws TransportError if TransportSettings::BackendConfig cannot be read, or is not accepted by the
     // vendor, as far as that can be told without joining the network.
     virtual void CheckConfig(const TransportSettings &settings) const = 0;

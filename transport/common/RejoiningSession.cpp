@@ -296,7 +296,7 @@ void RejoiningSession::OnPeer(const PeerEvent &event)
 void RejoiningSession::Open(const Current &current)
 {
     _shared->Inner = _backend->Open(
-        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _pace);
+        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _rate);
     _openedPeers = current.Settings.Peers;
     try
     {

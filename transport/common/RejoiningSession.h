@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "common/AddressWatch.h"
-#include "common/DiscoveryPace.h"
+#include "common/DiscoveryRate.h"
 #include "common/DuplicateAddresses.h"
 #include "common/HandlerGate.h"
 #include "common/HostNetworks.h"
@@ -62,12 +62,7 @@ public:
     std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override;
     std::vector<std::string> RemoteTopics() const override;
     std::vector<SettingsProblem> NetworkProblems() const override;
-    void SetDiscoveryRate(double bytesPerSecond) override { _pace->Set(bytesPerSecond); }
-    void CameLate(std::chrono::nanoseconds delay) override { _pace->CameLate(delay); }
-    std::chrono::nanoseconds DiscoveryHeldUp() const override
-    {
-        return _pace->HeldUp(std::chrono::steady_clock::now());
-    }
+    void SetDiscoveryRate(double bytesPerSecond) override { *_rate = bytesPerSecond; }
 
     // Looks from now on, on a thread of the session, whenever the kernel tells of a change.
     void Watch();
@@ -99,7 +94,7 @@ private:
     const std::shared_ptr<RejoiningBackend> _backend;
     const Host _host;
     const std::shared_ptr<RejoiningShared> _shared;
-    const std::shared_ptr<DiscoveryPace> _pace = std::make_shared<DiscoveryPace>();
+    const std::shared_ptr<DiscoveryRate> _rate = std::make_shared<DiscoveryRate>(0.0);
     HandlerGate _peerGate;
     TransportCounters _before;  // of the backend's sessions before this one; guarded by Structure
     mutable std::mutex _mutex;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/ParticipantIdentity.h"
 #include "guard/DeliveryCheck.h"
 #include "guard/Fnv.h"
 #include "guard/RtpsReader.h"
@@ -78,8 +79,10 @@ struct Found
     bool Type = false;
     int Locators = 0;
     Fnv Digest;
+    Fnv DigestWithoutLease;
     std::vector<HostAddress> Hosts;
     bool BestEffort = false;
+    bool HasCard = false;
 
     void AddHost(const std::optional<HostAddress> &host)
     {
@@ -92,6 +95,11 @@ struct Found
     {
         Digest.AddByte(static_cast<std::uint8_t>(id));
         Digest.Add(value);
+        if (id != LeaseDuration)
+        {
+            DigestWithoutLease.AddByte(static_cast<std::uint8_t>(id));
+            DigestWithoutLease.Add(value);
+        }
     }
 };
 
@@ -130,6 +138,13 @@ bool IsBytes(RtpsReader value)
     const std::uint32_t size = value.U32();
     value.Skip(size);
     return value.IsGood() && value.Left() == (4 - size % 4) % 4;
+}
+
+// Of a sequence that IsBytes.
+std::span<const std::uint8_t> ContentOf(RtpsReader value)
+{
+    const std::uint32_t size = value.U32();
+    return value.Bytes(size);
 }
 
 bool IsRepresentations(RtpsReader value)
@@ -284,6 +299,8 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
         case Partition:
             return IsListOfStrings(value);
         case UserData:
+            found.HasCard = IsBytes(value) && HasCard(ContentOf(value));
+            return IsBytes(value);
         case GroupData:
         case TopicData:
             return IsBytes(value);
@@ -357,8 +374,13 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
             const bool isParticipant = writer == ParticipantWriter;
             const bool complete =
                 found.Subject != 0 && (isParticipant ? found.Lease : found.Topic && found.Type);
-            return complete ? std::optional(Announcement{found.Subject, found.Digest.Sum(), found.BestEffort,
-                                                         std::move(found.Hosts)})
+            const bool hasCard = isParticipant && found.HasCard;
+            return complete ? std::optional(Announcement{
+                                  .Subject = found.Subject,
+                                  .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
+                                  .IsBestEffort = found.BestEffort,
+                                  .Hosts = std::move(found.Hosts),
+                                  .HasCard = hasCard})
                             : std::nullopt;
         }
         const auto value = rest.Bytes(length);

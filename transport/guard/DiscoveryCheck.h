@@ -21,7 +21,10 @@ struct Announcement
     // Of a writer: that it repeats nothing.
     bool IsBestEffort = false;
     // Of a participant: where it says that it can be reached.
-    std::vector<HostAddress> Hosts;
+    std::vector<HostAddress> Hosts{};
+    // Of a participant: that it exchanges cards (rtps/Meeting.h). Its digest leaves out the lease, which its
+    // card's reader replaces.
+    bool HasCard = false;
 };
 
 // Checks the payload of a sample of one of the topics of discovery or liveliness (the known ones of

@@ -188,6 +188,12 @@ void KnownPeers::ForgetSilent(TimePoint now)
     _sweepAt = std::max(FewestToSweep, 2 * _peers.size());
 }
 
+std::optional<KnownPeers::TimePoint> KnownPeers::LastHeard(const GuidPrefix &peer) const
+{
+    const auto found = _peers.find(peer);
+    return found == _peers.end() ? std::nullopt : std::optional(found->second.Heard);
+}
+
 bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)
 {
     const auto found = _peers.find(peer);

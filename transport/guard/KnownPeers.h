@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 
 #include "guard/PeerVoice.h"
@@ -37,6 +38,8 @@ public:
     // Whether what the peer is to have said of discovery is to be looked at. What is said in the name of who
     // is not known is.
     bool Believes(const GuidPrefix &peer, const HostAddress &from, const PeerVoice::Saying &saying);
+    // When the peer was heard last; empty: it was not announced, or is forgotten.
+    std::optional<TimePoint> LastHeard(const GuidPrefix &peer) const;
     // Whether the peer was announced; if so, it is heard of at this moment.
     bool Hears(const GuidPrefix &peer, TimePoint now);
 

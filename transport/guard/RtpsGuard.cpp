@@ -95,7 +95,7 @@ void WriteNumber(const Submessage &submessage, std::int64_t number)
 }  // namespace
 
 bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from, TimePoint now,
-                      const Deliver &deliver)
+                      const Deliver &deliver, Origin origin)
 {
     if (!HasRtpsHeader(datagram))
     {
@@ -106,6 +106,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from,
     std::copy_n(datagram.begin(), RtpsHeaderSize, passage.Header.begin());
     passage.Sender = SenderOf(datagram);
     passage.From = from;
+    passage.Whence = origin;
     passage.Now = now;
     std::span<std::uint8_t> left;
     {
@@ -114,7 +115,7 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from,
     }
     for (auto &message : passage.Whole)
     {
-        passage.Honest = Admit(message, from, now, deliver) && passage.Honest;
+        passage.Honest = Admit(message, from, now, deliver, origin) && passage.Honest;
     }
     if (!left.empty())
     {
@@ -244,6 +245,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
 {
     const bool isSample =
         submessage.Kind == SubmessageKind::Data || submessage.Kind == SubmessageKind::DataFrag;
+    if (IsReplayed(delivery, passage))
+    {
+        return Verdict::Ignore;
+    }
     auto verdict = Verdict::Pass;
     const bool isHandshake = IsSecured() && delivery.Writer == HandshakeWriter;
     if (_mode == Mode::Protected && !isHandshake && delivery.Writer != ParticipantWriter &&
@@ -303,6 +308,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         if (delivery.Writer == ParticipantWriter)
         {
             _replies.OnGone(passage.Sender);
+            if (_observer != nullptr && passage.Whence == Origin::Network)
+            {
+                _observer->Gone(passage.Sender);
+            }
         }
         return Verdict::Pass;
     }
@@ -311,21 +320,9 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return Verdict::Drop;
     }
-    if (_mode == Mode::Full && delivery.Alive && delivery.Writer == ParticipantWriter)
+    if (delivery.Alive && delivery.Writer == ParticipantWriter)
     {
-        if (!_peers.Announced(passage.Sender, announcement->Digest, passage.Now))
-        {
-            return Verdict::Refuse;
-        }
-        _peers.IsAt(passage.Sender, announcement->Hosts, passage.From);
-    }
-    if (delivery.Alive && delivery.Writer == ParticipantWriter && passage.Sender != _own)
-    {
-        ++_announcementsHeard;
-        if (_replies.OnAnnouncement(passage.Sender, passage.Now))
-        {
-            _replyDue = true;
-        }
+        return JudgeParticipant(*announcement, passage);
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&
@@ -335,6 +332,44 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         return Verdict::Refuse;
     }
     return Verdict::Pass;
+}
+
+RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, const Passage &passage)
+{
+    const bool isFromNetwork = passage.Whence == Origin::Network && passage.Sender != _own;
+    if (_observer != nullptr && isFromNetwork)
+    {
+        _observer->Announced(passage.Sender, announcement.HasCard);
+        if (announcement.HasCard)
+        {
+            _peers.Hears(passage.Sender, passage.Now);
+            return Verdict::Ignore;
+        }
+    }
+    if (_mode == Mode::Full)
+    {
+        if (!_peers.Announced(passage.Sender, announcement.Digest, passage.Now))
+        {
+            return Verdict::Refuse;
+        }
+        _peers.IsAt(passage.Sender, announcement.Hosts, passage.From);
+    }
+    if (isFromNetwork)
+    {
+        ++_announcementsHeard;
+        if (_replies.OnAnnouncement(passage.Sender, passage.Now))
+        {
+            _replyDue = true;
+        }
+    }
+    return Verdict::Pass;
+}
+
+bool RtpsGuard::IsReplayed(const Delivery &delivery, const Passage &passage) const
+{
+    return _observer != nullptr && passage.Whence == Origin::Network &&
+           (delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter) &&
+           _observer->IsReplayed(passage.Sender);
 }
 
 bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
@@ -352,6 +387,10 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
     // writer: there is nobody yet who takes it.
     if (!_peers.Hears(passage.Sender, passage.Now))
     {
+        if (_observer != nullptr && passage.Whence == Origin::Network && passage.Sender != _own)
+        {
+            _observer->HeardUnknown(passage.Sender);
+        }
         return Verdict::Ignore;
     }
     switch (submessage.Kind)
@@ -425,6 +464,12 @@ void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &deliv
     const auto bytes = submessage.Body().subspan(delivery.CountAt, 4);
     const std::uint32_t theirs = RtpsReader(bytes, submessage.LittleEndian).U32();
     Write(bytes, _peers.CountOf(sender, delivery.Writer, theirs), submessage.LittleEndian);
+}
+
+std::optional<RtpsGuard::TimePoint> RtpsGuard::LastHeard(const GuidPrefix &peer)
+{
+    const std::lock_guard lock(_mutex);
+    return _peers.LastHeard(peer);
 }
 
 void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)

@@ -17,11 +17,14 @@
 #include "guard/DeliveryCheck.h"
 #include "guard/DiscoveryFragments.h"
 #include "guard/KnownPeers.h"
+#include "guard/PeerObserver.h"
 #include "guard/RtpsMessage.h"
 #include "guard/SentFragments.h"
 
 namespace Rabit::Rtps
 {
+
+struct Announcement;
 
 // What is let through is sound in itself (RtpsMessage, DeliveryCheck, DiscoveryCheck) and agrees with what
 // its sender has said before (KnownPeers, SentFragments). Whoever forges a neighbour's datagrams with care
@@ -59,11 +62,25 @@ public:
     {
     }
 
+    // Tells the observer, which must outlive the guard, of participants. Before anything is admitted. With an
+    // observer, announcements of participants that have a card are not handed on: the observer sees to it
+    // that the vendor is told of them.
+    void SetObserver(PeerObserver &observer) { _observer = &observer; }
+    // When a participant was heard last; empty: its announcement has not been admitted.
+    std::optional<TimePoint> LastHeard(const GuidPrefix &peer);
+
+    // Where a datagram comes from.
+    enum class Origin
+    {
+        Network,
+        Card  // it says what a card says, in the name of the participant whose card it is
+    };
+
     // Hands on what of a datagram the vendor may see: all, a part, or nothing. Parts that it must not see are
     // blanked in place, and the counts that it tells repeats of announcements and heartbeats by are replaced.
     // `from` is whence it came. Returns false if something was kept back that an honest sender does not send.
     bool Admit(std::span<std::uint8_t> datagram, const HostAddress &from, TimePoint now,
-               const Deliver &deliver);
+               const Deliver &deliver, Origin origin = Origin::Network);
 
     // Takes note of what we send.
     void Sending(std::span<const std::uint8_t> datagram);
@@ -92,6 +109,7 @@ private:
         GuidPrefix Sender{};
         GuidPrefix Destination{};
         HostAddress From{};
+        Origin Whence = Origin::Network;
         std::uint64_t Stamp = 0;  // INFO_TS; 0: none
         TimePoint Now{};
         bool Useful = false;
@@ -105,6 +123,9 @@ private:
     std::span<std::uint8_t> Filter(Passage &passage);
     Verdict Judge(const Submessage &submessage, Passage &passage);
     bool IsForOthers(const Passage &passage) const;
+    // Whether the observer sees to this instead of the network.
+    bool IsReplayed(const Delivery &delivery, const Passage &passage) const;
+    Verdict JudgeParticipant(const Announcement &announcement, const Passage &passage);
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     // Whether what is said of discovery comes from whose name it is said in, as far as an address tells.
@@ -118,6 +139,7 @@ private:
 
     const Mode _mode;
     const Requests _requests;
+    PeerObserver *_observer = nullptr;
     std::mutex _mutex;              // several sockets receive at once
     KnownPeers _peers;              // guarded by _mutex
     SentFragments _sent;            // guarded by _mutex

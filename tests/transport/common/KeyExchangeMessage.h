@@ -67,8 +67,8 @@ private:
     }
     static Bytes ContentOf(const std::string &step, std::uint8_t addressee, std::size_t size)
     {
-        Bytes content(4 + 48, 0);
-        content.insert(content.end(), 12, addressee);
+        Bytes content(4 + 48 + 12, addressee);
+        std::fill_n(content.begin(), 4 + 48, std::uint8_t{0});
         const std::string name = "DDS:Auth:PKI-DH:1.0+" + step;
         content.insert(content.end(), name.begin(), name.end());
         content.resize(std::max(size, content.size()), 0);

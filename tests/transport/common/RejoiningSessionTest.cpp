@@ -65,6 +65,10 @@ public:
         _script.IsWriting = false;
         return WriteResult::Ok;
     }
+    WriteResult WriteTo(const std::string &, const SampleEncoder &, std::int64_t) override
+    {
+        return WriteResult::Failed;
+    }
     WriteResult Dispose(const SampleEncoder &, std::int64_t) override { return WriteResult::Ok; }
     int MatchedReaders() const override { return 3; }
 
@@ -129,7 +133,7 @@ class ScriptedBackend final : public RejoiningBackend
 public:
     explicit ScriptedBackend(Script &script) : _script(script) {}
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryPace> /*pace*/) override
+                                         std::shared_ptr<DiscoveryRate> /*rate*/) override
     {
         EXPECT_FALSE(_script.IsOpen);
         if (_script.InOpen)

@@ -31,6 +31,13 @@ protected:
         settings.Log = std::move(log);
         return Net().Backend().Open(settings, std::move(onPeer));
     }
+    // One that forgets peers after three seconds of silence.
+    SessionPtr OpenForgetful(const std::string &node, PeerHandler onPeer)
+    {
+        TransportSettings settings = Net().SettingsFor(node, 1);
+        settings.Memory = std::chrono::seconds(3);
+        return Net().Backend().Open(settings, std::move(onPeer));
+    }
     TransportHarness &Net() { return *_harness; }
     bool Until(const std::function<bool()> &condition) { return Net().Until(condition); }
 

@@ -62,7 +62,7 @@ TEST_P(Conformance, AKilledNodeIsLostAndItsInstancesEnd)
 {
     PeerRecorder atGround;
     SampleRecorder recorder;
-    const auto ground = Open("ground", 1, atGround.Handler());
+    const auto ground = OpenForgetful("ground", atGround.Handler());
     const auto reader = ground->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
     const auto remote = Net().StartRemote("uav9", 99);
     ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Appeared, "uav9", 99) == 1; }));
@@ -83,7 +83,7 @@ TEST_P(Conformance, AKilledNodeThatReturnsIsHeardAgain)
 {
     PeerRecorder atGround;
     SampleRecorder recorder;
-    const auto ground = Open("ground", 1, atGround.Handler());
+    const auto ground = OpenForgetful("ground", atGround.Handler());
     const auto reader = ground->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
     const auto first = Net().StartRemote("uav9", 98);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));

@@ -114,7 +114,6 @@ private:
     void Came(const Rabit::SampleInfo &info)
     {
         _heard.Add(info.Node);
-        _session->CameLate(std::chrono::nanoseconds(Now() - info.SourceTime));
     }
     bool IsMatched() const
     {

@@ -60,11 +60,11 @@ void AddSecurity(const TransportSecurity &security, dds_qos_t *qos)
     add("dds.sec.access.permissions", "file:" + security.Permissions);
 }
 
-Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain)
+Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain, bool hasCard)
 {
     const Qos qos = MakeQos();
     dds_qset_entity_name(qos.get(), settings.Node.c_str());
-    const std::string data = MakeUserData(settings.Incarnation);
+    const std::string data = MakeUserData(settings.Incarnation, hasCard);
     dds_qset_userdata(qos.get(), data.data(), data.size());
     if (settings.Security)
     {
@@ -146,15 +146,15 @@ RemoteEndpoint Described(const dds_builtintopic_endpoint_t &announced, const Wri
 }  // namespace
 
 SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<DiscoveryPace> pace)
+                         std::shared_ptr<DiscoveryRate> rate)
     : _log(std::make_shared<SessionLog>(Checked(settings))),
       _topics(_log),
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer)),
       _proof(settings, _log),
-      _domain(settings, _log, std::move(pace)),
+      _domain(settings, _log, std::move(rate)),
       _announcements(AnswerGap(settings)),
-      _participant(MakeParticipant(settings, _domain.Id()))
+      _participant(MakeParticipant(settings, _domain.Id(), _domain.HasCard()))
 {
     if (settings.SharedMemory)
     {
@@ -241,7 +241,10 @@ void SessionCore::OnParticipants(dds_entity_t reader, void *self)
                                                 }
                                                 else if (info.valid_data)
                                                 {
-                                                    core._announcements.OnPeer();
+                                                    if (!core._domain.IsReplayed(prefix))
+                                                    {
+                                                        core._announcements.OnPeer();
+                                                    }
                                                     core.PeerAppeared(prefix, peer.qos);
                                                 }
                                             });
@@ -314,8 +317,12 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
 void SessionCore::PeerGone(const Prefix &prefix)
 {
     const ddsi_guid_t participant = ParticipantOf(prefix);
-    const auto how =
-        RabitCycloneLeaseHasExpired(&participant) ? PeerEvent::Kind::Lost : PeerEvent::Kind::Left;
+    const bool isSilent = RabitCycloneLeaseHasExpired(&participant) || _domain.WasEnded(prefix);
+    const auto how = isSilent ? PeerEvent::Kind::Lost : PeerEvent::Kind::Left;
+    if (how == PeerEvent::Kind::Lost)
+    {
+        _domain.Lost(prefix);
+    }
     Identity identity;
     {
         const std::lock_guard lock(_mutex);

@@ -15,7 +15,7 @@
 #include "Guid.h"
 #include "VendorDomain.h"
 #include "Worker.h"
-#include "common/DiscoveryPace.h"
+#include "common/DiscoveryRate.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -34,7 +34,7 @@ class SessionCore
 {
 public:
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryPace> pace);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate);
     // Leaves it.
     ~SessionCore();
     SessionCore(const SessionCore &) = delete;

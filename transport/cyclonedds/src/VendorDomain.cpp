@@ -75,6 +75,123 @@ bool IsGroup(const DirectAnnouncements::Address &address)
 
 }  // namespace
 
+void VendorDomain::NoteRoute(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route)
+{
+    constexpr std::size_t most = 4096;
+    Rtps::GuidPrefix to{};
+    VisitSubmessages(datagram,
+                     [&to](const RtpsSubmessage<const std::uint8_t> &part)
+                     {
+                         if (Rtps::SubmessageKind{part.Kind} == Rtps::SubmessageKind::InfoDestination &&
+                             part.Body().size() == to.size())
+                         {
+                             std::copy_n(part.Body().begin(), to.size(), to.begin());
+                         }
+                     });
+    const std::lock_guard lock(_cardMutex);
+    if (to != Rtps::GuidPrefix{} && (_cardRoutes.size() < most || _cardRoutes.contains(to)))
+    {
+        _cardRoutes.insert_or_assign(to, route);
+    }
+}
+
+void VendorDomain::NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup)
+{
+    constexpr std::size_t most = 4096;
+    const std::lock_guard lock(_cardMutex);
+    if (isGroup)
+    {
+        _groups.emplace(route.connection, route);
+        return;
+    }
+    const auto isSame = [&route](const RabitCycloneRoute &other)
+    {
+        return other.connection == route.connection && other.port == route.port &&
+               std::equal(std::begin(other.address), std::end(other.address), std::begin(route.address));
+    };
+    if (_hasPeers && _listed.size() < most && std::none_of(_listed.begin(), _listed.end(), isSame))
+    {
+        _listed.push_back(route);
+    }
+}
+
+void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram)
+{
+    std::vector<std::pair<RabitCycloneRoute, bool>> ways;
+    {
+        const std::lock_guard lock(_cardMutex);
+        const auto route =
+            to && (_groups.empty() || !_listed.empty()) ? _cardRoutes.find(*to) : _cardRoutes.end();
+        if (route != _cardRoutes.end())
+        {
+            ways.emplace_back(route->second, false);
+        }
+        else
+        {
+            for (const auto &[connection, group] : _groups)
+            {
+                ways.emplace_back(group, true);
+            }
+            for (const RabitCycloneRoute &listed : _listed)
+            {
+                ways.emplace_back(listed, false);
+            }
+        }
+    }
+    for (const auto &[way, toGroup] : ways)
+    {
+        RabitCycloneSend(_watch, &way, toGroup, datagram.data(), datagram.size());
+    }
+}
+
+// The vendor takes what comes on its receiving thread alone.
+void VendorDomain::DeliverCard(const Rtps::HostAddress &from, std::span<std::uint8_t> datagram)
+{
+    const auto handOn = [this](std::span<std::uint8_t> admitted)
+    {
+        const std::lock_guard lock(_cardMutex);
+        _delivered.emplace_back(admitted.begin(), admitted.end());
+    };
+    if (!_guard.Admit(datagram, from, std::chrono::steady_clock::now(), std::cref(handOn),
+                      Rtps::RtpsGuard::Origin::Card))
+    {
+        _log->MalformedDatagram();
+    }
+    RabitCycloneWake(_watch);
+}
+
+std::size_t VendorDomain::JoinDelivered(std::span<std::uint8_t> buffer, std::size_t size)
+{
+    std::vector<std::vector<std::uint8_t>> now;
+    bool isMore = false;
+    {
+        const std::lock_guard lock(_cardMutex);
+        std::size_t room = (buffer.size() - size) / 2;
+        auto at = _delivered.begin();
+        while (at != _delivered.end() && at->size() <= room)
+        {
+            room -= at->size();
+            ++at;
+        }
+        now.assign(std::make_move_iterator(_delivered.begin()), std::make_move_iterator(at));
+        _delivered.erase(_delivered.begin(), at);
+        isMore = !_delivered.empty();
+    }
+    if (isMore)
+    {
+        RabitCycloneWake(_watch);
+    }
+    return Rtps::JoinMessages(now, buffer, size);
+}
+
+void VendorDomain::Lost(const Rtps::GuidPrefix &participant)
+{
+    if (_meets)
+    {
+        _meeting.Lost(participant);
+    }
+}
+
 bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size,
                            const RabitCycloneRoute *route)
 {
@@ -84,6 +201,11 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     {
         LeaveOutIdleEndpoints({datagram, size});
     }
+    if (domain._meets && domain._meeting.Sending({datagram, size}, *domain._rate))
+    {
+        domain.NoteRoute({datagram, size}, *route);
+        return false;
+    }
     const DirectAnnouncements::Address address{route->address[0], route->address[1], route->address[2],
                                                route->address[3]};
     const bool direct = domain._direct.MayGo(address);
@@ -91,9 +213,9 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     {
         return false;
     }
-    if (announcing.Any && IsGroup(address))
+    if (announcing.Any)
     {
-        domain._outbox.HasGroup(route->connection);
+        domain.NoteAnnouncement(*route, IsGroup(address));
     }
     if (domain._secured)
     {
@@ -105,12 +227,6 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
             return false;
         }
     }
-    if (auto parts = ReadDiscoveryParts({datagram, size}))
-    {
-        const bool hears = IsGroup(address) || (domain._multicast && !direct);
-        return !domain._outbox.Put({datagram, size}, std::move(*parts), *route, hears);
-    }
-    announcing.Any ? domain._outbox.Announced({datagram, size}) : domain._outbox.Sent(size);
     return true;
 }
 
@@ -175,12 +291,22 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     {
         std::copy_n(from, host.size(), host.begin());
     }
-    const std::size_t admitted = domain.Admit({datagram, capacity}, size, host);
+    if (domain._meets && Rtps::IsCardMessage({datagram, size}))
+    {
+        if (!domain._meeting.Received({datagram, size}, host))
+        {
+            domain._log->MalformedDatagram();
+        }
+        return domain.JoinDelivered({datagram, capacity}, 0);
+    }
+    const std::size_t alone = domain.Admit({datagram, capacity}, size, host);
+    const std::size_t admitted = domain._meets && !IsOfSamples({datagram, alone})
+                                     ? domain.JoinDelivered({datagram, capacity}, alone)
+                                     : alone;
     if (IsOfSamples({datagram, admitted}))
     {
         return admitted;
     }
-    domain._outbox.Received({datagram, admitted});
     if (domain._secured)
     {
         domain._handshakes.Received({datagram, admitted}, std::chrono::steady_clock::now());
@@ -204,15 +330,24 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
 }
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                           std::shared_ptr<DiscoveryPace> pace)
+                           std::shared_ptr<DiscoveryRate> rate)
     : _log(log),
       _multicast(IsMulticastForData(settings)),
       _secured(settings.Security.has_value()),
+      _hasPeers(!settings.Peers.empty()),
+      _meeting({.Period = settings.AnnouncementPeriod,
+                .Memory = IsMulticastForData(settings) ? settings.Memory : settings.Lease}),
       // The vendor knows by itself which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
-      _outbox(std::move(pace), [this](const auto &route, bool toGroup, auto datagram)
-              { RabitCycloneSend(_watch, &route, toGroup, datagram.data(), datagram.size()); })
+      _rate(rate),
+      _outbox(std::move(rate), [this](const auto &route, auto datagram)
+              { RabitCycloneSend(_watch, &route, false, datagram.data(), datagram.size()); })
 {
+    _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
+    if (_meets)
+    {
+        _guard.SetObserver(_meeting);
+    }
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
     if (settings.Security && _id != static_cast<dds_domainid_t>(settings.Domain))
@@ -259,6 +394,13 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                                 .hold = &Hold,
                                 .sent = &OnSent,
                                 .received = &OnReceived});
+    _meets = _meets && _watch != nullptr;
+    if (_meets)
+    {
+        _meeting.Start({.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
+                        .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
+                        .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
+    }
     if (_watch == nullptr)
     {
         log->Line(
@@ -283,6 +425,7 @@ bool VendorDomain::IsUnheard(const ddsi_guid_t &participant) const
 
 VendorDomain::~VendorDomain()
 {
+    _meeting.Stop();
     _outbox.Stop();
     _entity.Reset();
     RabitCycloneUnwatch(_watch);

@@ -381,6 +381,14 @@ void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, 
     }
 }
 
+void RabitCycloneWake(const void *watch)
+{
+    const struct Watch *of = watch;
+    unsigned char nothing = 0;
+    const ddsrt_iovec_t whole = {&nothing, sizeof nothing};
+    of->write(of->domain->xmit_conns[0], &of->domain->loc_meta_uc, 1, &whole, 0);
+}
+
 void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant)
 {
     struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;

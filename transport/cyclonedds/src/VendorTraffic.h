@@ -54,6 +54,9 @@ extern "C"
     void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, bool toGroup,
                           const unsigned char *datagram, size_t size);
 
+    /* Sends one zero byte to the own address of discovery, so that a receiving thread calls `received`. */
+    void RabitCycloneWake(const void *watch);
+
     /* Announces an own participant of a domain that is watched to all, now. */
     void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant);
     /* Whether somebody whom it knows has not answered yet what it said of its writers: whoever knows us does.

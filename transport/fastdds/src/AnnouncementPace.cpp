@@ -6,7 +6,7 @@ namespace Rabit::FastDds
 {
 
 AnnouncementPace::AnnouncementPace(std::chrono::milliseconds period)
-    : _longest(std::min<std::chrono::steady_clock::duration>(LongestGap, period / 2))
+    : _longest(std::min<std::chrono::steady_clock::duration>(LongestGap, period / 2)), _usual(period / 2)
 {
 }
 
@@ -32,10 +32,18 @@ void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoi
     _told.clear();
 }
 
+// The vendor announces the participant besides whenever it finds another one; those who have a card need
+// none.
+bool AnnouncementPace::IsWanted(std::uint64_t heard, TimePoint now) const
+{
+    return heard != _heard || (_initial > 0 && now >= _nextInitial) || now - *_begun >= _usual;
+}
+
 bool AnnouncementPace::MayGo(Destination destination, std::uint64_t content, std::uint64_t heard,
                              TimePoint now)
 {
-    if (!_begun || content != _content || now - *_begun >= _gap || _told.size() >= MostDestinations)
+    if (!_begun || content != _content || _told.size() >= MostDestinations ||
+        (now - *_begun >= _gap && IsWanted(heard, now)))
     {
         Begin(content, heard, now);
     }

@@ -42,10 +42,12 @@ public:
 
 private:
     void Begin(std::uint64_t content, std::uint64_t heard, TimePoint now);
+    bool IsWanted(std::uint64_t heard, TimePoint now) const;
 
     const std::chrono::steady_clock::duration _longest;
-    std::set<Destination> _told;      // in this round
-    std::optional<TimePoint> _begun;  // this round
+    const std::chrono::steady_clock::duration _usual;  // after so long an announcement is one of the period's
+    std::set<Destination> _told;                       // in this round
+    std::optional<TimePoint> _begun;                   // this round
     std::uint64_t _content = 0;
     std::uint64_t _heard = 0;
     std::chrono::steady_clock::duration _gap{};  // to the next round

@@ -20,8 +20,8 @@ namespace
 class FastDdsSession final : public BackendSession
 {
 public:
-    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryPace> pace)
-        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(pace)))
+    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate)
+        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(rate)))
     {
     }
     ~FastDdsSession() override { _core->Close(); }
@@ -58,9 +58,9 @@ class FastDdsBackend final : public RejoiningBackend
 {
 public:
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryPace> pace) override
+                                         std::shared_ptr<DiscoveryRate> rate) override
     {
-        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(pace));
+        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(rate));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {

@@ -18,7 +18,6 @@
 #include "HeartbeatPace.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
-#include "common/DiscoveryOutbox.h"
 #include "common/HeldDatagrams.h"
 #include "common/KeyExchangeOutbox.h"
 #include "common/SendingSamples.h"
@@ -83,8 +82,23 @@ public:
           _announcements(descriptor.Chosen().AnnouncementPeriod)
     {
         _descriptor.Chosen().Owed->Set([this] { SendOwed(); });
+        if (MeetingThread *const meeting = Meeting())
+        {
+            _guard.SetObserver(*meeting);
+            meeting->Start(
+                {.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
+                 .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
+                 .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
+        }
     }
-    ~GuardedUdp() override { _descriptor.Chosen().Owed->Set({}); }
+    ~GuardedUdp() override
+    {
+        if (MeetingThread *const meeting = Meeting())
+        {
+            meeting->Stop();
+        }
+        _descriptor.Chosen().Owed->Set({});
+    }
 
     TransportDescriptorInterface *get_configuration() override { return &_descriptor; }
 
@@ -117,14 +131,18 @@ public:
             WriteWithoutProperties(datagram, _shortened);
             datagram = _shortened;
         }
+        if (Meeting() != nullptr && !message.HasSamples &&
+            Meeting()->Sending(datagram, *_descriptor.Chosen().Rate))
+        {
+            NoteRoute(sender, datagram, *begin, *end);
+            return true;
+        }
         const auto now = std::chrono::steady_clock::now();
         const std::uint32_t socket = NumberOf(sender);
         if (message.Request && !_requests.MayGo(socket, *message.Request, now))
         {
             return true;
         }
-        const auto parts =
-            message.HasSamples || message.Announcement ? std::nullopt : ReadDiscoveryParts(datagram);
         _chosen.clear();
         for (; *begin != *end; ++*begin)
         {
@@ -133,8 +151,7 @@ public:
             const bool held =
                 (message.Announcement &&
                  !_announcements.MayGo(number, *message.Announcement, _guard.AnnouncementsHeard(), now)) ||
-                (message.Heartbeat && !_heartbeats.MayGo(number, *message.Heartbeat, now)) ||
-                (parts && Leaves(socket, destination) && Put(sender, destination, datagram, *parts, now));
+                (message.Heartbeat && !_heartbeats.MayGo(number, *message.Heartbeat, now));
             if (!held)
             {
                 _chosen.push_back(destination);
@@ -143,6 +160,11 @@ public:
             {
                 _groups.emplace(sender, destination);
             }
+            else if (message.Announcement && _descriptor.Chosen().HasPeers &&
+                     _listed.size() < AnnouncementPace::MostDestinations)
+            {
+                _listed.emplace(sender, destination);
+            }
         }
         if (message.Announcement)
         {
@@ -150,14 +172,6 @@ public:
             {
                 _descriptor.Chosen().AnnounceAt(*due);
             }
-        }
-        if (parts)
-        {
-            ScheduleOwed();
-        }
-        if (!message.HasSamples)
-        {
-            CountPast(sender, datagram, message.Announcement.has_value(), now);
         }
         if (message.IsOfSamplesToOne && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
         {
@@ -172,6 +186,18 @@ public:
     {
         // The vendor's receive buffer, which is not used again before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
+        if (Meeting() != nullptr && IsCardMessage(datagram))
+        {
+            {
+                const std::lock_guard lock(_receiving);
+                _receiver = {next, local, remote};
+            }
+            if (!Meeting()->Received(datagram, HostOf(remote)))
+            {
+                _descriptor.Chosen().OnDropped();
+            }
+            return;
+        }
         const auto handOn = [&](std::span<std::uint8_t> admitted)
         {
             Translate(admitted);
@@ -194,6 +220,71 @@ public:
 
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
+    // Where what a card says is handed to.
+    struct Receiver
+    {
+        TransportReceiverInterface *Next = nullptr;
+        rtps::Locator_t Local;
+        rtps::Locator_t Remote;
+    };
+
+    MeetingThread *Meeting() const { return _descriptor.Chosen().Meeting.get(); }
+    // How a participant is reached that the vendor has said something to, with _sending held.
+    void NoteRoute(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
+                   rtps::LocatorsIterator &begin, const rtps::LocatorsIterator &end)
+    {
+        const GuidPrefix to = DestinationOf(datagram);
+        for (; to != GuidPrefix{} && begin != end; ++begin)
+        {
+            if (Leaves(NumberOf(sender), *begin) && !rtps::IPLocator::isMulticast(*begin) &&
+                (_cardRoutes.size() < AnnouncementPace::MostDestinations || _cardRoutes.contains(to)))
+            {
+                NumberOf(*begin);
+                _cardRoutes.insert_or_assign(to, std::pair(sender, *begin));
+            }
+        }
+    }
+    // On the thread of the meeting.
+    void SendCard(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)
+    {
+        constexpr std::chrono::milliseconds LongestWait{100};
+        const auto timeout = std::chrono::steady_clock::now() + LongestWait;
+        const std::lock_guard lock(_sending);
+        const auto send = [&](const std::pair<rtps::SenderResource *, rtps::Locator_t> &way)
+        {
+            _chosen.assign(1, way.second);
+            SendChosen(way.first, datagram, false, timeout);
+        };
+        const auto route =
+            to && (_groups.empty() || !_listed.empty()) ? _cardRoutes.find(*to) : _cardRoutes.end();
+        if (route != _cardRoutes.end())
+        {
+            send(route->second);
+            return;
+        }
+        std::for_each(_groups.begin(), _groups.end(), send);
+        std::for_each(_listed.begin(), _listed.end(), send);
+    }
+    // On the thread of the meeting. The vendor takes what comes on several threads.
+    void DeliverCard(const HostAddress &from, std::span<std::uint8_t> datagram)
+    {
+        Receiver receiver;
+        {
+            const std::lock_guard lock(_receiving);
+            receiver = _receiver;
+        }
+        const auto handOn = [&](std::span<std::uint8_t> admitted)
+        {
+            receiver.Next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()),
+                                          receiver.Local, receiver.Remote);
+        };
+        if (receiver.Next != nullptr && !_guard.Admit(datagram, from, std::chrono::steady_clock::now(),
+                                                      std::cref(handOn), RtpsGuard::Origin::Card))
+        {
+            _descriptor.Chosen().OnDropped();
+        }
+    }
+
     // Whether that socket does send to a destination that it is given.
     bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const
     {
@@ -201,43 +292,12 @@ private:
                rtps::IPLocator::isMulticast(destination) != (socket == 0);
     }
 
-    // Into the outbox, with _sending held. False if it is to go as it is.
-    bool Put(rtps::SenderResource *sender, const rtps::Locator_t &destination,
-             std::span<const std::uint8_t> datagram, const std::vector<DiscoveryPart> &parts, TimePoint now)
-    {
-        const bool toGroup = rtps::IPLocator::isMulticast(destination);
-        if (toGroup && _groups.empty())
-        {
-            return false;
-        }
-        constexpr std::uint64_t Groups = 0;  // all of them
-        const auto route = static_cast<std::uint64_t>(NumberOf(sender)) << 32 | NumberOf(destination);
-        _routes.insert_or_assign(route, std::pair(sender, destination));
-        _outbox.SetRate(_descriptor.Chosen().Pace->Get());
-        for (const DiscoveryPart &part : parts)
-        {
-            const bool hears = toGroup || (!_groups.empty() && _descriptor.Chosen().IsInGroup(part.About.To));
-            _outbox.Put(datagram, part,
-                        {.Address = route, .Group = hears ? std::optional(Groups) : std::nullopt}, now);
-        }
-        _descriptor.Chosen().Pace->SetHeldUpSince(_outbox.HeldUpSince());
-        return true;
-    }
     std::size_t DatagramsTo(rtps::SenderResource *sender)
     {
         const std::uint32_t socket = NumberOf(sender);
         return static_cast<std::size_t>(std::count_if(_chosen.begin(), _chosen.end(),
                                                       [&](const rtps::Locator_t &destination)
                                                       { return Leaves(socket, destination); }));
-    }
-    // What goes to _chosen without waiting in the outbox.
-    void CountPast(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram, bool announcement,
-                   TimePoint now)
-    {
-        for (std::size_t i = DatagramsTo(sender); i > 0; --i)
-        {
-            announcement ? _outbox.Announced(datagram, now) : _outbox.Sent(datagram.size(), now);
-        }
     }
     // To _chosen, with _sending held.
     bool SendChosen(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram, bool samples,
@@ -269,40 +329,15 @@ private:
     }
     void SendOwed()
     {
-        constexpr std::chrono::milliseconds LongestWait{100};
         const std::lock_guard lock(_sending);
-        const auto now = std::chrono::steady_clock::now();
-        for (const auto delay : _descriptor.Chosen().Pace->TakeLate())
-        {
-            _outbox.CameLate(delay, now);
-        }
-        for (const DiscoveryOutbox::Datagram &owed : _outbox.TakeDue(now))
-        {
-            if (!owed.ToGroup)
-            {
-                const auto &[sender, destination] = _routes.at(owed.Address);
-                _chosen.assign(1, destination);
-                SendChosen(sender, owed.Bytes, false, now + LongestWait);
-                continue;
-            }
-            for (const auto &[sender, group] : _groups)
-            {
-                _chosen.assign(1, group);
-                SendChosen(sender, owed.Bytes, false, now + LongestWait);
-            }
-        }
-        _descriptor.Chosen().Pace->SetHeldUpSince(_outbox.HeldUpSince());
-        SendExchanges(now);
+        SendExchanges(std::chrono::steady_clock::now());
     }
     // With _sending held.
     void ScheduleOwed()
     {
-        const auto discovery = _outbox.Due();
-        const auto exchange = _exchanges.Due();
-        if (discovery || exchange)
+        if (const auto due = _exchanges.Due())
         {
-            constexpr TimePoint Never = TimePoint::max();
-            _descriptor.Chosen().SendOwedAt(std::min(discovery.value_or(Never), exchange.value_or(Never)));
+            _descriptor.Chosen().SendOwedAt(*due);
         }
     }
 
@@ -318,7 +353,7 @@ private:
     {
         const auto now = std::chrono::steady_clock::now();
         const std::uint32_t socket = NumberOf(sender);
-        _exchanges.SetRate(_descriptor.Chosen().Pace->Get());
+        _exchanges.SetRate(*_descriptor.Chosen().Rate);
         _self = what.From;
         for (; begin != end; ++begin)
         {
@@ -378,7 +413,6 @@ private:
         }
         const auto now = std::chrono::steady_clock::now();
         const std::lock_guard lock(_sending);
-        _outbox.Received(datagram, now);
         for (const Acknowledgement &acknowledgement : found)
         {
             _heartbeats.OnAcknowledgement(acknowledgement, now);
@@ -408,16 +442,19 @@ private:
     RtpsGuard _guard;
     std::mutex _receiving;                  // several sockets receive at once
     AcknowledgementTranslator _translator;  // guarded by _receiving
+    Receiver _receiver;                     // guarded by _receiving
     std::mutex _sending;                    // guards what follows
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
-    DiscoveryOutbox _outbox;
     KeyExchangeOutbox _exchanges;
     GuidPrefix _self{};  // once something was exchanged
     std::map<std::uint64_t, std::pair<rtps::SenderResource *, rtps::Locator_t>> _routes;
     // Where announcements go to all.
     std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _groups;
+    // Where announcements go besides.
+    std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _listed;
+    std::map<GuidPrefix, std::pair<rtps::SenderResource *, rtps::Locator_t>> _cardRoutes;
     std::map<rtps::Locator_t, std::uint32_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;

@@ -3,7 +3,8 @@
 // kept from it, and what it would not heed of a peer that had lost us is put into its form (RtpsGuard.h);
 // multicast groups that peers name are not sent to where multicast may not pass; the vendor's statistics are
 // not sent; and what it repeats in haste, or says to each by itself, goes at a measured pace
-// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/DiscoveryOutbox.h, common/KeyExchangeOutbox.h).
+// (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/KeyExchangeOutbox.h), or by cards
+// (rtps/Meeting.h).
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -15,8 +16,9 @@
 #include <memory>
 
 #include "DeferredCall.h"
-#include "common/DiscoveryPace.h"
+#include "common/DiscoveryRate.h"
 #include "guard/RtpsGuard.h"
+#include "rtps/MeetingThread.h"
 
 namespace Rabit::FastDds
 {
@@ -54,7 +56,11 @@ public:
         // was named, on a thread without locks.
         std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
         std::shared_ptr<DeferredCall> Owed;
-        std::shared_ptr<DiscoveryPace> Pace;
+        // Null: endpoints are found as the vendor does it alone.
+        std::shared_ptr<Rtps::MeetingThread> Meeting;
+        // Peers are listed, who may not hear the group.
+        bool HasPeers = false;
+        std::shared_ptr<DiscoveryRate> Rate;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

@@ -6,6 +6,7 @@
 
 #include "guard/DeliveryCheck.h"
 #include "guard/RtpsReader.h"
+#include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::FastDds
 {
@@ -16,8 +17,7 @@ namespace
 {
 
 constexpr std::uint8_t Final = 0x02;      // of an ACKNACK: no answer is wanted
-constexpr std::uint8_t InlineQos = 0x02;  // of a DATA: as one that disposes has
-constexpr std::uint8_t HasData = 0x04;
+constexpr std::uint8_t InlineQos = 0x02;  // of a DATA
 // RTPS 2.3, 9.4.1 and 9.4.5
 constexpr std::size_t PrefixAt = 8;
 constexpr std::size_t ReaderInData = 4;
@@ -51,10 +51,11 @@ GuidPrefix PrefixIn(std::span<const std::uint8_t> bytes)
     return prefix;
 }
 
-// Of a DATA.
-bool IsAnnouncement(const Part &part, EntityId writer)
+// A DATA by which a participant says that it is there.
+bool IsAnnouncement(const Part &part)
 {
-    return writer == ParticipantWriter && (part.Flags & HasData) != 0 && (part.Flags & InlineQos) == 0;
+    const auto said = ReadAnnouncement(part.Whole);
+    return said && said->Writer == ParticipantWriter && said->Alive;
 }
 
 std::uint64_t DigestOf(std::span<const std::uint8_t> bytes)
@@ -100,7 +101,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 const EntityId writer = body.Entity();
                 message.HasSamples = message.HasSamples || !IsBuiltin(writer);
                 const bool whole = SubmessageKind{part.Kind} == SubmessageKind::Data;
-                const bool announces = whole && IsAnnouncement(part, writer);
+                const bool announces = whole && IsAnnouncement(part);
                 (announces ? announcements : others) += 1;
                 samples += whole && !IsBuiltin(writer) ? 1 : 0;
                 // Whatever reader it is for.
@@ -148,6 +149,21 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     return message;
 }
 
+GuidPrefix DestinationOf(std::span<const std::uint8_t> datagram)
+{
+    GuidPrefix to{};
+    VisitSubmessages(
+        datagram,
+        [&to](const Part &part)
+        {
+            if (SubmessageKind{part.Kind} == SubmessageKind::InfoDestination && to == GuidPrefix{})
+            {
+                to = PrefixIn(part.Body());
+            }
+        });
+    return to;
+}
+
 void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to)
 {
     to.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(
@@ -165,26 +181,26 @@ void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector
 void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to)
 {
     constexpr std::uint16_t Properties = 0x0059;
-    constexpr std::size_t EncapsulationAt = SubmessageHeaderSize + 20;
-    constexpr std::size_t ListAt = EncapsulationAt + 4;
+    constexpr std::size_t FixedSize = SubmessageHeaderSize + 20;  // up to the inline QoS
+    constexpr std::size_t EncapsulationSize = 4;
     const auto add = [&to](std::span<const std::uint8_t> bytes)
     { to.insert(to.end(), bytes.begin(), bytes.end()); };
     to.clear();
     add(announcement.first(std::min(Rabit::RtpsHeaderSize, announcement.size())));
     const auto visit = [&](const Part &part)
     {
-        RtpsReader body(part.Body(), part.LittleEndian);
-        body.Skip(ReaderInData + EntitySize);
-        if (SubmessageKind{part.Kind} != SubmessageKind::Data || !IsAnnouncement(part, body.Entity()) ||
-            part.Whole.size() < ListAt)
+        if (SubmessageKind{part.Kind} != SubmessageKind::Data || !IsAnnouncement(part))
         {
             add(part.Whole);
             return;
         }
+        const auto payload = ReadAnnouncement(part.Whole)->Payload;
         const std::size_t begins = to.size();
-        add(part.Whole.first(ListAt));
-        const bool littleEndianList = (part.Whole[EncapsulationAt + 1] & 1) != 0;
-        RtpsReader list(part.Whole.subspan(ListAt), littleEndianList);
+        add(part.Whole.first(FixedSize));
+        to[begins + 1] = static_cast<std::uint8_t>(to[begins + 1] & ~InlineQos);
+        add(payload.first(EncapsulationSize));
+        const bool littleEndianList = (payload[1] & 1) != 0;
+        RtpsReader list(payload.subspan(EncapsulationSize), littleEndianList);
         while (list.Left() > 0)
         {
             const auto rest = list.Rest();

@@ -48,11 +48,15 @@ struct OutgoingMessage
 // `datagram` comes from the vendor's writers and is trusted to be sound.
 OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram);
 
+// The participant that a datagram is for by its first INFO_DST; zero: none is named.
+Rtps::GuidPrefix DestinationOf(std::span<const std::uint8_t> datagram);
+
 // The datagram without what says for whom it is; 16 bytes less.
 void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to);
 
-// An announcement of a participant without its list of properties: what the vendor says there of itself, in
-// 124 bytes of 420, is of use to its discovery servers alone.
+// An announcement of a participant without its list of properties, which is of use to the vendor's discovery
+// servers only (124 bytes of 420), and without inline QoS (32 bytes where the vendor answers another
+// participant).
 void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to);
 
 // What somebody acknowledges to a writer of ours.

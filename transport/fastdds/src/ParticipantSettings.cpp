@@ -148,7 +148,9 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.IsInGroup = std::move(calls.IsInGroup);
     guarded.SendOwedAt = std::move(calls.SendOwedAt);
     guarded.Owed = std::move(calls.Owed);
-    guarded.Pace = std::move(calls.Pace);
+    guarded.Rate = std::move(calls.Rate);
+    guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? std::move(calls.Meeting) : nullptr;
+    guarded.HasPeers = !settings.Peers.empty();
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
     // GuardedUdp asks for the first announcements after the very first, at growing distances.
     attributes.builtin.discovery_config.initial_announcements.count = 0;
@@ -225,8 +227,6 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
         attributes = LoadProfile(settings.BackendConfig);
     }
     attributes.setName(settings.Node.c_str());
-    const std::string userData = MakeUserData(settings.Incarnation);
-    attributes.userData.assign(userData.begin(), userData.end());
     // Nobody here is asked whether single writers live: participants have leases, and nodes beat.
     attributes.builtin.use_WriterLivelinessProtocol = false;
     auto &discovery = attributes.builtin.discovery_config;
@@ -240,6 +240,10 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     {
         AddSecurity(*settings.Security, attributes.properties);
     }
+    const bool hasCard =
+        attributes.userTransports.empty() && GuardMode(settings, attributes) == RtpsGuard::Mode::Full;
+    const std::string userData = MakeUserData(settings.Incarnation, hasCard);
+    attributes.userData.assign(userData.begin(), userData.end());
     if (attributes.userTransports.empty())
     {
         AddTransports(settings, log, std::move(calls), attributes);

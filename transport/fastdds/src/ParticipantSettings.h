@@ -10,9 +10,10 @@
 #include <string>
 
 #include "DeferredCall.h"
-#include "common/DiscoveryPace.h"
+#include "common/DiscoveryRate.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsMessage.h"
+#include "rtps/MeetingThread.h"
 
 namespace Rabit::FastDds
 {
@@ -29,7 +30,8 @@ struct NetworkCalls
     // Has Owed run.
     std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
     std::shared_ptr<DeferredCall> Owed;
-    std::shared_ptr<DiscoveryPace> Pace;
+    std::shared_ptr<DiscoveryRate> Rate;
+    std::shared_ptr<Rtps::MeetingThread> Meeting;
 };
 
 // Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws

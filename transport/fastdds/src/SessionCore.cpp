@@ -78,14 +78,16 @@ RemoteEndpoint Described(const Proxy &proxy, const std::string &node)
 }  // namespace
 
 SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<DiscoveryPace> pace)
+                         std::shared_ptr<DiscoveryRate> rate)
     : _log(std::make_shared<SessionLog>(settings)),
       _topics(_log),
       _peerGate(_log, "peer events"),
       _announceGate(_log, "announcements"),
       _onPeer(std::move(onPeer)),
       _multicast(IsMulticastForData(settings)),
-      _proof(settings, _log)
+      _proof(settings, _log),
+      _meeting(std::make_shared<Rtps::MeetingThread>(Rtps::Meeting::Settings{
+          .Period = settings.AnnouncementPeriod, .Memory = _multicast ? settings.Memory : settings.Lease}))
 {
     auto attributes = MakeParticipantAttributes(
         settings, _log,
@@ -94,7 +96,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
          .IsInGroup = [this](const auto &prefix) { return IsInGroup(ToVendorPrefix(prefix)); },
          .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
          .Owed = _owed,
-         .Pace = std::move(pace)});
+         .Rate = std::move(rate),
+         .Meeting = _meeting});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
@@ -119,6 +122,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
 SessionCore::~SessionCore()
 {
     Close();
+    _meeting->Stop();
     _announceTimer.Stop();
     _owedTimer.Stop();
     rtps::RTPSDomain::removeRTPSParticipant(_participant);
@@ -304,6 +308,16 @@ void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
 
 void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
 {
+    Rtps::GuidPrefix name{};
+    std::copy_n(prefix.value, name.size(), name.begin());
+    if (how == PeerEvent::Kind::Lost)
+    {
+        _meeting->Lost(name);
+    }
+    else if (_meeting->WasEnded(name))
+    {
+        how = PeerEvent::Kind::Lost;
+    }
     std::shared_ptr<const PeerSession> session;
     {
         const std::lock_guard lock(_mutex);

@@ -17,7 +17,7 @@
 #include "DeferredCall.h"
 #include "ParticipantNumber.h"
 #include "ParticipantTimer.h"
-#include "common/DiscoveryPace.h"
+#include "common/DiscoveryRate.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -25,6 +25,7 @@
 #include "common/PeerSessions.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
+#include "rtps/MeetingThread.h"
 
 namespace Rabit::FastDds
 {
@@ -37,7 +38,7 @@ public:
     using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryPace> pace);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate);
     // Leaves it.
     ~SessionCore() override;
     SessionCore(const SessionCore &) = delete;
@@ -101,6 +102,7 @@ private:
     std::set<GuidPrefix> _proven;      // who has shown it; guarded by _mutex
     std::set<GuidPrefix> _inGroup;     // who listens to the group of discovery; guarded by _mutex
     std::deque<GuidPrefix> _departed;  // the last that said goodbye; guarded by _mutex
+    const std::shared_ptr<Rtps::MeetingThread> _meeting;
     const ParticipantNumber _number;
     ParticipantTimer _announceTimer;
     const std::shared_ptr<DeferredCall> _owed = std::make_shared<DeferredCall>();

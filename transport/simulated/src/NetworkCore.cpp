@@ -44,19 +44,6 @@ SimulatedSent NetworkCore::Sent(const std::string &node) const
     return sent;
 }
 
-void NetworkCore::PretendDiscoveryIsHeldUp(const std::string &node, Time time)
-{
-    const std::lock_guard lock(_mutex);
-    _discoveryHeldUp[node] = time;
-}
-
-Time NetworkCore::DiscoveryHeldUp(const std::string &node) const
-{
-    const std::lock_guard lock(_mutex);
-    const auto found = _discoveryHeldUp.find(node);
-    return found == _discoveryHeldUp.end() ? Time(0) : found->second;
-}
-
 Time NetworkCore::Now() const
 {
     const std::lock_guard lock(_mutex);

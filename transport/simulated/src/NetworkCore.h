@@ -44,7 +44,6 @@ public:
     Time Now() const;
     std::optional<Time> NextEvent() const;
     void AdvanceTo(Time time);
-    void PretendDiscoveryIsHeldUp(const std::string &node, Time time);
     void CrashNode(const std::string &node);
     SimulatedTraffic Traffic() const;
 
@@ -70,7 +69,6 @@ public:
     int MatchedReaders(const WriterState &writer) const;
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
-    Time DiscoveryHeldUp(const std::string &node) const;
     std::optional<Time> LastArrival(const std::string &from, const std::string &to,
                                     const std::string &topic) const;
 
@@ -182,7 +180,6 @@ private:
     Random _random;
     Time _now{0};
     EventQueue<Event> _events;
-    std::map<std::string, Time> _discoveryHeldUp;  // as pretended
     FaultPlan _faults;
     MediumPlan _media;
     std::vector<SimulatedSent> _sent;  // by number of the node

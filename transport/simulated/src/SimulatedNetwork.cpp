@@ -53,11 +53,6 @@ void SimulatedNetwork::AdvanceTo(std::chrono::nanoseconds time)
     _core->AdvanceTo(time);
 }
 
-void SimulatedNetwork::PretendDiscoveryIsHeldUp(const std::string &node, std::chrono::nanoseconds time)
-{
-    _core->PretendDiscoveryIsHeldUp(node, time);
-}
-
 void SimulatedNetwork::CrashNode(const std::string &node)
 {
     _core->CrashNode(node);

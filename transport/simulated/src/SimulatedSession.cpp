@@ -217,11 +217,6 @@ std::unique_ptr<TransportReader> SimulatedSession::CreateReader(const TopicDescr
     return std::make_unique<SimulatedReader>(_core, _participant, topic, qos, partitions, std::move(handler));
 }
 
-std::chrono::nanoseconds SimulatedSession::DiscoveryHeldUp() const
-{
-    return _core->DiscoveryHeldUp(_participant->Settings.Node);
-}
-
 TransportCounters SimulatedSession::Counters() const
 {
     return _participant->Log->Read();

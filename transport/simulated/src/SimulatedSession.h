@@ -27,7 +27,6 @@ public:
         return _participant->Topics.RemoteOn(topic);
     }
     std::vector<std::string> RemoteTopics() const override { return _participant->Topics.RemoteTopics(); }
-    std::chrono::nanoseconds DiscoveryHeldUp() const override;
 
 private:
     const std::shared_ptr<NetworkCore> _core;

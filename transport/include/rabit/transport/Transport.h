@@ -124,6 +124,10 @@ struct TransportSettings
     // that has nothing to say: some 400 bytes each time.
     std::chrono::milliseconds Lease{30000};
     std::chrono::milliseconds AnnouncementPeriod{10000};
+    // A Rabit node that is silent is remembered for this long, so that nothing has to be found out again when
+    // it is back: the lease holds for it only where samples do not go by multicast, and with security.
+    // Another session of the same node ends the former one, once that is silent for some seconds.
+    std::chrono::milliseconds Memory{std::chrono::hours(4)};
     // A vendor's own configuration file, for the expert; empty: none.
     std::string BackendConfig;
     // Set: only who has a certificate of the same authority is heard and answered, and may do what its
@@ -259,11 +263,8 @@ public:
     // It goes to the session of the node that appeared last, and to each other one of which a reader of this
     // session has handed over a sample since; without multicast as one datagram for each. So a node that was
     // killed and restarted costs one datagram, although its former session is known until the lease runs out.
-    virtual WriteResult WriteTo(const std::string & /*node*/, const SampleEncoder & /*sample*/,
-                                std::int64_t /*sourceTime*/)
-    {
-        return WriteResult::Failed;
-    }
+    virtual WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
+                                std::int64_t sourceTime) = 0;
     // As Write, but of a sample that takes several datagrams only the first one goes now. The others are
     // held, and go in their order, one with each SendHeld, so that others may go between: for a sender that
     // paces its datagrams. Readers get the sample with its last datagram. The next Write, WriteHeld, WriteTo
@@ -392,18 +393,10 @@ public:
     // carrier or address, peers' names without an address; and why it could not be joined. None of them
     // Impossible, and none is logged: whoever holds the session tells people. Empty if all is well.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
-    // How much discovery may say of endpoints at most, in bytes a second as counted by TransportCounters; 0,
-    // as at first: as much as answers show that the air carries. What it says of participants is never held
-    // back, but what that takes is missing for the rest. Nodes take longer to find each other with less, but
-    // do. Any thread; does not wait. The simulated network does not heed it.
+    // Bytes in a second, as counted by TransportCounters, that the nodes' exchange of cards may take; 0, as at
+    // first: as many as it needs. What discovery says of participants is not held back. Any thread; does not
+    // wait. The simulated network does not heed it.
     virtual void SetDiscoveryRate(double /*bytesPerSecond*/) {}
-    // A peer says that a datagram of this session came so much later than the quickest that it knows, from
-    // which discovery learns how much it may say, as from answers. Any thread; does not wait.
-    virtual void CameLate(std::chrono::nanoseconds /*delay*/) {}
-    // For how long what discovery has to say of endpoints next has been held up by a rate that has come down
-    // because answers come late: the air is full, and endpoints do not find each other yet. 0: it is not. Any
-    // thread; does not wait.
-    virtual std::chrono::nanoseconds DiscoveryHeldUp() const { return std::chrono::nanoseconds(0); }
 };
 
 // A backend.

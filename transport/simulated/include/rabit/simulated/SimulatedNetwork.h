@@ -135,10 +135,6 @@ public:
     SimulatedAir Air(const std::string &nodes) const;
     SimulatedSent Sent(const std::string &node) const;
 
-    // What sessions of that node say to be held up of discovery (TransportSession::DiscoveryHeldUp); 0 at
-    // first. Nothing is.
-    void PretendDiscoveryIsHeldUp(const std::string &node, std::chrono::nanoseconds time);
-
     // The simulated time; 0 at the start.
     std::chrono::nanoseconds Now() const;
     // When the next thing will happen by itself, so that a driver can jump there. Nothing if there are no

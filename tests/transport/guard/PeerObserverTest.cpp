@@ -1,0 +1,103 @@
+// What the guard tells of participants, and what it leaves to its observer.
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/ParticipantIdentity.h"
+#include "guard/RtpsBytes.h"
+#include "guard/RtpsGuard.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using Rabit::Rtps::PeerObserver;
+using Rabit::Rtps::RtpsGuard;
+
+class Observer : public PeerObserver
+{
+public:
+    void HeardUnknown(const GuidPrefix &peer) override { Unknown.push_back(peer); }
+    void Announced(const GuidPrefix &peer, bool hasCard) override { Heard.emplace_back(peer, hasCard); }
+    void Gone(const GuidPrefix &peer) override { Left.push_back(peer); }
+    bool IsReplayed(const GuidPrefix &) const override { return Replays; }
+
+    std::vector<GuidPrefix> Unknown;
+    std::vector<std::pair<GuidPrefix, bool>> Heard;
+    std::vector<GuidPrefix> Left;
+    bool Replays = false;
+};
+
+class PeerObserverTest : public testing::Test
+{
+protected:
+    PeerObserverTest() { Guard.SetObserver(Seen); }
+
+    // How many messages the vendor is given.
+    std::size_t Admit(Bytes datagram, RtpsGuard::Origin origin = RtpsGuard::Origin::Network)
+    {
+        std::size_t handed = 0;
+        EXPECT_TRUE(Guard.Admit(
+            datagram, SenderHost, RtpsGuard::TimePoint(std::chrono::hours(1)),
+            [&](std::span<std::uint8_t>) { ++handed; }, origin));
+        return handed;
+    }
+    static Bytes AnnouncementWithCard()
+    {
+        const std::string text = Rabit::MakeUserData(7, true);
+        Bytes data = Join({U32(static_cast<std::uint32_t>(text.size())), Bytes(text.begin(), text.end())});
+        data.resize((data.size() + 3) / 4 * 4);
+        const Bytes guid = Parameter(0x0050, Guid(Sender, Rabit::Rtps::ParticipantEntity));
+        const Bytes list = List({guid, Parameter(0x0002, Join({U32(30), U32(0)})), Parameter(0x002c, data)});
+        return Message(Data, DataBody(1, list, Rabit::Rtps::ParticipantWriter), 0x05);
+    }
+
+    Observer Seen;
+    RtpsGuard Guard{RtpsGuard::Mode::Full, std::chrono::seconds(10)};
+};
+
+TEST_F(PeerObserverTest, AnAnnouncementOfAProgramIsHandedOn)
+{
+    EXPECT_EQ(Admit(ParticipantMessage()), 1u);
+    ASSERT_EQ(Seen.Heard.size(), 1u);
+    EXPECT_EQ(Seen.Heard[0], std::pair(Sender, false));
+}
+
+TEST_F(PeerObserverTest, AnAnnouncementOfAParticipantWithACardIsLeftToTheObserver)
+{
+    EXPECT_EQ(Admit(AnnouncementWithCard()), 0u);
+    ASSERT_EQ(Seen.Heard.size(), 1u);
+    EXPECT_EQ(Seen.Heard[0], std::pair(Sender, true));
+}
+
+TEST_F(PeerObserverTest, WhatACardSaysIsHandedOn)
+{
+    EXPECT_EQ(Admit(AnnouncementWithCard(), RtpsGuard::Origin::Card), 1u);
+    EXPECT_TRUE(Seen.Heard.empty());
+}
+
+TEST_F(PeerObserverTest, ADatagramOfAnUnknownParticipantIsToldOf)
+{
+    EXPECT_EQ(Admit(WriterMessage()), 0u);
+    EXPECT_EQ(Seen.Unknown, std::vector{Sender});
+}
+
+TEST_F(PeerObserverTest, EndpointsThatAreReplayedAreNotTakenFromTheNetwork)
+{
+    Admit(AnnouncementWithCard(), RtpsGuard::Origin::Card);
+    Seen.Replays = true;
+    EXPECT_EQ(Admit(WriterMessage()), 0u);
+    EXPECT_EQ(Admit(WriterMessage(), RtpsGuard::Origin::Card), 1u);
+    EXPECT_TRUE(Seen.Unknown.empty());
+}
+
+TEST_F(PeerObserverTest, SomeoneHeardIsKnownToHaveBeen)
+{
+    EXPECT_FALSE(Guard.LastHeard(Sender).has_value());
+    Admit(ParticipantMessage());
+    EXPECT_EQ(Guard.LastHeard(Sender), RtpsGuard::TimePoint(std::chrono::hours(1)));
+}
+
+}  // namespace

@@ -1,0 +1,194 @@
+// A DDS implementation as far as discovery goes: it announces itself, believes the announcements of others,
+// tells its endpoints to each participant that it knows, and repairs what was lost (OMG DDSI-RTPS 2.3, 8.5).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "guard/RtpsBytes.h"
+#include "rtps/DiscoverySubmessages.h"
+
+class Implementation
+{
+public:
+    using Bytes = RtpsBytes::Bytes;
+    using Prefix = Rabit::Rtps::GuidPrefix;
+    using EntityId = Rabit::Rtps::EntityId;
+
+    Implementation(const Prefix &name, std::function<void(const Bytes &)> send)
+        : _name(name), _send(std::move(send))
+    {
+    }
+
+    void AddWriter(EntityId entity)
+    {
+        Add(Rabit::Rtps::PublicationsWriter, entity, RtpsBytes::WriterData(entity, _name));
+    }
+    void Announce() { _send(RtpsBytes::ParticipantMessage(_name)); }
+    // What it does by itself once a second: heartbeats to those who have not acknowledged all.
+    void Tick()
+    {
+        for (auto &[peer, known] : _peers)
+        {
+            Beat(peer, known);
+        }
+    }
+    // A message that came, or that was given to it.
+    void Receive(std::span<const std::uint8_t> message)
+    {
+        const Prefix from = Rabit::Rtps::SenderOf(message);
+        if (from == _name)
+        {
+            return;
+        }
+        Rabit::VisitSubmessages(message,
+                                [&](const Rabit::RtpsSubmessage<const std::uint8_t> &part)
+                                {
+                                    const auto said = Rabit::Rtps::ReadAnnouncement(part.Whole);
+                                    if (said && said->Writer == Rabit::Rtps::ParticipantWriter)
+                                    {
+                                        said->Alive ? Meet(from) : static_cast<void>(_peers.erase(from));
+                                    }
+                                });
+        const auto parts = Rabit::Rtps::ReadEndpointSubmessages(message);
+        const auto found = _peers.find(from);
+        if (parts && found != _peers.end())
+        {
+            for (const auto &part : *parts)
+            {
+                if (part.To == _name || part.To == Prefix{})
+                {
+                    Take(from, found->second, part);
+                }
+            }
+        }
+    }
+    bool Knows(const Prefix &peer) const { return _peers.contains(peer); }
+    bool KnowsAny() const { return !_peers.empty(); }
+    // The endpoints of that peer.
+    std::set<EntityId> EndpointsOf(const Prefix &peer) const
+    {
+        std::set<EntityId> endpoints;
+        const auto found = _peers.find(peer);
+        if (found != _peers.end())
+        {
+            for (const auto &[number, entity] : found->second.Heard)
+            {
+                endpoints.insert(entity);
+            }
+        }
+        endpoints.erase(0);
+        return endpoints;
+    }
+    bool IsAcknowledgedBy(const Prefix &peer) const
+    {
+        const auto found = _peers.find(peer);
+        return found != _peers.end() && found->second.Acknowledged > Last();
+    }
+
+private:
+    struct Peer
+    {
+        std::map<std::int64_t, EntityId> Heard;  // 0: will not come
+        std::int64_t Acknowledged = 1;
+    };
+
+    std::int64_t Last() const { return static_cast<std::int64_t>(_said.size()); }
+    void Add(EntityId /*writer*/, EntityId entity, Bytes data)
+    {
+        _said.emplace_back(entity, std::move(data));
+        for (auto &[peer, known] : _peers)
+        {
+            Say(peer, Last());
+            Beat(peer, known);
+        }
+    }
+    Bytes To(const Prefix &peer) const
+    {
+        Bytes message = RtpsBytes::Header(_name);
+        Rabit::Rtps::AppendDestination(message, peer);
+        return message;
+    }
+    void Say(const Prefix &peer, std::int64_t number)
+    {
+        const Bytes &data = _said[static_cast<std::size_t>(number - 1)].second;
+        const Bytes body = RtpsBytes::DataBody(number, data, Rabit::Rtps::PublicationsWriter);
+        _send(RtpsBytes::Join({To(peer), RtpsBytes::Submessage(RtpsBytes::Data, body, 0x05)}));
+    }
+    void Beat(const Prefix &peer, const Peer &known)
+    {
+        if (known.Acknowledged <= Last())
+        {
+            Bytes message = To(peer);
+            Rabit::Rtps::AppendHeartbeat(message, Rabit::Rtps::PublicationsWriter, Last(), ++_count);
+            _send(message);
+        }
+    }
+    void Meet(const Prefix &peer)
+    {
+        const auto [found, isNew] = _peers.try_emplace(peer);
+        if (isNew)
+        {
+            for (std::int64_t number = 1; number <= Last(); ++number)
+            {
+                Say(peer, number);
+            }
+            Beat(peer, found->second);
+        }
+    }
+    void Take(const Prefix &peer, Peer &known, const Rabit::Rtps::EndpointSubmessage &part)
+    {
+        using Rabit::Rtps::SubmessageKind;
+        if (part.Kind == SubmessageKind::Data && part.Said.Writer == Rabit::Rtps::PublicationsWriter)
+        {
+            known.Heard[part.Said.First] = Rabit::Rtps::SubjectOf(part.Whole);
+        }
+        else if (part.Kind == SubmessageKind::Gap)
+        {
+            for (const std::int64_t number : part.Gone)
+            {
+                known.Heard.emplace(number, EntityId{0});
+            }
+        }
+        else if (part.Kind == SubmessageKind::Heartbeat)
+        {
+            Bytes message = To(peer);
+            const bool all = part.Said.Writer == Rabit::Rtps::PublicationsWriter;
+            std::int64_t base = 1;
+            std::vector<std::int64_t> missing;
+            while (all && known.Heard.contains(base))
+            {
+                ++base;
+            }
+            for (std::int64_t number = base; all && number <= part.Said.Last; ++number)
+            {
+                if (!known.Heard.contains(number))
+                {
+                    missing.push_back(number);
+                }
+            }
+            Rabit::Rtps::AppendAcknowledgement(message, part.Said.Writer, base, missing, ++_count);
+            _send(message);
+        }
+        else if (part.Kind == SubmessageKind::AckNack && part.Said.Writer == Rabit::Rtps::PublicationsWriter)
+        {
+            known.Acknowledged = part.Said.First;
+            for (std::int64_t number = part.Said.First; number <= std::min(part.Said.Last, Last()); ++number)
+            {
+                Say(peer, number);
+            }
+        }
+    }
+
+    const Prefix _name;
+    const std::function<void(const Bytes &)> _send;
+    std::vector<std::pair<EntityId, Bytes>> _said;
+    std::map<Prefix, Peer> _peers;
+    std::uint32_t _count = 0;
+};

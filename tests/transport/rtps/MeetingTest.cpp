@@ -1,0 +1,385 @@
+// Nodes that meet by their cards over a network that loses datagrams: models of DDS implementations behind
+// Meeting.
+#include "rtps/Meeting.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <queue>
+#include <random>
+
+#include "rtps/Implementation.h"
+
+namespace
+{
+
+using namespace std::chrono_literals;
+using namespace Rabit::Rtps;
+using Bytes = RtpsBytes::Bytes;
+using TimePoint = Meeting::TimePoint;
+
+constexpr HostAddress Host{10, 0, 0, 1};
+
+GuidPrefix Name(std::uint8_t number)
+{
+    GuidPrefix name = RtpsBytes::Sender;
+    name.back() = number;
+    return name;
+}
+
+// A network of nodes; time passes in steps of a millisecond.
+class Air
+{
+public:
+    struct Node
+    {
+        GuidPrefix Self{};
+        std::unique_ptr<Meeting> Meet;  // null: a program without a card
+        std::unique_ptr<Implementation> Dds;
+        bool Hears = true;
+    };
+
+    explicit Air(unsigned seed) : _random(seed) {}
+
+    Node &Add(std::uint8_t number, int endpoints, bool hasCard = true)
+    {
+        Node &node = *_nodes.emplace_back(std::make_unique<Node>());
+        node.Self = Name(number);
+        if (hasCard)
+        {
+            node.Meet = std::make_unique<Meeting>(Meeting::Settings{.Period = 10s, .Memory = 4h});
+        }
+        node.Dds = std::make_unique<Implementation>(node.Self,
+                                                    [this, &node](const Bytes &message)
+                                                    {
+                                                        if (!node.Meet || !node.Meet->Sending(message, Now))
+                                                        {
+                                                            Send(node, message);
+                                                        }
+                                                    });
+        for (int i = 0; i < endpoints; ++i)
+        {
+            node.Dds->AddWriter(RtpsBytes::UserWriter + 0x100u * static_cast<unsigned>(i));
+        }
+        return node;
+    }
+    void Send(const Node &from, const Bytes &datagram)
+    {
+        Offered += datagram.size() + CardExchange::IpAndUdp;
+        std::uniform_real_distribution<double> chance(0.0, 100.0);
+        for (const auto &node : _nodes)
+        {
+            if (node.get() != &from && node->Hears && from.Hears && chance(_random) >= Loss)
+            {
+                _underWay.push_back({Now + 1ms, node.get(), datagram});
+            }
+        }
+    }
+    void Run(std::chrono::milliseconds time)
+    {
+        for (const auto end = Now + time; Now < end; Now += 1ms)
+        {
+            Step();
+        }
+    }
+    // Whether it holds within that time.
+    template <typename Holds>
+    bool Until(const Holds &holds, std::chrono::milliseconds limit = 20s)
+    {
+        const auto end = Now + limit;
+        while (!holds() && Now < end)
+        {
+            Step();
+            Now += 1ms;
+        }
+        return holds();
+    }
+    bool AllKnowAll(std::size_t endpoints) const
+    {
+        for (const auto &node : _nodes)
+        {
+            for (const auto &other : _nodes)
+            {
+                if (node != other && node->Dds->EndpointsOf(other->Self).size() != endpoints)
+                {
+                    return false;
+                }
+            }
+        }
+        return true;
+    }
+
+    TimePoint Now{1h};
+    double Loss = 0.0;   // percent
+    bool Beats = false;  // nodes that know somebody send a sample twice a second
+    std::size_t Offered = 0;
+
+private:
+    struct UnderWay
+    {
+        TimePoint At;
+        Node *To;
+        Bytes Datagram;
+    };
+
+    void Step()
+    {
+        std::vector<UnderWay> arrived;
+        std::erase_if(_underWay,
+                      [&](UnderWay &each)
+                      {
+                          const bool is = each.At <= Now;
+                          if (is)
+                          {
+                              arrived.push_back(std::move(each));
+                          }
+                          return is;
+                      });
+        for (const UnderWay &each : arrived)
+        {
+            Arrive(*each.To, each.Datagram);
+        }
+        for (const auto &node : _nodes)
+        {
+            if ((Now - TimePoint(1h)) % 1s == 0s)
+            {
+                node->Dds->Tick();
+            }
+            if (Beats && (Now - TimePoint(1h)) % 500ms == 0s && node->Dds->KnowsAny())
+            {
+                Send(*node, RtpsBytes::Header(node->Self));
+            }
+            while (node->Meet && node->Meet->Due() && *node->Meet->Due() <= Now)
+            {
+                auto work = node->Meet->TakeDue(Now);
+                for (const auto &local : work.ToImplementation)
+                {
+                    node->Dds->Receive(local.Bytes);
+                }
+                for (const auto &outgoing : work.ToNetwork)
+                {
+                    Send(*node, outgoing.Bytes);
+                }
+            }
+        }
+    }
+    static void Arrive(Node &node, const Bytes &datagram, const HostAddress &from, TimePoint now)
+    {
+        if (!node.Meet)
+        {
+            node.Dds->Receive(datagram);
+            return;
+        }
+        const GuidPrefix sender = SenderOf(datagram);
+        if (IsCardMessage(datagram))
+        {
+            EXPECT_TRUE(node.Meet->Received(datagram, from, now));
+        }
+        else if (!node.Meet->IsReplayed(sender))
+        {
+            const bool announces = datagram == RtpsBytes::ParticipantMessage(sender);
+            const bool isProgram = sender.back() >= 200;
+            if (announces)
+            {
+                node.Meet->Announced(sender, !isProgram, now);
+            }
+            if (isProgram)
+            {
+                node.Dds->Receive(datagram);
+            }
+            else if (!announces)
+            {
+                node.Meet->HeardUnknown(sender, now);
+            }
+        }
+    }
+    void Arrive(Node &node, const Bytes &datagram) { Arrive(node, datagram, Host, Now); }
+
+    std::mt19937 _random;
+    std::vector<std::unique_ptr<Node>> _nodes;
+    std::vector<UnderWay> _underWay;
+};
+
+TEST(Meeting, TwoNodesKnowEachOthersEndpointsAfterTwoCards)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 8);
+    Air::Node &two = air.Add(2, 8);
+    one.Dds->Announce();
+    two.Dds->Announce();
+    EXPECT_TRUE(air.Until([&] { return air.AllKnowAll(8); }, 100ms));
+}
+
+TEST(Meeting, TheImplementationIsToldThatAllWasAcknowledged)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 8);
+    Air::Node &two = air.Add(2, 3);
+    one.Dds->Announce();
+    two.Dds->Announce();
+    EXPECT_TRUE(air.Until(
+        [&] { return one.Dds->IsAcknowledgedBy(two.Self) && two.Dds->IsAcknowledgedBy(one.Self); }));
+}
+
+TEST(Meeting, NothingButSummariesGoesOnceAllIsKnown)
+{
+    Air air(1);
+    air.Add(1, 8).Dds->Announce();
+    air.Add(2, 8).Dds->Announce();
+    air.Run(20s);
+    ASSERT_TRUE(air.AllKnowAll(8));
+    air.Offered = 0;
+    air.Run(60s);
+    EXPECT_LE(air.Offered, 2u * 7u * 80u);
+}
+
+TEST(Meeting, AnEndpointThatComesLaterIsKnownSoon)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 2);
+    Air::Node &two = air.Add(2, 2);
+    one.Dds->Announce();
+    two.Dds->Announce();
+    air.Run(20s);
+    one.Dds->AddWriter(0x00007703);
+    EXPECT_TRUE(air.Until([&] { return two.Dds->EndpointsOf(one.Self).contains(0x00007703); }, 100ms));
+}
+
+TEST(Meeting, ALostCardIsAskedFor)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 8);
+    one.Dds->Announce();
+    air.Run(30s);
+    Air::Node &two = air.Add(2, 8);
+    two.Dds->Announce();
+    EXPECT_TRUE(air.Until([&] { return air.AllKnowAll(8); }, 200ms));
+}
+
+TEST(Meeting, ADatagramOfAnUnknownParticipantIsAReasonToMeet)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 3);
+    Air::Node &two = air.Add(2, 3);
+    one.Hears = false;
+    one.Dds->Announce();
+    air.Run(9500ms);
+    two.Dds->Announce();
+    air.Run(9500ms);
+    one.Hears = true;
+    air.Send(one, RtpsBytes::Join({RtpsBytes::Header(one.Self)}));
+    EXPECT_TRUE(air.Until([&] { return air.AllKnowAll(3); }, 150ms));
+}
+
+TEST(Meeting, UnderLossAllMeetSoon)
+{
+    for (const auto &[loss, limit] : {std::pair(20.0, 800ms), std::pair(40.0, 2500ms)})
+    {
+        std::vector<std::chrono::milliseconds> times;
+        for (unsigned seed = 1; seed <= 500; ++seed)
+        {
+            Air air(seed);
+            air.Loss = loss;
+            air.Beats = true;
+            Air::Node &one = air.Add(1, 8);
+            Air::Node &two = air.Add(2, 8);
+            one.Dds->Announce();
+            two.Dds->Announce();
+            const auto began = air.Now;
+            ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(8); })) << "seed " << seed;
+            times.push_back(std::chrono::duration_cast<std::chrono::milliseconds>(air.Now - began));
+        }
+        std::sort(times.begin(), times.end());
+        std::printf("%.0f %%: p50 %lld p99 %lld worst %lld ms\n", loss,
+                    static_cast<long long>(times[250].count()), static_cast<long long>(times[495].count()),
+                    static_cast<long long>(times.back().count()));
+        EXPECT_LE(times[495].count(), limit.count()) << loss << " % lost, worst " << times.back().count();
+    }
+}
+
+TEST(Meeting, TenNodesThatStartAtOnceSayLittle)
+{
+    Air air(1);
+    for (std::uint8_t number = 1; number <= 10; ++number)
+    {
+        air.Add(number, 8).Dds->Announce();
+    }
+    ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(8); }, 300ms));
+    EXPECT_LE(air.Offered, 40'000u);
+}
+
+TEST(Meeting, AProgramWithoutACardGetsTheImplementationsOwnDatagrams)
+{
+    Air air(1);
+    Air::Node &node = air.Add(1, 3);
+    Air::Node &program = air.Add(200, 3, false);
+    node.Dds->Announce();
+    program.Dds->Announce();
+    EXPECT_TRUE(air.Until([&] { return air.AllKnowAll(3); }, 3s));
+}
+
+TEST(Meeting, AParticipantThatWasForgottenOnTheWayIsToldOfAgain)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 3);
+    Air::Node &two = air.Add(2, 3);
+    one.Dds->Announce();
+    two.Dds->Announce();
+    ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(3); }));
+    two.Dds = std::make_unique<Implementation>(
+        two.Self, [&](const Bytes &message) { two.Meet->Sending(message, air.Now); });
+    ASSERT_FALSE(two.Dds->Knows(one.Self));
+    two.Meet->HeardUnknown(one.Self, air.Now);
+    EXPECT_TRUE(air.Until([&] { return two.Dds->EndpointsOf(one.Self).size() == 3; }, 500ms));
+}
+
+TEST(Meeting, ACardThatCameFromElsewhereIsNotBelievedBeforeItCameOften)
+{
+    Meeting meeting({.Period = 10s, .Memory = 4h});
+    const TimePoint now{1h};
+    const Bytes summary = WriteCardMessage({.From = Name(7), .Summary = {.Digest = 1, .Size = 500}});
+    EXPECT_TRUE(meeting.Received(summary, Host, now));
+    const HostAddress elsewhere{10, 0, 0, 66};
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
+    EXPECT_TRUE(meeting.Received(summary, Host, now));
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
+    EXPECT_TRUE(meeting.Received(summary, elsewhere, now));
+}
+
+TEST(Meeting, InventedParticipantsCauseFewRequests)
+{
+    Air air(1);
+    Air::Node &node = air.Add(1, 3);
+    node.Dds->Announce();
+    air.Run(20s);
+    air.Offered = 0;
+    std::mt19937 random(1);
+    for (int at = 0; at < 10'000; ++at)
+    {
+        GuidPrefix invented{};
+        std::generate(invented.begin(), invented.end(), [&] { return static_cast<std::uint8_t>(random()); });
+        node.Meet->HeardUnknown(invented, air.Now);
+        if (at % 10 == 0)
+        {
+            air.Run(1ms);
+        }
+    }
+    air.Run(5s);
+    EXPECT_LE(air.Offered, 6u * 2000u);
+}
+
+TEST(Meeting, WhatAnEarlierSessionOfANodeSaidEndsOnceItIsSilent)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 3);
+    Air::Node &two = air.Add(2, 3);
+    one.Dds->Announce();
+    two.Dds->Announce();
+    ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(3); }));
+    two.Meet->End(one.Self);
+    EXPECT_TRUE(air.Until([&] { return !two.Dds->Knows(one.Self); }, 100ms));
+}
+
+}  // namespace

@@ -1,0 +1,338 @@
+#include "rtps/CardExchange.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "rtps/PackedCard.h"
+
+namespace Rabit::Rtps
+{
+
+void CardExchange::SetRate(double bytesPerSecond)
+{
+    const bool isSet = bytesPerSecond > 0.0;
+    _rate = isSet ? std::min(bytesPerSecond, UsualRate) : UsualRate;
+    _burst = isSet ? std::min(_rate, UsualBurst) : UsualBurst;
+    _left = std::min(_left, _burst);
+}
+
+void CardExchange::SetOwn(std::vector<std::uint8_t> packed, TimePoint now)
+{
+    _packed = std::move(packed);
+    _own = SummaryOf(_packed);
+    _parts.assign(_own.Parts(), OwnPart{});
+    Want(_own.AllParts(), std::nullopt, now);
+    _summary.Begin(now + FirstSummary);
+    _nextPeriod = now + _period;
+}
+
+CardExchange::Peer *CardExchange::Find(const GuidPrefix &peer, TimePoint now)
+{
+    if (peer == _self)
+    {
+        return nullptr;
+    }
+    const auto found = _peers.find(peer);
+    if (found == _peers.end() && _peers.size() >= MostPeers && !MakeRoom())
+    {
+        return nullptr;
+    }
+    Peer &known = found == _peers.end() ? _peers[peer] : found->second;
+    known.Heard = now;
+    return &known;
+}
+
+// Forgets the one without a card that was silent for longest: anybody can invent participants.
+bool CardExchange::MakeRoom()
+{
+    auto oldest = _peers.end();
+    for (auto at = _peers.begin(); at != _peers.end(); ++at)
+    {
+        if (at->second.Held.Size == 0 && (oldest == _peers.end() || at->second.Heard < oldest->second.Heard))
+        {
+            oldest = at;
+        }
+    }
+    if (oldest == _peers.end())
+    {
+        return false;
+    }
+    _peers.erase(oldest);
+    return true;
+}
+
+void CardExchange::Ask(Peer &peer, TimePoint due)
+{
+    if (!peer.Request.Due() || *peer.Request.Due() > due)
+    {
+        peer.Request.Begin(due);
+        peer.Asked = 0;
+    }
+}
+
+void CardExchange::Heard(const GuidPrefix &peer, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end() && (found->second.Request.Due() || LackingOf(found->second) == 0))
+    {
+        found->second.Heard = now;
+        return;
+    }
+    const bool answers = found != _peers.end() && found->second.Answers;
+    const bool rests = found != _peers.end() && now - found->second.LastAsked < Rest &&
+                       found->second.Asked >= (answers ? MostRequests : MostVainRequests);
+    if (rests || (!answers && !MayAskUnknown(now)))
+    {
+        return;
+    }
+    if (Peer *const known = Find(peer, now))
+    {
+        Ask(*known, now);
+    }
+}
+
+bool CardExchange::MayAskUnknown(TimePoint now)
+{
+    while (!_unknown.empty() && now - _unknown.front() >= Rest)
+    {
+        _unknown.pop_front();
+    }
+    const bool may = _unknown.size() < MostUnknown;
+    if (may)
+    {
+        _unknown.push_back(now);
+    }
+    return may;
+}
+
+void CardExchange::Announced(const GuidPrefix &peer, TimePoint now)
+{
+    Peer *const known = Find(peer, now);
+    if (known != nullptr)
+    {
+        if (LackingOf(*known) != 0 && !known->Request.Due())
+        {
+            Ask(*known, now + Patience);
+        }
+    }
+}
+
+std::uint64_t CardExchange::LackingOf(const Peer &peer)
+{
+    if (peer.Wanted.Size == 0)
+    {
+        return peer.Held.Size == 0 ? ~std::uint64_t{0} : 0;
+    }
+    std::uint64_t lacking = peer.Wanted == peer.Held ? 0 : peer.Wanted.AllParts();
+    for (const auto &[number, bytes] : peer.Parts)
+    {
+        lacking &= ~(std::uint64_t{1} << number);
+    }
+    return lacking;
+}
+
+std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &message, TimePoint now)
+{
+    Peer *const peer = Find(message.From, now);
+    if (peer == nullptr)
+    {
+        return std::nullopt;
+    }
+    peer->Answers = true;
+    for (const CardRequest &request : message.Requests)
+    {
+        if (request.Of == _self)
+        {
+            Want(request.Parts & _own.AllParts(), message.From, now);
+        }
+    }
+    if (message.Summary.Size > 0 && message.Summary != peer->Wanted)
+    {
+        peer->Wanted = message.Summary;
+        peer->Parts.clear();
+        peer->Request.Stop();
+    }
+    if (message.HasPart && message.Summary == peer->Wanted && peer->Wanted != peer->Held)
+    {
+        peer->Parts[message.Part].assign(message.Bytes.begin(), message.Bytes.end());
+        if (peer->Asked == 1)  // else it is not known which request this answers
+        {
+            _roundTrip = std::max<Duration>(now - peer->LastAsked, _roundTrip / 2);
+        }
+        peer->Asked = 0;
+    }
+    if (LackingOf(*peer) != 0)
+    {
+        Ask(*peer, now + (message.Summary.Size > 0 ? Patience : std::chrono::milliseconds(0)));
+        return std::nullopt;
+    }
+    peer->Request.Stop();
+    if (peer->Wanted == peer->Held)
+    {
+        return std::nullopt;
+    }
+    Card card{.Of = message.From, .Packed = {}};
+    for (const auto &[number, bytes] : std::exchange(peer->Parts, {}))
+    {
+        card.Packed.insert(card.Packed.end(), bytes.begin(), bytes.end());
+    }
+    if (SummaryOf(card.Packed) != peer->Wanted)
+    {
+        Refuse(message.From, now);
+        return std::nullopt;
+    }
+    peer->Held = peer->Wanted;
+    return card;
+}
+
+void CardExchange::Refuse(const GuidPrefix &peer, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        found->second.Held = {};
+        found->second.Parts.clear();
+        Ask(found->second, now + FirstRetry);
+    }
+}
+
+void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by, TimePoint now)
+{
+    for (std::size_t number = 0; number < _parts.size(); ++number)
+    {
+        OwnPart &part = _parts[number];
+        if ((parts >> number & 1) == 0)
+        {
+            continue;
+        }
+        if (now - part.Asked >= Quiet)
+        {
+            part.Gap = FirstAnswerGap;
+        }
+        part.Asked = now;
+        part.By = part.IsWanted && part.By != by ? std::nullopt : by;
+        part.IsWanted = true;
+    }
+}
+
+std::optional<CardExchange::TimePoint> CardExchange::NextDue() const
+{
+    std::optional<TimePoint> due;
+    const auto consider = [&due](const std::optional<TimePoint> &time)
+    { due = time ? std::min(due.value_or(*time), *time) : due; };
+    for (const auto &[name, peer] : _peers)
+    {
+        consider(peer.Request.Due());
+    }
+    for (const OwnPart &part : _parts)
+    {
+        consider(part.IsWanted ? std::optional(part.NotBefore) : std::nullopt);
+    }
+    consider(_summary.Due());
+    consider(_nextPeriod);
+    return due;
+}
+
+void CardExchange::Fill(TimePoint now)
+{
+    if (now > _filledAt)
+    {
+        const double filled = _left + _rate * std::chrono::duration<double>(now - _filledAt).count();
+        _left = std::min(filled, _burst);
+        _filledAt = now;
+    }
+}
+
+CardExchange::TimePoint CardExchange::Free() const
+{
+    return _left > 0.0
+               ? TimePoint{}
+               : _filledAt +
+                     std::chrono::ceil<Duration>(std::chrono::duration<double>((1.0 - _left) / _rate));
+}
+
+std::optional<CardExchange::TimePoint> CardExchange::Due() const
+{
+    const auto due = NextDue();
+    return due && _self != GuidPrefix{} ? std::optional(std::max(*due, Free())) : std::nullopt;
+}
+
+void CardExchange::Go(Outgoing outgoing, std::vector<Outgoing> &taken)
+{
+    _left -= static_cast<double>(outgoing.Bytes.size() + IpAndUdp);
+    taken.push_back(std::move(outgoing));
+}
+
+std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
+{
+    std::vector<Outgoing> taken;
+    Fill(now);
+    if (_left <= 0.0 || _self == GuidPrefix{})
+    {
+        return taken;
+    }
+    TakeRequests(now, taken);
+    TakeParts(now, taken);
+    const bool isPeriod = _nextPeriod && *_nextPeriod <= now;
+    if (_summary.IsDue(now) || isPeriod)
+    {
+        if (_summary.IsDue(now))
+        {
+            _summary.Done(now);
+        }
+        _nextPeriod = now + _period;
+        if (taken.empty())  // each message has the summary
+        {
+            Go({.To = std::nullopt, .Bytes = WriteCardMessage({.From = _self, .Summary = _own})}, taken);
+        }
+    }
+    return taken;
+}
+
+void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
+{
+    CardMessage message{.From = _self, .Summary = _own};
+    for (auto &[name, peer] : _peers)
+    {
+        if (!peer.Request.IsDue(now) || message.Requests.size() >= MostCardRequests)
+        {
+            continue;
+        }
+        message.Requests.push_back({.Of = name, .Parts = LackingOf(peer)});
+        peer.LastAsked = now;
+        peer.Request.Done(now, 2 * _roundTrip);
+        if (++peer.Asked >= (peer.Answers ? MostRequests : MostVainRequests))
+        {
+            peer.Request.Stop();
+        }
+    }
+    if (!message.Requests.empty())
+    {
+        const bool isForOne = message.Requests.size() == 1;
+        Go({.To = isForOne ? std::optional(message.Requests.front().Of) : std::nullopt,
+            .Bytes = WriteCardMessage(message)},
+           taken);
+    }
+}
+
+void CardExchange::TakeParts(TimePoint now, std::vector<Outgoing> &taken)
+{
+    for (std::size_t number = 0; number < _parts.size() && _left > 0.0; ++number)
+    {
+        OwnPart &part = _parts[number];
+        if (!part.IsWanted || part.NotBefore > now)
+        {
+            continue;
+        }
+        CardMessage message{.From = _self, .Summary = _own, .HasPart = true, .Part = number};
+        message.Bytes = std::span(_packed).subspan(
+            number * CardPartSize, std::min(CardPartSize, _packed.size() - number * CardPartSize));
+        part.IsWanted = false;
+        part.NotBefore = now + part.Gap;
+        part.Gap =
+            std::min<Duration>(std::chrono::duration_cast<Duration>(part.Gap * GapFactor), LongestAnswerGap);
+        Go({.To = part.By, .Bytes = WriteCardMessage(message)}, taken);
+    }
+}
+
+}  // namespace Rabit::Rtps

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "rtps/Backoff.h"
+#include "rtps/CardMessage.h"
+
+namespace Rabit::Rtps
+{
+
+// Brings the own card to all other nodes, and theirs here.
+//
+// - A card that has changed is sent to all, in parts. Its summary follows at growing intervals, and after
+// that
+//   once a period: a node that lacks the card, or parts of it, asks for them.
+// - Any datagram of a participant that is not known is a reason to ask it for its card. One that never
+// answers
+//   is a program without a card, and is left alone until it is heard again.
+// - An unanswered request is repeated after two round trips as far as they are known, at first after 50 ms,
+// at
+//   most after a second. The same part is sent again no sooner than 50 ms later, and later each time: one
+//   answer by multicast serves all who ask.
+// - All of it keeps to a rate.
+//
+// A pure state machine, not thread-safe.
+class CardExchange
+{
+public:
+    using TimePoint = Backoff::TimePoint;
+    using Duration = Backoff::Duration;
+
+    static constexpr std::chrono::milliseconds FirstRetry{50};
+    static constexpr std::chrono::milliseconds LongestRetry{1000};
+    // Slowly: a radio that loses datagrams is not full.
+    static constexpr double GapFactor = 1.25;
+    // To a participant that may have no card, and to one that has. After so many there is a rest.
+    static constexpr int MostVainRequests = 10;
+    static constexpr int MostRequests = 30;
+    static constexpr std::chrono::seconds Rest{5};
+    // Within a Rest so many participants at most that may have no card are asked: anybody can invent some.
+    static constexpr std::size_t MostUnknown = 16;
+    // From the word of another card to the first request: the parts may be on their way.
+    static constexpr std::chrono::milliseconds Patience{30};
+    static constexpr std::chrono::milliseconds FirstSummary{100};
+    static constexpr std::chrono::milliseconds LongestSummary{2000};
+    static constexpr double SummaryFactor = 1.5;
+    // All of them are lost once in 100,000 times where 40 % of the datagrams are.
+    static constexpr int InitialSummaries = 12;
+    static constexpr std::chrono::milliseconds FirstAnswerGap{50};
+    static constexpr std::chrono::milliseconds LongestAnswerGap{500};
+    // Without a request for so long the gap is short again.
+    static constexpr std::chrono::seconds Quiet{5};
+    static constexpr std::size_t MostPeers = 1024;
+    // Bytes in a second, with the headers of IP and UDP, and how many may go at once.
+    static constexpr double UsualRate = 20000.0;
+    static constexpr double UsualBurst = 6000.0;
+    static constexpr std::size_t IpAndUdp = 28;
+
+    // `period`: in which the own summary is said again.
+    explicit CardExchange(Duration period) : _period(period) {}
+
+    void SetSelf(const GuidPrefix &self) { _self = self; }
+    // 0: the usual one.
+    void SetRate(double bytesPerSecond);
+    // The own card, packed (PackedCard.h).
+    void SetOwn(std::vector<std::uint8_t> packed, TimePoint now);
+
+    // A participant of which no card is known was heard.
+    void Heard(const GuidPrefix &peer, TimePoint now);
+    // A participant announced itself, and says that it has a card.
+    void Announced(const GuidPrefix &peer, TimePoint now);
+    struct Card
+    {
+        GuidPrefix Of{};
+        std::vector<std::uint8_t> Packed;
+    };
+    // A message of another node. Returns the packed card of the node if this completes it.
+    std::optional<Card> Received(const CardMessage &message, TimePoint now);
+    // The card was not what its sender should have sent: it is asked for again.
+    void Refuse(const GuidPrefix &peer, TimePoint now);
+    void Forget(const GuidPrefix &peer) { _peers.erase(peer); }
+
+    std::optional<TimePoint> Due() const;
+    struct Outgoing
+    {
+        std::optional<GuidPrefix> To;  // empty: all
+        std::vector<std::uint8_t> Bytes;
+    };
+    std::vector<Outgoing> TakeDue(TimePoint now);
+    std::size_t Size() const { return _peers.size(); }
+
+private:
+    struct Peer
+    {
+        CardSummary Wanted;                                      // what the peer says that it has
+        CardSummary Held;                                        // what is complete here
+        std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted one
+        Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
+        bool Answers = false;  // a message of it has come
+        int Asked = 0;         // since something came of it
+        TimePoint LastAsked{};
+        TimePoint Heard{};
+    };
+    struct OwnPart
+    {
+        bool IsWanted = false;
+        std::optional<GuidPrefix> By;  // empty: by several
+        TimePoint NotBefore{};
+        Duration Gap = FirstAnswerGap;
+        TimePoint Asked{};
+    };
+
+    Peer *Find(const GuidPrefix &peer, TimePoint now);
+    bool MakeRoom();
+    bool MayAskUnknown(TimePoint now);
+    void Ask(Peer &peer, TimePoint due);
+    static std::uint64_t LackingOf(const Peer &peer);
+    void Want(std::uint64_t parts, const std::optional<GuidPrefix> &by, TimePoint now);
+    std::optional<TimePoint> NextDue() const;
+    void Fill(TimePoint now);
+    TimePoint Free() const;
+    void Go(Outgoing outgoing, std::vector<Outgoing> &taken);
+    void TakeRequests(TimePoint now, std::vector<Outgoing> &taken);
+    void TakeParts(TimePoint now, std::vector<Outgoing> &taken);
+
+    const Duration _period;
+    GuidPrefix _self{};
+    CardSummary _own;
+    std::vector<std::uint8_t> _packed;
+    std::vector<OwnPart> _parts;
+    Backoff _summary{{FirstSummary, LongestSummary, SummaryFactor, InitialSummaries}};
+    std::optional<TimePoint> _nextPeriod;
+    std::map<GuidPrefix, Peer> _peers;
+    std::deque<TimePoint> _unknown;  // when participants that may have no card were asked first
+    Duration _roundTrip{0};          // the longest, by half less with each that is shorter
+    double _rate = UsualRate;
+    double _burst = UsualBurst;
+    double _left = UsualBurst;
+    TimePoint _filledAt{};
+};
+
+}  // namespace Rabit::Rtps

@@ -1,0 +1,70 @@
+// The datagrams by which nodes exchange their cards.
+//
+// Each is an RTPS message of one vendor-specific submessage (OMG DDSI-RTPS 2.3, 9.4.5.1.1), from a vendor
+// number that no DDS vendor has, so that DDS programs pass over it. All numbers are little-endian:
+//
+//   offset  size  of the submessage's body
+//   0       1     format, 1
+//   1       1     number of requests
+//   2       1     which part follows the requests
+//   3       1     1 if a part follows, else 0
+//   4       8     digest of the sender's card
+//   12      4     size of the sender's packed card; 0: it has none yet
+//   16      20 n  requests: GUID prefix of the node that is asked (12), a bit for each part that is lacking
+//   (8)
+//   ...           the part, padded with zeros to a multiple of 4
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "guard/RtpsMessage.h"
+
+namespace Rabit::Rtps
+{
+
+// Names one version of a node's card.
+struct CardSummary
+{
+    std::uint64_t Digest = 0;  // of the packed card (PackedCard.h)
+    std::uint32_t Size = 0;    // of the packed card, in bytes; 0: there is none yet
+    bool operator==(const CardSummary &) const = default;
+
+    std::size_t Parts() const;
+    // A bit for each part.
+    std::uint64_t AllParts() const;
+};
+
+struct CardRequest
+{
+    GuidPrefix Of{};          // the node that is asked for parts of its card
+    std::uint64_t Parts = 0;  // bit k: part k is lacking; all bits: the requester knows nothing of the card
+};
+
+struct CardMessage
+{
+    GuidPrefix From{};
+    CardSummary Summary{};  // of the sender's card
+    std::vector<CardRequest> Requests{};
+    bool HasPart = false;
+    std::size_t Part = 0;
+    std::span<const std::uint8_t> Bytes{};  // of the part; borrowed
+};
+
+// Bytes of a part, but for the last one. With all headers a datagram stays below the MTU of radios.
+constexpr std::size_t CardPartSize = 1000;
+constexpr std::size_t MostCardParts = 64;
+constexpr std::size_t LargestCard = MostCardParts * CardPartSize;
+// In one message; the requests of one full message fit a datagram.
+constexpr std::size_t MostCardRequests = 40;
+
+// Whether a datagram claims to be such a message. It may be any bytes.
+bool IsCardMessage(std::span<const std::uint8_t> datagram);
+// Nothing if the bytes are not a sound message. `Bytes` refers to the datagram.
+std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagram);
+std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message);
+
+}  // namespace Rabit::Rtps

@@ -1,0 +1,336 @@
+#include "rtps/CardReplay.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "guard/RtpsReader.h"
+
+namespace Rabit::Rtps
+{
+
+namespace
+{
+
+constexpr std::array<EntityId, 2> EndpointWriters{PublicationsWriter, SubscriptionsWriter};
+// RTPS 2.3, 9.6.3
+constexpr std::uint16_t Sentinel = 0x0001;
+constexpr std::uint16_t LeaseDuration = 0x0002;
+constexpr std::uint16_t EntityName = 0x0062;
+
+// Where the payload of an announcement begins; 0: it has none.
+std::size_t PayloadAt(std::span<const std::uint8_t> announcement)
+{
+    const auto said = ReadAnnouncement(announcement);
+    return said && said->Payload.size() > 4 ? announcement.size() - said->Payload.size() : 0;
+}
+
+bool IsLittleEndianList(std::span<const std::uint8_t> announcement)
+{
+    constexpr std::uint8_t littleEndianList = 3;
+    return announcement[PayloadAt(announcement) + 1] == littleEndianList;
+}
+
+// Calls visit(id, offset of the value in the submessage, length) for each parameter of an announcement's
+// list. Stops at what is not sound.
+template <typename Visit>
+void VisitParameters(std::span<const std::uint8_t> announcement, const Visit &visit)
+{
+    const std::size_t payloadAt = PayloadAt(announcement);
+    if (payloadAt == 0)
+    {
+        return;
+    }
+    RtpsReader list(announcement.subspan(payloadAt + 4), IsLittleEndianList(announcement));
+    while (list.IsGood() && list.Left() > 0)
+    {
+        const std::uint16_t id = list.U16();
+        const std::uint16_t length = list.U16();
+        const std::size_t at = payloadAt + 4 + list.Position();
+        list.Skip(length);
+        if (!list.IsGood() || id == Sentinel)
+        {
+            return;
+        }
+        visit(id, at, length);
+    }
+}
+
+// Seconds and their 2^-32 fractions, in the byte order of the list (9.3.2: a duration).
+void PutLease(std::vector<std::uint8_t> &announcement, std::chrono::milliseconds lease)
+{
+    std::size_t found = 0;
+    VisitParameters(announcement, [&](std::uint16_t id, std::size_t at, std::size_t length)
+                    { found = id == LeaseDuration && length == 8 ? at : found; });
+    if (found == 0)
+    {
+        return;
+    }
+    const bool littleEndian = IsLittleEndianList(announcement);
+    const auto seconds = static_cast<std::uint32_t>(lease.count() / 1000);
+    const auto fraction =
+        static_cast<std::uint32_t>((static_cast<std::uint64_t>(lease.count() % 1000) << 32) / 1000);
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        const std::size_t shift = 8 * (littleEndian ? i : 3 - i);
+        announcement[found + i] = static_cast<std::uint8_t>(seconds >> shift);
+        announcement[found + 4 + i] = static_cast<std::uint8_t>(fraction >> shift);
+    }
+}
+
+}  // namespace
+
+bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card, TimePoint now)
+{
+    if (!HasRtpsHeader(card) || SenderOf(card) != peer)
+    {
+        return false;
+    }
+    std::vector<std::uint8_t> participant;
+    std::vector<std::pair<EntityId, std::span<const std::uint8_t>>> endpoints;
+    VisitSubmessages(
+        card,
+        [&](const RtpsSubmessage<const std::uint8_t> &part)
+        {
+            const auto said = ReadAnnouncement(part.Whole);
+            if (said && said->Writer == ParticipantWriter && participant.empty())
+            {
+                participant.assign(part.Whole.begin(), part.Whole.end());
+            }
+            else if (said && IsEndpointWriter(said->Writer) && endpoints.size() < OwnCard::MostEndpoints)
+            {
+                endpoints.emplace_back(said->Writer, part.Whole);
+            }
+        });
+    if (participant.empty())
+    {
+        return false;
+    }
+    PutLease(participant, std::chrono::duration_cast<std::chrono::milliseconds>(_memory));
+    Peer &known = _peers[peer];
+    known.Header.assign(card.begin(), card.begin() + RtpsHeaderSize);
+    known.Participant = std::move(participant);
+    for (const EntityId writer : EndpointWriters)
+    {
+        known.Streams[writer];
+    }
+    for (const auto &[writer, whole] : endpoints)
+    {
+        Stream &stream = known.Streams[writer];
+        Announcement &endpoint = stream.Endpoints[SubjectOf(whole)];
+        const std::uint64_t content = ContentOf(whole);
+        if (endpoint.Number == 0 || endpoint.Content != content)
+        {
+            endpoint = {.Number = ++stream.Last, .Content = content, .Bytes = {whole.begin(), whole.end()}};
+        }
+    }
+    known.Retry.Begin(now);
+    return true;
+}
+
+void CardReplay::End(const GuidPrefix &peer)
+{
+    const auto found = _peers.find(peer);
+    if (found == _peers.end())
+    {
+        return;
+    }
+    Message end{.From = peer, .Bytes = found->second.Header};
+    AppendEndOfParticipant(end.Bytes, peer, found->second.Announced + 1);
+    _ends.push_back(std::move(end));
+    _peers.erase(found);
+}
+
+std::string CardReplay::NameOf(const GuidPrefix &peer) const
+{
+    const auto found = _peers.find(peer);
+    std::string name;
+    if (found != _peers.end())
+    {
+        const std::span<const std::uint8_t> announcement = found->second.Participant;
+        VisitParameters(announcement,
+                        [&](std::uint16_t id, std::size_t at, std::size_t length)
+                        {
+                            if (id == EntityName && length > 4)
+                            {
+                                const auto text = announcement.subspan(at + 4, length - 4);
+                                name.assign(text.begin(), std::find(text.begin(), text.end(), 0));
+                            }
+                        });
+    }
+    return name;
+}
+
+std::vector<GuidPrefix> CardReplay::Peers() const
+{
+    std::vector<GuidPrefix> peers;
+    for (const auto &[name, peer] : _peers)
+    {
+        peers.push_back(name);
+    }
+    return peers;
+}
+
+bool CardReplay::IsSettled(const Peer &peer)
+{
+    return std::all_of(peer.Streams.begin(), peer.Streams.end(),
+                       [](const auto &entry)
+                       { return entry.second.IsConfirmed && entry.second.Acknowledged > entry.second.Last; });
+}
+
+void CardReplay::Answer(Peer &peer, TimePoint now)
+{
+    if (!peer.AnswerAt)
+    {
+        peer.AnswerAt = std::max(now, peer.Answered + ShortestGap);
+    }
+}
+
+void CardReplay::Again(const GuidPrefix &peer, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found == _peers.end() || found->second.Retry.Due())
+    {
+        return;
+    }
+    for (auto &[writer, stream] : found->second.Streams)
+    {
+        stream.IsConfirmed = false;
+    }
+    found->second.IsKnown = false;
+    found->second.Retry.Begin(now);
+}
+
+void CardReplay::Said(const EndpointSubmessage &said, TimePoint now)
+{
+    for (auto &[name, peer] : _peers)
+    {
+        if (said.To != GuidPrefix{} && said.To != name)
+        {
+            continue;
+        }
+        if (said.Kind == SubmessageKind::Heartbeat)
+        {
+            peer.Streams[said.Said.Writer].OwesAcknowledgement = true;
+            Answer(peer, now);
+        }
+        else if (said.Kind == SubmessageKind::AckNack)
+        {
+            Stream &stream = peer.Streams[said.Said.Writer];
+            peer.IsKnown = true;
+            stream.IsConfirmed = true;
+            stream.Acknowledged = std::max<std::int64_t>(said.Said.First, 1);
+            if (stream.Acknowledged <= stream.Last || !said.IsFinal)
+            {
+                Answer(peer, now);
+            }
+            if (IsSettled(peer))
+            {
+                peer.Retry.Stop();
+            }
+            else if (!peer.Retry.Due())
+            {
+                peer.Retry.Begin(now + FirstRetry);
+            }
+        }
+    }
+}
+
+std::optional<CardReplay::TimePoint> CardReplay::Due() const
+{
+    std::optional<TimePoint> due;
+    const auto consider = [&due](const std::optional<TimePoint> &time)
+    { due = time ? std::min(due.value_or(*time), *time) : due; };
+    if (!_ends.empty())
+    {
+        consider(TimePoint{});
+    }
+    for (const auto &[name, peer] : _peers)
+    {
+        consider(peer.AnswerAt);
+        consider(peer.Retry.Due());
+    }
+    return due;
+}
+
+std::vector<CardReplay::Message> CardReplay::TakeDue(TimePoint now, const OwnCard &own)
+{
+    std::vector<Message> messages = std::exchange(_ends, {});
+    for (auto &[name, peer] : _peers)
+    {
+        const bool retries = peer.Retry.IsDue(now);
+        const bool answers = peer.AnswerAt && *peer.AnswerAt <= now;
+        if (retries)
+        {
+            peer.Retry.Done(now);
+        }
+        if (retries || answers)
+        {
+            peer.AnswerAt.reset();
+            peer.Answered = now;
+            Say(name, peer, retries, own, messages);
+        }
+    }
+    return messages;
+}
+
+void CardReplay::Say(const GuidPrefix &name, Peer &peer, bool all, const OwnCard &own,
+                     std::vector<Message> &messages)
+{
+    const auto begin = [&]
+    {
+        Message message{.From = name, .Bytes = peer.Header};
+        AppendDestination(message.Bytes, _self);
+        return message;
+    };
+    if (all && !std::exchange(peer.IsKnown, false))
+    {
+        // In a message of its own: the implementation has to know the participant before the rest.
+        Message message{.From = name, .Bytes = peer.Header};
+        AppendAnnouncement(message.Bytes, peer.Participant, ++peer.Announced);
+        messages.push_back(std::move(message));
+    }
+    Message message = begin();
+    const std::size_t empty = message.Bytes.size();
+    for (auto &[writer, stream] : peer.Streams)
+    {
+        if (std::exchange(stream.OwesAcknowledgement, false))
+        {
+            const OwnCard::Acknowledged acknowledged = own.Of(writer);
+            AppendAcknowledgement(message.Bytes, writer, acknowledged.Base, acknowledged.Missing, ++_count);
+        }
+        if (stream.IsConfirmed && stream.Acknowledged > stream.Last)
+        {
+            continue;
+        }
+        AppendHeartbeat(message.Bytes, writer, stream.Last, ++_count);
+        std::map<std::int64_t, const Announcement *> lacking;
+        for (const auto &[subject, endpoint] : stream.Endpoints)
+        {
+            if (endpoint.Number >= stream.Acknowledged)
+            {
+                lacking.emplace(endpoint.Number, &endpoint);
+            }
+        }
+        std::int64_t next = stream.Acknowledged;
+        for (const auto &[number, endpoint] : lacking)
+        {
+            if (message.Bytes.size() + endpoint->Bytes.size() > LargestMessage)
+            {
+                messages.push_back(std::exchange(message, begin()));
+            }
+            if (next < number)  // a newer announcement took the place of these
+            {
+                AppendGap(message.Bytes, writer, next, number);
+            }
+            AppendAnnouncement(message.Bytes, endpoint->Bytes, number);
+            next = number + 1;
+        }
+    }
+    if (message.Bytes.size() > empty)
+    {
+        messages.push_back(std::move(message));
+    }
+}
+
+}  // namespace Rabit::Rtps

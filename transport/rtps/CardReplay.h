@@ -1,0 +1,115 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rtps/Backoff.h"
+#include "rtps/OwnCard.h"
+
+namespace Rabit::Rtps
+{
+
+// Says to the own DDS implementation what the cards of peers say, in the peers' names, as reliably as if the
+// peers said it themselves (OMG DDSI-RTPS 2.3, 8.4): each announcement of an endpoint has a number,
+// heartbeats name the numbers, and what the implementation has not acknowledged is said again. It also
+// acknowledges to the implementation in the peers' names (OwnCard). So between nodes with cards none of that
+// is on the air.
+//
+// The lease in a peer's announcement is replaced: a participant that is silent is remembered for long, since
+// beats tell whether it is there.
+//
+// A pure state machine, not thread-safe.
+class CardReplay
+{
+public:
+    using TimePoint = Backoff::TimePoint;
+    using Duration = Backoff::Duration;
+
+    // In answer to the implementation, no more often than this.
+    static constexpr std::chrono::milliseconds ShortestGap{5};
+    // What is not acknowledged is said again after this, doubled each time, up to the second.
+    static constexpr std::chrono::milliseconds FirstRetry{50};
+    static constexpr std::chrono::milliseconds LongestRetry{1000};
+    // An implementation that does not take a peer, because it has too many, is not asked without end.
+    static constexpr int MostRetries = 60;
+    // Bytes of a message that holds several announcements.
+    static constexpr std::size_t LargestMessage = 8000;
+
+    explicit CardReplay(Duration memory) : _memory(memory) {}
+
+    void SetSelf(const GuidPrefix &self) { _self = self; }
+
+    // The unpacked card of a peer. Returns false, and changes nothing, if it is no card of that peer.
+    bool Put(const GuidPrefix &peer, std::span<const std::uint8_t> card, TimePoint now);
+    bool Has(const GuidPrefix &peer) const { return _peers.contains(peer); }
+    // The implementation has lost the peer, or was told that it is gone.
+    void Forget(const GuidPrefix &peer) { _peers.erase(peer); }
+    // Tells the implementation that the peer is gone, and forgets it.
+    void End(const GuidPrefix &peer);
+    // The name that the peer's announcement gives it; empty: none.
+    std::string NameOf(const GuidPrefix &peer) const;
+    std::vector<GuidPrefix> Peers() const;
+
+    // Says all of that peer again, because it was forgotten on the way to the implementation. Does nothing
+    // while that is under way.
+    void Again(const GuidPrefix &peer, TimePoint now);
+
+    // The implementation said something to that peer, or to all: a heartbeat, or an acknowledgement.
+    void Said(const EndpointSubmessage &said, TimePoint now);
+
+    std::optional<TimePoint> Due() const;
+    // Messages for the implementation, one after the other.
+    struct Message
+    {
+        GuidPrefix From{};
+        std::vector<std::uint8_t> Bytes;
+    };
+    // `own` says what is acknowledged to the implementation.
+    std::vector<Message> TakeDue(TimePoint now, const OwnCard &own);
+
+private:
+    struct Announcement
+    {
+        std::int64_t Number = 0;
+        std::uint64_t Content = 0;
+        std::vector<std::uint8_t> Bytes;
+    };
+    // What the peer's writer of announcements says, and what the own one of the same kind has to be told.
+    struct Stream
+    {
+        std::map<EntityId, Announcement> Endpoints;
+        std::int64_t Last = 0;
+        std::int64_t Acknowledged = 1;  // all before, by the implementation
+        bool IsConfirmed = false;       // it has said so since all was said anew
+        bool OwesAcknowledgement = false;
+    };
+    struct Peer
+    {
+        std::vector<std::uint8_t> Header;
+        std::vector<std::uint8_t> Participant;
+        std::int64_t Announced = 0;  // how often; the number of its announcement
+        std::map<EntityId, Stream> Streams;
+        bool IsKnown = false;  // the implementation has answered since the last retry
+        Backoff Retry{{FirstRetry, LongestRetry, 2.0, MostRetries}};
+        std::optional<TimePoint> AnswerAt;
+        TimePoint Answered{};
+    };
+
+    static bool IsSettled(const Peer &peer);
+    void Answer(Peer &peer, TimePoint now);
+    void Say(const GuidPrefix &name, Peer &peer, bool all, const OwnCard &own,
+             std::vector<Message> &messages);
+
+    const Duration _memory;
+    GuidPrefix _self{};
+    std::uint32_t _count = 0;  // of heartbeats and acknowledgements
+    std::map<GuidPrefix, Peer> _peers;
+    std::vector<Message> _ends;
+};
+
+}  // namespace Rabit::Rtps

@@ -1,0 +1,229 @@
+#include "rtps/Meeting.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/RtpsTraffic.h"
+#include "rtps/PackedCard.h"
+
+namespace Rabit::Rtps
+{
+
+bool Meeting::Sending(std::span<const std::uint8_t> datagram, TimePoint now)
+{
+    if (!HasRtpsHeader(datagram))
+    {
+        return false;
+    }
+    _self = SenderOf(datagram);
+    _exchange.SetSelf(_self);
+    _replay.SetSelf(_self);
+    if (AnnouncingOf(datagram).Alone)
+    {
+        _own.Announced(datagram);
+    }
+    bool isForPrograms = true;
+    if (const auto said = ReadEndpointSubmessages(datagram))
+    {
+        isForPrograms = false;
+        for (const EndpointSubmessage &each : *said)
+        {
+            Say(each, datagram.first(RtpsHeaderSize), now);
+            isForPrograms = IsForPrograms(each.To, now) || isForPrograms;
+        }
+    }
+    if (_own.TakeChanged() && !_packAt)
+    {
+        _packAt = now + Hold;
+    }
+    return !isForPrograms;
+}
+
+void Meeting::Say(const EndpointSubmessage &said, std::span<const std::uint8_t> header, TimePoint now)
+{
+    if (said.Kind == SubmessageKind::DataFrag)
+    {
+        const auto whole = _fragments.Add(header, said.Said, {});
+        const auto parts = whole.empty() ? std::nullopt : ReadEndpointSubmessages(whole);
+        if (parts)
+        {
+            _own.Said(parts->front());
+        }
+        return;
+    }
+    _own.Said(said);
+    _replay.Said(said, now);
+}
+
+bool Meeting::IsForPrograms(const GuidPrefix &to, TimePoint now)
+{
+    if (to != GuidPrefix{})
+    {
+        return !_replay.Has(to);
+    }
+    std::erase_if(_programs, [now](const auto &entry) { return now - entry.second >= ProgramsForgotten; });
+    return !_programs.empty();
+}
+
+bool Meeting::IsThere(const GuidPrefix &peer, const HostAddress &from)
+{
+    if (_places.size() >= MostRemembered && !_places.contains(peer))
+    {
+        std::erase_if(_places, [this](const auto &entry) { return !_replay.Has(entry.first); });
+    }
+    const auto [found, isNew] = _places.try_emplace(peer, Place{.From = from});
+    Place &place = found->second;
+    if (place.From == from)
+    {
+        place.Times = 0;
+        return true;
+    }
+    place.Times = place.Other == from ? place.Times + 1 : 1;
+    place.Other = from;
+    if (place.Times >= OftenEnough)
+    {
+        place = {.From = from};
+        return true;
+    }
+    return false;
+}
+
+bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress &from, TimePoint now)
+{
+    const auto message = ReadCardMessage(datagram);
+    if (!message)
+    {
+        return false;
+    }
+    if (message->From == _self || std::find(_gone.begin(), _gone.end(), message->From) != _gone.end())
+    {
+        return true;
+    }
+    if (!IsThere(message->From, from))
+    {
+        return false;
+    }
+    const auto card = _exchange.Received(*message, now);
+    if (!card)
+    {
+        return true;
+    }
+    const auto unpacked = UnpackCard(card->Packed);
+    if (!unpacked || !_replay.Put(card->Of, *unpacked, now))
+    {
+        _exchange.Refuse(card->Of, now);
+        return false;
+    }
+    _programs.erase(card->Of);
+    NoteSuccessor(card->Of);
+    return true;
+}
+
+void Meeting::NoteSuccessor(const GuidPrefix &peer)
+{
+    const std::string name = _replay.NameOf(peer);
+    _superseded.erase(peer);
+    for (const GuidPrefix &other : _replay.Peers())
+    {
+        if (other != peer && _replay.NameOf(other) == name)
+        {
+            _superseded.emplace(other, name);
+        }
+    }
+}
+
+void Meeting::HeardUnknown(const GuidPrefix &peer, TimePoint now)
+{
+    if (std::find(_gone.begin(), _gone.end(), peer) != _gone.end())
+    {
+        return;
+    }
+    _replay.Has(peer) ? _replay.Again(peer, now) : _exchange.Heard(peer, now);
+}
+
+void Meeting::Announced(const GuidPrefix &peer, bool hasCard, TimePoint now)
+{
+    if (hasCard)
+    {
+        _exchange.Announced(peer, now);
+    }
+    else if (_programs.size() < MostRemembered)
+    {
+        _programs.insert_or_assign(peer, now);
+    }
+}
+
+void Meeting::Gone(const GuidPrefix &peer, bool forGood)
+{
+    _exchange.Forget(peer);
+    _replay.Forget(peer);
+    _places.erase(peer);
+    _programs.erase(peer);
+    _superseded.erase(peer);
+    if (forGood)
+    {
+        Remember(_gone, peer);
+    }
+}
+
+void Meeting::Remember(std::deque<GuidPrefix> &peers, const GuidPrefix &peer)
+{
+    constexpr std::size_t most = 64;
+    peers.push_back(peer);
+    if (peers.size() > most)
+    {
+        peers.pop_front();
+    }
+}
+
+std::optional<Meeting::TimePoint> Meeting::Due() const
+{
+    std::optional<TimePoint> due;
+    for (const std::optional<TimePoint> &time : {_packAt, _exchange.Due(), _replay.Due()})
+    {
+        due = time ? std::min(due.value_or(*time), *time) : due;
+    }
+    return due;
+}
+
+Meeting::Work Meeting::TakeDue(TimePoint now)
+{
+    Work work;
+    if (_packAt && *_packAt <= now)
+    {
+        _packAt.reset();
+        _exchange.SetOwn(PackCard(_own.Message()), now);
+    }
+    for (CardReplay::Message &message : _replay.TakeDue(now, _own))
+    {
+        const auto place = _places.find(message.From);
+        work.ToImplementation.push_back({.From = place == _places.end() ? UnknownHost : place->second.From,
+                                         .Bytes = std::move(message.Bytes)});
+    }
+    work.ToNetwork = _exchange.TakeDue(now);
+    return work;
+}
+
+std::vector<GuidPrefix> Meeting::Superseded() const
+{
+    std::vector<GuidPrefix> peers;
+    for (const auto &[peer, name] : _superseded)
+    {
+        peers.push_back(peer);
+    }
+    return peers;
+}
+
+void Meeting::End(const GuidPrefix &peer)
+{
+    _replay.End(peer);
+    Gone(peer, false);
+    Remember(_ended, peer);
+}
+
+bool Meeting::WasEnded(const GuidPrefix &peer) const
+{
+    return std::find(_ended.begin(), _ended.end(), peer) != _ended.end();
+}
+
+}  // namespace Rabit::Rtps

@@ -1,0 +1,156 @@
+#include "rtps/MeetingThread.h"
+
+#include <utility>
+#include <vector>
+
+namespace Rabit::Rtps
+{
+
+void MeetingThread::Start(Calls calls)
+{
+    _calls = std::move(calls);
+    _thread = std::thread([this] { Run(); });
+}
+
+void MeetingThread::Stop()
+{
+    {
+        const std::lock_guard lock(_mutex);
+        _stop = true;
+    }
+    _changed.notify_one();
+    if (_thread.joinable())
+    {
+        _thread.join();
+    }
+}
+
+// Does the work, and wakes the thread if something is due earlier than it waits for.
+template <typename Work>
+auto MeetingThread::With(const Work &work)
+{
+    struct Waker
+    {
+        MeetingThread &Self;
+        ~Waker()
+        {
+            const auto due = Self._meeting.Due();
+            if (Self._waits && due && (!Self._waitsUntil || *due < *Self._waitsUntil))
+            {
+                Self._changed.notify_one();
+            }
+        }
+    };
+    const std::lock_guard lock(_mutex);
+    const Waker waker{*this};
+    return work(Clock::now());
+}
+
+bool MeetingThread::Sending(std::span<const std::uint8_t> datagram, double rate)
+{
+    return With(
+        [&](auto now)
+        {
+            _meeting.SetRate(rate);
+            return _meeting.Sending(datagram, now);
+        });
+}
+
+bool MeetingThread::Received(std::span<const std::uint8_t> datagram, const HostAddress &from)
+{
+    return With([&](auto now) { return _meeting.Received(datagram, from, now); });
+}
+
+void MeetingThread::Lost(const GuidPrefix &peer)
+{
+    With([&](auto) { _meeting.Gone(peer, false); });
+}
+
+bool MeetingThread::WasEnded(const GuidPrefix &peer) const
+{
+    const std::lock_guard lock(_mutex);
+    return _meeting.WasEnded(peer);
+}
+
+void MeetingThread::HeardUnknown(const GuidPrefix &peer)
+{
+    With([&](auto now) { _meeting.HeardUnknown(peer, now); });
+}
+
+void MeetingThread::Announced(const GuidPrefix &peer, bool hasCard)
+{
+    With([&](auto now) { _meeting.Announced(peer, hasCard, now); });
+}
+
+void MeetingThread::Gone(const GuidPrefix &peer)
+{
+    With([&](auto) { _meeting.Gone(peer, true); });
+}
+
+bool MeetingThread::IsReplayed(const GuidPrefix &peer) const
+{
+    const std::lock_guard lock(_mutex);
+    return _meeting.IsReplayed(peer);
+}
+
+void MeetingThread::Run()
+{
+    auto lookAt = Clock::now();
+    std::unique_lock lock(_mutex);
+    while (!_stop)
+    {
+        const auto now = Clock::now();
+        const bool anySuperseded = !_meeting.Superseded().empty();
+        if (anySuperseded && now >= lookAt)
+        {
+            lookAt = now + LookForSuperseded;
+            lock.unlock();
+            EndSuperseded();
+            lock.lock();
+            continue;
+        }
+        _waitsUntil = _meeting.Due();
+        if (anySuperseded)
+        {
+            _waitsUntil = std::min(_waitsUntil.value_or(lookAt), lookAt);
+        }
+        if (!_waitsUntil || *_waitsUntil > now)
+        {
+            _waits = true;
+            _waitsUntil ? static_cast<void>(_changed.wait_until(lock, *_waitsUntil)) : _changed.wait(lock);
+            _waits = false;
+            continue;
+        }
+        Meeting::Work work = _meeting.TakeDue(now);
+        lock.unlock();
+        for (Meeting::Work::Local &local : work.ToImplementation)
+        {
+            _calls.Deliver(local.From, local.Bytes);
+        }
+        for (const CardExchange::Outgoing &outgoing : work.ToNetwork)
+        {
+            _calls.Send(outgoing.To, outgoing.Bytes);
+        }
+        lock.lock();
+    }
+}
+
+void MeetingThread::EndSuperseded()
+{
+    std::vector<GuidPrefix> peers;
+    {
+        const std::lock_guard lock(_mutex);
+        peers = _meeting.Superseded();
+    }
+    for (const GuidPrefix &peer : peers)
+    {
+        const auto heard = _calls.LastHeard(peer);
+        if (!heard || Clock::now() - *heard >= _meeting.EndAfter())
+        {
+            const std::lock_guard lock(_mutex);
+            _meeting.End(peer);
+        }
+    }
+}
+
+}  // namespace Rabit::Rtps

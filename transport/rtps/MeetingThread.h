@@ -1,0 +1,72 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+
+#include "guard/PeerObserver.h"
+#include "rtps/Meeting.h"
+
+namespace Rabit::Rtps
+{
+
+// A Meeting with a thread of its own, which does what is due. Thread-safe.
+class MeetingThread final : public PeerObserver
+{
+public:
+    using Clock = std::chrono::steady_clock;
+
+    // Called on the thread, without a lock.
+    struct Calls
+    {
+        // To one participant, or to all; `to` is empty then.
+        std::function<void(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)> Send;
+        // To the own DDS implementation, as if it came from that address.
+        std::function<void(const HostAddress &from, std::span<std::uint8_t> datagram)> Deliver;
+        // When the participant was heard last; empty: it is not known.
+        std::function<std::optional<Clock::time_point>(const GuidPrefix &)> LastHeard;
+    };
+
+    explicit MeetingThread(const Meeting::Settings &settings) : _meeting(settings) {}
+    ~MeetingThread() override { Stop(); }
+
+    void Start(Calls calls);
+    // No call is under way or made when this returns. Not from within a call.
+    void Stop();
+
+    // These are Meeting's; any thread. They call nobody.
+    // `rate`: bytes in a second that the exchange may take; 0: as much as it needs.
+    bool Sending(std::span<const std::uint8_t> datagram, double rate);
+    bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from);
+    // The implementation has lost the participant.
+    void Lost(const GuidPrefix &peer);
+    bool WasEnded(const GuidPrefix &peer) const;
+
+    // PeerObserver
+    void HeardUnknown(const GuidPrefix &peer) override;
+    void Announced(const GuidPrefix &peer, bool hasCard) override;
+    void Gone(const GuidPrefix &peer) override;
+    bool IsReplayed(const GuidPrefix &peer) const override;
+
+private:
+    static constexpr std::chrono::seconds LookForSuperseded{1};
+
+    template <typename Work>
+    auto With(const Work &work);
+    void Run();
+    void EndSuperseded();
+
+    mutable std::mutex _mutex;
+    std::condition_variable _changed;
+    Meeting _meeting;                              // guarded by _mutex
+    std::optional<Clock::time_point> _waitsUntil;  // guarded by _mutex
+    bool _waits = false;                           // guarded by _mutex
+    bool _stop = false;                            // guarded by _mutex
+    Calls _calls;
+    std::thread _thread;
+};
+
+}  // namespace Rabit::Rtps
