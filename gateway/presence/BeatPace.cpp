@@ -43,7 +43,8 @@ void BeatPace::Sent(Duration now)
 {
     if (now < Due())
     {
-        _gap = std::min({2 * _gap, _period, _longestGap});
+        _gap =
+            std::min({_gap * 3 / 2, _period, _longestGap, ++_quick < QuickBeats ? QuickGap : LongestPeriod});
         _broughtForward = now;
     }
     else
@@ -64,6 +65,7 @@ void BeatPace::CalmDown(Duration now)
     if (!_broughtForward || now - *_broughtForward >= Quiet)
     {
         _gap = ShortestGap;
+        _quick = 0;
     }
 }
 

@@ -23,6 +23,10 @@ public:
     static constexpr Duration LongestPeriod = std::chrono::seconds(60);
     // No two beats follow each other more quickly.
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
+    // The first beats that are brought forward follow each other after so long at the latest: a question or
+    // its answer may be lost.
+    static constexpr Duration QuickGap = std::chrono::milliseconds(300);
+    static constexpr int QuickBeats = 12;
     // After so long without one the next may be brought forward as if it were the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
     // After so long without a newcomer the next one is met with beats that are twice as quick.
@@ -72,6 +76,7 @@ private:
     Duration _step = Duration::max();  // to the beat after the next one; more than the period: the period
     Duration _gap = ShortestGap;
     Duration _longestGap = LongestPeriod;
+    int _quick = 0;                  // beats that were brought forward since the gap was shortest
     Duration _series = ShortestGap;  // first step of the last introduction
     std::optional<Duration> _introduced;
     std::optional<Duration> _last;

@@ -69,7 +69,7 @@ std::vector<MissingOffers::Question> MissingOffers::Take(Duration now, std::size
                   questions.push_back({node, entry.Collected.FirstLacking(entry.Digest)});
                   entry.AskAt = now + entry.Gap;
                   const bool quick = ++entry.Asked < _quickQuestions;
-                  entry.Gap = std::min(2 * entry.Gap, quick ? _quickGap : LongestGap);
+                  entry.Gap = std::min(entry.Gap * 3 / 2, quick ? _quickGap : LongestGap);
                   return true;
               });
     return questions;

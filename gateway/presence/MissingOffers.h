@@ -26,10 +26,15 @@ public:
 
     // It may be on its way.
     static constexpr Duration AskAfter = std::chrono::milliseconds(60);
-    // From one question to the next at most; at first AskAfter, then twice as long each time.
+    // From one question to the next at most; at first twice AskAfter, then half as long again each time.
     static constexpr Duration LongestGap = std::chrono::seconds(2);
+    // The first questions follow each other more quickly: a question or its answer may be lost, and a radio
+    // that loses datagrams is not full.
+    static constexpr Duration QuickGap = std::chrono::milliseconds(300);
+    static constexpr int QuickQuestions = 12;
 
-    // A short one, for who looks and goes: for that many questions the gap is no longer than that.
+    // For that many questions the gap is no longer than that, in place of the two above: for a tool, which
+    // looks and goes.
     void BeQuick(Duration gap, int questions)
     {
         _quickGap = gap;
@@ -71,8 +76,8 @@ private:
 
     std::map<std::string, Entry> _lacking;
     std::string _lastAsked;
-    Duration _quickGap{0};
-    int _quickQuestions = 0;
+    Duration _quickGap = QuickGap;
+    int _quickQuestions = QuickQuestions;
     std::uint64_t _wrong = 0;
 };
 

@@ -24,6 +24,7 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now)
     if (!_lastAsked || now - *_lastAsked >= Quiet)
     {
         _gap = ShortestGap;
+        _answers = 0;
     }
     _lastAsked = now;
     if (_from && _parts == 0)
@@ -58,7 +59,7 @@ void OffersAnswer::Said(std::size_t bytes, Duration now)
     {
         _lastSaid = now;
         _notBefore = now + _gap * std::exchange(_parts, 0);
-        _gap = std::min(2 * _gap, LongestGap);
+        _gap = std::min(2 * _gap, ++_answers < QuickAnswers ? QuickGap : LongestGap);
         _from = std::exchange(_again, std::nullopt);
         _at = _notBefore;
     }

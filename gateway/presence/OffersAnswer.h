@@ -22,6 +22,9 @@ public:
     // From the end of one time to the next, for each part; the gap doubles.
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
     static constexpr Duration LongestGap = std::chrono::seconds(2);
+    // The first answers follow each other more quickly: an answer may be lost.
+    static constexpr Duration QuickGap = std::chrono::milliseconds(300);
+    static constexpr int QuickAnswers = 12;
     // After so long without a question it is short again.
     static constexpr Duration Quiet = std::chrono::seconds(5);
     // Between parts.
@@ -48,6 +51,7 @@ private:
     std::optional<std::size_t> _again;  // where to begin once the end is said
     Duration _at{0};
     Duration _gap = ShortestGap;
+    int _answers = 0;  // since the gap was short
     Duration _notBefore{0};
     std::optional<Duration> _lastAsked;
     std::optional<Duration> _lastSaid;

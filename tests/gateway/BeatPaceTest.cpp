@@ -84,14 +84,19 @@ TEST(BeatPace, WhoAsksWithoutEndHasItsBeatsAtMostOnceAPeriod)
     BeatPace pace;
     pace.Sent(1s);
     std::vector<Ns> gaps;
-    for (Ns now = 1s; gaps.size() < 8;)
+    for (Ns now = 1s; gaps.size() < 16;)
     {
         const Ns next = std::min(pace.EarliestToAsk(), pace.Due());
         gaps.push_back(next - now);
         now = next;
         pace.Sent(now);
     }
-    EXPECT_EQ(gaps, (std::vector<Ns>{50ms, 100ms, 200ms, 400ms, 500ms, 500ms, 500ms, 500ms}));
+    // Each is half as long again as the one before, up to 300 ms for the first twelve, and then to the
+    // period.
+    EXPECT_EQ(std::vector<Ns>(gaps.begin(), gaps.begin() + 5),
+              (std::vector<Ns>{50ms, 75ms, 112'500us, 168'750us, 253'125us}));
+    EXPECT_EQ(std::vector<Ns>(gaps.begin() + 5, gaps.end()),
+              (std::vector<Ns>{300ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms, 450ms, 500ms, 500ms, 500ms}));
 }
 
 TEST(BeatPace, AfterSomeQuietABeatMayBeBroughtForwardAtOnceAgain)

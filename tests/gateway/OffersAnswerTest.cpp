@@ -121,7 +121,8 @@ TEST_F(OffersAnswerTest, ThoseWhoAskWithoutEndAreAnsweredMoreAndMoreSeldom)
             last = now;
         }
     }
-    EXPECT_EQ(gaps, (std::vector<Ns>{0ms, 50ms, 100ms, 200ms, 400ms, 800ms, 1600ms, 2s, 2s, 2s}));
+    EXPECT_EQ(gaps, (std::vector<Ns>{0ms, 50ms, 100ms, 200ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms,
+                                     300ms, 300ms, 600ms, 1200ms, 2s, 2s}));
 }
 
 TEST_F(OffersAnswerTest, TheMorePartsThereAreTheMoreSeldomItIsSaid)
