@@ -50,7 +50,7 @@ class Fleet:
     def start_ledger(self, node, *options):
         state = pathlib.Path(self.ground.folder, node + ".state")
         state.mkdir(exist_ok=True)
-        return self.ground.start(node, [self._folder / "ledger_node", "--node", node, "--ledger", self._path(node),
+        return self.ground.start(node, [self._folder / "ledger_node", "--node", node, "--ledger", self.ledger(node),
                                         "--state-dir", state, "--transport", self.transport, *options])
 
     def restart_ledger(self, node, *options):
@@ -61,7 +61,7 @@ class Fleet:
         """All of them; what they wrote is forgotten."""
         for node in self.ground.nodes:
             self.ground.kill(node)
-            self._path(node).unlink()
+            self.ledger(node).unlink()
 
     def start_example(self, node, config, *options):
         """A program of examples/, named as its node or else an aircraft, with its configuration for any interface."""
@@ -73,7 +73,7 @@ class Fleet:
                                         "--transport", self.transport, *options])
 
     def ledgers(self):
-        return expectations.Run({node: self._path(node).read_text() if self._path(node).exists() else ""
+        return expectations.Run({node: self.ledger(node).read_text() if self.ledger(node).exists() else ""
                                  for node in self.ground.nodes}, [])
 
     def wait_until_all_up(self, limit_s):
@@ -93,7 +93,7 @@ class Fleet:
                 return None
             time.sleep(0.2)
 
-    def _path(self, node):
+    def ledger(self, node):
         return pathlib.Path(self.ground.folder, node + ".ledger")
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Measures fleets on thin radios, and prints a table: nodes with gateways, and plain DDS programs where they can do the
-work. rows.py has the rows and their limits, measures.py what the figures are.
+work. rows.py has the rows and their limits, measures.py and meeting.py what the figures are.
 
 Usage: radio_table.py [--only TEXT]... [--long | --cut SECONDS] [--transports NAME,...] [--output FILE] [--judge] PROGRAMS
 PROGRAMS is the folder of the programs (build/release/bin). --only: rows whose name has that text. --long: also rows that
@@ -17,6 +17,7 @@ import subprocess
 import sys
 
 import measures
+import meeting
 import rows
 from rows import PLAIN, RABIT
 
@@ -40,7 +41,8 @@ def run(row, options, contestant, transport):
         fleet = measures.Fleet(ground, options.programs, contestant, transport)
         arguments = {name: min(value, options.cut) if options.cut and name in ("settle_s", "seconds", "for_s") else value
                      for name, value in row.options.items()}
-        figures = getattr(measures, row.measure)(fleet, **arguments)
+        module = meeting if hasattr(meeting, row.measure) else measures
+        figures = getattr(module, row.measure)(fleet, **arguments)
         if ground.overrun():
             raise AssertionError("the radio was too slow for this machine: the figures would mean nothing")
         return figures

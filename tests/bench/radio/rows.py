@@ -1,5 +1,5 @@
-"""The rows of the table: on which medium which fleet has to do what, how well at least. What is measured: measures.py,
-of which each row names a function; its figures are the columns."""
+"""The rows of the table: on which medium which fleet has to do what, how well at least. Each row names the function of
+measures.py or meeting.py that measures it; the figures of that function are the columns."""
 
 from dataclasses import dataclass, field
 
@@ -52,7 +52,31 @@ def commands(loss, rate, p99):
                {"rate": rate, "count": min(10 * rate, 5000)}, {"p99_ms": ("<=", p99), "refused": ("<=", 0)})
 
 
+def meet(loss, p99):
+    return Row(f"two nodes meet, {loss} % lost, 10 Mbit/s", {"kbit": 10_000, "loss": loss}, "meet",
+               {"members": 2, "tries": 100}, {"p99_s": ("<=", p99), "failed": ("<=", 0)}, plain=True, long=True)
+
+
+def back(for_s, tries):
+    """The way to more than a hundred tries: eight ways each time."""
+    return Row(f"back after {for_s} s, five nodes, 250 kbit/s, 10 % lost", {"kbit": 250, "loss": 10}, "back",
+               {"members": 5, "for_s": for_s, "tries": tries}, {"p99_s": ("<=", 1)}, long=True)
+
+
+MEETING = [
+    *(meet(loss, p99) for loss, p99 in ((0, 0.3), (20, 1), (40, 3))),
+    back(45, 13),
+    back(600, 2),
+    Row("five nodes at once, 250 kbit/s, 10 % lost", {"kbit": 250, "loss": 10}, "crowd", {"members": 5, "tries": 20},
+        {"p99_s": ("<=", 3), "failed": ("<=", 0)}, long=True),
+    swarm(10, 250, {"all_up_s": ("<=", 3), "lost": ("<=", 0), "poses_pct": (">=", 95)}),
+    swarm(20, 1000, {"all_up_s": ("<=", 2), "lost": ("<=", 0), "poses_pct": (">=", 99)}),
+    Row("churn: ten nodes, 1 Mbit/s, 10 % lost, one starts again every 3 s", {"kbit": 1000, "loss": 10}, "churn",
+        {"members": 10, "seconds": 600, "every_s": 3}, {"p99_s": ("<=", 1), "lost": ("<=", 0)}, long=True),
+]
+
 ROWS = [
+    *MEETING,
     members(10_000),
     members(1000),
     members(250, {"arrives_pct": (">=", 95)}),
