@@ -33,7 +33,7 @@ public:
     static constexpr Duration QuickGap = std::chrono::milliseconds(300);
     static constexpr int QuickQuestions = 12;
 
-    // For that many questions the gap is no longer than that, in place of the two above: for a tool, which
+    // Limits the gap to `gap` for the first `questions` questions, in place of the two above: for a tool, which
     // looks and goes.
     void BeQuick(Duration gap, int questions)
     {

@@ -5,7 +5,7 @@
 namespace Rabit::Rtps
 {
 
-// What the guard tells of the participants that it hears. Called on receiving threads with the guard's lock
+// Is told by the guard of the participants that it hears. Called on receiving threads with the guard's lock
 // held: the implementation must be quick, and must not call the guard.
 class PeerObserver
 {

@@ -466,6 +466,12 @@ void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &deliv
     Write(bytes, _peers.CountOf(sender, delivery.Writer, theirs), submessage.LittleEndian);
 }
 
+bool RtpsGuard::IsKnownAt(const GuidPrefix &peer, const HostAddress &from)
+{
+    const std::lock_guard lock(_mutex);
+    return _peers.LastHeard(peer).has_value() && _peers.SpeaksFrom(peer, from);
+}
+
 std::optional<RtpsGuard::TimePoint> RtpsGuard::LastHeard(const GuidPrefix &peer)
 {
     const std::lock_guard lock(_mutex);

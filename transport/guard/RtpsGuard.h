@@ -66,6 +66,8 @@ public:
     // observer, announcements of participants that have a card are not handed on: the observer sees to it
     // that the vendor is told of them.
     void SetObserver(PeerObserver &observer) { _observer = &observer; }
+    // Whether a participant whose announcement was admitted has said that it is at that address.
+    bool IsKnownAt(const GuidPrefix &peer, const HostAddress &from);
     // When a participant was heard last; empty: its announcement has not been admitted.
     std::optional<TimePoint> LastHeard(const GuidPrefix &peer);
 

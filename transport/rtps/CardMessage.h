@@ -58,7 +58,7 @@ struct CardMessage
 constexpr std::size_t CardPartSize = 1000;
 constexpr std::size_t MostCardParts = 64;
 constexpr std::size_t LargestCard = MostCardParts * CardPartSize;
-// In one message; the requests of one full message fit a datagram.
+// Requests in one message, so that a full message fits a datagram.
 constexpr std::size_t MostCardRequests = 40;
 
 // Whether a datagram claims to be such a message. It may be any bytes.

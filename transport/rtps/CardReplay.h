@@ -20,7 +20,7 @@ namespace Rabit::Rtps
 // acknowledges to the implementation in the peers' names (OwnCard). So between nodes with cards none of that
 // is on the air.
 //
-// The lease in a peer's announcement is replaced: a participant that is silent is remembered for long, since
+// `Put` replaces the lease in a peer's announcement: a silent participant is remembered for long, since
 // beats tell whether it is there.
 //
 // A pure state machine, not thread-safe.
@@ -32,7 +32,7 @@ public:
 
     // In answer to the implementation, no more often than this.
     static constexpr std::chrono::milliseconds ShortestGap{5};
-    // What is not acknowledged is said again after this, doubled each time, up to the second.
+    // First and longest interval between two repetitions of announcements that are not acknowledged.
     static constexpr std::chrono::milliseconds FirstRetry{50};
     static constexpr std::chrono::milliseconds LongestRetry{1000};
     // An implementation that does not take a peer, because it has too many, is not asked without end.
@@ -79,7 +79,7 @@ private:
         std::uint64_t Content = 0;
         std::vector<std::uint8_t> Bytes;
     };
-    // What the peer's writer of announcements says, and what the own one of the same kind has to be told.
+    // The announcements of one of the peer's endpoint writers, and the state of their delivery.
     struct Stream
     {
         std::map<EntityId, Announcement> Endpoints;

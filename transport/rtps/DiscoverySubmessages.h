@@ -1,6 +1,6 @@
-// What the submessages say by which endpoints are announced (SEDP, OMG DDSI-RTPS 2.3, 8.5.4): between a DDS
-// implementation and the cards, in both directions. Those that are read come from the own implementation, or
-// from a card that was checked.
+// Reads and writes the submessages by which endpoints are announced (SEDP, OMG DDSI-RTPS 2.3, 8.5.4): between
+// a DDS implementation and the cards, in both directions. Submessages that are read come from the own
+// implementation, or from a card that was checked.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,7 @@ struct EndpointSubmessage
 std::optional<std::vector<EndpointSubmessage>> ReadEndpointSubmessages(
     std::span<const std::uint8_t> datagram);
 
-// What an announcement in a card says: a sample of discovery, alive or not. Nothing if it is none.
+// Reads an announcement in a card: a sample of discovery, alive or not. Nothing if it is none.
 std::optional<Delivery> ReadAnnouncement(std::span<const std::uint8_t> submessage);
 // The endpoint that an announcement, alive or not, is about; 0: it cannot be told.
 EntityId SubjectOf(std::span<const std::uint8_t> announcement);

@@ -88,7 +88,8 @@ bool Meeting::IsThere(const GuidPrefix &peer, const HostAddress &from)
     return false;
 }
 
-bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress &from, TimePoint now)
+bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt,
+                       TimePoint now)
 {
     const auto message = ReadCardMessage(datagram);
     if (!message)
@@ -99,7 +100,7 @@ bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress
     {
         return true;
     }
-    if (!IsThere(message->From, from))
+    if (!isKnownAt && !IsThere(message->From, from))
     {
         return false;
     }
@@ -204,8 +205,12 @@ Meeting::Work Meeting::TakeDue(TimePoint now)
     return work;
 }
 
-std::vector<GuidPrefix> Meeting::Superseded() const
+std::vector<GuidPrefix> Meeting::Endable() const
 {
+    if (_replay.Peers().size() > MostSilent)
+    {
+        return _replay.Peers();
+    }
     std::vector<GuidPrefix> peers;
     for (const auto &[peer, name] : _superseded)
     {

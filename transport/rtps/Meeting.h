@@ -49,6 +49,8 @@ public:
     // Of programs without a card that do not announce themselves any more.
     static constexpr std::chrono::minutes ProgramsForgotten{5};
     static constexpr std::size_t MostRemembered = 1024;
+    // Of more participants with cards than this the ones that are silent for longest are ended.
+    static constexpr std::size_t MostSilent = 256;
 
     explicit Meeting(const Settings &settings)
         : _settings(settings), _exchange(settings.Period), _replay(settings.Memory)
@@ -58,8 +60,10 @@ public:
     // The own implementation is about to send this datagram, which has no samples. True if it is not to go:
     // all whom it is for have cards.
     bool Sending(std::span<const std::uint8_t> datagram, TimePoint now);
-    // A datagram that IsCardMessage. Returns false if it is not sound, or not from where its sender is.
-    bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from, TimePoint now);
+    // A datagram that IsCardMessage. `isKnownAt`: its sender has said that it is at that address. Returns
+    // false if it is not sound, or not from where its sender is.
+    bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt,
+                  TimePoint now);
 
     // A datagram came of a participant that the implementation does not know.
     void HeardUnknown(const GuidPrefix &peer, TimePoint now);
@@ -67,8 +71,8 @@ public:
     void Announced(const GuidPrefix &peer, bool hasCard, TimePoint now);
     // A participant said goodbye; or the implementation has lost it.
     void Gone(const GuidPrefix &peer, bool forGood);
-    // Whether the implementation is told of that participant here. What the network says of its endpoints is
-    // to be ignored then.
+    // Whether the implementation is told of that participant here. Endpoint discovery in the participant's
+    // name from the network is to be ignored then.
     bool IsReplayed(const GuidPrefix &peer) const { return _replay.Has(peer); }
 
     void SetRate(double bytesPerSecond) { _exchange.SetRate(bytesPerSecond); }
@@ -85,8 +89,9 @@ public:
         std::vector<Local> ToImplementation;
     };
     Work TakeDue(TimePoint now);
-    // Former sessions of nodes that have another one, to be ended once they are silent for EndAfter().
-    std::vector<GuidPrefix> Superseded() const;
+    // Participants to be ended once they are silent for EndAfter(): former sessions of nodes that have
+    // another one, and all if there are more than MostSilent.
+    std::vector<GuidPrefix> Endable() const;
     // Two periods and a half: who lives has announced itself twice.
     Duration EndAfter() const { return 5 * _settings.Period / 2; }
     void End(const GuidPrefix &peer);

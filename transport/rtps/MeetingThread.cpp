@@ -1,5 +1,7 @@
 #include "rtps/MeetingThread.h"
 
+#include <algorithm>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -56,9 +58,9 @@ bool MeetingThread::Sending(std::span<const std::uint8_t> datagram, double rate)
         });
 }
 
-bool MeetingThread::Received(std::span<const std::uint8_t> datagram, const HostAddress &from)
+bool MeetingThread::Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt)
 {
-    return With([&](auto now) { return _meeting.Received(datagram, from, now); });
+    return With([&](auto now) { return _meeting.Received(datagram, from, isKnownAt, now); });
 }
 
 void MeetingThread::Lost(const GuidPrefix &peer)
@@ -100,17 +102,17 @@ void MeetingThread::Run()
     while (!_stop)
     {
         const auto now = Clock::now();
-        const bool anySuperseded = !_meeting.Superseded().empty();
-        if (anySuperseded && now >= lookAt)
+        const bool anyEndable = !_meeting.Endable().empty();
+        if (anyEndable && now >= lookAt)
         {
-            lookAt = now + LookForSuperseded;
+            lookAt = now + LookForSilent;
             lock.unlock();
-            EndSuperseded();
+            EndSilent();
             lock.lock();
             continue;
         }
         _waitsUntil = _meeting.Due();
-        if (anySuperseded)
+        if (anyEndable)
         {
             _waitsUntil = std::min(_waitsUntil.value_or(lookAt), lookAt);
         }
@@ -135,19 +137,29 @@ void MeetingThread::Run()
     }
 }
 
-void MeetingThread::EndSuperseded()
+void MeetingThread::EndSilent()
 {
     std::vector<GuidPrefix> peers;
     {
         const std::lock_guard lock(_mutex);
-        peers = _meeting.Superseded();
+        peers = _meeting.Endable();
     }
+    // Those that are not known any more first.
+    std::multimap<Clock::time_point, GuidPrefix> silent;
     for (const GuidPrefix &peer : peers)
     {
-        const auto heard = _calls.LastHeard(peer);
-        if (!heard || Clock::now() - *heard >= _meeting.EndAfter())
+        const auto heard = _calls.LastHeard(peer).value_or(Clock::time_point{});
+        if (Clock::now() - heard >= _meeting.EndAfter())
         {
-            const std::lock_guard lock(_mutex);
+            silent.emplace(heard, peer);
+        }
+    }
+    for (const auto &[heard, peer] : silent)
+    {
+        const std::lock_guard lock(_mutex);
+        const auto endable = _meeting.Endable();
+        if (std::find(endable.begin(), endable.end(), peer) != endable.end())
+        {
             _meeting.End(peer);
         }
     }

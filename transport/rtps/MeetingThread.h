@@ -22,9 +22,9 @@ public:
     // Called on the thread, without a lock.
     struct Calls
     {
-        // To one participant, or to all; `to` is empty then.
+        // Sends to one participant, or to all if `to` is empty.
         std::function<void(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)> Send;
-        // To the own DDS implementation, as if it came from that address.
+        // Hands a message to the own DDS implementation, as if it came from that address.
         std::function<void(const HostAddress &from, std::span<std::uint8_t> datagram)> Deliver;
         // When the participant was heard last; empty: it is not known.
         std::function<std::optional<Clock::time_point>(const GuidPrefix &)> LastHeard;
@@ -34,13 +34,13 @@ public:
     ~MeetingThread() override { Stop(); }
 
     void Start(Calls calls);
-    // No call is under way or made when this returns. Not from within a call.
+    // No call is under way or made when this returns. A call must not stop the thread.
     void Stop();
 
     // These are Meeting's; any thread. They call nobody.
     // `rate`: bytes in a second that the exchange may take; 0: as much as it needs.
     bool Sending(std::span<const std::uint8_t> datagram, double rate);
-    bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from);
+    bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt);
     // The implementation has lost the participant.
     void Lost(const GuidPrefix &peer);
     bool WasEnded(const GuidPrefix &peer) const;
@@ -52,12 +52,12 @@ public:
     bool IsReplayed(const GuidPrefix &peer) const override;
 
 private:
-    static constexpr std::chrono::seconds LookForSuperseded{1};
+    static constexpr std::chrono::seconds LookForSilent{1};
 
     template <typename Work>
     auto With(const Work &work);
     void Run();
-    void EndSuperseded();
+    void EndSilent();
 
     mutable std::mutex _mutex;
     std::condition_variable _changed;

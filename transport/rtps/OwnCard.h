@@ -30,7 +30,7 @@ public:
     // An announcement of an endpoint, a gap or a heartbeat, in the order in which they are said.
     void Said(const EndpointSubmessage &said);
 
-    // What is acknowledged to an endpoint writer, of the numbers that its last heartbeat named.
+    // The acknowledgement to an endpoint writer, of the numbers that its last heartbeat named.
     struct Acknowledged
     {
         std::int64_t Base = 1;              // all before have been seen

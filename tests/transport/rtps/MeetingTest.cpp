@@ -173,7 +173,7 @@ private:
         const GuidPrefix sender = SenderOf(datagram);
         if (IsCardMessage(datagram))
         {
-            EXPECT_TRUE(node.Meet->Received(datagram, from, now));
+            EXPECT_TRUE(node.Meet->Received(datagram, from, false, now));
         }
         else if (!node.Meet->IsReplayed(sender))
         {
@@ -338,14 +338,23 @@ TEST(Meeting, ACardThatCameFromElsewhereIsNotBelievedBeforeItCameOften)
     Meeting meeting({.Period = 10s, .Memory = 4h});
     const TimePoint now{1h};
     const Bytes summary = WriteCardMessage({.From = Name(7), .Summary = {.Digest = 1, .Size = 500}});
-    EXPECT_TRUE(meeting.Received(summary, Host, now));
+    EXPECT_TRUE(meeting.Received(summary, Host, false, now));
     const HostAddress elsewhere{10, 0, 0, 66};
-    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
-    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
-    EXPECT_TRUE(meeting.Received(summary, Host, now));
-    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
-    EXPECT_FALSE(meeting.Received(summary, elsewhere, now));
-    EXPECT_TRUE(meeting.Received(summary, elsewhere, now));
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
+    EXPECT_TRUE(meeting.Received(summary, Host, false, now));
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
+    EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
+    EXPECT_TRUE(meeting.Received(summary, elsewhere, false, now));
+}
+
+TEST(Meeting, ACardFromAnotherAddressThatItsSenderHasNamedIsBelieved)
+{
+    Meeting meeting({.Period = 10s, .Memory = 4h});
+    const TimePoint now{1h};
+    const Bytes summary = WriteCardMessage({.From = Name(7), .Summary = {.Digest = 1, .Size = 500}});
+    EXPECT_TRUE(meeting.Received(summary, Host, false, now));
+    EXPECT_TRUE(meeting.Received(summary, HostAddress{10, 0, 0, 2}, true, now));
 }
 
 TEST(Meeting, InventedParticipantsCauseFewRequests)
@@ -378,7 +387,9 @@ TEST(Meeting, WhatAnEarlierSessionOfANodeSaidEndsOnceItIsSilent)
     one.Dds->Announce();
     two.Dds->Announce();
     ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(3); }));
+    EXPECT_TRUE(two.Meet->Endable().empty());
     two.Meet->End(one.Self);
+    EXPECT_TRUE(two.Meet->WasEnded(one.Self));
     EXPECT_TRUE(air.Until([&] { return !two.Dds->Knows(one.Self); }, 100ms));
 }
 

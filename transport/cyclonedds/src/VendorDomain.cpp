@@ -293,7 +293,8 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     }
     if (domain._meets && Rtps::IsCardMessage({datagram, size}))
     {
-        if (!domain._meeting.Received({datagram, size}, host))
+        if (!domain._meeting.Received({datagram, size}, host,
+                                      domain._guard.IsKnownAt(Rtps::SenderOf({datagram, size}), host)))
         {
             domain._log->MalformedDatagram();
         }

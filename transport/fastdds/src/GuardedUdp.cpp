@@ -192,7 +192,8 @@ public:
                 const std::lock_guard lock(_receiving);
                 _receiver = {next, local, remote};
             }
-            if (!Meeting()->Received(datagram, HostOf(remote)))
+            if (!Meeting()->Received(datagram, HostOf(remote),
+                                     _guard.IsKnownAt(SenderOf(datagram), HostOf(remote))))
             {
                 _descriptor.Chosen().OnDropped();
             }
