@@ -75,21 +75,21 @@ std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest)
     return taken;
 }
 
+bool EndsLikeStatistics(std::span<const std::uint8_t> datagram)
+{
+    return datagram.size() >= RtpsHeaderSize + StatisticsSize &&
+           SubmessageKind{datagram[datagram.size() - StatisticsSize]} == SubmessageKind::Statistics;
+}
+
 std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram)
 {
-    constexpr std::size_t StatisticsSize = SubmessageHeaderSize + 56;
-    constexpr auto Statistics = static_cast<std::uint8_t>(SubmessageKind::Statistics);
-    if (datagram.size() < RtpsHeaderSize + StatisticsSize ||
-        datagram[datagram.size() - StatisticsSize] != Statistics)
+    if (!EndsLikeStatistics(datagram))
     {
         return datagram.size();
     }
+    // A message that would end like statistics without them keeps them.
     const std::size_t size = datagram.size() - StatisticsSize;
-    // The vendor's sockets fill in the statistics, and take any byte with this value in the place where they
-    // would be for them: in a message that has it there, they remain.
-    const bool mistaken =
-        size >= RtpsHeaderSize + StatisticsSize && datagram[size - StatisticsSize] == Statistics;
-    return mistaken ? datagram.size() : size;
+    return EndsLikeStatistics(datagram.first(size)) ? datagram.size() : size;
 }
 
 void AppendSubmessageHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::size_t length,

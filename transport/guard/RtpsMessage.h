@@ -69,9 +69,16 @@ bool PutSource(const Submessage &submessage, std::span<std::uint8_t> header);
 // length would let two parsers disagree about where the next one begins.
 std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest);
 
+// Of a submessage with statistics.
+constexpr std::size_t StatisticsSize = SubmessageHeaderSize + 56;
+
 // How long a message of our own is without the statistics that Fast DDS puts at the end of each. They are of
 // no use to us, and 60 bytes of a radio's time.
 std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram);
+
+// Whether Fast DDS's sockets would take the end of a message for their statistics, and write into it: they go
+// by one byte.
+bool EndsLikeStatistics(std::span<const std::uint8_t> datagram);
 
 // Puts the header of a little-endian submessage at the end of a message; `length` is that of its body.
 void AppendSubmessageHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::size_t length,

@@ -17,6 +17,8 @@ constexpr std::uint8_t Format = 1;
 constexpr std::size_t RequestsAt = 16;
 constexpr std::size_t RequestSize = GuidPrefix{}.size() + 8;
 constexpr std::size_t Alignment = 4;
+// More than it takes until padding alone stands where statistics would begin.
+constexpr std::size_t MostPadding = StatisticsSize + 2 * Alignment;
 
 std::uint64_t U64(RtpsReader &body)
 {
@@ -84,7 +86,7 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
     {
         message.Bytes = body.Bytes(SizeOfPart(message.Summary, message.Part));
     }
-    return body.IsGood() && body.Left() < Alignment ? std::optional(std::move(message)) : std::nullopt;
+    return body.IsGood() && body.Left() < MostPadding ? std::optional(std::move(message)) : std::nullopt;
 }
 
 std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
@@ -126,6 +128,13 @@ std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
     if (message.HasPart)
     {
         add(message.Bytes);
+    }
+    while (EndsLikeStatistics(bytes))
+    {
+        bytes.resize(bytes.size() + Alignment);
+        const std::size_t padded = bytes.size() - RtpsHeaderSize - SubmessageHeaderSize;
+        bytes[RtpsHeaderSize + 2] = static_cast<std::uint8_t>(padded);
+        bytes[RtpsHeaderSize + 3] = static_cast<std::uint8_t>(padded >> 8);
     }
     return bytes;
 }

@@ -12,7 +12,9 @@
 //   12      4     size of the sender's packed card; 0: it has none yet
 //   16      20 n  requests: GUID prefix of the node that is asked (12), a bit for each part that is lacking
 //   (8)
-//   ...           the part, padded with zeros to a multiple of 4
+//   ...           the part, padded with zeros to a multiple of 4, or more if the message would end like
+//   statistics
+//                 of Fast DDS (guard/RtpsMessage.h): the vendor's sockets would write into it
 #pragma once
 
 #include <cstddef>

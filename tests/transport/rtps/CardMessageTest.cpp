@@ -42,6 +42,22 @@ TEST(CardMessage, IsTheSameAfterWritingAndReading)
     EXPECT_TRUE(std::equal(read->Bytes.begin(), read->Bytes.end(), Part.begin(), Part.end()));
 }
 
+// The sockets of Fast DDS take one byte for the beginning of statistics, and write into what follows it.
+TEST(CardMessage, NeverEndsLikeStatistics)
+{
+    for (std::size_t size = 1; size <= 300; ++size)
+    {
+        const Bytes part(size, 0x80);
+        const CardSummary summary{.Digest = 1, .Size = static_cast<std::uint32_t>(size)};
+        const Bytes datagram = WriteCardMessage(
+            {.From = RtpsBytes::Sender, .Summary = summary, .HasPart = true, .Part = 0, .Bytes = part});
+        EXPECT_FALSE(EndsLikeStatistics(datagram)) << size;
+        const auto read = ReadCardMessage(datagram);
+        ASSERT_TRUE(read.has_value()) << size;
+        EXPECT_EQ(read->Bytes.size(), size);
+    }
+}
+
 TEST(CardMessage, OfRtpsIsNone)
 {
     EXPECT_FALSE(IsCardMessage(RtpsBytes::ParticipantMessage()));
