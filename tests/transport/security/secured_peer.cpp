@@ -75,6 +75,7 @@ Rabit::TransportSettings SettingsFrom(char **argv, const Options &options)
     settings.Domain = std::stoi(argv[3]);
     settings.Interfaces = {options.Interface};
     settings.Lease = std::chrono::seconds(options.LeaseSeconds);
+    settings.Memory = settings.Lease;
     settings.AnnouncementPeriod = std::chrono::milliseconds(500);
     settings.Log = [](const std::string &line) { Say("log " + line); };
     const std::string folder = argv[4];
