@@ -35,14 +35,18 @@ def missed(row, figures):
             if figures.get(name) is None or not COMPARE[how](figures[name], limit)]
 
 
+def measure_of(row):
+    """The function that the row names."""
+    return getattr(meeting if hasattr(meeting, row.measure) else measures, row.measure)
+
+
 def run(row, options, contestant, transport):
     radio = pathlib.Path(options.programs) / "radio"
     with radio_field.RadioField(radio, measures.nodes_of(row), row.medium) as ground:
         fleet = measures.Fleet(ground, options.programs, contestant, transport)
         arguments = {name: min(value, options.cut) if options.cut and name in ("settle_s", "seconds", "for_s") else value
                      for name, value in row.options.items()}
-        module = meeting if hasattr(meeting, row.measure) else measures
-        figures = getattr(module, row.measure)(fleet, **arguments)
+        figures = measure_of(row)(fleet, **arguments)
         if ground.overrun():
             raise AssertionError("the radio was too slow for this machine: the figures would mean nothing")
         return figures
