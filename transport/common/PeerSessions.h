@@ -37,7 +37,7 @@ private:
 };
 
 // A node that was killed stays known until its lease runs out, while its next incarnation is there already.
-// What is written to the node goes to the session that appeared last. It also goes to those that were heard
+// Samples written to the node go to the session that appeared last, and also to those that were heard
 // after that: two live nodes of one name, or a live node whose name somebody else has announced. The order of
 // appearance decides, not the number of the incarnation: a clock that was set back makes that number fall.
 //

@@ -1,4 +1,4 @@
-// What the guard tells of participants, and what it leaves to its observer.
+// The guard tells its observer of participants, and leaves those with cards to it.
 #include <gtest/gtest.h>
 
 #include <optional>

@@ -31,7 +31,7 @@ public:
         Add(Rabit::Rtps::PublicationsWriter, entity, RtpsBytes::WriterData(entity, _name));
     }
     void Announce() { _send(RtpsBytes::ParticipantMessage(_name)); }
-    // What it does by itself once a second: heartbeats to those who have not acknowledged all.
+    // Sends a heartbeat to each peer that has not acknowledged all. To be called once a second.
     void Tick()
     {
         for (auto &[peer, known] : _peers)

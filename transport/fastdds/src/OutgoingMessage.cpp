@@ -51,7 +51,7 @@ GuidPrefix PrefixIn(std::span<const std::uint8_t> bytes)
     return prefix;
 }
 
-// A DATA by which a participant says that it is there.
+// True if the submessage announces that a participant is there.
 bool IsAnnouncement(const Part &part)
 {
     const auto said = ReadAnnouncement(part.Whole);

@@ -262,7 +262,7 @@ public:
     //
     // It goes to the session of the node that appeared last, and to each other one of which a reader of this
     // session has handed over a sample since; without multicast as one datagram for each. So a node that was
-    // killed and restarted costs one datagram, although its former session is known until the lease runs out.
+    // killed and restarted costs one datagram, although its former session is remembered for a while.
     virtual WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
                                 std::int64_t sourceTime) = 0;
     // As Write, but of a sample that takes several datagrams only the first one goes now. The others are
@@ -394,7 +394,7 @@ public:
     // Impossible, and none is logged: whoever holds the session tells people. Empty if all is well.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
     // Bytes in a second, as counted by TransportCounters, that the nodes' exchange of cards may take; 0, as at
-    // first: as many as it needs. What discovery says of participants is not held back. Any thread; does not
+    // first: as many as it needs. Announcements of participants are not held back. Any thread; does not
     // wait. The simulated network does not heed it.
     virtual void SetDiscoveryRate(double /*bytesPerSecond*/) {}
 };
