@@ -56,6 +56,15 @@ class TurnsTest(unittest.TestCase):
                          ["a to b: 18.0 s without a turn, at most 5 s wanted"])
 
 
+class TicksTest(unittest.TestCase):
+    def test_counts_from_when_the_last_of_several_losses_was_made(self):
+        seen = [(at, f"tick from=b number={at}") for at in range(2, 20)]
+        seen += [(at, f"tick from=b number={at}") for at in range(20, 100, 2)]
+        lossy = run([(4, "lose", [20, ["c"]]), (9, "lose", [50, ["b"]]), (19, "wait", [80])], a=seen, b=[])
+        share, span = lossy.share_of_ticks("a", "b")
+        self.assertEqual((round(share, 1), span), (0.5, 79))
+
+
 class WordsTest(unittest.TestCase):
     def test_finds_a_problem_by_its_words(self):
         seen = run(b=[(2, 'problem node=a subject="a" reason="two live nodes have this name"')])

@@ -79,11 +79,7 @@ def a_name_that_is_wrong_is_answered_with_the_nearest(rabit):
     for arguments, hint in ((("type", "Uav::Poze"), "did you mean `Uav::Pose`?"),
                             (("echo", "uav1/Poze"), "did you mean `Pose`?"),
                             (("echo", "uaw1/Pose"), "did you mean `uav1`?")):
-        # The program waits for all of this time, since the name may still come; 3 says that nobody was heard yet.
-        for wait in ("4", "30"):
-            done = rabit.run(*arguments, "--wait", wait)
-            if done.returncode != 3:
-                break
+        done = rabit.run_until_heard(*arguments)
         assert done.returncode == 1 and hint in done.stderr and done.stdout == "", done
 
 

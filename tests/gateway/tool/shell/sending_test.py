@@ -31,7 +31,7 @@ def what_cannot_be_sent_is_told_with_the_nearest_right_word(rabit):
                               (("uav1/MissionContro", "Uav::GoHome", "{}"), "did you mean `MissionControl`?"),
                               (("uaw1/MissionControl", "Uav::GoHome", "{}"), "did you mean `uav1`?"),
                               (("uav1/MissionControl", "Uav::GoHome", "{"), "")):
-        done = rabit.run("send", *arguments, "--wait", "4")
+        done = rabit.run_until_heard("send", *arguments)
         assert done.returncode == 1 and reason in done.stderr and done.stderr.count("\n") == 1, done
     assert rabit.run("send", "MissionControl", "Uav::GoHome", "{}").returncode == 2
 
