@@ -39,7 +39,7 @@ public:
     std::optional<TimePoint> Due() const { return _due; }
     bool IsDue(TimePoint now) const { return _due && *_due <= now; }
     // The repetition that was due is done. `least` is the shortest interval to the next one, such as two
-    // round trips.
+    // round trips; it may be above the longest of the settings.
     void Done(TimePoint now, Duration least = Duration(0))
     {
         if (_settings.Most > 0 && --_left <= 0)
@@ -47,7 +47,7 @@ public:
             _due.reset();
             return;
         }
-        _due = now + std::min(std::max(_interval, least), _settings.Longest);
+        _due = now + std::max(_interval, least);
         _interval =
             std::min(std::chrono::duration_cast<Duration>(_interval * _settings.Factor), _settings.Longest);
     }

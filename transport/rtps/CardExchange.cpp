@@ -139,11 +139,20 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
         return std::nullopt;
     }
     peer->Answers = true;
+    peer->Late.Heard(message.SentAt, now);
+    const bool isForSeveral = message.Requests.size() > 1;  // went to all, and so do the answers
     for (const CardRequest &request : message.Requests)
     {
+        const auto found = _peers.find(request.Of);
         if (request.Of == _self)
         {
-            Want(request.Parts & _own.AllParts(), message.From, now);
+            Want(request.Parts & _own.AllParts(), isForSeveral ? std::nullopt : std::optional(message.From),
+                 now);
+        }
+        else if (isForSeveral && found != _peers.end() && found->second.Request.Due() &&
+                 (LackingOf(found->second) & ~request.Parts) == 0)
+        {
+            found->second.Request.Done(now, Answered(now));  // the answer serves this node, too
         }
     }
     if (message.Summary.Size > 0 && message.Summary != peer->Wanted)
@@ -155,9 +164,11 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     if (message.HasPart && message.Summary == peer->Wanted && peer->Wanted != peer->Held)
     {
         peer->Parts[message.Part].assign(message.Bytes.begin(), message.Bytes.end());
-        if (peer->Asked == 1)  // else it is not known which request this answers
+        // Else it is not known which request this answers. Where several have not answered, the first one.
+        if (peer->Asked == 1 || (peer->Asked > 1 && IsCrowd()))
         {
-            _roundTrip = std::max<Duration>(now - peer->LastAsked, _roundTrip / 2);
+            const Duration took = std::min<Duration>(now - peer->FirstAsked, LongestRetry);
+            _roundTrip = std::max<Duration>(took, _roundTrip / 2);
         }
         peer->Asked = 0;
     }
@@ -201,7 +212,7 @@ void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by
     for (std::size_t number = 0; number < _parts.size(); ++number)
     {
         OwnPart &part = _parts[number];
-        if ((parts >> number & 1) == 0)
+        if ((parts >> number & 1) == 0 || now < part.CrossedUntil)
         {
             continue;
         }
@@ -257,6 +268,40 @@ std::optional<CardExchange::TimePoint> CardExchange::Due() const
     return due && _self != GuidPrefix{} ? std::optional(std::max(*due, Free())) : std::nullopt;
 }
 
+// How long messages wait in queues now: as many senders say less as more, so that one that lies decides
+// nothing in a fleet.
+CardExchange::Duration CardExchange::Delay(TimePoint now) const
+{
+    std::vector<Duration> delays;
+    for (const auto &[name, peer] : _peers)
+    {
+        if (const auto delay = peer.Late.At(now))
+        {
+            delays.push_back(*delay);
+        }
+    }
+    if (delays.empty())
+    {
+        return Duration(0);
+    }
+    const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
+    std::nth_element(delays.begin(), middle, delays.end());
+    return *middle;
+}
+
+bool CardExchange::IsCrowd() const
+{
+    const auto asked =
+        std::count_if(_peers.begin(), _peers.end(),
+                      [](const auto &peer) { return peer.second.Request.Due() && peer.second.Asked > 0; });
+    return static_cast<std::size_t>(asked) >= Several;
+}
+
+CardExchange::Duration CardExchange::Answered(TimePoint now) const
+{
+    return 2 * std::max(_roundTrip, Delay(now));
+}
+
 void CardExchange::Go(Outgoing outgoing, std::vector<Outgoing> &taken)
 {
     _left -= static_cast<double>(outgoing.Bytes.size() + IpAndUdp);
@@ -283,7 +328,10 @@ std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
         _nextPeriod = now + _period;
         if (taken.empty())  // each message has the summary
         {
-            Go({.To = std::nullopt, .Bytes = WriteCardMessage({.From = _self, .Summary = _own})}, taken);
+            Go({.To = std::nullopt,
+                .Bytes =
+                    WriteCardMessage({.From = _self, .Summary = _own, .SentAt = QueueingDelay::Stamp(now)})},
+               taken);
         }
     }
     return taken;
@@ -291,16 +339,28 @@ std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
 
 void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
 {
-    CardMessage message{.From = _self, .Summary = _own};
+    CardMessage message{.From = _self, .Summary = _own, .SentAt = QueueingDelay::Stamp(now)};
+    const bool isAnyDue = std::any_of(_peers.begin(), _peers.end(),
+                                      [now](const auto &peer) { return peer.second.Request.IsDue(now); });
+    if (!isAnyDue)
+    {
+        return;
+    }
+    const Duration answered = Answered(now);
+    const bool isCrowd = IsCrowd();
     for (auto &[name, peer] : _peers)
     {
-        if (!peer.Request.IsDue(now) || message.Requests.size() >= MostCardRequests)
+        const Duration early = peer.Asked > 0 ? Duration(Together) : Duration(0);
+        if (!peer.Request.IsDue(now + early) || message.Requests.size() >= MostCardRequests)
         {
             continue;
         }
         message.Requests.push_back({.Of = name, .Parts = LackingOf(peer)});
+        peer.FirstAsked = peer.Asked == 0 ? now : peer.FirstAsked;
         peer.LastAsked = now;
-        peer.Request.Done(now, 2 * _roundTrip);
+        const Duration crowd =
+            isCrowd ? std::min<Duration>(now - peer.FirstAsked, LongestRetry) : Duration(0);
+        peer.Request.Done(now, std::max(answered, crowd));
         if (++peer.Asked >= (peer.Answers ? MostRequests : MostVainRequests))
         {
             peer.Request.Stop();
@@ -317,6 +377,7 @@ void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
 
 void CardExchange::TakeParts(TimePoint now, std::vector<Outgoing> &taken)
 {
+    const TimePoint crossedUntil = now + 2 * Delay(now);
     for (std::size_t number = 0; number < _parts.size() && _left > 0.0; ++number)
     {
         OwnPart &part = _parts[number];
@@ -324,13 +385,19 @@ void CardExchange::TakeParts(TimePoint now, std::vector<Outgoing> &taken)
         {
             continue;
         }
-        CardMessage message{.From = _self, .Summary = _own, .HasPart = true, .Part = number};
+        CardMessage message{.From = _self,
+                            .Summary = _own,
+                            .SentAt = QueueingDelay::Stamp(now),
+                            .HasPart = true,
+                            .Part = number};
         message.Bytes = std::span(_packed).subspan(
             number * CardPartSize, std::min(CardPartSize, _packed.size() - number * CardPartSize));
         part.IsWanted = false;
+        part.CrossedUntil = crossedUntil;
         part.NotBefore = now + part.Gap;
+        const double factor = part.By ? GapFactor : CrowdFactor;
         part.Gap =
-            std::min<Duration>(std::chrono::duration_cast<Duration>(part.Gap * GapFactor), LongestAnswerGap);
+            std::min<Duration>(std::chrono::duration_cast<Duration>(part.Gap * factor), LongestAnswerGap);
         Go({.To = part.By, .Bytes = WriteCardMessage(message)}, taken);
     }
 }

@@ -9,6 +9,7 @@
 
 #include "rtps/Backoff.h"
 #include "rtps/CardMessage.h"
+#include "rtps/QueueingDelay.h"
 
 namespace Rabit::Rtps
 {
@@ -16,15 +17,16 @@ namespace Rabit::Rtps
 // Brings the own card to all other nodes, and theirs here.
 //
 // - A card that has changed is sent to all, in parts. Its summary follows at growing intervals, and after
-// that
-//   once a period: a node that lacks the card, or parts of it, asks for them.
+//   that once a period: a node that lacks the card, or parts of it, asks for them.
 // - Any datagram of a participant that is not known is a reason to ask it for its card. One that never
-// answers
-//   is a program without a card, and is left alone until it is heard again.
+//   answers is a program without a card, and is left alone until it is heard again.
 // - An unanswered request is repeated after two round trips as far as they are known, at first after 50 ms,
-// at
-//   most after a second. The same part is sent again no sooner than 50 ms later, and later each time: one
+//   later after a second. The same part is sent again no sooner than 50 ms later, and later each time: one
 //   answer by multicast serves all who ask.
+// - A request for the cards of several nodes goes to all, and so do its answers: who hears it need not ask,
+//   too.
+// - Each message says when it was sent. While the messages of others are late, the channel is full: requests
+//   and answers wait in queues, and neither is repeated before the one before can have come.
 // - All of it keeps to a rate.
 //
 // A pure state machine, not thread-safe.
@@ -38,6 +40,12 @@ public:
     static constexpr std::chrono::milliseconds LongestRetry{1000};
     // Slowly: a radio that loses datagrams is not full.
     static constexpr double GapFactor = 1.25;
+    // Where several nodes have not answered yet, or several ask again: that all was lost is less likely than
+    // that it waits in queues.
+    static constexpr double CrowdFactor = 2.0;
+    static constexpr std::size_t Several = 3;
+    // A repeated request goes so much earlier, if another one is due.
+    static constexpr std::chrono::milliseconds Together{200};
     // To a participant that may have no card, and to one that has. After so many there is a rest.
     static constexpr int MostVainRequests = 10;
     static constexpr int MostRequests = 30;
@@ -103,14 +111,17 @@ private:
         Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
         bool Answers = false;  // a message of it has come
         int Asked = 0;         // since something came of it
+        TimePoint FirstAsked{};
         TimePoint LastAsked{};
         TimePoint Heard{};
+        QueueingDelay Late;
     };
     struct OwnPart
     {
         bool IsWanted = false;
-        std::optional<GuidPrefix> By;  // empty: by several
+        std::optional<GuidPrefix> By;  // empty: by several, or not by one alone
         TimePoint NotBefore{};
+        TimePoint CrossedUntil{};  // requests have crossed with the part on their way
         Duration Gap = FirstAnswerGap;
         TimePoint Asked{};
     };
@@ -124,6 +135,9 @@ private:
     std::optional<TimePoint> NextDue() const;
     void Fill(TimePoint now);
     TimePoint Free() const;
+    Duration Delay(TimePoint now) const;
+    bool IsCrowd() const;  // several have not answered yet
+    Duration Answered(TimePoint now) const;  // from a request to the answer, at most
     void Go(Outgoing outgoing, std::vector<Outgoing> &taken);
     void TakeRequests(TimePoint now, std::vector<Outgoing> &taken);
     void TakeParts(TimePoint now, std::vector<Outgoing> &taken);

@@ -14,7 +14,7 @@ namespace
 constexpr std::array<std::uint8_t, 8> Header{'R', 'T', 'P', 'S', 2, 2, 'R', 'b'};
 constexpr auto Kind = static_cast<SubmessageKind>(0xd2);
 constexpr std::uint8_t Format = 1;
-constexpr std::size_t RequestsAt = 16;
+constexpr std::size_t RequestsAt = 20;
 constexpr std::size_t RequestSize = GuidPrefix{}.size() + 8;
 constexpr std::size_t Alignment = 4;
 // More than it takes until padding alone stands where statistics would begin.
@@ -64,6 +64,7 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
     const auto counts = body.Bytes(4);
     message.Summary.Digest = U64(body);
     message.Summary.Size = body.U32();
+    message.SentAt = body.U32();
     if (!body.IsGood() || length != head.Left() || counts[0] != Format || counts[1] > MostCardRequests ||
         counts[3] > 1 || message.Summary.Size > LargestCard || message.From == GuidPrefix{})
     {
@@ -120,6 +121,7 @@ std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
     addNumber(message.HasPart ? 1 : 0, 1);
     addNumber(message.Summary.Digest, 8);
     addNumber(message.Summary.Size, 4);
+    addNumber(message.SentAt, 4);
     for (const CardRequest &request : message.Requests)
     {
         add(request.Of);

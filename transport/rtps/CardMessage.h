@@ -10,7 +10,8 @@
 //   3       1     1 if a part follows, else 0
 //   4       8     digest of the sender's card
 //   12      4     size of the sender's packed card; 0: it has none yet
-//   16      20 n  requests: GUID prefix of the node that is asked (12), a bit for each part that is lacking
+//   16      4     when it was sent, in ms of the sender's monotonic clock (QueueingDelay.h)
+//   20      20 n  requests: GUID prefix of the node that is asked (12), a bit for each part that is lacking
 //   (8)
 //   ...           the part, padded with zeros to a multiple of 4, or more if the message would end like
 //   statistics
@@ -50,6 +51,7 @@ struct CardMessage
 {
     GuidPrefix From{};
     CardSummary Summary{};  // of the sender's card
+    std::uint32_t SentAt = 0;
     std::vector<CardRequest> Requests{};
     bool HasPart = false;
     std::size_t Part = 0;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <memory>
 #include <queue>
 #include <random>
@@ -37,6 +38,8 @@ public:
         std::unique_ptr<Meeting> Meet;  // null: a program without a card
         std::unique_ptr<Implementation> Dds;
         bool Hears = true;
+        std::deque<Bytes> Queue{};  // in front of its radio
+        std::size_t Queued = 0;     // bytes
     };
 
     explicit Air(unsigned seed) : _random(seed) {}
@@ -63,9 +66,22 @@ public:
         }
         return node;
     }
-    void Send(const Node &from, const Bytes &datagram)
+    void Send(Node &from, const Bytes &datagram)
     {
+        constexpr std::size_t radioQueue = 16'000;
         Offered += datagram.size() + CardExchange::IpAndUdp;
+        if (BytesPerSecond == 0.0)
+        {
+            Carry(from, datagram);
+        }
+        else if (from.Queued + datagram.size() <= radioQueue)
+        {
+            from.Queued += datagram.size();
+            from.Queue.push_back(datagram);
+        }
+    }
+    void Carry(const Node &from, const Bytes &datagram)
+    {
         std::uniform_real_distribution<double> chance(0.0, 100.0);
         for (const auto &node : _nodes)
         {
@@ -110,8 +126,9 @@ public:
     }
 
     TimePoint Now{1h};
-    double Loss = 0.0;   // percent
-    bool Beats = false;  // nodes that know somebody send a sample twice a second
+    double Loss = 0.0;            // percent
+    bool Beats = false;           // nodes that know somebody send a sample twice a second
+    double BytesPerSecond = 0.0;  // of a channel that all share, one datagram after the other; 0: it is wide
     std::size_t Offered = 0;
 
 private:
@@ -122,8 +139,28 @@ private:
         Bytes Datagram;
     };
 
+    // The radios take turns.
+    void Transmit()
+    {
+        while (_free <= Now && std::any_of(_nodes.begin(), _nodes.end(),
+                                           [](const auto &node) { return !node->Queue.empty(); }))
+        {
+            Node &node = *_nodes[_turn++ % _nodes.size()];
+            if (!node.Queue.empty())
+            {
+                const Bytes datagram = std::move(node.Queue.front());
+                node.Queue.pop_front();
+                node.Queued -= datagram.size();
+                const auto size = static_cast<double>(datagram.size() + CardExchange::IpAndUdp);
+                _free = std::max(_free, Now) + std::chrono::ceil<TimePoint::duration>(
+                                                   std::chrono::duration<double>(size / BytesPerSecond));
+                Carry(node, datagram);
+            }
+        }
+    }
     void Step()
     {
+        Transmit();
         std::vector<UnderWay> arrived;
         std::erase_if(_underWay,
                       [&](UnderWay &each)
@@ -198,6 +235,8 @@ private:
     std::mt19937 _random;
     std::vector<std::unique_ptr<Node>> _nodes;
     std::vector<UnderWay> _underWay;
+    TimePoint _free{};
+    std::size_t _turn = 0;
 };
 
 TEST(Meeting, TwoNodesKnowEachOthersEndpointsAfterTwoCards)
@@ -306,6 +345,22 @@ TEST(Meeting, TenNodesThatStartAtOnceSayLittle)
     }
     ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(8); }, 300ms));
     EXPECT_LE(air.Offered, 40'000u);
+}
+
+TEST(Meeting, ACrowdOnAThinChannelSaysEachCardFewTimes)
+{
+    Air air(1);
+    air.BytesPerSecond = 5000.0;  // what other traffic leaves of 250 kbit/s
+    for (std::uint8_t number = 1; number <= 11; ++number)
+    {
+        air.Add(number, 12).Dds->Announce();
+    }
+    const auto began = air.Now;
+    EXPECT_TRUE(air.Until([&] { return air.AllKnowAll(12); }, 30s));
+    const double took = std::chrono::duration<double>(air.Now - began).count();
+    std::printf("%.2f s, %zu bytes\n", took, air.Offered);
+    EXPECT_LE(took, 7.0);  // 23 kB, if each card went once: 4.7 s
+    EXPECT_LE(air.Offered, 60'000u);
 }
 
 TEST(Meeting, AProgramWithoutACardGetsTheImplementationsOwnDatagrams)

@@ -1,0 +1,63 @@
+#include "rtps/QueueingDelay.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace std::chrono_literals;
+using Rabit::Rtps::QueueingDelay;
+
+constexpr QueueingDelay::TimePoint Start{1h};
+
+// A datagram that was sent at that time, by a clock that shows something else, and took so long.
+void Arrive(QueueingDelay &delay, QueueingDelay::Duration sent, QueueingDelay::Duration took)
+{
+    delay.Heard(QueueingDelay::Stamp(Start + sent) + 4'000'000'000u, Start + sent + took);
+}
+
+TEST(QueueingDelay, IsWhatDatagramsTakeLongerThanTheQuickest)
+{
+    QueueingDelay delay;
+    EXPECT_FALSE(delay.At(Start).has_value());
+    Arrive(delay, 0s, 5ms);
+    EXPECT_EQ(delay.At(Start + 5ms), 0ms);
+    Arrive(delay, 1s, 805ms);
+    EXPECT_EQ(delay.At(Start + 2s), 800ms);
+}
+
+TEST(QueueingDelay, SaysNothingOfLongAgo)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 5ms);
+    EXPECT_FALSE(delay.At(Start + 5ms + QueueingDelay::Fresh).has_value());
+}
+
+TEST(QueueingDelay, TheQuickestIsForgottenAfterTwoWindows)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 0ms);
+    for (auto sent = 1s; sent <= 3 * QueueingDelay::Window; sent += 1s)
+    {
+        Arrive(delay, sent, 300ms);
+    }
+    EXPECT_EQ(delay.At(Start + 3 * QueueingDelay::Window + 300ms), 0ms);
+}
+
+TEST(QueueingDelay, TheQuickestOfTheWindowBeforeIsKnown)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 0ms);
+    Arrive(delay, QueueingDelay::Window + 1s, 300ms);
+    EXPECT_EQ(delay.At(Start + QueueingDelay::Window + 2s), 300ms);
+}
+
+TEST(QueueingDelay, AClockThatStoodStillIsNoQueue)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 5ms);
+    Arrive(delay, 1s, QueueingDelay::Longest + 1s);
+    EXPECT_EQ(delay.At(Start + 2s + QueueingDelay::Longest), 0ms);
+}
+
+}  // namespace
