@@ -23,9 +23,10 @@ bool AnnouncementRounds::Series::Pass(TimePoint now)
     return true;
 }
 
-AnnouncementRounds::AnnouncementRounds(Duration answerGap, TimePoint now) : _answerGap(answerGap), _last(now)
+AnnouncementRounds::AnnouncementRounds(Duration answerGap, TimePoint now, bool hasCard)
+    : _answerGap(answerGap), _last(now)
 {
-    _initial.Begin(now, InitialGap, InitialRounds);
+    _initial.Begin(now, InitialGap, hasCard ? InitialRoundsWithCard : InitialRounds);
 }
 
 void AnnouncementRounds::OnPeer(TimePoint now)

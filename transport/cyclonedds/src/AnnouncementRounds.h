@@ -20,6 +20,8 @@ public:
     // After the very first: at 0.2, 0.6, 1.4, 3 and 6.2 s, unless somebody was just answered.
     static constexpr std::chrono::milliseconds InitialGap{200};
     static constexpr int InitialRounds = 5;
+    // Where other nodes learn of this one by its card.
+    static constexpr int InitialRoundsWithCard = 2;
     // After a newcomer; the last a minute or two after it.
     static constexpr int MostAnswers = 10;
     // Newcomers who come one after another, as over a thin radio, are answered together: no sooner than that
@@ -30,7 +32,7 @@ public:
 
     // Begins when the participant was announced. `answerGap`: from a newcomer to the answer; best not the
     // same for all who answer.
-    AnnouncementRounds(Duration answerGap, TimePoint now);
+    AnnouncementRounds(Duration answerGap, TimePoint now, bool hasCard = false);
 
     // Somebody has come.
     void OnPeer(TimePoint now);

@@ -5,7 +5,8 @@
 namespace Rabit::Cyclone
 {
 
-AnnouncementThread::AnnouncementThread(std::chrono::milliseconds answerGap) : _rounds(answerGap, Clock::now())
+AnnouncementThread::AnnouncementThread(std::chrono::milliseconds answerGap, bool hasCard)
+    : _rounds(answerGap, Clock::now(), hasCard)
 {
 }
 

@@ -21,8 +21,8 @@ public:
         std::function<void()> Announce;
     };
 
-    // answerGap: AnnouncementRounds.
-    explicit AnnouncementThread(std::chrono::milliseconds answerGap);
+    // answerGap, hasCard: AnnouncementRounds.
+    AnnouncementThread(std::chrono::milliseconds answerGap, bool hasCard);
     ~AnnouncementThread();  // neither call is made afterwards
     AnnouncementThread(const AnnouncementThread &) = delete;
     AnnouncementThread &operator=(const AnnouncementThread &) = delete;

@@ -153,7 +153,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
       _onPeer(std::move(onPeer)),
       _proof(settings, _log),
       _domain(settings, _log, std::move(rate)),
-      _announcements(AnswerGap(settings)),
+      _announcements(AnswerGap(settings), _domain.HasCard()),
       _participant(MakeParticipant(settings, _domain.Id(), _domain.HasCard()))
 {
     if (settings.SharedMemory)

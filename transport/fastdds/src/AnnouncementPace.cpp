@@ -5,8 +5,10 @@
 namespace Rabit::FastDds
 {
 
-AnnouncementPace::AnnouncementPace(std::chrono::milliseconds period)
-    : _longest(std::min<std::chrono::steady_clock::duration>(LongestGap, period / 2)), _usual(period / 2)
+AnnouncementPace::AnnouncementPace(std::chrono::milliseconds period, bool hasCard)
+    : _longest(std::min<std::chrono::steady_clock::duration>(LongestGap, period / 2)),
+      _usual(period / 2),
+      _initial(hasCard ? InitialRoundsWithCard : InitialRounds)
 {
 }
 

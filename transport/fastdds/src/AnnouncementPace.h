@@ -26,12 +26,14 @@ public:
     static constexpr std::chrono::milliseconds FirstGap{100};
     static constexpr std::chrono::milliseconds LongestGap{800};
     static constexpr std::chrono::milliseconds Rest{3200};
-    // Rounds that it asks for after the first one, at distances that double: 0.1, 0.2 ... 3.2 s.
+    // Rounds that it asks for after the first one, at distances that double: 0.1, 0.2 ... 3.2 s; and where
+    // other nodes learn of this one by its card.
     static constexpr int InitialRounds = 6;
+    static constexpr int InitialRoundsWithCard = 2;
     static constexpr std::size_t MostDestinations = 4096;
 
     // The vendor announces us once a period by itself: no distance is longer than half of it.
-    explicit AnnouncementPace(std::chrono::milliseconds period);
+    explicit AnnouncementPace(std::chrono::milliseconds period, bool hasCard = false);
 
     // Whether an announcement may go to this destination now. `content` differs if it says something else
     // than before: then it always may. `heard` is how many announcements of others have been heard.
@@ -52,7 +54,7 @@ private:
     std::uint64_t _heard = 0;
     std::chrono::steady_clock::duration _gap{};  // to the next round
     bool _owed = false;
-    int _initial = InitialRounds;  // still to come
+    int _initial;  // still to come
     std::chrono::steady_clock::duration _initialGap{};
     TimePoint _nextInitial{};
 };

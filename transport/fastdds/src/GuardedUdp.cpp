@@ -79,7 +79,7 @@ public:
         : ChainingTransport(descriptor),
           _descriptor(descriptor),
           _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod),
-          _announcements(descriptor.Chosen().AnnouncementPeriod)
+          _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr)
     {
         _descriptor.Chosen().Owed->Set([this] { SendOwed(); });
         if (MeetingThread *const meeting = Meeting())
