@@ -126,7 +126,7 @@ void BeatContents::AddWants(Gateway::Beat &beat, Duration now, std::size_t &room
     auto &wants = NewsOf(beat).wants;
     const std::size_t longest = BeatFormat::Wanted(_questions.Longest());
     const std::size_t count = Fit(BeatFormat::MostWants, longest, room);
-    for (const MissingOffers::Question &question : _peers.Missing().Take(now, count))
+    for (const MissingOffers::Question &question : _peers.Missing().Take(now, count, _delays.Delay(now)))
     {
         Gateway::Wanted &wanted = wants.emplace_back();
         wanted.node = _peers.Find(question.Node)->Tag;
@@ -186,7 +186,7 @@ void BeatContents::AddPart(Gateway::Beat &beat, Duration now, std::size_t &room)
     part.of = static_cast<std::uint16_t>(_offers.size());
     part.bytes.assign(first, first + static_cast<std::ptrdiff_t>(size));
     room -= BeatFormat::PartHeader + (size + 3) / 4 * 4;
-    _answer.Said(size, now);
+    _answer.Said(size, now, _delays.Delay(now));
 }
 
 void BeatContents::AddStates(Gateway::Beat &beat, std::size_t &room)

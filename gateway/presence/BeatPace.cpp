@@ -39,12 +39,12 @@ void BeatPace::StateWritten(Duration now)
     }
 }
 
-void BeatPace::Sent(Duration now)
+void BeatPace::Sent(Duration now, Duration delay)
 {
     if (now < Due())
     {
-        _gap =
-            std::min({_gap * 3 / 2, _period, _longestGap, ++_quick < QuickBeats ? QuickGap : LongestPeriod});
+        const Duration quick = std::min(_gap * 3 / 2, ++_quick < QuickBeats ? QuickGap : LongestPeriod);
+        _gap = std::min({std::max(quick, 2 * delay), _period, _longestGap});
         _broughtForward = now;
     }
     else

@@ -60,8 +60,9 @@ public:
     void Introduce(Duration now);
     // A State was written.
     void StateWritten(Duration now);
-    // A beat was sent.
-    void Sent(Duration now);
+    // A beat was sent. `delay` is how long datagrams wait in queues now: a question is not asked again before
+    // its answer can have come.
+    void Sent(Duration now, Duration delay = Duration(0));
     // A beat was sent before it was due, because it would have been late otherwise. Nobody has brought it
     // forward.
     void SentEarly(Duration now);

@@ -45,6 +45,25 @@ bool DelayNotes::IsDue(const Entry &entry, Duration now) const
            (!IsSmall(entry) || !entry.ToldAt || now - *entry.ToldAt >= _smallPeriod);
 }
 
+DelayNotes::Duration DelayNotes::Delay(Duration now) const
+{
+    std::vector<Duration> delays;
+    for (const auto &[node, entry] : _notes)
+    {
+        if (now - entry.Arrival < Lately)
+        {
+            delays.push_back(entry.Delay);
+        }
+    }
+    if (delays.empty())
+    {
+        return Duration(0);
+    }
+    const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
+    std::nth_element(delays.begin(), middle, delays.end());
+    return *middle;
+}
+
 std::size_t DelayNotes::Due(Duration now, std::size_t most) const
 {
     std::size_t large = 0;

@@ -34,6 +34,7 @@ public:
     // Older news is none.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
+    static constexpr Duration Lately = std::chrono::seconds(3);
 
     // How often this node beats.
     void SetBeatPeriod(Duration period)
@@ -43,6 +44,9 @@ public:
     // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns whether its sender
     // should hear of it soon.
     bool Note(Tag node, Duration delay, Duration arrival);
+    // By how much datagrams are late now: half of the nodes that were heard lately are later than that, half
+    // less. 0: none was.
+    Duration Delay(Duration now) const;
     // How many there are to be told, no more than `most`.
     std::size_t Due(Duration now, std::size_t most) const;
     // What is to be told now, in turns.

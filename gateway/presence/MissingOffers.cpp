@@ -56,7 +56,7 @@ std::size_t MissingOffers::Due(Duration now, std::size_t most) const
     return std::min(static_cast<std::size_t>(due), most);
 }
 
-std::vector<MissingOffers::Question> MissingOffers::Take(Duration now, std::size_t most)
+std::vector<MissingOffers::Question> MissingOffers::Take(Duration now, std::size_t most, Duration delay)
 {
     std::vector<Question> questions;
     TakeTurns(_lacking, _lastAsked, most,
@@ -67,7 +67,7 @@ std::vector<MissingOffers::Question> MissingOffers::Take(Duration now, std::size
                       return false;
                   }
                   questions.push_back({node, entry.Collected.FirstLacking(entry.Digest)});
-                  entry.AskAt = now + entry.Gap;
+                  entry.AskAt = now + std::max(entry.Gap, 2 * delay);
                   const bool quick = ++entry.Asked < _quickQuestions;
                   entry.Gap = std::min(entry.Gap * 3 / 2, quick ? _quickGap : LongestGap);
                   return true;

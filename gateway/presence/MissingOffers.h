@@ -33,8 +33,8 @@ public:
     static constexpr Duration QuickGap = std::chrono::milliseconds(300);
     static constexpr int QuickQuestions = 12;
 
-    // Limits the gap to `gap` for the first `questions` questions, in place of the two above: for a tool, which
-    // looks and goes.
+    // Limits the gap to `gap` for the first `questions` questions, in place of the two above: for a tool,
+    // which looks and goes.
     void BeQuick(Duration gap, int questions)
     {
         _quickGap = gap;
@@ -59,8 +59,9 @@ public:
     bool IsEmpty() const { return _lacking.empty(); }
     // How many there are to be asked now, no more than `most`.
     std::size_t Due(Duration now, std::size_t most) const;
-    // Whom to ask now, in turns.
-    std::vector<Question> Take(Duration now, std::size_t most);
+    // The nodes to ask now, in turns. `delay` is how long datagrams wait in queues now: nobody is asked again
+    // before the answer can have come.
+    std::vector<Question> Take(Duration now, std::size_t most, Duration delay = Duration(0));
     // Announcements that were not what their digest says.
     std::uint64_t Wrong() const { return _wrong; }
 

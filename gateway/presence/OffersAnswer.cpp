@@ -39,14 +39,14 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now)
             _again = std::min(_again.value_or(from), from);
         }
     }
-    else if (!_lastSaid || now - *_lastSaid >= ShortestGap)  // else question and answer have crossed
+    else if (!_crossedUntil || now >= *_crossedUntil)
     {
         _from = from;
         _at = std::max(now + SpreadAmong(others, _random), _notBefore);
     }
 }
 
-void OffersAnswer::Said(std::size_t bytes, Duration now)
+void OffersAnswer::Said(std::size_t bytes, Duration now, Duration delay)
 {
     if (!_from)
     {
@@ -57,7 +57,7 @@ void OffersAnswer::Said(std::size_t bytes, Duration now)
     _at = now + PartGap;
     if (*_from >= _size)
     {
-        _lastSaid = now;
+        _crossedUntil = now + std::max(ShortestGap, 2 * delay);
         _notBefore = now + _gap * std::exchange(_parts, 0);
         _gap = std::min(2 * _gap, ++_answers < QuickAnswers ? QuickGap : LongestGap);
         _from = std::exchange(_again, std::nullopt);

@@ -41,8 +41,9 @@ public:
     // The first byte of that part, and the bytes that are left from there.
     std::size_t From() const { return _from.value_or(0); }
     std::size_t Left() const { return _from ? _size - *_from : 0; }
-    // So many bytes of it were said.
-    void Said(std::size_t bytes, Duration now);
+    // So many bytes of it were said. `delay` is how long datagrams wait in queues now: questions that come
+    // before all can have heard it have crossed with it.
+    void Said(std::size_t bytes, Duration now, Duration delay = Duration(0));
 
 private:
     const RandomSource _random;
@@ -54,8 +55,8 @@ private:
     int _answers = 0;  // since the gap was short
     Duration _notBefore{0};
     std::optional<Duration> _lastAsked;
-    std::optional<Duration> _lastSaid;
-    int _parts = 0;  // said of the present time
+    std::optional<Duration> _crossedUntil;  // questions have crossed with what was said
+    int _parts = 0;                         // said of the present time
 };
 
 }  // namespace Rabit

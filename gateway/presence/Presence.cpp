@@ -395,7 +395,7 @@ std::size_t Presence::SendBeat(Duration now, std::size_t most)
     _owesNews = false;
     _peers.NoteSent(beat.source_ns, time.Monotonic);
     static_cast<void>(Write(beat, time));
-    isDue ? _pace.Sent(now) : _pace.SentEarly(now);
+    isDue ? _pace.Sent(now, _contents.Delays().Delay(now)) : _pace.SentEarly(now);
     return GatewayTopics::TypeOf<Gateway::Beat>().SerializedSize(beat) - Encapsulation;
 }
 

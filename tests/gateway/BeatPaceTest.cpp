@@ -240,5 +240,15 @@ TEST(BeatPaceOfATool, BroughtForwardBeatsComeNoMoreSeldomThanItWantsAnswers)
     EXPECT_EQ(pace.EarliestToAsk() - now, std::chrono::milliseconds(250));
 }
 
+TEST(BeatPace, AQuestionThatWaitsInQueuesIsNotAskedAgainBeforeItsAnswerCanHaveCome)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    pace.Sent(1200ms, 200ms);
+    EXPECT_EQ(pace.EarliestToAsk(), Ns(1600ms));
+    pace.Sent(1600ms, 5s);
+    EXPECT_EQ(pace.EarliestToAsk(), Ns(1600ms + BeatPace::DefaultPeriod));
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -123,5 +123,16 @@ TEST(DelayNotes, MoreNodesThanThereMayBeAreNotNotedUntilOthersAreLongGone)
     EXPECT_EQ(notes.Due(100s, 10'000), 1u);
 }
 
+TEST(DelayNotes, TheDelayIsThatOfTheMiddleOfThoseWhoWereHeardLately)
+{
+    DelayNotes notes;
+    EXPECT_EQ(notes.Delay(1s), 0ms);
+    notes.Note(1, 10ms, 1s);
+    notes.Note(2, 300ms, 4s);
+    notes.Note(3, 9s, 4s);
+    notes.Note(4, 200ms, 4s);
+    EXPECT_EQ(notes.Delay(4500ms), 300ms);
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -126,5 +126,13 @@ TEST(QuickMissingOffers, AreAskedForEvenlyAtFirstAndThenLessAndLess)
                                              1'265'625us));
 }
 
+TEST(MissingOffers, WhatWaitsInQueuesIsNotAskedForAgainBeforeItCanHaveCome)
+{
+    MissingOffers missing;
+    missing.Lacks("a", 1, 0s);
+    ASSERT_EQ(missing.Take(1s, 8, 700ms).size(), 1u);
+    EXPECT_EQ(missing.NextDue(), Ns(1s + 2 * 700ms));
+}
+
 }  // namespace
 }  // namespace Rabit

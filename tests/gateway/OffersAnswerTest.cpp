@@ -164,5 +164,16 @@ TEST_F(OffersAnswerTest, WhoAsksForWhatIsBeyondTheEndIsNotAnswered)
     EXPECT_FALSE(answer.Due());
 }
 
+TEST_F(OffersAnswerTest, QuestionsThatCameBeforeItCanHaveBeenHeardHaveCrossedWithIt)
+{
+    Begin(100);
+    answer.Asked(0, 0, 10s);
+    answer.Said(100, 10s, 700ms);
+    answer.Asked(0, 0, 10s + 1300ms);
+    EXPECT_FALSE(answer.Due());
+    answer.Asked(0, 0, 10s + 1400ms);
+    EXPECT_TRUE(answer.Due());
+}
+
 }  // namespace
 }  // namespace Rabit
