@@ -34,6 +34,8 @@ public:
         _interval = _settings.First;
         _left = _settings.Most;
     }
+    // The next repetition is due by then; the intervals after it stay as they are.
+    void Hasten(TimePoint due) { _due = _due ? std::min(*_due, due) : _due; }
     void Stop() { _due.reset(); }
     // When the next repetition is due; empty: there is none.
     std::optional<TimePoint> Due() const { return _due; }

@@ -61,9 +61,15 @@ bool CardExchange::MakeRoom()
     return true;
 }
 
+// A peer that was heard is in reach: its request begins anew with the shortest interval, unless the channel
+// is full.
 void CardExchange::Ask(Peer &peer, TimePoint due)
 {
-    if (!peer.Request.Due() || *peer.Request.Due() > due)
+    if (peer.Request.Due() && (IsCrowd() || Delay(due) > FirstRetry))
+    {
+        peer.Request.Hasten(due);
+    }
+    else if (!peer.Request.Due() || *peer.Request.Due() > due)
     {
         peer.Request.Begin(due);
         peer.Asked = 0;
@@ -78,10 +84,10 @@ void CardExchange::Heard(const GuidPrefix &peer, TimePoint now)
         found->second.Heard = now;
         return;
     }
-    const bool answers = found != _peers.end() && found->second.Answers;
+    const bool hasCard = found != _peers.end() && found->second.HasCard;
     const bool rests = found != _peers.end() && now - found->second.LastAsked < Rest &&
-                       found->second.Asked >= (answers ? MostRequests : MostVainRequests);
-    if (rests || (!answers && !MayAskUnknown(now)))
+                       found->second.Asked >= (hasCard ? MostRequests : MostVainRequests);
+    if (rests || (!hasCard && !MayAskUnknown(now)))
     {
         return;
     }
@@ -110,6 +116,7 @@ void CardExchange::Announced(const GuidPrefix &peer, TimePoint now)
     Peer *const known = Find(peer, now);
     if (known != nullptr)
     {
+        known->HasCard = true;
         if (LackingOf(*known) != 0 && !known->Request.Due())
         {
             Ask(*known, now + Patience);
@@ -138,7 +145,7 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     {
         return std::nullopt;
     }
-    peer->Answers = true;
+    peer->HasCard = true;
     peer->Late.Heard(message.SentAt, now);
     const bool isForSeveral = message.Requests.size() > 1;  // went to all, and so do the answers
     for (const CardRequest &request : message.Requests)
@@ -174,7 +181,9 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     }
     if (LackingOf(*peer) != 0)
     {
-        Ask(*peer, now + (message.Summary.Size > 0 ? Patience : std::chrono::milliseconds(0)));
+        // The peer is in reach, so it is asked at once, unless an answer may be on its way.
+        const TimePoint soon = now + (message.Summary.Size > 0 ? Patience : std::chrono::milliseconds(0));
+        Ask(*peer, std::max(soon, peer->LastAsked + Answered(now)));
         return std::nullopt;
     }
     peer->Request.Stop();
@@ -361,7 +370,7 @@ void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
         const Duration crowd =
             isCrowd ? std::min<Duration>(now - peer.FirstAsked, LongestRetry) : Duration(0);
         peer.Request.Done(now, std::max(answered, crowd));
-        if (++peer.Asked >= (peer.Answers ? MostRequests : MostVainRequests))
+        if (++peer.Asked >= (peer.HasCard ? MostRequests : MostVainRequests))
         {
             peer.Request.Stop();
         }

@@ -109,7 +109,7 @@ private:
         CardSummary Held;                                        // what is complete here
         std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted one
         Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
-        bool Answers = false;  // a message of it has come
+        bool HasCard = false;  // it says so, or a message of it has come
         int Asked = 0;         // since something came of it
         TimePoint FirstAsked{};
         TimePoint LastAsked{};
@@ -136,7 +136,7 @@ private:
     void Fill(TimePoint now);
     TimePoint Free() const;
     Duration Delay(TimePoint now) const;
-    bool IsCrowd() const;  // several have not answered yet
+    bool IsCrowd() const;                    // several have not answered yet
     Duration Answered(TimePoint now) const;  // from a request to the answer, at most
     void Go(Outgoing outgoing, std::vector<Outgoing> &taken);
     void TakeRequests(TimePoint now, std::vector<Outgoing> &taken);
