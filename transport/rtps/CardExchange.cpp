@@ -201,6 +201,10 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
         Refuse(message.From, now);
         return std::nullopt;
     }
+    if (peer->Held.Size == 0 && !_greeting.Due())
+    {
+        _greeting.Begin(now + FirstSummary);
+    }
     peer->Held = peer->Wanted;
     return card;
 }
@@ -249,6 +253,7 @@ std::optional<CardExchange::TimePoint> CardExchange::NextDue() const
         consider(part.IsWanted ? std::optional(part.NotBefore) : std::nullopt);
     }
     consider(_summary.Due());
+    consider(_greeting.Due());
     consider(_nextPeriod);
     return due;
 }
@@ -328,11 +333,14 @@ std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
     TakeRequests(now, taken);
     TakeParts(now, taken);
     const bool isPeriod = _nextPeriod && *_nextPeriod <= now;
-    if (_summary.IsDue(now) || isPeriod)
+    if (_summary.IsDue(now) || _greeting.IsDue(now) || isPeriod)
     {
-        if (_summary.IsDue(now))
+        for (Backoff *const series : {&_summary, &_greeting})
         {
-            _summary.Done(now);
+            if (series->IsDue(now))
+            {
+                series->Done(now, Delay(now));
+            }
         }
         _nextPeriod = now + _period;
         if (taken.empty())  // each message has the summary

@@ -18,6 +18,7 @@ namespace Rabit::Rtps
 //
 // - A card that has changed is sent to all, in parts. Its summary follows at growing intervals, and after
 //   that once a period: a node that lacks the card, or parts of it, asks for them.
+// - A newcomer whose card has come may know nothing of this node: the summary goes a few times more.
 // - Any datagram of a participant that is not known is a reason to ask it for its card. One that never
 //   answers is a program without a card, and is left alone until it is heard again.
 // - An unanswered request is repeated after two round trips as far as they are known, at first after 50 ms,
@@ -59,6 +60,8 @@ public:
     static constexpr double SummaryFactor = 1.5;
     // All of them are lost once in 100,000 times where 40 % of the datagrams are.
     static constexpr int InitialSummaries = 12;
+    // For a newcomer, which may know nothing of this node.
+    static constexpr int GreetingSummaries = 4;
     static constexpr std::chrono::milliseconds FirstAnswerGap{50};
     static constexpr std::chrono::milliseconds LongestAnswerGap{500};
     // Without a request for so long the gap is short again.
@@ -148,6 +151,7 @@ private:
     std::vector<std::uint8_t> _packed;
     std::vector<OwnPart> _parts;
     Backoff _summary{{FirstSummary, LongestSummary, SummaryFactor, InitialSummaries}};
+    Backoff _greeting{{FirstSummary, LongestSummary, SummaryFactor, GreetingSummaries}};
     std::optional<TimePoint> _nextPeriod;
     std::map<GuidPrefix, Peer> _peers;
     std::deque<TimePoint> _unknown;  // when participants that may have no card were asked first

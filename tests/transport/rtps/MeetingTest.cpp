@@ -10,6 +10,7 @@
 #include <random>
 
 #include "rtps/Implementation.h"
+#include "rtps/PackedCard.h"
 
 namespace
 {
@@ -410,6 +411,26 @@ TEST(Meeting, ACardFromAnotherAddressThatItsSenderHasNamedIsBelieved)
     const Bytes summary = WriteCardMessage({.From = Name(7), .Summary = {.Digest = 1, .Size = 500}});
     EXPECT_TRUE(meeting.Received(summary, Host, false, now));
     EXPECT_TRUE(meeting.Received(summary, HostAddress{10, 0, 0, 2}, true, now));
+}
+
+TEST(Meeting, ANewcomerWhoseCardIsCompleteHearsOfANodeThatWasSilent)
+{
+    CardExchange exchange(10s);
+    TimePoint now{1h};
+    exchange.SetSelf(Name(1));
+    exchange.SetOwn(Bytes(100, 1), now);
+    for (const auto end = now + 25s; now < end; now += 1ms)
+    {
+        exchange.TakeDue(now);
+    }
+    const Bytes card(100, 2);
+    const CardSummary summary = SummaryOf(card);
+    ASSERT_TRUE(exchange.Received(
+        {.From = Name(2), .Summary = summary, .HasPart = true, .Part = 0, .Bytes = card}, now));
+    ASSERT_LE(exchange.Due(), now + CardExchange::FirstSummary);
+    const auto greeting = exchange.TakeDue(now + CardExchange::FirstSummary);
+    ASSERT_EQ(greeting.size(), 1u);
+    EXPECT_FALSE(greeting[0].To.has_value());
 }
 
 TEST(Meeting, InventedParticipantsCauseFewRequests)
