@@ -61,7 +61,7 @@ DelayNotes::Duration DelayNotes::Delay(Duration now) const
     }
     const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
     std::nth_element(delays.begin(), middle, delays.end());
-    return *middle;
+    return std::min(*middle, LongestQueue);
 }
 
 std::size_t DelayNotes::Due(Duration now, std::size_t most) const

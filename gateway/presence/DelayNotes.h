@@ -34,7 +34,8 @@ public:
     // Older news is none.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
-    static constexpr Duration Lately = std::chrono::seconds(3);
+    static constexpr Duration Lately = std::chrono::seconds(3);  // such notes count for the delay
+    static constexpr Duration LongestQueue = std::chrono::seconds(2);
 
     // How often this node beats.
     void SetBeatPeriod(Duration period)
@@ -45,7 +46,8 @@ public:
     // should hear of it soon.
     bool Note(Tag node, Duration delay, Duration arrival);
     // By how much datagrams are late now: half of the nodes that were heard lately are later than that, half
-    // less. 0: none was.
+    // less. At most LongestQueue, so that a clock that stood still holds nothing up for long. 0: none was
+    // heard.
     Duration Delay(Duration now) const;
     // How many there are to be told, no more than `most`.
     std::size_t Due(Duration now, std::size_t most) const;

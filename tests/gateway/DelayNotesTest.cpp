@@ -134,5 +134,12 @@ TEST(DelayNotes, TheDelayIsThatOfTheMiddleOfThoseWhoWereHeardLately)
     EXPECT_EQ(notes.Delay(4500ms), 300ms);
 }
 
+TEST(DelayNotes, AClockThatStoodStillIsNoLongQueue)
+{
+    DelayNotes notes;
+    notes.Note(1, 1h, 4s);
+    EXPECT_EQ(notes.Delay(4500ms), DelayNotes::LongestQueue);
+}
+
 }  // namespace
 }  // namespace Rabit
