@@ -24,7 +24,7 @@ public:
 
     static constexpr Duration Longest{10000};
     static constexpr std::chrono::seconds Window{60};
-    // What was measured says something for so long.
+    // A measurement counts for so long.
     static constexpr std::chrono::seconds Fresh{3};
 
     // The time of the own clock that a datagram carries. Wraps around every 49 days.
@@ -37,7 +37,7 @@ public:
     void Heard(std::uint32_t sentAt, TimePoint now)
     {
         const auto offset = static_cast<std::int32_t>(Stamp(now) - sentAt);
-        if (!_heardAt || now - *_heardAt >= 2 * Window || Above(_least, offset) > Longest)
+        if (!_heardAt || now - *_heardAt >= 2 * Window || Above(_before, offset) > Longest)
         {
             _least = _before = offset;
             _windowEnd = now + Window;

@@ -52,6 +52,15 @@ TEST(QueueingDelay, TheQuickestOfTheWindowBeforeIsKnown)
     EXPECT_EQ(delay.At(Start + QueueingDelay::Window + 2s), 300ms);
 }
 
+TEST(QueueingDelay, AClockThatStoodStillInEachOfTwoWindowsIsNoQueue)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 0s);
+    Arrive(delay, QueueingDelay::Window + 1s, 8s);
+    Arrive(delay, QueueingDelay::Window + 2s, 16s);
+    EXPECT_EQ(delay.At(Start + QueueingDelay::Window + 18s), 0ms);
+}
+
 TEST(QueueingDelay, AClockThatStoodStillIsNoQueue)
 {
     QueueingDelay delay;
