@@ -42,7 +42,7 @@ public:
     std::size_t From() const { return _from.value_or(0); }
     std::size_t Left() const { return _from ? _size - *_from : 0; }
     // So many bytes of it were said. `delay` is how long datagrams wait in queues now: questions that come
-    // before all can have heard it have crossed with it.
+    // within twice that time were sent before this was heard, and are ignored.
     void Said(std::size_t bytes, Duration now, Duration delay = Duration(0));
 
 private:
@@ -55,7 +55,7 @@ private:
     int _answers = 0;  // since the gap was short
     Duration _notBefore{0};
     std::optional<Duration> _lastAsked;
-    std::optional<Duration> _crossedUntil;  // questions have crossed with what was said
+    std::optional<Duration> _crossedUntil;  // until then questions are ignored
     int _parts = 0;                         // said of the present time
 };
 

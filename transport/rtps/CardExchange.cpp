@@ -147,6 +147,7 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     }
     peer->HasCard = true;
     peer->Late.Heard(message.SentAt, now);
+    const Duration answered = Answered(now);
     const bool isForSeveral = message.Requests.size() > 1;  // went to all, and so do the answers
     for (const CardRequest &request : message.Requests)
     {
@@ -159,7 +160,7 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
         else if (isForSeveral && found != _peers.end() && found->second.Request.Due() &&
                  (LackingOf(found->second) & ~request.Parts) == 0)
         {
-            found->second.Request.Done(now, Answered(now));  // the answer serves this node, too
+            found->second.Request.Done(now, answered);  // the answer serves this node, too
         }
     }
     if (message.Summary.Size > 0 && message.Summary != peer->Wanted)
@@ -183,7 +184,7 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     {
         // The peer is in reach, so it is asked at once, unless an answer may be on its way.
         const TimePoint soon = now + (message.Summary.Size > 0 ? Patience : std::chrono::milliseconds(0));
-        Ask(*peer, std::max(soon, peer->LastAsked + Answered(now)));
+        Ask(*peer, std::max(soon, peer->LastAsked + answered));
         return std::nullopt;
     }
     peer->Request.Stop();
@@ -282,8 +283,8 @@ std::optional<CardExchange::TimePoint> CardExchange::Due() const
     return due && _self != GuidPrefix{} ? std::optional(std::max(*due, Free())) : std::nullopt;
 }
 
-// How long messages wait in queues now: as many senders say less as more, so that one that lies decides
-// nothing in a fleet.
+// How long messages wait in queues now: the middle of the times that the senders' messages show, so that one
+// sender that lies decides nothing beside two honest ones.
 CardExchange::Duration CardExchange::Delay(TimePoint now) const
 {
     std::vector<Duration> delays;

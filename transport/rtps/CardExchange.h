@@ -22,10 +22,10 @@ namespace Rabit::Rtps
 // - Any datagram of a participant that is not known is a reason to ask it for its card. One that never
 //   answers is a program without a card, and is left alone until it is heard again.
 // - An unanswered request is repeated after two round trips as far as they are known, at first after 50 ms,
-//   later after a second. The same part is sent again no sooner than 50 ms later, and later each time: one
-//   answer by multicast serves all who ask.
-// - A request for the cards of several nodes goes to all, and so do its answers: who hears it need not ask,
-//   too.
+//   later after a second, or two delays in queues. The same part is sent again no sooner than 50 ms later,
+//   and later each time: one answer by multicast serves all who ask.
+// - A request for the cards of several nodes goes to all, and so do its answers: a node that overhears such a
+//   request postpones its own.
 // - Each message says when it was sent. While the messages of others are late, the channel is full: requests
 //   and answers wait in queues, and neither is repeated before the one before can have come.
 // - All of it keeps to a rate.
@@ -41,11 +41,12 @@ public:
     static constexpr std::chrono::milliseconds LongestRetry{1000};
     // Slowly: a radio that loses datagrams is not full.
     static constexpr double GapFactor = 1.25;
-    // Where several nodes have not answered yet, or several ask again: that all was lost is less likely than
-    // that it waits in queues.
+    // The factor for a part that several nodes ask for: it is less likely to be lost for all of them than to
+    // wait in a queue.
     static constexpr double CrowdFactor = 2.0;
+    // So many nodes that have not answered are a crowd: the intervals of requests double.
     static constexpr std::size_t Several = 3;
-    // A repeated request goes so much earlier, if another one is due.
+    // A repeated request that is due so soon goes in one datagram with one that is due now.
     static constexpr std::chrono::milliseconds Together{200};
     // To a participant that may have no card, and to one that has. After so many there is a rest.
     static constexpr int MostVainRequests = 10;
@@ -122,7 +123,7 @@ private:
     struct OwnPart
     {
         bool IsWanted = false;
-        std::optional<GuidPrefix> By;  // empty: by several, or not by one alone
+        std::optional<GuidPrefix> By;  // empty: the part goes to all
         TimePoint NotBefore{};
         TimePoint CrossedUntil{};  // requests have crossed with the part on their way
         Duration Gap = FirstAnswerGap;

@@ -20,7 +20,7 @@ public:
     // After the very first: at 0.2, 0.6, 1.4, 3 and 6.2 s, unless somebody was just answered.
     static constexpr std::chrono::milliseconds InitialGap{200};
     static constexpr int InitialRounds = 5;
-    // Where other nodes learn of this one by its card.
+    // The same where other nodes learn of this one by its card: programs without a card need them alone.
     static constexpr int InitialRoundsWithCard = 2;
     // After a newcomer; the last a minute or two after it.
     static constexpr int MostAnswers = 10;

@@ -26,9 +26,9 @@ public:
     static constexpr std::chrono::milliseconds FirstGap{100};
     static constexpr std::chrono::milliseconds LongestGap{800};
     static constexpr std::chrono::milliseconds Rest{3200};
-    // Rounds that it asks for after the first one, at distances that double: 0.1, 0.2 ... 3.2 s; and where
-    // other nodes learn of this one by its card.
+    // Rounds that it asks for after the first one, at distances that double: 0.1, 0.2 ... 3.2 s.
     static constexpr int InitialRounds = 6;
+    // The same where other nodes learn of this one by its card: programs without a card need them alone.
     static constexpr int InitialRoundsWithCard = 2;
     static constexpr std::size_t MostDestinations = 4096;
 
