@@ -2,7 +2,6 @@
 
 #include <fastdds/rtps/common/Guid.h>
 #include <fastdds/rtps/common/MatchingInfo.h>
-#include <fastdds/rtps/history/ReaderHistory.h>
 #include <fastdds/rtps/reader/ReaderListener.h>
 #include <rabit/transport/Transport.h>
 
@@ -10,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "NumberedHistory.h"
 #include "PayloadPool.h"
 #include "SessionCore.h"
 #include "common/HandlerGate.h"
@@ -54,7 +54,7 @@ private:
     const SampleHandler _handler;
     HandlerGate _gate;
     const std::shared_ptr<PayloadPool> _pool;
-    eprosima::fastrtps::rtps::ReaderHistory _history;
+    NumberedHistory _history;
     InstanceTable _instances;                      // under the gate
     Guid _lastWriter;                              // under the gate
     std::shared_ptr<const PeerSession> _lastNode;  // of _lastWriter; under the gate
