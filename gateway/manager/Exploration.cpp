@@ -134,6 +134,23 @@ void Exploration::Subscribe(const SubscribeRule &rule)
     _wake();
 }
 
+bool Exploration::WaitUntilTaken(std::chrono::nanoseconds limit)
+{
+    const std::uint64_t turn = ++_turnsAsked;
+    _wake();
+    std::unique_lock lock(_mutex);
+    return _turnDone.wait_for(lock, limit, [this, turn] { return _turnsDone >= turn; });
+}
+
+void Exploration::EndTurn(std::uint64_t asked)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        _turnsDone = asked;
+    }
+    _turnDone.notify_all();
+}
+
 void Exploration::SetOnChange(std::function<void()> onChange)
 {
     const std::lock_guard lock(_mutex);

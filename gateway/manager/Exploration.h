@@ -5,6 +5,8 @@
 #include <rabit/transport/Transport.h>
 
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -37,6 +39,7 @@ public:
     void LookForSubscribers(const std::vector<std::string> &messages) override;
     std::optional<std::map<std::string, Subscribers>> FoundSubscribers() const override;
     void Subscribe(const SubscribeRule &rule) override;
+    bool WaitUntilTaken(std::chrono::nanoseconds limit) override;
     void SetOnChange(std::function<void()> onChange) override;
 
     struct Requests
@@ -50,6 +53,9 @@ public:
     void SetNodes(const PeerTable &peers, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
     void FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session);
+    // A unit of work begins; at its end hand what this returns to EndTurn.
+    std::uint64_t BeginTurn() const { return _turnsAsked; }
+    void EndTurn(std::uint64_t asked);
 
 private:
     void Tell();
@@ -62,6 +68,9 @@ private:
     std::optional<std::map<std::string, Subscribers>> _subscribers;
     Requests _requests;
     std::function<void()> _onChange;
+    std::atomic<std::uint64_t> _turnsAsked{0};  // calls of WaitUntilTaken
+    std::uint64_t _turnsDone = 0;               // those before the last whole unit of work began
+    std::condition_variable _turnDone;
 };
 
 }  // namespace Rabit

@@ -517,7 +517,9 @@ void GatewayManager::Startup()
 
 void GatewayManager::ExecuteUnitOfWork()
 {
+    const std::uint64_t asked = _exploration->BeginTurn();
     const Duration next = _parts->Service();
+    _exploration->EndTurn(asked);
     const Duration sleep = std::max(next - _parts->Now(), ShortestSleep);
     SetWakeupTimeDelaySec(std::chrono::duration<double>(sleep).count());
 }

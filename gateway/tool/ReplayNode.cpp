@@ -1,7 +1,7 @@
 #include "ReplayNode.h"
 
 #include <algorithm>
-#include <thread>
+#include <chrono>
 #include <utility>
 
 #include "Output.h"
@@ -11,8 +11,8 @@ namespace Rabit::Tool
 namespace
 {
 
-// A gateway that was woken has come by then.
-constexpr std::chrono::milliseconds Turn{1};
+// A gateway that has not come by then is not waited for: the value may be replaced, which is counted.
+constexpr std::chrono::seconds LongestTurn{10};
 
 GatewayConfig ConfigFor(GatewayConfig config, const std::string &name,
                         const std::vector<ReplayNode::Topic> &topics)
@@ -60,15 +60,21 @@ bool ReplayNode::Post(const std::string &message, std::span<const std::uint8_t> 
         return false;
     }
     found->second.Message->PostMessage(time);
-    found->second.At = std::chrono::steady_clock::now();
+    found->second.Waits = true;
     return true;
 }
 
-void ReplayNode::WaitForItsTurn(const std::string &message) const
+void ReplayNode::WaitForItsTurn(const std::string &message)
 {
-    if (const auto found = _posted.find(message); found != _posted.end())
+    const auto found = _posted.find(message);
+    if (found == _posted.end() || !found->second.Waits)
     {
-        std::this_thread::sleep_until(found->second.At + Turn);
+        return;
+    }
+    _session.Explorer().WaitUntilTaken(LongestTurn);
+    for (auto &[name, posted] : _posted)
+    {
+        posted.Waits = false;
     }
 }
 

@@ -5,7 +5,6 @@
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/idl/MessageType.h>
 
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -40,9 +39,9 @@ public:
     bool Send(const std::string &address, const MessageType &type, std::span<const std::uint8_t> sample,
               const std::shared_ptr<RabitQueueReceipt> &receipt);
 
-    // The gateway takes the newest value of a message whenever it comes by: waits until it has had the time
-    // to take the last one.
-    void WaitForItsTurn(const std::string &message) const;
+    // The gateway takes the newest value of a message whenever it comes by: waits until it has taken the last
+    // one.
+    void WaitForItsTurn(const std::string &message);
     // Posts that were not written because a newer one came before their turn.
     std::uint64_t Replaced() const;
     // Whether another live node has its name.
@@ -53,7 +52,7 @@ private:
     {
         std::shared_ptr<RabitMessage> Message;
         const MessageType *Type = nullptr;
-        std::chrono::steady_clock::time_point At{};
+        bool Waits = false;  // until the gateway takes it
     };
 
     const std::string _name;

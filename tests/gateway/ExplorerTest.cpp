@@ -73,6 +73,17 @@ TEST_F(ExplorerTest, TellsWhatEachNodeAnnounces)
     EXPECT_EQ(node.Offers->accepts[0].queue, "MissionControl");
 }
 
+TEST(Exploration, WhatWasPostedIsTakenByAUnitOfWorkThatBeginsLater)
+{
+    std::function<void()> onWake;
+    Exploration exploration([&onWake] { onWake(); });
+    const std::uint64_t begunBefore = exploration.BeginTurn();
+    onWake = [&] { exploration.EndTurn(begunBefore); };
+    EXPECT_FALSE(exploration.WaitUntilTaken(0s));
+    onWake = [&] { exploration.EndTurn(exploration.BeginTurn()); };
+    EXPECT_TRUE(exploration.WaitUntilTaken(0s));
+}
+
 TEST_F(ExplorerTest, TellsWhichNodesReadAMessage)
 {
     fleet.Add(GroundConfig());

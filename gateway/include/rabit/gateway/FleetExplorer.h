@@ -3,6 +3,7 @@
 #include <rabit/gateway/Fleet.h>
 #include <rabit/gateway/GatewayConfig.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -66,8 +67,8 @@ public:
     // The text of that hash, once it has come.
     virtual std::optional<std::string> TypeText(std::uint64_t definition) const = 0;
 
-    // Who reads a message, whichever node's: nodes, by name and each once, and of what else there is how much.
-    // Tools are no nodes.
+    // Who reads a message, whichever node's: nodes, by name and each once, and of what else there is how
+    // much. Tools are no nodes.
     struct Subscribers
     {
         std::vector<std::string> Nodes;
@@ -81,6 +82,10 @@ public:
     // As if the rule stood in the configuration. Its type must be in the MessageTypeRegistry
     // (std::invalid_argument if not). A message that is subscribed to already stays as it is.
     virtual void Subscribe(const SubscribeRule &rule) = 0;
+
+    // Waits until the gateway has taken all that was posted before this call, but no longer than the limit.
+    // Returns whether it has. Not on the gateway's thread.
+    virtual bool WaitUntilTaken(std::chrono::nanoseconds limit) = 0;
 
     // Called on the gateway's thread when something of the above has changed; must be quick.
     virtual void SetOnChange(std::function<void()> onChange) = 0;
