@@ -36,6 +36,8 @@ public:
     }
     // The next repetition is due by then; the intervals after it stay as they are.
     void Hasten(TimePoint due) { _due = _due ? std::min(*_due, due) : _due; }
+    // The next repetition is due then at the earliest; the intervals after it stay as they are.
+    void Postpone(TimePoint due) { _due = _due ? std::max(*_due, due) : _due; }
     void Stop() { _due.reset(); }
     // When the next repetition is due; empty: there is none.
     std::optional<TimePoint> Due() const { return _due; }

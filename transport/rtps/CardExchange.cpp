@@ -21,7 +21,7 @@ void CardExchange::SetOwn(std::vector<std::uint8_t> packed, TimePoint now)
     _packed = std::move(packed);
     _own = SummaryOf(_packed);
     _parts.assign(_own.Parts(), OwnPart{});
-    Want(_own.AllParts(), std::nullopt, now);
+    Want(_own.AllParts(), std::nullopt, {}, now, now);
     _summary.Begin(now + FirstSummary);
     _nextPeriod = now + _period;
 }
@@ -63,9 +63,9 @@ bool CardExchange::MakeRoom()
 
 // A peer that was heard is in reach: its request begins anew with the shortest interval, unless the channel
 // is full.
-void CardExchange::Ask(Peer &peer, TimePoint due)
+void CardExchange::Ask(Peer &peer, TimePoint due, TimePoint now)
 {
-    if (peer.Request.Due() && (IsCrowd() || Delay(due) > FirstRetry))
+    if (peer.Request.Due() && (IsCrowd() || Delay(now) > FirstRetry))
     {
         peer.Request.Hasten(due);
     }
@@ -93,7 +93,7 @@ void CardExchange::Heard(const GuidPrefix &peer, TimePoint now)
     }
     if (Peer *const known = Find(peer, now))
     {
-        Ask(*known, now);
+        Ask(*known, now, now);
     }
 }
 
@@ -114,13 +114,9 @@ bool CardExchange::MayAskUnknown(TimePoint now)
 void CardExchange::Announced(const GuidPrefix &peer, TimePoint now)
 {
     Peer *const known = Find(peer, now);
-    if (known != nullptr)
+    if (known != nullptr && LackingOf(*known) != 0 && !known->Request.Due())
     {
-        known->HasCard = true;
-        if (LackingOf(*known) != 0 && !known->Request.Due())
-        {
-            Ask(*known, now + Patience);
-        }
+        Ask(*known, now + Patience, now);
     }
 }
 
@@ -147,21 +143,13 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     }
     peer->HasCard = true;
     peer->Late.Heard(message.SentAt, now);
-    const Duration answered = Answered(now);
-    const bool isForSeveral = message.Requests.size() > 1;  // went to all, and so do the answers
+    if (message.HasPart && message.Answers.From == _self)
+    {
+        peer->Late.Answered(message.Answers.SentAt, now);
+    }
     for (const CardRequest &request : message.Requests)
     {
-        const auto found = _peers.find(request.Of);
-        if (request.Of == _self)
-        {
-            Want(request.Parts & _own.AllParts(), isForSeveral ? std::nullopt : std::optional(message.From),
-                 now);
-        }
-        else if (isForSeveral && found != _peers.end() && found->second.Request.Due() &&
-                 (LackingOf(found->second) & ~request.Parts) == 0)
-        {
-            found->second.Request.Done(now, answered);  // the answer serves this node, too
-        }
+        Take(request, message, now);
     }
     if (message.Summary.Size > 0 && message.Summary != peer->Wanted)
     {
@@ -172,19 +160,13 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     if (message.HasPart && message.Summary == peer->Wanted && peer->Wanted != peer->Held)
     {
         peer->Parts[message.Part].assign(message.Bytes.begin(), message.Bytes.end());
-        // Else it is not known which request this answers. Where several have not answered, the first one.
-        if (peer->Asked == 1 || (peer->Asked > 1 && IsCrowd()))
-        {
-            const Duration took = std::min<Duration>(now - peer->FirstAsked, LongestRetry);
-            _roundTrip = std::max<Duration>(took, _roundTrip / 2);
-        }
         peer->Asked = 0;
     }
     if (LackingOf(*peer) != 0)
     {
         // The peer is in reach, so it is asked at once, unless an answer may be on its way.
         const TimePoint soon = now + (message.Summary.Size > 0 ? Patience : std::chrono::milliseconds(0));
-        Ask(*peer, std::max(soon, peer->LastAsked + answered));
+        Ask(*peer, std::max(soon, peer->LastAsked + DelaysOfAnAnswer * Delay(now)), now);
         return std::nullopt;
     }
     peer->Request.Stop();
@@ -217,16 +199,37 @@ void CardExchange::Refuse(const GuidPrefix &peer, TimePoint now)
     {
         found->second.Held = {};
         found->second.Parts.clear();
-        Ask(found->second, now + FirstRetry);
+        Ask(found->second, now + FirstRetry, now);
     }
 }
 
-void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by, TimePoint now)
+void CardExchange::Take(const CardRequest &request, const CardMessage &message, TimePoint now)
 {
+    const bool isForSeveral = message.Requests.size() > 1;  // went to all, and so do the answers
+    const auto found = _peers.find(request.Of);
+    if (request.Of == _self)
+    {
+        Want(request.Parts & _own.AllParts(), isForSeveral ? std::nullopt : std::optional(message.From),
+             {.From = message.From, .SentAt = message.SentAt}, now - _peers[message.From].Late.OfLast(), now);
+    }
+    else if (isForSeveral && found != _peers.end() && !found->second.IsSpared &&
+             (LackingOf(found->second) & ~request.Parts) == 0)
+    {
+        found->second.IsSpared = true;  // the answer serves this node, too
+        found->second.Request.Postpone(now + std::max<Duration>(DelaysOfAnAnswer * Delay(now), FirstRetry));
+    }
+}
+
+// `askedAt`: when a request for them was sent, by this node's clock. One from before the part can have come
+// has crossed with it.
+void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by,
+                        const AnsweredRequest &request, TimePoint askedAt, TimePoint now)
+{
+    const Duration delay = Delay(now);
     for (std::size_t number = 0; number < _parts.size(); ++number)
     {
         OwnPart &part = _parts[number];
-        if ((parts >> number & 1) == 0 || now < part.CrossedUntil)
+        if ((parts >> number & 1) == 0 || (part.SentAt && askedAt < *part.SentAt + delay))
         {
             continue;
         }
@@ -236,6 +239,7 @@ void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by
         }
         part.Asked = now;
         part.By = part.IsWanted && part.By != by ? std::nullopt : by;
+        part.Answers = part.IsWanted ? part.Answers : request;
         part.IsWanted = true;
     }
 }
@@ -283,8 +287,8 @@ std::optional<CardExchange::TimePoint> CardExchange::Due() const
     return due && _self != GuidPrefix{} ? std::optional(std::max(*due, Free())) : std::nullopt;
 }
 
-// How long messages wait in queues now: the middle of the times that the senders' messages show, so that one
-// sender that lies decides nothing beside two honest ones.
+// How long messages wait in queues now: the middle of the times that the senders' messages show, the lower
+// one of two, so that one sender that lies decides nothing beside others.
 CardExchange::Duration CardExchange::Delay(TimePoint now) const
 {
     std::vector<Duration> delays;
@@ -299,7 +303,7 @@ CardExchange::Duration CardExchange::Delay(TimePoint now) const
     {
         return Duration(0);
     }
-    const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
+    const auto middle = delays.begin() + static_cast<std::ptrdiff_t>((delays.size() - 1) / 2);
     std::nth_element(delays.begin(), middle, delays.end());
     return *middle;
 }
@@ -310,11 +314,6 @@ bool CardExchange::IsCrowd() const
         std::count_if(_peers.begin(), _peers.end(),
                       [](const auto &peer) { return peer.second.Request.Due() && peer.second.Asked > 0; });
     return static_cast<std::size_t>(asked) >= Several;
-}
-
-CardExchange::Duration CardExchange::Answered(TimePoint now) const
-{
-    return 2 * std::max(_roundTrip, Delay(now));
 }
 
 void CardExchange::Go(Outgoing outgoing, std::vector<Outgoing> &taken)
@@ -355,25 +354,37 @@ std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
     return taken;
 }
 
+// Those whose requests have been due for longest. None if none is due: what is due soon goes along.
+std::vector<std::pair<GuidPrefix, CardExchange::Peer *>> CardExchange::ToBeAsked(TimePoint now)
+{
+    std::vector<std::pair<GuidPrefix, Peer *>> peers;
+    bool isAnyDue = false;
+    for (auto &[name, peer] : _peers)
+    {
+        isAnyDue |= peer.Request.IsDue(now);
+        if (peer.Request.IsDue(now + (peer.Asked > 0 ? Duration(Together) : Duration(0))))
+        {
+            peers.emplace_back(name, &peer);
+        }
+    }
+    const auto most = std::min(isAnyDue ? peers.size() : 0, MostCardRequests);
+    std::partial_sort(peers.begin(), peers.begin() + static_cast<std::ptrdiff_t>(most), peers.end(),
+                      [](const auto &a, const auto &b)
+                      { return *a.second->Request.Due() < *b.second->Request.Due(); });
+    peers.resize(most);
+    return peers;
+}
+
 void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
 {
     CardMessage message{.From = _self, .Summary = _own, .SentAt = QueueingDelay::Stamp(now)};
-    const bool isAnyDue = std::any_of(_peers.begin(), _peers.end(),
-                                      [now](const auto &peer) { return peer.second.Request.IsDue(now); });
-    if (!isAnyDue)
-    {
-        return;
-    }
-    const Duration answered = Answered(now);
+    const Duration answered = DelaysOfAnAnswer * Delay(now);
     const bool isCrowd = IsCrowd();
-    for (auto &[name, peer] : _peers)
+    for (const auto &[name, asked] : ToBeAsked(now))
     {
-        const Duration early = peer.Asked > 0 ? Duration(Together) : Duration(0);
-        if (!peer.Request.IsDue(now + early) || message.Requests.size() >= MostCardRequests)
-        {
-            continue;
-        }
+        Peer &peer = *asked;
         message.Requests.push_back({.Of = name, .Parts = LackingOf(peer)});
+        peer.IsSpared = false;
         peer.FirstAsked = peer.Asked == 0 ? now : peer.FirstAsked;
         peer.LastAsked = now;
         const Duration crowd =
@@ -395,7 +406,6 @@ void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
 
 void CardExchange::TakeParts(TimePoint now, std::vector<Outgoing> &taken)
 {
-    const TimePoint crossedUntil = now + 2 * Delay(now);
     for (std::size_t number = 0; number < _parts.size() && _left > 0.0; ++number)
     {
         OwnPart &part = _parts[number];
@@ -407,11 +417,13 @@ void CardExchange::TakeParts(TimePoint now, std::vector<Outgoing> &taken)
                             .Summary = _own,
                             .SentAt = QueueingDelay::Stamp(now),
                             .HasPart = true,
-                            .Part = number};
+                            .Part = number,
+                            .Answers = part.Answers};
         message.Bytes = std::span(_packed).subspan(
             number * CardPartSize, std::min(CardPartSize, _packed.size() - number * CardPartSize));
         part.IsWanted = false;
-        part.CrossedUntil = crossedUntil;
+        part.SentAt = now;
+        part.Answers = {};
         part.NotBefore = now + part.Gap;
         const double factor = part.By ? GapFactor : CrowdFactor;
         part.Gap =

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "rtps/Backoff.h"
@@ -21,13 +22,15 @@ namespace Rabit::Rtps
 // - A newcomer whose card has come may know nothing of this node: the summary goes a few times more.
 // - Any datagram of a participant that is not known is a reason to ask it for its card. One that never
 //   answers is a program without a card, and is left alone until it is heard again.
-// - An unanswered request is repeated after two round trips as far as they are known, at first after 50 ms,
-//   later after a second, or two delays in queues. The same part is sent again no sooner than 50 ms later,
+// - An unanswered request is repeated after 50 ms at first, later after a second, and no sooner than after
+// two
+//   delays as far as they are known. The same part is sent again no sooner than 50 ms later,
 //   and later each time: one answer by multicast serves all who ask.
 // - A request for the cards of several nodes goes to all, and so do its answers: a node that overhears such a
-//   request postpones its own.
-// - Each message says when it was sent. While the messages of others are late, the channel is full: requests
-//   and answers wait in queues, and neither is repeated before the one before can have come.
+//   request postpones its own, once.
+// - Each message says when it was sent, and each answer when the request was. While messages are late, the
+//   channel is full: requests and answers wait in queues, and neither is repeated before the one before can
+//   have come.
 // - All of it keeps to a rate.
 //
 // A pure state machine, not thread-safe.
@@ -44,6 +47,8 @@ public:
     // The factor for a part that several nodes ask for: it is less likely to be lost for all of them than to
     // wait in a queue.
     static constexpr double CrowdFactor = 2.0;
+    // Delays: a request waits in one queue, the answer in another.
+    static constexpr int DelaysOfAnAnswer = 2;
     // So many nodes that have not answered are a crowd: the intervals of requests double.
     static constexpr std::size_t Several = 3;
     // A repeated request that is due so soon goes in one datagram with one that is due now.
@@ -113,10 +118,11 @@ private:
         CardSummary Held;                                        // what is complete here
         std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted one
         Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
-        bool HasCard = false;  // it says so, or a message of it has come
+        bool HasCard = false;  // a message of it has come
         int Asked = 0;         // since something came of it
         TimePoint FirstAsked{};
         TimePoint LastAsked{};
+        bool IsSpared = false;  // since then: another node has asked for the same
         TimePoint Heard{};
         QueueingDelay Late;
     };
@@ -125,7 +131,8 @@ private:
         bool IsWanted = false;
         std::optional<GuidPrefix> By;  // empty: the part goes to all
         TimePoint NotBefore{};
-        TimePoint CrossedUntil{};  // requests have crossed with the part on their way
+        std::optional<TimePoint> SentAt{};
+        AnsweredRequest Answers{};
         Duration Gap = FirstAnswerGap;
         TimePoint Asked{};
     };
@@ -133,15 +140,17 @@ private:
     Peer *Find(const GuidPrefix &peer, TimePoint now);
     bool MakeRoom();
     bool MayAskUnknown(TimePoint now);
-    void Ask(Peer &peer, TimePoint due);
+    void Ask(Peer &peer, TimePoint due, TimePoint now);
     static std::uint64_t LackingOf(const Peer &peer);
-    void Want(std::uint64_t parts, const std::optional<GuidPrefix> &by, TimePoint now);
+    void Take(const CardRequest &request, const CardMessage &message, TimePoint now);
+    void Want(std::uint64_t parts, const std::optional<GuidPrefix> &by, const AnsweredRequest &request,
+              TimePoint askedAt, TimePoint now);
     std::optional<TimePoint> NextDue() const;
     void Fill(TimePoint now);
     TimePoint Free() const;
     Duration Delay(TimePoint now) const;
-    bool IsCrowd() const;                    // several have not answered yet
-    Duration Answered(TimePoint now) const;  // from a request to the answer, at most
+    bool IsCrowd() const;  // several have not answered yet
+    std::vector<std::pair<GuidPrefix, Peer *>> ToBeAsked(TimePoint now);
     void Go(Outgoing outgoing, std::vector<Outgoing> &taken);
     void TakeRequests(TimePoint now, std::vector<Outgoing> &taken);
     void TakeParts(TimePoint now, std::vector<Outgoing> &taken);
@@ -156,7 +165,6 @@ private:
     std::optional<TimePoint> _nextPeriod;
     std::map<GuidPrefix, Peer> _peers;
     std::deque<TimePoint> _unknown;  // when participants that may have no card were asked first
-    Duration _roundTrip{0};          // the longest, by half less with each that is shorter
     double _rate = UsualRate;
     double _burst = UsualBurst;
     double _left = UsualBurst;

@@ -16,6 +16,7 @@ constexpr auto Kind = static_cast<SubmessageKind>(0xd2);
 constexpr std::uint8_t Format = 1;
 constexpr std::size_t RequestsAt = 20;
 constexpr std::size_t RequestSize = GuidPrefix{}.size() + 8;
+constexpr std::size_t AnswersSize = GuidPrefix{}.size() + 4;
 constexpr std::size_t Alignment = 4;
 // More than it takes until padding alone stands where statistics would begin.
 constexpr std::size_t MostPadding = StatisticsSize + 2 * Alignment;
@@ -85,6 +86,9 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
     }
     if (message.HasPart)
     {
+        const auto from = body.Bytes(message.Answers.From.size());
+        std::copy(from.begin(), from.end(), message.Answers.From.begin());
+        message.Answers.SentAt = body.U32();
         message.Bytes = body.Bytes(SizeOfPart(message.Summary, message.Part));
     }
     return body.IsGood() && body.Left() < MostPadding ? std::optional(std::move(message)) : std::nullopt;
@@ -93,8 +97,8 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
 std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
 {
     constexpr std::uint8_t littleEndian = 0x01;
-    const std::size_t unpadded =
-        RequestsAt + RequestSize * message.Requests.size() + (message.HasPart ? message.Bytes.size() : 0);
+    const std::size_t unpadded = RequestsAt + RequestSize * message.Requests.size() +
+                                 (message.HasPart ? AnswersSize + message.Bytes.size() : 0);
     const std::size_t length = (unpadded + Alignment - 1) / Alignment * Alignment;
     std::vector<std::uint8_t> bytes(RtpsHeaderSize + SubmessageHeaderSize + length);
     std::size_t at = 0;
@@ -129,6 +133,8 @@ std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
     }
     if (message.HasPart)
     {
+        add(message.Answers.From);
+        addNumber(message.Answers.SentAt, 4);
         add(message.Bytes);
     }
     while (EndsLikeStatistics(bytes))

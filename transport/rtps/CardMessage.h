@@ -13,6 +13,8 @@
 //   16      4     when it was sent, in ms of the sender's monotonic clock (QueueingDelay.h)
 //   20      20 n  requests: GUID prefix of the node that is asked (12), a bit for each part that is lacking
 //   (8)
+//   ...     16    if a part follows: whose request it answers (GUID prefix; zero: nobody's), and when that
+//                 one was sent (4), by its sender's clock
 //   ...           the part, padded with zeros to a multiple of 4, or more if the message would end like
 //   statistics
 //                 of Fast DDS (guard/RtpsMessage.h): the vendor's sockets would write into it
@@ -47,6 +49,13 @@ struct CardRequest
     std::uint64_t Parts = 0;  // bit k: part k is lacking; all bits: the requester knows nothing of the card
 };
 
+// The request that a part answers, so that its sender learns how long the answer took.
+struct AnsweredRequest
+{
+    GuidPrefix From{};  // zero: nobody has asked
+    std::uint32_t SentAt = 0;
+};
+
 struct CardMessage
 {
     GuidPrefix From{};
@@ -55,6 +64,7 @@ struct CardMessage
     std::vector<CardRequest> Requests{};
     bool HasPart = false;
     std::size_t Part = 0;
+    AnsweredRequest Answers{};              // by the part
     std::span<const std::uint8_t> Bytes{};  // of the part; borrowed
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,9 @@ namespace Rabit::Rtps
 // How long the datagrams of one sender wait on their way, beyond the least that any of them took: the time in
 // queues in front of a radio that is full. Each datagram says when it was sent, by its sender's clock; only
 // differences count, so the clocks need not agree (LEDBAT, RFC 6817).
+//
+// One that comes to a channel which is full already has heard no datagram that did not wait. A round trip
+// tells it: that is at least as long as the wait.
 //
 // The least is that of the last one to two minutes, so clocks that drift apart by 100 ppm add 12 ms at most.
 // A delay above Longest is none: a clock has stood still, with its computer.
@@ -59,10 +63,29 @@ public:
         _heardAt = now;
     }
 
-    // Empty: nothing was heard lately.
+    // An answer to what this node sent at that time of its clock.
+    void Answered(std::uint32_t sentAt, TimePoint now)
+    {
+        const Duration took(static_cast<std::int32_t>(Stamp(now) - sentAt));
+        if (took >= Duration(0) && took <= Longest)
+        {
+            _roundTrip = took;
+            _answeredAt = now;
+        }
+    }
+
+    // Of the datagram that was heard last.
+    Duration OfLast() const { return _delay; }
+    // Of now; empty: nothing was heard lately.
     std::optional<Duration> At(TimePoint now) const
     {
-        return _heardAt && now - *_heardAt < Fresh ? std::optional(_delay) : std::nullopt;
+        const auto isFresh = [now](const std::optional<TimePoint> &time)
+        { return time && now - *time < Fresh; };
+        if (!isFresh(_heardAt))
+        {
+            return std::nullopt;
+        }
+        return isFresh(_answeredAt) ? std::max(_delay, _roundTrip) : _delay;
     }
 
 private:
@@ -78,6 +101,8 @@ private:
     TimePoint _windowEnd{};
     std::optional<TimePoint> _heardAt;
     Duration _delay{0};
+    std::optional<TimePoint> _answeredAt;
+    Duration _roundTrip{0};
 };
 
 }  // namespace Rabit::Rtps

@@ -24,6 +24,7 @@ CardMessage Full()
             .Requests = {{.Of = RtpsBytes::Other, .Parts = 5}},
             .HasPart = true,
             .Part = 0,
+            .Answers = {.From = RtpsBytes::Other, .SentAt = 4'000'000'000u},
             .Bytes = Part};
 }
 
@@ -39,6 +40,8 @@ TEST(CardMessage, IsTheSameAfterWritingAndReading)
     EXPECT_EQ(read->Requests[0].Of, RtpsBytes::Other);
     EXPECT_EQ(read->Requests[0].Parts, 5u);
     EXPECT_TRUE(read->HasPart);
+    EXPECT_EQ(read->Answers.From, RtpsBytes::Other);
+    EXPECT_EQ(read->Answers.SentAt, 4'000'000'000u);
     EXPECT_TRUE(std::equal(read->Bytes.begin(), read->Bytes.end(), Part.begin(), Part.end()));
 }
 

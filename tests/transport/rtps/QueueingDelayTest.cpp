@@ -26,6 +26,19 @@ TEST(QueueingDelay, IsWhatDatagramsTakeLongerThanTheQuickest)
     EXPECT_EQ(delay.At(Start + 2s), 800ms);
 }
 
+TEST(QueueingDelay, OfOneThatHasHeardNothingElseIsTheRoundTrip)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 2s);
+    EXPECT_EQ(delay.At(Start + 2s), 0ms);
+    delay.Answered(QueueingDelay::Stamp(Start), Start + 2s);
+    EXPECT_EQ(delay.At(Start + 2s), 2s);
+    delay.Answered(QueueingDelay::Stamp(Start) - 3'600'000u, Start + 2s);  // a lie
+    EXPECT_EQ(delay.At(Start + 2s), 2s);
+    Arrive(delay, 5s, 2s);
+    EXPECT_EQ(delay.At(Start + 7s), 0ms);  // it is old
+}
+
 TEST(QueueingDelay, SaysNothingOfLongAgo)
 {
     QueueingDelay delay;
