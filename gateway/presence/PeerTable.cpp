@@ -113,11 +113,19 @@ bool PeerTable::ForgetOne(Change &change)
 
 // A higher incarnation is a later life. A lower one is an earlier life's straggler, unless the later life has
 // said goodbye or has fallen silent: a node that lost its counter and its clock comes back with a lower
-// number.
-bool PeerTable::IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now)
+// number. Two beats that come as far apart as they were sent prove it: one alone may be late.
+bool PeerTable::IsNewLife(Peer &peer, const HeardBeat &heard)
 {
-    const bool isOver = peer.State == NodeState::LOST || now - peer.LastHeard > peer.StaleAfter();
-    return incarnation > peer.Incarnation || (incarnation < peer.Incarnation && isOver);
+    if (heard.Incarnation >= peer.Incarnation)
+    {
+        return heard.Incarnation > peer.Incarnation;
+    }
+    const bool isOver = peer.State == NodeState::LOST || heard.Arrival - peer.LastHeard > peer.StaleAfter();
+    const Peer::Earlier now{heard.Incarnation, Duration(heard.Beat.source_ns), heard.Arrival};
+    const Peer::Earlier before = std::exchange(peer.OfEarlierLife, now);
+    const Duration late = (now.Arrival - before.Arrival) - (now.Source - before.Source);
+    return isOver && before.Incarnation == now.Incarnation && now.Source > before.Source &&
+           std::max(late, -late) <= peer.StaleAfter();
 }
 
 void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
@@ -210,7 +218,7 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     }
     if (change.NewLife || heard.Incarnation != peer->Incarnation)
     {
-        if (!change.NewLife && !IsNewLife(*peer, heard.Incarnation, heard.Arrival))
+        if (!change.NewLife && !IsNewLife(*peer, heard))
         {
             change.State = NoteTwin(*peer, heard);
             return change;

@@ -89,6 +89,14 @@ public:
         Duration LastBeatArrival{0};
         std::optional<Duration> LastEchoed;
         bool DoubtsThisNode = false;  // it needs an echo to believe that this node's beats are new
+        // The last beat of a lower incarnation.
+        struct Earlier
+        {
+            std::uint64_t Incarnation = 0;
+            Duration Source{0};
+            Duration Arrival{0};
+        };
+        Earlier OfEarlierLife;
         int TwinBeats = 0;      // beats of another incarnation, as far as they alternate with this one's
         Duration TwinSince{0};  // when the last of them came
     };
@@ -157,7 +165,7 @@ private:
     std::map<std::string, Peer>::iterator ForgetTool(std::map<std::string, Peer>::iterator tool,
                                                      Change &change);
     Change OnGoodbye(const HeardBeat &heard);
-    static bool IsNewLife(const Peer &peer, std::uint64_t incarnation, Duration now);
+    static bool IsNewLife(Peer &peer, const HeardBeat &heard);
     static bool NoteTwin(Peer &peer, const HeardBeat &heard);
     static void BeginLife(Peer &peer, const HeardBeat &heard);
     bool IsEchoDue(const Peer &peer, Duration now) const;

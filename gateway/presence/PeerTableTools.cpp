@@ -38,7 +38,7 @@ PeerTable::Peer *PeerTable::GetOrMakeTool(const HeardBeat &heard)
     }
     if (found != _peers.end())
     {
-        if (!IsNewLife(found->second, heard.Incarnation, heard.Arrival))
+        if (!IsNewLife(found->second, heard))
         {
             return nullptr;
         }

@@ -221,15 +221,25 @@ TEST_F(PeerTableTest, AStragglerOfAnEarlierLifeIsIgnored)
 TEST_F(PeerTableTest, ALowerIncarnationIsTakenOnceTheHigherOneHasFallenSilent)
 {
     Hear("uav1", 6, 1s);
-    EXPECT_TRUE(Hear("uav1", 5, 3s).NewLife);
+    EXPECT_FALSE(Hear("uav1", 5, 3s).NewLife) << "it may be an earlier life's straggler";
+    EXPECT_TRUE(Hear("uav1", 5, 3500ms).NewLife);
     EXPECT_EQ(table.Find("uav1")->Incarnation, 5u);
 }
 
-TEST_F(PeerTableTest, ALowerIncarnationIsTakenAtOnceAfterTheGoodbyeOfTheHigherOne)
+TEST_F(PeerTableTest, StragglersOfAnEarlierLifeDoNotReviveIt)
+{
+    Hear("uav1", 6, 1s);
+    EXPECT_FALSE(table.OnBeat(BeatOf("uav1", 5, 500ms, 30s)).NewLife);
+    EXPECT_FALSE(table.OnBeat(BeatOf("uav1", 5, 1000ms, 40s)).NewLife);
+    EXPECT_EQ(table.Find("uav1")->Incarnation, 6u);
+}
+
+TEST_F(PeerTableTest, ALowerIncarnationIsTakenSoonAfterTheGoodbyeOfTheHigherOne)
 {
     Hear("uav1", 6, 1s);
     table.OnLeft("uav1", 6);
-    EXPECT_TRUE(Hear("uav1", 5, 1100ms).NewLife);
+    Hear("uav1", 5, 1100ms);
+    EXPECT_TRUE(Hear("uav1", 5, 1200ms).NewLife);
     EXPECT_EQ(table.Find("uav1")->Incarnation, 5u);
     EXPECT_EQ(StateOf("uav1"), NodeState::UP);
 }
