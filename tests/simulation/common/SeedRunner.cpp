@@ -97,18 +97,26 @@ void ReportFailure(const char *program, const SeedFunction &run, std::uint64_t s
 class Totals
 {
 public:
-    void Add(const std::vector<Figure> &figures)
+    void Add(const std::vector<Figure> &figures, std::uint64_t seed)
     {
         if (_figures.empty())
         {
             _figures = figures;
+            _seeds.assign(figures.size(), seed);
             return;
         }
         for (std::size_t i = 0; i < figures.size(); ++i)
         {
             std::uint64_t &total = _figures[i].Value;
-            total = figures[i].How == Figure::Kind::Sum ? total + figures[i].Value
-                                                        : std::max(total, figures[i].Value);
+            if (figures[i].How == Figure::Kind::Sum)
+            {
+                total += figures[i].Value;
+            }
+            else if (figures[i].Value > total)
+            {
+                total = figures[i].Value;
+                _seeds[i] = seed;
+            }
         }
     }
 
@@ -116,8 +124,9 @@ public:
     bool Print() const
     {
         bool complete = !_figures.empty();
-        for (const Figure &figure : _figures)
+        for (std::size_t i = 0; i < _figures.size(); ++i)
         {
+            const Figure &figure = _figures[i];
             std::cout << "  " << figure.Name << ": ";
             if (figure.How == Figure::Kind::Sum)
             {
@@ -127,8 +136,9 @@ public:
             else
             {
                 figure.How == Figure::Kind::Largest
-                    ? std::cout << static_cast<double>(figure.Value) / 1e9 << " s\n"
-                    : std::cout << figure.Value << " %\n";
+                    ? std::cout << static_cast<double>(figure.Value) / 1e9 << " s"
+                    : std::cout << figure.Value << " %";
+                std::cout << ", seed " << _seeds[i] << '\n';
             }
         }
         return complete;
@@ -136,6 +146,7 @@ public:
 
 private:
     std::vector<Figure> _figures;
+    std::vector<std::uint64_t> _seeds;  // of the largest values
 };
 
 // Runs all seeds on several threads. Returns false after a violation.
@@ -155,7 +166,7 @@ bool RunAll(const char *program, const Arguments &arguments, const SeedFunction 
             }
             const SeedResult result = RunGuarded(run, seed, nullptr);
             const std::lock_guard lock(mutex);
-            totals.Add(result.Figures);
+            totals.Add(result.Figures, seed);
             if (!result.Failure.empty() && !failed.exchange(true))
             {
                 ReportFailure(program, run, seed, result.Failure);
@@ -200,7 +211,7 @@ int RunSeeds(const char *program, int argc, char **argv, const SeedFunction &run
     if (arguments.Trace)
     {
         const SeedResult result = RunGuarded(run, arguments.First, &std::cout);
-        totals.Add(result.Figures);
+        totals.Add(result.Figures, arguments.First);
         good = result.Failure.empty();
         std::cout << (good ? "no violation" : result.Failure) << '\n';
     }

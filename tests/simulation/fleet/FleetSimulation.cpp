@@ -428,6 +428,7 @@ SeedResult FleetSimulation::Run()
         {
             break;
         }
+        _world.Say("missing: " + missing);
         if (_world.Now > _plan.CalmAt + DrainTime)
         {
             _world.Fail(11, "60 s after the faults stopped: " + missing);

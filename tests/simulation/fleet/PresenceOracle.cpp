@@ -83,10 +83,15 @@ void PresenceOracle::OnFleet(std::size_t observerLife, const Gateway::Fleet &fle
             const Path &path = _paths[node * _machines.size() + observer];
             Time silence = _machines[node].Alive ? Time(0) : _world.Now - _machines[node].EndedAt;
             silence = path.Cuts > 0 ? std::max(silence, _world.Now - path.CutAt) : silence;
-            const bool wrong =
-                (status.state == Gateway::NodeState::UP && silence > StaleAfter * pause + Tolerance) ||
-                (status.state == Gateway::NodeState::STALE && silence > LostAfter * pause + Tolerance);
-            if (wrong)
+            const auto isTooLong = [&](Time time)
+            {
+                return (status.state == Gateway::NodeState::UP && time > StaleAfter * pause + Tolerance) ||
+                       (status.state == Gateway::NodeState::STALE && time > LostAfter * pause + Tolerance);
+            };
+            const Time shown =
+                _world.Now -
+                _firstShown.try_emplace({observerLife, node, status.incarnation}, _world.Now).first->second;
+            if (isTooLong(silence) && isTooLong(shown))
             {
                 _world.Fail(14, _world.NameOf(observer) + " shows " + status.node + " as " +
                                     (status.state == Gateway::NodeState::UP ? "UP" : "STALE") + " after " +

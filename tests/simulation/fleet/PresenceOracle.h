@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,9 @@ private:
     std::vector<Path> _paths;
     std::vector<Machine> _machines;
     std::map<std::pair<std::size_t, std::size_t>, Gateway::NodeState> _shown;  // by observer and node
+    // By observing life, node and incarnation. The first beat that ever comes of a life may be late: nothing
+    // tells it from a new one.
+    std::map<std::tuple<std::size_t, std::size_t, std::uint64_t>, Time> _firstShown;
     std::uint64_t _stale = 0;
     std::uint64_t _lost = 0;
 };
