@@ -250,10 +250,10 @@ TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
     ASSERT_EQ(publications.size(), 2u);
     const Gateway::AirStatus air = aircraft->Fleet().air;
     EXPECT_GT(publications[0].bytes_per_s, 0.35 * Budget);
-    // Of bytes, in the long run: a pose takes 148 on the air and a state 132.
+    // Of bytes, in the long run: a pose takes 148 on the air and a state 164.
     const double written =
         static_cast<double>(publications[0].written) / static_cast<double>(publications[1].written);
-    EXPECT_NEAR(written * 148 / 132, 3.0, 0.5);
+    EXPECT_NEAR(written * 148 / 164, 3.0, 0.2);
     EXPECT_NEAR(air.telemetry, publications[0].bytes_per_s + publications[1].bytes_per_s, 1.0);
     EXPECT_EQ(air.budget, Budget);
     EXPECT_LE(air.used, 1.05 * Budget);

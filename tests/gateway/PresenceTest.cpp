@@ -77,7 +77,7 @@ GatewayConfig Node(const std::string &name)
 
 TEST(Presence, ANodeThatAppearsHearsSeveralBeatsBeforeAPeriodIsOver)
 {
-    SimulatedFleet fleet{1, QuickRounds()};
+    SimulatedFleet fleet{1};
     fleet.Add(Node("uav1"));
     fleet.RunFor(10s);
     const BeatListener listener(fleet.Network);
@@ -125,7 +125,7 @@ protected:
         }
     }
 
-    SimulatedFleet fleet{1, QuickRounds()};
+    SimulatedFleet fleet{1};
 
 private:
     std::vector<std::shared_ptr<Uav::MissionState>> _states;

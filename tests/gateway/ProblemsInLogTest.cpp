@@ -49,7 +49,7 @@ protected:
     }
 
     RabitTest::CapturedLog log;
-    SimulatedFleet fleet{1, QuickRounds()};
+    SimulatedFleet fleet{1};
 
 private:
     std::vector<std::shared_ptr<Uav::Pose>> _poses;

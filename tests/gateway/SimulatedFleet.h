@@ -130,15 +130,6 @@ public:
     GatewayManager *Manager = nullptr;
 };
 
-// Where endpoints are told at once to whoever lacks them, and not in rounds: for what has to be measured from
-// when nodes know each other.
-inline SimulatedTimings QuickRounds()
-{
-    SimulatedTimings timings;
-    timings.EndpointRound = timings.LongestEndpointRound = std::chrono::milliseconds(10);
-    return timings;
-}
-
 // Nodes in one process, on a simulated network, under one time: the seed decides all that happens.
 class SimulatedFleet
 {

@@ -89,7 +89,7 @@ ALLOWED = {
     "transport/factory": {"transport", "factory", "fastdds backend", "cyclonedds backend"},
     "transport/fastdds": {"transport", "guard", "meeting", "fastdds backend", "Fast DDS", "network"},
     "transport/cyclonedds": {"transport", "guard", "meeting", "cyclonedds backend", "Cyclone DDS", "network"},
-    "transport/simulated": {"transport", "simulated backend"},
+    "transport/simulated": {"transport", "simulated backend", "meeting"},
     "gateway/include": {"core", "transport", "gateway", "gateway messages"},
     "gateway/links": {"links"},
     **{f"gateway/{room}": {"core", "idl", "transport", "gateway", "gateway messages", f"room {room}"}

@@ -112,7 +112,7 @@ protected:
         return config;
     }
 
-    SimulatedFleet Fleet{1, QuickRounds()};
+    SimulatedFleet Fleet{1};
     std::map<std::string, std::shared_ptr<FakeDisk>> Disks;
     std::map<std::string, RecorderManager *> Recorders;  // of nodes that run
 };

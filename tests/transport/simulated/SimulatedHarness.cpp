@@ -35,7 +35,7 @@ TransportSettings SimulatedHarness::SettingsFor(const std::string &node, std::ui
     TransportSettings settings;
     settings.Node = node;
     settings.Incarnation = incarnation;
-    settings.Lease = std::chrono::seconds(3);
+    settings.Memory = settings.Lease = std::chrono::seconds(3);
     settings.AnnouncementPeriod = std::chrono::seconds(1);
     return settings;
 }

@@ -61,7 +61,7 @@ protected:
     {
         TransportSettings settings = Net.SettingsFor(node, 1);
         settings.Multicast = _multicast;
-        settings.Lease = 3h;
+        settings.Memory = settings.Lease = 3h;
         settings.AnnouncementPeriod = 1h;
         return Net.Backend().Open(settings, {});
     }
@@ -383,9 +383,9 @@ TEST(SimulatedMedium, ALostEndpointIsAskedForAndToldAgain)
     net.Network().SetFaults("a", "b", cut);
     const auto writer = a->CreateWriter(TextTopic(), Telemetry(), {});
     const auto reader = b->CreateReader(TextTopic(), Telemetry(), {}, {});
+    net.Pass(90ms);
     net.Network().ClearFaults();
     const std::uint64_t before = net.Network().Sent("a").DiscoveryBytes;
-    net.Pass(90ms);
     EXPECT_EQ(reader->MatchedWriters(), 0);
     EXPECT_TRUE(net.Until([&] { return reader->MatchedWriters() == 1; }));
     EXPECT_LT(net.Network().Sent("a").DiscoveryBytes - before, 1000u);

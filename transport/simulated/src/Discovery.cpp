@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "NetworkCore.h"
+#include "common/MulticastUse.h"
 
 namespace Rabit::Simulated
 {
@@ -10,15 +11,9 @@ namespace Rabit::Simulated
 namespace
 {
 
-Datagram MakeAnnouncement(const ParticipantPtr &participant, ParticipantId to)
-{
-    const auto peer = participant->Peers.find(to);
-    Datagram announcement;
-    announcement.What = Datagram::Kind::Announce;
-    announcement.Sender = participant;
-    announcement.First = peer == participant->Peers.end() ? 0 : peer->second.TheirVersion;
-    return announcement;
-}
+// After the first announcement, at distances that double; as with our real backends where nodes have cards.
+constexpr int InitialRounds = 2;
+constexpr Time FirstGap = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -30,52 +25,55 @@ void NetworkCore::Announce(const ParticipantPtr &participant)
     {
         if (other != participant && other->Settings.Domain == participant->Settings.Domain)
         {
-            letters.push_back({id, MakeAnnouncement(participant, id), _timings.DiscoveryDelay});
+            letters.push_back({id, {}, _timings.DiscoveryDelay});
         }
     }
     SendTogether(*participant, std::move(letters), participant->Settings.Multicast);
-    participant->Announcements.OnAnnounced(_now);
-    AwaitAnnouncement(*participant);
+    const Time period = participant->Settings.AnnouncementPeriod;
+    const int before = participant->Announced++;
+    Later(before < InitialRounds ? std::min(FirstGap * (1 << before), period) : period,
+          {Event::Kind::AnnouncementTimer, participant->Id, 0, 0, {}});
 }
 
-void NetworkCore::AwaitAnnouncement(ParticipantState &participant)
+void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from)
 {
-    const Time next = std::max(participant.Announcements.Next(), _now);
-    Later(next - _now,
-          {Event::Kind::AnnouncementTimer, participant.Id, 0, ++participant.AnnouncementTimer, {}});
-}
-
-void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)
-{
-    if (me->Departed.contains(from))
+    // One that has departed sent it before its goodbye, which has overtaken it.
+    if (!me->Departed.contains(from) && !me->Peers.contains(from))
     {
-        return;  // sent before the goodbye, and overtaken by it
+        me->Cards.Announced(PrefixOf(from), CardTime());
+        AwaitCards(*me);
     }
+}
+
+Peer &NetworkCore::MeetPeer(const ParticipantPtr &me, ParticipantId from, const ParticipantState &sender)
+{
     const auto [entry, isNew] = me->Peers.try_emplace(from);
     Peer &peer = entry->second;
-    if (!isNew)
+    if (isNew)
     {
-        // One side may have lost the other, and with it what it was told, while the other noticed nothing.
-        if (datagram.First < peer.ConfirmedVersion)
-        {
-            HearEndpointsAck(*me, peer, datagram.First, true);
-        }
-        if (datagram.First == 0)
-        {
-            me->Announcements.Owe();
-            AwaitAnnouncement(*me);
-        }
-        return;
+        peer.Birth = ++_lastBirth;
+        peer.Who = me->Sessions.Add(from, *sender.Who);
+        peer.Lease = IsMulticastForData(sender.Settings) ? sender.Settings.Memory : sender.Settings.Lease;
+        peer.LastHeard = _now;
+        Later(peer.Lease, {Event::Kind::LeaseTimer, me->Id, from, peer.Birth, {}});
+        TellPeerEvent(me, peer, PeerEvent::Kind::Appeared);
+        EndFormerLives(me, peer);
     }
-    peer.Birth = ++_lastBirth;
-    peer.Who = me->Sessions.Add(from, *datagram.Sender->Who);
-    peer.Lease = datagram.Sender->Settings.Lease;
-    peer.LastHeard = _now;
-    Later(peer.Lease, {Event::Kind::LeaseTimer, me->Id, from, peer.Birth, {}});
-    TellPeerEvent(me, peer, PeerEvent::Kind::Appeared);
-    me->Announcements.Owe();
-    AwaitAnnouncement(*me);
-    OfferEndpoints(*me);
+    return peer;
+}
+
+// Once they have been silent for so long that they would have announced themselves twice.
+void NetworkCore::EndFormerLives(const ParticipantPtr &me, const Peer &successor)
+{
+    const Time silence = 5 * me->Settings.AnnouncementPeriod / 2;
+    for (auto &[id, peer] : me->Peers)
+    {
+        if (peer.Birth != successor.Birth && peer.Who->Node == successor.Who->Node && peer.Lease > silence)
+        {
+            peer.Lease = silence;
+            Later(silence, {Event::Kind::LeaseTimer, me->Id, id, peer.Birth, {}});
+        }
+    }
 }
 
 void NetworkCore::TellPeerEvent(const ParticipantPtr &me, const Peer &peer, PeerEvent::Kind what)
@@ -120,6 +118,7 @@ void NetworkCore::LosePeer(const ParticipantPtr &me, ParticipantId id, PeerEvent
     const Peer peer = std::move(found->second);
     me->Peers.erase(found);
     me->Sessions.Remove(id);
+    me->Cards.Forget(PrefixOf(id));
     for (const auto &endpoint : *peer.TheirEndpoints)
     {
         EndpointGone(me, endpoint->Id);

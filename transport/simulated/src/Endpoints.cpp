@@ -3,10 +3,29 @@
 #include <utility>
 
 #include "NetworkCore.h"
-#include "common/MulticastUse.h"
 
 namespace Rabit::Simulated
 {
+
+namespace
+{
+
+// As many bytes as a packed card takes, which tell one version of it from others.
+std::vector<std::uint8_t> CardOf(const ParticipantState &me)
+{
+    constexpr std::size_t participant = 150;
+    constexpr std::size_t endpoint = 60;
+    std::vector<std::uint8_t> card(participant + endpoint * me.Endpoints->size());
+    const Rtps::GuidPrefix self = PrefixOf(me.Id);
+    const auto rest = std::copy(self.begin(), self.end(), card.begin());
+    for (std::size_t i = 0; i < 8; ++i)
+    {
+        rest[static_cast<std::ptrdiff_t>(i)] = static_cast<std::uint8_t>(me.Version >> (8 * i));
+    }
+    return card;
+}
+
+}  // namespace
 
 void NetworkCore::EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed)
 {
@@ -22,143 +41,29 @@ void NetworkCore::EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, 
     std::erase_if(*endpoints, [&](const EndpointInfoPtr &endpoint) { return endpoint->Id == removed; });
     me.Endpoints = std::move(endpoints);
     ++me.Version;
-    Letters letters;
-    for (auto &[id, peer] : me.Peers)
-    {
-        letters.push_back({id, MakeEndpoints(me, id, peer)});
-    }
-    SendTogether(me, std::move(letters), IsMulticastForData(me.Settings));
+    me.Cards.SetOwn(CardOf(me), CardTime());
+    AwaitCards(me);
 }
 
-// Somebody lacks endpoints.
-void NetworkCore::OfferEndpoints(ParticipantState &me)
+void NetworkCore::TakeEndpoints(const ParticipantPtr &me, Peer &peer,
+                                const std::shared_ptr<const EndpointList> &endpoints)
 {
-    if (me.EndpointRoundOwed)
+    const auto before = std::exchange(peer.TheirEndpoints, endpoints);
+    const auto byId = [](const EndpointInfoPtr &a, const EndpointInfoPtr &b) { return a->Id < b->Id; };
+    EndpointList gone;
+    std::set_difference(before->begin(), before->end(), endpoints->begin(), endpoints->end(),
+                        std::back_inserter(gone), byId);
+    EndpointList added;
+    std::set_difference(endpoints->begin(), endpoints->end(), before->begin(), before->end(),
+                        std::back_inserter(added), byId);
+    for (const auto &endpoint : gone)
     {
-        return;
+        EndpointGone(me, endpoint->Id);
     }
-    if (!me.EndpointRoundAt || _now >= *me.EndpointRoundAt + me.EndpointRoundGap)
+    for (const auto &endpoint : added)
     {
-        SendEndpoints(me);
-        return;
+        EndpointAppeared(me, peer, *endpoint);
     }
-    me.EndpointRoundOwed = true;
-    Later(*me.EndpointRoundAt + me.EndpointRoundGap - _now,
-          {Event::Kind::EndpointRoundTimer, me.Id, 0, 0, {}});
-}
-
-// A round, to all who lack some.
-void NetworkCore::SendEndpoints(ParticipantState &me)
-{
-    const bool isRested =
-        !me.EndpointRoundAt || _now >= *me.EndpointRoundAt + 4 * _timings.LongestEndpointRound;
-    me.EndpointRoundGap =
-        isRested ? _timings.EndpointRound : std::min(2 * me.EndpointRoundGap, _timings.LongestEndpointRound);
-    me.EndpointRoundAt = _now;
-    me.EndpointRoundOwed = false;
-    Letters letters;
-    for (auto &[id, peer] : me.Peers)
-    {
-        if (peer.SentVersion != me.Version)
-        {
-            letters.push_back({id, MakeEndpoints(me, id, peer)});
-        }
-    }
-    SendTogether(me, std::move(letters), IsMulticastForData(me.Settings));
-}
-
-// What the peer has not been sent yet.
-Datagram NetworkCore::MakeEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer)
-{
-    Datagram datagram;
-    datagram.What = Datagram::Kind::Endpoints;
-    datagram.First = me.Version;
-    datagram.Last = peer.SentVersion;
-    datagram.Endpoints = me.Endpoints;
-    const auto isNews = [&](const EndpointInfoPtr &endpoint) { return endpoint->Since > peer.SentVersion; };
-    datagram.News =
-        static_cast<std::size_t>(std::count_if(me.Endpoints->begin(), me.Endpoints->end(), isNews));
-    peer.SentVersion = me.Version;
-    peer.RepairGap = _timings.DiscoveryRepair;
-    if (!peer.RepairPending)
-    {
-        peer.RepairPending = true;
-        Later(peer.RepairGap, {Event::Kind::EndpointRepairTimer, me.Id, to, peer.Birth, {}});
-    }
-    return datagram;
-}
-
-// Until the peer has confirmed the endpoints.
-void NetworkCore::RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth)
-{
-    const auto found = me.Peers.find(to);
-    if (found == me.Peers.end() || found->second.Birth != birth)
-    {
-        return;
-    }
-    Peer &peer = found->second;
-    peer.RepairPending = peer.ConfirmedVersion != me.Version;
-    if (peer.RepairPending)
-    {
-        Datagram query;
-        query.What = Datagram::Kind::EndpointsQuery;
-        Send(me, to, std::move(query));
-        peer.RepairGap = std::min(2 * peer.RepairGap, _timings.LongestDiscoveryRepair);
-        Later(peer.RepairGap, {Event::Kind::EndpointRepairTimer, me.Id, to, birth, {}});
-    }
-}
-
-void NetworkCore::HearEndpointsAck(ParticipantState &me, Peer &peer, std::uint64_t version, bool asked)
-{
-    if (asked && version != me.Version)
-    {
-        // What it lacks was lost, unless it is still on its way.
-        peer.ConfirmedVersion = version;
-        peer.SentVersion = version;
-        OfferEndpoints(me);
-    }
-    peer.ConfirmedVersion = std::max(peer.ConfirmedVersion, version);
-}
-
-void NetworkCore::AnswerEndpoints(const ParticipantState &me, ParticipantId from, const Peer &peer,
-                                  bool asked)
-{
-    Datagram ack;
-    ack.What = Datagram::Kind::EndpointsAck;
-    ack.First = peer.TheirVersion;
-    ack.Last = asked ? 1 : 0;
-    Send(me, from, std::move(ack));
-}
-
-void NetworkCore::HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)
-{
-    const auto known = me->Peers.find(from);
-    if (known == me->Peers.end())
-    {
-        return;  // it asks until this participant has discovered it and answers
-    }
-    Peer &peer = known->second;
-    if (datagram.First > peer.TheirVersion && datagram.Last <= peer.TheirVersion)
-    {
-        const auto before = std::exchange(peer.TheirEndpoints, datagram.Endpoints);
-        peer.TheirVersion = datagram.First;
-        const auto byId = [](const EndpointInfoPtr &a, const EndpointInfoPtr &b) { return a->Id < b->Id; };
-        EndpointList gone;
-        std::set_difference(before->begin(), before->end(), peer.TheirEndpoints->begin(),
-                            peer.TheirEndpoints->end(), std::back_inserter(gone), byId);
-        EndpointList added;
-        std::set_difference(peer.TheirEndpoints->begin(), peer.TheirEndpoints->end(), before->begin(),
-                            before->end(), std::back_inserter(added), byId);
-        for (const auto &endpoint : gone)
-        {
-            EndpointGone(me, endpoint->Id);
-        }
-        for (const auto &endpoint : added)
-        {
-            EndpointAppeared(me, peer, *endpoint);
-        }
-    }
-    AnswerEndpoints(*me, from, peer, false);
 }
 
 WriterPtr NetworkCore::AddWriter(const ParticipantPtr &participant, const TopicDescription &topic,
@@ -172,8 +77,7 @@ WriterPtr NetworkCore::AddWriter(const ParticipantPtr &participant, const TopicD
                                                                topic.TypeName,
                                                                static_cast<bool>(topic.KeyOf),
                                                                qos,
-                                                               partitions,
-                                                               participant->Version + 1});
+                                                               partitions});
     participant->Writers.emplace(writer->Info->Id, writer);
     for (const auto &[id, peer] : participant->Peers)
     {
@@ -202,8 +106,7 @@ ReaderPtr NetworkCore::AddReader(const ParticipantPtr &participant, const TopicD
                                                     topic.TypeName,
                                                     static_cast<bool>(topic.KeyOf),
                                                     qos,
-                                                    partitions,
-                                                    participant->Version + 1});
+                                                    partitions});
     const auto reader = std::make_shared<ReaderState>(participant->Log, info, std::move(handler));
     participant->Readers.emplace(info->Id, reader);
     for (const auto &[id, peer] : participant->Peers)

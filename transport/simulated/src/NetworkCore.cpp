@@ -107,7 +107,9 @@ ParticipantPtr NetworkCore::Join(const TransportSettings &settings, PeerHandler 
         _sent.emplace_back();
     }
     _participants.emplace(participant->Id, participant);
+    participant->Cards.SetSelf(PrefixOf(participant->Id));
     Announce(participant);
+    EndpointsChanged(*participant, nullptr, {});
     return participant;
 }
 
@@ -165,19 +167,16 @@ void NetworkCore::Handle(Event event)
             Arrive(at, event.Other, event.Content);
             break;
         case Event::Kind::AnnouncementTimer:
-            if (event.Birth == at->AnnouncementTimer)
+            Announce(at);
+            break;
+        case Event::Kind::CardTimer:
+            if (event.Birth == at->CardTimer)
             {
-                Announce(at);
+                ServeCards(at);
             }
             break;
         case Event::Kind::LeaseTimer:
             CheckLease(at, event.Other, event.Birth);
-            break;
-        case Event::Kind::EndpointRepairTimer:
-            RepairEndpoints(*at, event.Other, event.Birth);
-            break;
-        case Event::Kind::EndpointRoundTimer:
-            SendEndpoints(*at);
             break;
         case Event::Kind::HeartbeatTimer:
             if (const auto writer = at->Writers.find(event.Content.Writer);
@@ -198,31 +197,23 @@ void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Dat
     {
         known->second.LastHeard = _now;
     }
+    else
+    {
+        HearUnknown(*at, from, datagram);
+    }
     const auto reader = at->Readers.find(datagram.Reader);
     const auto writer = at->Writers.find(datagram.Writer);
     switch (datagram.What)
     {
         case Datagram::Kind::Announce:
-            HearAnnouncement(at, from, datagram);
+            HearAnnouncement(at, from);
             return;
         case Datagram::Kind::Bye:
             at->Departed.insert(from);
             LosePeer(at, from, PeerEvent::Kind::Left);
             return;
-        case Datagram::Kind::Endpoints:
-            HearEndpoints(at, from, datagram);
-            return;
-        case Datagram::Kind::EndpointsAck:
-            if (known != at->Peers.end())
-            {
-                HearEndpointsAck(*at, known->second, datagram.First, datagram.Last != 0);
-            }
-            return;
-        case Datagram::Kind::EndpointsQuery:
-            if (known != at->Peers.end())
-            {
-                AnswerEndpoints(*at, from, known->second, true);
-            }
+        case Datagram::Kind::Card:
+            HearCard(at, from, datagram);
             return;
         case Datagram::Kind::Data:
             if (reader != at->Readers.end())

@@ -67,6 +67,7 @@ public:
     std::size_t BytesOfPart(const ParticipantState &participant, const WriterState &writer,
                             const Sample &sample) const;
     int MatchedReaders(const WriterState &writer) const;
+    void SetCardRate(ParticipantState &participant, double bytesPerSecond);
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
     std::optional<Time> LastArrival(const std::string &from, const std::string &to,
@@ -86,9 +87,8 @@ private:
         {
             Arrival,
             AnnouncementTimer,
+            CardTimer,
             LeaseTimer,
-            EndpointRepairTimer,
-            EndpointRoundTimer,
             HeartbeatTimer,
             Passage  // of what is on the air of the medium number At
         };
@@ -123,21 +123,24 @@ private:
 
     // Discovery.cpp
     void Announce(const ParticipantPtr &participant);
-    void AwaitAnnouncement(ParticipantState &participant);
-    void HearAnnouncement(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
+    void HearAnnouncement(const ParticipantPtr &me, ParticipantId from);
+    Peer &MeetPeer(const ParticipantPtr &me, ParticipantId from, const ParticipantState &sender);
+    void EndFormerLives(const ParticipantPtr &me, const Peer &successor);
     void CheckLease(const ParticipantPtr &me, ParticipantId peer, std::uint64_t birth);
     void LosePeer(const ParticipantPtr &me, ParticipantId peer, PeerEvent::Kind how);
     void TellPeerEvent(const ParticipantPtr &me, const Peer &peer, PeerEvent::Kind what);
 
     // Endpoints.cpp
     void EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, const EndpointId &removed);
-    void OfferEndpoints(ParticipantState &me);
-    void SendEndpoints(ParticipantState &me);
-    Datagram MakeEndpoints(const ParticipantState &me, ParticipantId to, Peer &peer);
-    void RepairEndpoints(ParticipantState &me, ParticipantId to, std::uint64_t birth);
-    void HearEndpoints(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
-    void HearEndpointsAck(ParticipantState &me, Peer &peer, std::uint64_t version, bool asked);
-    void AnswerEndpoints(const ParticipantState &me, ParticipantId from, const Peer &peer, bool asked);
+    void TakeEndpoints(const ParticipantPtr &me, Peer &peer,
+                       const std::shared_ptr<const EndpointList> &endpoints);
+
+    // Cards.cpp
+    Rtps::CardExchange::TimePoint CardTime() const;
+    void AwaitCards(ParticipantState &me);
+    void ServeCards(const ParticipantPtr &me);
+    void HearCard(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
+    void HearUnknown(ParticipantState &me, ParticipantId from, const Datagram &datagram);
 
     // Matching.cpp
     void EndpointAppeared(const ParticipantPtr &me, const Peer &peer, const EndpointInfo &remote);

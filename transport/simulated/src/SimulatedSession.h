@@ -22,6 +22,10 @@ public:
                                                   const std::vector<std::string> &partitions,
                                                   SampleHandler handler) override;
     TransportCounters Counters() const override;
+    void SetDiscoveryRate(double bytesPerSecond) override
+    {
+        _core->SetCardRate(*_participant, bytesPerSecond);
+    }
     std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
     {
         return _participant->Topics.RemoteOn(topic);

@@ -4,6 +4,7 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <algorithm>
 #include <chrono>
 #include <compare>
 #include <cstdint>
@@ -16,13 +17,13 @@
 #include <utility>
 #include <vector>
 
-#include "AnnouncementRounds.h"
 #include "common/HandlerGate.h"
 #include "common/InstanceTable.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerSessions.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
+#include "rtps/CardExchange.h"
 
 namespace Rabit::Simulated
 {
@@ -58,7 +59,6 @@ struct EndpointInfo
     bool Keyed = false;
     TopicQos Qos;
     std::vector<std::string> Partitions;
-    std::uint64_t Since = 0;  // the first version of the participant's endpoints with it
 };
 using EndpointInfoPtr = std::shared_ptr<const EndpointInfo>;
 using EndpointList = std::vector<EndpointInfoPtr>;  // by rising Id
@@ -69,11 +69,9 @@ struct Datagram
 {
     enum class Kind
     {
-        Announce,        // I am here, and know your endpoints of version First
+        Announce,        // I am here
         Bye,             // I go
-        Endpoints,       // my endpoints, version First, for who knows those of version Last
-        EndpointsQuery,  // which version of my endpoints do you know?
-        EndpointsAck,    // I know your endpoints of version First; Last is 1 if asked
+        Card,            // a message about cards; Endpoints is what the sender's card says
         Data,            // Content; nothing below First will come any more
         Heartbeat,       // I have First to Last for you
         Acknowledgement  // I have all below First, but miss Sequences
@@ -84,10 +82,10 @@ struct Datagram
     std::uint64_t First = 0;
     std::uint64_t Last = 0;
     SamplePtr Content;
+    std::shared_ptr<const std::vector<std::uint8_t>> Card;  // as it travels
     std::shared_ptr<const EndpointList> Endpoints;
-    std::size_t News = 0;  // of the endpoints: how many the other side lacks, which travel
     std::vector<std::uint64_t> Sequences;
-    std::shared_ptr<const ParticipantState> Sender;  // of an announcement
+    std::shared_ptr<const ParticipantState> Sender;  // of a message about cards
 };
 
 // A datagram for one reader, or for one participant, of those that may share it on the way.
@@ -165,12 +163,7 @@ struct Peer
     std::shared_ptr<const PeerSession> Who;
     std::chrono::nanoseconds Lease{};
     std::chrono::nanoseconds LastHeard{};
-    std::uint64_t TheirVersion = 0;
     std::shared_ptr<const EndpointList> TheirEndpoints = std::make_shared<EndpointList>();
-    std::uint64_t ConfirmedVersion = 0;  // of our endpoints, by it
-    std::uint64_t SentVersion = 0;       // of them, to it
-    bool RepairPending = false;
-    std::chrono::nanoseconds RepairGap{0};
 };
 
 struct ParticipantState
@@ -179,7 +172,7 @@ struct ParticipantState
         : Settings(settings),
           Who(std::make_shared<ParticipantIdentity>(
               ParticipantIdentity{settings.Node, settings.Incarnation})),
-          Announcements(settings.AnnouncementPeriod),
+          Cards(settings.AnnouncementPeriod),
           Log(std::make_shared<SessionLog>(settings)),
           Topics(Log),
           OnPeer(std::move(onPeer)),
@@ -199,13 +192,11 @@ struct ParticipantState
     std::uint32_t LastEntity = 0;
     std::uint64_t Version = 1;  // of Endpoints
     std::shared_ptr<const EndpointList> Endpoints = std::make_shared<EndpointList>();
-    // Of endpoints to who lacks them: when the last went, the distance to the next, and whether it is owed.
-    std::optional<std::chrono::nanoseconds> EndpointRoundAt;
-    std::chrono::nanoseconds EndpointRoundGap{0};
-    bool EndpointRoundOwed = false;
+    int Announced = 0;  // times
 
-    AnnouncementRounds Announcements;
-    std::uint64_t AnnouncementTimer = 0;  // the number of the one that counts
+    Rtps::CardExchange Cards;
+    std::optional<std::chrono::nanoseconds> CardsAt;  // when their timer is due
+    std::uint64_t CardTimer = 0;                      // the number of the one that counts
 
     // Not guarded by the network's mutex.
     const std::shared_ptr<SessionLog> Log;
@@ -214,13 +205,35 @@ struct ParticipantState
     HandlerGate PeerGate;
 };
 
-// An RTPS GUID: vendor prefix, participant, entity.
+// Of the RTPS GUIDs of its endpoints.
+inline Rtps::GuidPrefix PrefixOf(ParticipantId id)
+{
+    Rtps::GuidPrefix result{};
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        result[8 + i] = static_cast<std::uint8_t>(id >> (24 - 8 * i));
+    }
+    return result;
+}
+
+inline ParticipantId ParticipantOf(const Rtps::GuidPrefix &prefix)
+{
+    ParticipantId id = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        id = id << 8 | prefix[8 + i];
+    }
+    return id;
+}
+
+// An RTPS GUID: prefix, entity.
 inline WriterId ToWriterId(const EndpointId &id)
 {
     WriterId result{};
+    const Rtps::GuidPrefix prefix = PrefixOf(id.Participant);
+    std::copy(prefix.begin(), prefix.end(), result.begin());
     for (std::size_t i = 0; i < 4; ++i)
     {
-        result[8 + i] = static_cast<std::uint8_t>(id.Participant >> (24 - 8 * i));
         result[12 + i] = static_cast<std::uint8_t>(id.Entity >> (24 - 8 * i));
     }
     return result;

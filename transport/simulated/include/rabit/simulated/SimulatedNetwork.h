@@ -43,16 +43,8 @@ struct SimulatedTimings
     std::chrono::nanoseconds LongestHeartbeatPeriod = std::chrono::milliseconds(1000);
     // A reader answers that, and a writer repairs, after this time.
     std::chrono::nanoseconds ResponseDelay = std::chrono::milliseconds(1);
-    // From the arrival of an announcement to the peer being known.
+    // From the arrival of an announcement or a card to its being read.
     std::chrono::nanoseconds DiscoveryDelay = std::chrono::milliseconds(5);
-    // A peer that has not confirmed our endpoints is asked for them after this time, then at distances that
-    // double up to the longest, and told what it lacks.
-    std::chrono::nanoseconds DiscoveryRepair = std::chrono::milliseconds(100);
-    std::chrono::nanoseconds LongestDiscoveryRepair = std::chrono::milliseconds(1000);
-    // Who lacks endpoints gets them in a round, with all others who do. Rounds follow each other at distances
-    // that double, and begin anew after a rest of four times the longest.
-    std::chrono::nanoseconds EndpointRound = std::chrono::milliseconds(200);
-    std::chrono::nanoseconds LongestEndpointRound = std::chrono::milliseconds(1600);
 };
 
 // A half-duplex medium that nodes share, a radio: one datagram at a time is on the air, and the nodes that
@@ -105,12 +97,12 @@ struct SimulatedTraffic
 // deliveries in the same order. Nothing happens in between: AdvanceTo runs all handlers, on the calling
 // thread, each at its simulated time; things due at one time happen in the order in which they were caused.
 //
-// It behaves like DDS with RTPS underneath, not like an ideal network: participants find each other by
-// announcements and lose each other by leases, the two sides of a match come about separately, a reliable
-// writer repairs what its keep-last history still has as long as the match holds, a best-effort reader drops
-// what comes late or twice, a volatile reader loses what is written while it is not matched, and a reader
-// that was lost and found again gets a transient-local history once more (as with Cyclone DDS; Fast DDS does
-// not).
+// It behaves like our backends on DDS, not like an ideal network: participants find each other by
+// announcements and cards (transport/rtps), and lose each other by leases, the two sides of a match come
+// about separately, a reliable writer repairs what its keep-last history still has as long as the match
+// holds, a best-effort reader drops what comes late or twice, a volatile reader loses what is written while
+// it is not matched, and a reader that was lost and found again gets a transient-local history once more (as
+// with Cyclone DDS; Fast DDS does not).
 //
 // Thread-safe; deterministic only if used by one thread at a time. Sessions keep the network alive.
 class SimulatedNetwork
@@ -151,9 +143,9 @@ public:
 
     SimulatedTraffic Traffic() const;
 
-    // When a best-effort sample of that topic last came from a node to readers of another one that are matched
-    // with its writer now; one that was overtaken does not count. Nothing if none came, or if no such match is
-    // left.
+    // When a best-effort sample of that topic last came from a node to readers of another one that are
+    // matched with its writer now; one that was overtaken does not count. Nothing if none came, or if no such
+    // match is left.
     std::optional<std::chrono::nanoseconds> LastArrival(const std::string &from, const std::string &to,
                                                         const std::string &topic) const;
 

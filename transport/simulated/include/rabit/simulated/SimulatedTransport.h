@@ -12,8 +12,8 @@ namespace Rabit
 // The backend for tests: its sessions talk over a SimulatedNetwork. Handlers run inside
 // SimulatedNetwork::AdvanceTo, on the thread that calls it, never anywhere else.
 //
-// Of the settings it heeds Node, Incarnation, Domain, MaxDatagram, Lease, AnnouncementPeriod and Log. Samples
-// are limited to 64 MiB, as with Fast DDS.
+// Of the settings it heeds Node, Incarnation, Domain, MaxDatagram, Multicast, Peers, Lease, Memory,
+// AnnouncementPeriod and Log. Samples are limited to 64 MiB, as with Fast DDS.
 class SimulatedTransport final : public Transport
 {
 public:
