@@ -144,6 +144,10 @@ bool Exploration::WaitUntilTaken(std::chrono::nanoseconds limit)
 
 void Exploration::EndTurn(std::uint64_t asked)
 {
+    if (asked == _turnsDone)  // written by this thread alone
+    {
+        return;
+    }
     {
         const std::lock_guard lock(_mutex);
         _turnsDone = asked;

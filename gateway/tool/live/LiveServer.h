@@ -2,6 +2,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,7 @@ public:
         std::vector<std::string> Origins{};
         std::size_t MostViewers = 16;
         std::size_t BytesOfViewer = std::size_t{8} << 20;  // that wait for one
+        std::chrono::seconds Silence{30};  // a viewer that does not even answer pings for so long is gone
     };
     static constexpr std::size_t LargestRequest = 64 << 10;
     // What waits for the server's own thread; what comes beyond is not shown to anybody, and counted.

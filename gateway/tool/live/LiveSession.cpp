@@ -15,7 +15,6 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 
 constexpr std::chrono::seconds RequestTime{10};
-constexpr std::chrono::seconds Silence{30};
 constexpr std::chrono::seconds TellPeriod{1};
 constexpr std::size_t MostSubscriptions = 10'000;
 
@@ -109,7 +108,7 @@ void LiveSession::Accept()
     beast::get_lowest_layer(_stream).socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
     websocket::stream_base::timeout timeout{};
     timeout.handshake_timeout = RequestTime;
-    timeout.idle_timeout = Silence;
+    timeout.idle_timeout = _context.Settings.Silence;
     timeout.keep_alive_pings = true;
     _stream.set_option(timeout);
     const auto protocols = _request[http::field::sec_websocket_protocol];

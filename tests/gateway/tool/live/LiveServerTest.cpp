@@ -31,6 +31,7 @@ LiveServer::Settings Anywhere()
 {
     LiveServer::Settings settings;
     settings.Endpoint.port(0);
+    settings.Silence = std::chrono::hours(1);  // on a busy machine a viewer that stalls does so for long
     return settings;
 }
 
