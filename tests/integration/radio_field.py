@@ -72,6 +72,11 @@ class RadioField(field.Field):
     def hear(self, node, origin="*"):
         self.tell(f"hear {node} {origin}")
 
+    def forget_neighbours(self):
+        """The nodes' kernels know no hardware addresses any more, as where nodes have never met."""
+        for node in self.nodes:
+            field.run("ip", "-n", self.space(node), "neighbour", "flush", "all")
+
     def outage(self, switched):
         """"on" or "off": nobody hears anything, and the senders do not notice."""
         self.tell(f"outage {switched}")

@@ -86,6 +86,7 @@ def meet(fleet, members, tries):
 
 
 def _meet(fleet):
+    fleet.ground.forget_neighbours()
     for node, other in zip(fleet.ground.nodes, reversed(fleet.ground.nodes)):
         fleet.start_ledger(node, "--to", other, "--count", 1, "--rate", 100)
     follower = Follower(fleet)
@@ -118,6 +119,7 @@ def crowd(fleet, members, tries):
     """All start at once: until each has heard a sample of each other."""
     times = []
     for _ in range(tries):
+        fleet.ground.forget_neighbours()
         for node in fleet.ground.nodes:
             fleet.start_ledger(node, "--ticks")
         follower = Follower(fleet)
