@@ -122,10 +122,19 @@ bool PeerTable::IsNewLife(Peer &peer, const HeardBeat &heard)
     }
     const bool isOver = peer.State == NodeState::LOST || heard.Arrival - peer.LastHeard > peer.StaleAfter();
     const Peer::Earlier now{heard.Incarnation, Duration(heard.Beat.source_ns), heard.Arrival};
-    const Peer::Earlier before = std::exchange(peer.OfEarlierLife, now);
-    const Duration late = (now.Arrival - before.Arrival) - (now.Source - before.Source);
-    return isOver && before.Incarnation == now.Incarnation && now.Source > before.Source &&
-           std::max(late, -late) <= peer.StaleAfter();
+    auto &before = peer.OfEarlierLife;
+    if (!before ||
+        (before->Incarnation != now.Incarnation && now.Arrival - before->Arrival > peer.StaleAfter()))
+    {
+        before = now;
+    }
+    if (before->Incarnation != now.Incarnation)
+    {
+        return false;
+    }
+    const Peer::Earlier last = std::exchange(*before, now);
+    const Duration late = (now.Arrival - last.Arrival) - (now.Source - last.Source);
+    return isOver && now.Source > last.Source && std::max(late, -late) <= peer.StaleAfter();
 }
 
 void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)

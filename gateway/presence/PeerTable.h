@@ -89,14 +89,15 @@ public:
         Duration LastBeatArrival{0};
         std::optional<Duration> LastEchoed;
         bool DoubtsThisNode = false;  // it needs an echo to believe that this node's beats are new
-        // The last beat of a lower incarnation.
+        // The last beat of a lower incarnation. One of yet another incarnation takes its place once it is
+        // old.
         struct Earlier
         {
             std::uint64_t Incarnation = 0;
             Duration Source{0};
             Duration Arrival{0};
         };
-        Earlier OfEarlierLife;
+        std::optional<Earlier> OfEarlierLife;
         int TwinBeats = 0;      // beats of another incarnation, as far as they alternate with this one's
         Duration TwinSince{0};  // when the last of them came
     };

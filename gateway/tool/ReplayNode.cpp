@@ -11,8 +11,10 @@ namespace Rabit::Tool
 namespace
 {
 
-// A gateway that has not come by then is not waited for: the value may be replaced, which is counted.
+// A gateway that has not come by then is not waited for any more: values may be replaced, which is counted.
 constexpr std::chrono::seconds LongestTurn{10};
+// Ctrl-C is looked at so often meanwhile.
+constexpr std::chrono::milliseconds LookForCtrlC{100};
 
 GatewayConfig ConfigFor(GatewayConfig config, const std::string &name,
                         const std::vector<ReplayNode::Topic> &topics)
@@ -35,7 +37,7 @@ GatewayConfig ConfigFor(GatewayConfig config, const std::string &name,
 
 ReplayNode::ReplayNode(GatewayConfig network, const std::string &name, const std::vector<Topic> &topics,
                        const CommonOptions &options, Wakeup &wakeup)
-    : _name(name), _session(ConfigFor(std::move(network), name, topics), options, wakeup)
+    : _name(name), _wakeup(wakeup), _session(ConfigFor(std::move(network), name, topics), options, wakeup)
 {
     for (const Topic &topic : topics)
     {
@@ -71,7 +73,13 @@ void ReplayNode::WaitForItsTurn(const std::string &message)
     {
         return;
     }
-    _session.Explorer().WaitUntilTaken(LongestTurn);
+    const auto end = std::chrono::steady_clock::now() + LongestTurn;
+    bool isTaken = false;
+    while (!isTaken && !_isStuck && !_wakeup.IsInterrupted())
+    {
+        isTaken = _session.Explorer().WaitUntilTaken(LookForCtrlC);
+        _isStuck = !isTaken && std::chrono::steady_clock::now() >= end;
+    }
     for (auto &[name, posted] : _posted)
     {
         posted.Waits = false;

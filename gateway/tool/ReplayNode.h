@@ -39,8 +39,8 @@ public:
     bool Send(const std::string &address, const MessageType &type, std::span<const std::uint8_t> sample,
               const std::shared_ptr<RabitQueueReceipt> &receipt);
 
-    // The gateway takes the newest value of a message whenever it comes by: waits until it has taken the last
-    // one.
+    // The gateway takes the newest value of a message in each of its turns: waits until it has taken the last
+    // one, or somebody wants the program to end. After a turn that took very long it waits no more.
     void WaitForItsTurn(const std::string &message);
     // Posts that were not written because a newer one came before their turn.
     std::uint64_t Replaced() const;
@@ -56,6 +56,8 @@ private:
     };
 
     const std::string _name;
+    const Wakeup &_wakeup;
+    bool _isStuck = false;  // the gateway's turn has taken longer than anybody waits
     FleetSession _session;
     std::map<std::string, Posted> _posted;  // by message
 };

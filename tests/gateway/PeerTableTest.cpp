@@ -345,6 +345,19 @@ TEST_F(PeerTableTest, ARestartWithALowerIncarnationIsNotTakenForTwoNodes)
     }
 }
 
+TEST_F(PeerTableTest, TwoNodesWithLowerIncarnationsThanTheOneBeforeAreReported)
+{
+    Hear("uav1", 6, 1s);
+    bool isReported = false;
+    for (int i = 0; i <= 20; ++i)
+    {
+        Hear("uav1", i % 2 == 0 ? 4 : 5, 10s + i * 250ms);
+        isReported = isReported || table.Find("uav1")->Twice;
+    }
+    EXPECT_NE(table.Find("uav1")->Incarnation, 6u);
+    EXPECT_TRUE(isReported);
+}
+
 TEST_F(PeerTableTest, ALiveNodeWithThisNodesNameIsReportedUntilItIsGone)
 {
     for (int i = 1; i <= 3; ++i)

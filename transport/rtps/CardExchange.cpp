@@ -23,7 +23,7 @@ void CardExchange::SetOwn(std::vector<std::uint8_t> packed, TimePoint now)
     _parts.assign(_own.Parts(), OwnPart{});
     Want(_own.AllParts(), std::nullopt, {}, now, now);
     _summary.Begin(now + FirstSummary);
-    _nextPeriod = now + _period;
+    _nextPeriod = now + _settings.Period;
 }
 
 CardExchange::Peer *CardExchange::Find(const GuidPrefix &peer, TimePoint now)
@@ -85,9 +85,7 @@ void CardExchange::Heard(const GuidPrefix &peer, TimePoint now)
         return;
     }
     const bool hasCard = found != _peers.end() && found->second.HasCard;
-    const bool rests = found != _peers.end() && now - found->second.LastAsked < Rest &&
-                       found->second.Asked >= (hasCard ? MostRequests : MostVainRequests);
-    if (rests || (!hasCard && !MayAskUnknown(now)))
+    if ((found != _peers.end() && Rests(found->second, now)) || (!hasCard && !MayAskUnknown(now)))
     {
         return;
     }
@@ -95,6 +93,12 @@ void CardExchange::Heard(const GuidPrefix &peer, TimePoint now)
     {
         Ask(*known, now, now);
     }
+}
+
+bool CardExchange::Rests(const Peer &peer, TimePoint now) const
+{
+    return peer.Asked >= (peer.HasCard ? MostRequests : MostVainRequests) &&
+           now - peer.LastAsked < (peer.IsAnnounced ? ShortRest : Rest);
 }
 
 bool CardExchange::MayAskUnknown(TimePoint now)
@@ -114,7 +118,12 @@ bool CardExchange::MayAskUnknown(TimePoint now)
 void CardExchange::Announced(const GuidPrefix &peer, TimePoint now)
 {
     Peer *const known = Find(peer, now);
-    if (known != nullptr && LackingOf(*known) != 0 && !known->Request.Due())
+    if (known == nullptr)
+    {
+        return;
+    }
+    known->IsAnnounced = true;
+    if (LackingOf(*known) != 0 && !known->Request.Due())
     {
         Ask(*known, now + Patience, now);
     }
@@ -145,7 +154,7 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     peer->Late.Heard(message.SentAt, now);
     if (message.HasPart && message.Answers.From == _self)
     {
-        peer->Late.Answered(message.Answers.SentAt, now);
+        Answered(*peer, message.Answers.SentAt, now);
     }
     for (const CardRequest &request : message.Requests)
     {
@@ -192,6 +201,26 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     return card;
 }
 
+// Requests that are out are repeated no sooner than the round trip allows.
+void CardExchange::Answered(Peer &peer, std::uint32_t sentAt, TimePoint now)
+{
+    peer.Late.Answered(sentAt, now);
+    const Duration answer = DelaysOfAnAnswer * Delay(now);
+    for (auto &[name, other] : _peers)
+    {
+        if (other.Asked > 0)
+        {
+            other.Request.Postpone(other.LastAsked + answer);
+        }
+    }
+}
+
+// The destination of a message for that node.
+std::optional<GuidPrefix> CardExchange::Only(const GuidPrefix &peer) const
+{
+    return _settings.IsMulticast ? std::nullopt : std::optional(peer);
+}
+
 void CardExchange::Refuse(const GuidPrefix &peer, TimePoint now)
 {
     const auto found = _peers.find(peer);
@@ -210,10 +239,11 @@ void CardExchange::Take(const CardRequest &request, const CardMessage &message, 
     if (request.Of == _self)
     {
         Want(request.Parts & _own.AllParts(), isForSeveral ? std::nullopt : std::optional(message.From),
-             {.From = message.From, .SentAt = message.SentAt}, now - _peers[message.From].Late.OfLast(), now);
+             {.From = message.From, .SentAt = message.SentAt - QueueingDelay::Stamp(now)},
+             now - _peers[message.From].Late.OfLast(), now);
     }
-    else if (isForSeveral && found != _peers.end() && !found->second.IsSpared &&
-             (LackingOf(found->second) & ~request.Parts) == 0)
+    else if (isForSeveral && found != _peers.end() && found->second.Request.Due() &&
+             !found->second.IsSpared && (LackingOf(found->second) & ~request.Parts) == 0)
     {
         found->second.IsSpared = true;  // the answer serves this node, too
         found->second.Request.Postpone(now + std::max<Duration>(DelaysOfAnAnswer * Delay(now), FirstRetry));
@@ -229,7 +259,8 @@ void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by
     for (std::size_t number = 0; number < _parts.size(); ++number)
     {
         OwnPart &part = _parts[number];
-        if ((parts >> number & 1) == 0 || (part.SentAt && askedAt < *part.SentAt + delay))
+        const bool wentToIt = part.SentAt && (!part.SentTo || *part.SentTo == request.From);
+        if ((parts >> number & 1) == 0 || (wentToIt && askedAt < *part.SentAt + delay))
         {
             continue;
         }
@@ -287,14 +318,22 @@ std::optional<CardExchange::TimePoint> CardExchange::Due() const
     return due && _self != GuidPrefix{} ? std::optional(std::max(*due, Free())) : std::nullopt;
 }
 
-// How long messages wait in queues now: the middle of the times that the senders' messages show, the lower
-// one of two, so that one sender that lies decides nothing beside others.
+// How long messages wait in queues now: the middle of what the other nodes' messages tell, the lower one of
+// two, so that one node that lies decides nothing beside others. Where answers tell it, they alone count:
+// others may all have waited alike.
 CardExchange::Duration CardExchange::Delay(TimePoint now) const
 {
     std::vector<Duration> delays;
+    bool areByAnswers = false;
     for (const auto &[name, peer] : _peers)
     {
-        if (const auto delay = peer.Late.At(now))
+        const auto delay = peer.Late.At(now);
+        const bool isByAnswer = delay && peer.Late.IsByAnswer(now);
+        if (isByAnswer && !std::exchange(areByAnswers, true))
+        {
+            delays.clear();
+        }
+        if (delay && isByAnswer == areByAnswers)
         {
             delays.push_back(*delay);
         }
@@ -342,7 +381,7 @@ std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
                 series->Done(now, Delay(now));
             }
         }
-        _nextPeriod = now + _period;
+        _nextPeriod = now + _settings.Period;
         if (taken.empty())  // each message has the summary
         {
             Go({.To = std::nullopt,
@@ -398,7 +437,7 @@ void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
     if (!message.Requests.empty())
     {
         const bool isForOne = message.Requests.size() == 1;
-        Go({.To = isForOne ? std::optional(message.Requests.front().Of) : std::nullopt,
+        Go({.To = isForOne ? Only(message.Requests.front().Of) : std::nullopt,
             .Bytes = WriteCardMessage(message)},
            taken);
     }
@@ -419,16 +458,18 @@ void CardExchange::TakeParts(TimePoint now, std::vector<Outgoing> &taken)
                             .HasPart = true,
                             .Part = number,
                             .Answers = part.Answers};
+        message.Answers.SentAt += message.SentAt;
         message.Bytes = std::span(_packed).subspan(
             number * CardPartSize, std::min(CardPartSize, _packed.size() - number * CardPartSize));
         part.IsWanted = false;
         part.SentAt = now;
+        part.SentTo = part.By ? Only(*part.By) : std::nullopt;
         part.Answers = {};
         part.NotBefore = now + part.Gap;
         const double factor = part.By ? GapFactor : CrowdFactor;
         part.Gap =
             std::min<Duration>(std::chrono::duration_cast<Duration>(part.Gap * factor), LongestAnswerGap);
-        Go({.To = part.By, .Bytes = WriteCardMessage(message)}, taken);
+        Go({.To = part.SentTo, .Bytes = WriteCardMessage(message)}, taken);
     }
 }
 

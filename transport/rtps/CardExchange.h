@@ -22,10 +22,9 @@ namespace Rabit::Rtps
 // - A newcomer whose card has come may know nothing of this node: the summary goes a few times more.
 // - Any datagram of a participant that is not known is a reason to ask it for its card. One that never
 //   answers is a program without a card, and is left alone until it is heard again.
-// - An unanswered request is repeated after 50 ms at first, later after a second, and no sooner than after
-// two
-//   delays as far as they are known. The same part is sent again no sooner than 50 ms later,
-//   and later each time: one answer by multicast serves all who ask.
+// - An unanswered request is repeated after 50 ms at first, later after a second, and not before an
+//   answer can have come. The same part is sent again no sooner than 50 ms later, and later each time:
+//   one answer by multicast serves all who ask.
 // - A request for the cards of several nodes goes to all, and so do its answers: a node that overhears such a
 //   request postpones its own, once.
 // - Each message says when it was sent, and each answer when the request was. While messages are late, the
@@ -47,16 +46,18 @@ public:
     // The factor for a part that several nodes ask for: it is less likely to be lost for all of them than to
     // wait in a queue.
     static constexpr double CrowdFactor = 2.0;
-    // Delays: a request waits in one queue, the answer in another.
+    // Delays: a request waits in one queue, its answer in another.
     static constexpr int DelaysOfAnAnswer = 2;
     // So many nodes that have not answered are a crowd: the intervals of requests double.
     static constexpr std::size_t Several = 3;
     // A repeated request that is due so soon goes in one datagram with one that is due now.
     static constexpr std::chrono::milliseconds Together{200};
-    // To a participant that may have no card, and to one that has. After so many there is a rest.
+    // To a participant that may have no card, and to one that has. After so many there is a rest, a short one
+    // for a participant that says that it has a card.
     static constexpr int MostVainRequests = 10;
     static constexpr int MostRequests = 30;
     static constexpr std::chrono::seconds Rest{5};
+    static constexpr std::chrono::seconds ShortRest{1};
     // Within a Rest so many participants at most that may have no card are asked: anybody can invent some.
     static constexpr std::size_t MostUnknown = 16;
     // From the word of another card to the first request: the parts may be on their way.
@@ -78,8 +79,15 @@ public:
     static constexpr double UsualBurst = 6000.0;
     static constexpr std::size_t IpAndUdp = 28;
 
-    // `period`: in which the own summary is said again.
-    explicit CardExchange(Duration period) : _period(period) {}
+    struct Settings
+    {
+        Duration Period{0};  // in which the own summary is said again
+        // Whether all that is sent goes to all. Else requests for one card, and their answers, go to one
+        // node.
+        bool IsMulticast = true;
+    };
+
+    explicit CardExchange(const Settings &settings) : _settings(settings) {}
 
     void SetSelf(const GuidPrefix &self) { _self = self; }
     // 0: the usual one.
@@ -118,21 +126,23 @@ private:
         CardSummary Held;                                        // what is complete here
         std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted one
         Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
-        bool HasCard = false;  // a message of it has come
-        int Asked = 0;         // since something came of it
+        bool IsAnnounced = false;  // it says that it has a card
+        bool HasCard = false;      // a message of it has come
+        int Asked = 0;             // since something came of it
         TimePoint FirstAsked{};
         TimePoint LastAsked{};
-        bool IsSpared = false;  // since then: another node has asked for the same
+        bool IsSpared = false;  // another node has asked for the same since LastAsked
         TimePoint Heard{};
         QueueingDelay Late;
     };
     struct OwnPart
     {
         bool IsWanted = false;
-        std::optional<GuidPrefix> By;  // empty: the part goes to all
+        std::optional<GuidPrefix> By;  // the only one that asks; empty: several do, or nobody
         TimePoint NotBefore{};
         std::optional<TimePoint> SentAt{};
-        AnsweredRequest Answers{};
+        std::optional<GuidPrefix> SentTo;  // empty: to all
+        AnsweredRequest Answers{};         // its SentAt counts from when the request came
         Duration Gap = FirstAnswerGap;
         TimePoint Asked{};
     };
@@ -141,10 +151,13 @@ private:
     bool MakeRoom();
     bool MayAskUnknown(TimePoint now);
     void Ask(Peer &peer, TimePoint due, TimePoint now);
+    bool Rests(const Peer &peer, TimePoint now) const;
+    void Answered(Peer &peer, std::uint32_t sentAt, TimePoint now);
     static std::uint64_t LackingOf(const Peer &peer);
     void Take(const CardRequest &request, const CardMessage &message, TimePoint now);
     void Want(std::uint64_t parts, const std::optional<GuidPrefix> &by, const AnsweredRequest &request,
               TimePoint askedAt, TimePoint now);
+    std::optional<GuidPrefix> Only(const GuidPrefix &peer) const;
     std::optional<TimePoint> NextDue() const;
     void Fill(TimePoint now);
     TimePoint Free() const;
@@ -155,7 +168,7 @@ private:
     void TakeRequests(TimePoint now, std::vector<Outgoing> &taken);
     void TakeParts(TimePoint now, std::vector<Outgoing> &taken);
 
-    const Duration _period;
+    const Settings _settings;
     GuidPrefix _self{};
     CardSummary _own;
     std::vector<std::uint8_t> _packed;

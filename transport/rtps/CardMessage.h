@@ -4,20 +4,20 @@
 // number that no DDS vendor has, so that DDS programs pass over it. All numbers are little-endian:
 //
 //   offset  size  of the submessage's body
-//   0       1     format, 1
+//   0       1     format, 2
 //   1       1     number of requests
 //   2       1     which part follows the requests
 //   3       1     1 if a part follows, else 0
 //   4       8     digest of the sender's card
 //   12      4     size of the sender's packed card; 0: it has none yet
 //   16      4     when it was sent, in ms of the sender's monotonic clock (QueueingDelay.h)
-//   20      20 n  requests: GUID prefix of the node that is asked (12), a bit for each part that is lacking
-//   (8)
-//   ...     16    if a part follows: whose request it answers (GUID prefix; zero: nobody's), and when that
-//                 one was sent (4), by its sender's clock
-//   ...           the part, padded with zeros to a multiple of 4, or more if the message would end like
-//   statistics
-//                 of Fast DDS (guard/RtpsMessage.h): the vendor's sockets would write into it
+//   20      20 n  requests: GUID prefix of the node that is asked (12), a bit for each part that it
+//                 lacks (8)
+//   ...     16    if a part follows: whose request it answers (GUID prefix; zero: nobody's), and when
+//                 that one was sent, by its sender's clock, plus the time for which it was held back (4)
+//   ...           the part, padded with zeros to a multiple of 4, or more if the message would end
+//                 like statistics of Fast DDS (guard/RtpsMessage.h): the vendor's sockets would write
+//                 into it
 #pragma once
 
 #include <cstddef>
@@ -52,8 +52,8 @@ struct CardRequest
 // The request that a part answers, so that its sender learns how long the answer took.
 struct AnsweredRequest
 {
-    GuidPrefix From{};  // zero: nobody has asked
-    std::uint32_t SentAt = 0;
+    GuidPrefix From{};         // zero: nobody has asked
+    std::uint32_t SentAt = 0;  // plus the time for which the answer was held back
 };
 
 struct CardMessage

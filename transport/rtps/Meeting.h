@@ -37,8 +37,9 @@ public:
 
     struct Settings
     {
-        Duration Period{0};  // in which the own card's summary is said again
-        Duration Memory{0};  // how long a silent participant is remembered
+        Duration Period{0};       // in which the own card's summary is said again
+        Duration Memory{0};       // how long a silent participant is remembered
+        bool IsMulticast = true;  // whether card messages go to all (CardExchange::Settings)
     };
 
     // The own announcements come together.
@@ -53,7 +54,9 @@ public:
     static constexpr std::size_t MostSilent = 256;
 
     explicit Meeting(const Settings &settings)
-        : _settings(settings), _exchange(settings.Period), _replay(settings.Memory)
+        : _settings(settings),
+          _exchange({.Period = settings.Period, .IsMulticast = settings.IsMulticast}),
+          _replay(settings.Memory)
     {
     }
 

@@ -13,8 +13,9 @@ namespace Rabit::Rtps
 // queues in front of a radio that is full. Each datagram says when it was sent, by its sender's clock; only
 // differences count, so the clocks need not agree (LEDBAT, RFC 6817).
 //
-// One that comes to a channel which is full already has heard no datagram that did not wait. A round trip
-// tells it: that is at least as long as the wait.
+// A node that comes to a channel which is full already has heard no datagram that did not wait. The round
+// trip of a request and its answer tells it. Half of that counts as the delay, with the time of the path
+// itself: both ways are taken to be alike.
 //
 // The least is that of the last one to two minutes, so clocks that drift apart by 100 ppm add 12 ms at most.
 // A delay above Longest is none: a clock has stood still, with its computer.
@@ -28,7 +29,8 @@ public:
 
     static constexpr Duration Longest{10000};
     static constexpr std::chrono::seconds Window{60};
-    // A measurement counts for so long.
+    // A measurement counts for so long; a round trip for two round trips longer, until the next one can have
+    // come.
     static constexpr std::chrono::seconds Fresh{3};
 
     // The time of the own clock that a datagram carries. Wraps around every 49 days.
@@ -63,29 +65,32 @@ public:
         _heardAt = now;
     }
 
-    // An answer to what this node sent at that time of its clock.
+    // An answer came to what this node sent at that time of its clock.
     void Answered(std::uint32_t sentAt, TimePoint now)
     {
         const Duration took(static_cast<std::int32_t>(Stamp(now) - sentAt));
-        if (took >= Duration(0) && took <= Longest)
+        if (took >= Duration(0) && took <= 2 * Longest)
         {
             _roundTrip = took;
             _answeredAt = now;
         }
     }
 
-    // Of the datagram that was heard last.
+    // Of the datagram that was heard last, without what a round trip tells.
     Duration OfLast() const { return _delay; }
     // Of now; empty: nothing was heard lately.
     std::optional<Duration> At(TimePoint now) const
     {
-        const auto isFresh = [now](const std::optional<TimePoint> &time)
-        { return time && now - *time < Fresh; };
-        if (!isFresh(_heardAt))
+        if (IsByAnswer(now))
         {
-            return std::nullopt;
+            return std::max(_delay, _roundTrip / 2);
         }
-        return isFresh(_answeredAt) ? std::max(_delay, _roundTrip) : _delay;
+        return _heardAt && now - *_heardAt < Fresh ? std::optional(_delay) : std::nullopt;
+    }
+    // Whether a round trip is part of it.
+    bool IsByAnswer(TimePoint now) const
+    {
+        return _answeredAt && now - *_answeredAt < Fresh + 2 * _roundTrip;
     }
 
 private:

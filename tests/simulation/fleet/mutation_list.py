@@ -37,7 +37,7 @@ MUTATIONS = [
              "std::min(now, peer.Clock.SentAt(source).value_or(now))", "now", PARTS),
     Mutation("the clock of an earlier life is kept", "PeerTable.cpp", "peer.Clock = PeerClock();", "", FLEET),
     Mutation("a node that comes back with a lower number is never heard", "PeerTable.cpp",
-             "return isOver && before.Incarnation == now.Incarnation", "return false", FLEET),
+             "return isOver && now.Source > last.Source", "return false && now.Source > last.Source", FLEET),
     Mutation("no beats are sent", "Presence.cpp", "if (!_writer)", "if (true)", FLEET),
     Mutation("announcements are not said", "BeatContents.cpp", "AddPart(beat, now, room);", "", FLEET),
     Mutation("nobody is asked for its announcement", "BeatContents.cpp", "wanted.offers = question.From;",

@@ -30,7 +30,7 @@ GuidPrefix Name(std::uint8_t number)
 class Exchanging : public testing::Test
 {
 protected:
-    Exchanging()
+    explicit Exchanging(bool isMulticast = true) : Exchange({.Period = 10s, .IsMulticast = isMulticast})
     {
         Exchange.SetSelf(Name(1));
         Exchange.SetOwn(Bytes(100, 1), Now);
@@ -49,10 +49,16 @@ protected:
         }
         return all;
     }
+    // Those of them that have a part of the card.
+    static std::vector<CardExchange::Outgoing> Parts(std::vector<CardExchange::Outgoing> messages)
+    {
+        std::erase_if(messages,
+                      [](const auto &outgoing) { return !ReadCardMessage(outgoing.Bytes)->HasPart; });
+        return messages;
+    }
     static bool HasPart(const std::vector<CardExchange::Outgoing> &messages)
     {
-        return std::any_of(messages.begin(), messages.end(),
-                           [](const auto &outgoing) { return ReadCardMessage(outgoing.Bytes)->HasPart; });
+        return !Parts(messages).empty();
     }
     static std::vector<GuidPrefix> Asked(const std::vector<CardExchange::Outgoing> &messages)
     {
@@ -75,7 +81,13 @@ protected:
     }
 
     TimePoint Now{1h};
-    CardExchange Exchange{10s};
+    CardExchange Exchange;
+};
+
+class ExchangingWithoutMulticast : public Exchanging
+{
+protected:
+    ExchangingWithoutMulticast() : Exchanging(false) {}
 };
 
 TEST_F(Exchanging, APartThatWasLostIsSentAgainAlthoughQueuesWereFullThen)
@@ -98,6 +110,104 @@ TEST_F(Exchanging, ARequestThatHasCrossedWithThePartBringsNoOther)
     Run(1s);
     Receive({.From = Name(2), .Requests = forPart}, 2s);
     EXPECT_FALSE(HasPart(Run(1s)));
+}
+
+TEST_F(Exchanging, TheTimeForWhichAnAnswerIsHeldBackIsNoPartOfTheRoundTrip)
+{
+    const std::vector<CardRequest> forPart{{.Of = Name(1), .Parts = 1}};
+    Receive({.From = Name(2), .Requests = forPart});
+    ASSERT_TRUE(HasPart(Run(1ms)));
+    Run(10ms);
+    const TimePoint asked = Now;
+    Receive({.From = Name(3), .Requests = forPart});
+    const auto answers = Parts(Run(100ms));
+    ASSERT_EQ(answers.size(), 1u);
+    const auto answer = ReadCardMessage(answers[0].Bytes);
+    ASSERT_GE(answer->SentAt - QueueingDelay::Stamp(asked), 30u);  // it was held back
+    EXPECT_EQ(answer->Answers.From, Name(3));
+    EXPECT_EQ(answer->Answers.SentAt, answer->SentAt);
+}
+
+TEST_F(Exchanging, AnAnswerToOneGoesToAllByMulticast)
+{
+    Receive({.From = Name(2), .Requests = {{.Of = Name(1), .Parts = 1}}});
+    const auto answers = Parts(Run(1ms));
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_FALSE(answers[0].To.has_value());
+}
+
+TEST_F(ExchangingWithoutMulticast, APartThatWentToOneNodeLeavesTheRequestOfAnotherToBeAnswered)
+{
+    const std::vector<CardRequest> forPart{{.Of = Name(1), .Parts = 1}};
+    Receive({.From = Name(2)});
+    Receive({.From = Name(3)});
+    Receive({.From = Name(2), .Requests = forPart});
+    ASSERT_TRUE(HasPart(Run(1ms)));
+    Receive({.From = Name(3), .Requests = forPart}, 500ms);  // sent before the part went to the other
+    const auto answers = Parts(Run(100ms));
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].To, Name(3));
+}
+
+TEST_F(Exchanging, ARoundTripThatBecomesKnownPostponesTheRequestsThatAreOut)
+{
+    Exchange.Announced(Name(2), Now);
+    Exchange.Announced(Name(3), Now);
+    ASSERT_EQ(Asked(Run(CardExchange::Patience + 2ms)).size(), 2u);
+    const Bytes card(100, 2);
+    Exchange.Received({.From = Name(2),
+                       .Summary = SummaryOf(card),
+                       .SentAt = QueueingDelay::Stamp(Now),
+                       .HasPart = true,
+                       .Part = 0,
+                       .Answers = {.From = Name(1), .SentAt = QueueingDelay::Stamp(Now - 4s)},
+                       .Bytes = card},
+                      Now);
+    EXPECT_TRUE(Asked(Run(3900ms)).empty());
+    EXPECT_FALSE(Asked(Run(200ms)).empty());
+}
+
+TEST_F(Exchanging, TheDelayIsTheLowerMiddleOfThoseThatWereMeasuredByAnswers)
+{
+    const std::vector<CardRequest> forPart{{.Of = Name(1), .Parts = 1}};
+    const auto answer = [&](std::uint8_t from, std::chrono::milliseconds took)
+    {
+        Receive({.From = Name(from),
+                 .HasPart = true,
+                 .Answers = {.From = Name(1), .SentAt = QueueingDelay::Stamp(Now - took)}});
+    };
+    for (std::uint8_t number = 10; number < 20; ++number)  // each heard once: nothing tells of a queue
+    {
+        Receive({.From = Name(number)});
+    }
+    answer(2, 600ms);
+    answer(3, 900ms);
+    answer(4, 20s);  // it lies
+    Exchange.Announced(Name(5), Now);
+    ASSERT_FALSE(Asked(Run(CardExchange::Patience + 2ms)).empty());
+    EXPECT_TRUE(Asked(Run(850ms)).empty());
+    EXPECT_FALSE(Asked(Run(100ms)).empty());
+}
+
+TEST_F(Exchanging, ARequestOfAnotherNodeIsNoReasonToPostponeOneThatIsNotDue)
+{
+    const Bytes card(100, 2);
+    const auto request = [&]
+    {
+        Receive({.From = Name(2),
+                 .Requests = {{.Of = Name(3), .Parts = ~std::uint64_t{0}},
+                              {.Of = Name(4), .Parts = ~std::uint64_t{0}}}});
+    };
+    Exchange.Announced(Name(3), Now);
+    Run(CardExchange::Patience + 10ms);
+    const auto silent = Run(5s);  // until the requests rest
+    ASSERT_FALSE(Asked(silent).empty());
+    ASSERT_TRUE(Asked(Run(2s)).empty());
+    request();
+    Exchange.Heard(Name(3), Now);
+    request();
+    const auto asked = Asked(Run(CardExchange::FirstRetry - 10ms));
+    EXPECT_EQ(std::count(asked.begin(), asked.end(), Name(3)), 0);
 }
 
 TEST_F(Exchanging, RequestsOfOthersDoNotSpareANodeItsOwnForEver)
@@ -129,6 +239,22 @@ TEST_F(Exchanging, AnInventedAnnouncementIsAnsweredWithFewRequests)
 {
     Exchange.Announced(Name(9), Now);
     EXPECT_LE(Run(60s).size(), std::size_t{CardExchange::MostVainRequests} + 7u);  // a summary in each period
+}
+
+TEST_F(Exchanging, AnAnnouncedNodeThatIsHeardIsAskedAgainSoon)
+{
+    Exchange.Announced(Name(9), Now);
+    ASSERT_EQ(Asked(Run(3s)).size(), std::size_t{CardExchange::MostVainRequests});
+    Exchange.Heard(Name(9), Now);
+    EXPECT_FALSE(Asked(Run(10ms)).empty());
+}
+
+TEST_F(Exchanging, AProgramThatNeverAnswersIsLeftAloneForAWhile)
+{
+    Exchange.Heard(Name(9), Now);
+    ASSERT_EQ(Asked(Run(3s)).size(), std::size_t{CardExchange::MostVainRequests});
+    Exchange.Heard(Name(9), Now);
+    EXPECT_TRUE(Asked(Run(10ms)).empty());
 }
 
 TEST_F(Exchanging, ANewcomerWhoseCardIsCompleteHearsOfANodeThatWasSilent)

@@ -419,6 +419,7 @@ TEST(Meeting, ANodeThatJoinsAFullChannelSaysLittle)
     }
     std::printf("%.2f s, %zu messages\n", std::chrono::duration<double>(air.Now - began).count(), late.Said);
     EXPECT_TRUE(air.AllKnowAll(8));
+    EXPECT_LE(late.Said, 40u);
 }
 
 TEST(Meeting, AProgramWithoutACardGetsTheImplementationsOwnDatagrams)

@@ -26,17 +26,26 @@ TEST(QueueingDelay, IsWhatDatagramsTakeLongerThanTheQuickest)
     EXPECT_EQ(delay.At(Start + 2s), 800ms);
 }
 
-TEST(QueueingDelay, OfOneThatHasHeardNothingElseIsTheRoundTrip)
+TEST(QueueingDelay, OfOneThatHasHeardNothingElseIsHalfOfTheRoundTrip)
 {
     QueueingDelay delay;
     Arrive(delay, 0s, 2s);
     EXPECT_EQ(delay.At(Start + 2s), 0ms);
-    delay.Answered(QueueingDelay::Stamp(Start), Start + 2s);
-    EXPECT_EQ(delay.At(Start + 2s), 2s);
-    delay.Answered(QueueingDelay::Stamp(Start) - 3'600'000u, Start + 2s);  // a lie
-    EXPECT_EQ(delay.At(Start + 2s), 2s);
-    Arrive(delay, 5s, 2s);
-    EXPECT_EQ(delay.At(Start + 7s), 0ms);  // it is old
+    EXPECT_FALSE(delay.IsByAnswer(Start + 2s));
+    delay.Answered(QueueingDelay::Stamp(Start), Start + 4s);
+    EXPECT_EQ(delay.At(Start + 4s), 2s);
+    EXPECT_TRUE(delay.IsByAnswer(Start + 4s));
+    delay.Answered(QueueingDelay::Stamp(Start) - 3'600'000u, Start + 4s);  // a lie
+    EXPECT_EQ(delay.At(Start + 4s), 2s);
+}
+
+TEST(QueueingDelay, ARoundTripCountsUntilTheNextOneCanHaveCome)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 0s);
+    delay.Answered(QueueingDelay::Stamp(Start), Start + 8s);
+    EXPECT_EQ(delay.At(Start + 8s + QueueingDelay::Fresh + 15s), 4s);
+    EXPECT_FALSE(delay.At(Start + 8s + QueueingDelay::Fresh + 17s).has_value());
 }
 
 TEST(QueueingDelay, SaysNothingOfLongAgo)

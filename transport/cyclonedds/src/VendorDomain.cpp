@@ -120,8 +120,7 @@ void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span
     std::vector<std::pair<RabitCycloneRoute, bool>> ways;
     {
         const std::lock_guard lock(_cardMutex);
-        const auto route =
-            to && (_groups.empty() || !_listed.empty()) ? _cardRoutes.find(*to) : _cardRoutes.end();
+        const auto route = to ? _cardRoutes.find(*to) : _cardRoutes.end();
         if (route != _cardRoutes.end())
         {
             ways.emplace_back(route->second, false);
@@ -337,7 +336,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _secured(settings.Security.has_value()),
       _hasPeers(!settings.Peers.empty()),
       _meeting({.Period = settings.AnnouncementPeriod,
-                .Memory = IsMulticastForData(settings) ? settings.Memory : settings.Lease}),
+                .Memory = _multicast ? settings.Memory : settings.Lease,
+                .IsMulticast = _multicast}),
       // The vendor knows by itself which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
       _rate(rate),

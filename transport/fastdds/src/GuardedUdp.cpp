@@ -256,8 +256,7 @@ private:
             _chosen.assign(1, way.second);
             SendChosen(way.first, datagram, false, timeout);
         };
-        const auto route =
-            to && (_groups.empty() || !_listed.empty()) ? _cardRoutes.find(*to) : _cardRoutes.end();
+        const auto route = to ? _cardRoutes.find(*to) : _cardRoutes.end();
         if (route != _cardRoutes.end())
         {
             send(route->second);

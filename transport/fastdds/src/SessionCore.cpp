@@ -86,8 +86,10 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
       _onPeer(std::move(onPeer)),
       _multicast(IsMulticastForData(settings)),
       _proof(settings, _log),
-      _meeting(std::make_shared<Rtps::MeetingThread>(Rtps::Meeting::Settings{
-          .Period = settings.AnnouncementPeriod, .Memory = _multicast ? settings.Memory : settings.Lease}))
+      _meeting(std::make_shared<Rtps::MeetingThread>(
+          Rtps::Meeting::Settings{.Period = settings.AnnouncementPeriod,
+                                  .Memory = _multicast ? settings.Memory : settings.Lease,
+                                  .IsMulticast = _multicast}))
 {
     auto attributes = MakeParticipantAttributes(
         settings, _log,

@@ -110,6 +110,7 @@ void NetworkCore::CheckLease(const ParticipantPtr &me, ParticipantId id, std::ui
 
 void NetworkCore::LosePeer(const ParticipantPtr &me, ParticipantId id, PeerEvent::Kind how)
 {
+    me->Cards.Forget(PrefixOf(id));
     const auto found = me->Peers.find(id);
     if (found == me->Peers.end())
     {
@@ -118,7 +119,6 @@ void NetworkCore::LosePeer(const ParticipantPtr &me, ParticipantId id, PeerEvent
     const Peer peer = std::move(found->second);
     me->Peers.erase(found);
     me->Sessions.Remove(id);
-    me->Cards.Forget(PrefixOf(id));
     for (const auto &endpoint : *peer.TheirEndpoints)
     {
         EndpointGone(me, endpoint->Id);

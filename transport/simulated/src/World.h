@@ -19,6 +19,7 @@
 
 #include "common/HandlerGate.h"
 #include "common/InstanceTable.h"
+#include "common/MulticastUse.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerSessions.h"
 #include "common/SessionLog.h"
@@ -172,7 +173,7 @@ struct ParticipantState
         : Settings(settings),
           Who(std::make_shared<ParticipantIdentity>(
               ParticipantIdentity{settings.Node, settings.Incarnation})),
-          Cards(settings.AnnouncementPeriod),
+          Cards({.Period = settings.AnnouncementPeriod, .IsMulticast = IsMulticastForData(settings)}),
           Log(std::make_shared<SessionLog>(settings)),
           Topics(Log),
           OnPeer(std::move(onPeer)),

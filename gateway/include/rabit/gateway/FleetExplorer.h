@@ -84,7 +84,8 @@ public:
     virtual void Subscribe(const SubscribeRule &rule) = 0;
 
     // Waits until the gateway has taken all that was posted before this call, but no longer than the limit.
-    // Returns whether it has. Not on the gateway's thread.
+    // Returns whether it has. A value that is taken goes out when a budget allows it, or a newer one does in its
+    // place. Not on the gateway's thread.
     virtual bool WaitUntilTaken(std::chrono::nanoseconds limit) = 0;
 
     // Called on the gateway's thread when something of the above has changed; must be quick.

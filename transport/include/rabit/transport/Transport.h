@@ -395,7 +395,7 @@ public:
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
     // Bytes in a second, as counted by TransportCounters, that the nodes' exchange of cards may take; 0, as at
     // first: as many as it needs. Announcements of participants are not held back. Any thread; does not
-    // wait. The simulated network does not heed it.
+    // wait.
     virtual void SetDiscoveryRate(double /*bytesPerSecond*/) {}
 };
 
