@@ -33,6 +33,7 @@ constexpr Duration QuietTime = 3s;
 constexpr double Used = 0.7;
 constexpr double Unused = 0.5;
 constexpr Duration UnusedTime = 20s;
+constexpr int MostDoublings = 3;
 // Bytes a second that the rate rises by in each second in any case.
 constexpr double Fairness = 200.0;
 // Without reports.
@@ -130,7 +131,7 @@ void CapacityEstimate::Reported(Peer peer, Duration delay, Duration arrivedAt, D
     }
     _carried = std::max(_carried, Floor);
     _reportedAt = now;
-    _limited = _limited && !IsUnused(now);
+    LoosenIfUnused(now);
 }
 
 void CapacityEstimate::NothingLate(Peer peer, Duration now)
@@ -146,7 +147,7 @@ void CapacityEstimate::NothingLate(Peer peer, Duration now)
         Rise(CalmRise, now);
     }
     _reportedAt = now;
-    _limited = !IsUnused(now);
+    LoosenIfUnused(now);
 }
 
 void CapacityEstimate::Forget()
@@ -162,8 +163,9 @@ void CapacityEstimate::Congested(Duration now)
         _reports.MedianOf([this](const auto &said) { return CarriedWhileRising(said); }, now);
     const double before = _limited ? _carried : carried.value_or(_sent.Between(now - 1s, now));
     _carried = std::min(before, carried.value_or(before));
-    _limitedSince = _limited ? _limitedSince : now;
+    _unusedSince = _limited ? _unusedSince : now;
     _limited = true;
+    _doublings = 0;
 }
 
 void CapacityEstimate::Correct(const DelayReports::Reports &said)
@@ -195,8 +197,18 @@ bool CapacityEstimate::IsUsed(Duration now) const
 
 bool CapacityEstimate::IsUnused(Duration now) const
 {
-    return now - std::max(_limitedSince, _quietSince) >= UnusedTime &&
+    return now - std::max(_unusedSince, _quietSince) >= UnusedTime &&
            _sent.Between(now - UnusedTime, now) < Unused * _carried * Seconds(UnusedTime);
+}
+
+void CapacityEstimate::LoosenIfUnused(Duration now)
+{
+    if (IsUnused(now))
+    {
+        _carried *= 2.0;
+        _unusedSince = now;
+        _limited = ++_doublings < MostDoublings;
+    }
 }
 
 Duration CapacityEstimate::Queue(Duration now) const

@@ -262,14 +262,37 @@ TEST_F(CapacityEstimateTest, ARateThatIsNotUsedDoesNotRise)
     EXPECT_LE(Rate(), 1.1 * before);
 }
 
-TEST_F(CapacityEstimateTest, IsUnlimitedAgainWhenItWasNotUsedForLong)
+TEST_F(CapacityEstimateTest, ALimitThatIsNotUsedDoublesBeforeItGoes)
 {
     RunUntil(40s);
     Offered = 2000.0;
     RunUntil(55s);
-    EXPECT_TRUE(Estimate.Rate(55s));
+    const double before = Rate();
     RunUntil(65s);
-    EXPECT_FALSE(Estimate.Rate(65s));
+    EXPECT_GE(Rate(), 1.8 * before);
+    EXPECT_LE(Rate(), 2.2 * before);
+    RunUntil(85s);
+    EXPECT_GE(Rate(), 3.6 * before);
+    EXPECT_LE(Rate(), 4.4 * before);
+}
+
+TEST_F(CapacityEstimateTest, IsUnlimitedAgainWhenItWasNotUsedForLong)
+{
+    RunUntil(40s);
+    Offered = 2000.0;
+    RunUntil(110s);
+    EXPECT_FALSE(Estimate.Rate(110s));
+}
+
+TEST_F(CapacityEstimateTest, MuchThatComesAfterALongRestMakesNoLongQueue)
+{
+    RunUntil(40s);
+    Offered = 500.0;
+    RunUntil(70s);
+    LongestQueue = 0.0;
+    Offered = 100e3;
+    RunUntil(72s);
+    EXPECT_LE(LongestQueue, 0.8);
 }
 
 TEST_F(CapacityEstimateTest, ALimitThatIsUsedStays)

@@ -75,6 +75,13 @@ Note NoteOracle::Make(std::size_t life, std::size_t destination, SimRandom &rand
     return note;
 }
 
+// Whether it puts as much on the air as a note of several parts does: a note to all goes to each by itself.
+bool NoteOracle::IsLarge(const Record &record) const
+{
+    const std::size_t receivers = record.Destination == Burst::ToAll ? _world.Plan.Machines.size() - 1 : 1;
+    return receivers * record.Bytes > LargeFrom;
+}
+
 std::shared_ptr<RabitQueueReceipt> NoteOracle::MakeReceipt(std::uint64_t note)
 {
     Record &record = _records[note];
@@ -89,7 +96,7 @@ void NoteOracle::OnSent(std::uint64_t note, bool accepted, Time localNow)
     const std::size_t source = _world.Lives[record.Life].Node;
     record.SentAt = localNow;
     record.Accepted = accepted;
-    _largePending[source] += record.Bytes > LargeFrom && accepted && !record.Known ? 1 : 0;
+    _largePending[source] += IsLarge(record) && accepted && !record.Known ? 1 : 0;
     const QueueOutcome outcome = record.Receipt->Outcome();
     if (record.Destination == Burst::ToAll)
     {
@@ -142,7 +149,7 @@ void NoteOracle::OnOutcome(std::uint64_t note)
     }
     _lastOutcomeAt = _world.Now;
     const std::size_t source = _world.Lives[record.Life].Node;
-    _largePending[source] -= record.Bytes > LargeFrom && record.Accepted ? 1 : 0;
+    _largePending[source] -= IsLarge(record) && record.Accepted ? 1 : 0;
     if (record.Destination != Burst::ToAll && record.Accepted)
     {
         LinkState &link = _links[{source, record.Destination}];

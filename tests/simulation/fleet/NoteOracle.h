@@ -106,6 +106,7 @@ private:
         std::uint32_t FlaggedEpoch = 0;
     };
 
+    bool IsLarge(const Record &record) const;
     void OnOutcome(std::uint64_t note);
     void CheckOutcome(const Record &record, std::uint64_t note);
     const SendRule &RuleOf(std::size_t source, std::size_t destination) const
