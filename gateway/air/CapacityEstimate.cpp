@@ -203,7 +203,11 @@ bool CapacityEstimate::IsUnused(Duration now) const
 
 void CapacityEstimate::LoosenIfUnused(Duration now)
 {
-    if (IsUnused(now))
+    if (IsUsed(now))
+    {
+        _doublings = 0;
+    }
+    else if (IsUnused(now))
     {
         _carried *= 2.0;
         _unusedSince = now;

@@ -20,9 +20,8 @@ namespace Rabit
 //   is above the goal, and a little above it while it is below.
 // - It rises by the same amount for every node, so that in the end nodes on one radio have as much as others.
 // - Without a queue it rises more if it is used: gently, and after three quiet seconds by half each second.
-// - Never below Floor. A rate that was not used by half for 20 s, without delays, doubles, since it says less
-// and
-//   less of the air. After the third time in a row there is none.
+// - Never below Floor. A rate of which less than half was used for 20 s, without delays, is out of date: it
+//   doubles. After the third doubling without use in between the node is unlimited again.
 // - Without reports: what was unlimited stays so, since a node that hears nobody knows nothing of the air,
 //   and to guess would cost every silent wire its speed. A rate falls after three seconds, by a tenth each
 //   second and to a half at most (reports may be missing because of the queue), and does not rise. But if a
@@ -86,7 +85,7 @@ private:
     double _carried = 0.0;     // bytes a second
     Duration _reportedAt{0};   // the last report
     Duration _unusedSince{0};  // at the earliest
-    int _doublings = 0;        // for want of use, since the peers agreed on a delay
+    int _doublings = 0;        // for want of use, since the rate was used
     Duration _quietSince{0};   // no delay above the goal since
 };
 

@@ -11,9 +11,9 @@ namespace Rabit::Tool
 namespace
 {
 
-// A gateway that has not come by then is not waited for any more: values may be replaced, which is counted.
-constexpr std::chrono::seconds LongestTurn{10};
-// Ctrl-C is looked at so often meanwhile.
+// A gateway that has not come by then is stuck: values may be replaced, which is counted.
+constexpr std::chrono::milliseconds LongestTurn{10'000};
+// Ctrl-C is looked at so often meanwhile. A gateway that is stuck is waited for no longer than this.
 constexpr std::chrono::milliseconds LookForCtrlC{100};
 
 GatewayConfig ConfigFor(GatewayConfig config, const std::string &name,
@@ -73,13 +73,13 @@ void ReplayNode::WaitForItsTurn(const std::string &message)
     {
         return;
     }
-    const auto end = std::chrono::steady_clock::now() + LongestTurn;
+    const auto end = std::chrono::steady_clock::now() + (_isStuck ? LookForCtrlC : LongestTurn);
     bool isTaken = false;
-    while (!isTaken && !_isStuck && !_wakeup.IsInterrupted())
+    while (!isTaken && !_wakeup.IsInterrupted() && std::chrono::steady_clock::now() < end)
     {
         isTaken = _session.Explorer().WaitUntilTaken(LookForCtrlC);
-        _isStuck = !isTaken && std::chrono::steady_clock::now() >= end;
     }
+    _isStuck = !isTaken;
     for (auto &[name, posted] : _posted)
     {
         posted.Waits = false;

@@ -40,7 +40,7 @@ public:
               const std::shared_ptr<RabitQueueReceipt> &receipt);
 
     // The gateway takes the newest value of a message in each of its turns: waits until it has taken the last
-    // one, or somebody wants the program to end. After a turn that took very long it waits no more.
+    // one, or somebody wants the program to end; for ten seconds at most, and for 0.1 s after that.
     void WaitForItsTurn(const std::string &message);
     // Posts that were not written because a newer one came before their turn.
     std::uint64_t Replaced() const;
@@ -57,7 +57,7 @@ private:
 
     const std::string _name;
     const Wakeup &_wakeup;
-    bool _isStuck = false;  // the gateway's turn has taken longer than anybody waits
+    bool _isStuck = false;  // the last turn was not waited for to its end
     FleetSession _session;
     std::map<std::string, Posted> _posted;  // by message
 };

@@ -74,11 +74,14 @@ class PresenceTest(unittest.TestCase):
 
 class CostTest(unittest.TestCase):
     def test_accepts_what_stays(self):
-        self.assertEqual(soak.judge_memory(samples([90] * 4 + [100] * 55 + [102], [5] * 60)), [])
+        self.assertEqual(soak.judge_memory(samples([90] * 4 + [100] * 51 + [102] * 5, [5] * 60)), [])
         self.assertEqual(soak.judge_processor(samples([100] * 60, [9] * 20 + [5] * 20 + [5.4] * 20)), [])
 
     def test_finds_memory_that_grows(self):
-        self.assertEqual(len(soak.judge_memory(samples([100] * 59 + [103], [5] * 60))), len(soak.LONG_LIVED))
+        self.assertEqual(len(soak.judge_memory(samples([100] * 55 + [103] * 5, [5] * 60))), len(soak.LONG_LIVED))
+
+    def test_accepts_memory_of_a_moment(self):
+        self.assertEqual(soak.judge_memory(samples([100] * 59 + [103], [5] * 60)), [])
 
     def test_finds_processor_time_that_grows(self):
         self.assertEqual(len(soak.judge_processor(samples([100] * 60, [5] * 40 + [5.6] * 20))), len(soak.LONG_LIVED))

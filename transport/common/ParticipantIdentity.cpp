@@ -10,7 +10,7 @@ namespace
 {
 
 constexpr std::string_view Prefix = "rabit=1;incarnation=";
-constexpr std::string_view Card = ";card=1;";
+constexpr std::string_view Card = ";card=2;";
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // What a Rabit node tells of itself in DDS discovery, alike in all DDS backends so that they know each other.
 //
 // The participant's name is the node's name. The participant's USER_DATA (OMG DDS specification, 2.2.3.1) is
-// ASCII: `rabit=1;incarnation=<decimal>;`, followed by `card=1;` if the node exchanges cards
+// ASCII: `rabit=1;incarnation=<decimal>;`, followed by `card=2;` if the node exchanges cards
 // (rtps/Meeting.h). A participant without that USER_DATA is a plain DDS program.
 #pragma once
 

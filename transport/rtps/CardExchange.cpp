@@ -91,6 +91,7 @@ void CardExchange::Heard(const GuidPrefix &peer, TimePoint now)
     }
     if (Peer *const known = Find(peer, now))
     {
+        known->IsAnnounced = false;
         Ask(*known, now, now);
     }
 }
@@ -179,6 +180,7 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
         return std::nullopt;
     }
     peer->Request.Stop();
+    peer->LacksSince.reset();
     if (peer->Wanted == peer->Held)
     {
         return std::nullopt;
@@ -201,9 +203,14 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     return card;
 }
 
-// Requests that are out are repeated no sooner than the round trip allows.
+// Requests that are out are repeated no sooner than the round trip allows. A peer that was not asked, or not
+// so long ago, lies.
 void CardExchange::Answered(Peer &peer, std::uint32_t sentAt, TimePoint now)
 {
+    if (!peer.LacksSince || static_cast<std::int32_t>(sentAt - QueueingDelay::Stamp(*peer.LacksSince)) < 0)
+    {
+        return;
+    }
     peer.Late.Answered(sentAt, now);
     const Duration answer = DelaysOfAnAnswer * Delay(now);
     for (auto &[name, other] : _peers)
@@ -319,8 +326,8 @@ std::optional<CardExchange::TimePoint> CardExchange::Due() const
 }
 
 // How long messages wait in queues now: the middle of what the other nodes' messages tell, the lower one of
-// two, so that one node that lies decides nothing beside others. Where answers tell it, they alone count:
-// others may all have waited alike.
+// two, since one node may lie. Where answers tell it, they alone count: the others' messages may all have
+// waited alike.
 CardExchange::Duration CardExchange::Delay(TimePoint now) const
 {
     std::vector<Duration> delays;
@@ -426,6 +433,7 @@ void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
         peer.IsSpared = false;
         peer.FirstAsked = peer.Asked == 0 ? now : peer.FirstAsked;
         peer.LastAsked = now;
+        peer.LacksSince = peer.LacksSince.value_or(now);
         const Duration crowd =
             isCrowd ? std::min<Duration>(now - peer.FirstAsked, LongestRetry) : Duration(0);
         peer.Request.Done(now, std::max(answered, crowd));

@@ -126,10 +126,11 @@ private:
         CardSummary Held;                                        // what is complete here
         std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted one
         Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
-        bool IsAnnounced = false;  // it says that it has a card
+        bool IsAnnounced = false;  // it has said that it has a card, since its datagrams were a reason to ask
         bool HasCard = false;      // a message of it has come
         int Asked = 0;             // since something came of it
         TimePoint FirstAsked{};
+        std::optional<TimePoint> LacksSince;  // when it was asked first for what is lacking
         TimePoint LastAsked{};
         bool IsSpared = false;  // another node has asked for the same since LastAsked
         TimePoint Heard{};

@@ -13,6 +13,7 @@ namespace
 
 constexpr std::array<std::uint8_t, 8> Header{'R', 'T', 'P', 'S', 2, 2, 'R', 'b'};
 constexpr auto Kind = static_cast<SubmessageKind>(0xd2);
+// Other nodes know by `card=2;` that this one understands it (common/ParticipantIdentity.h).
 constexpr std::uint8_t Format = 2;
 constexpr std::size_t RequestsAt = 20;
 constexpr std::size_t RequestSize = GuidPrefix{}.size() + 8;

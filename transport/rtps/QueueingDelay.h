@@ -14,8 +14,8 @@ namespace Rabit::Rtps
 // differences count, so the clocks need not agree (LEDBAT, RFC 6817).
 //
 // A node that comes to a channel which is full already has heard no datagram that did not wait. The round
-// trip of a request and its answer tells it. Half of that counts as the delay, with the time of the path
-// itself: both ways are taken to be alike.
+// trip of a request and its answer tells it: half of that is taken for the delay of the answer, with the time
+// of the path itself, and so the least is known.
 //
 // The least is that of the last one to two minutes, so clocks that drift apart by 100 ppm add 12 ms at most.
 // A delay above Longest is none: a clock has stood still, with its computer.
@@ -29,7 +29,7 @@ public:
 
     static constexpr Duration Longest{10000};
     static constexpr std::chrono::seconds Window{60};
-    // A measurement counts for so long; a round trip for two round trips longer, until the next one can have
+    // A measurement counts for so long, and for two delays longer: until the answer to a request can have
     // come.
     static constexpr std::chrono::seconds Fresh{3};
 
@@ -62,36 +62,36 @@ public:
             _before = offset;
         }
         _delay = Above(_before, offset);
+        _last = offset;
         _heardAt = now;
     }
 
-    // An answer came to what this node sent at that time of its clock.
+    // The datagram that was heard last answers what this node sent at that time of its clock.
     void Answered(std::uint32_t sentAt, TimePoint now)
     {
         const Duration took(static_cast<std::int32_t>(Stamp(now) - sentAt));
-        if (took >= Duration(0) && took <= 2 * Longest)
+        if (!_heardAt || took < Duration(0) || took > 2 * Longest)
         {
-            _roundTrip = took;
-            _answeredAt = now;
+            return;
         }
+        if (took / 2 > _delay)
+        {
+            _delay = took / 2;
+            _least = _before = static_cast<std::int32_t>(static_cast<std::uint32_t>(_last) -
+                                                         static_cast<std::uint32_t>(_delay.count()));
+        }
+        _answeredAt = now;
     }
 
-    // Of the datagram that was heard last, without what a round trip tells.
+    // Of the datagram that was heard last.
     Duration OfLast() const { return _delay; }
     // Of now; empty: nothing was heard lately.
     std::optional<Duration> At(TimePoint now) const
     {
-        if (IsByAnswer(now))
-        {
-            return std::max(_delay, _roundTrip / 2);
-        }
-        return _heardAt && now - *_heardAt < Fresh ? std::optional(_delay) : std::nullopt;
+        return _heardAt && now - *_heardAt < Fresh + 2 * _delay ? std::optional(_delay) : std::nullopt;
     }
-    // Whether a round trip is part of it.
-    bool IsByAnswer(TimePoint now) const
-    {
-        return _answeredAt && now - *_answeredAt < Fresh + 2 * _roundTrip;
-    }
+    // Whether a round trip has told what the least is, of late.
+    bool IsByAnswer(TimePoint now) const { return _answeredAt && now - *_answeredAt < Window; }
 
 private:
     // Offsets wrap around with the stamps: only their differences say something.
@@ -105,9 +105,9 @@ private:
     std::int32_t _before = 0;  // of this window and the one before
     TimePoint _windowEnd{};
     std::optional<TimePoint> _heardAt;
+    std::int32_t _last = 0;
     Duration _delay{0};
     std::optional<TimePoint> _answeredAt;
-    Duration _roundTrip{0};
 };
 
 }  // namespace Rabit::Rtps

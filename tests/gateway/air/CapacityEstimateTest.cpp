@@ -284,6 +284,20 @@ TEST_F(CapacityEstimateTest, IsUnlimitedAgainWhenItWasNotUsedForLong)
     EXPECT_FALSE(Estimate.Rate(110s));
 }
 
+TEST_F(CapacityEstimateTest, ALimitThatWasUsedBetweenTwoRestsStays)
+{
+    RunUntil(40s);
+    Offered = 500.0;
+    RunUntil(85s);
+    ASSERT_TRUE(Estimate.Rate(85s));
+    Offered = 100e3;
+    Carries = 1e6;
+    RunUntil(95s);
+    Offered = 500.0;
+    RunUntil(125s);
+    EXPECT_TRUE(Estimate.Rate(125s));
+}
+
 TEST_F(CapacityEstimateTest, MuchThatComesAfterALongRestMakesNoLongQueue)
 {
     RunUntil(40s);

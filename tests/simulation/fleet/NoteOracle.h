@@ -47,7 +47,11 @@ public:
                std::function<Time(std::size_t life)> clockOf);
 
     // A life begins or ends: what is on its way to or from the node may be in doubt.
-    void OnEpoch(std::size_t node) { ++_epochs[node]; }
+    void OnEpoch(std::size_t node)
+    {
+        ++_epochs[node];
+        _largePending[node] = 0;
+    }
 
     // Fills in the next note of a life, and its receipt.
     Note Make(std::size_t life, std::size_t destination, SimRandom &random);

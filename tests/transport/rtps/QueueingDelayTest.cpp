@@ -32,6 +32,7 @@ TEST(QueueingDelay, OfOneThatHasHeardNothingElseIsHalfOfTheRoundTrip)
     Arrive(delay, 0s, 2s);
     EXPECT_EQ(delay.At(Start + 2s), 0ms);
     EXPECT_FALSE(delay.IsByAnswer(Start + 2s));
+    Arrive(delay, 2s, 2s);
     delay.Answered(QueueingDelay::Stamp(Start), Start + 4s);
     EXPECT_EQ(delay.At(Start + 4s), 2s);
     EXPECT_TRUE(delay.IsByAnswer(Start + 4s));
@@ -39,13 +40,22 @@ TEST(QueueingDelay, OfOneThatHasHeardNothingElseIsHalfOfTheRoundTrip)
     EXPECT_EQ(delay.At(Start + 4s), 2s);
 }
 
-TEST(QueueingDelay, ARoundTripCountsUntilTheNextOneCanHaveCome)
+TEST(QueueingDelay, FallsWithTheQueueAfterARoundTripToo)
 {
     QueueingDelay delay;
-    Arrive(delay, 0s, 0s);
+    Arrive(delay, 2s, 2s);
+    delay.Answered(QueueingDelay::Stamp(Start), Start + 4s);
+    Arrive(delay, 5s, 300ms);
+    EXPECT_EQ(delay.At(Start + 5300ms), 300ms);
+}
+
+TEST(QueueingDelay, CountsUntilTheAnswerToARequestCanHaveCome)
+{
+    QueueingDelay delay;
+    Arrive(delay, 4s, 4s);
     delay.Answered(QueueingDelay::Stamp(Start), Start + 8s);
-    EXPECT_EQ(delay.At(Start + 8s + QueueingDelay::Fresh + 15s), 4s);
-    EXPECT_FALSE(delay.At(Start + 8s + QueueingDelay::Fresh + 17s).has_value());
+    EXPECT_EQ(delay.At(Start + 8s + QueueingDelay::Fresh + 7s), 4s);
+    EXPECT_FALSE(delay.At(Start + 8s + QueueingDelay::Fresh + 9s).has_value());
 }
 
 TEST(QueueingDelay, SaysNothingOfLongAgo)
