@@ -37,6 +37,7 @@ MEETING_S = 5  # before the loss begins: under it Fast DDS takes up to 9 s to ma
 LOSS = 20  # percent
 RATE = 20  # commands a second, each way
 STATES = 2  # of each node, each posted once a second
+POSTED = 0.98  # of the time that is left: a busy machine posts a little later each time, and the last post is to be seen
 PICTURE_BYTES = 200_000
 PICTURE_PERIOD_S = 60
 
@@ -61,7 +62,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 def arguments(node, left_s):
     """Of ledger_node, for a life that begins so long before the end."""
-    states = ["--states", str(STATES), "--state-posts", str(int(left_s)), "--state-period-ns", str(10**9)]
+    states = ["--states", str(STATES), "--state-posts", str(int(POSTED * left_s)), "--state-period-ns", str(10**9)]
     notes = ["--count", str(int(RATE * left_s)), "--rate", str(RATE)]
     if node == "ground":
         to = [word for other in NODES[1:] for word in ("--to", other)]

@@ -29,8 +29,8 @@ public:
 
     static constexpr Duration Longest{10000};
     static constexpr std::chrono::seconds Window{60};
-    // A measurement counts for so long, and for two delays longer: until the answer to a request can have
-    // come.
+    // A measurement counts for so long. Where a round trip was measured it counts for one longer: until the
+    // answer to the next request can have come.
     static constexpr std::chrono::seconds Fresh{3};
 
     // The time of the own clock that a datagram carries. Wraps around every 49 days.
@@ -81,6 +81,7 @@ public:
                                                          static_cast<std::uint32_t>(_delay.count()));
         }
         _answeredAt = now;
+        _roundTrip = took;
     }
 
     // Of the datagram that was heard last.
@@ -88,7 +89,8 @@ public:
     // Of now; empty: nothing was heard lately.
     std::optional<Duration> At(TimePoint now) const
     {
-        return _heardAt && now - *_heardAt < Fresh + 2 * _delay ? std::optional(_delay) : std::nullopt;
+        const Duration longer = IsByAnswer(now) ? _roundTrip : Duration(0);
+        return _heardAt && now - *_heardAt < Fresh + longer ? std::optional(_delay) : std::nullopt;
     }
     // Whether a round trip has told what the least is, of late.
     bool IsByAnswer(TimePoint now) const { return _answeredAt && now - *_answeredAt < Window; }
@@ -108,6 +110,7 @@ private:
     std::int32_t _last = 0;
     Duration _delay{0};
     std::optional<TimePoint> _answeredAt;
+    Duration _roundTrip{0};
 };
 
 }  // namespace Rabit::Rtps
