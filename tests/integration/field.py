@@ -141,6 +141,16 @@ class Field:
         run("tc", "-n", self.space(node), "qdisc", "replace", "dev", "eth0", "root", "tbf", "rate", f"{kbit}kbit", "burst",
             "2000", "limit", "100000000")
 
+    def arp(self, switched):
+        """"off": no node learns or keeps a hardware address (ARP, RFC 826) of another, so that it reaches the others by
+        broadcast and multicast alone."""
+        policy = "accept" if switched == "on" else "drop"
+        text = ("table arp field {\n chain arriving {\n"
+                f"  type filter hook input priority 0; policy {policy};\n }}\n}}\n")
+        for node in self.nodes:
+            run_in(self.space(node), "nft", "-f", "-", text=text)
+            run("ip", "-n", self.space(node), "neighbour", "flush", "all")
+
     def traffic(self, node):
         """Bytes that the node has sent and received so far."""
         counts = [run_in(self.space(node), "cat", f"/sys/class/net/eth0/statistics/{name}")

@@ -248,6 +248,9 @@ class Faults:
     def hear(self, node, origin):
         self._field.hear(node, origin)
 
+    def arp(self, switched):
+        self._field.arp(switched)
+
     def outage(self, switched):
         self._field.outage(switched)
 

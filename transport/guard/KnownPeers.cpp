@@ -194,6 +194,12 @@ std::optional<KnownPeers::TimePoint> KnownPeers::LastHeard(const GuidPrefix &pee
     return found == _peers.end() ? std::nullopt : std::optional(found->second.Heard);
 }
 
+bool KnownPeers::HasHeardFrom(const HostAddress &host, TimePoint since) const
+{
+    return std::any_of(_peers.begin(), _peers.end(), [&](const auto &peer)
+                       { return peer.second.Heard >= since && peer.second.Speaks.IsAt(host); });
+}
+
 bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)
 {
     const auto found = _peers.find(peer);

@@ -40,6 +40,8 @@ public:
     bool Believes(const GuidPrefix &peer, const HostAddress &from, const PeerVoice::Saying &saying);
     // When the peer was heard last; empty: it was not announced, or is forgotten.
     std::optional<TimePoint> LastHeard(const GuidPrefix &peer) const;
+    // Whether a participant that speaks from there was heard since then.
+    bool HasHeardFrom(const HostAddress &host, TimePoint since) const;
     // Whether the peer was announced; if so, it is heard of at this moment.
     bool Hears(const GuidPrefix &peer, TimePoint now);
 

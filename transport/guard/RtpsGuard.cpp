@@ -478,6 +478,12 @@ std::optional<RtpsGuard::TimePoint> RtpsGuard::LastHeard(const GuidPrefix &peer)
     return _peers.LastHeard(peer);
 }
 
+bool RtpsGuard::HasHeardFrom(const HostAddress &host, TimePoint since)
+{
+    const std::lock_guard lock(_mutex);
+    return _peers.HasHeardFrom(host, since);
+}
+
 void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)
 {
     const std::lock_guard lock(_mutex);

@@ -41,6 +41,16 @@ TEST_F(KnownPeersTest, OnlyAnnouncedPeersAreHeard)
     EXPECT_FALSE(Peers.Hears(Other, Now));
 }
 
+TEST_F(KnownPeersTest, AHostIsHeardFromWhileOneOfItsParticipantsIs)
+{
+    const Rabit::Rtps::HostAddress host{10, 0, 0, 2};
+    Peers.IsAt(Sender, std::span(&host, 1), host);
+    Peers.Hears(Sender, Now + 1s);
+    EXPECT_TRUE(Peers.HasHeardFrom(host, Now + 1s));
+    EXPECT_FALSE(Peers.HasHeardFrom(host, Now + 2s));
+    EXPECT_FALSE(Peers.HasHeardFrom({10, 0, 0, 3}, Now));
+}
+
 TEST_F(KnownPeersTest, APeerDoesNotMoveElsewhereWhileItIsHeard)
 {
     EXPECT_TRUE(Peers.Announced(Sender, 1, Now + 59s));

@@ -244,6 +244,17 @@ bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t s
                       });
 }
 
+RabitCycloneWays VendorDomain::WaysTo(void *self, const unsigned char *address)
+{
+    auto &domain = *static_cast<VendorDomain *>(self);
+    const auto now = std::chrono::steady_clock::now();
+    Rtps::HostAddress host{};
+    std::copy_n(address, host.size(), host.begin());
+    const bool isAwaited = domain._meets && domain._multicast && domain._addresses.IsAwaited(host, now) &&
+                           domain._guard.HasHeardFrom(host, now - HardwareAddresses::InReach);
+    return {.host = !isAwaited || domain._addresses.HasToAsk(host, now), .group = isAwaited};
+}
+
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
 {
     SessionLog &log = *static_cast<const VendorDomain *>(self)->_log;
@@ -393,6 +404,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                                 .may = &MaySend,
                                 .holds = [] { return HeldDatagrams::OfThisThread() != nullptr; },
                                 .hold = &Hold,
+                                .waysTo = &WaysTo,
                                 .sent = &OnSent,
                                 .received = &OnReceived});
     _meets = _meets && _watch != nullptr;

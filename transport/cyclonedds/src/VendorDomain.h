@@ -15,6 +15,7 @@
 #include "HandshakeEnds.h"
 #include "OutboxThread.h"
 #include "common/DiscoveryRate.h"
+#include "common/HardwareAddresses.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
@@ -57,6 +58,7 @@ private:
                         const RabitCycloneRoute *route);
     static bool Hold(void *self, const unsigned char *datagram, std::size_t size,
                      const RabitCycloneRoute *route);
+    static RabitCycloneWays WaysTo(void *self, const unsigned char *address);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);
@@ -91,6 +93,7 @@ private:
     DirectAnnouncements _direct;
     HandshakeEnds _handshakes;
     Rtps::RtpsGuard _guard;
+    HardwareAddresses _addresses;
     const std::shared_ptr<DiscoveryRate> _rate;
     OutboxThread _outbox;
     Entity _entity;

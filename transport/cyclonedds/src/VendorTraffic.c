@@ -3,6 +3,7 @@
 #include <dds/ddsi/ddsi_domaingv.h>
 #include <dds/ddsi/ddsi_entity.h>
 /* The next needs the one before. */
+#include <arpa/inet.h>
 #include <dds/ddsi/ddsi_endpoint.h>
 #include <dds/ddsi/ddsi_entity_index.h>
 #include <dds/ddsi/ddsi_entity_match.h>
@@ -22,8 +23,14 @@ enum
     HeadSize = 128, /* RtpsHeadSize */
     MostOfDiscovery = 4096,
     AddressAt = 12, /* an IPv4 address is the last four of sixteen bytes */
-    MostTargets = 4
+    MostTargets = 4,
+    RtpsHeaderSize = 20,
+    PrefixSize = 12,
+    MostParts = 64
 };
+
+/* The beginning of an INFO_DST submessage, whose prefix follows (OMG DDSI-RTPS 2.3, 9.4.5.7). */
+static const unsigned char InfoDestination[] = {0x0e, 0x01, PrefixSize, 0};
 
 /* A domain whose sockets write through WriteAndTell and read through ReadAndTell. */
 struct Watch
@@ -44,13 +51,14 @@ struct Targets
     bool chosen;
     size_t count;
     ddsi_xlocator_t at[MostTargets];
+    unsigned char prefix[MostTargets][PrefixSize]; /* of whose address it is, as on the wire */
 };
 
 static _Thread_local struct Targets targets;
 
 static struct Watch Find(const struct ddsi_domaingv *domain)
 {
-    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL, NULL, NULL}, NULL};
+    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL}, NULL};
     pthread_rwlock_rdlock(&lock);
     for (const struct Watch *watch = first; watch != NULL; watch = watch->next)
     {
@@ -130,8 +138,40 @@ static bool Hold(const struct Watch *watch, ddsi_tran_conn_t connection, const d
     return held;
 }
 
+static bool IsGroup(const ddsi_locator_t *locator)
+{
+    /* The first byte of a multicast address is 224 to 239. */
+    return (locator->address[AddressAt] & 0xf0) == 0xe0;
+}
+
+/* `participant`: the prefix of whom alone the samples are for, if they do not say so themselves; NULL: all
+ * who hear them. */
+static void WriteToGroup(const struct Watch *watch, ddsi_tran_conn_t connection, size_t parts,
+                         const ddsrt_iovec_t *part, uint32_t flags, const unsigned char *head,
+                         size_t headSize, const unsigned char *participant)
+{
+    const bool isNamed = headSize > RtpsHeaderSize && head[RtpsHeaderSize] == InfoDestination[0];
+    ddsrt_iovec_t all[MostParts + 3];
+    size_t count = 0;
+    all[count++] = (ddsrt_iovec_t){part[0].iov_base, RtpsHeaderSize};
+    if (!isNamed && participant != NULL)
+    {
+        all[count++] = (ddsrt_iovec_t){(void *)InfoDestination, sizeof InfoDestination};
+        all[count++] = (ddsrt_iovec_t){(void *)participant, PrefixSize};
+    }
+    all[count++] =
+        (ddsrt_iovec_t){(unsigned char *)part[0].iov_base + RtpsHeaderSize, part[0].iov_len - RtpsHeaderSize};
+    memcpy(all + count, part + 1, (parts - 1) * sizeof *part);
+    count += parts - 1;
+    const ssize_t size = watch->write(connection, &watch->domain->loc_default_mc, count, all, flags);
+    if (size > 0)
+    {
+        watch->calls.sent(watch->calls.argument, head, headSize, (size_t)size);
+    }
+}
+
 static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *destination, size_t parts,
-                        const ddsrt_iovec_t *part, uint32_t flags)
+                        const ddsrt_iovec_t *part, uint32_t flags, const unsigned char *participant)
 {
     /* It is there as long as its sockets are. */
     const struct Watch watch = Find(connection->m_base.gv);
@@ -145,21 +185,25 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
     }
     unsigned char head[HeadSize];
     const size_t filled = Gather(head, sizeof head, parts, part);
-    const ssize_t size = watch.calls.isDiscovery(head, filled)
-                             ? WriteDiscovery(&watch, connection, destination, parts, part, flags)
-                             : watch.write(connection, destination, parts, part, flags);
+    const bool isDiscovery = watch.calls.isDiscovery(head, filled);
+    const struct RabitCycloneWays ways =
+        isDiscovery || destination->kind != NN_LOCATOR_KIND_UDPv4 || IsGroup(destination) ||
+                part[0].iov_len < RtpsHeaderSize || parts > MostParts
+            ? (struct RabitCycloneWays){.host = true}
+            : watch.calls.waysTo(watch.calls.argument, destination->address + AddressAt);
+    if (ways.group)
+    {
+        WriteToGroup(&watch, connection, parts, part, flags, head, filled, participant);
+    }
+    const ssize_t size = isDiscovery ? WriteDiscovery(&watch, connection, destination, parts, part, flags)
+                         : ways.host ? watch.write(connection, destination, parts, part, flags)
+                                     : 0;
     if (size > 0)
     {
         watch.calls.sent(watch.calls.argument, head, filled, (size_t)size);
     }
     /* What was left out is as good as sent. */
     return size == 0 ? (ssize_t)SizeOf(parts, part) : size;
-}
-
-static bool IsGroup(const ddsi_locator_t *locator)
-{
-    /* The first byte of a multicast address is 224 to 239. */
-    return (locator->address[AddressAt] & 0xf0) == 0xe0;
 }
 
 static bool IsSame(const ddsi_locator_t *one, const ddsi_locator_t *other)
@@ -175,7 +219,7 @@ static ssize_t WriteAndTell(ddsi_tran_conn_t connection, const ddsi_locator_t *d
 {
     if (!targets.chosen)
     {
-        return WriteOne(connection, destination, parts, part, flags);
+        return WriteOne(connection, destination, parts, part, flags, NULL);
     }
     const ssize_t size = (ssize_t)SizeOf(parts, part);
     const bool isGroup = IsGroup(destination);
@@ -184,15 +228,16 @@ static ssize_t WriteAndTell(ddsi_tran_conn_t connection, const ddsi_locator_t *d
         const ddsi_xlocator_t *target = &targets.at[i];
         if (target->conn == connection && (isGroup || IsSame(&target->c, destination)))
         {
-            WriteOne(connection, &target->c, parts, part, flags);
+            WriteOne(connection, &target->c, parts, part, flags, targets.prefix[i]);
         }
     }
     return size;
 }
 
+/* `argument`: the participant. */
 static void AddTarget(const ddsi_xlocator_t *locator, void *argument)
 {
-    (void)argument;
+    const ddsi_guid_t *participant = argument;
     bool known = locator->c.kind != NN_LOCATOR_KIND_UDPv4 || IsGroup(&locator->c);
     for (size_t i = 0; i < targets.count; ++i)
     {
@@ -200,6 +245,11 @@ static void AddTarget(const ddsi_xlocator_t *locator, void *argument)
     }
     if (!known && targets.count < MostTargets)
     {
+        for (size_t i = 0; i < PrefixSize / sizeof(uint32_t); ++i)
+        {
+            const uint32_t word = htonl(participant->prefix.u[i]);
+            memcpy(targets.prefix[targets.count] + i * sizeof word, &word, sizeof word);
+        }
         targets.at[targets.count++] = *locator;
     }
 }
@@ -249,7 +299,7 @@ void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *wri
         if (reader != NULL)
         {
             ddsrt_mutex_lock(&reader->e.lock);
-            addrset_forall(reader->c.as, AddTarget, NULL);
+            addrset_forall(reader->c.as, AddTarget, &guid);
             ddsrt_mutex_unlock(&reader->e.lock);
         }
     }

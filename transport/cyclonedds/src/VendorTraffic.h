@@ -21,6 +21,12 @@ extern "C"
         uint32_t port;
     };
 
+    struct RabitCycloneWays
+    {
+        bool host;
+        bool group;
+    };
+
     /* What is called for each datagram, on any thread. A head is its beginning, up to RtpsHeadSize bytes. */
     struct RabitCycloneCalls
     {
@@ -35,6 +41,8 @@ extern "C"
         bool (*holds)(void);
         bool (*hold)(void *argument, const unsigned char *datagram, size_t size,
                      const struct RabitCycloneRoute *route);
+        /* Where a datagram of samples goes that is for that address alone: to it, and to the group of samples? */
+        struct RabitCycloneWays (*waysTo)(void *argument, const unsigned char *address);
         /* It was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
         /* It came, into a buffer of that capacity, in which it may be changed in place. Returns how long what

@@ -18,6 +18,7 @@
 #include "HeartbeatPace.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
+#include "common/HardwareAddresses.h"
 #include "common/HeldDatagrams.h"
 #include "common/KeyExchangeOutbox.h"
 #include "common/SendingSamples.h"
@@ -173,6 +174,10 @@ public:
                 _descriptor.Chosen().AnnounceAt(*due);
             }
         }
+        if (message.HasSamples)
+        {
+            ChooseGroupWhereAddressesLack(socket, now);
+        }
         if (message.IsOfSamplesToOne && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
         {
             WriteWithoutDestination(datagram, _shortened);
@@ -290,6 +295,30 @@ private:
     {
         return _descriptor.Chosen().SocketsSendAll ||
                rtps::IPLocator::isMulticast(destination) != (socket == 0);
+    }
+
+    // Samples for hosts whose hardware addresses are not known yet go to the group instead.
+    void ChooseGroupWhereAddressesLack(std::uint32_t socket, TimePoint now)
+    {
+        if (Meeting() == nullptr || !_descriptor.Chosen().SampleGroup)
+        {
+            return;
+        }
+        bool lacks = false;
+        std::erase_if(_chosen,
+                      [&](const rtps::Locator_t &destination)
+                      {
+                          const HostAddress host = HostOf(destination);
+                          const bool isAwaited = !IsGroup(destination) && _addresses.IsAwaited(host, now) &&
+                                                 _guard.HasHeardFrom(host, now - HardwareAddresses::InReach);
+                          lacks = lacks || isAwaited;
+                          return isAwaited && Leaves(socket, destination) && !_addresses.HasToAsk(host, now);
+                      });
+        if (lacks && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
+        {
+            _chosen.push_back(*_descriptor.Chosen().SampleGroup);
+            NumberOf(_chosen.back());
+        }
     }
 
     std::size_t DatagramsTo(rtps::SenderResource *sender)
@@ -448,6 +477,7 @@ private:
     RequestPace _requests;
     HeartbeatPace _heartbeats;
     KeyExchangeOutbox _exchanges;
+    HardwareAddresses _addresses;
     GuidPrefix _self{};  // once something was exchanged
     std::map<std::uint64_t, std::pair<rtps::SenderResource *, rtps::Locator_t>> _routes;
     // Where announcements go to all.

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "DeferredCall.h"
 #include "common/DiscoveryRate.h"
@@ -58,6 +59,8 @@ public:
         std::shared_ptr<DeferredCall> Owed;
         // Null: endpoints are found as the vendor does it alone.
         std::shared_ptr<Rtps::MeetingThread> Meeting;
+        // The group to which samples go; empty: they go to each host by itself.
+        std::optional<eprosima::fastrtps::rtps::Locator_t> SampleGroup;
         // Peers are listed, who may not hear the group.
         bool HasPeers = false;
         std::shared_ptr<DiscoveryRate> Rate;

@@ -122,6 +122,17 @@ void LimitPeers(rtps::RTPSParticipantAttributes &attributes)
     allocation.writers.maximum = std::min(allocation.writers.maximum, MostEndpoints);
 }
 
+rtps::Locator_t SampleGroup(const TransportSettings &settings,
+                            const rtps::RTPSParticipantAttributes &attributes)
+{
+    const rtps::PortParameters &ports = attributes.port;
+    rtps::Locator_t group;
+    rtps::IPLocator::setIPv4(group, MulticastAddress);
+    group.port =
+        ports.portBase + ports.domainIDGain * static_cast<std::uint32_t>(settings.Domain) + ports.offsetd2;
+    return group;
+}
+
 void AddTransports(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
                    NetworkCalls calls, rtps::RTPSParticipantAttributes &attributes)
 {
@@ -138,6 +149,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.MaxDatagram = static_cast<std::uint32_t>(
         settings.Security ? std::max(settings.MaxDatagram, LargestHandshake) : settings.MaxDatagram);
     guarded.Mode = GuardMode(settings, attributes);
+    guarded.SampleGroup =
+        IsMulticastForData(settings) ? std::optional(SampleGroup(settings, attributes)) : std::nullopt;
     guarded.GroupPort = IsMulticastForData(settings) ? 0 : DiscoveryGroupPort(settings, attributes);
     guarded.SocketsSendAll = !settings.Interfaces.empty();
     guarded.OnSent = [log](bool samples, std::size_t datagrams, std::size_t bytes)
@@ -170,12 +183,7 @@ void AddMulticast(const TransportSettings &settings, rtps::RTPSParticipantAttrib
     {
         return;
     }
-    const rtps::PortParameters &ports = attributes.port;
-    rtps::Locator_t group;
-    rtps::IPLocator::setIPv4(group, MulticastAddress);
-    group.port =
-        ports.portBase + ports.domainIDGain * static_cast<std::uint32_t>(settings.Domain) + ports.offsetd2;
-    attributes.defaultMulticastLocatorList.push_back(group);
+    attributes.defaultMulticastLocatorList.push_back(SampleGroup(settings, attributes));
     // With a list of one kind the vendor makes none of the other. Any address: its own ones, at the usual
     // port.
     attributes.defaultUnicastLocatorList.push_back(rtps::Locator_t());

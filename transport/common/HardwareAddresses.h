@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace Rabit
+{
+
+// The hosts to which the kernel cannot send yet, since it does not know their hardware addresses.
+//
+// The kernel asks for a hardware address by broadcast (ARP, RFC 826). It asks again after a second, and keeps
+// the datagrams to the host until an answer comes, or drops them after three requests in vain. Over a radio
+// that loses 40 % of the datagrams this takes up to ten seconds. The datagrams kept fill the buffer of the
+// socket, which then blocks its writers. A datagram to a multicast group needs no hardware address. So
+// whatever is meant for such a host goes to a group instead; one datagram a second goes to the host, too, for
+// the kernel asks only if there is one. Receivers drop what comes twice.
+//
+// Thread-safe; calls nobody but `Read`, with its lock held.
+class HardwareAddresses
+{
+public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+    using Host = std::array<std::uint8_t, 4>;  // IPv4
+    // Returns the kernel's table, as /proc/net/arp has it.
+    using Read = std::function<std::string()>;
+
+    // The table is read again after so long for a host whose address it has, and for another.
+    static constexpr std::chrono::milliseconds Known{1000};
+    static constexpr std::chrono::milliseconds Unknown{20};
+
+    // So often a datagram goes to a host whose address is awaited.
+    static constexpr std::chrono::seconds AskAgain{1};
+
+    // A node that was not heard for so long is told nothing by the group.
+    static constexpr std::chrono::seconds InReach{5};
+
+    explicit HardwareAddresses(Read read = &OfKernel) : _read(std::move(read)) {}
+
+    // Whether the kernel has asked for the address, and has had no answer yet. False before anything was sent
+    // to the host, and for hosts of other networks and of this computer: the kernel does not ask for those.
+    bool IsAwaited(const Host &host, TimePoint now);
+    // Whether a datagram to this host, which is awaited, has to go to the host, too. True at once, and again
+    // after AskAgain.
+    bool HasToAsk(const Host &host, TimePoint now);
+
+private:
+    static std::string OfKernel();
+    void Refresh(TimePoint now);
+
+    const Read _read;
+    std::mutex _mutex;
+    std::optional<TimePoint> _readAt;  // guarded by _mutex, as what follows
+    std::set<Host> _known;
+    std::map<Host, std::optional<TimePoint>> _awaited;  // when a datagram went to the host
+};
+
+}  // namespace Rabit
