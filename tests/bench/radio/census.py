@@ -28,6 +28,7 @@ import field  # noqa: E402
 SUBMESSAGES = {0x06: "ACKNACK", 0x07: "HEARTBEAT", 0x08: "GAP", 0x12: "NACKFRAG", 0x13: "HEARTBEATFRAG", 0x15: "DATA",
                0x16: "DATAFRAG"}
 SAMPLES = (0x15, 0x16)
+CARD = 0xd2  # transport/rtps/CardMessage.h
 TO_THE_END = (0x01, 0x09)  # kinds for which a length of 0 does not mean "to the end"
 BUILTIN = {0x000100c2: "SPDP", 0x000003c2: "SEDP writers", 0x000004c2: "SEDP readers", 0x000200c2: "liveliness"}
 MOST_LINES = 20
@@ -44,7 +45,9 @@ def contents(message):
         if size == 0 and kind not in TO_THE_END:
             size = len(message) - at - 4
         body = message[at + 4:at + 4 + size]
-        if kind in SUBMESSAGES and len(body) >= 12:
+        if kind == CARD and len(body) >= 20:
+            found.update(["card part"] * body[3] + ["requests of cards"] * (body[1] > 0) or ["card summary"])
+        elif kind in SUBMESSAGES and len(body) >= 12:
             writer = struct.unpack_from(">I", body, 8 if kind in SAMPLES else 4)[0]
             whose = BUILTIN.get(writer, f"builtin {writer:08x}" if writer & 0xc0 == 0xc0 else "user")
             found.add(f"{whose} {SUBMESSAGES[kind]}")

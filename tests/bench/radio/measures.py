@@ -17,9 +17,10 @@ import judge  # noqa: E402
 
 from figures import (command_delays, first_all_up, percentile, poses_heard, shown_ages, shown_rows,  # noqa: E402
                      traffic, worst_second)
-from rows import PLAIN, RABIT  # noqa: E402
+from rows import MIXED, PLAIN, RABIT  # noqa: E402
 
 DOMAIN = 0
+BACKENDS = ("fastdds", "cyclonedds")
 EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
 LIMIT_S = 60  # of waiting for a fleet to come together
 # Of a pose, beside its padding: headers from IP to CDR, and its number.
@@ -31,7 +32,7 @@ DATAGRAM = 1400
 
 
 class Fleet:
-    """Programs of one kind on one field."""
+    """Programs of one kind on one field. The transport MIXED gives the nodes the two backends in turns."""
 
     def __init__(self, ground, folder, contestant, transport):
         self.ground = ground
@@ -40,9 +41,12 @@ class Fleet:
         self._folder = pathlib.Path(folder)
         self._programs = contestants.Contestants(folder, DOMAIN)
 
+    def transport_of(self, node):
+        return BACKENDS[self.ground.nodes.index(node) % 2] if self.transport == MIXED else self.transport
+
     def start_member(self, node, number, options):
         raw = {PLAIN: contestants.RAW_WORKER, RABIT: contestants.NODE}[self.contestant]
-        argv = self._programs.argv(raw, self.transport, "member", {
+        argv = self._programs.argv(raw, self.transport_of(node), "member", {
             "carriage": "telemetry", "payload": 100, **options, "member": number,
             "interface": self.ground.address(node), "datagram": DATAGRAM})
         return self.ground.start(node, argv)
@@ -51,7 +55,7 @@ class Fleet:
         state = pathlib.Path(self.ground.folder, node + ".state")
         state.mkdir(exist_ok=True)
         return self.ground.start(node, [self._folder / "ledger_node", "--node", node, "--ledger", self.ledger(node),
-                                        "--state-dir", state, "--transport", self.transport, *options])
+                                        "--state-dir", state, "--transport", self.transport_of(node), *options])
 
     def restart_ledger(self, node, *options):
         self.ground.kill(node)
@@ -70,7 +74,7 @@ class Fleet:
         path.write_text("".join(line for line in text.splitlines(keepends=True) if not line.startswith("interfaces:")))
         program = "ground" if node == "ground" else "uav"
         return self.ground.start(node, [self._folder / program, "--config", path, "--node", node, "--domain", DOMAIN,
-                                        "--transport", self.transport, *options])
+                                        "--transport", self.transport_of(node), *options])
 
     def ledgers(self):
         return expectations.Run({node: self.ledger(node).read_text() if self.ledger(node).exists() else ""

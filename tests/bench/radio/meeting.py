@@ -128,6 +128,34 @@ def crowd(fleet, members, tries):
     return spread(times)
 
 
+def join(fleet, members, tries):
+    """The last node starts while the others have met: until it has heard a sample of each other, and each other one of
+    its own."""
+    *others, late = fleet.ground.nodes
+    for node in others:
+        fleet.start_ledger(node, "--ticks")
+    follower = Follower(fleet)
+    wait(lambda: all((one, other) in follower.read().first_ticks() for one in others for other in others
+                     if one != other) or None, 2 * LIMIT_S)
+    times = []
+    for _ in range(tries):
+        fleet.ground.forget_neighbours()
+        follower.read().ticks.clear()
+        began = time.monotonic()
+        fleet.start_ledger(late, "--ticks")
+        ways = [way for other in others for way in ((late, other), (other, late))]
+
+        def met():
+            read = follower.read()
+            firsts = read.first_ticks(read.begins[late][-1] if read.begins[late] else began * 1e9)
+            if not all(way in firsts for way in ways):
+                return None
+            return (max(firsts[way] for way in ways) - read.begins[late][-1]) * 1e-9
+        times.append(wait(met))
+        fleet.ground.kill(late)
+    return spread(times)
+
+
 def back(fleet, members, for_s, tries):
     """One node hears nobody and is not heard for a while. From the end of that until a sample has come, for each of the
     two ways between it and each other node."""

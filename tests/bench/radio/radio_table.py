@@ -3,7 +3,7 @@
 work. rows.py has the rows and their limits, measures.py and meeting.py what the figures are.
 
 Usage: radio_table.py [--only TEXT]... [--long | --cut SECONDS] [--transports NAME,...] [--output FILE] [--judge] PROGRAMS
-PROGRAMS is the folder of the programs (build/release/bin). --only: rows whose name has that text. --long: also rows that
+A transport is a backend, or mixed: the nodes have the two in turns. PROGRAMS is the folder of the programs (build/release/bin). --only: rows whose name has that text. --long: also rows that
 take minutes; --cut: those too, but none is watched for longer than that. --output writes FILE.json and FILE.md. --judge: exit code 1 if a limit is missed. Exit code 77: this
 machine does not allow it."""
 
@@ -19,13 +19,13 @@ import sys
 import measures
 import meeting
 import rows
-from rows import PLAIN, RABIT
+from rows import MIXED, PLAIN, RABIT
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
 import field  # noqa: E402
 import radio_field  # noqa: E402
 
-NAMES = {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS"}
+NAMES = {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS", MIXED: "both backends"}
 COMPARE = {"<=": operator.le, ">=": operator.ge}
 
 

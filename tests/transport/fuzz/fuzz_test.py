@@ -65,13 +65,13 @@ def flood(fuzzer, nodes, seconds):
     raise AssertionError(f"the fuzzer is not done: {fuzzer.lines[-1:]}")
 
 
-def settle(node):
-    """Until all that it sent has an outcome."""
+def settle(node, nodes):
+    """Until all that the node sent has an outcome. A failure shows what both nodes said."""
     pattern = re.compile(r"stopped round=(\d+) sent=(\d+) delivered=(\d+) in_doubt=(\d+)")
     try:
         return node.wait_for(pattern.fullmatch, LIMIT_S)[1]
     except AssertionError:
-        said = "\n".join(important(node)[-40:])
+        said = "\n".join(f"{each.argv}\n  " + "\n  ".join(important(each)[-40:]) for each in nodes)
         raise AssertionError(f"{node.argv} has messages without an outcome:\n{said}") from None
 
 
@@ -118,7 +118,7 @@ def main():
         after = [memory_mb(each) for each in nodes]
         for each in nodes:
             os.kill(each.pid, signal.SIGUSR1)
-        settled = [settle(each) for each in nodes]
+        settled = [settle(each, nodes) for each in nodes]
         check_alive(nodes)
         print(f"{transport}: {recorded.group(1)} datagrams recorded, {done.group(1)} sent to {recorded.group(2)} ports in "
               f"{took:.0f} s, {done.group(2)} dropped by full sockets, {done.group(3)} of forged content left out; seed {seed}")
