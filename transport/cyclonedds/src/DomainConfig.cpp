@@ -148,8 +148,10 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         << "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
         << "<Watermarks><WhcHigh>128MB</WhcHigh></Watermarks></Internal>"
         // The vendor fills a receive buffer from end to end and then takes another, a megabyte each by
-        // default.
-        << "<Sizing><ReceiveBufferSize>256KiB</ReceiveBufferSize></Sizing></Domain>";
+        // default. Between them the heap keeps a hole of that size for each one that small objects have
+        // broken up, so small ones keep the process small. A chunk holds the largest datagram.
+        << "<Sizing><ReceiveBufferSize>96KiB</ReceiveBufferSize>"
+        << "<ReceiveBufferChunkSize>72KiB</ReceiveBufferChunkSize></Sizing></Domain>";
     if (!settings.BackendConfig.empty())
     {
         xml << "," << Read(settings.BackendConfig);
