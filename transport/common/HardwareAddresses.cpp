@@ -13,10 +13,13 @@ namespace
 
 // ATF_COM of <net/if_arp.h>: the entry has a hardware address.
 constexpr unsigned HasAddress = 0x02;
+// ATF_PUBL: the computer answers requests for the host's address in place of the host (proxy ARP).
+constexpr unsigned IsProxy = 0x08;
 
-bool IsLoopback(const HardwareAddresses::Host &host)
+// Addresses of this computer and of groups.
+bool NeedsNoAddress(const HardwareAddresses::Host &host)
 {
-    return host[0] == 127;
+    return host[0] == 127 || host[0] >= 224;
 }
 
 }  // namespace
@@ -29,16 +32,33 @@ std::string HardwareAddresses::OfKernel()
 
 bool HardwareAddresses::IsAwaited(const Host &host, TimePoint now)
 {
-    if (IsLoopback(host))
+    if (NeedsNoAddress(host))
     {
         return false;
     }
     const std::lock_guard lock(_mutex);
-    if (!_readAt || now - *_readAt >= (_known.contains(host) ? Known : Unknown))
+    if (!_readAt || now - *_readAt >= RereadAfter(host, now))
     {
         Refresh(now);
     }
     return _awaited.contains(host);
+}
+
+HardwareAddresses::Duration HardwareAddresses::RereadAfter(const Host &host, TimePoint now)
+{
+    if (_known.contains(host))
+    {
+        return Known;
+    }
+    if (_awaited.contains(host))
+    {
+        return Unknown;
+    }
+    if (_absent.size() >= MostAbsent)
+    {
+        _absent.clear();
+    }
+    return now - _absent.try_emplace(host, now).first->second < NewFor ? Unknown : Known;
 }
 
 bool HardwareAddresses::HasToAsk(const Host &host, TimePoint now)
@@ -65,8 +85,10 @@ void HardwareAddresses::Refresh(TimePoint now)
         Host host{};
         unsigned flags = 0;
         if (std::sscanf(line.c_str(), "%hhu.%hhu.%hhu.%hhu %*s %x", &host[0], &host[1], &host[2], &host[3],
-                        &flags) == 5)
+                        &flags) == 5 &&
+            (flags & IsProxy) == 0)
         {
+            _absent.erase(host);
             if ((flags & HasAddress) != 0)
             {
                 _known.insert(host);

@@ -27,19 +27,25 @@ class HardwareAddresses
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
+    using Duration = std::chrono::steady_clock::duration;
     using Host = std::array<std::uint8_t, 4>;  // IPv4
     // Returns the kernel's table, as /proc/net/arp has it.
     using Read = std::function<std::string()>;
 
-    // The table is read again after so long for a host whose address it has, and for another.
-    static constexpr std::chrono::milliseconds Known{1000};
+    // The table is read again after so long for a host whose address is awaited, and for another.
     static constexpr std::chrono::milliseconds Unknown{20};
+    static constexpr std::chrono::milliseconds Known{1000};
+    // A host that has no entry may get one by the first datagram to it. Without one for so long it is taken
+    // for a host of another network, whose datagrams go to a router.
+    static constexpr std::chrono::seconds NewFor{2};
+    // So many hosts without an entry are told apart.
+    static constexpr std::size_t MostAbsent = 1024;
 
     // So often a datagram goes to a host whose address is awaited.
     static constexpr std::chrono::seconds AskAgain{1};
 
-    // A node that was not heard for so long is told nothing by the group.
-    static constexpr std::chrono::seconds InReach{5};
+    // A node that was not heard for so long gets nothing by the group: two beats of the longest period.
+    static constexpr std::chrono::seconds InReach{120};
 
     explicit HardwareAddresses(Read read = &OfKernel) : _read(std::move(read)) {}
 
@@ -52,6 +58,7 @@ public:
 
 private:
     static std::string OfKernel();
+    Duration RereadAfter(const Host &host, TimePoint now);
     void Refresh(TimePoint now);
 
     const Read _read;
@@ -59,6 +66,7 @@ private:
     std::optional<TimePoint> _readAt;  // guarded by _mutex, as what follows
     std::set<Host> _known;
     std::map<Host, std::optional<TimePoint>> _awaited;  // when a datagram went to the host
+    std::map<Host, TimePoint> _absent;                  // since when it has had no entry
 };
 
 }  // namespace Rabit

@@ -81,6 +81,7 @@ struct Found
     Fnv Digest;
     Fnv DigestWithoutLease;
     std::vector<HostAddress> Hosts;
+    bool ListensToGroup = false;
     bool BestEffort = false;
     bool HasCard = false;
 
@@ -321,6 +322,7 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
             {
                 found.AddHost(HostOf(value));
             }
+            found.ListensToGroup = found.ListensToGroup || id == DefaultMulticastLocator;
             return true;
         case ParticipantGuid:
             if (bytes.size() != 16 || !IsGuidOf(sender, bytes) || EntityOf(bytes) != ParticipantEntity)
@@ -380,6 +382,7 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
                                   .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
                                   .IsBestEffort = found.BestEffort,
                                   .Hosts = std::move(found.Hosts),
+                                  .ListensToGroup = found.ListensToGroup,
                                   .HasCard = hasCard})
                             : std::nullopt;
         }

@@ -22,6 +22,8 @@ struct Announcement
     bool IsBestEffort = false;
     // Of a participant: where it says that it can be reached.
     std::vector<HostAddress> Hosts{};
+    // Of a participant: that it listens to a multicast group for samples (PID_DEFAULT_MULTICAST_LOCATOR).
+    bool ListensToGroup = false;
     // Of a participant: that it exchanges cards (rtps/Meeting.h). Its digest leaves out the lease, which its
     // card's reader replaces.
     bool HasCard = false;

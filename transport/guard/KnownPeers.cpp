@@ -194,10 +194,21 @@ std::optional<KnownPeers::TimePoint> KnownPeers::LastHeard(const GuidPrefix &pee
     return found == _peers.end() ? std::nullopt : std::optional(found->second.Heard);
 }
 
-bool KnownPeers::HasHeardFrom(const HostAddress &host, TimePoint since) const
+bool KnownPeers::GroupReaches(const HostAddress &host, TimePoint since) const
 {
-    return std::any_of(_peers.begin(), _peers.end(), [&](const auto &peer)
-                       { return peer.second.Heard >= since && peer.second.Speaks.IsAt(host); });
+    bool any = false;
+    for (const auto &[prefix, peer] : _peers)
+    {
+        if (peer.Heard >= since && peer.Speaks.IsAt(host))
+        {
+            any = true;
+            if (!peer.ListensToGroup)
+            {
+                return false;
+            }
+        }
+    }
+    return any;
 }
 
 bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)

@@ -40,8 +40,10 @@ public:
     bool Believes(const GuidPrefix &peer, const HostAddress &from, const PeerVoice::Saying &saying);
     // When the peer was heard last; empty: it was not announced, or is forgotten.
     std::optional<TimePoint> LastHeard(const GuidPrefix &peer) const;
-    // Whether a participant that speaks from there was heard since then.
-    bool HasHeardFrom(const HostAddress &host, TimePoint since) const;
+    // Sets whether the peer, which must be known, listens to a multicast group for samples.
+    void SetListensToGroup(const GuidPrefix &peer, bool yes) { _peers.at(peer).ListensToGroup = yes; }
+    // True if a peer that speaks from there was heard since then, and all such peers listen to the group.
+    bool GroupReaches(const HostAddress &host, TimePoint since) const;
     // Whether the peer was announced; if so, it is heard of at this moment.
     bool Hears(const GuidPrefix &peer, TimePoint now);
 
@@ -107,6 +109,7 @@ private:
     {
         Word Place;
         PeerVoice Speaks;
+        bool ListensToGroup = false;
         bool IsNewThere = true;              // since IsAt
         TimePoint Placed{};                  // when it was last said to be there
         std::chrono::milliseconds Period{};  // in which that is said again

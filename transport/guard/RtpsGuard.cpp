@@ -353,6 +353,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
             return Verdict::Refuse;
         }
         _peers.IsAt(passage.Sender, announcement.Hosts, passage.From);
+        _peers.SetListensToGroup(passage.Sender, announcement.ListensToGroup);
     }
     if (isFromNetwork)
     {
@@ -478,10 +479,10 @@ std::optional<RtpsGuard::TimePoint> RtpsGuard::LastHeard(const GuidPrefix &peer)
     return _peers.LastHeard(peer);
 }
 
-bool RtpsGuard::HasHeardFrom(const HostAddress &host, TimePoint since)
+bool RtpsGuard::GroupReaches(const HostAddress &host, TimePoint since)
 {
     const std::lock_guard lock(_mutex);
-    return _peers.HasHeardFrom(host, since);
+    return _peers.GroupReaches(host, since);
 }
 
 void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)

@@ -70,8 +70,8 @@ public:
     bool IsKnownAt(const GuidPrefix &peer, const HostAddress &from);
     // When a participant was heard last; empty: its announcement has not been admitted.
     std::optional<TimePoint> LastHeard(const GuidPrefix &peer);
-    // Whether a participant that speaks from that address was heard since then.
-    bool HasHeardFrom(const HostAddress &host, TimePoint since);
+    // True if a participant at that address was heard since then, and all that were listen to the group.
+    bool GroupReaches(const HostAddress &host, TimePoint since);
 
     // Where a datagram comes from.
     enum class Origin

@@ -128,9 +128,9 @@ def crowd(fleet, members, tries):
     return spread(times)
 
 
-def join(fleet, members, tries):
-    """The last node starts while the others have met: until it has heard a sample of each other, and each other one of
-    its own."""
+def restart(fleet, members, tries):
+    """The last node starts, again and again, while the others have met: until it has heard a sample of each other, and
+    each other one of its own. The others remember its former session."""
     *others, late = fleet.ground.nodes
     for node in others:
         fleet.start_ledger(node, "--ticks")

@@ -61,9 +61,10 @@ TEST_F(HardwareAddressesTest, AnAddressOnOneOfSeveralInterfacesIsEnough)
     EXPECT_FALSE(IsAwaited());
 }
 
-TEST_F(HardwareAddressesTest, AHostOfThisComputerNeedsNoTable)
+TEST_F(HardwareAddressesTest, ThisComputerAndGroupsNeedNoTable)
 {
     EXPECT_FALSE(IsAwaited({127, 0, 0, 1}));
+    EXPECT_FALSE(IsAwaited({239, 255, 0, 1}));
     EXPECT_EQ(Reads, 0);
 }
 
@@ -120,11 +121,26 @@ TEST_F(HardwareAddressesTest, AHostWhoseAddressGoesAgainIsAskedForAtOnce)
     EXPECT_TRUE(Addresses.HasToAsk({10, 0, 0, 2}, Now));
 }
 
+TEST_F(HardwareAddressesTest, TheTableIsReadSeldomForAHostBehindARouter)
+{
+    for (int i = 0; i < 1000; ++i, Now += 10ms)
+    {
+        EXPECT_FALSE(IsAwaited());
+    }
+    EXPECT_LE(Reads, 100 + 9);  // every 20 ms for 2 s, then once a second
+}
+
+TEST_F(HardwareAddressesTest, AHostInWhosePlaceThisComputerAnswersIsNotAwaited)
+{
+    Table = Head + "10.0.0.2         0x1         0xc         00:00:00:00:00:00     *        eth0\n";
+    EXPECT_FALSE(IsAwaited());
+}
+
 TEST_F(HardwareAddressesTest, ATableThatMakesNoSenseHasNoHosts)
 {
     Table = "";
     EXPECT_FALSE(IsAwaited());
-    Table = Head + "fe80::1 0x1\n999.0.0.2 0x1 0x0\n10.0.0.2\n\n";
+    Table = Head + "fe80::1 0x1\n10.0.0.2 0x1 none\n10.0.0.2\n\n";
     Now += HardwareAddresses::Known;
     EXPECT_FALSE(IsAwaited());
 }

@@ -41,14 +41,26 @@ TEST_F(KnownPeersTest, OnlyAnnouncedPeersAreHeard)
     EXPECT_FALSE(Peers.Hears(Other, Now));
 }
 
-TEST_F(KnownPeersTest, AHostIsHeardFromWhileOneOfItsParticipantsIs)
+TEST_F(KnownPeersTest, TheGroupReachesAHostWhileAListenerThereIsHeard)
 {
     const Rabit::Rtps::HostAddress host{10, 0, 0, 2};
     Peers.IsAt(Sender, std::span(&host, 1), host);
+    Peers.SetListensToGroup(Sender, true);
     Peers.Hears(Sender, Now + 1s);
-    EXPECT_TRUE(Peers.HasHeardFrom(host, Now + 1s));
-    EXPECT_FALSE(Peers.HasHeardFrom(host, Now + 2s));
-    EXPECT_FALSE(Peers.HasHeardFrom({10, 0, 0, 3}, Now));
+    EXPECT_TRUE(Peers.GroupReaches(host, Now + 1s));
+    EXPECT_FALSE(Peers.GroupReaches(host, Now + 2s));
+    EXPECT_FALSE(Peers.GroupReaches({10, 0, 0, 3}, Now));
+}
+
+TEST_F(KnownPeersTest, TheGroupDoesNotReachAHostOfWhichOneParticipantDoesNotListenToIt)
+{
+    const Rabit::Rtps::HostAddress host{10, 0, 0, 2};
+    Peers.IsAt(Sender, std::span(&host, 1), host);
+    Peers.SetListensToGroup(Sender, true);
+    ASSERT_TRUE(Peers.GroupReaches(host, Now));
+    Peers.Announced(Other, 1, Now);
+    Peers.IsAt(Other, std::span(&host, 1), host);
+    EXPECT_FALSE(Peers.GroupReaches(host, Now));
 }
 
 TEST_F(KnownPeersTest, APeerDoesNotMoveElsewhereWhileItIsHeard)

@@ -117,29 +117,29 @@ void VendorDomain::NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup
 
 void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram)
 {
-    std::vector<std::pair<RabitCycloneRoute, bool>> ways;
+    std::vector<std::pair<RabitCycloneRoute, RabitCycloneTo>> ways;
     {
         const std::lock_guard lock(_cardMutex);
         const auto route = to ? _cardRoutes.find(*to) : _cardRoutes.end();
         if (route != _cardRoutes.end())
         {
-            ways.emplace_back(route->second, false);
+            ways.emplace_back(route->second, RabitCycloneToHost);
         }
         else
         {
             for (const auto &[connection, group] : _groups)
             {
-                ways.emplace_back(group, true);
+                ways.emplace_back(group, RabitCycloneToDiscoveryGroup);
             }
             for (const RabitCycloneRoute &listed : _listed)
             {
-                ways.emplace_back(listed, false);
+                ways.emplace_back(listed, RabitCycloneToHost);
             }
         }
     }
-    for (const auto &[way, toGroup] : ways)
+    for (const auto &[way, where] : ways)
     {
-        RabitCycloneSend(_watch, &way, toGroup, datagram.data(), datagram.size());
+        RabitCycloneSend(_watch, &way, where, datagram.data(), datagram.size());
     }
 }
 
@@ -233,14 +233,24 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
 bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t size,
                         const RabitCycloneRoute *route)
 {
-    const auto &domain = *static_cast<const VendorDomain *>(self);
+    auto &domain = *static_cast<VendorDomain *>(self);
     HeldDatagrams::Scope *const held = HeldDatagrams::OfThisThread();
     return held != nullptr &&
            held->Keep(HeldDatagrams::IpAndUdp + size,
                       [&domain, to = *route, bytes = std::vector<std::uint8_t>(datagram, datagram + size)]
                       {
                           const SendingSamples sending;
-                          RabitCycloneSend(domain._watch, &to, false, bytes.data(), bytes.size());
+                          const RabitCycloneWays ways = WaysTo(&domain, to.address);
+                          if (ways.group)
+                          {
+                              RabitCycloneSend(domain._watch, &to, RabitCycloneToSampleGroup, bytes.data(),
+                                               bytes.size());
+                          }
+                          if (ways.host)
+                          {
+                              RabitCycloneSend(domain._watch, &to, RabitCycloneToHost, bytes.data(),
+                                               bytes.size());
+                          }
                       });
 }
 
@@ -251,7 +261,7 @@ RabitCycloneWays VendorDomain::WaysTo(void *self, const unsigned char *address)
     Rtps::HostAddress host{};
     std::copy_n(address, host.size(), host.begin());
     const bool isAwaited = domain._meets && domain._multicast && domain._addresses.IsAwaited(host, now) &&
-                           domain._guard.HasHeardFrom(host, now - HardwareAddresses::InReach);
+                           domain._guard.GroupReaches(host, now - HardwareAddresses::InReach);
     return {.host = !isAwaited || domain._addresses.HasToAsk(host, now), .group = isAwaited};
 }
 
@@ -288,7 +298,7 @@ void VendorDomain::RepeatHandshakes()
 {
     for (const HandshakeEnds::Datagram &end : _handshakes.TakeDue(std::chrono::steady_clock::now()))
     {
-        RabitCycloneSend(_watch, &end.Route, false, end.Bytes.data(), end.Bytes.size());
+        RabitCycloneSend(_watch, &end.Route, RabitCycloneToHost, end.Bytes.data(), end.Bytes.size());
     }
 }
 
@@ -353,7 +363,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
       _rate(rate),
       _outbox(std::move(rate), [this](const auto &route, auto datagram)
-              { RabitCycloneSend(_watch, &route, false, datagram.data(), datagram.size()); })
+              { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); })
 {
     _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
     if (_meets)

@@ -241,7 +241,12 @@ static void AddTarget(const ddsi_xlocator_t *locator, void *argument)
     bool known = locator->c.kind != NN_LOCATOR_KIND_UDPv4 || IsGroup(&locator->c);
     for (size_t i = 0; i < targets.count; ++i)
     {
-        known = known || (targets.at[i].conn == locator->conn && IsSame(&targets.at[i].c, &locator->c));
+        if (targets.at[i].conn == locator->conn && IsSame(&targets.at[i].c, &locator->c))
+        {
+            known = true;
+            /* Two participants, one address: for any (GUIDPREFIX_UNKNOWN). */
+            memset(targets.prefix[i], 0, sizeof targets.prefix[i]);
+        }
     }
     if (!known && targets.count < MostTargets)
     {
@@ -412,12 +417,13 @@ int RabitCycloneDestinations(const struct ddsi_sertype *type, const ddsi_guid_t 
     return count;
 }
 
-void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, bool toGroup,
+void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
                       const unsigned char *datagram, size_t size)
 {
     const struct Watch *of = watch;
-    ddsi_locator_t destination = of->domain->loc_meta_mc;
-    if (!toGroup)
+    ddsi_locator_t destination =
+        to == RabitCycloneToSampleGroup ? of->domain->loc_default_mc : of->domain->loc_meta_mc;
+    if (to == RabitCycloneToHost)
     {
         destination.kind = NN_LOCATOR_KIND_UDPv4;
         destination.port = route->port;

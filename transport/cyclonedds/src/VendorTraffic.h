@@ -21,6 +21,13 @@ extern "C"
         uint32_t port;
     };
 
+    enum RabitCycloneTo
+    {
+        RabitCycloneToHost,
+        RabitCycloneToDiscoveryGroup,
+        RabitCycloneToSampleGroup
+    };
+
     struct RabitCycloneWays
     {
         bool host;
@@ -41,7 +48,8 @@ extern "C"
         bool (*holds)(void);
         bool (*hold)(void *argument, const unsigned char *datagram, size_t size,
                      const struct RabitCycloneRoute *route);
-        /* Where a datagram of samples goes that is for that address alone: to it, and to the group of samples? */
+        /* Where a datagram of samples goes that is for that address alone: to it, and to the group of
+         * samples? */
         struct RabitCycloneWays (*waysTo)(void *argument, const unsigned char *address);
         /* It was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
@@ -59,7 +67,7 @@ extern "C"
 
     /* Sends a datagram of ours that way, without asking whether it may go, or from the same socket to the
        group of discovery. Until the domain is deleted. */
-    void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, bool toGroup,
+    void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
                           const unsigned char *datagram, size_t size);
 
     /* Sends one zero byte to the own address of discovery, so that a receiving thread calls `received`. */

@@ -174,9 +174,10 @@ public:
                 _descriptor.Chosen().AnnounceAt(*due);
             }
         }
-        if (message.HasSamples)
+        // What is held now finds its way when its turn comes.
+        if (message.HasSamples && HeldDatagrams::OfThisThread() == nullptr)
         {
-            ChooseGroupWhereAddressesLack(socket, now);
+            ChooseGroupWhereAddressesLack(socket, message.IsOfSamplesToOne, now);
         }
         if (message.IsOfSamplesToOne && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
         {
@@ -297,10 +298,14 @@ private:
                rtps::IPLocator::isMulticast(destination) != (socket == 0);
     }
 
-    // Samples for hosts whose hardware addresses are not known yet go to the group instead.
-    void ChooseGroupWhereAddressesLack(std::uint32_t socket, TimePoint now)
+    // Samples for hosts whose hardware addresses are not known yet go to the group instead. `toOne`: all
+    // hosts are addresses of one participant, and one that works is enough.
+    void ChooseGroupWhereAddressesLack(std::uint32_t socket, bool toOne, TimePoint now)
     {
-        if (Meeting() == nullptr || !_descriptor.Chosen().SampleGroup)
+        const auto isAwaited = [this, now](const rtps::Locator_t &destination)
+        { return !IsGroup(destination) && _addresses.IsAwaited(HostOf(destination), now); };
+        if (Meeting() == nullptr || !_descriptor.Chosen().SampleGroup ||
+            (toOne && !std::all_of(_chosen.begin(), _chosen.end(), isAwaited)))
         {
             return;
         }
@@ -309,10 +314,10 @@ private:
                       [&](const rtps::Locator_t &destination)
                       {
                           const HostAddress host = HostOf(destination);
-                          const bool isAwaited = !IsGroup(destination) && _addresses.IsAwaited(host, now) &&
-                                                 _guard.HasHeardFrom(host, now - HardwareAddresses::InReach);
-                          lacks = lacks || isAwaited;
-                          return isAwaited && Leaves(socket, destination) && !_addresses.HasToAsk(host, now);
+                          const bool byGroup = isAwaited(destination) &&
+                                               _guard.GroupReaches(host, now - HardwareAddresses::InReach);
+                          lacks = lacks || byGroup;
+                          return byGroup && Leaves(socket, destination) && !_addresses.HasToAsk(host, now);
                       });
         if (lacks && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
         {
@@ -351,9 +356,11 @@ private:
                            bytes = std::vector<std::uint8_t>(datagram.begin(), datagram.end())]
                           {
                               constexpr std::chrono::milliseconds LongestWait{100};
+                              const auto now = std::chrono::steady_clock::now();
                               const std::lock_guard lock(_sending);
                               _chosen = destinations;
-                              SendChosen(sender, bytes, true, std::chrono::steady_clock::now() + LongestWait);
+                              ChooseGroupWhereAddressesLack(NumberOf(sender), false, now);
+                              SendChosen(sender, bytes, true, now + LongestWait);
                           });
     }
     void SendOwed()
