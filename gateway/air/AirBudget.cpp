@@ -11,9 +11,9 @@ namespace
 
 using Duration = AirBudget::Duration;
 
-// What a late driver may catch up.
+// Longest lateness that a driver may catch up.
 constexpr Duration CatchUp = std::chrono::milliseconds(10);
-// By which what was not scheduled holds up the next datagram of a pace at most, however often it comes.
+// Longest time by which unscheduled datagrams, however many, hold up the next one with a pace.
 constexpr Duration LongestHoldUp = std::chrono::seconds(1);
 
 Duration Scaled(Duration time, double by)
@@ -38,8 +38,8 @@ void AirBudget::SetLimits(std::optional<double> budget, std::optional<double> pa
     _pace = raised(pace);
     if (wasLimited && !IsUnlimited() && _nextAt > now)
     {
-        // What is under way takes as long as it does at the new rate; what held it up beside, no longer than
-        // anything may.
+        // The last datagram takes the time that it needs at the new rate. The hold-up by unscheduled
+        // datagrams stays within LongestHoldUp.
         const double ratio = before / Spacing();
         const Duration held = std::min(_heldUp, _nextAt - now);
         const Duration underWay = Scaled(_nextAt - now - held, ratio);
@@ -58,8 +58,7 @@ double AirBudget::Reserved() const
     return _budget ? std::min(_reserved, *_budget / 2.0) : 0.0;
 }
 
-// Bytes a second by which datagrams are spaced; of a budget so that a second, as SlidingSecond has it, is
-// just filled.
+// Bytes a second by which datagrams are spaced. With a budget they just fill a second of SlidingSecond.
 double AirBudget::Spacing() const
 {
     const double ofBudget = _budget ? (*_budget - Reserved()) / Seconds(SlidingSecond::Length)
@@ -80,7 +79,7 @@ void AirBudget::Spent(std::size_t bytes, Duration now)
     }
     if (_pace)
     {
-        // Nobody wanted to send for so long: nobody was held up.
+        // Nothing wanted to be sent for that time: nothing was held up.
         _heldUp = now - _nextAt > LongestHoldUp ? Duration(0) : _heldUp;
         const Duration more = std::min(TimeOf(bytes), LongestHoldUp - _heldUp);
         _heldUp += more;

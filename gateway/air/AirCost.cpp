@@ -7,7 +7,7 @@ namespace Rabit
 namespace
 {
 
-// Submessages begin at multiples of four bytes, and what is in them is filled up to that.
+// Submessages begin at multiples of four bytes, and their contents are padded to that.
 std::size_t Padded(std::size_t bytes)
 {
     return (bytes + 3) / 4 * 4;
@@ -15,7 +15,7 @@ std::size_t Padded(std::size_t bytes)
 
 }  // namespace
 
-// All in front of the submessage with the data, from the RTPS header on.
+// Bytes before the submessage with the data, from the RTPS header on.
 std::size_t AirCost::Before(bool directed)
 {
     return RtpsHeader + InfoTimestamp + (directed ? InfoDestination : 0);

@@ -5,9 +5,9 @@
 namespace Rabit
 {
 
-// What a sample costs on the air: bytes of IP packets, as a radio carries them, with the headers of IPv4, UDP
-// and RTPS 2.3. What a vendor adds of its own accord (heartbeats, discovery) is not in it; the frames of the
-// medium below IP are not either.
+// Computes the cost of a sample on the air: bytes of IP packets, as a radio carries them, with the headers of
+// IPv4, UDP and RTPS 2.3. The vendor's own traffic (heartbeats, discovery) and the frames of the medium below
+// IP are not included.
 class AirCost
 {
 public:
@@ -19,23 +19,23 @@ public:
     static constexpr std::size_t DataFragment = 36;
     static constexpr std::size_t Encapsulation = 4;
 
-    // Who gets it.
+    // The receivers of a sample.
     struct Readers
     {
         std::size_t Destinations = 1;  // copies: 1 by multicast, however many readers there are
         bool Directed = false;         // names its reader
     };
 
-    // maxDatagram: of the UDP payload, as TransportSettings::MaxDatagram.
+    // maxDatagram: largest UDP payload, as TransportSettings::MaxDatagram.
     explicit AirCost(std::size_t maxDatagram) : _maxDatagram(maxDatagram) {}
 
-    // Of a sample with a body of so many bytes (CDR, without encapsulation). What does not fit a datagram
-    // goes in fragments.
+    // The cost of a sample with a body of `body` bytes (CDR, without encapsulation). A sample that does not
+    // fit a datagram goes in fragments.
     std::size_t Of(std::size_t body, Readers readers) const;
     std::size_t Of(std::size_t body) const { return Of(body, Readers{}); }
-    // Of its first datagram alone.
+    // The cost of the sample's first datagram alone.
     std::size_t OfFirst(std::size_t body, Readers readers) const;
-    // The largest body whose sample costs at most so much for one destination, in one datagram; 0: none.
+    // The largest body whose sample costs at most `bytesOnAir` for one destination, in one datagram; 0: none.
     std::size_t BodyWithin(std::size_t bytesOnAir, bool directed) const;
 
 private:

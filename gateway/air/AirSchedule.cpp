@@ -9,13 +9,13 @@ namespace Rabit
 namespace
 {
 
-// What presence may send in a row before others, in bytes: a quarter of a second of the budget, and no more
-// than this.
+// Presence may send a quarter of a second of the budget in a row before others, but no more than this, in
+// bytes.
 constexpr double LargestPresenceBurst = 65536.0;
 // A driver that came late has caught up 10 ms (AirBudget), so a datagram may have to wait longer than its
-// spacing, until what was caught up leaves the last second.
+// spacing, until the bytes that were caught up leave the last second.
 constexpr AirSchedule::Duration PromiseMargin = std::chrono::milliseconds(20);
-// A promised datagram goes early by so much at most. That is less than the shortest promise
+// Longest time by which a promised datagram is sent early. It is less than the shortest promise
 // (BeatShare::Quickest), so that others get their turn, too.
 constexpr AirSchedule::Duration LongestLead = AirBudget::LongestThriftyDatagram;
 
@@ -145,7 +145,7 @@ AirStream *AirSchedule::KeptForLong(Duration now) const
     return _kept != nullptr && now - _keptSince >= Patience ? _kept : nullptr;
 }
 
-// From when on the promised datagram goes before one of the other stream; Never: it does not.
+// When the promised datagram begins to go before one of the other stream; Never: it does not.
 AirSchedule::Duration AirSchedule::MustGoBy(const AirStream &other, Duration now) const
 {
     const bool isOtherFirst = &other == _kept && now - _keptSince >= LongestPatience;
@@ -163,8 +163,8 @@ AirStream &AirSchedule::Chosen(Duration now)
     return now >= MustGoBy(first, now) ? *_promised : first;
 }
 
-// A command that fits before the chosen one does. `when`: in: when the chosen one fits; out: when the answer
-// does.
+// A command that fits before the chosen stream does; null: none. `when`: in: when the chosen one fits; out:
+// when the returned one does.
 AirStream *AirSchedule::Passing(const AirStream &chosen, Duration now, Duration &when)
 {
     FairQueue &commands = QueueOf(TrafficClass::Command);
@@ -197,7 +197,7 @@ std::optional<StreamId> AirSchedule::Next(Duration now)
     {
         return StreamId{chosen.Index, chosen.Life};
     }
-    // It keeps its turn from when it might have gone but for its size.
+    // The stream keeps its turn from the time when only its size prevented sending.
     if (_kept == nullptr && _budget.WhenFits(0, now) <= now)
     {
         _kept = &chosen;
@@ -235,7 +235,7 @@ AirSchedule::Duration AirSchedule::NextDue(Duration now)
     Passing(chosen, now, when);
     if (const Duration promised = MustGoBy(chosen, now); promised < when)
     {
-        // Next has to see first that the chosen one is kept, or the promised ones would pass it for ever.
+        // Next has to mark the chosen stream as kept first, or promised datagrams would pass it for ever.
         const Duration spaced = _budget.WhenFits(0, now);
         when = _kept == nullptr && spaced > now ? std::min(spaced, promised) : promised;
     }

@@ -19,9 +19,9 @@
 namespace Rabit
 {
 
-// What a node puts on the air next, and when. Whoever sends is a stream, says when it has something and how
-// many bytes on the air its next datagram takes, and makes that datagram when its turn has come, so that what
-// goes is the newest:
+// Decides which datagram a node sends next, and when. Each sender is a stream. It reports when it has
+// something to send, and the size of its next datagram on the air. It makes the datagram when its turn has
+// come, so that the newest contents are sent:
 //
 //     const StreamId pose = schedule.AddStream(TrafficClass::Telemetry, 3.0);
 //     schedule.Ready(pose, 190);
@@ -33,17 +33,16 @@ namespace Rabit
 //     }
 //     sleep until schedule.NextDue(now), or until something becomes ready
 //
-// Between classes ClassShares decides, between the streams of a class FairQueue, and the time is AirBudget's.
-// Nobody's share is kept for who has nothing to send. What is chosen and does not fit into the budget yet
-// keeps its turn; for the first 250 ms commands may pass it if they fit, for a second what is promised, then
-// nothing.
+// ClassShares chooses the class, FairQueue the stream in it, and AirBudget the time. An idle stream's share
+// goes to the others. A chosen stream whose datagram does not fit the budget yet keeps its turn. For the
+// first 250 ms commands that fit may pass it, for a second promised datagrams, then nothing.
 //
 // One stream may promise its next datagram by a deadline (Promise). A datagram that would end after the
 // deadline lets the promised one go first, whatever the classes' shares are.
 //
-// All calls take O(log n) for n streams, and none allocates but AddStream; without a limit a call is some
-// comparisons. Pure; `now` never goes back; not to be used by two threads at once. A stream that is not there
-// is a programming error: std::out_of_range.
+// All calls take O(log n) for n streams, and only AddStream allocates; without a limit a call is some
+// comparisons. Pure; `now` never goes back; not to be used by two threads at once. An unknown stream is a
+// programming error: std::out_of_range.
 class AirSchedule
 {
 public:
@@ -51,12 +50,13 @@ public:
     static constexpr Duration Never = Duration::max();
     static constexpr Duration Patience = std::chrono::milliseconds(250);
     static constexpr Duration LongestPatience = std::chrono::seconds(1);
-    // A driver need not wake more often than this; what it misses meanwhile it catches up.
+    // Shortest useful time between a driver's wake-ups. Datagrams that fall due in between are sent at the
+    // next one.
     static constexpr Duration Grain = std::chrono::milliseconds(1);
     static constexpr double SmallestWeight = 0.01;
     static constexpr double LargestWeight = 100.0;
 
-    // largestDatagram: on the air, with its headers. Unlimited at the beginning.
+    // largestDatagram: bytes on the air, with headers. Unlimited at the beginning.
     explicit AirSchedule(std::size_t largestDatagram);
 
     // AirBudget::SetLimits
@@ -73,24 +73,25 @@ public:
     // The weight holds among streams of its class, SmallestWeight to LargestWeight.
     StreamId AddStream(TrafficClass traffic, double weight = 1.0);
     void Remove(StreamId id);
-    // The stream has a datagram of so many bytes, more than 0; or of so many now, if it was ready before.
+    // The stream has a datagram of `bytes` bytes, more than 0. A stream that was ready before changes its
+    // size.
     void Ready(StreamId id, std::size_t bytes);
-    // It has nothing any more.
+    // The stream has nothing to send any more.
     void NotReady(StreamId id);
 
-    // With a limit: the stream sends a datagram of so many bytes, more than 0, by `deadline`, whether it is
-    // ready before or not. It goes early, by 420 ms at most, where
-    // another datagram would make it late. Only a datagram that has been kept for LongestPatience goes before
-    // it. Holds until the stream has sent. One stream at a time: a later promise replaces an earlier one.
+    // With a limit: the stream will send a datagram of `bytes` bytes, more than 0, by `deadline`, whether it
+    // is ready before or not. It is sent early, by 420 ms at most, if another datagram would make it late.
+    // Only a datagram that has been kept for LongestPatience goes before it. Holds until the stream has sent.
+    // One stream at a time: a later promise replaces an earlier one.
     void Promise(StreamId id, std::size_t bytes, Duration deadline);
 
-    // Who is to send one datagram of now; empty: nobody, before NextDue. The same one until something
-    // changes.
+    // The stream that is to send one datagram now; empty: none before NextDue. Returns the same stream until
+    // something changes.
     std::optional<StreamId> Next(Duration now);
-    // It did, so many bytes on the air, and is not ready until it says so. 0: it had nothing after all. May
-    // be said of any stream: what goes past the schedule is paid for, too.
+    // The stream sent `bytes` bytes on the air, and is not ready until Ready. 0: it had nothing after all.
+    // May be called for any stream, to pay for bytes sent past the schedule.
     void Sent(StreamId id, std::size_t bytes, Duration now);
-    // When to ask Next again if nothing else happens; now, if somebody may send; Never, if nobody has
+    // When to call Next again if nothing else happens; now, if a stream may send; Never, if no stream has
     // anything.
     Duration NextDue(Duration now);
 
@@ -120,10 +121,10 @@ private:
     std::deque<AirStream> _streams;  // addresses stay
     std::vector<std::uint32_t> _free;
     std::array<std::uint64_t, TrafficClassCount> _sent{};
-    AirStream *_kept = nullptr;  // chosen, and does not fit yet
+    AirStream *_kept = nullptr;  // the chosen stream whose datagram does not fit yet
     Duration _keptSince{0};
     AirStream *_promised = nullptr;
-    Duration _deadline{0};  // of that one
+    Duration _deadline{0};  // of the promised datagram
 };
 
 }  // namespace Rabit

@@ -8,7 +8,7 @@
 namespace Rabit
 {
 
-// What AirSchedule and FairQueue know of a stream.
+// The record of a stream that AirSchedule and FairQueue share.
 struct AirStream
 {
     static constexpr std::size_t NotWaiting = static_cast<std::size_t>(-1);
@@ -21,7 +21,7 @@ struct AirStream
     std::size_t Bytes = 0;   // of its next datagram
     std::uint64_t Sent = 0;  // bytes in all
 
-    // Of FairQueue.
+    // Used by FairQueue.
     double Tag = 0.0;                    // virtual time at which its next datagram begins
     std::uint64_t Arrived = 0;           // order among equal tags
     std::size_t HeapPlace = NotWaiting;  // in the queue

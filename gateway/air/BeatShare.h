@@ -6,14 +6,14 @@
 namespace Rabit
 {
 
-// How often a node whose bytes are limited says that it is there.
+// How often a node with a limited rate beats.
 struct BeatShare
 {
-    // Part of a budget that beats take.
+    // Share of a budget that beats take.
     static constexpr double OfBudget = 0.05;
     static constexpr std::chrono::nanoseconds Quickest = std::chrono::milliseconds(500);
 
-    // So that beats of that size take so many bytes a second.
+    // The beat period in which beats of that size take `bytesPerSecond`.
     static std::chrono::nanoseconds PeriodOf(double beatBytes, double bytesPerSecond,
                                              std::chrono::nanoseconds slowest)
     {

@@ -10,37 +10,38 @@ namespace
 using namespace std::chrono_literals;
 using Duration = CapacityEstimate::Duration;
 
-// Where the delay is kept: below the target, so that what others send in between does not pass that.
+// The delay is kept here, below the target, so that other nodes' datagrams in between do not raise it above
+// the target.
 constexpr Duration Goal = 40ms;
-// Delays above this are a queue of this node; below, others were on the air.
+// A delay above this is a queue of this node; a shorter one comes from other nodes' datagrams.
 constexpr Duration Standing = 30ms;
-// In which a queue is emptied; a longer one is emptied before anything but the floor is sent.
+// Seconds in which a queue is emptied. While a longer one is emptied, only the floor is sent.
 constexpr double EmptyIn = 0.5;
-// With longer queues buffers may be full.
+// With a longer queue buffers may be full.
 constexpr Duration ShortEnough = 300ms;
 // Two arrivals closer than this say little about a rate.
 constexpr Duration ShortestSpan = 300ms;
-// How well it is known when a datagram was sent. Of a burst it makes all the difference.
+// Precision of a datagram's sending time. It matters within a burst.
 constexpr Duration KnownTo = 20ms;
 // A correction's weight.
 constexpr double Gain = 0.3;
-// Rise, by second, and after a quiet time.
+// Rise in each second, usually and after a quiet time.
 constexpr double GentleRise = 0.05;
 constexpr double QuickRise = 0.5;
 constexpr double CalmRise = 1.0;
 constexpr Duration QuietTime = 3s;
-// A rate is used if so much of it is sent.
+// A rate counts as used if at least this share of it is sent, and as unused below the second share.
 constexpr double Used = 0.7;
 constexpr double Unused = 0.5;
 constexpr Duration UnusedTime = 20s;
 constexpr int MostDoublings = 3;
-// Bytes a second that the rate rises by in each second in any case.
+// The rate rises by this many bytes a second in each second in any case.
 constexpr double Fairness = 200.0;
-// Without reports.
+// Without reports: when the rate begins to fall, and its fall in each second.
 constexpr Duration SilentAfter = 3s;
 constexpr double FallInSilence = 0.1;
 constexpr double LeastInSilence = 0.5;
-// For so long at most a beat has no room for a report that there is.
+// Longest time for which beats may have no room for a waiting report.
 constexpr Duration NotCrowdedOut = 1s;
 
 double Seconds(Duration time)
@@ -50,8 +51,8 @@ double Seconds(Duration time)
 
 }  // namespace
 
-// Bytes a second that were carried between two reports' datagrams, as long as there was a queue; empty: they
-// are too close. How much went between two that went at once is not known.
+// Bytes a second that were carried between two reports' datagrams, as long as there was a queue. Empty if the
+// two are too close: the bytes between datagrams sent at once are not known.
 std::optional<double> CapacityEstimate::Carried(const DelayReports::Report &from,
                                                 const DelayReports::Report &to) const
 {
@@ -62,13 +63,13 @@ std::optional<double> CapacityEstimate::Carried(const DelayReports::Report &from
     return _sent.Between(from.SentAt(), to.SentAt()) / Seconds(to.ArrivedAt - from.ArrivedAt);
 }
 
-// The same where the queue came about in between, or there was none at first, or none for a while, since
-// nothing was sent for longer than it takes to empty it: who says little and then much at once had nothing to
-// be carried for some of the time; and of what went at once it is not known which of it a report is about.
+// The same if there was no queue at first or for a while, since nothing was sent for longer than it takes to
+// empty it. Such a node had nothing to be carried for some of the time. Of datagrams sent at once it is not
+// known which one a report is about.
 std::optional<double> CapacityEstimate::CarriedOfBurst(const DelayReports::Report &from,
                                                        const DelayReports::Report &to) const
 {
-    // Of two datagrams of one burst it is not known how much went between them.
+    // The bytes between two datagrams of one burst are not known.
     const bool areOfOneBurst = from.Delay > Goal && to.SentAt() - from.SentAt() < 2 * KnownTo;
     if (to.ArrivedAt - from.ArrivedAt < ShortestSpan || areOfOneBurst)
     {
@@ -81,8 +82,8 @@ std::optional<double> CapacityEstimate::CarriedOfBurst(const DelayReports::Repor
                : std::max(all, _sent.CarriedAtLeast(from.SentAt(), sentAt, to.ArrivedAt));
 }
 
-// The least that some of a peer's reports tell: those before a radio's buffer was full. What did not fit into
-// it was sent and not carried.
+// The least capacity in a peer's reports from before a radio's buffer was full. Datagrams that did not fit
+// the buffer were sent and not carried.
 std::optional<double> CapacityEstimate::CarriedWhileRising(const DelayReports::Reports &said) const
 {
     std::optional<double> least;
@@ -174,7 +175,7 @@ void CapacityEstimate::Correct(const DelayReports::Reports &said)
     {
         if (const auto carried = Carried(*from, said.back()))
         {
-            // What is sent into a full buffer is not carried.
+            // Bytes sent into a full buffer are not carried.
             const double most = _carried * (said.back().Delay < ShortEnough ? 1.5 : 1.1);
             _carried += Gain * (std::min(*carried, most) - _carried);
             return;
@@ -182,8 +183,8 @@ void CapacityEstimate::Correct(const DelayReports::Reports &said)
     }
 }
 
-// By as much for every node, so that in the end all have as much: the queue takes in proportion. And by that
-// share of the rate in each second.
+// The rate rises by an equal amount for every node, so that in the end all have the same rate, since the
+// queue reduces rates in proportion. It also rises by `share` of the rate in each second.
 void CapacityEstimate::Rise(double share, Duration now)
 {
     const double passed = std::min(Seconds(now - _reportedAt), 1.0);
@@ -217,8 +218,8 @@ void CapacityEstimate::LoosenIfUnused(Duration now)
 
 Duration CapacityEstimate::Queue(Duration now) const
 {
-    // What was sent before the datagram that a report is about has gone when it arrives; what was sent since
-    // waits, but for what was carried since.
+    // Bytes sent before the reported datagram are carried when it arrives. Bytes sent since then wait, except
+    // those carried since then.
     const auto queue = [this, now](const DelayReports::Reports &said)
     {
         const DelayReports::Report &last = said.back();

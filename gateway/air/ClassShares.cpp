@@ -46,7 +46,7 @@ TrafficClass ClassShares::Next(const Waiting &waiting)
     return static_cast<TrafficClass>(entitled());
 }
 
-// As many as it takes until one of those that wait has credit.
+// Begins as many rounds as it takes until one of the waiting classes has credit.
 void ClassShares::BeginRounds(const Waiting &waiting)
 {
     std::int64_t rounds = std::numeric_limits<std::int64_t>::max();

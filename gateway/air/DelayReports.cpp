@@ -46,7 +46,7 @@ bool DelayReports::IsFresh(const Entry &entry, Duration now)
     return now - entry.Said.back().CameAt <= Fresh;
 }
 
-// Of the last reports in a row that say later than that; the end: the last one does not.
+// The first of the last reports in a row with a delay above `later`; the end if the last report has none.
 DelayReports::Reports::const_iterator DelayReports::FirstLate(const Reports &said, Duration later)
 {
     auto first = said.end();

@@ -11,9 +11,8 @@
 namespace Rabit
 {
 
-// What the peers have said of how late datagrams of this node came, and what they agree on. One late
-// datagram, one peer that is busy itself, or one that lies, is no agreement: of what the peers say the lower
-// median counts.
+// The peers' reports of the delay of this node's datagrams, and their agreement. The lower median of the
+// peers counts, so one late datagram, or one peer that is busy or lies, is no agreement.
 //
 // Bounded: the 64 peers heard last, 8 reports of each. Pure; `now` never goes back.
 class DelayReports
@@ -29,8 +28,8 @@ public:
 
     struct Report
     {
-        Duration CameAt{0};     // here
-        Duration ArrivedAt{0};  // when the datagram that it is about arrived there
+        Duration CameAt{0};     // when the report came here
+        Duration ArrivedAt{0};  // when the reported datagram arrived there
         Duration Delay{0};      // of that datagram
 
         Duration SentAt() const { return ArrivedAt - Delay; }
@@ -43,13 +42,14 @@ public:
 
     void Clear() { _peers.clear(); }
 
-    // By the newest reports of those who have said something lately; empty: nobody.
+    // The lower median of the newest reports of the peers that have reported lately; empty: none has.
     std::optional<Duration> Latest(Duration now) const;
-    // Whether the peers agree that datagrams come later than that: more than half of them by their last two
-    // reports (of four peers and more by their last one, of one peer by its last three), or one of them by
-    // three reports over LongEnough that no report of another about something as new contradicts.
+    // True if the peers agree that datagrams come later than `later`. Either more than half of them say so in
+    // their last two reports (with four peers or more in the last one, with one peer in its last three). Or
+    // one peer says so in three reports over LongEnough, and no report of another peer about a datagram as
+    // new contradicts.
     bool Agree(Duration later, Duration now) const;
-    // The lower median of f(reports), empty answers left out, of those who have said something lately.
+    // The lower median of f(reports) over the peers that have reported lately, empty results left out.
     template <typename Function>
     auto MedianOf(const Function &f, Duration now) const -> decltype(f(std::declval<const Reports &>()));
     // The reports of one peer, the newest last; nullptr: none.

@@ -6,9 +6,8 @@
 namespace Rabit
 {
 
-// When DDS has made acquaintances: a node that comes makes every node say a lot, and on a thin radio that is
-// all that the air carries for seconds. How late datagrams come meanwhile tells nothing of what it carries
-// for what follows.
+// Detects the end of a burst of DDS discovery. A new node makes every node send much discovery data, which
+// fills a thin radio for seconds. The delays meanwhile tell nothing about the capacity afterwards.
 //
 // A burst begins when more than Many bytes of discovery went within a second, and is over after a second with
 // less than Few. Pure; `now` never goes back.
@@ -19,8 +18,8 @@ public:
     static constexpr std::size_t Many = 1500;
     static constexpr std::size_t Few = 400;
 
-    // So many bytes of discovery went since the last call. Call it also with 0. True: a burst is over, said
-    // once.
+    // `bytes` bytes of discovery were sent since the last call. Call it also with 0. Returns true once when a
+    // burst is over.
     bool IsOverAfter(std::size_t bytes, Duration now)
     {
         _bytes += bytes;

@@ -57,7 +57,7 @@ SentHistory::Duration SentHistory::LongestPause(Duration from, Duration to) cons
     return std::max(longest, to - since);
 }
 
-// The number of the first mark behind it.
+// The number of the first mark after that time.
 std::size_t SentHistory::FirstAfter(Duration time) const
 {
     std::size_t low = 0;
@@ -77,7 +77,7 @@ std::size_t SentHistory::FirstAfter(Duration time) const
     return low;
 }
 
-// What a step has is spread over its length, as far as it has passed.
+// The bytes of a step are spread over the part of it that has passed.
 double SentHistory::Before(Duration time) const
 {
     const std::size_t low = FirstAfter(time);

@@ -8,9 +8,8 @@
 namespace Rabit
 {
 
-// How many bytes were sent until some time in the last 20 s. Time is kept in steps of 20 ms; within one,
-// bytes count as spread evenly. Two comparisons and an addition per datagram, and no allocation but the
-// first.
+// The number of bytes sent until any time in the last 20 s. Time is kept in steps of 20 ms; within one, bytes
+// count as spread evenly. A datagram costs two comparisons and an addition; only the first one allocates.
 //
 // Pure; `now` never goes back.
 class SentHistory
@@ -21,12 +20,12 @@ public:
     SentHistory();
 
     void Add(std::size_t bytes, Duration now);
-    // Bytes sent from one time to a later one, not later than the newest `now`. What is too long ago is not
-    // counted.
+    // Bytes sent from one time to a later one, not later than the newest `now`. Older bytes are not counted.
     double Between(Duration from, Duration to) const;
-    // Bytes a second: the most, for any time since `from`, of what was sent from then to `to`, over the time
-    // from then to `arrived`, which is later than `to`. What carried all this until then, carried so much at
-    // least; and no more, if it always had something to carry since that time.
+    // Least capacity, in bytes a second, of a channel that had carried all bytes until `to` by `arrived`,
+    // which is later than `to`. It is the maximum, over any time t since `from`, of the bytes sent from t to
+    // `to` divided by arrived - t. The capacity equals this if the channel always had something to carry
+    // since t.
     double CarriedAtLeast(Duration from, Duration to, Duration arrived) const;
     // The longest time between those two in which nothing was sent, to within two steps.
     Duration LongestPause(Duration from, Duration to) const;
@@ -38,7 +37,7 @@ private:
     struct Mark
     {
         Duration At{0};
-        std::uint64_t Total = 0;  // sent before
+        std::uint64_t Total = 0;  // bytes sent before the step
     };
 
     double Before(Duration time) const;

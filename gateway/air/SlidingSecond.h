@@ -8,12 +8,12 @@
 namespace Rabit
 {
 
-// The bytes of the last second, wherever that begins. What was sent within a 256th of a second is remembered
-// together, as if all of it had gone at the end of that time: memory is bounded whatever the rate, the sums
-// are never too low, and they are exact where datagrams are further apart.
+// The bytes of the last second, wherever it begins. Datagrams within a 256th of a second are remembered
+// together, as if all of them had been sent at its end. So memory is bounded at any rate, the sums are never
+// too low, and they are exact where datagrams are further apart.
 //
-// "A second" is 50 ms longer here: a radio shifts datagrams while others are on the air, and what left a node
-// in 1001 ms must not be found in one second of the air.
+// "A second" is 50 ms longer here: a radio shifts datagrams while others are on the air, and bytes that left
+// a node in 1001 ms must not fall into one second of the air.
 //
 // Pure; `now` never goes back.
 class SlidingSecond
@@ -22,7 +22,7 @@ public:
     using Duration = std::chrono::nanoseconds;
     static constexpr Duration Length = std::chrono::milliseconds(1050);
 
-    // Scheduled by us, and not scheduled.
+    // Adds scheduled and unscheduled bytes.
     void Add(std::uint64_t scheduled, std::uint64_t unscheduled, Duration now);
     std::uint64_t Scheduled(Duration now);
     std::uint64_t Unscheduled(Duration now);

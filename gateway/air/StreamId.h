@@ -5,7 +5,7 @@
 namespace Rabit
 {
 
-// A stream of an AirSchedule. That of a removed stream is never given again.
+// A stream of an AirSchedule. The id of a removed stream is never reused.
 struct StreamId
 {
     std::uint32_t Index = 0;

@@ -8,37 +8,37 @@
 namespace Rabit
 {
 
-// How much of a budget is to be kept free for what is not scheduled: what DDS says of its own accord. That is
-// the participant's announcement, once a period, and what is said when nodes come. A budget holds in each
-// second, so what will be said within a second must find its place; but to keep that free all the time would
-// be a waste of most of a small budget. So:
+// Computes the part of a budget to keep free for DDS's own, unscheduled traffic: the participant's
+// announcement once a period, and discovery when nodes come. A budget holds in each second, so this traffic
+// needs room in the second in which it comes. But to keep room free all the time would waste most of a small
+// budget. So:
 //
-// - What was said a period ago is expected again now: it has its place from a second before, as long as it
-//   may come late.
-// - While much is said, as much is expected further on.
+// - Traffic of a period ago is expected again now: room is kept from a second before, until it can no longer
+//   come late.
+// - While there is much traffic, as much is expected to follow.
 //
-// The first of several nodes that come finds no place, nor does an announcement out of turn: for that second
-// what was sent before it cannot be taken back.
+// The traffic for the first of several new nodes finds no room, nor does an announcement out of turn: bytes
+// already sent in that second cannot be taken back.
 //
-// Bounded: what went within Together is one. Pure; `now` never goes back.
+// Bounded: bytes within Together are one entry. Pure; `now` never goes back.
 class UnscheduledShare
 {
 public:
     using Duration = std::chrono::nanoseconds;
-    // An announcement has no more than that, and no more is kept free for it.
+    // Largest announcement, and the most that is kept free for it.
     static constexpr std::size_t Lump = 600;
     // How much earlier or later than after a period it may come.
     static constexpr Duration Early = std::chrono::milliseconds(150);
     static constexpr Duration Late = std::chrono::milliseconds(500);
-    // Of whatever second it falls into (SlidingSecond).
+    // Room is kept from this time before, for any second that the announcement may fall into (SlidingSecond).
     static constexpr Duration Before = std::chrono::milliseconds(1050);
-    // More than a lump within that is a conversation.
+    // More than a lump within this time is a conversation, not an announcement.
     static constexpr Duration Recent = std::chrono::seconds(2);
 
-    // period: of the announcements.
+    // period: time between the participant's announcements.
     explicit UnscheduledShare(Duration period) : _period(period) {}
 
-    // So many bytes were said after `since`, when this was last looked at, until now.
+    // `bytes` bytes were sent after `since`, the time of the last call, until now.
     void Add(std::size_t bytes, Duration since, Duration now)
     {
         while (!_said.empty() && now - _said.front().At > _period + Late + Together)
@@ -66,7 +66,7 @@ public:
 private:
     static constexpr Duration Together = std::chrono::milliseconds(100);
 
-    // When something was said: after Since, at At at the latest.
+    // The time of some traffic: after Since, at At at the latest.
     struct Said
     {
         Duration Since{0};
@@ -74,7 +74,7 @@ private:
         std::size_t Bytes = 0;
     };
 
-    // Bytes that may have begun to be said then.
+    // Bytes whose sending may have begun in that time.
     std::size_t Between(Duration from, Duration to) const
     {
         std::size_t bytes = 0;

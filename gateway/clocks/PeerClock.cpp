@@ -8,7 +8,7 @@ namespace
 {
 
 constexpr PeerClock::Duration FilterPeriod = std::chrono::seconds(15);
-// More than drift adds up to while the filter remembers, and than threads that wait for a processor take.
+// More than the drift that adds up while the filter remembers, and more than threads wait for a processor.
 constexpr PeerClock::Duration Tolerance = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -80,7 +80,7 @@ void PeerClock::OnRoundTrip(Duration roundTrip, Duration now)
     Estimate();
 }
 
-// Of the beat to which the smallest difference belongs.
+// Returns the estimated one-way delay of the beat with the smallest difference.
 PeerClock::Duration PeerClock::QuickestDelay() const
 {
     if (!_wayThere.Value())

@@ -10,10 +10,10 @@
 namespace Rabit
 {
 
-// The time that the mirrored samples of one life of a node carry as their source time: its wall clock as it
-// stood when the life began, and from then on its monotonic clock. So it looks like a wall clock to plain DDS
-// programs, but never steps: were it the wall clock itself, a step would make what was posted before it look
-// newer or older than it is. Beats tell the other nodes how it stands to the wall clock. A value; any thread.
+// The source time of the mirrored samples of one incarnation of a node: its wall clock as it stood when the
+// incarnation began, and from then on its monotonic clock. So it looks like a wall clock to plain DDS
+// programs, but never steps: a step would make earlier posts look newer or older than they are. Beats tell
+// the other nodes how it differs from the wall clock. A value; any thread.
 class SourceClock
 {
 public:
@@ -23,7 +23,7 @@ public:
         _ahead = std::chrono::nanoseconds(GpsTime::ToUtcNanoseconds(now.GpsTimeSeconds)) - now.Monotonic;
     }
 
-    // Nanoseconds since 1970 when the monotonic clock shows that.
+    // The source time in nanoseconds since 1970 at that time of the monotonic clock.
     std::int64_t At(std::chrono::nanoseconds monotonic) const { return (monotonic + _ahead).count(); }
 
 private:

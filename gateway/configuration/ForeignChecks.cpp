@@ -14,7 +14,7 @@ namespace
 
 constexpr std::size_t LongestTopic = 255;
 
-// What is known of a name: its type, and where that is said.
+// The type of a name, and the line of the configuration that gives it.
 struct Said
 {
     std::string Type;
@@ -158,7 +158,7 @@ private:
         }
     }
 
-    // What a program wrote must not go back to where it came from.
+    // Fails if `written` would write a message back to the topic from which another rule reads it.
     void CheckNoEcho(const ForeignRule &written) const
     {
         for (const ForeignRule &read : _config.Foreign)

@@ -8,11 +8,11 @@
 namespace Rabit
 {
 
-// The section `foreign` of a configuration file.
+// Reads the section `foreign` of a configuration file into `config`.
 void ReadForeign(const YamlMap &map, GatewayConfig &config);
 
-// What is wrong with the rules about programs that are no nodes, and between them and the others. Throws
-// ConfigError.
+// Checks the `foreign` rules: each alone, against one another, and against `publish` and `subscribe`.
+// Throws ConfigError.
 void CheckForeign(const GatewayConfig &config, const TypeCheck &whyNoType);
 
 }  // namespace Rabit

@@ -18,7 +18,7 @@ namespace Rabit
 namespace
 {
 
-// A configuration is a page of text; more is some other file.
+// A configuration is a page of text; a larger file is not one.
 constexpr std::size_t LargestFile = 1u << 20;
 
 std::string ReadFile(const std::string &file)
@@ -235,9 +235,10 @@ YamlMap OpenFile(const std::string &file)
     return {file,
             Parse(file, ReadFile(file)),
             "the configuration",
-            {"node", "name", "domain", "transport", "interfaces", "peers", "multicast", "max_datagram",
-             "shared_memory", "lease", "backend_config", "state_dir", "security", "radio", "record", "publish",
-             "subscribe", "accept", "send", "foreign", "foxglove"}};
+            {"node",      "name",         "domain",        "transport", "interfaces",     "peers",
+             "multicast", "max_datagram", "shared_memory", "lease",     "backend_config", "state_dir",
+             "security",  "radio",        "record",        "publish",   "subscribe",      "accept",
+             "send",      "foreign",      "foxglove"}};
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -262,7 +263,7 @@ GatewayConfig LoadNetworkConfig(const std::string &file)
     const YamlMap map = OpenFile(file);
     GatewayConfig config;
     config.File = file;
-    ReadName(map, "any", config);  // which node it would be does not matter
+    ReadName(map, "any", config);  // any name will do: it is cleared below
     ReadNetwork(map, config);
     ReadSecurity(map, config);
     ReadRadio(map, config);

@@ -7,7 +7,7 @@
 namespace Rabit
 {
 
-// The section `foxglove` of a configuration file.
+// Reads the section `foxglove` of a configuration file into `config`.
 void ReadPanels(const YamlMap &map, GatewayConfig &config);
 
 }  // namespace Rabit

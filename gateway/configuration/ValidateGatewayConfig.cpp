@@ -21,7 +21,7 @@ namespace Rabit
 namespace
 {
 
-// How the names of the gateways' own topics begin.
+// Prefix of the gateways' own topics.
 constexpr const char *OwnTopics = "rabit/";
 constexpr double LargestBudget = 1e9;
 
@@ -123,7 +123,7 @@ private:
 
     void CheckSecurity() const
     {
-        constexpr int largestDomain = 230;  // that both vendors know with security
+        constexpr int largestDomain = 230;  // the largest that both vendors support with security
         if (_config.Security && _config.Security->Keys.empty())
         {
             Fail(LineOf("security.keys"), "no folder of keys; expected `keys: <folder>`");
@@ -301,8 +301,8 @@ private:
         }
     }
 
-    // One topic of DDS has one type, whoever writes it. A local message and that of the others are different
-    // messages here, but the same topic.
+    // A DDS topic has one type. A local message and the message of that name from other nodes are different
+    // messages here, but share one topic.
     void CheckTopicTypes() const
     {
         for (const SubscribeRule &wanted : _config.Subscribe)
@@ -393,7 +393,7 @@ private:
         }
     }
 
-    // Others would not take what is larger, and nobody would learn why.
+    // Fails if the announcement is too large: other nodes would ignore it, and no log would say why.
     void CheckAnnouncement() const
     {
         const std::string excess = Announcements::WhyTooLarge(Announcements::Of(_config));
@@ -403,7 +403,8 @@ private:
         }
     }
 
-    // The first rule that fits a link holds: one behind another that fits all the same links does nothing.
+    // Fails if an earlier rule fits all links of this one: the first rule that fits a link holds, so this
+    // one would do nothing.
     void CheckReached(const SendRule &rule) const
     {
         for (const SendRule &before : _config.Send)
@@ -436,7 +437,8 @@ private:
 
 }  // namespace
 
-// The beats in the quarter that presence has for sure, and what DDS says of a participant on its own.
+// A quarter of the budget is reserved for presence: it must hold the beats. DDS's own participant
+// announcements are added, and the sum is rounded up to 100 bytes a second.
 double SmallestBudget(std::chrono::milliseconds slowestBeat)
 {
     constexpr double beat = 160.0;      // bytes on the air, with some versions of States in it

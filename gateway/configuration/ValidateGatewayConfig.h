@@ -8,10 +8,11 @@
 namespace Rabit
 {
 
-// The TypeCheck of a program that has the types it names: they are in the MessageTypeRegistry.
+// The TypeCheck of a program that is linked with the types that it names: it looks them up in the
+// MessageTypeRegistry.
 std::string WhyNotLinked(const std::string &type);
 
-// ValidateGatewayConfig with other types than those.
+// Does the same as ValidateGatewayConfig(config), with another TypeCheck.
 void ValidateGatewayConfig(const GatewayConfig &config, const TypeCheck &whyNoType);
 
 }  // namespace Rabit

@@ -17,7 +17,7 @@ int LineOf(const YAML::Node &node)
     return node.Mark().line + 1;
 }
 
-// The whole text as a number, or false.
+// Reads the whole text as a number; false if it is none.
 template <typename Number>
 bool ParseWhole(const std::string &text, Number &value)
 {
@@ -25,7 +25,7 @@ bool ParseWhole(const std::string &text, Number &value)
     return error == std::errc() && end == text.data() + text.size() && !text.empty();
 }
 
-// In the largest unit that leaves a whole number.
+// Returns a size in the largest unit that leaves a whole number.
 std::string SizeText(std::uint64_t bytes)
 {
     const char *const units[] = {"B", "kB", "MB", "GB", "TB"};

@@ -14,8 +14,9 @@
 namespace Rabit
 {
 
-// One mapping of a YAML file, read with errors that name file, line and what was expected (ConfigError). The
-// values of missing keys stay as they are, so that defaults stand in one place, the structure that is filled.
+// One mapping of a YAML file. Errors (ConfigError) name the file, the line and the expected value. A
+// missing key leaves its value unchanged, so that defaults stand in one place: the structure that is
+// filled.
 class YamlMap
 {
 public:
@@ -25,7 +26,7 @@ public:
             const std::vector<std::string> &allowedKeys);
 
     bool Has(const std::string &key) const;
-    // 1-based; of the key's value, or of the whole mapping if there is no such key.
+    // Returns the line, from 1, of the key's value, or of the whole mapping if there is no such key.
     int Line(const std::string &key = "") const;
     // The line of each key.
     std::map<std::string, int> Lines() const;
@@ -43,9 +44,9 @@ public:
     // `64MB`, `1GB`: of powers of 1000, from B to TB.
     void ReadByteSize(const std::string &key, std::uint64_t &value, std::uint64_t least,
                       std::uint64_t most) const;
-    // A list of words, or one word alone.
+    // Reads a list of words, or one word alone.
     void Read(const std::string &key, std::vector<std::string> &value) const;
-    // One of the words; returns its index, or -1 if the key is missing.
+    // Reads one of the words. Returns its index, or -1 if the key is missing.
     int ReadChoice(const std::string &key, const std::vector<std::string> &choices) const;
     // A mapping; empty if the key is missing.
     std::optional<YamlMap> Map(const std::string &key, const std::string &what,

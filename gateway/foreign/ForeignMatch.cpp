@@ -18,7 +18,7 @@ bool IsRead(const ForeignRule &rule)
     return rule.Way == ForeignRule::Direction::Subscribe;
 }
 
-// A program's endpoint at the other end of the rule's topic.
+// True for a program's endpoint at the other end of the rule's topic.
 bool IsOpposite(const ForeignRule &rule, const RemoteEndpoint &endpoint)
 {
     return endpoint.IsWriter == IsRead(rule) && endpoint.Node.empty();
@@ -69,7 +69,7 @@ TopicQos ReaderQos(const ForeignRule &rule, const std::vector<RemoteEndpoint> &e
     qos.Reliability = rule.Reliability.value_or(qos.Reliability);
     if (any)
     {
-        // Without reliability there is no history to be had.
+        // Only a reliable reader gets history.
         qos.Durability = transientLocal && qos.Reliability == Reliability::Reliable
                              ? Durability::TransientLocal
                              : Durability::Volatile;
@@ -168,7 +168,7 @@ std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
                  [&rule](const std::string &topic)
                  { return topic.rfind("rabit/", 0) != 0 && topic != WireTopicOf(rule); });
     const std::string hint = NearestWordHint(WireTopicOf(rule), candidates);
-    // Of one that is written only a slip is worth a word: who reads it may still come.
+    // If this node writes the topic, only a misspelled name is worth a hint: a reader may still come.
     const bool isSlip = hint.rfind("; did you mean", 0) == 0;
     return "no program " + does + where + (IsRead(rule) || isSlip ? hint : "");
 }

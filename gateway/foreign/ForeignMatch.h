@@ -12,26 +12,27 @@ namespace Rabit::ForeignMatch
 // `reliable, transient local` and the like.
 std::string QosText(Reliability reliability, Durability durability);
 
-// What a reader asks for: what the rule says, and for the rest the most that all programs' writers of the
-// type offer, so that it matches them all. While there are none that is `before`.
+// The QoS that a reader asks for. Settings of the rule hold. For the rest it asks for the most that all
+// programs' writers of the type offer, so that it matches them all; while there are none, for `before`.
 TopicQos ReaderQos(const ForeignRule &rule, const std::vector<RemoteEndpoint> &endpoints,
                    const TopicQos &before);
-// What it asks for at first: volatile, best effort, and reliable for a queue. Were that another one, the
-// samples between would be lost when it is made anew.
+// The first QoS of a reader: volatile, and best effort, or reliable for a queue. If the writers offer another
+// QoS, the reader is made anew, and the samples in between are lost.
 TopicQos FirstReaderQos(const ForeignRule &rule);
-// What a writer offers.
+// The QoS that a writer offers.
 TopicQos WriterQos(const ForeignRule &rule);
 
-// Whether a program's endpoint on the topic matches one of ours with that QoS, in the default partition; what
-// keeps it from that, in words, empty if nothing does.
+// Returns, in words, why a program's endpoint on the topic does not match one of ours with that QoS, in the
+// default partition. Empty: it matches.
 std::string WhyNot(const ForeignRule &rule, const TopicQos &ours, const RemoteEndpoint &theirs);
 
-// Of a topic that is read, the programs' writers that match; of one that is written, their readers.
+// Returns the programs' writers that match, if the rule reads the topic; their readers, if it writes it.
 std::vector<RemoteEndpoint> Matching(const ForeignRule &rule, const TopicQos &ours,
                                      const std::vector<RemoteEndpoint> &endpoints);
 
-// Why no program's endpoint matches, by name; there must be none. `topics` are all that others have endpoints
-// on. `isMismatch` becomes whether some are there that do not fit.
+// Returns, by name, why no program's endpoint matches. Precondition: none does. `topics` are all topics on
+// which others have endpoints. Sets `isMismatch`: true if programs have endpoints on the topic that do not
+// fit.
 std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
                     const std::vector<RemoteEndpoint> &endpoints, const std::vector<std::string> &topics,
                     int domain, bool &isMismatch);

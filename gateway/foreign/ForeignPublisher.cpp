@@ -69,8 +69,8 @@ ForeignPublisher::Duration ForeignPublisher::Service(Duration now)
     return _pending || _writer.OwesDisposal() ? std::min(*_nextLook, *_lastWrite + Gap()) : *_nextLook;
 }
 
-// A value that the network did not take in time is tried again; one that can never be sent would only fail
-// again.
+// Keeps a value that the network did not take in time for another attempt. Drops a value that can never be
+// sent.
 void ForeignPublisher::Write(Duration now)
 {
     WriteResult result = WriteResult::Ok;
@@ -117,7 +117,7 @@ const Gateway::ForeignTopic &ForeignPublisher::Status()
     return _status;
 }
 
-// That nobody reads it is none: who wants it may come.
+// A topic without readers is no problem: a reader may still come.
 std::optional<Gateway::Problem> ForeignPublisher::Problem() const
 {
     if (_attached && !_isMismatch)

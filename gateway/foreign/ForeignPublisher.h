@@ -19,28 +19,28 @@
 namespace Rabit
 {
 
-// Writes one local message to a topic of programs that are no nodes: its newest value whenever it was posted,
-// no more often than the rule allows; intermediate values may be skipped, as with a fetch. Gateway's thread
-// only.
+// Writes one local message to a topic of foreign programs: the newest value after each post, at most at the
+// rule's rate. Intermediate values may be skipped, as with a fetch. Gateway's thread only.
 class ForeignPublisher
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // Between attempts of which the network takes none, and between looks at who reads the topic.
+    // RetryGap: between attempts while the network takes no sample. LookPeriod: between looks at the topic's
+    // readers.
     static constexpr Duration RetryGap = std::chrono::milliseconds(50);
     static constexpr Duration LookPeriod = std::chrono::milliseconds(250);
 
-    // Opens the writer; throws TransportError. All that is given must outlive the object.
+    // Opens the writer; throws TransportError. All arguments must outlive the object.
     ForeignPublisher(const ForeignRule &rule, const MessageType &type, int domain, const SourceClock &source,
                      TransportSession &session);
 
-    // Register this under rule.Local, and have its posts wake the gateway.
+    // Register this message under rule.Local, and have its posts wake the gateway.
     const std::shared_ptr<RabitMessage> &Local() const { return _local; }
     void SetAttached() { _attached = true; }
     const ForeignRule &Rule() const { return _rule; }
 
-    // Returns when to be called again at the latest.
+    // Returns the latest time of the next call.
     Duration Service(Duration now);
     bool TakeChange();
     const Gateway::ForeignTopic &Status();
@@ -59,7 +59,7 @@ private:
     InstanceWriter _writer;
     const std::shared_ptr<RabitMessage> _local;
     bool _attached = false;
-    bool _pending = false;  // posted and not written
+    bool _pending = false;  // posted, and not yet written
     std::optional<Duration> _lastWrite;
     bool _timedOut = false;
     std::optional<Duration> _nextLook;

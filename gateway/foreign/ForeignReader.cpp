@@ -166,7 +166,8 @@ void ForeignReader::Post(SampleBytes bytes, const SampleInfo &info, Duration now
     _shown = Shown{postedAt, info.Key, false};
 }
 
-// By our clock, from the time that the writer says if that is to be believed. Nothing is from the future.
+// Returns the time of the post by our monotonic clock: from the source time if the rule trusts it, otherwise
+// the arrival. The result is never in the future.
 ForeignReader::Duration ForeignReader::PostedAt(const SampleInfo &info, Duration now) const
 {
     if (!_rule.SourceTimeIsTrusted || info.SourceTime < EarliestSourceTime)
@@ -205,7 +206,7 @@ void ForeignReader::Keep(SampleBytes bytes)
     }
 }
 
-// Returns whether it is the first of several in a row.
+// Returns true for the first undecodable sample in a row.
 bool ForeignReader::CountUndecodable(std::size_t size)
 {
     std::uint64_t count = 0;
@@ -246,7 +247,7 @@ ForeignReader::Duration ForeignReader::Service(Duration now)
     return next;
 }
 
-// The queue's handlers are told here, with no lock held.
+// Calls the queue's handlers, with no lock held.
 void ForeignReader::Deliver()
 {
     _changed |= _queue.Find();
@@ -265,7 +266,7 @@ void ForeignReader::Deliver()
         }
         if (!_queue.Local() || _queue.Deliver({LocalQueueResult::Ok, message}, false) != LocalQueueResult::Ok)
         {
-            _queue.Room();  // from now on it tells of room
+            _queue.Room();  // asks the queue to tell when it has room
             break;
         }
         told = _queue.Local();
@@ -318,7 +319,7 @@ void ForeignReader::Judge(Duration now)
         else if (_rule.StaleAfter > Duration(0) && age > _rule.StaleAfter)
         {
             state = Gateway::NodeState::STALE;
-            // In whole periods, so that the text does not change with each look.
+            // The limit, not the age, so that the text does not change with each look.
             reason = "nothing newer than " + Seconds(_rule.StaleAfter);
         }
         if (_undecodableInARow > 0)

@@ -24,36 +24,36 @@
 namespace Rabit
 {
 
-// Reads one topic of programs that are no nodes. The newest sample is posted on the transport's thread,
-// without a lock held; samples for a queue wait here until the gateway's thread has put them there. The
-// program's own handlers of either are called by `handlers`, so that a slow one holds up neither thread. The
-// gateway's thread alone calls what is public.
+// Reads one topic of foreign programs. The newest sample is posted on the transport's thread, without a lock
+// held. Samples for a queue wait here until the gateway's thread has put them there. `handlers` calls the
+// program's own handlers of the message or queue, so that a slow handler holds up neither thread. Public
+// functions are for the gateway's thread alone.
 class ForeignReader
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // Between looks at who writes the topic.
+    // Between looks at the topic's writers.
     static constexpr Duration LookPeriod = std::chrono::milliseconds(250);
 
-    // Rule, type, workspace and handlers must outlive the object. `wake` is called when there is something to
-    // do, on any thread. Without `handlers` all handlers are called on the two threads above.
+    // Rule, type, workspace and handlers must outlive the object. `wake` is called on any thread when Service
+    // has work. Without `handlers`, handlers run on the two threads above.
     ForeignReader(const ForeignRule &rule, const MessageType &type, int domain, RabitWorkspace &workspace,
                   std::function<void()> wake, RabitHandlerThread *handlers = nullptr);
     ~ForeignReader();
 
     // Opens the reader; throws TransportError. The session must outlive the object.
     void Open(TransportSession &session, Duration now);
-    // Returns when to be called again at the latest.
+    // Returns the latest time of the next call.
     Duration Service(Duration now);
-    // Whether the state or the reason has changed since this was asked last.
+    // True if the state or the reason has changed since the last call.
     bool TakeChange();
     const Gateway::ForeignTopic &Status(Duration now);
-    // Empty if there is none. Certain ones do not go with patience.
+    // Empty if there is no problem. A `certain` problem does not go away by waiting.
     std::optional<Gateway::Problem> Problem() const;
 
 private:
-    // What a sample is worth once it is decoded.
+    // The newest sample, as Judge and OnEnd need it.
     struct Shown
     {
         Duration PostedAt{0};
@@ -79,13 +79,13 @@ private:
     RabitWorkspace &_workspace;
     const std::function<void()> _wake;
     RabitHandlerThread *const _handlers;
-    std::unique_ptr<RabitMessage> _scratch;            // of the handler, of which there is one at a time
+    std::unique_ptr<RabitMessage> _scratch;  // of the transport's handler, which runs once at a time
     std::shared_ptr<PublishSubscribeMessage> _global;  // unchanged once the reader is open
     std::string _localProblem;                         // likewise
-    AcceptedQueue _queue;                              // of the gateway's thread, but for Decode
+    AcceptedQueue _queue;                              // for the gateway's thread, except Decode
 
     mutable std::mutex _mutex;
-    ForeignWriters _writers;  // guarded, as all down to the next empty line
+    ForeignWriters _writers;  // guarded by _mutex, as all down to the next empty line
     std::deque<std::shared_ptr<RabitMessage>> _waiting;
     std::optional<Shown> _shown;
     std::uint64_t _undecodable = 0;
@@ -99,7 +99,7 @@ private:
     TransportSession *_session = nullptr;
     TopicQos _qos;
     std::vector<RemoteEndpoint> _found;  // the programs' writers of the topic
-    std::size_t _matching = 0;           // of these
+    std::size_t _matching = 0;           // those of _found that match
     std::string _whyNone;
     bool _isMismatch = false;
     std::optional<Duration> _nextLook;

@@ -17,27 +17,27 @@
 namespace Rabit
 {
 
-// All topics of programs that are no nodes, that this node reads or writes. Gateway's thread only.
+// All topics of foreign programs that this node reads or writes. Gateway's thread only.
 class ForeignTopics
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
     // The configuration, the clock, the workspace of the manager and the handlers must outlive the object.
-    // Null: see ForeignReader.
+    // `handlers` may be null: see ForeignReader.
     ForeignTopics(const GatewayConfig &config, const SourceClock &source, RabitHandlerThread *handlers)
         : _config(config), _source(source), _handlers(handlers)
     {
     }
 
-    // Throws TransportError. Messages that are written wake the manager.
+    // Throws TransportError. Posts of the messages that are written wake the manager.
     void Open(TransportSession &session, RabitManager &manager, Duration now);
     void Close();
-    // Returns when to be called again at the latest.
+    // Returns the latest time of the next call.
     Duration Service(Duration now) { return IsEmpty() ? Duration::max() : ServiceAll(now); }
-    // Whether something that people should know has changed since this was asked last.
+    // True if a state or a reason has changed since the last call.
     bool TakeChange() { return !IsEmpty() && TakeAnyChange(); }
-    // Their rows, and what is wrong with them.
+    // Adds a row for each topic, and their problems.
     void Report(Duration now, Gateway::Fleet &fleet);
 
 private:

@@ -9,13 +9,13 @@
 namespace Rabit
 {
 
-// The writers of a topic whose samples came, and what can be told from the numbers of these. Not thread-safe.
+// The writers of a topic from which samples came, and what their sequence numbers tell. Not thread-safe.
 class ForeignWriters
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // So many are kept; the one that was silent for longest makes room.
+    // Number of writers kept. A new one replaces the one that was silent for longest.
     static constexpr std::size_t Most = 64;
 
     struct Writer
@@ -26,8 +26,8 @@ public:
         Duration LastHeard{0};
     };
 
-    // A sample arrived. False if it is no newer than one of that writer that came before: overtaken on its
-    // way, or repeated.
+    // Counts a sample that arrived. False if the writer has sent one at least as new before: the sample was
+    // overtaken on its way, or repeated.
     bool IsNew(const WriterId &id, std::uint64_t sequence, Duration now)
     {
         const auto found = _writers.find(id);
@@ -51,13 +51,13 @@ public:
         return true;
     }
 
-    // Null if none of its samples came.
+    // Null if no sample of that writer came.
     const Writer *Find(const WriterId &id) const
     {
         const auto found = _writers.find(id);
         return found == _writers.end() ? nullptr : &found->second;
     }
-    // Of all that ever were.
+    // Of all writers ever seen.
     std::uint64_t Missed() const { return _missed; }
 
 private:

@@ -151,7 +151,7 @@ std::string IncarnationStore::Error() const
     return _error;
 }
 
-// 0 if there is no file, or nothing usable in it.
+// Returns 0 if there is no file, or no counter in it.
 std::uint32_t IncarnationStore::ReadCounter()
 {
     std::error_code ignored;
@@ -176,8 +176,8 @@ std::uint32_t IncarnationStore::ReadCounter()
     return counter;
 }
 
-// Writes a new file beside the old one and renames it, so that at any moment one of them is whole on the
-// disk. Returns what went wrong.
+// Writes a new file beside the old one and renames it, so that the disk holds one whole file at any moment.
+// Returns the failure in one line, or an empty text.
 std::string IncarnationStore::Write(std::uint32_t counter) const
 {
     const std::filesystem::path directory = _file.parent_path();

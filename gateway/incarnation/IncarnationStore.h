@@ -22,15 +22,16 @@ namespace Rabit
 // right. Without a file the wall clock is all there is: incarnations then rise from start to start by the
 // fraction, within one second too.
 //
-// Without a file, a wall clock that was set back between two starts gives a lower incarnation. Peers believe
-// it at once after a goodbye, else when the former life is STALE (PeerTable). The links do not wait: peers
-// that remember a higher incarnation make the node take one above it (rules R1 and S6 of the links).
+// Without a file, a wall clock that was set back between two starts gives a lower incarnation. Peers accept
+// it at once after a goodbye, otherwise once the former incarnation is STALE (PeerTable). The links do not
+// wait: peers that remember a higher incarnation make the node take one above it (rules R1 and S6 of the
+// links).
 //
-// Giving out a number and storing it are two calls, because a disk may take seconds to sync: the first is
-// made under the lock of the links, the second is not.
+// Giving out a number and storing it are two calls, because a disk may take seconds to sync: Above is called
+// under the lock of the links, Save is not.
 //
-// Nothing here throws and nothing stops the node: what goes wrong with the file is told by Error(), and the
-// incarnation is then made from the wall clock. Thread-safe.
+// Nothing here throws and nothing stops the node: Error() tells a failure of the file, and the incarnation is
+// then made from the wall clock. Thread-safe.
 class IncarnationStore : public IncarnationSource
 {
 public:
@@ -44,16 +45,17 @@ public:
     IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node,
                      WallClock wallClock, RandomSource random = SystemRandom);
 
-    // An incarnation above all that this object gave out, above `floor`, and above the stored one: the first
-    // call reads the file. Save must have returned before anybody is told of it.
+    // Returns an incarnation above all that this object gave out, above `floor`, and above the stored one:
+    // the first call reads the file. Save must return before anybody is told of it.
     std::uint64_t Above(std::uint64_t floor) override;
 
-    // Stores what Above has given out since the last call; may take as long as the disk does. Costs next to
-    // nothing if there is nothing to store. What fails is not tried again before the next incarnation.
+    // Stores the counter that Above has given out since the last call; may take as long as the disk does.
+    // Costs next to nothing if there is nothing to store. A failed write is not repeated before the next
+    // incarnation.
     void Save();
 
-    // What went wrong with the file when it was last read or written, in one line; empty if nothing did (a
-    // file that does not exist yet is not an error).
+    // The failure of the last read or write of the file, in one line; empty if both succeeded. A file that
+    // does not exist yet is no failure.
     std::string Error() const;
     // The file; empty if there is none.
     const std::filesystem::path &File() const { return _file; }
@@ -67,7 +69,7 @@ private:
     const RandomSource _random;
     mutable std::mutex _mutex;  // not held while the file is written
     bool _isRead = false;
-    std::uint32_t _last = 0;  // the counter of the newest incarnation, or the stored one
+    std::uint32_t _last = 0;  // until it is told by _error once
     std::string _readError;   // until it is told by _error once
     std::string _error;
     std::atomic<bool> _unsaved{false};  // changed under the mutex

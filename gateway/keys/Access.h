@@ -6,7 +6,7 @@
 namespace Rabit::Keys
 {
 
-// A topic, and the partitions of a writer or a reader on it; those of a reader may be patterns.
+// A topic, and the partitions of a writer or a reader on it. Partitions of a reader may be patterns.
 struct TopicAccess
 {
     std::string Topic;
@@ -14,7 +14,7 @@ struct TopicAccess
     bool operator==(const TopicAccess &) const = default;
 };
 
-// What a node writes and reads, and in which domain.
+// The topics that a node writes and reads, and its domain.
 struct Access
 {
     int Domain = 0;

@@ -131,7 +131,7 @@ RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X
     bool done = X509_CRL_set_version(list.get(), version2) == 1 &&
                 X509_CRL_set_issuer_name(list.get(), X509_get_subject_name(&authority)) == 1 &&
                 X509_CRL_set1_lastUpdate(list.get(), from.get()) == 1 &&
-                // As long as the authority: a list that ends would keep everybody out.
+                // Valid as long as the authority: nodes with an expired list would refuse everybody.
                 X509_CRL_set1_nextUpdate(list.get(), X509_get0_notAfter(&authority)) == 1;
     for (const X509 *certificate : revoked)
     {
@@ -186,7 +186,7 @@ CertificatePtr ReadCertificate(std::string_view pem, const std::string &file)
 KeyPtr ReadKey(std::string_view pem, const std::string &file)
 {
     const BioPtr bio = BioOf(pem);
-    // One behind a password is refused: nobody is there to type it.
+    // A key with a password is refused, because no person is there to type it.
     const auto noPassword = [](char *, int, int, void *) { return -1; };
     return Found(KeyPtr(PEM_read_bio_PrivateKey(bio.get(), nullptr, noPassword, nullptr)), "private key",
                  file);

@@ -20,12 +20,13 @@ struct Validity
 
 KeyPtr MakeKey();
 
-// One that signs with its own key. Its subject is `CN=<name>,O=<fleet>`.
+// Makes a self-signed authority. Its subject is `CN=<name>,O=<fleet>`.
 CertificatePtr MakeAuthority(const std::string &fleet, const std::string &name, EVP_PKEY &key,
                              const Validity &validity);
 CertificatePtr MakeCertificate(const SubjectName &subject, EVP_PKEY &key, const Validity &validity,
                                const X509 &authority, EVP_PKEY &authorityKey);
-// Of certificates of that authority, in addition to those that `before` names, which may be null.
+// Makes a list of revoked certificates: those given, of that authority, and those on the list `before`, which
+// may be null.
 RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X509 *> &revoked,
                                const X509 &authority, EVP_PKEY &authorityKey, std::time_t now);
 
@@ -33,7 +34,7 @@ std::string PemOf(const X509 &certificate);
 std::string PemOf(const EVP_PKEY &key);  // the secret half
 std::string PemOf(const X509_CRL &revocations);
 
-// Throw KeysError; `file` is what it names.
+// Throw KeysError, which names `file`.
 CertificatePtr ReadCertificate(std::string_view pem, const std::string &file);
 KeyPtr ReadKey(std::string_view pem, const std::string &file);
 RevocationsPtr ReadRevocations(std::string_view pem, const std::string &file);

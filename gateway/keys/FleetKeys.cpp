@@ -22,9 +22,9 @@ constexpr const char *AuthorityFolder = "authority";
 constexpr const char *IssuedFolder = "issued";
 constexpr const char *RevokedFile = "revoked.pem";
 constexpr std::time_t Day = 24 * 60 * 60;
-constexpr std::size_t LongestName = 64;  // of X.509
+constexpr std::size_t LongestName = 64;  // limit of X.509
 
-// Letters, digits, `_`, `.`, `-`, and no hidden folder.
+// True for letters, digits, `_`, `.` and `-`, and no dot in front: that would be a hidden folder.
 bool IsFolderName(const std::string &name)
 {
     const auto isGood = [](char c)
@@ -46,7 +46,7 @@ void CheckName(const std::string &node)
     }
 }
 
-// A day back, for clocks that are slow.
+// Begins a day before now, for clocks that are slow.
 Validity ValidityFrom(const FleetKeys::Period &period)
 {
     return {period.Now - Day, period.Now + period.Days * Day};
@@ -205,7 +205,7 @@ std::vector<std::string> FleetKeys::Issued(const std::string &node) const
     return files;
 }
 
-// Never one that the node had: old permissions are for an old subject.
+// Returns a number that no certificate of the node has had: old permissions name the old subject.
 unsigned FleetKeys::NextNumber(const Request &request) const
 {
     SubjectName subject{.Fleet = _fleet, .Number = 0, .Node = request.Node};

@@ -11,11 +11,12 @@ namespace Rabit::Keys
 {
 
 // The folder of a fleet: its two authorities in `authority`, and a folder for each node, ready to be copied
-// to it. One that changes it keeps others out for so long.
+// to that node. Holds a lock: at most one FleetKeys changes a folder at a time; the constructor throws for a
+// second one.
 class FleetKeys
 {
 public:
-    // What a node needs; the transport as a configuration names it.
+    // The access that a node needs, and the transport as a configuration names it.
     struct Request
     {
         std::string Node;
@@ -28,9 +29,9 @@ public:
         int Days = 0;
     };
 
-    // Makes the folder and the authorities. Throws KeysError, as all here.
+    // Makes the folder and the authorities. Throws KeysError, as all functions here.
     static void Init(const std::string &folder, const std::string &fleet, const Period &period);
-    // Whether there are authorities in a folder.
+    // True if the folder has authorities.
     static bool IsFleet(const std::string &folder);
 
     explicit FleetKeys(const std::string &folder);
@@ -43,15 +44,16 @@ public:
     // The nodes that have a folder.
     std::vector<std::string> Nodes() const;
     std::string FolderOf(const std::string &node) const { return _folder + "/" + node; }
-    // What a node has now.
+    // The request from which the node's present keys were made.
     Request RequestOf(const std::string &node) const;
 
     void Add(const Request &request, const Period &period) const;
-    // A new key, certificate and permissions in place of those that the node has. The old ones stay good to
-    // their end, unless they are revoked.
+    // Replaces the node's key, certificate and permissions by new ones. The old ones stay good to their end,
+    // unless they are revoked.
     void Renew(const Request &request, const Period &period) const;
-    // All that were ever made for the node but the one that it has now; or all, and its folder is no more.
-    // Each node's folder then says so. Returns how many.
+    // RevokeOlder revokes every certificate that was made for the node except its present one. Revoke revokes
+    // all, and removes the node's folder. Both write the new list into the folder of each node, and return
+    // how many certificates they revoked.
     std::size_t RevokeOlder(const std::string &node, std::time_t now) const;
     std::size_t Revoke(const std::string &node, std::time_t now) const;
 
@@ -59,7 +61,7 @@ private:
     CertificatePtr Authority(const char *name) const;
     KeyPtr AuthorityKey(const char *name) const;
     std::string Place(const std::string &name) const { return _folder + "/authority/" + name; }
-    // The certificates that were made for a node, by file.
+    // The files of the certificates that were made for a node.
     std::vector<std::string> Issued(const std::string &node) const;
     unsigned NextNumber(const Request &request) const;
     void Make(const std::string &folder, const Request &request, const Period &period) const;

@@ -29,8 +29,8 @@ const char *NameOf(Level level)
 std::string GovernanceText(Level level)
 {
     const std::string kind = level == Level::Sign ? "SIGN" : "ENCRYPT";
-    // The first rule that fits holds. One vendor sorts them by their expressions: these are in either order
-    // the same.
+    // The first matching rule holds. One vendor sorts rules by their expressions: in either order these two
+    // have the same effect.
     const std::string rules = Rule("*/Link", kind + "_WITH_ORIGIN_AUTHENTICATION") + Rule("?*", kind);
     return R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation=")"

@@ -1,4 +1,4 @@
-// Files with keys and certificates. All throw KeysError with the file's name and the reason.
+// Files with keys and certificates. All functions throw KeysError with the file's name and the reason.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 namespace Rabit::Keys
 {
 
-// Of up to 1 MiB.
+// Reads a file of up to 1 MiB.
 std::string ReadFile(const std::string &file);
-// Refuses a file that others than its owner may read or write.
+// Like ReadFile, but refuses a file that others than its owner may read or write.
 std::string ReadSecret(const std::string &file);
-// Takes the place of a file of that name at once, or not at all. A secret one is readable by its owner alone
-// from the moment at which it is there.
+// Replace a file of that name as a whole, or not at all. The file of WriteSecret is never readable by anyone
+// but its owner.
 void WriteSecret(const std::string &file, std::string_view text);
 void WriteFile(const std::string &file, std::string_view text);
-// For its owner alone. It must not be there yet, and the one above it must be.
+// Makes a folder for its owner alone. It must not exist yet, and its parent must exist.
 void MakeSecretFolder(const std::string &folder);
 
 }  // namespace Rabit::Keys

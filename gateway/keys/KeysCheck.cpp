@@ -24,7 +24,7 @@ std::string List(const std::vector<std::string> &words)
     return text;
 }
 
-// One that looks at everything: it reads all topics by one pattern, and writes none but the gateways' own.
+// True for the permissions of a tool: it reads all topics by one pattern, and writes only the gateways' own.
 bool IsOfTool(const Permissions::Rule &rule)
 {
     const bool readsAll = rule.Subscribe.size() == 1 && rule.Subscribe.front().Topic == "*";
@@ -66,7 +66,7 @@ void AddTooMuch(const Permissions::Rule &rule, const std::string &node, std::vec
     }
 }
 
-// Topics that have the same partitions, as one line.
+// Adds a line for each group of topics with the same partitions.
 void AddWords(const char *verb, std::vector<TopicAccess> entries, const std::string &own,
               std::vector<std::string> &lines)
 {

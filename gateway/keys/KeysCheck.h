@@ -9,21 +9,22 @@
 namespace Rabit::Keys
 {
 
-// What a person should know of a node's keys.
+// A remark on a node's keys, for people.
 struct KeysFinding
 {
     bool IsProblem = true;  // or a note
     std::string Text;
 };
 
-// What the permissions allow that no node needs: writing by a pattern, in the partition of another node, or
-// whatever is not forbidden; reading topics by a pattern. Permissions of a tool may read all.
+// Finds permissions that no node needs: writing by a pattern or in the partition of another node, anything
+// that is not forbidden, a range of domains, reading topics by a pattern. Permissions of a tool may read all
+// topics.
 std::vector<KeysFinding> WhatIsTooMuch(const NodeKeys &keys);
 
-// What is wrong with the dates, and what soon will be: `days` ahead.
+// Finds a certificate that is not valid yet, has ended, or ends within `days` days.
 std::vector<KeysFinding> WhatEnds(const NodeKeys &keys, std::time_t now, int days);
 
-// Who may what, in words, a line for each: `writes Pose, MissionState`, `reads Pose of uav*`.
+// Lists the permissions in words, one line each: `writes Pose, MissionState`, `reads Pose of uav*`.
 std::vector<std::string> WhoMayWhat(const NodeKeys &keys);
 
 }  // namespace Rabit::Keys

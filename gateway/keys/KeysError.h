@@ -5,8 +5,8 @@
 namespace Rabit::Keys
 {
 
-// Keys that cannot be made, read or used. what() is one line for people: what is wrong, with the file, and
-// what to do.
+// Keys that cannot be made, read or used. what() is one line for people: the problem, with the file, and the
+// remedy.
 class KeysError : public std::runtime_error
 {
 public:

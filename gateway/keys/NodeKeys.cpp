@@ -11,7 +11,7 @@ namespace Rabit::Keys
 namespace
 {
 
-// `write Pose`, `read Pose of uav1 uav2`.
+// Returns `write Pose`, `read Pose of uav1, uav2`.
 std::string WordsFor(const char *what, const TopicAccess &access)
 {
     std::string text = std::string(what) + " " + access.Topic;

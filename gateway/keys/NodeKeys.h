@@ -32,8 +32,8 @@ struct NodeFiles
     std::string Permissions;
 };
 
-// The folder of a node, checked as far as this host can: each file is there and is what it should be, they
-// belong together, and the private key is its owner's alone.
+// The folder of a node, checked as far as this host can: each file exists and is valid, the files belong
+// together, and only the owner can read the private key.
 class NodeKeys
 {
 public:
@@ -45,10 +45,10 @@ public:
     const Validity &ValidityOf() const { return _validity; }
     const Rabit::Keys::Permissions &Permissions() const { return _permissions; }
 
-    // Why a node cannot use them as it is now, one line for people; empty if it can.
+    // Returns, in one line for people, why the node cannot use these keys now; empty if it can.
     std::string WhyNot(const std::string &node, const std::string &transport, int domain,
                        std::time_t now) const;
-    // What of that the permissions do not allow, each `write Pose` or `read Pose`.
+    // Returns the parts of `access` that the permissions do not allow, each as `write Pose` or `read Pose`.
     std::vector<std::string> Lacks(const Access &access) const;
 
 private:

@@ -1,4 +1,4 @@
-// Owners of what OpenSSL makes, and its errors.
+// Owners of OpenSSL's objects, and its errors.
 #pragma once
 
 #include <openssl/bio.h>
@@ -35,10 +35,10 @@ using BioPtr = std::unique_ptr<BIO, FreedBy<&BIO_free_all>>;
 using IntegerPtr = std::unique_ptr<ASN1_INTEGER, FreedBy<&ASN1_INTEGER_free>>;
 using TimePtr = std::unique_ptr<ASN1_TIME, FreedBy<&ASN1_TIME_free>>;
 
-// The first of what OpenSSL says went wrong on this thread; forgets the rest.
+// Returns the first error of OpenSSL on this thread, and clears the others.
 std::string OpenSslError();
 
-// Throws KeysError, with OpenSSL's reason, if it is false or null.
+// Throws KeysError with OpenSSL's reason if `result` is false or null.
 template <typename Result>
 Result Must(Result &&result, const char *what)
 {
@@ -49,7 +49,7 @@ Result Must(Result &&result, const char *what)
     return std::forward<Result>(result);
 }
 
-// To read from; the text must outlive it.
+// Returns a BIO to read from; the text must outlive it.
 BioPtr BioOf(std::string_view text);
 BioPtr EmptyBio();
 std::string TextOf(BIO &bio);

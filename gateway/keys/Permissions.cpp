@@ -16,8 +16,8 @@ namespace
 
 using tinyxml2::XMLElement;
 
-// Vendors read a date without a zone as UTC or as local time: a day more on either side. The certificate's
-// own dates are exact.
+// Vendors read a date without a zone as UTC or as local time, so the document adds a day on either side. The
+// certificate's own dates are exact.
 constexpr std::time_t Day = 24 * 60 * 60;
 
 std::string TimeText(std::time_t time)
@@ -53,7 +53,7 @@ std::string Escaped(std::string_view text)
     return escaped;
 }
 
-// Topics with the same partitions are one entry: every node is shown the whole document.
+// Topics with the same partitions share one entry, to keep the document small: every node is shown all of it.
 void AddEntries(const char *kind, std::vector<TopicAccess> topics, std::string &text)
 {
     while (!topics.empty())
@@ -140,13 +140,14 @@ Permissions::Rule RuleOf(const XMLElement &element, const std::string &file)
     return rule;
 }
 
-// `*` and `?` stand for anything. As the vendors do, which both know more than that: what they would match
-// besides is refused in hand-written permissions anyway.
+// True if the name matches the pattern, in which `*` and `?` are wildcards, as for the vendors. Both vendors
+// know more wildcards, but hand-written permissions with patterns are refused anyway.
 bool Fits(std::string_view pattern, std::string_view name)
 {
     std::size_t at = 0;
     std::size_t in = 0;
-    std::size_t star = std::string_view::npos;  // the last one that was passed, and what it stands for so far
+    std::size_t star =
+        std::string_view::npos;  // the last `*` that was passed; it stands for the text up to `upTo`
     std::size_t upTo = 0;
     while (in < name.size())
     {

@@ -11,7 +11,7 @@
 namespace Rabit::Keys
 {
 
-// What a document of permissions says of one node, as far as vendors heed it.
+// The permissions of one node in a document, as far as vendors heed it.
 struct Permissions
 {
     struct Rule
@@ -29,19 +29,20 @@ struct Permissions
     std::vector<Rule> Rules;
     bool AllowsTheRest = false;
 
-    // Whether a rule allows it before one forbids it.
+    // True if a rule allows the access before one forbids it, or if no rule matches and AllowsTheRest is
+    // true.
     bool MayPublish(int domain, const TopicAccess &access) const;
     bool MaySubscribe(int domain, const TopicAccess &access) const;
 };
 
-// A signed document that is larger does not fit into the one message in which a vendor shows it, with its
-// certificate.
+// Largest signed document, in bytes. A vendor shows it and its certificate in one message, into which a
+// larger one does not fit.
 inline constexpr std::size_t LargestDocument = 12000;
 
-// The text of a document, to be signed: exactly this access.
+// Returns the text of a document that allows exactly this access, to be signed.
 std::string PermissionsText(const SubjectName &subject, const Validity &validity, const Access &access);
 
-// The grants in a document. Throws KeysError; `file` is what it names.
+// Returns the grants in a document. Throws KeysError, which names `file`.
 std::vector<Permissions> ReadPermissions(const std::string &text, const std::string &file);
 
 }  // namespace Rabit::Keys

@@ -34,7 +34,7 @@ std::string VerifiedDocument(std::string_view document, const X509 &authority, c
         throw KeysError(file +
                         " is not signed by the permissions authority, or was changed: " + OpenSslError());
     }
-    // Signed is the form with carriage returns.
+    // The signature covers the form with carriage returns.
     std::string text = TextOf(*out);
     std::erase(text, '\r');
     return text;

@@ -8,11 +8,11 @@
 namespace Rabit::Keys
 {
 
-// S/MIME, as DDS wants its documents: the text in the clear, and a signature.
+// Signs a text as DDS requires: S/MIME, with the text in the clear.
 std::string SignDocument(std::string_view text, X509 &authority, EVP_PKEY &key);
 
-// The text of a document that this authority has signed, whatever its dates. Throws KeysError; `file` is what
-// it names.
+// Returns the text of a document that this authority has signed; the authority's dates are not checked.
+// Throws KeysError, which names `file`.
 std::string VerifiedDocument(std::string_view document, const X509 &authority, const std::string &file);
 
 }  // namespace Rabit::Keys

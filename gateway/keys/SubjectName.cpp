@@ -76,7 +76,7 @@ std::array<std::uint8_t, 6> GuidStartOf(const X509_NAME &name)
     std::array<std::uint8_t, SHA256_DIGEST_LENGTH> hash{};
     SHA256(encoded, static_cast<std::size_t>(size), hash.data());
     OPENSSL_free(encoded);
-    // A one, and then the first 47 bits.
+    // A one, and then the first 47 bits of the hash.
     std::array<std::uint8_t, 6> start{};
     std::uint8_t before = 1;
     for (std::size_t i = 0; i < start.size(); ++i)

@@ -19,9 +19,10 @@
 namespace Rabit
 {
 
-// What Gateway/Fleet says of the air: rates, from counters that rise. They are of about the last second:
-// asked more often it says the same again. What was sent is what the transport has counted; how it divides
-// among publications and links is computed from the sizes of what they wrote, and the rest is presence.
+// Fills the part of Gateway/Fleet about the air: rates over about the last second, from rising counters. If
+// called more often, it gives the same rates again. The bytes sent are those that the transport has counted.
+// The shares of publications and links are computed from the sizes of their samples, and the rest is
+// presence.
 class AirReport
 {
 public:
@@ -32,12 +33,13 @@ public:
 
     // Fills fleet.air, and the rates of its links and publications, which are there already, the latter in
     // the order of the publishers. Adds a problem for each publication whose newest value takes more than a
-    // second of the budget. `capacity`: bytes a second that the air carries; empty: not limited by it.
+    // second of the budget. `capacity`: estimated capacity of the channel in bytes a second; empty: it does
+    // not limit this node.
     void Fill(const TransportCounters &counters, std::optional<double> capacity,
               const std::deque<TopicPublisher> &publishers, Gateway::Fleet &fleet, Duration now);
 
 private:
-    // Bytes in all that were sent, and how many a second lately.
+    // All bytes sent, and the rate of late.
     struct Rate
     {
         std::uint64_t Bytes = 0;

@@ -16,23 +16,23 @@ namespace
 
 using Duration = AirTraffic::Duration;
 
-// Between looks at what went, and at what the air carries. What went within is taken to have gone at its end.
+// Periods in which the sent bytes and the capacity estimate are read. Bytes sent within a period count as
+// sent at its end.
 constexpr Duration WatchPeriod = std::chrono::milliseconds(10);
 constexpr Duration LimitPeriod = std::chrono::milliseconds(100);
-// Links wait for their turn: when to see again whether one of them has something to do meanwhile, such as to
-// let a message expire.
+// While links wait for their turn, period of checks for other work of theirs, such as a message that expires.
 constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 
-// Part of a pace that beats take: half of what presence may take where others want to send. The other nodes'
-// reports, by which it is known, come with their beats; so not less.
+// Share of a pace that beats take: half of the share of presence where other classes want to send. Not less,
+// since the reports on which the pace rests come with the other nodes' beats.
 constexpr double BeatShareOfPace = 0.125;
-// Nobody has asked for seldom beats, and a pace may come of bad weather alone.
+// No setting asks for rare beats here, and a pace may come from bad weather alone.
 constexpr Duration SlowestBeatOfPace = std::chrono::seconds(1);
-// Part of a budget that discovery may take, so that beats get through while nodes find each other.
+// Share of a budget that discovery may take, so that beats get through while nodes find each other.
 constexpr double DiscoveryShare = 0.5;
 constexpr double SmallestBeat = 100.0;  // on the air
-// Without a budget the others learn by the beats how late datagrams come, so who sends much beats more often:
-// one for so many times its bytes, but not before this time.
+// Without a budget peers measure the delay by the beats, so a node that sends much beats more often: once in
+// BytesForABeat times the bytes of a beat, but no sooner than ShortestBeatGap after the last one.
 constexpr double BytesForABeat = 20.0;
 constexpr Duration ShortestBeatGap = std::chrono::milliseconds(100);
 
@@ -121,7 +121,7 @@ void AirTraffic::LookAtDiscovery(std::uint64_t sent)
     }
 }
 
-// What went since the last look, and was not paid for.
+// Accounts for the bytes sent since the last call that were not paid for yet.
 void AirTraffic::Watch(Duration now)
 {
     const Duration before = std::exchange(_watchedAt, now);
@@ -130,7 +130,7 @@ void AirTraffic::Watch(Duration now)
     {
         return;
     }
-    // Without a limit that was sent when this node last served its streams, which may be long ago.
+    // Without a limit these bytes were sent when this node last served its streams, which may be long ago.
     _estimate.Sent(bytes, IsLimited() ? now : std::max(_servedAt, before));
     if (IsLimited())
     {
@@ -139,7 +139,7 @@ void AirTraffic::Watch(Duration now)
     }
 }
 
-// So much was sent that the others should have one to time it by.
+// True if so many bytes were sent that the peers need a beat to measure their delay.
 bool AirTraffic::IsBeatWorth(Duration now) const
 {
     return _sinceBeat >= BytesForABeat * _beatBytes && !_config.Radio.Budget &&
@@ -153,7 +153,7 @@ std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
     return _presence.SendBeat(now, std::min(most, BeatFormat::Largest));
 }
 
-// So that beats take their share of the budget, and of what the air carries if that is less.
+// Sets the period in which beats take their share of the budget, or of the capacity estimate if that is less.
 void AirTraffic::SetBeatPeriod(std::optional<double> budget, std::optional<double> carried)
 {
     Duration period = BeatShare::Quickest;
@@ -200,8 +200,8 @@ Duration AirTraffic::ServeUnlimited(Duration now)
     return next;
 }
 
-// With a budget the schedule keeps the promise (LookAtBeat). A pace is an estimate, but a node that is not
-// heard is certainly shown LOST: the beat goes, whatever the pace says.
+// With a budget the schedule keeps the promise (LookAtBeat). A pace is an estimate, but a missed deadline
+// certainly makes this node LOST at its peers: the beat is sent, whatever the pace.
 void AirTraffic::KeepPromise(Duration now)
 {
     if (!_config.Radio.Budget && now >= _presence.BeatPromised())
@@ -227,8 +227,8 @@ void AirTraffic::LookAtBeat(Duration now)
     }
 }
 
-// One of the usual size may go as soon as that fits: it says as much as there is room for, and what is left
-// goes with the next ones.
+// A beat may be sent as soon as one of the usual size fits. It carries as much as there is room for, and the
+// rest goes with the next beats.
 std::size_t AirTraffic::BeatBytes(Duration now) const
 {
     const AirCost::Readers readers{.Destinations = _presence.BeatCopies()};

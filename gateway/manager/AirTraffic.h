@@ -25,21 +25,21 @@
 namespace Rabit
 {
 
-// Has all that a gateway puts on the air sent: in the order and at the pace of AirSchedule where something
-// limits it, at once where nothing does.
+// Sends all datagrams of a gateway: in the order and at the rate of AirSchedule where there is a limit, at
+// once where there is none.
 //
-// - `radio: budget` limits, and what the peers' reports of late datagrams say that the air carries
-//   (CapacityEstimate), whichever is less.
+// - The limit is the lower one of `radio: budget` and the capacity estimated from the peers' reports of late
+//   datagrams (CapacityEstimate).
 // - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); the texts of
 //   types that are asked for (class bulk); each link; each
-//   published message. A datagram is made when its turn has come, from what is newest then.
-// - Each is paid for with what the transport has counted for it. What the transport has sent beside, which is
-//   DDS's own, is paid for, too, and a part of a budget is kept free for it when it is due.
+//   published message. A datagram is made when its turn has come, from the newest data.
+// - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
+//   for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget the exchange of cards may take half of it (TransportSession::SetDiscoveryRate).
-// - Where nothing but an estimate limits it, a beat that is due is not kept waiting.
-// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, where the
-//   air is known to carry little, an eighth of that, within 500 ms and a second; where it is not, there are
-//   more of them while much is sent, up to ten a second.
+// - Where the estimate is the only limit, a due beat does not wait.
+// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, they take
+//   an eighth of the capacity estimate, within 500 ms and a second. Without an estimate, beats become more
+//   frequent while much is sent, up to ten a second.
 //
 // Gateway's thread only.
 class AirTraffic
@@ -51,22 +51,23 @@ public:
     AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
                std::deque<TopicPublisher> &publishers, TypeExchange &types);
 
-    // Once there are all publishers. The session is kept until Close.
+    // Call once all publishers exist. The session is kept until Close.
     void Open(TransportSession &session);
     void Close() { _session = nullptr; }
 
-    // Sends what is due and may go now. Returns when to call again at the latest.
+    // Sends the due datagrams that may be sent now. Returns when to call again at the latest.
     Duration Serve(Duration now);
-    // A peer said how late a datagram of this node came.
+    // A peer reported the delay of a datagram of this node.
     void Reported(CapacityEstimate::Peer peer, Duration delay, Duration arrivedAt, Duration now);
     void NothingLate(CapacityEstimate::Peer peer, Duration now) { _estimate.NothingLate(peer, now); }
 
-    // Fills what is said of the air, of links and of publications, which are in the message already.
+    // Fills the part about the air, and the rates of links and publications, whose rows are in the message
+    // already.
     void Report(Gateway::Fleet &fleet, Duration now);
 
 private:
     bool IsLimited() const { return !_schedule.Budget().IsUnlimited(); }
-    // Bytes that went since the last call.
+    // Bytes sent since the last call.
     std::size_t TakeSent();
     void LookAtDiscovery(std::uint64_t sent);
     void Watch(Duration now);
@@ -103,8 +104,8 @@ private:
     LinkStreams _linkStreams;
     AirReport _report;
 
-    double _beatBytes = 150.0;  // on the air, of late ones
-    double _sinceBeat = 0.0;    // bytes of samples that went since the last one
+    double _beatBytes = 150.0;  // average size of late beats on the air
+    double _sinceBeat = 0.0;    // bytes of samples sent since the last beat
     std::uint64_t _samples = 0;
     Duration _beatAt{0};
     std::uint64_t _sent = 0;  // as the transport counts, when it was last asked

@@ -22,7 +22,7 @@
 namespace Rabit
 {
 
-// A FleetExplorer, and the gateway's side of it. Until somebody wants it the gateway tells it nothing.
+// A FleetExplorer, and the gateway's side of it. The gateway tells it nothing before its first use.
 // Thread-safe.
 class Exploration final : public FleetExplorer
 {
@@ -53,7 +53,7 @@ public:
     void SetNodes(const PeerTable &peers, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
     void FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session);
-    // A unit of work begins; at its end hand what this returns to EndTurn.
+    // Call at the beginning of a unit of work, and pass the result to EndTurn at its end.
     std::uint64_t BeginTurn() const { return _turnsAsked; }
     void EndTurn(std::uint64_t asked);
 

@@ -47,14 +47,14 @@ namespace
 using Duration = std::chrono::nanoseconds;
 
 constexpr Duration FleetPeriod = std::chrono::seconds(1);
-// Between two posts of Gateway/Fleet, however much happens: each takes time for every node and row.
+// Least time between two posts of Gateway/Fleet: each post takes time for every node and row.
 constexpr Duration ShortestFleetGap = std::chrono::milliseconds(100);
-// Less than this is not worth a sleep of its own.
+// Shorter sleeps are not worth it.
 constexpr Duration ShortestSleep = std::chrono::microseconds(200);
-// There and back, on a radio that is only thin: a datagram and its answer may take that long.
+// A round trip that a radio with a low rate alone may cause.
 constexpr Duration ShortWays = std::chrono::milliseconds(100);
 
-// Of the file that counts the lives of this node. Two gateways of one node count for themselves.
+// Name of the file that counts the incarnations of this node. Two gateways of one node count separately.
 std::string CounterName(const GatewayConfig &config)
 {
     return config.Name == GatewayConfig().Name ? config.Node : config.Node + "@" + config.Name;
@@ -136,7 +136,8 @@ public:
         }
         for (const Presence::DelayHeard &delay : served.Delays)
         {
-            // What was sent while a report was under way on a long path is not what it is about.
+            // On a long path datagrams are sent while a report is under way. It is not about these, so its
+            // way is subtracted.
             const Duration ways = _links.ShortestRoundTrip(delay.Node);
             const Duration known = std::max(ways - ShortWays, Duration(0));
             _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt - known, now);
@@ -155,7 +156,7 @@ public:
         next = std::min(next, _foreign.Service(now));
         if (_states.TellVersions(_publishers, now))
         {
-            // One that is due already waits for its turn.
+            // A beat that is due already waits for its turn.
             const Duration beat = _presence.BeatDue();
             next = beat > now ? std::min(next, beat) : next;
         }
@@ -249,7 +250,7 @@ private:
         {
             _presence.BeReplay();
         }
-        // First, so that the others know of this node as early as can be.
+        // First, so that the others learn of this node as early as possible.
         _presence.Open(*_session, Announcements::Of(_config));
         _links.Open(*_session);
         _subscriptions.Open(*_session);
@@ -269,7 +270,7 @@ private:
         }
     }
 
-    // What is asked for at run time.
+    // Serves the requests of FleetExplorer.
     void Explore(const PeerTable::Change &change, Duration now)
     {
         // Clocks and counts change with each beat.
@@ -282,7 +283,8 @@ private:
         const Exploration::Requests requests = _exploration.TakeRequests();
         for (const TypeQuestions::Wanted &wanted : requests.Types)
         {
-            static_cast<void>(_types.Want(wanted, now));  // of too many the asker asks again
+            static_cast<void>(_types.Want(wanted, now));  // if too many texts are lacking, the requester asks
+                                                          // again
         }
         bool any = false;
         for (const SubscribeRule &rule : requests.Subscriptions)
@@ -450,7 +452,7 @@ private:
     OriginTable _origins;
     RemoteQueues _remote;
     HandlerWatch _slow{_workspace.GetClock()};
-    // Calls the program's own handlers of what comes from other nodes. None where the network is stepped.
+    // Calls the program's own handlers of data from other nodes. Null where the network is stepped.
     const std::unique_ptr<RabitHandlerThread> _handlers{
         _transport && !_transport->IsStepped() ? std::make_unique<RabitHandlerThread>(&_slow) : nullptr};
     LinkDriver _links;

@@ -10,7 +10,7 @@
 namespace Rabit
 {
 
-// How important something is by the configuration.
+// The priority of a message or queue in the configuration.
 struct Importance
 {
     TrafficClass Class = TrafficClass::Command;

@@ -87,7 +87,7 @@ bool LinkStreams::Send(StreamId id, std::size_t most, Duration now, bool &sent)
         return false;
     }
     const Stream &stream = *_byIndex[id.Index];
-    // The size that a link says of its next datagram is an estimate.
+    // A link only estimates the size of its next datagram.
     const std::size_t copies = _copies(*stream.Node);
     sent = _links.SendOne(*stream.Node, *stream.Queue, _schedule.Room(most * copies, now) / copies);
     return true;

@@ -18,25 +18,25 @@ namespace Rabit
 {
 
 // The queue links as streams of the schedule: each link one, of the class and weight of the first `send` rule
-// that fits, and for each node one of presence for acknowledgements and hellos. A stream that has had nothing
-// to send for a minute is given up, and made again when it has. No allocation for one that is there.
-// Gateway's thread only.
+// that fits, and for each node one of presence for acknowledgements and hellos. A stream without anything to
+// send for a minute is removed, and made again when needed. An existing stream needs no allocation. Gateway's
+// thread only.
 class LinkStreams
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // How many datagrams one to that node takes.
+    // Number of copies of a datagram that are sent for that node.
     using CopiesTo = std::function<std::size_t(std::string_view node)>;
 
     // References must outlive the object.
     LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule,
                 CopiesTo copies);
 
-    // Tells the schedule what the links could send now, in datagrams of at most so many bytes on the air.
+    // Tells the schedule which links could send now, in datagrams of at most `most` bytes on the air.
     void Look(std::size_t most, Duration now);
-    // One of these was chosen: sends one datagram, of at most so many bytes and no more than the budget has
-    // room for now. False: it is none of these. `sent`: whether there was one.
+    // Sends one datagram of the chosen stream, of at most `most` bytes and no more than the budget has room
+    // for now. Returns false if the stream is no link stream. `sent`: true if there was a datagram.
     bool Send(StreamId id, std::size_t most, Duration now, bool &sent);
 
 private:

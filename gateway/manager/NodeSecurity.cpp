@@ -18,7 +18,7 @@ Keys::Access AccessOf(const GatewayConfig &config)
     access.Publish = {{GatewayTopics::Beat, defaultPartition}, {GatewayTopics::Link, defaultPartition}};
     if (config.Tool)
     {
-        // It looks at whatever it is asked to.
+        // A tool reads every topic that it is asked to.
         access.Subscribe = {{"*", {"", "*"}}};
         return access;
     }

@@ -16,13 +16,13 @@ namespace Rabit
 // The topics and partitions that a gateway with this configuration writes and reads, no more and no less.
 Keys::Access AccessOf(const GatewayConfig &config);
 
-// Puts GatewayConfig::Security into the settings, once the keys are found good for this node over that
-// transport now. Throws TransportError, of the setting `security`, with what to do. Returns when they end;
+// Checks that the keys are valid now for this node over that transport, and puts GatewayConfig::Security into
+// the settings. Throws TransportError, of the setting `security`, with what to do. Returns when the keys end;
 // nothing without security.
 std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::string &transport,
                                        TransportSettings &settings);
 
-// That keys end within 30 days, or have ended.
+// The problem that keys end within 30 days, or have ended.
 std::optional<Gateway::Problem> KeysProblem(std::optional<std::time_t> endsAt, std::time_t now);
 
 }  // namespace Rabit

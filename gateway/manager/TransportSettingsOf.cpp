@@ -14,10 +14,10 @@ namespace Rabit
 namespace
 {
 
-// With a budget. Participants' announcements are most of what a silent node would cost.
+// Period with a budget. Participants' announcements are most of the cost of a silent node.
 constexpr std::chrono::milliseconds LongAnnouncementPeriod{30000};
 
-// What is configured holds.
+// The configured lease, or with a budget three announcement periods if none is configured.
 std::chrono::milliseconds LeaseOf(const GatewayConfig &config)
 {
     const bool isSet = config.Lease != GatewayConfig().Lease || config.Lines.count("lease") != 0;

@@ -9,7 +9,7 @@
 namespace Rabit
 {
 
-// What a gateway with that configuration asks of its transport.
+// The transport settings of a gateway with that configuration.
 TransportSettings TransportSettingsOf(const GatewayConfig &config, std::uint64_t incarnation);
 
 // The line in the configuration's file at which a setting of the transport stands, 0 if it does not stand

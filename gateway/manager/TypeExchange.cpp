@@ -11,7 +11,7 @@ namespace Rabit
 namespace
 {
 
-// Of the body of a sample, beside the bytes of the text: the length of the frame, and its header.
+// Bytes of a sample's body beside the text: the length of the frame, and its header.
 constexpr std::size_t BodyOverhead = 4 + TypeFrames::HeaderSize;
 constexpr std::size_t SmallestPart = 64;
 

@@ -24,14 +24,15 @@
 namespace Rabit
 {
 
-// Hands out the IDL texts of types, and takes in those that this node has asked for (../types/README.md).
+// Sends the IDL texts of types on request, and collects those that this node has requested
+// (../types/README.md).
 //
-// Threads: the transport's threads leave parts that come in an inbox; all else is for the gateway's thread.
+// Threads: the transport's threads put arriving parts into an inbox; all else is for the gateway's thread.
 class TypeExchange
 {
 public:
     using Duration = std::chrono::nanoseconds;
-    // A text that was asked for has come, and has that hash.
+    // A requested text has come, with that hash.
     using OnText = std::function<void(std::uint64_t definition, std::string text)>;
 
     // References must outlive the object, and the object the opened links. `wake` makes the gateway's thread
@@ -39,9 +40,9 @@ public:
     TypeExchange(const GatewayConfig &config, Presence &presence, LinkDriver &links,
                  std::function<void()> wake, OnText onText);
 
-    // Asks for a text. False: too many are lacking.
+    // Requests a text. False: too many are lacking.
     bool Want(const TypeQuestions::Wanted &wanted, Duration now);
-    // What the others ask, and what has come.
+    // Processes the questions of other nodes, and the parts that have come.
     void TakeIn(const Presence::Served &served, Duration now)
     {
         if (!served.TypesAsked.empty() || _lacks)
@@ -50,19 +51,19 @@ public:
         }
     }
 
-    // When a part is to be sent; empty: none is. What that takes, as bytes of the body of a sample; and sends
-    // it.
+    // Due: when a part is to be sent; empty: none is. NextBody: its size, in bytes of the body of a sample.
+    // SendOne sends it.
     std::optional<Duration> Due() const { return _answers.Due(); }
     std::size_t NextBody(std::size_t most) const;
     void SendOne(std::size_t mostBody, Duration now);
-    // Sends what is due, and returns when to be called again.
+    // Sends the due parts, and returns when to call again.
     Duration Service(Duration now);
 
-    // Parts that nobody had asked for, and texts that had another hash.
+    // Number of parts that were not requested, and of texts with another hash.
     std::uint64_t Malformed() const;
 
 private:
-    // What the inbox holds at most: more than one answerer sends within a second.
+    // Largest contents of the inbox in bytes: more than one answering node sends within a second.
     static constexpr std::size_t LargestInbox = 512 * 1024;
 
     void TakeInNews(const Presence::Served &served, Duration now);

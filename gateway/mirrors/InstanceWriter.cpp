@@ -9,7 +9,7 @@ namespace Rabit
 namespace
 {
 
-// Looks at the bytes where the transport has them encoded, and keeps them if they have another key.
+// Reads the encoded bytes in the transport's buffer, and copies them if they have another key.
 class KeyWatch final : public SampleEncoder
 {
 public:
@@ -33,7 +33,7 @@ public:
         return true;
     }
 
-    // Of what was encoded last.
+    // The key of the sample encoded last.
     mutable KeyHash Key{};
     mutable std::vector<std::uint8_t> Other;  // empty if the key is the one known
 

@@ -12,18 +12,18 @@
 namespace Rabit
 {
 
-// Writes the values of one message. A message has one value, so of a type with a key one instance is there at
-// a time: when a value of another key has been written, the former instance is disposed, in that order, so
-// that no reader is without a value between. A disposal that the network does not take is owed, and comes
-// before the next value; so at most one is ever owed. One that cannot be encoded is dropped; the transport
-// logs and counts it. Not thread-safe.
+// Writes the values of one message. A message has one value, so a type with a key has one instance at a time.
+// After a value of another key was written, the former instance is disposed, in that order, so that no reader
+// is without a value in between. A disposal that the network does not take is owed, and comes before the next
+// value; so at most one is owed. A disposal that cannot be encoded is dropped; the transport logs and counts
+// it. Not thread-safe.
 class InstanceWriter
 {
 public:
     // The type must outlive the object.
     InstanceWriter(const MessageType &type, std::unique_ptr<TransportWriter> writer);
 
-    // Ok if the value was written; TimedOut also if it was not tried, for want of a disposal that is owed.
+    // Ok if the value was written; TimedOut also if it was not tried because an owed disposal failed.
     WriteResult Write(const RabitMessage &message, std::int64_t sourceTime)
     {
         return Write(message, sourceTime, &TransportWriter::Write);
@@ -37,7 +37,7 @@ public:
     std::size_t HeldBytes() const { return _writer->HeldBytes(); }
     void SendHeld() { _writer->SendHeld(); }
     bool OwesDisposal() const { return !_former.empty(); }
-    // Ok if none is owed.
+    // Sends an owed disposal. Ok if none is owed.
     WriteResult DisposeFormer();
     int MatchedReaders() const { return _writer->MatchedReaders(); }
     int Destinations() const { return _writer->Destinations(); }
@@ -50,7 +50,7 @@ private:
 
     const MessageType &_type;
     const std::unique_ptr<TransportWriter> _writer;
-    // Of a type with a key: the first sample of the instance that is there now; empty before that is written.
+    // For a type with a key: the first sample of the present instance; empty before it is written.
     Bytes _present;
     KeyHash _presentKey{};
     Bytes _former;  // a sample of the instance that is to be disposed; empty: none

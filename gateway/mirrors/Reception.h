@@ -6,7 +6,7 @@
 namespace Rabit
 {
 
-// How one subscription does with one node.
+// The state of one subscription for one node.
 struct Reception
 {
     std::uint64_t Received = 0;  // samples posted

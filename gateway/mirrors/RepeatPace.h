@@ -7,8 +7,8 @@
 namespace Rabit
 {
 
-// When a State is written again because others have asked for it. Once for all who ask; and whoever asks
-// without end, or lies, costs little: each repetition of a value waits twice as long as the one before.
+// Decides when a State is written again on request: once for all nodes that request it. Each repetition of a
+// value waits twice as long as the one before, so a node that asks without end, or lies, costs little.
 //
 // A pure state machine; `now` never goes back.
 class RepeatPace
@@ -16,13 +16,13 @@ class RepeatPace
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // From the last write on. Who asks sooner asked before it came.
+    // Least time from the last write to a repetition. A sooner request was sent before that write arrived.
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
     static constexpr Duration LongestGap = std::chrono::seconds(2);
-    // Nobody has asked for so long: the next one is answered as if he were the first.
+    // After this time without a request, the next one counts as the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
 
-    // Somebody lacks the present value.
+    // A node lacks the present value.
     void Ask(Duration now)
     {
         if (_lastAsked && now - *_lastAsked >= Quiet)
@@ -41,7 +41,7 @@ public:
         _waits = false;
     }
 
-    // When it is to be written again; empty: nobody waits for it.
+    // When the value is to be written again; empty: no node waits for it.
     std::optional<Duration> Due() const
     {
         return _waits ? std::optional(*_lastWritten + _gap) : std::nullopt;

@@ -68,7 +68,7 @@ void StateExchange::TakeIn(const PeerTable::Change &change)
     }
 }
 
-// What is wanted with what is offered.
+// Matches the subscriptions with the announcements, and sets the States that StateRepair requests.
 void StateExchange::Compare()
 {
     for (const PeerTable::Peer *peer : _subscriptions.OnOffers(_presence.Peers()))

@@ -17,8 +17,8 @@
 namespace Rabit
 {
 
-// Carries what beats tell and ask of States between Presence and the mirrors, both ways: tells the versions
-// of what this node publishes, has written again what others ask for, and asks for what it lacks itself
+// Carries versions and requests of States between Presence and the mirrors. Announces the versions of this
+// node's States, has a State written again that others request, and requests States that this node lacks
 // (StateRepair). Gateway's thread only.
 class StateExchange
 {
@@ -30,7 +30,7 @@ public:
 
     // Once all publishers are there, in the order of the announcement.
     void Open(const std::deque<TopicPublisher> &publishers);
-    // After Presence has served, and before what is due is sent.
+    // Call after Presence has served, and before due datagrams are sent.
     void Serve(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now)
     {
         // Most of the time there is nothing to do.
@@ -58,7 +58,7 @@ private:
     Presence &_presence;
     Subscriptions &_subscriptions;
     StateRepair _repair;
-    std::vector<std::size_t> _states;      // which publisher has the State of that place
+    std::vector<std::size_t> _states;      // the publisher of the State with that index
     std::vector<std::uint32_t> _versions;  // as told last
 };
 

@@ -10,7 +10,7 @@ namespace Rabit
 namespace
 {
 
-// What the estimate of another node's clock may be wrong by. More would do no harm before 73 minutes.
+// Largest error of the estimate of another node's clock. A larger one would do no harm up to 73 minutes.
 constexpr std::int64_t Slack = 1'000'000'000;
 
 }  // namespace
@@ -60,7 +60,7 @@ void StateRepair::Forget(const std::string &node)
     _nodes.erase(found);
 }
 
-// The version told is that of a sample no newer than Stated. So what is newer than that is newer than it.
+// A sample later than Stated is newer than the announced version.
 bool StateRepair::Has(const std::string &name, const Node &node, const Entry &entry) const
 {
     const auto taken = _takenIn(name, node.Incarnation, entry.What.Subscription);
@@ -135,7 +135,7 @@ void StateRepair::Rest(const std::string &name)
     Reschedule(name, found->second);
 }
 
-// Returns whether something is to be asked for now.
+// Returns true if a State is to be requested now.
 bool StateRepair::Ripen(const std::string &name, Node &node, Duration now)
 {
     bool any = false;

@@ -17,17 +17,17 @@
 namespace Rabit
 {
 
-// Decides which States of other nodes are to be asked for. A State is said once, best effort; beats tell its
-// version (StateVersion). Who has another one asks in its own beats, until it has it.
+// Decides which States of other nodes to request. A State is written once, best effort; beats carry its
+// version (StateVersion). A node with another version requests the State in its own beats, until it has it.
 //
-// - A node that is heard for the first time is asked at once, else the sample is given AskAfter: it may be on
-//   its way, and beats may overtake it. Then it is asked for again, each time after twice as long.
-// - All who lack a sample may lack it because it was lost at its origin, and notice by the same beat. The
+// - A node that is heard for the first time is asked at once. Otherwise the sample has AskAfter to arrive,
+//   since beats may overtake it. Then it is requested again, each time after twice as long.
+// - A sample that was lost at its origin is lacking at all nodes, which notice it by the same beat. The
 //   answer to one goes to all; so they ask at random within a time that grows with their number.
-// - A sample that is newer than what the beat knew of is no lack.
+// - A sample that is newer than the version in the beat is not lacking.
 //
 // A pure state machine: no I/O, no threads, no clock of its own; `now` never goes back. Bounded: MostNodes,
-// and what this node wants of each.
+// and the States that this node wants of each.
 class StateRepair
 {
 public:
@@ -37,11 +37,11 @@ public:
     static constexpr Duration LongestWait = std::chrono::seconds(2);
     static constexpr Duration SpreadForOne = std::chrono::milliseconds(2);
     static constexpr Duration LongestSpread = std::chrono::milliseconds(100);
-    // Those beyond are not asked.
+    // Further nodes are not asked.
     static constexpr std::size_t MostNodes = 1000;
 
-    // A State of a node, by its place among those that it announces, and who wants it here: one of the
-    // subscriptions, by a number that means nothing to this class.
+    // A State of a node, by its index among those that it announces, and the subscription that wants it, by
+    // an opaque number.
     struct Wanted
     {
         std::size_t State = 0;
@@ -50,28 +50,29 @@ public:
         bool operator==(const Wanted &) const = default;
     };
 
-    // The source time of the newest sample of that life of a node that a subscription has taken in; empty:
-    // none.
+    // The source time of the newest sample of that incarnation of a node that a subscription has accepted;
+    // empty: none.
     using TakenIn = std::function<std::optional<std::int64_t>(
         const std::string &node, std::uint64_t incarnation, std::size_t subscription)>;
 
     StateRepair(TakenIn takenIn, RandomSource random);
 
-    // What is wanted of a life of a node, as its announcement has become known. It replaces what was wanted.
+    // Sets the States wanted of an incarnation of a node, once its announcement is known. Replaces the former
+    // ones.
     void SetWanted(const std::string &node, std::uint64_t incarnation, const std::vector<Wanted> &wanted);
 
     struct Told
     {
         std::uint64_t Incarnation = 0;
-        // Of its States, by their places; 0: never written, or not told yet.
+        // Versions of its States, by index; 0: never written, or not told yet.
         std::span<const std::uint32_t> Versions;
-        // What the node's source clock shows now, by estimate.
+        // Estimate of the node's source clock now.
         std::int64_t SourceNow = 0;
         Duration RoundTrip{0};   // 0: unknown
         std::size_t Others = 0;  // nodes besides the two that may lack the same
     };
 
-    // A beat of the node has told versions.
+    // A beat of the node has carried versions.
     void OnTold(const std::string &node, const Told &told, Duration now);
     // The node is LOST: it is not asked until its beats tell versions again.
     void Rest(const std::string &node);
@@ -80,25 +81,26 @@ public:
     struct Ask
     {
         std::string Node;
-        std::vector<bool> States;  // to be asked for from now on, by their places; none: nothing any more
+        std::vector<bool> States;  // to be requested from now on, by index; none: nothing any more
         bool Now = false;          // some are due: the next beat should come soon
     };
 
-    // The nodes of which something else is to be asked for than before, or again. Looks at what has arrived
-    // meanwhile; so call it before each beat, and when it is Due.
+    // The nodes whose requests have changed or are due again. Checks which samples have arrived meanwhile; so
+    // call it before each beat, and when it is Due.
     std::vector<Ask> Take(Duration now);
     // Empty: nothing is lacking.
     std::optional<Duration> Due() const;
-    // Whether nothing is lacking, and Take has nothing to take back.
+    // True if nothing is lacking, and Take has no request to withdraw.
     bool IsIdle() const { return _due.empty() && _changed.empty(); }
 
 private:
     struct Entry
     {
         Wanted What;
-        bool Judged = false;                 // compared at least once in this life
-        std::int64_t Stated = 0;             // the latest source time of the version told
-        std::optional<Duration> LackingDue;  // when it is asked for (again); empty: it is there, or rests
+        bool Judged = false;                 // compared at least once in this incarnation
+        std::int64_t Stated = 0;             // the latest source time of the announced version
+        std::optional<Duration> LackingDue;  // when it is requested (again); empty: it is there, or its node
+                                             // is LOST
         Duration Wait{0};                    // the last one
         bool Asked = false;                  // in the beats
     };
@@ -109,7 +111,7 @@ private:
         std::vector<Entry> Entries;
         Duration RoundTrip{0};
         std::optional<Duration> Due;  // as in _due
-        bool Changed = false;         // what is asked is another thing than was taken
+        bool Changed = false;         // the request differs from the one that was taken
     };
 
     bool Has(const std::string &name, const Node &node, const Entry &entry) const;
@@ -125,7 +127,7 @@ private:
     std::map<std::string, Node> _nodes;
     std::set<std::pair<Duration, std::string>> _due;
     std::set<std::string> _asked;    // nodes of which something is asked
-    std::set<std::string> _changed;  // nodes of which something is asked no more, and Take has not said so
+    std::set<std::string> _changed;  // nodes whose requests have ended, which Take has not returned yet
 };
 
 }  // namespace Rabit

@@ -5,16 +5,16 @@
 namespace Rabit::StateVersion
 {
 
-// The version of a State is taken from the source time of its sample, so that whoever has the sample knows
-// the version without being told, and a beat carries 4 bytes for it. Sample times are put into the middle of
-// a step of 1024 ns: what a backend rounds on the way does not change the version. Versions come again after
-// 73 minutes; with a time that is known to be later than the sample they are told apart.
+// The version of a State follows from the source time of its sample. So a node that has the sample knows the
+// version, and a beat carries 4 bytes for it. Sample times are put into the middle of a step of 1024 ns:
+// rounding by a backend does not change the version. Versions repeat after 73 minutes; a time that is known
+// to be later than the sample tells them apart.
 
 inline constexpr std::int64_t Step = 1024;
 // No version: nothing was written yet.
 inline constexpr std::uint32_t None = 0;
 
-// Of a sample of that source time, in ns.
+// The version of a sample with that source time, in ns.
 constexpr std::uint32_t Of(std::int64_t sourceTime)
 {
     return static_cast<std::uint32_t>((sourceTime & ~(Step - 1)) / Step);
@@ -27,13 +27,13 @@ constexpr std::int64_t Quantised(std::int64_t time)
     return Of(middle) == None ? middle + Step : middle;
 }
 
-// The source time for what follows on a quantised time within the same step.
+// The source time for a State that follows a quantised time within the same step.
 constexpr std::int64_t Next(std::int64_t quantised)
 {
     return Quantised(quantised + Step);
 }
 
-// Whether two source times are of one version, and not merely of versions that came again.
+// True if two source times have one version, and not merely a repeated one.
 constexpr bool IsSame(std::int64_t sourceTime, std::int64_t other)
 {
     return (sourceTime & ~(Step - 1)) == (other & ~(Step - 1));

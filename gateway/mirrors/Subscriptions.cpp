@@ -63,7 +63,7 @@ void Subscriptions::Close()
     _known.clear();
 }
 
-// With what profile the node announces what the rule wants; empty if it does not.
+// The profile with which the node announces the message and type of the rule; empty if it does not.
 std::optional<QosProfile> Subscriptions::OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer)
 {
     if (!peer.HasPresentOffers() || !MatchesAny(rule.From, peer.Node))

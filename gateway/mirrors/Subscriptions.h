@@ -24,7 +24,7 @@
 namespace Rabit
 {
 
-// All messages that this node wants of others: one reader for each rule. Gateway's thread only.
+// All subscriptions of this node: one reader for each rule. Gateway's thread only.
 class Subscriptions
 {
 public:
@@ -35,13 +35,12 @@ public:
     // Throws TransportError.
     void Open(TransportSession &session);
     void Close();
-    // One more, while open; false if the message is subscribed to already. Throws TransportError. OnOffers
+    // Adds a rule while open; false if the message is subscribed to already. Throws TransportError. OnOffers
     // then returns all nodes once more.
     bool Add(const SubscribeRule &rule, TransportSession &session);
-    // Takes in what the nodes announce, and that one has begun another life. Returns of which nodes something
-    // was new.
+    // Processes new announcements and incarnations. Returns the nodes that have one.
     std::vector<const PeerTable::Peer *> OnOffers(const PeerTable &peers);
-    // Which States of that node are wanted, by which of Rules().
+    // The States of that node that are wanted, and by which of Rules().
     std::vector<StateRepair::Wanted> StatesWanted(const PeerTable::Peer &peer) const;
     // As TopicSubscriber::TakenIn, of the reader of one of Rules().
     std::optional<std::int64_t> TakenIn(std::size_t rule, const std::string &node,
@@ -62,7 +61,7 @@ private:
         std::unique_ptr<TopicSubscriber> Subscriber;
     };
 
-    // Which announcement of a node was taken in.
+    // The announcement of a node that was processed last.
     struct Known
     {
         std::uint64_t Incarnation = 0;

@@ -9,7 +9,8 @@
 namespace Rabit
 {
 
-// Both partitions: plain DDS programs read the default one, nodes read those of the nodes they want.
+// Writes into both partitions: plain DDS programs read the default one, nodes read those of the nodes that
+// they subscribe to.
 TopicPublisher::TopicPublisher(const PublishRule &rule, const MessageType &type, const std::string &node,
                                const SourceClock &source, TransportSession &session)
     : _rule(rule),
@@ -45,7 +46,7 @@ TopicPublisher::Duration TopicPublisher::Service(Duration now)
     return std::max(DueAt(now), now);
 }
 
-// What was posted before may be there still, and is the first value.
+// A value that was posted before may be there still, and is the first one.
 void TopicPublisher::SetAttached()
 {
     _global = _local->GetGlobalPublishSubscribeMessageRef().get();
@@ -98,8 +99,7 @@ TopicPublisher::Duration TopicPublisher::DueAt(Duration now) const
     return _writer.OwesDisposal() ? std::min(value, _lastWrite + NextGap()) : value;
 }
 
-// What was posted at once, and what others ask for when it is its turn; nothing more often than the rule
-// allows.
+// A new value is due at once, a requested one at its turn, none more often than the rule allows.
 TopicPublisher::Duration TopicPublisher::ValueDueAt(Duration now) const
 {
     const Duration mayWriteAt = _everWritten ? _lastWrite + NextGap() : now;
@@ -147,7 +147,7 @@ void TopicPublisher::Write(Duration now, Way way)
     }
 }
 
-// To the last datagram. Peers that heard of a State before would ask for what is under way.
+// The last datagram was written. Announced earlier, the State would be requested while it is under way.
 void TopicPublisher::Written(Duration now)
 {
     _isWhole = true;
@@ -158,7 +158,7 @@ void TopicPublisher::Written(Duration now)
     }
 }
 
-// Of two States within a step of StateVersion the second is stamped as if it came with the next step.
+// The second of two States within a step of StateVersion gets the time of the next step.
 std::int64_t TopicPublisher::TimeOfPost() const
 {
     const std::int64_t posted = _source.At(_local->GetPostTime().Monotonic);
@@ -185,7 +185,7 @@ WriteResult TopicPublisher::WriteValue(Way way)
     const WriteResult result = (_writer.*way)(*_local, _time);
     _writtenTime = _time;
     _written += result == WriteResult::Ok ? 1 : 0;
-    // A value that the network did not take in time is tried again; one that can never be sent would only
+    // A value that the network did not take in time is tried again; a value that can never be sent would only
     // fail again.
     _taken -= _pending && result == WriteResult::TimedOut ? 1 : 0;
     _pending = result == WriteResult::TimedOut;

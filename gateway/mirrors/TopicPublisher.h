@@ -24,14 +24,14 @@ namespace Rabit
 
 // Mirrors one local message to a topic: writes its newest value whenever it was posted, and a State again
 // when others ask for it (RepeatPace); all no more often than the rule allows. Intermediate values may be
-// skipped, as with a fetch. Of a type with a key the newest value's instance alone is there: the former one
-// is disposed. Used by the gateway's thread only.
+// skipped, as with a fetch. A type with a key has only the newest value's instance: the former one is
+// disposed. Used by the gateway's thread only.
 class TopicPublisher
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // Between attempts of which the network takes none: while there is none, a write ends at once.
+    // Time between failed attempts to write: without a network, a write fails at once.
     static constexpr Duration RetryGap = std::chrono::milliseconds(50);
 
     TopicPublisher(const PublishRule &rule, const MessageType &type, const std::string &node,
@@ -45,29 +45,29 @@ public:
     void SetAttached();
     bool IsAttached() const { return _global != nullptr; }
 
-    // Of the State that was written last, for the beats to tell (StateVersion). None: nothing was, or what
-    // was posted last can never be written, or it is telemetry.
+    // The version of the State written last, which beats carry (StateVersion). None: nothing was written, the
+    // last post can never be written, or it is telemetry.
     std::uint32_t Version() const { return _version; }
-    // Somebody lacks the State of that version.
+    // A node lacks the State of that version.
     void AskedFor(Duration now);
-    // Fetches and writes what is due. Returns when to call again even if nothing is posted (Duration::max():
+    // Fetches and writes a due value. Returns when to call again even if nothing is posted (Duration::max():
     // never).
     Duration Service(Duration now);
 
-    // In place of Service, for a scheduler that decides what goes out next. A message has one slot: a newer
-    // post replaces the one that waits, whose time of post goes with it, so that its age is true however long
-    // it waited.
+    // In place of Service, for a scheduler that chooses the next datagram. A message has one slot: a newer
+    // post replaces the one that waits. The time of post goes with the value, so that its age is true however
+    // long it waited.
     //
     // Takes the newest value, if there is a newer one.
     void Fetch();
-    // When there is something to write, of what was fetched; Duration::max(): nothing.
+    // When the fetched value is to be written; Duration::max(): there is none.
     Duration DueAt(Duration now) const;
-    // What its next datagram takes on the air, all its copies; at least 1. A sample that takes several ones
-    // goes one by one, and nothing else of this message goes before its last.
+    // Bytes on the air of the next datagram, with all its copies; at least 1. A sample of several datagrams
+    // is sent one by one, and no newer value of this message is sent before its last.
     std::size_t NextBytes(const AirCost &cost) const;
-    // Bytes on the air of the sample that was fetched last, all datagrams together; 0: nobody gets it.
+    // Bytes on the air of the sample that was fetched last, all datagrams together; 0: it has no receiver.
     std::size_t SampleBytes(const AirCost &cost) const;
-    // Writes what is due, one datagram.
+    // Writes one datagram of the due value.
     void WriteNext(Duration now);
 
     Gateway::PublicationStatus Status() const;
@@ -93,15 +93,15 @@ private:
     bool _pending = false;                       // fetched and not written yet
     bool _timedOut = false;                      // the last write, or the disposal after it
     bool _everWritten = false;
-    std::int64_t _time = 0;                    // source time of what was fetched last
-    std::optional<std::int64_t> _writtenTime;  // of what was written last; empty: that can never be written
+    std::int64_t _time = 0;                    // source time of the value fetched last
+    std::optional<std::int64_t> _writtenTime;  // of the value written last; empty: it can never be written
     bool _isWhole = true;                      // it has gone to its last datagram, as far as is known
     std::uint32_t _version = StateVersion::None;
     RepeatPace _repeat;
     Duration _lastWrite{0};
     std::uint64_t _offered = 0;  // posts, of this name, since it was attached
     std::uint64_t _postsBefore = 0;
-    std::uint64_t _taken = 0;  // of them, values that were written or never can be
+    std::uint64_t _taken = 0;  // posts whose values were written or never can be
     std::uint64_t _written = 0;
     std::uint64_t _failures = 0;
 };

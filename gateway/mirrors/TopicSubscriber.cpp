@@ -62,7 +62,7 @@ std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_v
     }
     if (_sources.size() >= MostSources)
     {
-        // Whoever was never heard, or has been forgotten, makes room.
+        // A node that was never heard, or has been forgotten, makes room.
         const auto unknown =
             std::find_if(_sources.begin(), _sources.end(),
                          [this](const auto &source) { return !_origins.Find(source.first); });
@@ -143,7 +143,7 @@ bool TopicSubscriber::IsRepetition(const Source &source, const SampleInfo &info)
            StateVersion::IsSame(source.Posted->Time, info.SourceTime);
 }
 
-// Nothing keeps the order on the way: what the network held up may come long after what followed it.
+// The network does not keep the order: a delayed sample may come long after its successor.
 bool TopicSubscriber::IsOvertaken(const Source &source, const SampleInfo &info)
 {
     return source.Posted && source.Posted->Incarnation == info.Incarnation &&

@@ -28,13 +28,13 @@ namespace Rabit
 // Mirrors one topic to local messages `<node>/<message>`, one for each node that writes it. Decodes each
 // sample once, on the transport's thread, and posts it there, without a lock held. The program's own handlers
 // of the message are called by `handlers`, so that a slow one does not hold up that thread. The reader is
-// best effort and volatile whatever the node announces: what is lost of a State is asked for (StateRepair).
+// best effort and volatile whatever the node announces: a lost State is requested (StateRepair).
 //
-// What is not posted: samples of a node that the rule does not name, whatever partition it writes into, that
-// has not been heard as live or is in another life by now, of one that does not announce the profile that the
-// rule asks for, what is older than what was posted of that life, or of a time in the future, repetitions of
-// a State that is posted already, what does not decode, and samples of programs that are not nodes. All but
-// the repetitions are counted as dropped.
+// Some samples are not posted. Dropped and counted are samples of a node that the rule does not name,
+// whatever its partition; that has not been heard as live, or is in another incarnation by now; or that does
+// not announce the profile of the rule. So are samples that are older than the last one posted of that
+// incarnation, lie in the future, do not decode, or come from programs that are no nodes. Repetitions of a
+// State that is posted already are ignored, and not counted.
 //
 // That an instance is disposed, or has lost its writer, changes nothing. If it is the former one, the message
 // has another value by now, or will have. If it is the present one, there is nothing newer to show: a message
@@ -51,11 +51,11 @@ public:
     // Opens the reader; throws TransportError.
     void Open(TransportSession &session);
 
-    // The profile with which a node announces the message; empty: it does not say, or not yet. A rule that
-    // asks for State takes nothing of who does not announce it.
+    // The profile with which a node announces the message; empty: it does not say, or not yet. A rule with
+    // the profile State takes nothing from a node that does not announce State.
     void SetOffer(const std::string &node, std::optional<QosProfile> profile);
-    // The source time of the newest sample of that life of a node that was taken in: posted, or of no use
-    // here however often it came.
+    // The source time of the newest accepted sample of that incarnation of a node: posted, or useless here
+    // however often it comes.
     std::optional<std::int64_t> TakenIn(const std::string &node, std::uint64_t incarnation) const;
     // Samples of that node that were posted, and DDS writers that match now.
     std::uint64_t ReceivedFrom(const std::string &node) const;
@@ -91,7 +91,7 @@ private:
         LogThrottle Log;
     };
 
-    // What happened to a sample.
+    // The fate of a sample.
     enum class Outcome
     {
         Posted,

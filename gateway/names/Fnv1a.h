@@ -5,8 +5,8 @@
 namespace Rabit
 {
 
-// The hash of Fowler, Noll and Vo (FNV-1a, 64 bits) of anything made of bytes: the same in every process and
-// on every host. No protection against who looks for two that are equal.
+// Returns the FNV-1a hash (Fowler, Noll and Vo, 64 bits) of a range of bytes: the same in every process and
+// on every host. An attacker can easily find two inputs with one hash.
 template <typename Bytes>
 constexpr std::uint64_t Fnv1a(const Bytes &bytes)
 {

@@ -9,7 +9,7 @@
 namespace Rabit
 {
 
-// What a rule's topic and type are called on the wire.
+// Return the names that a rule's topic and type have on the wire.
 inline std::string WireTopicOf(const ForeignRule &rule)
 {
     return rule.Names == ForeignRule::WireNames::Ros2 ? RosTopicName(rule.Topic) : rule.Topic;

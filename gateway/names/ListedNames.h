@@ -6,7 +6,8 @@
 namespace Rabit
 {
 
-// "`A`, `B`" of the first few items, by what `name` says of each; for lines that people read.
+// Lists the first six items for lines that people read, such as "`A`, `B`". `name(item)` returns the name
+// of an item.
 template <typename Items, typename Name>
 std::string ListedNames(const Items &items, Name name)
 {

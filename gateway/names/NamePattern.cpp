@@ -9,7 +9,7 @@ namespace Rabit
 namespace
 {
 
-// Names in every datagram of the links are checked, so a table.
+// A table, since the names in every datagram of the links are checked.
 constexpr std::array<bool, 256> NodeCharacters = []
 {
     std::array<bool, 256> table{};
@@ -66,8 +66,8 @@ bool MatchesPattern(std::string_view pattern, std::string_view name)
 
 bool CoversPattern(std::string_view wider, std::string_view pattern)
 {
-    // Characters that are in no pattern can be matched by wildcards alone. Where the pattern takes any number
-    // of them, more than `wider` is long must go into a star of it; and none at all must fit as well.
+    // `Strange` is in no pattern, so only wildcards match it. Each `*` of `pattern` is tried empty, and as
+    // more `Strange` characters than `wider` is long: only a `*` of `wider` matches these.
     constexpr char Strange = '\x01';
     const auto withStarsAs = [pattern](std::size_t length)
     {

@@ -9,9 +9,9 @@
 namespace Rabit
 {
 
-// A short name for one life of a node, for what is said often: a hash of its name and incarnation. Two lives
-// may have one tag, so it only ever says who is meant, and whoever is meant by mistake answers in vain. Never
-// 0.
+// Returns a short name of one incarnation of a node, for frequent messages: a hash of the node name and the
+// incarnation. Never 0. Two incarnations may share a tag, so a tag only addresses: a node that is addressed
+// by mistake answers in vain.
 inline std::uint32_t NodeTagOf(std::string_view node, std::uint64_t incarnation)
 {
     std::string bytes(node);

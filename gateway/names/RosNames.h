@@ -6,11 +6,11 @@
 namespace Rabit
 {
 
-// What ROS 2 calls a topic on the wire: `/chatter`, `chatter` and `rt/chatter` are `rt/chatter`; what begins
-// with `rq/` or `rr/` stays as it is.
+// Returns ROS 2's name of a topic on the wire: `rt/chatter` for `/chatter`, `chatter` and `rt/chatter`.
+// Names that begin with `rq/` or `rr/` are returned unchanged.
 std::string RosTopicName(std::string_view topic);
-// What ROS 2 calls a type on the wire: `std_msgs::msg::String` is `std_msgs::msg::dds_::String_`. One that
-// has that form already stays as it is.
+// Returns ROS 2's name of a type on the wire: `std_msgs::msg::dds_::String_` for `std_msgs::msg::String`.
+// Names of that form are returned unchanged.
 std::string RosTypeName(std::string_view type);
 
 }  // namespace Rabit

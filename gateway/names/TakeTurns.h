@@ -5,8 +5,8 @@
 namespace Rabit
 {
 
-// Offers the entries of a map in turn, from the one after `last` on, until `most` were taken.
-// `take(key, value)` says whether it takes one.
+// Offers the entries of a map in turn, each at most once, beginning after `last`, until `most` were taken.
+// `take(key, value)` returns true if it takes the entry; `last` becomes the key of that entry.
 template <typename Map, typename Take>
 void TakeTurns(Map &map, typename Map::key_type &last, std::size_t most, const Take &take)
 {

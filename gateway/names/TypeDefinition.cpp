@@ -59,7 +59,8 @@ std::uint64_t DefinitionHash(const std::string &name, const std::string &idlText
 
 std::uint64_t DefinitionHash(const MessageType &type)
 {
-    // Asked for every message that is sent. Types live as long as the process, so entries stay true.
+    // Cached, since it is called for every message that is sent. Types live as long as the process, so no
+    // entry goes stale.
     static thread_local std::map<const MessageType *, std::uint64_t> hashes;
     const auto found = hashes.find(&type);
     return found != hashes.end()

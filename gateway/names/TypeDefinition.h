@@ -8,10 +8,11 @@
 namespace Rabit
 {
 
-// A hash (FNV-1a, 64 bit) of a type's IDL without comments and white space. Two nodes that were built from
-// different versions of one IDL file see different hashes under the same type name.
+// Returns a hash (FNV-1a, 64 bits) of a type's name and IDL. Each run of comments and white space counts as
+// one blank. Two nodes that were built from different versions of one IDL file have different hashes for
+// one type name.
 std::uint64_t DefinitionHash(const MessageType &type);
-// The same, of a type of that IDL name and text.
+// The same hash, of a type with that IDL name and text.
 std::uint64_t DefinitionHash(const std::string &name, const std::string &idlText);
 
 }  // namespace Rabit

@@ -20,22 +20,22 @@
 namespace Rabit
 {
 
-// What this node's beats have to say beside that it is there, and how that is fitted into them: questions
-// first, then echoes and delays, then a part of the announcement for who has asked, then the States. What
-// does not fit follows in the next beats. While another node has this one's name, a beat without such a part
-// says now and then where this one runs. Used by the gateway's thread only.
+// Collects the contents of this node's beats and fits them in: questions first, then echoes and delays, then
+// a requested part of the announcement, then the versions of States. Contents that do not fit follow in the
+// next beats. While another node has this node's name, a beat without such a part tells now and then where
+// this node runs. Used by the gateway's thread only.
 class BeatContents
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // Where this node runs is said so often.
+    // Time between two beats that tell where this node runs.
     static constexpr Duration PlacePeriod = std::chrono::seconds(3);
 
     // `peers` must outlive the object.
     BeatContents(PeerTable &peers, RandomSource random) : _answer(std::move(random)), _peers(peers) {}
 
-    // What this node announces, encoded, and how many States there are in it.
+    // Sets the encoded announcement of this node, and the number of States in it.
     void Begin(std::vector<std::uint8_t> offers, std::size_t states);
     std::uint32_t OffersDigest() const { return _digest; }
 
@@ -47,7 +47,7 @@ public:
     std::size_t States() const { return _states.size(); }
     void SetStateVersion(std::size_t state, std::uint32_t version) { _states.at(state) = version; }
 
-    // Who beats seldom echoes seldom, and says seldom that all is well.
+    // A node that beats seldom sends echoes and reports of small delays seldom, too.
     void SetBeatPeriod(Duration period)
     {
         _peers.SetBeatPeriod(period);
@@ -56,20 +56,21 @@ public:
 
     // This node is a tool, and its beats say so.
     void BeTool() { _isTool = true; }
-    // What this node posts was recorded before, and its beats say so.
+    // This node plays a recording, and its beats say so.
     void BeReplay() { _isReplay = true; }
 
-    // What its links suffer from, the worst first, for each beat to say from now on that has room for it.
+    // Sets the troubles of this node's links, the worst first. From now on each beat with room for them
+    // reports them.
     void SetStrains(std::vector<LinkStrain> strains) { _strains = std::move(strains); }
 
-    // When there is something to ask for, which need not wait for the next period.
+    // When a question is due, which need not wait for the next period; empty: no question is due.
     std::optional<Duration> QuestionDue() const;
-    // When a part of the announcement is to be said.
+    // When a part of the announcement is to be sent.
     std::optional<Duration> AnswerDue() const { return _answer.Due(); }
 
-    // Bytes of the body of the next beat at most.
+    // Largest size of the next beat's body, in bytes.
     std::size_t Size(Duration now) const;
-    // Puts into the beat what is to be said now and fits into a body of so many bytes.
+    // Fills the beat with the contents that are due now and fit into a body of `most` bytes.
     void Fill(Gateway::Beat &beat, Duration now, std::size_t most);
 
 private:

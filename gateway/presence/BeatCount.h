@@ -5,15 +5,15 @@
 namespace Rabit
 {
 
-// How many beats of one life of a node came, and how many did not, by the numbers that its writer gives them.
-// One that was overtaken counts as not come.
+// Counts the beats of one incarnation of a node that came, and that did not, by their writer's sequence
+// numbers. A beat that a newer one overtook counts as missed.
 class BeatCount
 {
 public:
-    // More at once is no loss but another way of counting.
+    // A larger gap means that the writer numbers otherwise, not that beats were lost.
     static constexpr std::uint64_t LongestGap = 10'000;
 
-    // A beat came that is newer than those before. 0: it has no number.
+    // A beat came that is newer than those before. `sequence` 0: the beat has no number.
     void Add(std::uint64_t sequence)
     {
         ++_heard;
@@ -25,7 +25,7 @@ public:
     }
 
     std::uint64_t Heard() const { return _heard; }
-    // Between the first that came and the last.
+    // Beats that did not come, between the first and the last that came.
     std::uint64_t Missed() const { return _missed; }
 
 private:

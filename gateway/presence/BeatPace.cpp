@@ -7,7 +7,7 @@ namespace Rabit
 namespace
 {
 
-// Halved so often, the longest period is shorter than the shortest gap.
+// Halved this many times, the longest period is shorter than the shortest gap.
 constexpr BeatPace::Duration::rep MostRests = 16;
 
 }  // namespace

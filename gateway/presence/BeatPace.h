@@ -7,10 +7,10 @@
 namespace Rabit
 {
 
-// When this node beats: once a period, quickly when somebody has come who must not wait for the next period,
-// and earlier when there is something to ask for, or a State was written that may be lost. Beats that were
-// brought forward follow each other less and less quickly, until nobody has brought one forward for a while:
-// who asks without end does not make this node shout.
+// Decides when this node beats: once a period, quickly for a newcomer, and earlier for a question or after a
+// State was written, which may be lost. Beats that were brought forward follow each other less and less
+// quickly, until none was brought forward for a while. So endless questions do not make this node flood the
+// channel.
 //
 // A pure state machine; `now` never goes back.
 class BeatPace
@@ -21,50 +21,51 @@ public:
     static constexpr Duration DefaultPeriod = std::chrono::milliseconds(500);
     static constexpr Duration ShortestPeriod = std::chrono::milliseconds(100);
     static constexpr Duration LongestPeriod = std::chrono::seconds(60);
-    // No two beats follow each other more quickly.
+    // Least time between two beats.
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
-    // The first beats that are brought forward follow each other after so long at the latest: a question or
-    // its answer may be lost.
+    // Longest time between the first QuickBeats beats that are brought forward: a question or its answer may
+    // be lost.
     static constexpr Duration QuickGap = std::chrono::milliseconds(300);
     static constexpr int QuickBeats = 12;
-    // After so long without one the next may be brought forward as if it were the first.
+    // After this time without a beat brought forward, the next one counts as the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
-    // After so long without a newcomer the next one is met with beats that are twice as quick.
+    // Each such time without a newcomer makes the beats for the next one twice as quick.
     static constexpr Duration SeriesRest = std::chrono::seconds(1);
-    // Who lacks a State learns of it from the beat after it. So that comes so long after the last of several
-    // States in a row (those of 10 Hz need none of their own), but for States alone no sooner than that after
-    // another beat, and with a period longer than the usual one not before its time.
+    // A node that lost a State learns of it from the next beat. That beat comes AfterState after the last of
+    // several States in a row (States at 10 Hz need no beat of their own). For States alone it comes no
+    // sooner than GapForStates after another beat, and not before its time if the period is longer than
+    // DefaultPeriod.
     static constexpr Duration AfterState = std::chrono::milliseconds(120);
     static constexpr Duration GapForStates = std::chrono::milliseconds(200);
 
     Duration Period() const { return _period; }
-    // Beats that are brought forward follow each other after so long at the latest, if that is less than a
-    // period: for who beats seldom and wants answers. A ShortestGap at least.
+    // Sets the longest time between beats that are brought forward, if that is less than a period: for a node
+    // that beats seldom and wants answers. Raised to ShortestGap.
     void SetLongestGap(Duration gap) { _longestGap = std::max(gap, ShortestGap); }
-    // Raised or lowered to what is possible. A longer one holds from the next beat on, which is the first to
-    // tell the others of it.
+    // Sets the period, clamped to the range above. A longer period holds from the next beat on, the first
+    // beat that tells the others of it.
     void SetPeriod(Duration period);
 
-    // When the next beat is due if nobody has anything to ask.
+    // When the next beat is due if there is no question.
     Duration Due() const { return _stateDue ? std::min(_due, *_stateDue) : _due; }
-    // What the last one has told the others: one comes by then, whatever there is to say.
+    // The time by which the last beat promised the next one.
     Duration Promised() const { return _promised; }
-    // Before this there is none at all.
+    // No beat comes before this time.
     Duration Earliest() const { return _last ? *_last + ShortestGap : Duration(0); }
-    // Before this none is brought forward because there is something to ask for.
+    // No beat is brought forward for a question to a time before this.
     Duration EarliestToAsk() const { return _last ? *_last + _gap : Duration(0); }
 
-    // Somebody has come: the next beats follow each other quickly, each step twice the one before. Who comes
-    // soon after another has half as quick ones, and of a whole fleet that comes one after another the last
-    // ones hear the usual ones: on a thin radio, that they come over seconds shows that it is full.
+    // A node has come: the next beats follow each other quickly, each step twice the one before. The beats
+    // for a newcomer soon after another are half as quick, so the last of a whole fleet get the usual beats:
+    // on a thin radio newcomers spread over seconds show that it is full.
     void Introduce(Duration now);
     // A State was written.
     void StateWritten(Duration now);
     // A beat was sent. `delay` is how long datagrams wait in queues now: a question is not asked again before
     // its answer can have come.
     void Sent(Duration now, Duration delay = Duration(0));
-    // A beat was sent before it was due, because it would have been late otherwise. Nobody has brought it
-    // forward.
+    // A beat was sent before it was due, because it would have been late otherwise. It does not count as
+    // brought forward.
     void SentEarly(Duration now);
 
 private:

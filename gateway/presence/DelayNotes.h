@@ -13,8 +13,8 @@
 namespace Rabit
 {
 
-// How late the newest datagram of each other node came against its quickest, for this node's beats to tell
-// them. News of a delay is told at once, that there is none now and then.
+// The queueing delay of each other node's newest datagram, against its quickest one, for this node's beats to
+// report to that node. A large delay is reported at once, a small one now and then.
 //
 // A pure state machine; `now` never goes back. Bounded.
 class DelayNotes
@@ -25,33 +25,33 @@ public:
 
     static constexpr Duration Small = std::chrono::milliseconds(20);
     static constexpr Duration Large = std::chrono::milliseconds(60);
-    // With each fourth beat, but not more often than this, and while it still counts (DelayReports::Fresh).
+    // Small delays are reported with each fourth beat, but not more often than SmallPeriod, and often enough
+    // that a report still counts (DelayReports::Fresh).
     static constexpr Duration SmallPeriod = std::chrono::seconds(2);
     static constexpr Duration LongestSmallPeriod = std::chrono::milliseconds(3500);
     static constexpr int SmallEachBeats = 4;
-    // In a large fleet a few of them are enough.
+    // In a large fleet a few small delays are enough.
     static constexpr std::size_t MostSmall = 2;  // at once
-    // Older news is none.
+    // An older delay is not reported.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
-    static constexpr Duration Lately = std::chrono::seconds(3);  // such notes count for the delay
+    static constexpr Duration Lately = std::chrono::seconds(3);  // newer notes count in Delay()
     static constexpr Duration LongestQueue = std::chrono::seconds(2);
 
-    // How often this node beats.
+    // Sets the time between this node's beats.
     void SetBeatPeriod(Duration period)
     {
         _smallPeriod = std::clamp(SmallEachBeats * period, SmallPeriod, LongestSmallPeriod);
     }
-    // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns whether its sender
-    // should hear of it soon.
+    // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns true if the sender
+    // should hear of the delay soon.
     bool Note(Tag node, Duration delay, Duration arrival);
-    // By how much datagrams are late now: half of the nodes that were heard lately are later than that, half
-    // less. At most LongestQueue, so that a clock that stood still holds nothing up for long. 0: none was
-    // heard.
+    // The median delay of the nodes that were heard lately; 0 if none was. At most LongestQueue, so that a
+    // clock that stood still holds nothing up for long.
     Duration Delay(Duration now) const;
-    // How many there are to be told, no more than `most`.
+    // Number of delays to report now, at most `most`.
     std::size_t Due(Duration now, std::size_t most) const;
-    // What is to be told now, in turns.
+    // Takes at most `most` delays to report now; the nodes take turns.
     std::vector<Gateway::DelayReport> Take(Duration now, std::size_t most);
 
 private:

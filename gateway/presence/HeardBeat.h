@@ -9,13 +9,13 @@
 namespace Rabit
 {
 
-// A beat, and what the transport says of it.
+// A beat, and its sample information from the transport.
 struct HeardBeat
 {
-    std::string Node;  // who wrote it, in which life
+    std::string Node;  // the node that wrote it, and its incarnation
     std::uint64_t Incarnation = 0;
-    std::int64_t Utc = 0;        // what the writer's wall clock showed, nanoseconds since 1970
-    std::uint64_t Sequence = 0;  // which of its writer's samples it is; 0: not known
+    std::int64_t Utc = 0;        // the writer's wall clock, nanoseconds since 1970
+    std::uint64_t Sequence = 0;  // its writer's sequence number; 0: not known
     Gateway::Beat Beat;
     std::chrono::nanoseconds Arrival{0};  // by this node's monotonic clock
 };

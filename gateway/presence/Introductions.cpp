@@ -25,7 +25,7 @@ void Introductions::Begin(std::size_t others, Duration now)
     }
 }
 
-// What is remembered is bounded: only who was granted something, and no longer than it counts.
+// The memory is bounded: it holds only nodes that were granted beats, for RestForOne.
 bool Introductions::Grant(const std::string &node, Reason reason, Duration now)
 {
     std::erase_if(_asked, [now](const auto &entry) { return now - entry.second >= RestForOne; });

@@ -11,9 +11,9 @@
 namespace Rabit
 {
 
-// Decides when this node speaks up for those who have just come, with beats that follow each other quickly: a
-// newcomer must not wait for the next period, and a crowd of newcomers, or one that comes again and again,
-// must not make a whole fleet shout. Whom nobody speaks up for has what it needs a period later.
+// Decides when this node sends quick beats for newcomers. A newcomer must not wait for the next period; a
+// crowd of newcomers, or one that comes again and again, must not make a whole fleet flood the channel. A
+// newcomer for which no node sends quick beats has what it needs a period later.
 //
 // A pure state machine; `now` never goes back.
 class Introductions
@@ -21,12 +21,12 @@ class Introductions
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // For one node this node speaks up once in this time for each reason, however often the node comes.
+    // One node gets quick beats once in this time for each reason, however often it comes.
     static constexpr Duration RestForOne = std::chrono::seconds(5);
-    // For all together: as often as this in a row, and then once in that time.
+    // All nodes together get quick beats MostInARow times in a row, and then once in RestForAll.
     static constexpr int MostInARow = 20;
     static constexpr Duration RestForAll = std::chrono::seconds(1);
-    // Those who come as close together as this are answered together.
+    // Newcomers within this time are answered together.
     static constexpr Duration Together = std::chrono::milliseconds(10);
 
     enum class Reason
@@ -37,15 +37,16 @@ public:
 
     explicit Introductions(RandomSource random) : _random(std::move(random)) {}
 
-    // A node has come. `others`: nodes that know of it as well; all of them hear of it at the same moment
-    // (Spread.h). Returns whether this node speaks up for it.
+    // A node has come. `others`: number of other nodes that hear of it at the same moment (Spread.h). Returns
+    // true if this node sends quick beats for it.
     bool Ask(const std::string &node, Reason reason, std::size_t others, Duration now);
-    // The same in two steps: whether this node speaks up for that one, and that it is to do so now.
+    // The same in two steps: Grant returns true if this node should send quick beats for that node, Begin
+    // schedules them.
     bool Grant(const std::string &node, Reason reason, Duration now);
     void Begin(std::size_t others, Duration now);
-    // When this node speaks up next; empty: for nobody.
+    // When the next quick beats begin; empty: none are due.
     std::optional<Duration> Due() const { return _beatsAt; }
-    // Whether it is time for the first beat. Says so once.
+    // True, once, if it is time for the first of the quick beats.
     bool TakeBeats(Duration now);
 
 private:

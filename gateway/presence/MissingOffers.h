@@ -14,19 +14,19 @@
 namespace Rabit
 {
 
-// The announcements that this node lacks: when to ask for which, and the parts that have come. Who does not
-// answer is asked more and more seldom.
+// The announcements that this node lacks: when to ask for which, and the parts that have come. A node that
+// does not answer is asked more and more seldom.
 //
-// A pure state machine; `now` never goes back. It holds one announcement for each node that was named and not
-// let go of.
+// A pure state machine; `now` never goes back. It holds one announcement for each node that Lacks named and
+// LetGo did not.
 class MissingOffers
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // It may be on its way.
+    // Time before the first question: the announcement may be on its way.
     static constexpr Duration AskAfter = std::chrono::milliseconds(60);
-    // From one question to the next at most; at first twice AskAfter, then half as long again each time.
+    // Longest time from one question to the next. It begins at twice AskAfter and grows by half each time.
     static constexpr Duration LongestGap = std::chrono::seconds(2);
     // The first questions follow each other more quickly: a question or its answer may be lost, and a radio
     // that loses datagrams is not full.
@@ -41,11 +41,11 @@ public:
         _quickQuestions = questions;
     }
 
-    // The node's beats mean an announcement with that digest, which this node has not.
+    // The node's beats name an announcement with that digest, which this node lacks.
     void Lacks(const std::string &node, std::uint32_t digest, Duration now);
-    // Nothing is lacking of the node, or it is not there to be asked.
+    // No announcement of the node is lacking, or the node is away and cannot be asked.
     void LetGo(const std::string &node) { _lacking.erase(node); }
-    // A part of what is lacking. Returns the encoded announcement once it is complete.
+    // Adds a part of a lacking announcement. Returns the encoded announcement once it is complete.
     std::optional<std::vector<std::uint8_t>> Add(const std::string &node,
                                                  const Gateway::AnnouncementPart &part);
 
@@ -54,15 +54,15 @@ public:
         std::string Node;
         std::uint16_t From = 0;  // the first byte that is lacking
     };
-    // When somebody is to be asked next.
+    // When the next question is due.
     std::optional<Duration> NextDue() const;
     bool IsEmpty() const { return _lacking.empty(); }
-    // How many there are to be asked now, no more than `most`.
+    // Number of nodes to ask now, at most `most`.
     std::size_t Due(Duration now, std::size_t most) const;
-    // The nodes to ask now, in turns. `delay` is how long datagrams wait in queues now: nobody is asked again
-    // before the answer can have come.
+    // The nodes to ask now, in turns. `delay` is the queueing delay of datagrams now: no node is asked again
+    // before its answer can have come.
     std::vector<Question> Take(Duration now, std::size_t most, Duration delay = Duration(0));
-    // Announcements that were not what their digest says.
+    // Number of announcements that did not match their digest.
     std::uint64_t Wrong() const { return _wrong; }
 
 private:

@@ -33,7 +33,7 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now)
     }
     else if (_from)
     {
-        // What comes after that is said anyway.
+        // The parts after *_from are sent anyway.
         if (from < *_from)
         {
             _again = std::min(_again.value_or(from), from);

@@ -18,13 +18,13 @@ public:
     {
         Incomplete,
         Complete,  // Bytes() is the announcement
-        Wrong      // all parts were there, and are not what the digest says; nothing is kept of them
+        Wrong      // all parts were there and do not match the digest; they are dropped
     };
 
     // The part must lie within the whole, and that within the bounds of an announcement.
     Outcome Add(std::uint32_t digest, const Gateway::AnnouncementPart &part);
     const std::vector<std::uint8_t> &Bytes() const { return _parts.Bytes(); }
-    // The first byte that is lacking of that announcement.
+    // The first lacking byte of that announcement.
     std::uint16_t FirstLacking(std::uint32_t digest) const;
 
 private:

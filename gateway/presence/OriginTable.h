@@ -15,14 +15,14 @@
 namespace Rabit
 {
 
-// What the transport's threads need to know of a node whose sample arrives: which life of it is the present
-// one, and how its clocks relate to ours. Written by the gateway's thread. Thread-safe.
+// The present incarnation of each node, and the relation of its clocks to this node's, for the transport's
+// threads when a sample arrives. Written by the gateway's thread. Thread-safe.
 class OriginTable
 {
 public:
     struct Origin
     {
-        // What delays of the network may make the estimate wrong by.
+        // Largest error of the estimate that network delays may cause.
         static constexpr std::chrono::nanoseconds Slack = std::chrono::seconds(1);
 
         std::uint64_t Incarnation = 0;
@@ -30,9 +30,9 @@ public:
         // Add this to the node's source times to get its wall clock.
         std::chrono::nanoseconds SourceToWall{0};
 
-        // When, by this node's monotonic clock, something was posted that arrived now. Empty if that is in
-        // the future by more than the slack: then the estimate rests on a beat that was held up on its way,
-        // and nobody can say how old the sample is.
+        // When, by this node's monotonic clock, the sample that arrived at `arrival` was posted. Empty if
+        // that is later than `arrival` by more than the slack: the estimate then rests on a beat that was
+        // held up on its way, and the age of the sample is unknown.
         std::optional<std::chrono::nanoseconds> PostedAt(std::int64_t sourceTime,
                                                          std::chrono::nanoseconds arrival) const
         {

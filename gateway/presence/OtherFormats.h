@@ -11,14 +11,14 @@
 namespace Rabit
 {
 
-// Nodes whose beats are of another version than this node's, so that people learn why they are not seen.
+// Nodes whose beats have another version than this node's, so that people learn why they are not seen.
 // Bounded. Not thread-safe.
 class OtherFormats
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // A node is named for so long after its last beat; so many are.
+    // How long a node is named after its last beat, and how many nodes are remembered.
     static constexpr Duration Memory = std::chrono::seconds(10);
     static constexpr std::size_t MostRemembered = 64;
 

@@ -32,7 +32,7 @@ std::string NotHeardFor(PeerTable::Duration silence)
     return text;
 }
 
-// What the beat says of where its node runs, or else what was known.
+// Where the beat says that its node runs, or else the place that was known.
 std::string PlaceIn(const Gateway::Beat &beat, const std::string &known)
 {
     std::string place = Whereabouts::In(beat);
@@ -139,7 +139,7 @@ bool PeerTable::IsNewLife(Peer &peer, const HeardBeat &heard)
 
 void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
 {
-    // Who restarts as it was need not be asked.
+    // A node that restarts with the same announcement need not be asked.
     if (peer.OffersDigest != heard.Beat.offers)
     {
         peer.Offers.reset();
@@ -168,7 +168,7 @@ bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
     return changed;
 }
 
-// Returns whether this has told that there are two.
+// Returns true if this beat has proved that two nodes have the name.
 bool PeerTable::NoteTwin(Peer &peer, const HeardBeat &heard)
 {
     const Duration now = heard.Arrival;
@@ -218,7 +218,7 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     Change change;
     if (const auto tool = _peers.find(heard.Node); tool != _peers.end() && tool->second.IsTool)
     {
-        ForgetTool(tool, change);  // a node has come under the name
+        ForgetTool(tool, change);  // a node of this name has come
     }
     Peer *peer = GetOrMake(heard.Node, change);
     if (peer == nullptr)
@@ -268,7 +268,7 @@ void PeerTable::Measure(Peer &peer, const HeardBeat &heard) const
     MeasureRoundTrip(peer, heard);
     peer.LastBeatSource = source;
     peer.LastBeatArrival = now;
-    // A beat that was held up on the way tells of the past.
+    // A beat that was held up on the way was sent earlier.
     peer.LastHeard = std::min(now, peer.Clock.SentAt(source).value_or(now));
     peer.Period =
         std::clamp(Duration(std::chrono::milliseconds(beat.next_ms)), ShortestPeriod, LongestPeriod);
@@ -344,7 +344,7 @@ PeerTable::Change PeerTable::OnGoodbye(const HeardBeat &heard)
     const auto found = _peers.find(heard.Node);
     if (found != _peers.end() && found->second.Incarnation == heard.Incarnation)
     {
-        // What it has overtaken comes too late.
+        // Beats that the goodbye overtook are ignored.
         found->second.LastBeatSource = std::max(found->second.LastBeatSource, Duration(heard.Beat.source_ns));
     }
     return OnLeft(heard.Node, heard.Incarnation);

@@ -21,8 +21,7 @@
 namespace Rabit
 {
 
-// What this node knows of the others, from their beats: who is there, in which life, and what each one
-// offers.
+// The other nodes, as their beats describe them: state, incarnation and announcement of each.
 //
 // A pure state machine: no I/O, no threads, no clock of its own. `now` is this node's monotonic clock, and
 // never goes back. Used by the gateway's thread only.
@@ -31,24 +30,25 @@ class PeerTable
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // A node says when its next beat is due; it is STALE after so many times that, and LOST after so many.
+    // A node tells the time to its next beat. It is STALE after StaleAfterBeats times that time without a
+    // beat, LOST after LostAfterBeats times.
     static constexpr int StaleAfterBeats = 3;
     static constexpr int LostAfterBeats = 7;
-    // What it says is raised or lowered to what a node can mean.
+    // The time that a node tells is clamped to this range.
     static constexpr Duration ShortestPeriod = std::chrono::milliseconds(100);
     static constexpr Duration LongestPeriod = std::chrono::seconds(60);
-    // A node's beat goes back to it so often, or with each so manieth of our beats where that is more seldom.
-    // The round trip of one that has just come is measured at once. A peer that takes this node's beats for
-    // old ones, since this node's clock stood still, is echoed with the next beat.
+    // A node's beat is echoed once in EchoPeriod, or with every EchoEachBeats-th beat of ours where that is
+    // more seldom. The round trip to a newcomer is measured at once. If this node's clock stood still, a peer
+    // takes its beats for old ones; that peer's beat is echoed with the next beat.
     static constexpr Duration EchoPeriod = std::chrono::seconds(4);
     static constexpr int EchoEachBeats = 8;
-    // Another announcement in the same life is taken so long after the one before at the earliest.
+    // Least time between two announcements that are accepted in one incarnation.
     static constexpr Duration OffersRest = std::chrono::seconds(1);
-    // Names come from the network. When another one comes the one LOST for longest is forgotten; never one
-    // that is live or needed. If there is none, what the new one says is dropped and counted.
+    // Names come from the network. When one more node comes, the node LOST for longest is forgotten, never a
+    // node that is live or needed. If none can be forgotten, the new node's beats are dropped and counted.
     static constexpr std::size_t MaximumPeers = 1000;
-    // Tools are kept beside them while they are there, so many; what more of them say is not looked at, but
-    // for what they ask.
+    // Most tools that are kept beside the nodes, while their beats come. Beats of further tools are ignored,
+    // except for their questions.
     static constexpr std::size_t MostTools = 32;
 
     struct Peer
@@ -57,40 +57,40 @@ public:
         std::uint64_t Incarnation = 0;
         std::uint32_t Tag = 0;            // of node and incarnation (names/NodeTag.h)
         bool IsTool = false;              // UP as long as it is kept; it has no offers and no states
-        bool IsReplay = false;            // what it posts was recorded before
-        std::vector<LinkStrain> Strains;  // that its newest beat tells of
+        bool IsReplay = false;            // it plays a recording
+        std::vector<LinkStrain> Strains;  // as its newest beat reports them
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
         Duration FirstHeard{0};
         Duration LastHeard{0};  // when its newest beat was sent, by this node's clock
-        Duration Period{0};     // how long after that the next one is due at the latest
+        Duration Period{0};     // the next beat is due by LastHeard + Period
         PeerClock Clock;
-        BeatCount Beats;  // of this life
-        // The newest announcement that came of it. One of an earlier life is kept if its beats mean the same.
+        BeatCount Beats;  // of this incarnation
+        // Its newest announcement that came. That of an earlier incarnation is kept if its digest is the
+        // same.
         std::optional<Gateway::Announcement> Offers;
         Duration OffersSince{0};
         std::uint32_t OffersDigest = 0;  // of Offers
-        // Versions of its States in the order of the announcement that its beats mean, as far as they have
-        // told in this life; 0: never written, or not told yet.
+        // Versions of its States, in the order of the announcement with the digest BeatsOffers, as far as
+        // beats of this incarnation have told them; 0: never written, or not told yet.
         std::vector<std::uint32_t> States;
-        std::uint32_t BeatsOffers = 0;  // digest of that announcement
+        std::uint32_t BeatsOffers = 0;  // digest of the announcement in its newest beats
         bool Twice = false;             // another live node has the same name
-        // Where this one and that one run, as far as they have said so (Whereabouts).
+        // Where this node and its twin run, as far as they have told (Whereabouts).
         std::string Place;
         std::string TwinPlace;
 
-        // Whether Offers is what its beats mean, so that States tells of them.
+        // True if Offers has the digest in its beats, so that States refers to it.
         bool HasPresentOffers() const { return Offers && OffersDigest == BeatsOffers; }
         Duration StaleAfter() const { return StaleAfterBeats * Period; }
         Duration LostAfter() const { return LostAfterBeats * Period; }
 
-        // What its next echo says.
+        // The contents of the next echo to it.
         Duration LastBeatSource{0};
         Duration LastBeatArrival{0};
         std::optional<Duration> LastEchoed;
         bool DoubtsThisNode = false;  // it needs an echo to believe that this node's beats are new
-        // The last beat of a lower incarnation. One of yet another incarnation takes its place once it is
-        // old.
+        // The last beat of a lower incarnation. A beat of yet another incarnation replaces it once it is old.
         struct Earlier
         {
             std::uint64_t Incarnation = 0;
@@ -98,25 +98,25 @@ public:
             Duration Arrival{0};
         };
         std::optional<Earlier> OfEarlierLife;
-        int TwinBeats = 0;      // beats of another incarnation, as far as they alternate with this one's
+        int TwinBeats = 0;      // beats of another incarnation that alternate with this one's
         Duration TwinSince{0};  // when the last of them came
     };
 
-    // Whether a node must be remembered although it is gone.
+    // True if a node must be remembered although it is gone.
     using IsNeeded = std::function<bool(const std::string &node)>;
 
     PeerTable(std::string ownNode, std::uint64_t ownIncarnation, IsNeeded isNeeded = {});
 
-    // Whether a node's announcement is wanted; without it all are.
+    // True if a node's announcement is wanted; without this function all are.
     using IsAsked = std::function<bool(const std::string &node)>;
     void SetIsAsked(IsAsked isAsked) { _isAsked = std::move(isAsked); }
 
-    // What an input changed, so that the gateway can react at once.
+    // The changes by one input, so that the gateway can react at once.
     struct Change
     {
-        bool Beat = false;                   // a new beat of a present life
-        bool State = false;                  // a state or an incarnation: worth posting
-        bool NewLife = false;                // a node that was not known in this incarnation is UP
+        bool Beat = false;                   // a new beat of a present incarnation
+        bool State = false;                  // a state or an incarnation changed: worth posting
+        bool NewLife = false;                // a node is UP in an incarnation that was not known
         bool Offers = false;                 // an announcement said something new
         std::vector<std::string> Forgotten;  // nodes that made room for another one, and tools that are gone
 
@@ -134,27 +134,27 @@ public:
     const Peer *Find(const std::string &node) const;
     // Nodes that have been heard, by name; no tools.
     std::vector<const Peer *> Heard() const;
-    // How many tools are there.
+    // Number of tools that are kept.
     std::size_t Tools() const { return _tools; }
-    // Nodes forgotten, and beats dropped because no room could be made for their node.
+    // Number of nodes forgotten, and of beats dropped because no room could be made for their node.
     std::uint64_t Forgotten() const { return _forgotten; }
     std::uint64_t CrowdedOut() const { return _crowdedOut; }
-    // Whether another live node uses this node's name.
+    // True if another live node uses this node's name.
     bool OwnNameTwice() const { return _ownTwice; }
-    // Where that one runs; empty while it has not said so.
+    // Where that node runs; empty while it has not told.
     const std::string &OwnTwinPlace() const { return _ownTwinPlace; }
-    // The announcements that are lacking, to be asked for.
+    // The announcements that this node lacks and requests.
     MissingOffers &Missing() { return _missing; }
     const MissingOffers &Missing() const { return _missing; }
-    // Announcements that were whole and made no sense.
+    // Number of announcements that were complete and could not be used.
     std::uint64_t Malformed() const { return _malformed + _missing.Wrong(); }
-    // A beat of this node was sent, which said so of the source clock.
+    // A beat of this node was sent, which carried `source` as its source time.
     void NoteSent(std::int64_t source, Duration now) { _sent.Add(source, now); }
-    // How often this node beats.
+    // Sets the time between this node's beats.
     void SetBeatPeriod(Duration period) { _echoPeriod = std::max(EchoPeriod, EchoEachBeats * period); }
-    // How many echoes are due: all for peers that doubt this node, and no more than `usual` others.
+    // Number of echoes due: all for peers that doubt this node, and at most `usual` others.
     std::size_t EchoesDue(Duration now, std::size_t usual) const;
-    // Those, `most` at most: first for the peers that doubt this node, then for the others whose turn it is.
+    // The due echoes, at most `most`: first for the peers that doubt this node, then for the others in turns.
     std::vector<Gateway::BeatEcho> NextEchoes(Duration now, std::size_t usual, std::size_t most);
 
 private:

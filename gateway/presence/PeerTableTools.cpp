@@ -1,4 +1,4 @@
-// What the table keeps of tools: only while they are there, and only what answers and echoes need.
+// Tools in the table. They are kept only while they are there, with only what answers and echoes need.
 #include <utility>
 
 #include "presence/PeerTable.h"
@@ -14,7 +14,7 @@ PeerTable::Change PeerTable::OnToolBeat(const HeardBeat &heard)
     const auto found = _peers.find(heard.Node);
     if (found != _peers.end() && !found->second.IsTool)
     {
-        // The name is a node's, as long as it is remembered.
+        // The name belongs to a node, as long as that node is remembered.
         change.State = found->second.State != NodeState::LOST && NoteTwin(found->second, heard);
         return change;
     }
@@ -28,7 +28,7 @@ PeerTable::Change PeerTable::OnToolBeat(const HeardBeat &heard)
     return change;
 }
 
-// Null if it is not kept: a straggler of an earlier life, or one too many.
+// Null if the tool is not kept: a late beat of an earlier incarnation, or one tool too many.
 PeerTable::Peer *PeerTable::GetOrMakeTool(const HeardBeat &heard)
 {
     const auto found = _peers.find(heard.Node);

@@ -16,7 +16,8 @@ namespace Rabit
 namespace
 {
 
-// A goodbye is not repaired either; the transport tells the others of the end as well.
+// A goodbye is not retransmitted, so it is sent three times; the transport tells the others of the end as
+// well.
 constexpr int Goodbyes = 3;
 constexpr std::size_t Encapsulation = 4;
 
@@ -259,11 +260,11 @@ void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
         Note(_peers.OnLeft(event.Node, event.Incarnation), event.Node, served);
         if (_peers.Find(event.Node) == nullptr)
         {
-            // What a tool had sent may have come after its goodbye.
+            // A sample of the tool may have come after its goodbye.
             served.Change.Forgotten.push_back(event.Node);
         }
     }
-    // Whoever has just appeared wants to know who is here.
+    // A node that has just appeared needs the beats of the others.
     if (!_isTool && event.What == PeerEvent::Kind::Appeared &&
         _introductions.Grant(event.Node, Introductions::Reason::Appeared, now))
     {
@@ -286,7 +287,7 @@ void Presence::Note(const PeerTable::Change &change, const std::string &node, Se
     Publish(node, change);
 }
 
-// Live nodes beside that one and this one.
+// Number of live nodes besides `node` and this one.
 std::size_t Presence::OthersThan(const std::string &node) const
 {
     const auto heard = _peers.Heard();
@@ -297,7 +298,7 @@ std::size_t Presence::OthersThan(const std::string &node) const
                                                   }));
 }
 
-// Hands what is known of a node to those who read it on other threads.
+// Hands the facts about a node to the tables that other threads read.
 void Presence::Publish(const std::string &node, const PeerTable::Change &change)
 {
     const PeerTable::Peer *peer = _peers.Find(node);
@@ -352,7 +353,7 @@ void Presence::NoteDelay(std::string_view node, Duration delay, Duration arrived
     }
 }
 
-// The clocks are read at one moment: the others compute one from the other.
+// Both clocks are read at one moment: receivers compute one from the other.
 Gateway::Beat Presence::MakeBeat(const PostTime &time) const
 {
     Gateway::Beat beat;

@@ -32,11 +32,11 @@ namespace Rabit
 {
 
 // Makes this node known to the others and the others known to it: sends beats, feeds those that come into the
-// PeerTable, and keeps up to date what other threads read of it (OriginTable, RemoteQueues). All that it says
-// goes with beats: who lacks something asks for it in its own ones.
+// PeerTable, and keeps up to date what other threads read of it (OriginTable, RemoteQueues). Everything is
+// sent in beats: a node that lacks something requests it in its own beats.
 //
-// Threads: the transport's threads only leave what has come in an inbox and wake the gateway; everything else
-// is for the gateway's thread.
+// Threads: the transport's threads only put arrivals into an inbox and wake the gateway; everything else is
+// for the gateway's thread.
 class Presence
 {
 public:
@@ -49,9 +49,9 @@ public:
              PeerTable::IsNeeded isNeeded, std::function<void()> wake);
     ~Presence();
 
-    // This node is a tool, and asks for the announcements of these nodes alone. Before Open.
+    // This node is a tool, and requests the announcements of these nodes alone. Before Open.
     void BeTool(PeerTable::IsAsked asksOf);
-    // What this node posts was recorded before. Before Open.
+    // This node plays a recording. Before Open.
     void BeReplay() { _contents.BeReplay(); }
     // Starts to send and to receive. Throws TransportError.
     void Open(TransportSession &session, const Gateway::Announcement &announcement);
@@ -60,26 +60,27 @@ public:
     // The transport's peer handler.
     void OnPeer(const PeerEvent &event);
 
-    // What another node says of how late this node's datagrams come to it.
+    // Another node's report of the queueing delay of this node's datagrams.
     struct DelayHeard
     {
         std::uint32_t Peer = 0;  // its tag (names/NodeTag.h)
         std::string Node;
-        Duration Delay{0};      // of the newest that had come, against the quickest
-        Duration ArrivedAt{0};  // when it came there, and the way back, by this node's monotonic clock
+        Duration Delay{0};      // of the newest datagram that had come, against the quickest
+        Duration ArrivedAt{0};  // when that datagram came there, plus the way back, by this node's monotonic
+                                // clock
     };
 
     struct Served
     {
         PeerTable::Change Change;
-        // Nodes whose beats have told of their States: PeerTable::Peer::States.
+        // Nodes whose beats carried versions of their States: PeerTable::Peer::States.
         std::vector<std::string> StatesTold;
-        // States of this node that others have asked for, by their places (Announcements::StateIndexOf).
+        // States of this node that others have requested, by index (Announcements::StateIndexOf).
         std::vector<std::size_t> StatesAsked;
         std::vector<DelayHeard> Delays;
-        // Tags of those whose beats say nothing of how late this node's datagrams come.
+        // Tags of nodes whose beats report no delay of this node's datagrams.
         std::vector<std::uint32_t> NothingLate;
-        // Who asks for which text of a type.
+        // Nodes that request the text of a type, and the type.
         std::vector<std::pair<std::string, BeatExtensions::TypeQuestion>> TypesAsked;
 
         bool Any() const
@@ -90,33 +91,32 @@ public:
         void Clear();
     };
 
-    // Takes in what has come; sends nothing. What is returned holds until the next call.
+    // Processes the inbox; sends nothing. The returned reference is valid until the next call.
     const Served &Service(Duration now);
     // When to call Service again at the latest.
     Duration NextDue() const;
 
-    // When a beat is to be sent; whoever decides what goes on the air next calls SendBeat then. All beats go
-    // this way, the quick ones too.
+    // When a beat is to be sent. The scheduler of the air calls SendBeat then, for quick beats too.
     Duration BeatDue() const;
-    // By when the last beat has promised the next one.
+    // The time by which the last beat promised the next one.
     Duration BeatPromised() const { return _pace.Promised(); }
-    // What the next beat takes at most, as the bytes of its body (CDR without the encapsulation).
+    // Largest size of the next beat, in bytes of its body (CDR without the encapsulation).
     std::size_t BeatSize(Duration now) const { return _contents.Size(now); }
-    // How many datagrams it takes.
+    // Number of datagrams that a beat takes.
     std::size_t BeatCopies() const;
-    // How many sessions get what is sent to that node alone (TransportWriter::WriteTo): two while two live
-    // nodes have its name.
+    // Number of sessions that receive a sample sent to that node alone (TransportWriter::WriteTo): two while
+    // two live nodes have its name.
     std::size_t SessionsOf(std::string_view node) const;
-    // Sends exactly one beat, whose body takes at most so many bytes, but always what an empty one takes; the
-    // rest of what is to be said follows in the next ones. Returns the bytes of its body; 0 before Open.
+    // Sends exactly one beat, whose body takes at most `most` bytes, but at least those of an empty beat.
+    // Contents that do not fit follow in the next beats. Returns the bytes of its body; 0 before Open.
     std::size_t SendBeat(Duration now, std::size_t most = BeatFormat::Largest);
     static constexpr std::size_t LargestBeat = BeatFormat::Largest;
-    // Of a tool, at least: nobody waits to learn that it has gone.
+    // Shortest beat period of a tool: nobody waits to learn that it has gone.
     static constexpr Duration ToolPeriod = std::chrono::seconds(2);
-    // While a tool lacks something it asks so often, so often.
+    // A tool that lacks something asks once in ToolGap, ToolQuestions times.
     static constexpr Duration ToolGap = std::chrono::milliseconds(250);
     static constexpr int ToolQuestions = 12;
-    // How often this node beats when nothing is the matter (BeatPace).
+    // Sets the time between beats when none is brought forward (BeatPace).
     void SetBeatPeriod(Duration period)
     {
         _pace.SetPeriod(_isTool ? std::max(period, ToolPeriod) : period);
@@ -124,32 +124,33 @@ public:
     }
     Duration BeatPeriod() const { return _pace.Period(); }
 
-    // The version of a State of this node, by its place (Announcements::StateIndexOf), for the beats to tell.
-    // 0: never written. Only after Open.
+    // Sets the version of a State of this node, by index (Announcements::StateIndexOf), which the beats
+    // carry. 0: never written. Only after Open.
     void SetStateVersion(std::size_t state, std::uint32_t version)
     {
         _contents.SetStateVersion(state, version);
     }
-    // One was written just now: the next beat comes soon, for those whom it did not reach.
+    // A State was written just now: the next beat comes soon, for nodes that the State did not reach.
     void StateWritten(Duration now) { _pace.StateWritten(now); }
-    // The States of that node, by their places, that are to be asked for in each beat from now on; none:
-    // nothing is. `soon`: the next beat is brought forward. Holds for the present life of the node.
+    // Sets the States of that node, by index, that each beat from now on requests; none: no request. `soon`:
+    // the next beat is brought forward. Holds for the present incarnation of the node.
     void WantStates(const std::string &node, const std::vector<bool> &states, bool soon, Duration now)
     {
         _contents.Questions().Set(node, states, soon, now);
     }
-    // What this node's links suffer from, for the beats to say.
+    // Sets the troubles of this node's links, which the beats report.
     void SetStrains(std::vector<LinkStrain> strains) { _contents.SetStrains(std::move(strains)); }
-    // The texts of types that are lacking, for the beats to ask for.
+    // The texts of types that this node lacks, and its beats request.
     TypeQuestions &TypesLacking() { return _contents.Types(); }
     const TypeQuestions &TypesLacking() const { return _contents.Types(); }
-    // A datagram of that node that is no beat came so much later than its quickest, for the beats to tell.
+    // A datagram of that node, other than a beat, came by `delay` later than its quickest; the beats report
+    // that.
     void NoteDelay(std::string_view node, Duration delay, Duration arrivedAt);
 
     const PeerTable &Peers() const { return _peers; }
-    // Samples of the gateways' topics that made no sense, or came faster than they could be taken in.
+    // Number of samples of the gateways' topics that were malformed, or found the inbox full.
     std::uint64_t Malformed() const { return _inbox.Dropped() + _peers.Malformed(); }
-    // Nodes that cannot be understood.
+    // Nodes whose beats have another version.
     std::vector<Gateway::Problem> Problems(Duration now) const { return _otherFormats.Problems(now); }
 
 private:
@@ -177,11 +178,11 @@ private:
     Introductions _introductions;
     ReaderWatch _watch;
     Served _served;
-    Duration _lookAt{0};  // at the readers
+    Duration _lookAt{0};  // when to look at the matched readers next
     BeatPace _pace;
     BeatContents _contents;
     bool _isTool = false;
-    bool _owesNews = false;  // of a delay, to be told before the next beat is due
+    bool _owesNews = false;  // a large delay, to be reported before the next beat is due
     OtherFormats _otherFormats;
     PresenceInbox _inbox;
 

@@ -57,7 +57,8 @@ bool IsPlausible(const Gateway::Beat &beat)
 
 }  // namespace
 
-// Who wrote it is who DDS says wrote it: a program that is no node says nothing here.
+// The sender is the node that DDS reports, never a name in the payload; samples of programs that are no nodes
+// are dropped.
 bool PresenceInbox::AddBeat(SampleBytes bytes, const SampleInfo &info, Duration arrival)
 {
     const bool isOurs = BeatFormat::IsPresent(bytes);

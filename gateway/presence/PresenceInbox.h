@@ -16,19 +16,19 @@
 namespace Rabit
 {
 
-// Beats and events of peers on their way from the transport's threads to the gateway's. What is too large is
-// dropped before it is decoded, what makes no sense after that, and what comes faster than the gateway takes
-// it in when the inbox is full; all are counted. Thread-safe.
+// Beats and events of peers on their way from the transport's threads to the gateway's. Drops and counts
+// beats that are too large (before decoding) or malformed (after it), and all that finds the inbox full.
+// Thread-safe.
 class PresenceInbox
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // Bytes of a beat as it is on the wire, more than nodes send; and entries in each of its lists.
+    // Bytes of a beat on the wire, more than nodes send, and entries in each of its lists.
     static constexpr std::size_t LargestBeat = 4 * 1024;
     static constexpr std::size_t MostEntries = 256;
-    // What the inbox holds at most, samples counted as they are on the wire plus the size of an entry. More
-    // is no fleet but a fault: 1000 nodes that say 4 kB each within one pass of the gateway.
+    // Largest contents of the inbox, in bytes on the wire plus the size of each entry. That is 1000 nodes
+    // that send 4 kB each within one pass of the gateway: more is no fleet but a fault.
     static constexpr std::size_t LargestContents = 4 * 1024 * 1024;
 
     struct Contents
@@ -38,14 +38,14 @@ public:
         std::vector<std::string> OtherFormats;  // nodes whose beats are of another version
     };
 
-    // These return whether there is something to take.
+    // These return true if there is something to take.
     bool AddBeat(SampleBytes bytes, const SampleInfo &info, Duration arrival);
     bool AddEvent(const PeerEvent &event);
 
     Contents Take();
-    // Whether there is nothing to take: without the lock, for most passes of the gateway find nothing.
+    // True if there is nothing to take. Takes no lock, since most passes of the gateway find nothing.
     bool IsEmpty() const { return !_any.load(std::memory_order_acquire); }
-    // Samples that made no sense, and what found the inbox full.
+    // Number of samples that were malformed, and of samples and events that found the inbox full.
     std::uint64_t Dropped() const;
 
 private:

@@ -8,7 +8,7 @@
 namespace Rabit
 {
 
-// Whether a node takes messages of a type for one of its queues, by what it has announced.
+// Whether a node accepts messages of a type for one of its queues, by its announcement.
 enum class QueueAcceptance
 {
     Accepted,

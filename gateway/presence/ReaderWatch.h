@@ -6,9 +6,9 @@
 namespace Rabit
 {
 
-// Who has appeared can be heard of before it can hear: its reader becomes known some time later, a few
-// milliseconds on a wire, seconds on a thin medium. Says when that has come for nodes that are expected, so
-// that a beat is not said in vain before, and not late after. Polled, for no backend tells.
+// Detects when the readers of nodes that have appeared are matched. A node is discovered before its reader:
+// by a few milliseconds on a wire, by seconds on a thin medium. A beat before that is in vain, and one long
+// after it is late. Polled, since no backend reports it.
 //
 // A pure state machine; `now` never goes back.
 class ReaderWatch
@@ -17,9 +17,9 @@ public:
     using Duration = std::chrono::nanoseconds;
 
     static constexpr Duration Period = std::chrono::milliseconds(20);
-    // Whose reader has not come after this time hears the usual beats.
+    // A node whose reader has not come after this time gets the usual beats.
     static constexpr Duration Patience = std::chrono::seconds(10);
-    // A reader may have come before the transport said whose it is.
+    // A reader may have come before the transport reported its node.
     static constexpr Duration Memory = std::chrono::seconds(1);
 
     // A node has appeared.
@@ -29,7 +29,7 @@ public:
         _until = now + Patience;
     }
 
-    // So many readers are matched now. Returns whether one has come that was expected.
+    // `readers` is the number of readers matched now. Returns true if an expected one has come.
     bool Look(int readers, Duration now)
     {
         if (readers > _readers)
@@ -48,14 +48,14 @@ public:
         return found > 0;
     }
 
-    // Whether to look again after Period; now and then otherwise, within Memory.
+    // True if Look is to be called again after Period; otherwise call it now and then, within Memory.
     bool IsExpecting() const { return _expected > 0; }
 
 private:
     int _expected = 0;
     Duration _until{0};
     int _readers = 0;
-    int _came = 0;  // and were not claimed yet
+    int _came = 0;  // readers that came and are not claimed by an expected node yet
     Duration _cameAt{0};
 };
 

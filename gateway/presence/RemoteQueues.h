@@ -25,17 +25,17 @@ public:
         std::string Reason;  // for people; empty if accepted
     };
 
-    // `ownNode` is who would send.
+    // `ownNode` is the sending node.
     explicit RemoteQueues(std::string ownNode) : _ownNode(std::move(ownNode)) {}
 
-    // Takes over what the node announces; nothing if it has not announced anything yet.
+    // Copies the node's announcement; does nothing if it has not announced itself yet.
     void Update(const PeerTable::Peer &peer);
     void Forget(const std::string &node);
-    // Whether the node has announced itself.
+    // True if the node has announced itself.
     bool Knows(const std::string &node) const;
     Answer Ask(const std::string &node, const std::string &queue, const std::string &type,
                std::uint64_t definition) const;
-    // Nodes that are there (not LOST) and accept that queue with that type, by name.
+    // Nodes, by name, that are not LOST and accept that type in that queue.
     std::vector<std::string> LiveNodesAccepting(const std::string &queue, const std::string &type,
                                                 std::uint64_t definition) const;
 

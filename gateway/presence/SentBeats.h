@@ -9,18 +9,18 @@
 namespace Rabit
 {
 
-// The beats that this node has sent lately, so that an echo of one that it has not sent means nothing.
-// Bounded: the newest 256, two minutes of them at the usual period.
+// The beats that this node has sent lately, so that an echo of any other beat is ignored. Bounded: the newest
+// 256, two minutes of them at the usual period.
 class SentBeats
 {
 public:
-    // The beat said so of the source clock when the monotonic one showed `at`.
+    // A beat with the source time `source` was sent when the monotonic clock showed `at`.
     void Add(std::int64_t source, std::chrono::nanoseconds at)
     {
         _beats[_next++ % _beats.size()] = {static_cast<std::uint32_t>(source), at};
     }
 
-    // When the beat was sent whose source clock had that lower half.
+    // When the beat was sent whose source time has the lower 32 bits `beat`; empty: no such beat.
     std::optional<std::chrono::nanoseconds> Find(std::uint32_t beat) const
     {
         for (std::size_t i = 1; i <= _beats.size() && i <= _next; ++i)

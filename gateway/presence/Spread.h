@@ -9,8 +9,8 @@
 namespace Rabit
 {
 
-// Who hears something at the same moment as others do, and answers, waits at random within a time that grows
-// with their number.
+// Returns a random delay for a node that answers something that other nodes hear at the same moment. Its
+// range grows with their number.
 inline std::chrono::nanoseconds SpreadAmong(std::size_t others, const RandomSource &random)
 {
     constexpr std::chrono::nanoseconds forOne = std::chrono::milliseconds(2);

@@ -62,7 +62,7 @@ std::size_t StateQuestions::Longest() const
     return longest;
 }
 
-// What is due first.
+// Questions that are due come first.
 std::vector<StateQuestions::Question> StateQuestions::Take(std::size_t most)
 {
     std::vector<Question> questions;

@@ -12,13 +12,15 @@
 namespace Rabit
 {
 
-// Which States this node asks others for, in each of its beats until it is told otherwise. Not thread-safe.
+// The States that this node requests from others, in each of its beats until Set or Forget ends that. Not
+// thread-safe.
 class StateQuestions
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // The States, by place; none: nothing is asked of the node. `soon`: they do not wait for the next period.
+    // Sets the requested States, by index; none: no request. `soon`: the request does not wait for the next
+    // period.
     void Set(const std::string &node, const std::vector<bool> &states, bool soon, Duration now);
     void Forget(const std::string &node) { _wanted.erase(node); }
 
@@ -27,12 +29,12 @@ public:
         std::string Node;
         std::vector<std::uint8_t> States;  // as in a beat
     };
-    // Since when something is to be asked for soon that was not yet.
+    // Since when the oldest request marked `soon` waits; empty: none waits.
     std::optional<Duration> DueSince() const;
     bool IsEmpty() const { return _wanted.empty(); }
-    // What is to be asked in the next beat, in turns.
+    // The questions of the next beat; the nodes take turns.
     std::vector<Question> Take(std::size_t most);
-    // Of how many nodes something is asked, no more than `most`; and the bytes of the longest question.
+    // Number of nodes with a request, at most `most`; and the bytes of the longest question.
     std::size_t Count(std::size_t most) const { return std::min(most, _wanted.size()); }
     std::size_t Longest() const;
 

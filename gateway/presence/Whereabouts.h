@@ -10,20 +10,20 @@
 namespace Rabit
 {
 
-// Where a node runs, in words: `host uav1-pi, process 4711`. Nodes say it of themselves while they hear
-// another one of their name, so that a person finds both.
+// Where a node runs, in words: `host uav1-pi, process 4711`. Two nodes of one name tell it while they hear
+// each other, so that a person finds both.
 namespace Whereabouts
 {
 
-// As they are on the wire, filled up with zeros: what a beat takes depends on no host's name.
+// Bytes on the wire, padded with zeros, so that the size of a beat does not depend on the host's name.
 inline constexpr std::size_t Size = 64;
 
 std::string OfThisProcess();
-// That, as a beat carries it instead of a part of the announcement.
+// OfThisProcess(), as a beat carries it in place of a part of the announcement.
 Gateway::AnnouncementPart Part();
-// What the beat says of it: printable, and no longer than Size; empty if it says nothing.
+// The whereabouts in the beat, printable and no longer than Size; empty if there are none.
 std::string In(const Gateway::Beat &beat);
-// Whether it is this, and no part of an announcement.
+// True if the part carries whereabouts, and no part of an announcement.
 inline bool IsIn(const Gateway::AnnouncementPart &part)
 {
     return part.of == 0;

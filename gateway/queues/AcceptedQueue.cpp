@@ -101,8 +101,8 @@ LocalQueueResult AcceptedQueue::Deliver(const Decoded &decoded, bool redelivered
     {
         return LocalQueueResult::Ok;
     }
-    // A message may be taken before the gate is told to watch for it: then nobody would say that there is
-    // room, so try once more.
+    // A message may be taken before the gate watches for it, and then nothing would report the room. So try
+    // once more.
     return Room() > 0 && _queue->AddMessageNoEventTrigger(decoded.Message) ? LocalQueueResult::Ok
                                                                            : LocalQueueResult::Full;
 }
@@ -113,8 +113,8 @@ std::size_t AcceptedQueue::Free() const
         std::max(0, _queue->GetMaxNoMessagesAllowedInQueue() - _queue->NoMessagesInQueue()));
 }
 
-// Who is told that there is no room sends nothing more, so that no failing Deliver would raise the flag: it
-// is raised here, and the queue looked at once more, since a message may have been taken in between.
+// A sender without credit sends nothing more, so no failing Deliver would raise the flag. It is raised here,
+// and the queue is checked once more, since a message may have been taken in between.
 std::size_t AcceptedQueue::Room() const
 {
     if (!_queue)

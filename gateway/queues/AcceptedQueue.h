@@ -25,7 +25,7 @@ class AcceptedQueue
 public:
     using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
 
-    // What a payload is here: a message, or why there is none (WrongType, Undecodable).
+    // A decoded payload: a message, or why there is none (WrongType, Undecodable).
     struct Decoded
     {
         LocalQueueResult Result = LocalQueueResult::WrongType;
@@ -37,12 +37,12 @@ public:
     AcceptedQueue(const AcceptRule &rule, RabitWorkspace &workspace, std::function<void()> wake);
 
     // Looks the queue up: its manager may come later than the gateway, go, and come back with a new one.
-    // Returns whether something changed.
+    // Returns true if the queue changed.
     bool Find();
-    // What keeps messages from being delivered; empty if nothing does.
+    // Why messages cannot be delivered; empty if they can.
     std::string Problem() const;
 
-    // Whether that node may put messages into it. Any thread, at any time.
+    // True if that node may put messages into the queue. Any thread, at any time.
     bool AcceptsFrom(std::string_view node) const;
     bool AcceptsType(std::string_view type) const { return _types.find(type) != _types.end(); }
     // Any thread, at any time.
@@ -53,9 +53,10 @@ public:
     LocalQueueResult Deliver(const Decoded &decoded, bool redelivered);
     // Null while there is none.
     const std::shared_ptr<Queue> &Local() const { return _queue; }
-    // Messages that the queue would take now. If that is none, TakeRoomCame will tell when there is room.
+    // Number of messages that the queue would take now. If it is 0, TakeRoomCame returns true once there is
+    // room.
     std::size_t Room() const;
-    // Whether room came since there was none.
+    // True, once, if there is room again after there was none.
     bool TakeRoomCame();
 
 private:

@@ -23,9 +23,9 @@ namespace Rabit
 
 // The local queues into which other nodes may put messages, as the receivers of the links see them.
 //
-// A large message is decoded while the links are not locked, since one of megabytes would hold up everybody
-// else for as long as that takes: Deliver answers Later, TakeUndecoded gives the message out, and Decode
-// makes what LinkNode::Prepared takes.
+// A large message is decoded while the links are not locked, since decoding megabytes would hold up all other
+// messages. Deliver returns Later, TakeUndecoded gives the message out, and Decode makes the argument of
+// LinkNode::Prepared.
 //
 // Threads: Decode on any; the rest under the lock of the links' driver.
 class IncomingQueues final : public LocalQueues
@@ -54,7 +54,7 @@ public:
         LinkPayload Payload;
     };
 
-    // `wake` is called when there is room in a queue that had none: on the thread of who took a message.
+    // `wake` is called when there is room in a queue that had none, on the thread that took a message.
     IncomingQueues(const std::vector<AcceptRule> &rules, RabitWorkspace &workspace,
                    const std::function<void()> &wake, std::size_t quicklyDecoded = QuicklyDecoded,
                    bool keepsReceived = false);
@@ -72,7 +72,7 @@ public:
     void TakeDelivered(std::vector<std::shared_ptr<Queue>> &queues) { queues.swap(_delivered); }
     bool AnyDelivered() const { return !_delivered.empty(); }
 
-    // What was put into queues since the last call, if it is kept; into the empty list.
+    // Moves the messages put into queues since the last call, if they are kept, into the empty list.
     void TakeReceived(std::vector<Received> &messages) { messages.swap(_received); }
 
     // LocalQueues
@@ -81,7 +81,8 @@ public:
     LocalQueueResult Deliver(const LinkDelivery &delivery) override;
     std::size_t Room(std::string_view queue) const override;
 
-    // What keeps messages from being delivered, by queue, and who sends what is not accepted of it.
+    // The problems of each queue that keep messages from being delivered, and the senders whose messages are
+    // not accepted.
     std::vector<Gateway::Problem> Problems() const;
 
 private:

@@ -10,7 +10,7 @@
 namespace Rabit
 {
 
-// Frames that wait for the gateway's thread. Memory of sent ones is used again. Not thread-safe.
+// Frames that wait for the gateway's thread. The memory of sent frames is reused. Not thread-safe.
 class LinkDatagrams
 {
 public:

@@ -109,10 +109,10 @@ void LinkDriver::Close()
     Tell(news);
 }
 
-// Frame and news are one for each thread of the transport, so that steady traffic allocates nothing for names
-// and lists. The sender is who wrote the sample, as DDS says: a node cannot speak in another's name. A name
-// that no configuration can have is nobody's: the answer goes to the partition of that name, and `*` is
-// everybody's.
+// Each transport thread has one frame and one news object, so that steady traffic allocates nothing for names
+// and lists. The sender is the participant that DDS reports: a node cannot use another's name. Frames from a
+// name that no configuration can have are dropped: an answer would go to the partition of that name, and `*`
+// is everybody's.
 void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
 {
     static thread_local LinkFrame frame;
@@ -212,7 +212,7 @@ LinkDriver::News &LinkDriver::OwnNews()
 
 void LinkDriver::TakeNews(News &news)
 {
-    // Not when there is nothing: the lists would lose their memory to lists that have none.
+    // Skipped if there is nothing: the swap would replace lists that have memory by lists that have none.
     if (_incoming.AnyDelivered())
     {
         _incoming.TakeDelivered(news.Delivered);
@@ -344,7 +344,7 @@ bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, cons
     {
         _config.Tap->Sent({node, queue, type, enqueued.Id, payload->View()});
     }
-    Tell(news);  // to accept one may mean to find that others have expired
+    Tell(news);  // accepting a message may reveal that others have expired
     if (sooner)
     {
         _wake();
@@ -364,7 +364,7 @@ void LinkDriver::OnOutcome(std::uint64_t id, std::string_view destination, std::
     {
         _outcomes.push_back({std::string(destination), std::string(queue), id, OutcomeOf(outcome)});
     }
-    // LinkNode counts them by link; here it is only about those that somebody wants to know of.
+    // LinkNode counts outcomes by link; only messages with a receipt matter here.
     const auto found = _receipts.find(id);
     if (found != _receipts.end())
     {

@@ -31,14 +31,14 @@
 namespace Rabit
 {
 
-// Drives the queue links (LinkNode, which does no I/O): takes in what arrives, serves them in time, writes
-// what they send, and tells what became of messages.
+// Drives the queue links (LinkNode, which does no I/O): passes them arriving frames, serves them in time,
+// writes the frames that they send, and reports the outcomes of messages.
 //
-// Threads: any thread calls Enqueue; the transport's threads hand in what arrives and put it straight into
-// the local queues; only the gateway's thread, in Service or SendOne, writes to the network. One mutex guards
-// the links; while it is held no large message is decoded, no file is written, and no handler of a queue and
-// nothing of the transport is called, so that a slow network, disk or handler delays nobody. The program's
-// own handlers of queues and receipts are called by `handlers`.
+// Threads: any thread calls Enqueue; the transport's threads pass in arriving frames and put messages
+// straight into the local queues; only the gateway's thread, in Service or SendOne, writes to the network.
+// One mutex guards the links; while it is held no large message is decoded, no file is written, and neither a
+// queue's handler nor the transport is called. So a slow network, disk or handler delays nobody. The
+// program's own handlers of queues and receipts are called by `handlers`.
 class LinkDriver final : private LinkOutput
 {
 public:
@@ -46,65 +46,65 @@ public:
     using Receipt = std::shared_ptr<RabitQueueReceipt>;
 
     // All references and the handlers must outlive the object, and nobody else may use the incarnations.
-    // `clockName` tells this node's monotonic clock from those of its other lives. `wake` makes the gateway's
-    // thread call Service soon; called on any thread. Without `handlers` all handlers are called on the
-    // threads above.
+    // `clockName` tells this node's monotonic clock from those of its other incarnations. `wake` makes the
+    // gateway's thread call Service soon; called on any thread. Without `handlers` all handlers are called on
+    // the threads above.
     LinkDriver(const GatewayConfig &config, RabitWorkspace &workspace, IncarnationStore &incarnations,
                std::uint64_t clockName, std::function<void()> wake, RabitHandlerThread *handlers = nullptr);
     ~LinkDriver();
 
-    // The present life of this node.
+    // The present incarnation of this node.
     std::uint64_t Incarnation() const;
-    // What is to be done with frames that begin with that byte, which is no version of the links: called on
-    // the transport's threads, with the node that has written it. Before Open.
+    // Sets the handler of frames that begin with `firstByte`, which is no version of the links. It is called
+    // on the transport's threads, with the node that wrote the frame. Before Open.
     using OtherFrames = std::function<void(std::string_view node, std::span<const std::uint8_t> frame)>;
     void SetOtherFrames(std::uint8_t firstByte, OtherFrames take);
-    // Sends such a frame to that node alone; gateway's thread only. A loss is for who asked to notice.
+    // Sends such a frame to that node alone; gateway's thread only. The requesting node has to notice a loss.
     void SendOther(const std::string &node, std::span<const std::uint8_t> frame);
     // Starts to receive, and keeps the session for writing until Close. Throws TransportError.
     void Open(TransportSession &session);
-    // Sends nothing more and receives nothing more. What has no outcome yet gets one. For good.
+    // Sends nothing more and receives nothing more. Messages without an outcome get one. Cannot be reopened.
     void Close();
 
     // Does what is due and writes it. Returns when to call again at the latest. Gateway's thread only.
     Duration Service();
 
-    // In place of Service, for a scheduler that decides what goes out next; gateway's thread only.
+    // In place of Service, for a scheduler that chooses the next datagram; gateway's thread only.
     //
-    // Does what is due but sending. Returns when something is due next, if nothing comes before: not later
-    // than now if something could be sent. The gateway's thread is woken for whatever comes after this call
-    // and before WillServe, and after that for what is due before the time that it says.
+    // Does all due work except sending. Returns when work is due next, if nothing comes before: not later
+    // than now if something could be sent. The gateway's thread is woken for all work that comes between this
+    // call and WillServe, and after that for work due before the time given to WillServe.
     Duration Advance();
     void VisitStreams(std::size_t most, const std::function<void(const LinkStream &)> &visit) const;
-    // Writes one datagram, made now, of at most so many bytes on the air as LinkNode::SendOne has it. Returns
-    // whether there was one.
+    // Writes one datagram, made now, of at most `most` bytes on the air (LinkNode::SendOne). Returns true if
+    // there was one.
     bool SendOne(std::string_view destination, std::string_view queue, std::size_t most);
     void WillServe(Duration at);
-    // How late the frames of other nodes come, where that is worth telling them (DelayMeter); one datagram is
-    // told once. The name is valid during the call.
+    // The delays of other nodes' frames that are worth reporting to them (DelayMeter); each datagram is
+    // reported once. The name is valid during the call.
     bool HasDelays() const { return _anyDelays; }
     void TakeDelays(
         Duration now,
         const std::function<void(const std::string &node, Duration delay, Duration arrivedAt)> &take);
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
-    // To that node and back, with nothing waiting; 0: not known.
+    // The shortest round trip to that node, with nothing waiting; 0: not known.
     Duration ShortestRoundTrip(std::string_view node) const;
 
-    // A node is in that life. The links may learn it later, and send what is accepted meanwhile to the life
-    // before, which puts it in doubt.
+    // Reports a node's incarnation. The links may learn it later by themselves; messages accepted meanwhile
+    // would go to the earlier incarnation and be in doubt.
     void HeardOf(const std::string &node, std::uint64_t incarnation);
 
-    // Accepts a message for a queue of another node; the receipt (null: nobody wants to know), which has had
-    // its Begin, gets the outcome. False: refused, because the link is full or there are too many; the
-    // receipt gets nothing. Any thread.
+    // Accepts a message for a queue of another node; the receipt (may be null), which has had its Begin, gets
+    // the outcome. False: refused, because the link is full or there are too many; the receipt gets nothing.
+    // Any thread.
     bool Enqueue(const std::string &node, const std::string &queue, const std::string &type,
                  const LinkPayload &payload, const Receipt &receipt);
 
-    // Whether messages for that node wait here.
+    // True if messages for that node wait here.
     bool HasPending(const std::string &node) const;
     // The node is remembered no longer. Gateway's thread only.
     void Forget(const std::string &node);
-    // What was refused or dropped because too many nodes or links are known.
+    // Number of messages and datagrams refused or dropped because too many nodes or links are known.
     std::uint64_t CrowdedOut() const;
 
     std::vector<Gateway::LinkStatus> OutboundStatus() const;
@@ -118,14 +118,14 @@ private:
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
 
-    // What became of a message.
+    // The outcome of a message.
     struct Outcome
     {
         std::string Node, Queue;
         std::uint64_t Id = 0;
         QueueOutcome What = QueueOutcome::Pending;
     };
-    // What somebody outside is to be told once the mutex is free.
+    // Events to report to others once the mutex is free.
     struct News
     {
         std::vector<std::shared_ptr<IncomingQueues::Queue>> Delivered;  // queues with new messages
@@ -138,8 +138,8 @@ private:
         }
     };
 
-    // The calling thread's own, empty, with the memory that it had. For the threads of the transport and of
-    // the gateway; not for managers, which are called while it is read.
+    // The calling thread's own empty News, with its memory. For the threads of the transport and of the
+    // gateway; not for managers, which are called while it is read.
     static News &OwnNews();
     // With the mutex held, into empty lists.
     void TakeNews(News &news);
@@ -155,7 +155,7 @@ private:
         }
     }
     void TellAll(const News &news);
-    // The same: what came and what became of messages, before anybody else is told.
+    // The same for the tap: received messages and outcomes, reported to it before all others.
     void TellTap();
 
     // Handler of the transport.

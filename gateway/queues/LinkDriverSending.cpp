@@ -1,4 +1,4 @@
-// What goes out: by itself, or one datagram at a time for a scheduler.
+// The sending half of LinkDriver: by itself, or one datagram at a time for a scheduler.
 #include <utility>
 
 #include "clocks/GpsTime.h"
@@ -43,7 +43,7 @@ void LinkDriver::WriteOut()
     {
         if (_writer)
         {
-            // A failure is the transport's to count; the links repair what is lost.
+            // The transport counts a failure; the links retransmit lost parts.
             static_cast<void>(
                 _writer->WriteTo(datagram.Destination, LinkSampleEncoder(datagram.Frame), sourceTime));
         }

@@ -29,7 +29,7 @@ bool Keep(std::vector<T> &kept, T &&value) noexcept
     }
 }
 
-// The binary logarithm of the size of memory that serves so many bytes.
+// The binary logarithm of the size of the memory for `size` bytes.
 std::size_t BitsFor(std::size_t size, std::size_t smallest)
 {
     return std::max<std::size_t>(size > 1 ? static_cast<std::size_t>(std::bit_width(size - 1)) : 0, smallest);
@@ -52,7 +52,8 @@ private:
     const std::shared_ptr<LinkPayloadPool> _pool;
 };
 
-// Of one type only, that of a Pooled together with its counts: so all blocks are equally large.
+// Allocates objects of one type only, a Pooled together with its reference counts: so all blocks are equally
+// large.
 template <class T>
 struct LinkPayloadPool::Allocator
 {

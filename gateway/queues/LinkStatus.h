@@ -10,7 +10,8 @@
 namespace Rabit::LinkStatus
 {
 
-// What Gateway/Fleet shows of the links, in the order of their names. Under the lock of who drives them.
+// The rows of the links in Gateway/Fleet, in the order of their names. Call under the lock of the links'
+// driver.
 
 std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links);
 std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links, const IncomingQueues &incoming);

@@ -21,7 +21,7 @@ class LinkVersions
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // A node is named for so long after it was last heard; so many are.
+    // How long a node is named after it was last heard, and how many nodes are remembered.
     static constexpr Duration Memory = std::chrono::seconds(10);
     static constexpr std::size_t MostRemembered = 64;
 

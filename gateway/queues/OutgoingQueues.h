@@ -20,14 +20,15 @@
 namespace Rabit
 {
 
-// Queues of other nodes, as the managers of this one see them: takes what they add to `<node>/<queue>`,
-// encodes it once, and hands it to the links, or refuses it at the call with a reason.
+// Queues of other nodes, as the managers of this one see them: takes a message added to `<node>/<queue>`,
+// encodes it once, and passes it to the links, or refuses it at the call with a reason.
 //
 // Threads: any manager's thread calls Forward; Status and Problems are for any.
 class OutgoingQueues final : public QueueForwarder
 {
 public:
-    // References must outlive the object. The tap, if there is one, is told of what is refused here.
+    // References must outlive the object. The tap, if there is one, is told of messages that are refused
+    // here.
     OutgoingQueues(const std::string &ownNode, RabitWorkspace &workspace, const RemoteQueues &remote,
                    LinkDriver &links, std::shared_ptr<GatewayTap> tap = nullptr);
 
@@ -41,7 +42,7 @@ public:
     // The node is remembered no longer.
     void Forget(const std::string &node) { _refusals.Forget(node); }
 
-    // All links to other nodes, with what was refused before it reached one.
+    // All links to other nodes, with the messages that were refused before they reached a link.
     std::vector<Gateway::LinkStatus> Status() const;
     std::vector<Gateway::Problem> Problems() const { return _refusals.Problems(); }
 

@@ -15,14 +15,14 @@
 namespace Rabit
 {
 
-// Messages that were refused at the call, before they reached a link: counted by link, and why the last one
-// was. Thread-safe.
+// Counts the messages that were refused at the call, before they reached a link: by link, with the reason of
+// the last one. Thread-safe.
 class RefusalCounts
 {
 public:
     using LinkName = std::pair<std::string, std::string>;  // node, queue
 
-    // Counts one.
+    // Counts one refused message.
     void Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
              const std::string &reason);
     // A message was accepted: whatever was wrong is over. Costs nothing while nothing is wrong.

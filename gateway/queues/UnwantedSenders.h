@@ -13,15 +13,15 @@
 namespace Rabit
 {
 
-// Nodes that send to queues which accept nothing of them, so that people learn of it here. An honest node
-// asks itself before, and is refused at the call; so it is one that knew better a moment ago, or whose
-// program does not ask. Bounded. Not thread-safe.
+// Nodes that send to queues which accept nothing from them, so that people learn of it here. An honest node
+// checks the announcement and refuses the call; so the sender's announcement is out of date, or its program
+// does not check. Bounded. Not thread-safe.
 class UnwantedSenders
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // One is named for so long after its last message; so many are.
+    // How long a sender is named after its last message, and how many are remembered.
     static constexpr Duration Memory = std::chrono::seconds(10);
     static constexpr std::size_t MostRemembered = 64;
 

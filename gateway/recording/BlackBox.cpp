@@ -38,7 +38,7 @@ void BlackBox::Take(RecordingInbox::Batch &batch, Time now)
     }
     if (_isOpen)
     {
-        // What came after the end waits for the next event.
+        // Items from after the end wait for the next event.
         while (!_kept.empty() && _kept.front().LogTime <= _until)
         {
             _bytes -= RecordingInbox::SizeOf(_kept.front());

@@ -11,9 +11,9 @@
 namespace Rabit
 {
 
-// Holds back what is to be recorded, and gives it out when something happens: what came in the time before,
-// and what comes until some time after. What happens meanwhile prolongs it. What has become too old, or has
-// no room, is let go of: that is no loss.
+// Holds back items, and gives them out at an event: those of the time `before` it, and those until the time
+// `after` it. Further events prolong that. Items that are too old, or have no room, are dropped; that does
+// not count as a loss.
 //
 // Pure; times are log times. Not thread-safe.
 class BlackBox
@@ -23,11 +23,12 @@ public:
 
     BlackBox(std::chrono::nanoseconds before, std::chrono::nanoseconds after, std::size_t mostBytes);
 
-    // Puts what is to be written in place of the items of the batch, in the order in which they came.
+    // Replaces the items of the batch by those that are to be written now, in the order in which they came.
     void Take(RecordingInbox::Batch &batch, Time now);
-    // Whether what comes now is written. Once it is not any more, what was written is complete.
+    // True while items are written as they come. When it turns false, the recording of the event is
+    // complete.
     bool IsOpen() const { return _isOpen; }
-    // What the last Take let go of, the oldest first: all of it came before what is to be written.
+    // The items that the last Take dropped, the oldest first. All came before those that it gave out.
     const std::vector<RecordingItem> &LetGo() const { return _letGo; }
 
 private:

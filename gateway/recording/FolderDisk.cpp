@@ -63,7 +63,7 @@ std::unique_ptr<RecordingDisk::File> FolderDisk::Create(const std::string &name,
     return std::make_unique<PosixFile>(descriptor);
 }
 
-// So that the name of a new file outlasts a loss of power, too.
+// Syncs the folder, so that the name of a new file survives a power loss, too.
 void FolderDisk::SyncFolder() const
 {
     const int descriptor = ::open(_folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -5,7 +5,7 @@
 namespace Rabit
 {
 
-// A folder of the file system. It is made if it is missing.
+// A folder of the file system. Create makes it if it is missing.
 class FolderDisk final : public RecordingDisk
 {
 public:

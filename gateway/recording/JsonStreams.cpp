@@ -5,7 +5,8 @@ namespace Rabit::JsonStreams
 namespace
 {
 
-// Each property has one plain type, though it may be null: Foxglove refuses schemas that say so.
+// The schema gives each property one plain type, even if its value may be null: Foxglove refuses schemas
+// that allow null.
 RecordingStream Make(const std::string &node, const std::string &name, const std::string &schema,
                      const std::string &text)
 {

@@ -7,8 +7,8 @@
 namespace Rabit
 {
 
-// What the recorder tells of its own accord: streams of JSON, `<node>/Recorder/<name>`. The log has the
-// schema that Foxglove's panel for logs looks for.
+// The recorder's own streams: JSON, on the topics `<node>/Recorder/<name>`. The log has the schema that
+// Foxglove's panel for logs looks for.
 namespace JsonStreams
 {
 RecordingStream Log(const std::string &node);

@@ -65,7 +65,8 @@ void MessageTap::Record()
     }
 }
 
-// One that was posted before the last count has had its handler called by now, if it was seen at all.
+// The handlers of all posts before the last count have been called by now: a post that they did not see was
+// missed.
 void MessageTap::CountMissed()
 {
     const std::lock_guard lock(_mutex);

@@ -18,16 +18,17 @@ namespace Rabit
 class MessageTap : public std::enable_shared_from_this<MessageTap>
 {
 public:
-    // The bytes of a message; false if it cannot be expressed.
+    // Encodes a message into `bytes`; false if it cannot be encoded.
     using Encode = std::function<bool(const RabitMessage &message, Mcap::Bytes &bytes)>;
 
-    // `event`: what each post is for a black box; empty: nothing.
+    // `event` names the event that each post is for a black box; empty: none.
     MessageTap(std::shared_ptr<PublishSubscribeMessage> global, std::shared_ptr<RecordingTarget> target,
                std::uint32_t stream, Encode encode, std::string event = "");
     ~MessageTap();
-    // What was posted last, if anything was, and then all posts. Once.
+    // Records the last post, if there is one, and from then on every post. To be called once.
     void Begin();
-    // Counts posts that were not seen because another thread posted at the same time; now and then.
+    // Counts posts as lost that were missed because another thread posted at the same time. To be called
+    // now and then.
     void CountMissed();
 
 private:
@@ -40,7 +41,7 @@ private:
     const Encode _encode;
     const std::string _event;
     RabitScopedConnection _connection;
-    std::mutex _mutex;  // of what follows: several threads may post
+    std::mutex _mutex;  // guards the members below: several threads may post
     std::unique_ptr<RabitMessage> _copy;
     std::uint64_t _seen = 0;  // posts that were recorded, or counted as missed, or before the beginning
     std::uint64_t _postsBefore = 0;  // at the last count

@@ -12,20 +12,20 @@
 namespace Rabit
 {
 
-// Finds the local messages that are to be recorded, and taps each. One manager's.
+// Finds the local messages that are to be recorded, and makes a MessageTap for each. Used by one manager.
 class MessageTaps
 {
 public:
-    // The workspace and the configuration must outlive it; config.Record is set.
+    // The workspace and the configuration must outlive the object. config.Record must be set.
     MessageTaps(const GatewayConfig &config, RabitWorkspace &workspace,
                 std::shared_ptr<RecordingTarget> target);
     ~MessageTaps();
-    // Taps what is new.
+    // Begins to record new messages, and counts missed posts.
     void Look();
 
 private:
     bool IsWanted(const std::string &name) const;
-    // The node that posts it, and how it is called there.
+    // The node that posts a message, and the message's name there.
     struct Origin
     {
         std::string Node;

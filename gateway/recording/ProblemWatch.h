@@ -8,12 +8,12 @@
 namespace Rabit
 {
 
-// Tells which problems of a fleet were not there before. Texts that differ in numbers alone are one; those of
-// the recording itself are none. Not thread-safe.
+// Finds the new problems of a fleet. Texts that differ in digits alone are one problem. Problems of the
+// recording itself are ignored. Not thread-safe.
 class ProblemWatch
 {
 public:
-    // The problem in words; empty: none is new.
+    // Returns the first new problem in words; empty if none is new.
     std::string Look(const Gateway::Fleet &fleet);
 
 private:

@@ -120,7 +120,7 @@ void QueueStreams::TellOutcome(std::string_view node, std::string_view queue, st
     }
 }
 
-// Source clock to monotonic clock to log time.
+// Converts source clocks by the monotonic clock to log time.
 void QueueStreams::Clocks(std::uint64_t incarnation, std::chrono::nanoseconds sourceAhead,
                           const std::vector<PeerClock> &peers)
 {

@@ -13,14 +13,15 @@
 namespace Rabit
 {
 
-// Records what the gateway tells: queue messages and what became of them, and clocks; and tells it what was
-// lost.
+// Records what the gateway reports: queue messages, their outcomes, and clocks. Reports lost messages to
+// the gateway.
 class QueueStreams final : public GatewayTap
 {
 public:
-    // Names come from the network. What would need more streams is not kept, and counted.
+    // A bound, since names come from the network. Messages that would need more streams are counted as
+    // lost.
     static constexpr std::size_t MostStreams = 4096;
-    // In Gateway/Fleet.
+    // Rows in Gateway/Fleet. All further topics share one more row.
     static constexpr std::size_t MostProblems = 20;
 
     QueueStreams(std::shared_ptr<RecordingTarget> target, const RecordSettings &settings);

@@ -9,7 +9,7 @@ namespace Rabit
 namespace
 {
 
-// Small against the second after which what was recorded is on the disk.
+// With RecordingFiles::FlushPeriod (400 ms), items are on the disk after half a second.
 constexpr std::chrono::milliseconds Turn(100);
 
 }  // namespace
@@ -60,7 +60,7 @@ void Recorder::Run()
     } while (!batch.IsEnd);
 }
 
-// Whatever happens to a recording, it does not end the process.
+// Catches exceptions: a recording that fails does not end the process.
 void Recorder::Write(RecordingInbox::Batch &batch)
 {
     try

@@ -13,19 +13,20 @@
 namespace Rabit
 {
 
-// A recording, written by a thread of its own, so that nobody who has something to record waits for the disk.
-// Thread-safe.
+// A recording that a thread of its own writes, so that threads with something to record never wait for the
+// disk. Thread-safe.
 class Recorder
 {
 public:
-    // UTC, nanoseconds since 1970, that never goes back; called on the recorder's thread.
+    // Returns UTC in nanoseconds since 1970, which never goes back. Called on the recorder's thread.
     using Clock = std::function<std::uint64_t()>;
     // The first file is begun with the first message.
     Recorder(std::unique_ptr<RecordingDisk> disk, const RecordingSettings &settings, Clock clock);
-    // Writes what is there, and ends the file.
+    // Writes the items in the inbox, and ends the file.
     ~Recorder();
 
-    // The same while it lives: nothing is taken in any more. Once, on one thread.
+    // Does the same before destruction; from then on the inbox refuses items. To be called once, on one
+    // thread.
     void End();
 
     RecordingInbox &Inbox() { return _inbox; }

@@ -63,7 +63,7 @@ Mcap::TextMap NodeMetadata(const GatewayConfig &config)
             {"transport", config.Transport}};
 }
 
-// As it stands in the file; made in code: nothing.
+// The text of the configuration file; nothing if the configuration was made in code.
 Mcap::TextMap ConfigurationMetadata(const GatewayConfig &config)
 {
     if (config.File.empty())
@@ -155,7 +155,7 @@ private:
     const RecordingSettings _settings;
     RabitWorkspace &_workspace;
     const std::shared_ptr<RecordingTarget> _target;
-    const GatewayConfig _config;  // a copy: without the tap, which would keep what it is given
+    const GatewayConfig _config;  // a copy without the tap, which keeps the target alive
     MessageTaps _taps;
     std::shared_ptr<Gateway::Fleet> _fleet;  // null: nobody waits for problems
     ProblemWatch _problems;

@@ -20,7 +20,7 @@ public:
     class File : public Mcap::ByteSink
     {
     public:
-        // Returns when all that was written would outlast a loss of power; false if that cannot be had.
+        // Returns when all written bytes would survive a power loss; false if that fails.
         virtual bool Sync() = 0;
     };
     struct Entry
@@ -29,12 +29,12 @@ public:
         std::uint64_t Bytes = 0;
     };
 
-    // A new file; null, with a reason, if there is one of that name or it cannot be made.
+    // Creates a file. Returns null, with a reason, if the name is taken or the file cannot be made.
     virtual std::unique_ptr<File> Create(const std::string &name, std::string &reason) = 0;
-    // All files, in any order.
+    // Returns all files, in any order.
     virtual std::vector<Entry> List() = 0;
     virtual bool Remove(const std::string &name) = 0;
-    // What may still be written; empty: not known.
+    // Returns how many bytes may still be written; empty if not known.
     virtual std::optional<std::uint64_t> FreeBytes() = 0;
 };
 

@@ -39,7 +39,7 @@ std::string Padded(std::uint64_t number)
     return text.size() >= NumberDigits ? text : std::string(NumberDigits - text.size(), '0') + text;
 }
 
-// The number of one of the files of that name; empty: it is none.
+// Returns the number in the name of one of this node's files; empty if it is another file.
 std::optional<std::uint64_t> NumberOf(const std::string &file, const std::string &name)
 {
     const std::string begin = name + "_";
@@ -52,7 +52,7 @@ std::optional<std::uint64_t> NumberOf(const std::string &file, const std::string
     const std::size_t after = file.find('_', begin.size());
     const std::string digits =
         after == std::string::npos ? "" : file.substr(begin.size(), after - begin.size());
-    // What somebody made of one of them, as `rabit recover` does, is not ours.
+    // A longer name is a file that was made from one of ours, as `rabit recover` does.
     const bool isWhole = after != std::string::npos && file.size() == after + 1 + DateLetters + end.size();
     const bool isNumber =
         isWhole && digits.size() >= NumberDigits && digits.size() <= 18 &&
@@ -107,7 +107,7 @@ void RecordingFiles::Take(const RecordingInbox::Batch &batch, Time now)
     }
 }
 
-// Those of a batch once, whoever asks for it first.
+// Adds the new streams of a batch once, whether Take or Remember comes first.
 void RecordingFiles::AddNewStreams(const RecordingInbox::Batch &batch)
 {
     for (std::size_t at = _streams.size(); at < batch.FirstNewStream + batch.NewStreams.size(); ++at)
@@ -176,7 +176,7 @@ std::uint64_t RecordingFiles::Margin() const
 
 void RecordingFiles::Close(Time now)
 {
-    // What was lost while there was no file is said in one that holds nothing else.
+    // Losses while there was no file are written to a file that holds nothing else.
     if (!_writer && _lossesChanged)
     {
         Open(now, now);
@@ -191,7 +191,7 @@ void RecordingFiles::Close(Time now)
 bool RecordingFiles::Open(Time now, Time firstLogTime)
 {
     _notBefore = now + Nanoseconds(LookPeriod);  // if it fails
-    // Not for a moment, once there was too little.
+    // After a problem 10 % more must be free, so that the new file does not end after a moment.
     if (!MakeRoom(_status.Problem.empty() ? Margin() : Margin() + Margin() / 10))
     {
         return false;

@@ -16,7 +16,7 @@
 namespace Rabit
 {
 
-// How a recording goes.
+// The state of a recording.
 struct RecordingStatus
 {
     std::string File;            // that is being written; empty: none
@@ -24,13 +24,13 @@ struct RecordingStatus
     std::uint64_t Files = 0;     // that were begun
     std::uint64_t Messages = 0;  // that were written since the beginning, to all files
     std::uint64_t Bytes = 0;
-    std::map<std::string, std::uint64_t> Lost;  // by topic, what was not kept
+    std::map<std::string, std::uint64_t> Lost;  // messages that were not kept, by topic
     std::string Problem;                        // why nothing is being recorded; empty: it is
 };
 
-// Writes the files of a recording: begins, splits and ends them, keeps within the disk, and counts what it
-// could not keep. What was taken is on the disk after a second at most, if that is quick enough: then neither
-// a kill nor a loss of power costs more.
+// Writes the files of a recording: begins, splits and ends them, keeps within the free space, and counts
+// messages that it could not keep. If the disk is quick enough, items are on it after half a second: a kill
+// or a power loss costs no more.
 //
 // `now` is UTC, nanoseconds since 1970, and never goes back. Not thread-safe.
 class RecordingFiles
@@ -38,27 +38,27 @@ class RecordingFiles
 public:
     using Time = std::uint64_t;
 
-    // How long what was taken waits in a chunk.
+    // How long items wait in a chunk.
     static constexpr std::chrono::nanoseconds FlushPeriod = std::chrono::milliseconds(400);
-    // How often free space, and what was lost, is looked at; and how long after a failure nothing is tried.
+    // How often free space and losses are looked at, and the pause after a failure.
     static constexpr std::chrono::nanoseconds LookPeriod = std::chrono::seconds(1);
     // States up to this size are repeated at the beginning of a file.
     static constexpr std::size_t LargestRepeated = 256U << 10;
-    // So much of the disk stays free whatever the settings say.
+    // So many bytes of the disk stay free, whatever the settings say.
     static constexpr std::uint64_t LeastMargin = 16U << 20;
 
-    // The disk must outlive it.
+    // The disk must outlive the object.
     RecordingFiles(RecordingDisk &disk, const RecordingSettings &settings);
 
     void Take(const RecordingInbox::Batch &batch, Time now);
-    // Items that are not written: of states the last value is repeated in the next file.
-    // The batch is that which is taken next.
+    // Notes items that are not written: the next file begins with the last value of each state. `batch` is
+    // the one that Take gets next.
     void Remember(const RecordingInbox::Batch &batch, const std::vector<RecordingItem> &items);
-    // Does what is due; to be called every 100 ms or so.
+    // Splits, flushes and makes room when it is time. To be called every 100 ms or so.
     void Service(Time now);
     // Ends the file.
     void Close(Time now);
-    // Lets go of the file as it is; the next one is begun later.
+    // Closes the file as it is, and counts unsaved messages as lost. The next file is begun later.
     void Abandon(const std::string &problem, Time now);
     const RecordingStatus &Status() const { return _status; }
 
@@ -79,15 +79,16 @@ private:
     bool Write(Stream &stream, const RecordingItem &item, Time logTime);
     std::optional<std::uint16_t> ChannelOf(Stream &stream);
     void Flush(Time now);
-    // The file cannot be written any more.
+    // Drops a file that cannot be written any more.
     void GiveUp(Time now, const std::string &problem);
     void Finish();
     void Forget();
-    // Removes old files until the disk has room; false if it has none even so.
+    // MakeRoom removes old files until `margin` (Margin()) bytes of the disk are free; false if they are
+    // not even then.
     std::uint64_t Margin() const;
     bool MakeRoom(std::uint64_t margin);
     bool RemoveOldest(std::vector<std::pair<std::string, std::uint64_t>> &own);
-    // Own files, the oldest first.
+    // Returns this node's files, the oldest first.
     std::vector<std::pair<std::string, std::uint64_t>> OwnFiles();
     void WriteLosses();
     void Lose(Stream &stream, std::uint64_t count);

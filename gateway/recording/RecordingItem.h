@@ -17,8 +17,8 @@ struct RecordingStream
     std::string SchemaEncoding = "omgidl";
     std::string SchemaText{};
     Mcap::TextMap Metadata{};
-    // Its last message says how things are until the next one: it is repeated at the beginning of each file,
-    // so that a file can be understood without those before it.
+    // True: a message holds until the next one. The last one is repeated at the beginning of each file, so
+    // that a file can be understood without those before it.
     bool IsState = false;
 };
 

@@ -13,19 +13,19 @@ namespace Rabit
 struct RecordingSettings
 {
     std::string Name;    // of the node: files are called <Name>_<number>_<date>.mcap
-    std::string Folder;  // for what is said to people
+    std::string Folder;  // for messages to people
     // A file that has become that large, or spans that much time, is ended, and the next one begun.
     std::uint64_t SplitBytes = std::uint64_t{1} << 30;
     std::chrono::nanoseconds SplitTime = std::chrono::minutes(10);
-    // Of all files of that name together; then the oldest is removed. 0: no bound.
+    // Bytes of all files of that name together; beyond it the oldest is removed. 0: no bound.
     std::uint64_t KeepBytes = 0;
-    // So much of the disk stays free: the oldest files of that name are removed, and when there are none
-    // left nothing is recorded.
+    // Bytes of the disk that stay free: the oldest files of that name are removed, and if none is left,
+    // nothing is recorded.
     std::uint64_t FreeBytes = std::uint64_t{1} << 30;
-    // What may wait for the disk.
+    // Bytes that may wait for the disk.
     std::size_t MemoryBytes = 64U << 20;
     bool Compresses = true;
-    // Set: nothing is written until something happens (BlackBox).
+    // If set, nothing is written until an event (BlackBox).
     struct BlackBoxTimes
     {
         std::chrono::nanoseconds Before{0};

@@ -15,8 +15,9 @@
 namespace Rabit
 {
 
-// Where the streams of a node go, and the time that they are recorded at: the wall clock as it stood when the
-// recording began, and from then on the monotonic clock, so that it never steps. Shared by all that record.
+// The Recorder that gets all streams of a node, and its clock. Log time is the wall clock at the beginning
+// of the recording, and from then on the monotonic clock: it never steps. Shared by all classes that
+// record.
 class RecordingTarget
 {
 public:
@@ -37,7 +38,7 @@ public:
     RecordingInbox &Inbox() { return _recorder.Inbox(); }
     RecordingStatus Status() const { return _recorder.Status(); }
 
-    // Log time now, or when the monotonic clock shows that.
+    // Return the log time now, or when the monotonic clock shows `monotonic`.
     std::uint64_t Now() const { return At(_clock.Monotonic()); }
     std::uint64_t At(std::chrono::nanoseconds monotonic) const
     {
@@ -45,15 +46,15 @@ public:
         return time < 0 ? 0 : static_cast<std::uint64_t>(time);
     }
 
-    // To be added to the monotonic clock to get log time.
+    // Returns the offset from the monotonic clock to log time.
     std::chrono::nanoseconds MonotonicToLog() const
     {
         return std::chrono::nanoseconds(_logClock.At(std::chrono::nanoseconds(0)));
     }
-    // Ends the recording. What is put in afterwards is not kept.
+    // Ends the recording. Messages that are put in afterwards are dropped.
     void End() { _recorder.End(); }
 
-    // A message that is recorded now, and was posted when the log clock showed that.
+    // Records a message now. `postedAt` is the log time of its post.
     bool Put(std::uint32_t stream, std::uint64_t postedAt, Mcap::Bytes data, std::uint32_t sequence = 0)
     {
         return _recorder.Inbox().Put({stream, sequence, Now(), postedAt, std::move(data)});
@@ -63,7 +64,7 @@ public:
         Put(stream, Now(), {json.begin(), json.end()});
     }
 
-    // Something happened; without a black box that does not matter.
+    // Tells of an event, for which a black box is written. Does nothing without one.
     void Happened(const std::string &what)
     {
         if (_events)

@@ -94,7 +94,7 @@ void StepRecorder::Taken(const std::string &queue, const RabitMessage &message)
     Add(StepEvent::Kind::Taken, queue, message, true);
 }
 
-// Encoded now: whoever takes it may change it.
+// Encodes the message before it is added: the receiver may change it.
 std::optional<bool> StepRecorder::Adding(const std::string &queue, const RabitMessage &message)
 {
     Add(StepEvent::Kind::Refused, queue, message, true);

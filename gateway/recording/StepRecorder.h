@@ -15,7 +15,7 @@
 namespace Rabit
 {
 
-// Records the steps of one manager with all that they read and did, so that they can be run again. Each step
+// Records the steps of one manager, with all that they read and did, so that they can run again. Each step
 // is one message, and needs no other stream.
 class StepRecorder final : public RabitManagerTrace
 {

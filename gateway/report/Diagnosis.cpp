@@ -16,13 +16,14 @@ namespace Rabit::Diagnosis
 namespace
 {
 
-// What the node says of that message; null if it says nothing.
+// Returns the node's announcement of that message; null if there is none.
 const Gateway::PublishedMessage *OfferOf(const std::string &message, const PeerTable::Peer &peer)
 {
     return peer.Offers ? Offers::Find(*peer.Offers, message) : nullptr;
 }
 
-// "From everybody" means from whoever has it: once somebody has, it is no problem that others have not.
+// True if nodes may lack the message. `*` in `from` means every node that has it: once one node announces
+// it, the others need not.
 bool MayLack(const SubscribeRule &rule, const PeerTable &peers)
 {
     if (std::find(rule.From.begin(), rule.From.end(), "*") == rule.From.end())
@@ -35,7 +36,7 @@ bool MayLack(const SubscribeRule &rule, const PeerTable &peers)
                        { return OfferOf(rule.Message, *peer) != nullptr; });
 }
 
-// What patience does not change.
+// True if the node publishes the message with another definition of its type. Waiting does not change that.
 bool IsOtherVersion(const Wanted &wanted, const PeerTable::Peer &peer)
 {
     const Gateway::PublishedMessage *found = OfferOf(wanted.Rule->Message, peer);

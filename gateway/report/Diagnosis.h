@@ -18,8 +18,8 @@ namespace Rabit
 
 class Subscriptions;
 
-// Tells, by name, why an expected message does not come: compares what this node wants with what the others
-// announce. Pure functions of their arguments.
+// Tells, by name, why an expected message does not come. Compares the subscriptions of this node with the
+// announcements of the others. Pure functions of their arguments.
 namespace Diagnosis
 {
 
@@ -30,16 +30,16 @@ struct Wanted
     std::function<Reception(const std::string &node)> ReceptionFrom;
 };
 
-// A node's data are given this long before their absence is called a problem.
+// Data of a node may be missing for this long before that is a problem.
 inline constexpr std::chrono::nanoseconds Patience = std::chrono::milliseconds(1500);
 
-// Problems of one subscription, at most one for each node that it covers; one without a node if there is no
-// such node.
+// Returns the problems of one subscription: at most one for each node that it covers, or one without a node
+// if no such node was heard.
 std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTable &peers,
                                              std::chrono::nanoseconds sinceStart,
                                              std::chrono::nanoseconds now);
 
-// Problems of all subscriptions.
+// Returns the problems of all subscriptions.
 std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeerTable &peers,
                                               std::chrono::nanoseconds sinceStart,
                                               std::chrono::nanoseconds now);

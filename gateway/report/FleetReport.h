@@ -16,13 +16,13 @@ namespace Rabit::FleetReport
 // are already in the message.
 void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet);
 
-// The row of that node, after FillNodes; null if there is none. Takes a binary search.
+// Returns the row of that node, by binary search; null if there is none. Only after FillNodes.
 Gateway::NodeStatus *NodeIn(Gateway::Fleet &fleet, std::string_view node);
 
-// Problems with names that two live nodes share.
+// Adds a problem for each name that two live nodes share.
 void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet);
 
-// What of the network is missing that the configuration asks for.
+// Adds a problem for each network setting that is wrong on this host now.
 void AddNetworkProblems(const std::vector<SettingsProblem> &problems, Gateway::Fleet &fleet);
 
 }  // namespace Rabit::FleetReport

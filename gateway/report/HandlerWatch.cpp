@@ -18,7 +18,7 @@ std::string Seconds(Duration time)
     return text;
 }
 
-// In steps, so that the text does not change with each look.
+// Rounds down to a few steps, so that the text of the problem does not change each time.
 Duration StepBelow(Duration time)
 {
     Duration step = HandlerWatch::Slow;

@@ -16,8 +16,8 @@
 namespace Rabit
 {
 
-// Tells which of the program's own handlers take long: the other handlers of what comes from other nodes wait
-// for them. Thread-safe; calls nobody but the clock.
+// Tells which of the program's own handlers take long: the handlers of other messages from the network wait
+// for them. Thread-safe; calls only the clock.
 class HandlerWatch final : public RabitHandlerThread::Watch
 {
 public:
@@ -25,9 +25,10 @@ public:
 
     // Handlers that take less are no problem.
     static constexpr Duration Slow = std::chrono::seconds(1);
-    // A row stays so long after its handler has returned, for people and for the log, which waits for 2 s.
+    // A row stays for 10 s after its handler has returned: people can read it, and the log, which waits for
+    // 2 s, tells it.
     static constexpr Duration Memory = std::chrono::seconds(10);
-    // Rows at most: the newest ones.
+    // At most so many rows of handlers that have returned: the newest ones.
     static constexpr std::size_t MostRows = 16;
 
     // The clock, which must outlive the object, is read as monotonic time.
@@ -51,7 +52,7 @@ private:
 
     const RabitClock &_clock;
     mutable std::mutex _mutex;
-    std::optional<Call> _running;       // guarded, as what follows
+    std::optional<Call> _running;       // guarded by _mutex, like _past
     std::map<std::string, Past> _past;  // by subject
 };
 

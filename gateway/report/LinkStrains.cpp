@@ -17,7 +17,8 @@ std::uint16_t Saturated(std::uint64_t count)
         std::min<std::uint64_t>(count, std::numeric_limits<std::uint16_t>::max()));
 }
 
-// One for each node and kind: several queues of a node are told as their worst, with what they lost together.
+// Keeps one strain for each node and kind: several queues of a node are joined, with the worst fill and the
+// sum of their messages.
 void Add(const LinkStrain &strain, std::vector<LinkStrain> &strains)
 {
     const auto found = std::find_if(strains.begin(), strains.end(),

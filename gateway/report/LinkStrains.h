@@ -14,27 +14,28 @@
 namespace Rabit
 {
 
-// Which of this node's links are in trouble, for its beats to say: an outbox that fills, messages in doubt, a
-// queue that is full. Most are not, and then there is nothing to say. No I/O, no threads, no clock of its
-// own; gateway's thread only.
+// Finds this node's links that are in trouble, for its beats to tell: an outbox that fills, messages in
+// doubt, a stream that is held back by a full queue. No I/O, no threads, no clock of its own; gateway's
+// thread only.
 class LinkStrains
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // An outbox is worth a word from here on.
+    // An outbox that is filled to this part or more is reported.
     static constexpr double MuchFilled = 0.5;
-    // What was refused or came in doubt is told for so long after it happened last.
+    // Refused messages and messages in doubt are reported until 30 s after the last one.
     static constexpr Duration Memory = std::chrono::seconds(30);
-    // A queue that is full for less than this is one whose manager works through it.
+    // A queue that is full for less than this is not reported: its manager works through it.
     static constexpr Duration Short = std::chrono::seconds(2);
 
-    // Links and inbound streams as in that message; nodes that are not in the table are left out. The worst
-    // come first: refused, filling, in doubt, held back; one for each node and kind. `now` never goes back.
+    // Looks at the links and inbound streams in `fleet`, and ignores nodes that are not in `peers`. Returns
+    // one strain for each node and kind, the worst first: refused, filling, in doubt, held back. `now`
+    // never goes back.
     std::vector<LinkStrain> Look(const Gateway::Fleet &fleet, const PeerTable &peers, Duration now);
 
 private:
-    // A counter that only rises, and by how much it did lately.
+    // A counter that only rises, and its rise since it last stood still for longer than `Memory`.
     struct Rise
     {
         std::uint64_t Seen = 0;

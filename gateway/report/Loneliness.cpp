@@ -24,7 +24,7 @@ std::string Listed(const std::vector<std::string> &items, const std::string &non
     return items.empty() ? none : text;
 }
 
-// Where the vendor's own settings may have replaced the transport, what goes out is not counted.
+// Sent bytes are not counted if the vendor's own settings (BackendConfig) may have replaced the transport.
 std::string WhatGoesOut(const GatewayConfig &config, const TransportCounters &counters)
 {
     if (config.BackendConfig.empty() && counters.DiscoveryBytes == 0)

@@ -12,17 +12,17 @@
 namespace Rabit
 {
 
-// What a node can know while it hears nobody. Nodes of other domains, and those whose multicast does not
-// come through, are not heard at all: so it says where it listens, and what goes out. Pure functions of their
-// arguments.
+// Reports that a node hears no other node. It cannot hear nodes of other domains, or nodes whose multicast
+// does not get through, so the report tells where this node listens and what it sends. Pure functions of
+// their arguments.
 namespace Loneliness
 {
 
-// Nobody is live for so long. The problem says that, and not for how long by now: who lists problems as they
-// come would list a new one each second.
+// No other node is live for this long. The text of the problem names this time, not the time so far: a
+// growing number would make a new problem each second.
 inline constexpr std::chrono::nanoseconds Patience = std::chrono::seconds(10);
 
-// The problem, if there is one. `openedAt`: since when this node listens.
+// Returns the problem, if there is one. `openedAt` is when this node began to listen.
 std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeerTable &peers,
                                      const TransportCounters &counters, std::chrono::nanoseconds openedAt,
                                      std::chrono::nanoseconds now);

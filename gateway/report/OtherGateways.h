@@ -9,9 +9,9 @@
 namespace Rabit::OtherGateways
 {
 
-// Adds a problem for each node that another gateway of the workspace knows as well, as its own message tells:
-// mirrored messages of the two have the same names here, and queue messages go through one of them. `name` is
-// this gateway's.
+// Adds a problem for each node that another gateway of the workspace lists in its Fleet message, too.
+// Mirrored messages of the two nodes have the same names here, and queue messages go through one gateway
+// alone. `name` is the name of this gateway.
 void AddSharedNodes(RabitWorkspace &workspace, const std::string &name, Gateway::Fleet &fleet);
 
 }  // namespace Rabit::OtherGateways

@@ -16,7 +16,7 @@ bool IsDigit(char c)
     return c >= '0' && c <= '9';
 }
 
-// Each number becomes one sign, however many digits it has.
+// Replaces each number by one `#`, whatever its number of digits.
 std::string WithoutNumbers(const std::string &text)
 {
     std::string shape;
@@ -37,7 +37,7 @@ std::string WithoutNumbers(const std::string &text)
     return shape;
 }
 
-// Names in a reason may have come from the network.
+// Makes one line of printable ASCII: names in a reason may have come from the network.
 std::string OneLine(std::string text)
 {
     if (text.size() > ProblemLog::LongestLine)
@@ -55,7 +55,7 @@ std::string FirstWord(const std::string &text)
     return text.substr(0, text.find(' ') + 1);  // with the space; empty if there is none
 }
 
-// "subscribe Pose, Health, accept Commands": the first word is said again only where it is another one.
+// "subscribe Pose, Health, accept Commands": the first word is repeated only where it changes.
 std::string Listed(const std::vector<std::string> &subjects)
 {
     std::string text = subjects.front();

@@ -14,54 +14,52 @@
 namespace Rabit
 {
 
-// Decides which problems are worth a line in the log, so that each is said once and nothing floods. Pure: it
-// is fed with the problems that are there now and the time, and gives the lines. Not thread-safe. Bounded.
+// Decides which problems get a line in the log, so that each is told once and none floods it. Pure: takes
+// the present problems and the time, and returns the lines. Not thread-safe. Bounded.
 //
-// - A problem is told once it has lasted, counted from when it was first there, or at once if it is certain;
-//   and once more when it has been gone for as long. One that comes and goes faster than that counts as there
-//   all the time.
-// - Texts that differ only in numbers are one problem. If another reason takes the place of one with the same
-//   subject and node, the new one is told, and not that the former is gone.
+// - A problem is told when it has lasted for `Lasting`, or at once if it is certain. Its end is told when
+//   it has been gone for `Lasting`. A problem that comes and goes faster counts as present all the time.
+// - Texts that differ only in numbers are one problem. If another reason of the same subject and node
+//   replaces a problem, the new one is told, and the end of the former is not.
 // - Problems that begin together, with one reason and one node, share a line.
-// - One that keeps coming back is told a few times, then once a minute, with how often it came. All together
-//   have a limit as well; what is beyond waits for its turn, and one line says that.
+// - A problem that keeps coming back is told a few times, then once a minute, with how often it came. All
+//   problems together have a limit, too: those beyond it wait for their turn, and one line says so.
 class ProblemLog
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
     static constexpr Duration Lasting = std::chrono::seconds(2);
-    // One problem: so often at any rate, and once more after each pause.
+    // One problem is told up to three times at once, and once more after each `Pause`.
     static constexpr int TimesAtOnce = 3;
     static constexpr Duration Pause = std::chrono::minutes(1);
-    // All problems: so many lines at any rate, and one more after each pause.
+    // All problems together get up to 40 lines at once, and one more after each `LinePause`.
     static constexpr int LinesAtOnce = 40;
     static constexpr Duration LinePause = std::chrono::seconds(10);
-    // What is beyond is not followed; one line says that.
+    // Problems beyond this number are not followed; one line says so.
     static constexpr std::size_t MostFollowed = 1000;
     static constexpr std::size_t LongestLine = 600;
 
-    // `list` names where all problems stand, for the line that says that there are more.
+    // `list` names the place of all problems, for the line that says that there are more.
     explicit ProblemLog(std::string list);
 
-    // The problems that are there now; time never goes back. Returns lines of printable ASCII.
+    // Takes the problems that are present now, and returns lines of printable ASCII. `now` never goes back.
     std::vector<std::string> Look(const std::vector<Gateway::Problem> &present, Duration now);
 
-    // The last word: lines for those of the problems that are there and were not told, however short they
-    // have been there.
+    // For the end: returns lines for the present problems that were not told, even if they have not lasted.
     std::vector<std::string> AtEnd(const std::vector<Gateway::Problem> &present) const;
 
 private:
     // Subject, node and the reason without its numbers.
     using Key = std::tuple<std::string, std::string, std::string>;
 
-    // So many times at once, and one more after each pause.
+    // A token bucket: `most` at once, and one more after each pause.
     class Allowance
     {
     public:
         Allowance(int most, Duration pause) : _most(most), _pause(pause), _left(most) {}
         bool Has(Duration now);
-        // Only if it has.
+        // Takes one; only if `Has`.
         void Take(Duration now);
         bool IsFull(Duration now);
 
@@ -87,7 +85,7 @@ private:
         Allowance Allowed{TimesAtOnce, Pause};
     };
 
-    // Problems that are said together, by node and reason.
+    // Problems that share a line: of one node, with one reason.
     struct Group
     {
         std::vector<std::string> Subjects;
@@ -102,7 +100,7 @@ private:
     static void AddTo(Groups &groups, const Key &key, Entry &entry);
     static std::string TextOf(const NodeAndReason &about, const Group &group);
 
-    // In the order of the problems, each once.
+    // Returns the keys of the present problems, each once, in their order.
     std::vector<Key> TakeIn(const std::vector<Gateway::Problem> &present, Duration now);
     bool MakeRoom();
     bool IsReplaced(const Key &key) const;

@@ -11,8 +11,8 @@ namespace Rabit::Tool
 namespace
 {
 
-// The clocks of the two are related by beats that were on their way for half a round trip, or for any part of
-// it.
+// Returns the largest error of an age: beats relate the two clocks, and half of a round trip is taken as the
+// one-way delay, which may be any part of it.
 double Uncertainty(const std::string &node, FleetSession &session)
 {
     for (const Gateway::NodeStatus &status : session.Fleet().nodes)

@@ -16,10 +16,10 @@ namespace Rabit::Tool
 namespace
 {
 
-// Most of what a participant's announcement was measured to take, on the air (gateway/RADIO.md).
+// Nearly the largest measured announcement of a participant, in bytes on the air (gateway/RADIO.md).
 constexpr double Announcement = 510.0;
-// What is around a queue message, and an acknowledgement: a sample of the gateways' with a frame of this many
-// bytes (gateway/RADIO.md).
+// Bytes of the frame around a queue message, and of an acknowledgement; both are samples of the gateways
+// (gateway/RADIO.md).
 constexpr std::size_t LinkFrame = 36;
 
 double Seconds(std::chrono::nanoseconds time)
@@ -64,7 +64,7 @@ public:
     }
 
 private:
-    // One for all by multicast; each peer has one of its own without.
+    // By multicast one copy serves all readers. Without it, or with `peers`, each reader gets a copy.
     std::size_t Copies(std::size_t readers) const
     {
         const bool once = _config.Multicast && _config.Peers.empty();
@@ -98,7 +98,7 @@ private:
         {
             return stated;
         }
-        // Of several types the largest counts.
+        // Of several types, the largest counts.
         double largest = 0.0;
         for (const std::string &type : types)
         {
@@ -136,7 +136,7 @@ private:
                                size.has_value()});
     }
 
-    // For programs that are no nodes: one reads it, as far as anybody knows.
+    // Foreign programs are not in the files: one reader is assumed.
     void AddForeign(const ForeignRule &rule)
     {
         if (rule.Way == ForeignRule::Direction::Publish)
@@ -147,14 +147,15 @@ private:
         }
     }
 
-    // As stated, and no more than the file allows; 0: it allows any.
+    // The stated rate, limited by the file's max_rate; 0: no limit.
     std::optional<double> RateOf(const std::string &message, double maxRate) const
     {
         const std::optional<double> stated = _input.Rates.Of(_config.Node, message);
         return maxRate > 0.0 ? std::min(stated.value_or(maxRate), maxRate) : stated;
     }
 
-    // Queue messages of `from` into a queue of `to`, if `from` is said to send any.
+    // Rate of queue messages from `from` into `queue`; empty if none is stated, or the queue does not accept
+    // them.
     static std::optional<double> Sent(const Stated &rates, const GatewayConfig &from, const AcceptRule &queue)
     {
         return MatchesAny(queue.From, from.Node) ? rates.Of(from.Node, queue.Queue) : std::nullopt;
@@ -186,7 +187,7 @@ private:
         }
     }
 
-    // Whoever has a rule for a queue sends to it, at a rate that no file tells.
+    // A node with a rule for a queue sends to it, at a rate that no file tells.
     void AddUnstatedQueues()
     {
         for (const SendRule &rule : _config.Send)
@@ -241,7 +242,7 @@ std::vector<std::string> AirPlan::NotKnown() const
     std::vector<std::string> list;
     for (const AirItem &item : Items)
     {
-        // What nobody reads does not go.
+        // A message without readers is not sent.
         if (item.Copies > 0 && (!item.Rate || (!item.SizeKnown && *item.Rate > 0.0)))
         {
             const std::string what = !item.Rate && !item.SizeKnown ? "rate and size of "

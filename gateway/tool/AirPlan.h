@@ -9,18 +9,18 @@
 #include <utility>
 #include <vector>
 
-// What each node of a fleet puts on the air by its configuration, in bytes of IP packets as gateway/RADIO.md
-// reckons them: all that goes while nobody comes, goes or loses anything.
+// The bytes of IP packets that each node of a fleet sends by its configuration, by the rules of
+// gateway/RADIO.md, while no node comes or goes and nothing is lost.
 namespace Rabit::Tool
 {
 
-// What a person says of messages and queues: `uav1/Pose` (of that node; `*` and `?` stand for any), `Pose`
-// (of all). The first that fits holds.
+// Rates or sizes that a person states for messages and queues: `uav1/Pose` (of that node; `*` and `?` are
+// wildcards), `Pose` (of all nodes). The first match holds.
 class Stated
 {
 public:
     void Add(const std::string &what, double number);
-    // Of a message that this node posts, or a queue that it sends to.
+    // Returns the number for a message that this node posts, or a queue that it sends to.
     std::optional<double> Of(const std::string &node, const std::string &name) const;
 
 private:
@@ -31,11 +31,11 @@ struct AirPlanInput
 {
     Stated Rates;  // posts a second; of a queue: messages a second to each node that accepts it
     Stated Sizes;  // bytes of CDR; also by the name of a type
-    // Bytes of all samples of a type; nothing if they differ or nobody knows.
+    // Size in bytes of every sample of a type; empty if sizes differ or the type is unknown.
     std::function<std::optional<std::size_t>(const std::string &type)> SizeOfType;
 };
 
-// One of the things that a node sends.
+// One kind of traffic that a node sends.
 struct AirItem
 {
     std::string What;              // `beats`, `discovery`, `Pose`, `MissionControl of uav2`
@@ -52,20 +52,21 @@ struct AirPlan
     const GatewayConfig *Config = nullptr;
     std::vector<AirItem> Items;
 
-    // As far as it is known.
+    // The sum over the items whose rate is known. An item of unknown size counts its headers alone.
     double BytesPerSecond() const;
-    // `rate of Findings`, `size of Findings`.
+    // Lists missing numbers, as `rate of Findings`, `size of Findings`.
     std::vector<std::string> NotKnown() const;
 };
 
-// In the fleet's order, which must outlive them. A node that is alone is taken to have one reader for each
-// message.
+// Returns a plan for each node of `fleet`, in its order; `fleet` must outlive them. If a node is alone in its
+// domain, one reader is assumed for each of its messages.
 std::vector<AirPlan> AirPlansOf(const std::vector<GatewayConfig> &fleet, const AirPlanInput &input);
 
-// What exceeds the node's budget, in words with what takes most; empty if it fits, or there is no budget.
+// Says by how much the node exceeds its budget, and names the largest item; empty if it fits, or has no
+// budget.
 std::string WhyAboveBudget(const AirPlan &plan);
 
-// Names the messages that take more than a second of the budget each time; empty if none is known to.
+// Names the messages of which a single one takes more than a second of the budget; empty if there is none.
 std::vector<std::string> LargerThanASecond(const AirPlan &plan);
 
 }  // namespace Rabit::Tool

@@ -1,4 +1,4 @@
-// rabit bytes: how large a message is, and what it costs on the air.
+// rabit bytes: the size of a message, and its bytes on the air.
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace Rabit::Tool
 namespace
 {
 
-// Bytes of IP packets of one sample, to one destination.
+// Returns the bytes of IP packets of one sample, to one destination.
 double OnAir(const Meter &meter)
 {
     const double body = meter.MeanBytes() - static_cast<double>(AirCost::Encapsulation);

@@ -42,7 +42,7 @@ double Number(const std::optional<double> &number)
     return number.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-// `Pose=10`; throws CLI::ValidationError.
+// Parses `Pose=10`; throws CLI::ValidationError.
 Stated StatedIn(const std::vector<std::string> &list, const std::string &option)
 {
     Stated stated;
@@ -103,7 +103,7 @@ bool ShowTable(const std::vector<std::vector<std::string>> &rows)
     return isRead;
 }
 
-// `rate and size of Findings Health, rate of Pose`.
+// Returns `rate and size of Findings Health, rate of Pose`.
 std::string NotKnown(const AirPlan &plan)
 {
     std::map<std::string, std::string> names;
@@ -175,7 +175,7 @@ int Run(const Options &options)
         const ParsedType parsed = types.Find(name);
         return parsed.Type ? parsed.Type->FixedSize() : std::nullopt;
     };
-    // What one that could not be read would have offered is not known.
+    // If a file could not be read, the offers of its node are unknown, so the fleet is not checked.
     if (allGood)
     {
         findings = FleetCheck::FindingsOf(fleet);

@@ -20,7 +20,7 @@ bool IsTypeName(const std::string &name)
     return name.size() <= 255 && std::regex_match(name, pattern);
 }
 
-// Without files any name will do: which types programs have nobody knows.
+// Without --idl any type name will do: the types of the programs are unknown.
 std::string WhyNoType(const IdlFiles &types, const std::string &name)
 {
     if (!IsTypeName(name))
@@ -30,7 +30,7 @@ std::string WhyNoType(const IdlFiles &types, const std::string &name)
     return types.AreNone() ? "" : types.Find(name).Reason;
 }
 
-// Takes `file:line: text` apart.
+// Splits `file:line: text`.
 FleetCheck::Finding FindingOf(const std::string &error, const std::string &file, const std::string &node)
 {
     FleetCheck::Finding finding;
@@ -84,7 +84,7 @@ std::vector<GatewayConfig> Load(const std::vector<Argument> &arguments, const Id
             }
             catch (const ConfigError &error)
             {
-                // It names file and line itself.
+                // The error names file and line itself.
                 FleetCheck::Add(findings, FindingOf(error.what(), argument.File, node));
             }
         }

@@ -12,16 +12,16 @@
 namespace Rabit::Tool::CheckedFiles
 {
 
-// A file, and the nodes that it is for: `uav.yaml`, `uav1=uav.yaml`, `uav1,uav2=uav.yaml`.
+// A file, and the nodes that use it: `uav.yaml`, `uav1=uav.yaml`, `uav1,uav2=uav.yaml`.
 struct Argument
 {
     std::string File;
-    std::vector<std::string> Nodes;  // empty: the one that the file names
+    std::vector<std::string> Nodes;  // empty: the node that the file names
 };
-// A file of that whole name is one, whatever is in the name.
+// If a file of the whole name exists, that is the file, whatever characters the name has.
 Argument Parse(const std::string &text);
 
-// Loads them all. One that is bad is a finding, the only one of its file, and is left out.
+// Loads them all. A bad file becomes a finding, the only one of its file, and is left out.
 std::vector<GatewayConfig> Load(const std::vector<Argument> &arguments, const IdlFiles &types,
                                 std::vector<FleetCheck::Finding> &findings);
 

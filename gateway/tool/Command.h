@@ -14,7 +14,7 @@ namespace Rabit::Tool
 
 class Wakeup;
 
-// What the command line asks for: set by the command that it names.
+// The action of the command line, set by the command that it names.
 struct Chosen
 {
     std::function<int(Wakeup &)> Run;  // returns the exit code; may throw NetworkError and ConfigError
@@ -41,9 +41,9 @@ void AddCheckCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);
 void AddKeysCommand(CLI::App &app, Chosen &chosen);
 
-// For the shells: writes what the last word of a line can be, one a line; the line is without the program's
-// name. Looks into the network that the line names where that is wanted. Returns the exit code; may throw
-// NetworkError.
+// For the shells: writes the candidates for the last word of a line, one a line. The line comes without the
+// program's name. Candidates that depend on the fleet come from the network that the line names. Returns the
+// exit code; may throw NetworkError.
 int Complete(const CLI::App &app, const std::vector<std::string> &line, Wakeup &wakeup);
 
 }  // namespace Rabit::Tool

@@ -17,7 +17,7 @@ namespace Rabit::Tool
 namespace
 {
 
-// Nobody else has it: two tools on one machine are two nodes.
+// Returns a name that is unique in the network: two tools on one machine are two nodes.
 std::string OwnName()
 {
     constexpr std::size_t longestHost = 40;
@@ -50,7 +50,7 @@ void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait)
 namespace
 {
 
-// Without a file its keys say who a tool is, in which domain and over what.
+// Without a configuration file, the keys give the tool's name, domain and transport.
 void TakeFromKeys(const CommonOptions &options, GatewayConfig &config)
 {
     const Keys::NodeKeys keys(config.Security->Keys);

@@ -20,7 +20,7 @@ inline constexpr int ProblemFound = 1;
 inline constexpr int Usage = 2;
 inline constexpr int NoNetwork = 3;  // it could not be joined, or nobody was heard
 
-// The options that every command has which looks at a network.
+// The options of every command that looks at a network.
 struct CommonOptions
 {
     NodeOptions Node;
@@ -30,9 +30,8 @@ struct CommonOptions
     bool Verbose = false;
 };
 
-// Adds --config, --node, --domain, --transport, --keys, --interface, --wait, --json and --verbose. `wait`:
-// what
-// --wait is unless it is given.
+// Adds --config, --node, --domain, --transport, --keys, --interface, --wait, --json and --verbose. `wait` is
+// the default of --wait, in seconds.
 void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait);
 
 // The configuration of this program as a tool. Throws ConfigError.

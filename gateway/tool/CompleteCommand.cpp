@@ -1,4 +1,4 @@
-// rabit complete -- WORD...: what can stand in place of the last of the words, for the shells (completion/).
+// rabit complete -- WORD...: lists candidates for the last of the words, for the shells (completion/).
 #include <rabit/gateway/ConfigError.h>
 
 #include <CLI/CLI.hpp>
@@ -26,7 +26,7 @@ namespace
 using Words = std::vector<std::string>;
 using Candidates = std::set<std::string>;
 
-// The shell is to offer its files.
+// Tells the shell to offer its files.
 constexpr const char *Files = ":files";
 
 bool IsOption(const std::string &word)
@@ -34,7 +34,7 @@ bool IsOption(const std::string &word)
     return word.size() > 1 && word.front() == '-';
 }
 
-// Empty: it takes none.
+// Null if the option takes no value.
 const CLI::Option *OptionWithValue(const CLI::App &command, const std::string &word)
 {
     const CLI::Option *option = IsOption(word) ? command.get_option_no_throw(word) : nullptr;
@@ -91,7 +91,7 @@ Candidates ValuesOf(const CLI::Option &option)
     return found;
 }
 
-// What a stranger calls a type must not do anything in a shell.
+// Only these characters go to a shell: a type name comes from the network.
 bool IsTypeName(const std::string &text)
 {
     return std::all_of(text.begin(), text.end(),
@@ -102,7 +102,7 @@ bool IsTypeName(const std::string &text)
                        });
 }
 
-// What the fleet has for an argument, by those before it.
+// Returns the fleet's candidates for an argument, by the arguments before it.
 Candidates ArgumentsIn(const std::vector<FleetSession::Node> &nodes, const std::string &command,
                        const Words &before)
 {
@@ -163,7 +163,7 @@ Candidates ArgumentsIn(const std::vector<FleetSession::Node> &nodes, const std::
     return found;
 }
 
-// The network that the line names, as far as it is written. Empty: it names none that can be joined.
+// Returns the network that the line names so far; empty if it names none that can be joined.
 std::optional<GatewayConfig> NetworkOf(Words line, CommonOptions &options)
 {
     CLI::App app;
@@ -186,7 +186,7 @@ std::optional<GatewayConfig> NetworkOf(Words line, CommonOptions &options)
     }
 }
 
-// Whoever has announced itself within a second and a half at most; a shell waits for it.
+// Listens for 0.8 s, then until every node has announced itself, 1.5 s in all at most: a shell waits for it.
 Candidates FromFleet(const Words &line, const std::string &command, const Words &before, Wakeup &wakeup)
 {
     constexpr double everybody = 0.8;
@@ -204,7 +204,7 @@ Candidates FromFleet(const Words &line, const std::string &command, const Words 
     return ArgumentsIn(session.Nodes(), command, before);
 }
 
-// Of all that can stand there, whatever is written of it already.
+// Returns all candidates for that place, even those that do not begin with `last`.
 Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::string &last, Wakeup &wakeup)
 {
     const Candidates commands = CommandsOf(app);
@@ -232,7 +232,7 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     }
     if (open != nullptr)
     {
-        // A moment, where others write to a file.
+        // The option --to of `play` is a time; that of other commands is a file or folder.
         const bool isTime = command.get_name() == "play" && open->check_lname("to");
         return isTime ? Candidates() : ValuesOf(*open);
     }
@@ -245,7 +245,7 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     {
         return {Files};
     }
-    // Nodes that get keys need not be there yet.
+    // Nodes that get keys need not be in the network yet.
     const bool isOfKeys = command.get_parent() != nullptr && command.get_parent()->get_parent() != nullptr;
     if (command.get_name() == "doctor" || isOfKeys)
     {

@@ -1,4 +1,4 @@
-// rabit doctor: what is wrong with this machine, the network and the fleet, and what to do.
+// rabit doctor: problems of this machine, the network and the fleet, and remedies.
 #include <rabit/RabitLog.h>
 
 #include <CLI/CLI.hpp>
@@ -26,8 +26,8 @@ namespace
 using Doctor::Finding;
 using Doctor::Level;
 
-// Where participants are asked to announce themselves, besides the domain that is meant: each costs some 180
-// bytes on the air.
+// Number of domains, from 0, in which participants are asked to announce themselves, besides the configured
+// one. Each question takes some 190 bytes on the air.
 constexpr int CommonDomains = 10;
 
 void Append(std::vector<Finding> &all, std::vector<Finding> more)
@@ -73,7 +73,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
     int code = Good;
     try
     {
-        // Listens before DDS does, so that no answer is missed.
+        // NetworkTrial listens before DDS does, so that no answer is missed.
         const Doctor::NetworkTrial trial(used, config.Node, domains);
         FleetSession session(config, options, wakeup);
         session.WaitUntil(options.Wait, [] { return false; });

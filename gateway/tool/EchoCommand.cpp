@@ -37,7 +37,7 @@ struct Found
     std::string Reason;
 };
 
-// `a.b.0`: members by name, elements by number.
+// Follows a path as `a.b.0`: members by name, elements by number.
 Found Follow(const std::string &path, Json value)
 {
     std::size_t begin = 0;
@@ -87,7 +87,7 @@ class Printer
 public:
     Printer(const Options &options, const Samples &samples) : _options(options), _samples(samples) {}
 
-    // False: the program is to end, with Code.
+    // Returns false if the program should end, with Code.
     bool Print(const Sample &sample)
     {
         if (_options.Rate > 0.0)

@@ -40,7 +40,7 @@ void CheckNames(const Fleet &fleet, std::vector<Finding> &findings)
     }
 }
 
-// Domains that hear each other, for somebody is in both: one process with two gateways, which have two names.
+// Groups domains that are connected because one process has a gateway in each (two gateways with two names).
 std::vector<std::set<int>> ConnectedDomains(const Fleet &fleet)
 {
     std::vector<std::set<int>> groups;
@@ -76,7 +76,7 @@ std::vector<std::set<int>> ConnectedDomains(const Fleet &fleet)
     return groups;
 }
 
-// Told of all but the largest group.
+// Reports the nodes of all groups except the largest.
 void CheckDomains(const Fleet &fleet, std::vector<Finding> &findings)
 {
     const std::vector<std::set<int>> groups = ConnectedDomains(fleet);
@@ -128,7 +128,7 @@ void CheckTransports(const Fleet &fleet, std::vector<Finding> &findings)
     }
 }
 
-// Who does without multicast must name somebody, or be named.
+// Reports nodes without multicast, if no file of the fleet names `peers`.
 void CheckPeers(const Fleet &fleet, std::vector<Finding> &findings)
 {
     const bool somebodyNames =

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-// What is wrong with the configurations of a fleet together, each of which is good alone. Nobody is asked:
-// what programs do beyond their files is not known.
+// Problems between the configurations of a fleet, each of which is valid alone. No node is asked: settings
+// that programs make in code are unknown.
 namespace Rabit::Tool::FleetCheck
 {
 
@@ -19,16 +19,17 @@ struct Finding
     bool IsProblem = true;  // else worth knowing
 };
 
-// Of a node alone in its domain nothing is said of what it wants: the others are not among the files.
+// If a node is alone in its domain, its wishes are not checked: the other nodes are not among the files.
 std::vector<Finding> FindingsOf(const std::vector<GatewayConfig> &fleet);
 
-// Adds one; the same of several nodes of one file is one.
+// Adds a finding. The same finding of several nodes of one file is listed once, with all nodes.
 void Add(std::vector<Finding> &findings, Finding finding);
 
-// The line of a top-level key, or of one of `radio` (`radio.budget`), in its file; 0: it is not there.
+// Returns the line of a top-level key, or of a key of `radio` (`radio.budget`), in its file; 0 if it is
+// missing.
 int LineIn(const GatewayConfig &config, const std::string &key);
 
-// `uav1.yaml:4: ...`, with the nodes if there are several in the file.
+// Returns `uav1.yaml:4: ...`, with the nodes if the finding has several.
 std::string LineOf(const Finding &finding);
 
 }  // namespace Rabit::Tool::FleetCheck

@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr double TypeWait = 2.0;
-// Until a type is asked for again that nobody has handed out.
+// Seconds until a type is requested again that no node has handed out.
 constexpr double Pause = 5.0;
 
 }  // namespace
@@ -87,7 +87,7 @@ void FleetFollower::FollowNew()
     }
 }
 
-// False: once more later.
+// Returns false if the type did not come, so that the call must be repeated later.
 bool FleetFollower::Follow(const std::string &node, const Gateway::PublishedMessage &published)
 {
     const std::string &message = published.message;

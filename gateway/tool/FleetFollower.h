@@ -13,23 +13,23 @@
 namespace Rabit::Tool
 {
 
-// Subscribes to all messages of the fleet that fit patterns, as nodes announce them; the types are had from
-// the nodes. Main thread only.
+// Subscribes to all messages of the fleet that match patterns, as nodes announce them, and requests their
+// types from the nodes. Main thread only.
 class FleetFollower
 {
 public:
-    // `what`: `uav1/Pose`, `*/Pose`, `uav1/*`; `except`, likewise, is left out. What is subscribed to is noted
-    // in config.Subscribe; of nodes that were built with another definition of a type nothing is taken, and so
-    // they are added to `except`. All must outlive it.
+    // `what`: `uav1/Pose`, `*/Pose`, `uav1/*`; `except`, likewise, is left out. Adds each subscription to
+    // config.Subscribe. Adds `node/message` to `except` if the type cannot be read, or another definition of
+    // it is in use. All arguments must outlive the object.
     FleetFollower(FleetSession &session, const std::vector<std::string> &what, GatewayConfig &config,
                   std::vector<std::string> &except);
 
-    // Whose announcements are needed for that.
+    // Returns the nodes (or patterns) whose announcements are needed for `what`.
     static std::vector<std::string> NodesOf(const std::vector<std::string> &what);
 
-    // Looks at what has been announced meanwhile; waits for a type that is lacking, for two seconds at most.
+    // Looks at new announcements; waits at most two seconds for each missing type.
     void FollowNew();
-    // How many messages are subscribed to.
+    // Number of messages subscribed to.
     std::size_t Messages() const { return _followed.size(); }
 
 private:
@@ -45,7 +45,7 @@ private:
     };
 
     bool IsWanted(const std::string &node, const std::string &message) const;
-    // The patterns of nodes of which that message is wanted.
+    // Returns the node patterns for which that message is wanted.
     std::vector<std::string> From(const std::string &message) const;
     bool Follow(const std::string &node, const Gateway::PublishedMessage &published);
     void LeaveOut(const std::string &node, const std::string &message, const std::string &reason);
@@ -56,7 +56,7 @@ private:
     std::vector<Pattern> _patterns;
     std::map<std::string, Followed> _followed;  // by message
     std::set<std::string> _seen;                // node/message
-    std::map<std::string, double> _notBefore;   // node/message of which no type came: seconds of the session
+    std::map<std::string, double> _notBefore;  // node/message whose type did not come: seconds of the session
 };
 
 }  // namespace Rabit::Tool

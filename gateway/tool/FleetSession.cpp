@@ -17,7 +17,8 @@ namespace Rabit::Tool
 FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup)
     : _config(config), _wakeup(wakeup)
 {
-    // What the gateway would log, the commands tell where it is of use.
+    // The commands themselves report the gateway's warnings where they matter, so these are logged only with
+    // --verbose.
     RabitLog::SetLevel(options.Verbose ? RabitLogLevel::Warning : RabitLogLevel::Error);
     try
     {
@@ -61,7 +62,8 @@ double FleetSession::Seconds() const
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count();
 }
 
-// A fleet with keys does not answer those without: but its announcements are there for all to hear.
+// Reports nodes with keys: such a fleet does not answer a tool without keys, but everybody can hear its
+// announcements.
 void FleetSession::TellOfKeys()
 {
     constexpr double twoAnnouncements = 2.2;  // unless a budget makes them rarer
@@ -80,7 +82,7 @@ void FleetSession::TellOfKeys()
     }
     catch (const NetworkError &)
     {
-        // Then nothing is known.
+        // Nothing is known about keys.
     }
 }
 

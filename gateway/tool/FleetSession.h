@@ -27,7 +27,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-// This program in the network, as long as the object lives. Main thread only.
+// This program as a member of the network, as long as the object lives. Main thread only.
 class FleetSession
 {
 public:
@@ -43,16 +43,16 @@ public:
     Gateway::Fleet Fleet() const;
 
     static constexpr double Forever = 1e8;
-    // Waits so many seconds from the start of the session at most, until that holds.
+    // Waits until `holds` returns true, for at most `seconds` from the start of the session.
     bool WaitUntil(double seconds, const std::function<bool()> &holds);
-    // Has WaitUntil ask again; any thread.
+    // Makes WaitUntil ask `holds` again; any thread.
     void Notify() { _wakeup.Notify(); }
-    // Since the start of the session. Any thread.
+    // Seconds since the start of the session. Any thread.
     double Seconds() const;
-    // Whether somebody was heard.
+    // True if a node was heard.
     bool IsAnybodyThere() const { return !_explorer->Nodes().empty(); }
-    // Says that nobody was, and why as far as that is known or can be heard in a moment; returns the exit
-    // code.
+    // Reports that no node was heard, with known reasons. Listens 2.2 s more for fleets with keys. Returns
+    // the exit code.
     int NobodyThere();
 
 private:

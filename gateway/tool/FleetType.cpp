@@ -6,7 +6,7 @@ namespace Rabit::Tool
 FleetType FetchType(FleetSession &session, const std::vector<std::string> &nodes, const std::string &name,
                     std::uint64_t definition, double until)
 {
-    // Who has not answered by then is asked no more, if there is another one.
+    // Seconds to wait for a node's answer before the next node is asked.
     constexpr double patience = 1.0;
     FleetType type;
     const auto has = [&] { return session.Explorer().TypeText(definition).has_value(); };

@@ -12,16 +12,16 @@
 namespace Rabit::Tool
 {
 
-// A type of the fleet, had from a node that has announced it.
+// A type of the fleet, received from a node that has announced it.
 struct FleetType
 {
-    std::string Text;                         // IDL; empty: nobody has handed it out
-    std::shared_ptr<const DynamicType> Type;  // null if the text could not be had or understood
-    std::string Reason;                       // why, in one line
+    std::string Text;                         // IDL; empty: no node has handed it out
+    std::shared_ptr<const DynamicType> Type;  // null if the text did not come or cannot be used
+    std::string Reason;                       // why it is null, in one line
 };
 
-// Asks these nodes, one after the other, for the type of that definition; waits until so many seconds from
-// the start of the session at most.
+// Asks these nodes, one after the other, for the type of that definition; waits until `until`, in seconds
+// from the start of the session.
 FleetType FetchType(FleetSession &session, const std::vector<std::string> &nodes, const std::string &name,
                     std::uint64_t definition, double until);
 

@@ -1,4 +1,4 @@
-// rabit foxglove: what is on the network, live in Foxglove.
+// rabit foxglove: shows the messages of the network live in Foxglove.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 

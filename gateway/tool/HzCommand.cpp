@@ -1,4 +1,4 @@
-// rabit hz: how often a message comes, and how evenly.
+// rabit hz: the rate of a message, and its jitter.
 #include <nlohmann/json.hpp>
 
 #include "JsonNumber.h"

@@ -9,7 +9,7 @@
 namespace Rabit::Tool
 {
 
-// Types out of files that a person names.
+// Types from IDL files that a person names.
 class IdlFiles
 {
 public:
@@ -17,7 +17,7 @@ public:
     explicit IdlFiles(const std::vector<std::string> &files);
 
     bool AreNone() const { return _texts.empty(); }
-    // The type of that name in the first file that has it, or why there is none.
+    // Returns the type of that name from the first file that has it, or the reason why there is none.
     ParsedType Find(const std::string &type) const;
 
 private:

@@ -1,4 +1,4 @@
-// rabit info: what recordings hold.
+// rabit info: the contents of recordings.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -63,7 +63,7 @@ std::string RateOf(std::uint64_t messages, double seconds)
     return messages < 2 || seconds <= 0 ? "-" : Formatted("%.2f Hz", static_cast<double>(messages) / seconds);
 }
 
-// Of a file that was merged.
+// Returns a line about a merged file.
 std::string MergeText(const Mcap::TextMap &merge)
 {
     const std::string bound = Mcap::ValueOf(merge, "uncertain_by_ns");

@@ -12,7 +12,7 @@ namespace Rabit::Tool
 namespace
 {
 
-// Who reads faster than it sends waits.
+// Lines kept; beyond, the reading thread waits until one is taken.
 constexpr std::size_t MostLines = 1000;
 
 }  // namespace
@@ -25,7 +25,7 @@ struct InputLines::State
     bool IsOver = false;
     std::function<void()> OnLine;
 
-    // Returns whether to go on.
+    // Returns false if the reading thread should end.
     bool Add(std::optional<std::string> line)
     {
         std::unique_lock lock(Mutex);

@@ -8,12 +8,13 @@
 namespace Rabit::Tool
 {
 
-// The lines of standard input, read on a thread of their own, so that who waits for one can also wait for
-// Ctrl-C. A read that is under way when the object goes is left to the end of the process.
+// The lines of standard input, read on a thread of their own, so that waiting for a line can end with Ctrl-C.
+// A read that is under way when the object is destroyed goes on until the process ends.
 class InputLines
 {
 public:
-    // `onLine` is called on that thread when there is something to take, and never after the object is gone.
+    // `onLine` is called on that thread when a line or the end has come, and never after the object is
+    // destroyed.
     explicit InputLines(std::function<void()> onLine);
     ~InputLines();
     InputLines(const InputLines &) = delete;
@@ -23,7 +24,7 @@ public:
     {
         std::optional<std::string> Text;  // empty: the end
     };
-    // Whether there is a line, or the end.
+    // Returns true if there is a line, or the end.
     bool Take(Line &line);
 
 private:

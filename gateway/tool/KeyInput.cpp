@@ -11,7 +11,7 @@ namespace Rabit::Tool
 namespace
 {
 
-// What is pressed while nobody takes it.
+// Keys kept until Take; later ones are dropped.
 constexpr std::size_t MostKeys = 100;
 
 }  // namespace

@@ -12,14 +12,14 @@
 namespace Rabit::Tool
 {
 
-// The keys of the terminal on standard input, as they are pressed. If there is none, or another program has
-// it, none ever is.
+// The keys of the terminal on standard input, as they are pressed. If standard input is no terminal, or
+// another program owns it, no key ever comes.
 class KeyInput
 {
 public:
-    // `onKey` is called on a thread of its own when there is something to take.
+    // `onKey` is called on a thread of its own when a key has come.
     explicit KeyInput(std::function<void()> onKey);
-    // The terminal is as before.
+    // Restores the terminal's settings.
     ~KeyInput();
     KeyInput(const KeyInput &) = delete;
     KeyInput &operator=(const KeyInput &) = delete;

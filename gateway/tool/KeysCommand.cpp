@@ -1,4 +1,4 @@
-// rabit keys: makes the keys, certificates and permissions of a fleet, and tells what is wrong with them.
+// rabit keys: makes the keys, certificates and permissions of a fleet, and reports their problems.
 #include <rabit/gateway/LoadGatewayConfig.h>
 #include <rabit/transport/TransportFactory.h>
 
@@ -51,7 +51,7 @@ Keys::FleetKeys::Period PeriodOf(const Options &options)
 
 GatewayConfig ConfigFor(const std::string &file, const std::string &node)
 {
-    // Whether there are such types does not matter to keys.
+    // Any type name will do: types do not matter to keys.
     return LoadGatewayConfig(file, node, [](const std::string &) { return std::string(); });
 }
 
@@ -84,7 +84,7 @@ Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &no
     return RequestFrom(config);
 }
 
-// What was made, and who may now do what.
+// Prints the new keys and their permissions.
 void ShowMade(const Keys::FleetKeys &fleet, const std::string &node, bool isTool = false)
 {
     const std::string folder = fleet.FolderOf(node);
@@ -200,7 +200,7 @@ std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const Gate
     return findings;
 }
 
-// Of one node's folder; whether it is good.
+// Reports on one node's folder; returns true if it is good.
 bool Check(const std::string &folder, const std::map<std::string, GatewayConfig> &configs,
            const Options &options)
 {

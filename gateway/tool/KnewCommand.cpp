@@ -1,4 +1,4 @@
-// rabit knew: what nodes knew of each other, and how old it was.
+// rabit knew: the values that nodes had of each other's messages, and their ages.
 #include <rabit/dynamic/DynamicType.h>
 
 #include <CLI/CLI.hpp>
@@ -60,7 +60,7 @@ std::string Formatted(const char *format, double value)
     return text.data();
 }
 
-// The file, and those of its streams that are asked for.
+// The file, and those of its streams that the options name.
 class Asked
 {
 public:
@@ -74,7 +74,7 @@ public:
         for (const KnownStream &stream : Known.Streams)
         {
             const bool isOwn = stream.Node == Known.Lives[stream.Life].Node;
-            // What a node has of itself, only if it is asked for by name.
+            // A node's own messages count only if the node is asked for by name.
             if (MatchesAny({options.Knower}, Known.Lives[stream.Life].Node) &&
                 MatchesAny({options.What}, stream.Node + "/" + stream.Message) &&
                 (!isOwn || options.Knower == stream.Node))
@@ -87,7 +87,7 @@ public:
     const KnowerLife &LifeOf(const KnownStream &stream) const { return Known.Lives[stream.Life]; }
     Moment Begin() const { return Merge::FromFile(Contents.Statistics.StartTime); }
     Moment End() const { return Merge::FromFile(Contents.Statistics.EndTime); }
-    // `uav1`, or `uav1 (life 2)`; empty if there is only one.
+    // Returns ` (life 2)`; empty if the node has only one life.
     std::string LifeText(const std::string &node, unsigned number) const
     {
         const auto count = std::count_if(Known.Lives.begin(), Known.Lives.end(),
@@ -117,7 +117,7 @@ private:
     const Options &_options;
 };
 
-// Values as text or JSON; types are parsed once.
+// Returns values as text or JSON; parses each type once.
 class Decoder
 {
 public:
@@ -305,7 +305,7 @@ std::string SvgOf(const Options &options, const Asked &asked, const std::vector<
              : "");
     plot.Begin = asked.Begin();
     plot.End = asked.End();
-    // Lives of one node share a panel: they are not at the same time.
+    // Lives of one node share a panel: they do not overlap.
     std::map<std::string, std::size_t> panels;
     for (std::size_t at = 0; at < histories.size(); ++at)
     {

@@ -62,7 +62,7 @@ std::string Bound(std::optional<Moment> bound)
                                 : Formatted("%.1f s", 1e-3 * milliseconds);
 }
 
-// By which nodes, if not straight.
+// Returns the nodes between the two clocks; empty if they are related directly.
 std::vector<std::string> Between(const Lives &lives, const PlannedLife &planned)
 {
     std::vector<std::string> nodes;
@@ -164,7 +164,7 @@ void ShowJson(const Options &options, const Lives &lives, const MergePlan &plan,
                     {"recordings", recordings}});
 }
 
-// What people must know of before they believe it.
+// Reports doubts about the merged file.
 void Warn(const Lives &lives, const MergePlan &plan, const Merged &merged)
 {
     for (std::size_t life = 0; life < lives.All.size(); ++life)

@@ -1,4 +1,4 @@
-// rabit messages: all that is published.
+// rabit messages: all messages that nodes publish.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -33,8 +33,8 @@ struct Options
     double For = 0.0;
 };
 
-// Values a second of each message, all its publishers together, as they come within that time. Of those of
-// which two or more came of one node.
+// Returns the values a second of each message, the sum over its publishers, measured for `seconds`.
+// Publishers from which fewer than two values came do not count.
 std::map<std::string, double> RatesOf(const std::vector<Offers::Message> &messages, double seconds,
                                       FleetSession &session, Wakeup &wakeup)
 {
@@ -131,7 +131,7 @@ int Run(const Options &all, Wakeup &wakeup)
     }
     const std::vector<FleetSession::Node> nodes = session.Nodes();
     const std::vector<Offers::Message> messages = Offers::MessagesOf(nodes);
-    // Before this program reads them itself.
+    // Looks at the subscribers before this program subscribes itself.
     Subscribers subscribers = SubscribersOf(messages, session);
     const auto rates =
         all.For > 0.0 ? RatesOf(messages, all.For, session, wakeup) : std::map<std::string, double>();

@@ -6,23 +6,23 @@
 namespace Rabit::Tool
 {
 
-// What arrived of one node within a while, put into numbers. Numbers are NaN where there were too few values.
+// Statistics of the values that came from one node within a while. NaN if there were too few values.
 class Meter
 {
 public:
-    // A value came at that time; of so many bytes, of that age. Times rise.
+    // Adds a value with its arrival time, in seconds, its bytes and its age. Times rise.
     void Add(double at, std::size_t bytes, double age);
 
     std::size_t Count() const { return _ages.size(); }
-    // Values a second, between the first and the last.
+    // Values a second, between the first and the last value.
     double Rate() const;
-    // Between values: the shortest, the longest, and the standard deviation; seconds.
+    // Seconds between values: the shortest, the longest, and the standard deviation.
     double ShortestGap() const;
     double LongestGap() const;
     double Jitter() const;
-    // Of one value on average.
+    // Mean size of a value.
     double MeanBytes() const;
-    // The age that this part of the values (0 to 1) did not exceed; 1: the largest.
+    // Returns the age that this part of the values (0 to 1) did not exceed; 1: the largest.
     double Age(double part) const;
 
 private:

@@ -14,7 +14,7 @@
 namespace Rabit::Tool
 {
 
-// What one of the commands that measure a message shows of it.
+// The output of a command that measures a message.
 struct MeterCommand
 {
     const char *Name = nullptr;
@@ -26,10 +26,10 @@ struct MeterCommand
         Members;
 };
 
-// Adds such a command: it listens for --for seconds, or until Ctrl-C, and then tells of each node in a line.
+// Adds such a command: it listens for --for seconds, or until Ctrl-C, and then prints a line for each node.
 void AddMeterCommand(CLI::App &app, Chosen &chosen, MeterCommand what);
 
-// A number for people with so many digits behind the point, `-` if it is not known.
+// Returns a number for people with `digits` digits behind the point, `-` if it is not known.
 std::string NumberText(double number, int digits, const char *unit = "");
 
 }  // namespace Rabit::Tool

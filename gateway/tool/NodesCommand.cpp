@@ -1,4 +1,4 @@
-// rabit nodes: who is there.
+// rabit nodes: the nodes of the fleet.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -61,7 +61,7 @@ const FleetSession::Node *Find(const std::vector<FleetSession::Node> &nodes, con
     return found == nodes.end() ? nullptr : &*found;
 }
 
-// Everything that is wrong, in lines.
+// Returns all problems, in lines.
 std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
                                          const std::vector<FleetSession::Node> &nodes)
 {
@@ -177,7 +177,7 @@ bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node
     return good;
 }
 
-// All that has to be there for a first answer that lacks nothing.
+// True if the first answer would be complete.
 bool IsWhole(FleetSession &session)
 {
     const Gateway::Fleet fleet = session.Fleet();
@@ -199,7 +199,7 @@ int Show(FleetSession &session, const Options &options, bool &stillRead)
 
 int Run(const Options &options, Wakeup &wakeup)
 {
-    // Who has not been heard within this time beats seldom; --wait is for them.
+    // Seconds in which most nodes are heard. Nodes that beat more seldom need --wait.
     constexpr double everybody = 1.5;
     FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
     session.WaitUntil(std::min(everybody, options.Common.Wait), [] { return false; });

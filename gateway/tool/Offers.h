@@ -8,7 +8,7 @@
 
 #include "FleetSession.h"
 
-// What the nodes announce, put together by messages and types.
+// The announcements of the nodes, grouped by messages and types.
 namespace Rabit::Tool::Offers
 {
 
@@ -23,17 +23,17 @@ struct Message
 };
 std::vector<Message> MessagesOf(const std::vector<FleetSession::Node> &nodes);
 
-// Which nodes have which definition of a type, by its name; published or accepted.
+// For each type name, which nodes have which definition of it; published or accepted.
 using Definitions = std::map<std::uint64_t, std::set<std::string>>;
 std::map<std::string, Definitions> TypesOf(const std::vector<FleetSession::Node> &nodes);
 
 // A line for each type of which there is more than one definition.
 std::vector<std::string> Differences(const std::vector<FleetSession::Node> &nodes);
 
-// Whether every node that is there has announced itself.
+// True if every node that is not LOST has announced itself.
 bool AreComplete(const std::vector<FleetSession::Node> &nodes);
 
-// Sixteen hexadecimal digits.
+// Returns sixteen hexadecimal digits.
 std::string HashText(std::uint64_t definition);
 
 }  // namespace Rabit::Tool::Offers

@@ -9,15 +9,15 @@
 namespace Rabit::Tool::Output
 {
 
-// Writes the line and a line feed, at once. False if nobody reads any more: then the program ends, and that
-// is no fault.
+// Writes the line and a line feed at once. False if nobody reads any more: the program then ends, without an
+// error.
 bool Line(std::string_view line);
-// One object in one line, in ASCII.
+// Writes one object in one line, in ASCII.
 bool Object(const nlohmann::ordered_json &object);
-// For people; the text may have come from the network.
+// Writes a line for people; the text may have come from the network.
 void Talk(std::string_view text);
 
-// Clears a terminal before a table that is shown again; nothing if standard output is none.
+// Clears a terminal before a table is shown again; does nothing if standard output is no terminal.
 void BeginScreen();
 
 }  // namespace Rabit::Tool::Output

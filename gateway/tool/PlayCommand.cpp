@@ -1,4 +1,4 @@
-// rabit play: recordings, once more to the network.
+// rabit play: plays recordings to the network.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -29,9 +29,9 @@ namespace
 
 using Replay::ReplayTimeline;
 
-// Each costs a dozen threads.
+// Limit of nodes: each takes a dozen threads.
 constexpr std::size_t MostNodes = 100;
-// A node that is there has been heard by then, if anything of it comes.
+// Seconds in which a node is heard, if its datagrams arrive at all.
 constexpr double ShortestListening = 1.5;
 
 struct Options
@@ -47,7 +47,7 @@ struct Options
     bool Loops = false;
 };
 
-// 0: as fast as it goes. Nothing if it is no rate.
+// Returns the rate; 0: as fast as possible. Empty if the text is no rate.
 std::optional<double> RateOf(const std::string &text)
 {
     if (text == "max")
@@ -61,7 +61,7 @@ std::optional<double> RateOf(const std::string &text)
     return isNumber && rate >= 0.1 && rate <= 100.0 ? std::optional(rate) : std::nullopt;
 }
 
-// Returns Good, or says what is wrong and returns the exit code.
+// Returns Good, or reports the error and returns the exit code.
 int NameNodes(const Options &options, const Replay::ReplayPlan &plan, Replay::NodeRenames &renames)
 {
     for (const std::string &rule : options.Renames)
@@ -124,7 +124,7 @@ int SetTimes(const Options &options, const Replay::RecordedMessages &messages,
     return Good;
 }
 
-// Returns whether none of the names is that of a node which is there; says so if one is.
+// Returns true if no node has one of the names; reports a node that has.
 bool AreFree(const std::vector<std::string> &names, const GatewayConfig &network, const Options &options,
              Wakeup &wakeup)
 {
@@ -201,9 +201,9 @@ int Tell(const Options &options, const PlayedFiles &files, const ReplayFleet &fl
 int Play(const Options &options, PlayedFiles &files, const Replay::NodeRenames &renames,
          const ReplayTimeline::Settings &settings, Wakeup &wakeup)
 {
-    // Until what was posted last has gone out, and the gateways have told of it.
+    // Seconds until the last posts have gone out and the gateways have reported them.
     constexpr double farewell = 1.2;
-    // What was recorded so shortly after the beginning tells who was there.
+    // Records of the first 1.5 s tell which nodes were there at the beginning.
     constexpr Replay::Time introduction = 1'500'000'000;
     const auto later = [](double seconds)
     {
@@ -225,7 +225,7 @@ int Play(const Options &options, PlayedFiles &files, const Replay::NodeRenames &
     }
     const Replay::Time at = std::min(settings.From + introduction, settings.To + 1);
     fleet.Begin(files.Messages().LastBefore(at), at);
-    // So that those who listen have found the nodes when the first message goes out.
+    // Lets listeners find the nodes before the first message goes out.
     wakeup.WaitUntil(later(options.Common.Wait), [] { return false; });
     Playing playing(files, settings, fleet, wakeup);
     const int code = playing.Run();

@@ -11,12 +11,12 @@
 namespace Rabit::Tool
 {
 
-// The files of a replay, and what of them is played.
+// The files of a replay, and the part of them that is played.
 class PlayedFiles
 {
 public:
-    // Tells what is wrong with a file; throws std::runtime_error if one cannot be read at all. A pattern
-    // without a slash is of all nodes.
+    // Reports problems of a file; throws std::runtime_error if one cannot be read at all. A pattern without a
+    // slash stands for that message of all nodes.
     PlayedFiles(const std::vector<std::string> &names, Replay::PlanSettings settings);
 
     const Replay::ReplayPlan &Plan() const { return _plan; }

@@ -63,7 +63,7 @@ int Playing::Run()
     return Good;
 }
 
-// No longer than until the next look.
+// Plays messages that are due, until the next look at the latest.
 void Playing::PlayDue()
 {
     const Duration end = Now() + Look;
@@ -90,7 +90,7 @@ void Playing::PlayDue()
     }
 }
 
-// Now and then. False: somebody else has come under one of the names.
+// Follows the nodes, every `Look`. Returns false if another node has come under one of the names.
 bool Playing::LookAround()
 {
     const Duration now = Now();

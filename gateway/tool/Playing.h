@@ -14,22 +14,22 @@
 namespace Rabit::Tool
 {
 
-// Has a fleet play a time line, as somebody at the keys of the terminal wants it to.
+// Plays a time line with a fleet, controlled by the keys of the terminal.
 class Playing
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // All must outlive it.
+    // All arguments must outlive the object.
     Playing(PlayedFiles &files, const Replay::ReplayTimeline::Settings &settings, ReplayFleet &fleet,
             Wakeup &wakeup);
 
-    // Until its end, or somebody ends it. Returns the exit code.
+    // Plays to the end, or until a person ends it. Returns the exit code.
     int Run();
     std::uint64_t Rounds() const { return _timeline.Rounds(); }
 
 private:
-    // Between two looks at who is there and what is wrong.
+    // Between two looks at the nodes and their problems.
     static constexpr Duration Look = std::chrono::milliseconds(200);
     static constexpr Replay::Time Leap = 10'000'000'000;
 

@@ -1,4 +1,4 @@
-// rabit post: a message, as if a node of that name posted it.
+// rabit post: posts a message as a node of that name.
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/idl/NearestWord.h>
 
@@ -34,7 +34,7 @@ struct Options
     double For = 0.0;
 };
 
-// The type, or nothing and why with the exit code.
+// The type; or null, and the exit code after the reason was reported.
 struct Had
 {
     std::shared_ptr<const DynamicType> Type;
@@ -51,7 +51,7 @@ Had FromFile(const Options &options)
     return {parsed.Type, parsed.Type ? Good : Usage};
 }
 
-// Also makes sure that nobody has the name.
+// Also makes sure that no node has the name.
 Had FromFleet(const Options &options, const std::string &node, Wakeup &wakeup)
 {
     FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
@@ -61,7 +61,7 @@ Had FromFleet(const Options &options, const std::string &node, Wakeup &wakeup)
         const auto found = types.find(options.Type);
         return found == types.end() ? Offers::Definitions() : found->second;
     };
-    // As long as --wait says for who has the name already: to take it would do harm.
+    // Listens for --wait seconds for a node of that name: two nodes of one name disturb each other.
     const auto isTaken = [&]
     {
         const auto nodes = session.Nodes();
@@ -138,7 +138,7 @@ int Post(const Options &options, const std::string &node, const std::string &nam
                            [&node](const Gateway::Problem &problem)
                            { return problem.subject == "node " + node; });
     };
-    // One value is for who is there already: they know this node once they have heard it.
+    // Waits for a reader before the first post: a single value reaches only nodes that have heard this node.
     session.WaitUntil(options.Common.Wait, isRead);
     const double begin = session.Seconds();
     const double end = options.For > 0.0    ? begin + options.For

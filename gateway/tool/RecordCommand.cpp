@@ -1,4 +1,4 @@
-// rabit record: what is on the network, into a file.
+// rabit record: records the messages of the network into files.
 #include <rabit/RabitClock.h>
 
 #include <CLI/CLI.hpp>
@@ -72,7 +72,7 @@ int Run(const Options &options, Wakeup &wakeup)
     GatewayConfig config = ConfigOf(options.Common);
     config.Record = RecordSettings{.Folder = options.Folder};
     config.Record->Except = options.Except;
-    config.Record->Queues = false;  // those of others are not heard
+    config.Record->Queues = false;  // queue messages of other nodes cannot be heard
     const auto target =
         std::make_shared<RecordingTarget>(config.Node, *RabitClock::System(),
                                           std::make_unique<FolderDisk>(options.Folder), SettingsOf(options));
@@ -96,7 +96,7 @@ int Run(const Options &options, Wakeup &wakeup)
                 target->End();
                 return session.NobodyThere();
             }
-            // For names that have come: they are looked for as often as RecorderManager does.
+            // Looks for new names as often as RecorderManager does.
             session.WaitUntil(std::min(session.Seconds() + 0.1, options.For), [] { return false; });
         }
     }

@@ -1,4 +1,4 @@
-// rabit recover: what can be read of a recording that was not ended in order, as a whole one.
+// rabit recover: copies the readable part of a recording that was not ended in order into a whole one.
 #include <rabit/RabitVersion.h>
 
 #include <CLI/CLI.hpp>

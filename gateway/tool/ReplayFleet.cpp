@@ -17,9 +17,9 @@ using Replay::ReplayTimeline;
 namespace
 {
 
-// After a jump it takes so long until all that were there have been told of: nobody leaves before.
+// Nanoseconds after a jump in which no node leaves: the records that tell of a node may come this late.
 constexpr Replay::Time Grace = 2'000'000'000;
-// Of posts that follow each other more quickly, gateways skipped some then, too.
+// Posts at shorter intervals, in nanoseconds: the recorded gateways skipped some of them, too.
 constexpr Replay::Time Burst = 1'000'000;
 
 std::set<std::string> RecordersIn(const Replay::ReplayPlan &plan)
@@ -35,7 +35,7 @@ std::set<std::string> RecordersIn(const Replay::ReplayPlan &plan)
     return recorders;
 }
 
-// By the type that the file has: Fleet may have had other members then.
+// Reads the sample by the type in the file: Fleet may have had other members when it was recorded.
 std::vector<Replay::ReplayPresence::Known> NodesIn(const DynamicType &type, const Mcap::Bytes &sample)
 {
     std::vector<Replay::ReplayPresence::Known> known;
@@ -173,7 +173,7 @@ void ReplayFleet::Jump(const std::vector<ReplayTimeline::Due> &restored, Replay:
     Follow(to);
     for (const ReplayTimeline::Due &due : restored)
     {
-        // Who left before is not there to say it.
+        // A node that had left by then does not post.
         const ReplayStream &stream = _plan.Streams[due.Item.Stream];
         if (stream.What == ReplayStream::Kind::Message && _presence.IsThere(stream.Node, to))
         {
@@ -208,7 +208,7 @@ void ReplayFleet::Post(const ReplayTimeline::Due &due)
     }
     Come(stream.Node);
     ReplayNode &node = *_nodes.at(stream.Node);
-    // What came one by one then does so now, also where this program is late.
+    // Messages that were posted one by one stay so, even if this program is late.
     Replay::Time &last = _lastPosted[due.Item.Stream];
     const Replay::Time gap = std::max(last, due.Item.LogTime) - std::min(last, due.Item.LogTime);
     last = due.Item.LogTime;

@@ -24,8 +24,7 @@
 namespace Rabit::Tool
 {
 
-// The nodes of a replay: has each there while it was, and plays to the network what it is told to. Main
-// thread only.
+// The nodes of a replay. Keeps each in the network while it was there, and plays messages. Main thread only.
 class ReplayFleet
 {
 public:
@@ -37,35 +36,35 @@ public:
         std::uint64_t Restored = 0;  // not among them
         std::uint64_t QueueMessages = 0;
         std::uint64_t Undelivered = 0;  // of these
-        std::uint64_t Undecodable = 0;  // and not played
+        std::uint64_t Undecodable = 0;  // undecodable, and so not played
         std::uint64_t Replaced = 0;     // by a newer one before they were written
         std::uint64_t AgesNotKept = 0;
     };
 
-    // All that is handed over must outlive it. Tells of what cannot be played.
+    // All arguments must outlive the object. Reports streams that cannot be played.
     ReplayFleet(const Replay::ReplayPlan &plan, const Replay::NodeRenames &renames,
                 const GatewayConfig &network, const CommonOptions &options, Wakeup &wakeup);
 
-    // New names, of all nodes.
+    // The new names of all nodes.
     std::vector<std::string> Names() const;
-    // Has all nodes there from now on, whatever was then: for a replay that leaves them no time to come.
+    // Keeps all nodes in the network from now on: for a replay that leaves them no time to come.
     void KeepAll() { _keepsAll = true; }
-    // Waits with each message until the one before it of its name has had its turn, also where it did not
-    // then.
+    // Makes each message wait until the gateway has taken the one before it of its name, even if the recorded
+    // gateway skipped that one.
     void WaitForTurns() { _waitsForTurns = true; }
 
-    // Has those nodes come that were there when that was recorded. Throws NetworkError, as all that follow.
+    // Adds the nodes that were there at that time. Throws NetworkError, as all functions below.
     void Begin(const std::vector<Replay::ReplayItem> &known, Replay::Time at);
-    // The replay has jumped there, and this is what was known.
+    // The replay has jumped to `to`; `restored` are the last values before it.
     void Jump(const std::vector<Replay::ReplayTimeline::Due> &restored, Replay::Time to);
     void Play(const Replay::ReplayTimeline::Due &due);
-    // Has nodes come and go as they did.
+    // Makes nodes come and go as they did.
     void Follow(Replay::Time position);
-    // A name that another live node has; empty: none.
+    // Returns a name that another live node has; empty if there is none.
     std::string TwiceName() const;
-    // Whether it is known what became of all queue messages.
+    // True if the outcome of every queue message is known.
     bool IsSettled() const { return _receipt->GetCounts().Pending == 0; }
-    // As it is now.
+    // The counts so far.
     Counts CountsNow() const;
 
 private:
@@ -89,13 +88,13 @@ private:
     Wakeup &_wakeup;
     bool _keepsAll = false;
     bool _waitsForTurns = false;
-    std::vector<Stream> _streams;                  // as those of the plan
+    std::vector<Stream> _streams;                  // in the order of the plan's streams
     std::map<std::string, std::string> _messages;  // NODE/MESSAGE to the type that it is played with
     Replay::ReplayPresence _presence;
     Replay::PostTimes _times;
-    std::vector<Replay::Time> _lastPosted;  // by stream: when that was recorded which was posted last
+    std::vector<Replay::Time> _lastPosted;  // by stream: log time of the last post
     Replay::Time _jumpedTo = 0;
-    std::map<std::string, std::unique_ptr<ReplayNode>> _nodes;  // those that are there, by recorded name
+    std::map<std::string, std::unique_ptr<ReplayNode>> _nodes;  // those in the network, by recorded name
     const std::shared_ptr<RabitQueueReceipt> _receipt = std::make_shared<RabitQueueReceipt>();
     Counts _counts;
 };

@@ -10,9 +10,9 @@
 namespace Rabit::Tool
 {
 
-// Where a recording is played: on loopback alone, whatever the file of `config` says, unless the command line
-// names interfaces, or a domain in which nothing of it was recorded. So that nobody in the field takes it for
-// what is there.
+// The network for a replay: loopback alone, whatever the file of `config` says, unless the command line names
+// interfaces, or a domain in which nothing of the recording was recorded. This keeps people in the field from
+// taking a replay for the fleet.
 GatewayConfig ReplayNetwork(GatewayConfig config, const CommonOptions &options,
                             const std::set<std::string> &recordedDomains);
 

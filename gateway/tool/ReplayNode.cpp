@@ -11,9 +11,9 @@ namespace Rabit::Tool
 namespace
 {
 
-// A gateway that has not come by then is stuck: values may be replaced, which is counted.
+// A gateway that takes longer is stuck. Values may then be replaced, which is counted.
 constexpr std::chrono::milliseconds LongestTurn{10'000};
-// Ctrl-C is looked at so often meanwhile. A gateway that is stuck is waited for no longer than this.
+// Period of looking for Ctrl-C meanwhile; also the longest wait for a stuck gateway.
 constexpr std::chrono::milliseconds LookForCtrlC{100};
 
 GatewayConfig ConfigFor(GatewayConfig config, const std::string &name,

@@ -29,22 +29,23 @@ public:
         const MessageType *Type = nullptr;
         bool IsTelemetry = false;
     };
-    // No message twice. Throws NetworkError.
+    // A message must not be listed twice. Throws NetworkError.
     ReplayNode(GatewayConfig network, const std::string &name, const std::vector<Topic> &topics,
                const CommonOptions &options, Wakeup &wakeup);
 
-    // False if the sample is none of the message's type.
+    // Returns false if the sample is not of the message's type.
     bool Post(const std::string &message, std::span<const std::uint8_t> sample, const PostTime &time);
-    // Puts it into a queue elsewhere. False if it was refused, or is none of that type.
+    // Sends a sample to a queue of another node. False if it was refused, or is not of that type.
     bool Send(const std::string &address, const MessageType &type, std::span<const std::uint8_t> sample,
               const std::shared_ptr<RabitQueueReceipt> &receipt);
 
-    // The gateway takes the newest value of a message in each of its turns: waits until it has taken the last
-    // one, or somebody wants the program to end; for ten seconds at most, and for 0.1 s after that.
+    // Waits until the gateway has taken the last value of that message, since it takes only the newest in
+    // each of its turns. Ends early on Ctrl-C, after ten seconds, or, if the gateway was stuck before, after
+    // 0.1 s.
     void WaitForItsTurn(const std::string &message);
-    // Posts that were not written because a newer one came before their turn.
+    // Posts that were not written because a newer one replaced them.
     std::uint64_t Replaced() const;
-    // Whether another live node has its name.
+    // True if another live node has its name.
     bool IsTwice() const;
 
 private:
@@ -57,7 +58,7 @@ private:
 
     const std::string _name;
     const Wakeup &_wakeup;
-    bool _isStuck = false;  // the last turn was not waited for to its end
+    bool _isStuck = false;  // the last wait for a turn ended early
     FleetSession _session;
     std::map<std::string, Posted> _posted;  // by message
 };

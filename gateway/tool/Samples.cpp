@@ -136,7 +136,7 @@ int Samples::Open(double until)
     return Good;
 }
 
-// Of nodes that were built with another definition nothing is shown: their bytes would be misread.
+// Leaves out nodes that were built with another definition: their bytes would be misread.
 void Samples::FollowNew()
 {
     const std::vector<FleetSession::Node> nodes = _session.Nodes();
@@ -172,7 +172,8 @@ void Samples::Follow(const std::string &node)
     auto fetched = std::make_shared<DynamicMessage>(_type.Type);
     const auto global = message->GetGlobalPublishSubscribeMessageRef();
     fetched->SetGlobalPublishSubscribeMessageRef(global);
-    // The posts of one node come one after the other, and the handler sees each of them: it is a quick one.
+    // The posts of one node come one after the other. A quick handler runs within each post, so it sees every
+    // value.
     global->ConnectSomethingPublished(RabitQuickHandler(
         [inbox = _inbox, fetched, node, &session = _session]
         {

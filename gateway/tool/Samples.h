@@ -18,7 +18,7 @@
 namespace Rabit::Tool
 {
 
-// One value of a message, as it came.
+// One value of a message, as it arrived.
 struct Sample
 {
     std::string Node;
@@ -28,27 +28,28 @@ struct Sample
     double At = 0.0;                  // when it came, seconds since the start of the session
 };
 
-// The values of a message of one or several nodes, each once, as they come. The type is had from the nodes.
+// The values of a message of one or several nodes, each once, as they come. The type comes from the nodes.
 class Samples
 {
 public:
-    // `what`: `uav1/Pose`; the node may be a pattern; `Pose` alone is of all nodes.
+    // `what`: `uav1/Pose`; the node may be a pattern; `Pose` alone means all nodes.
     Samples(FleetSession &session, const std::string &what);
 
-    // Waits so many seconds from the start of the session at most until somebody publishes it and its type is
-    // here; then subscribes. Returns Good, or says why not and returns the exit code.
+    // Waits until a node publishes the message and its type has come, at most until `until`, in seconds from
+    // the start of the session; then subscribes. Returns Good, or reports the reason and returns the exit
+    // code.
     int Open(double until);
     const DynamicType &Type() const { return *_type.Type; }
     const std::string &Message() const { return _message; }
 
-    // Waits until a value is there or until so many seconds from the start of the session; takes all that
-    // are.
+    // Waits until a value has come, or until `until`, in seconds from the start of the session. Returns all
+    // values so far.
     std::vector<Sample> Take(double until);
-    // Values that came faster than they were taken.
+    // Values that were dropped because they came faster than they were taken.
     std::uint64_t Missed() const;
 
 private:
-    // What is kept for Take at most.
+    // Bytes kept for Take.
     static constexpr std::size_t MostBytes = 16u << 20;
 
     struct Inbox
@@ -74,8 +75,8 @@ private:
     std::map<std::string, std::shared_ptr<DynamicMessage>> _followed;
 };
 
-// Joins the network for the values of `what` alone, and has the body take them once somebody publishes it.
-// Returns what the body returns, or says why it was not called and returns the exit code.
+// Joins the network for the values of `what` alone, and calls the body once a node publishes it. Returns the
+// body's result; or reports why it was not called, and returns the exit code.
 int ListenTo(const CommonOptions &options, const std::string &what, Wakeup &wakeup,
              const std::function<int(FleetSession &session, Samples &samples)> &body);
 

@@ -1,4 +1,4 @@
-// rabit send: queue messages, and what became of them.
+// rabit send: sends queue messages, and reports their outcomes.
 #include <rabit/RabitQueueReceipt.h>
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/idl/NearestWord.h>
@@ -67,7 +67,7 @@ bool IsMeant(const Destination &to, const FleetSession::Node &node)
     return to.Node == "*" || to.Node == node.Name;
 }
 
-// Who takes that type into that queue, with what definition.
+// A node that accepts the type in the queue, and its definition of the type.
 struct Taker
 {
     std::string Node;
@@ -95,7 +95,7 @@ std::vector<Taker> TakersOf(const Destination &to, const std::string &type,
     return takers;
 }
 
-// Why there is nobody, with the nearest right word.
+// Says why no node takes the message, with the nearest right word.
 std::string WhyNobody(const Destination &to, const std::string &type,
                       const std::vector<FleetSession::Node> &nodes)
 {
@@ -142,7 +142,7 @@ std::string WhyNobody(const Destination &to, const std::string &type,
            ListedNames(types, same) + NearestWordHint(type, types);
 }
 
-// Sends one message and waits for what becomes of it.
+// Sends one message and waits for its outcome.
 class Sender
 {
 public:
@@ -152,7 +152,7 @@ public:
     {
     }
 
-    // Whether it was delivered.
+    // Returns true if it was delivered.
     bool Send(const std::string &json)
     {
         auto message = std::make_shared<DynamicMessage>(_type);

@@ -6,7 +6,8 @@
 namespace Rabit::Tool
 {
 
-// Rows of cells as lines with columns, two blanks apart. Cells are for a terminal already (SafeText).
+// Formats rows of cells as lines with columns, two blanks apart. Cells must be safe for a terminal
+// (SafeText).
 std::vector<std::string> TableLines(const std::vector<std::vector<std::string>> &rows);
 
 }  // namespace Rabit::Tool

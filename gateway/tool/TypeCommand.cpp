@@ -24,7 +24,7 @@ struct Options
     std::string Name;
 };
 
-// The type of that name, or of the message of that name.
+// Returns the type of that name, or the type of the message of that name.
 std::string TypeNamed(const std::string &name, const std::vector<FleetSession::Node> &nodes)
 {
     const std::string message = name.substr(name.find('/') == std::string::npos ? 0 : name.find('/') + 1);

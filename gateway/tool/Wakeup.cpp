@@ -8,7 +8,7 @@ namespace Rabit::Tool
 namespace
 {
 
-// Ends the thread that waits for signals.
+// The signal that ends the thread which waits for signals.
 constexpr int End = SIGUSR2;
 
 sigset_t Handled()
@@ -26,7 +26,7 @@ sigset_t Handled()
 
 Wakeup::Wakeup()
 {
-    // A closed pipe is found when it is written to.
+    // A closed pipe shows as an error of the write.
     signal(SIGPIPE, SIG_IGN);
     const sigset_t handled = Handled();
     pthread_sigmask(SIG_BLOCK, &handled, nullptr);

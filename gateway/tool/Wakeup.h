@@ -10,8 +10,8 @@
 namespace Rabit::Tool
 {
 
-// What the program waits with: for something to happen on another thread, a time, or Ctrl-C. One at a time,
-// made before any thread is started, since it takes SIGINT, SIGTERM and SIGPIPE out of all that come.
+// Waits for an event on another thread, a time, or Ctrl-C. At most one at a time. Make it before any thread:
+// it blocks SIGINT, SIGTERM, SIGHUP and SIGUSR2 for this thread and all later ones, and ignores SIGPIPE.
 class Wakeup
 {
 public:
@@ -22,12 +22,12 @@ public:
     Wakeup(const Wakeup &) = delete;
     Wakeup &operator=(const Wakeup &) = delete;
 
-    // Something happened; any thread.
+    // Reports an event; any thread.
     void Notify();
-    // Whether somebody wants the program to end.
+    // True if a signal asked the program to end.
     bool IsInterrupted() const;
-    // Asks `holds`, on this thread, whenever something has happened, until it says true, the time has come,
-    // or somebody wants the program to end. Returns what it said last.
+    // Calls `holds` on this thread after each event, until it returns true, the time has come, or a signal
+    // asks the program to end. Returns its last result.
     bool WaitUntil(Time end, const std::function<bool()> &holds);
 
 private:

@@ -133,7 +133,8 @@ void WantCheck::TellNobody(const std::string &pattern, const std::string &what, 
                         : "is called `" + pattern + "`" + NearestWordHint(pattern, NamesOf(_others))));
 }
 
-// A name means somebody. Of several patterns it is enough that one does.
+// Returns the other nodes that match, and reports patterns without a match: every plain name must match, and
+// at least one of several patterns.
 WantCheck::Nodes WantCheck::Meant(const std::vector<std::string> &patterns, const std::string &what, int line)
 {
     Nodes meant;
@@ -157,13 +158,13 @@ WantCheck::Nodes WantCheck::Meant(const std::vector<std::string> &patterns, cons
     return meant;
 }
 
-// One topic of DDS has one type, whoever publishes it.
+// A DDS topic has one type for all publishers.
 void WantCheck::CheckPublication(const PublishRule &rule)
 {
     for (const GatewayConfig *other : _others)
     {
         const PublishRule *published = Offered(*other, rule.Message);
-        // Told of the one that stands later among the files.
+        // Reported once, for the node that comes later in the fleet.
         if (published != nullptr && published->Type != rule.Type && other < &_config)
         {
             Fail(rule.Line, "`" + rule.Message + "` is published as `" + rule.Type + "`, by " + other->Node +

@@ -10,12 +10,13 @@
 namespace Rabit::Tool
 {
 
-// What one node of a fleet wants of the others, against what these have: messages, queues, and who may send
-// to them. By the rules of the gateway: a name or a pattern means each node that fits, `*` whoever has it.
+// Checks the wishes of one node of a fleet against the other nodes: messages, queues, and permitted senders.
+// By the rules of the gateway a name or a pattern means each node that matches, and `*` any node that has the
+// message.
 class WantCheck
 {
 public:
-    // All must outlive it. The node itself is among the fleet.
+    // All arguments must outlive the object. The node itself is in `fleet`.
     WantCheck(const GatewayConfig &config, const std::vector<GatewayConfig> &fleet,
               std::vector<FleetCheck::Finding> &findings);
 
@@ -30,7 +31,7 @@ private:
     void CheckAcceptance(const AcceptRule &rule);
 
     void Fail(int line, const std::string &text);
-    // The others in the domain that fit; tells if a pattern means nobody.
+    // Returns the other nodes in the domain that match; reports patterns without a match.
     Nodes Meant(const std::vector<std::string> &patterns, const std::string &what, int line);
     void TellNobody(const std::string &pattern, const std::string &what, int line);
 

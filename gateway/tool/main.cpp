@@ -42,7 +42,7 @@ int main(int argc, char **argv)
     AddCheckCommand(app, chosen);
     AddDoctorCommand(app, chosen);
     AddKeysCommand(app, chosen);
-    // A line that is being written is none that can be parsed.
+    // A line for completion is unfinished, so it cannot be parsed.
     const std::vector<std::string> words(argv + 1, argv + argc);
     const bool completes = words.size() > 1 && words[0] == "complete" && words[1] == "--";
     try

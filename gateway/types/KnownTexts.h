@@ -13,7 +13,7 @@ namespace Rabit
 class KnownTexts
 {
 public:
-    // Null if no type has that hash. Valid as long as the process.
+    // Returns null if no type has that hash. The text stays valid as long as the process.
     const std::string *Find(std::uint64_t definition);
 
 private:

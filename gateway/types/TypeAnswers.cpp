@@ -23,7 +23,7 @@ void TypeAnswers::Asked(const std::string &node, std::uint64_t definition, std::
                      [&key](const Part &part) { return Key(part.Node, part.Definition) == key; });
     if (waiting != _waiting.end())
     {
-        // What is under way says the rest; what came before that is asked for again.
+        // The answer under way brings the rest; the asking node requests lost earlier parts again.
         _memory[key].LastAsked = now;
         return;
     }

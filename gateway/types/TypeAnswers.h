@@ -13,33 +13,33 @@
 namespace Rabit
 {
 
-// Which part of which type's text this node sends to whom next. Each answer goes to who asked alone, part by
-// part, one answer after the other. Who asks again is answered more and more seldom.
+// Decides which part of which type's text this node sends next, and to which node. Each answer goes to the
+// asking node alone, part by part, one answer after the other. The interval between repeated answers grows.
 //
 // A pure state machine; `now` never goes back.
 class TypeAnswers
 {
 public:
     using Duration = std::chrono::nanoseconds;
-    // The text of a type; null: this node does not have it.
+    // Returns the text of a type; null if this node does not have it.
     using TextOf = std::function<const std::string *(std::uint64_t definition)>;
 
-    // Between parts.
+    // Time between two parts.
     static constexpr Duration PartGap = std::chrono::milliseconds(10);
-    // From the end of an answer to the next one of the same text to the same node; the gap doubles.
+    // From the end of an answer to the next one of the same text to the same node; the interval doubles.
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
     static constexpr Duration LongestGap = std::chrono::seconds(2);
-    // After so long without a question it is short again.
+    // After this time without a question, the interval is ShortestGap again.
     static constexpr Duration Quiet = std::chrono::seconds(5);
-    // Answers that wait, and that are remembered for their gaps; who asks beyond is not answered now.
+    // Limits of waiting answers and of remembered intervals; a question beyond them is dropped.
     static constexpr std::size_t MostWaiting = 16;
     static constexpr std::size_t MostRemembered = 256;
 
     explicit TypeAnswers(TextOf textOf) : _textOf(std::move(textOf)) {}
 
-    // The node lacks that text from that byte on.
+    // The node lacks that text from byte `from` on.
     void Asked(const std::string &node, std::uint64_t definition, std::size_t from, Duration now);
-    // When a part is to be sent; empty: none is.
+    // When to send the next part; empty if no answer waits.
     std::optional<Duration> Due() const;
 
     struct Part
@@ -51,12 +51,13 @@ public:
 
         std::size_t Left() const { return Text->size() - First; }
     };
-    // What to send next, from its first byte on as much as fits; only if something is due.
+    // The part to send next, from its first byte on as much as fits. Only if Due() is not empty.
     Part Next() const;
-    // So many bytes of it were sent.
+    // `bytes` bytes of that part were sent.
     void Sent(std::size_t bytes, Duration now);
 
-    // Questions for texts that this node does not have, and those that were not answered because of too many.
+    // Unknown: questions for a text that this node lacks or that is too large to send, or from beyond its
+    // end. Dropped: questions beyond MostWaiting or MostRemembered.
     std::uint64_t Unknown() const { return _unknown; }
     std::uint64_t Dropped() const { return _dropped; }
 

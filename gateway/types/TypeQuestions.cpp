@@ -19,7 +19,7 @@ bool TypeQuestions::Want(const Wanted &wanted, Duration now)
     {
         return false;
     }
-    // Texts of one hash may differ in comments: parts of two nodes do not make one.
+    // Texts of one hash may differ in comments, so parts of two nodes cannot be joined.
     Entry &entry = _wanted[wanted.Definition];
     entry = {};
     entry.Node = wanted.Node;

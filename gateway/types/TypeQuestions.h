@@ -14,8 +14,8 @@
 namespace Rabit
 {
 
-// The texts of types that this node lacks: whom to ask when, and the parts that have come. Who does not
-// answer is asked more and more seldom, until it is let go of.
+// The texts of types that this node lacks: which node to ask and when, and the parts that have come. The
+// interval between questions for a text doubles, until the text has come or LetGo is called.
 //
 // A pure state machine; `now` never goes back.
 class TypeQuestions
@@ -23,18 +23,19 @@ class TypeQuestions
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // From one question to the next, at first; then twice as long each time.
+    // From one question to the next, at first; doubles with each question.
     static constexpr Duration ShortestGap = std::chrono::milliseconds(120);
     static constexpr Duration LongestGap = std::chrono::seconds(2);
     static constexpr std::size_t MostWanted = 32;
 
     struct Wanted
     {
-        std::string Node;  // who is asked
+        std::string Node;  // the node to ask
         std::string Type;  // IDL name
         std::uint64_t Definition = 0;
     };
-    // What is wanted already is asked of that node from now on. False: too many are.
+    // Starts to ask that node. If another node was asked for the text, its parts are dropped. False: too many
+    // texts are wanted.
     bool Want(const Wanted &wanted, Duration now);
     void LetGo(std::uint64_t definition) { _wanted.erase(definition); }
     bool IsEmpty() const { return _wanted.empty(); }
@@ -43,18 +44,18 @@ public:
     {
         std::string Node;
         std::uint64_t Definition = 0;
-        std::uint32_t From = 0;  // the first byte that is lacking
+        std::uint32_t From = 0;  // the first missing byte
     };
-    // When somebody is to be asked next.
+    // When the next question is due; empty if no text is wanted.
     std::optional<Duration> NextDue() const;
-    // How many there are to be asked now, no more than `most`; and those.
+    // The number of questions that are due, at most `most`; and those questions.
     std::size_t Due(Duration now, std::size_t most) const;
     std::vector<Question> Take(Duration now, std::size_t most);
 
-    // A part that came of a node. Returns the text once it is whole and has the hash; it is lacking no more
-    // then.
+    // Adds a part that came from a node. Returns the text once it is whole and has the hash; the text is then
+    // no longer wanted.
     std::optional<std::string> Add(const std::string &node, const TypeFrames::Part &part);
-    // Texts that were whole and had another hash, and parts that nobody had asked that node for.
+    // Whole texts with another hash, and parts of texts that this node did not request from their sender.
     std::uint64_t Wrong() const { return _wrong; }
 
 private:

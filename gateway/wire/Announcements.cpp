@@ -107,7 +107,7 @@ std::optional<Gateway::Announcement> Decode(std::span<const std::uint8_t> bytes)
     return good ? std::optional(std::move(announcement)) : std::nullopt;
 }
 
-// The halves of the hash folded into one.
+// Folds the halves of the hash into one.
 std::uint32_t DigestOf(std::span<const std::uint8_t> bytes)
 {
     const std::uint64_t hash = Fnv1a(bytes);

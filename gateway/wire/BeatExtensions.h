@@ -8,8 +8,8 @@
 #include "gateway.idl.h"
 #include "wire/LinkStrain.h"
 
-// What beats say that the first gateways of their format do not know: entries of Beat::wants for a node whose
-// tag nobody has. Those pass over them, so that gateways of both kinds go on understanding each other.
+// Extensions of beats that the first gateways of this format do not know: entries of Beat::wants for a node
+// tag that no node has. These gateways ignore them, so that both kinds understand each other.
 namespace Rabit::BeatExtensions
 {
 
@@ -17,8 +17,7 @@ namespace Rabit::BeatExtensions
 inline constexpr std::uint32_t Nobody = 0;  // NodeTagOf never gives it
 inline constexpr std::uint16_t Tool = 1;    // the sender is a tool (ToolSettings)
 inline constexpr std::uint16_t Type = 2;    // a TypeQuestion, in Wanted::states
-inline constexpr std::uint16_t Replay =
-    3;  // what the sender posts was recorded before (GatewayConfig::Replay)
+inline constexpr std::uint16_t Replay = 3;  // the sender plays a recording (GatewayConfig::Replay)
 inline constexpr std::uint16_t Strain = 4;  // LinkStrains of the sender, in Wanted::states
 
 // Bytes of Wanted::states.
@@ -26,13 +25,13 @@ inline constexpr std::size_t ToolBytes = 0;
 inline constexpr std::size_t ReplayBytes = 0;
 inline constexpr std::size_t TypeBytes = 16;
 inline constexpr std::size_t StrainBytes = 8;  // of each
-// So many are taken of one beat at most.
+// Most strains that are read from one beat.
 inline constexpr std::size_t MostStrains = 4;
 
 // The sender lacks the text of a type that a node has announced.
 struct TypeQuestion
 {
-    std::uint32_t Node = 0;        // tag of who is asked
+    std::uint32_t Node = 0;        // tag of the asked node
     std::uint64_t Definition = 0;  // as in the announcement
     std::uint32_t From = 0;        // the first byte that is lacking
 
@@ -46,12 +45,12 @@ void MarkReplay(Gateway::Beat &beat);
 bool IsReplay(const Gateway::Beat &beat);
 
 void Ask(Gateway::Beat &beat, const TypeQuestion &question);
-// The questions in a beat; what makes no sense is left out.
+// The questions in a beat; malformed ones are left out.
 std::vector<TypeQuestion> TypeQuestionsIn(const Gateway::Beat &beat);
 
 // The first MostStrains of them.
 void Say(Gateway::Beat &beat, std::span<const LinkStrain> strains);
-// The strains in a beat; kinds that are not known here, and what makes no sense, are left out.
+// The strains in a beat; malformed ones and unknown kinds are left out.
 std::vector<LinkStrain> StrainsIn(const Gateway::Beat &beat);
 
 }  // namespace Rabit::BeatExtensions

@@ -5,7 +5,7 @@
 namespace Rabit
 {
 
-// What a beat has to say besides; where it has nothing, that is empty.
+// The optional news of a beat; empty if it has none.
 const Gateway::BeatNews &NewsOf(const Gateway::Beat &beat);
 // The same, to be added to.
 Gateway::BeatNews &NewsOf(Gateway::Beat &beat);

@@ -25,7 +25,7 @@ private:
     const std::size_t _size;  // of the frame
 };
 
-// The same of a frame that is encoded already.
+// The same for a frame that is encoded already.
 class FrameBytesEncoder final : public SampleEncoder
 {
 public:

@@ -5,8 +5,8 @@
 namespace Rabit
 {
 
-// What keeps queue messages between two nodes from getting on, as one of the two says it in its beats, for
-// who looks at the fleet.
+// A trouble of the queue messages between two nodes, as one of them reports it in its beats to programs that
+// show the fleet.
 struct LinkStrain
 {
     enum class Kind : std::uint8_t
@@ -17,10 +17,11 @@ struct LinkStrain
                       // node wait
     };
 
-    std::uint32_t Node = 0;  // tag of the other one
+    std::uint32_t Node = 0;  // tag of the other node
     Kind What = Kind::Filling;
     std::uint8_t Percent = 0;    // Filling: of the outbox's room, 0 to 100
-    std::uint16_t Messages = 0;  // Filling: refused lately for want of room; InDoubt: so many; 65535: or more
+    std::uint16_t Messages = 0;  // Filling: refused lately for want of room; InDoubt: messages in doubt;
+                                 // 65535: or more
 
     bool operator==(const LinkStrain &) const = default;
 };

@@ -13,9 +13,9 @@ TopicDescription DescribeLinkTopic()
     return GatewayTopics::Describe(GatewayTopics::Link, GatewayTopics::TypeOf<Gateway::LinkSample>());
 }
 
-// The links repair what is lost, one part at a time and at the pace of the path; DDS's repair in order would
-// hold up what follows, and its heartbeats and acknowledgements would be a multiple of the data on a thin
-// radio.
+// The links retransmit lost parts, one at a time and at the pace of the path. Ordered retransmission by DDS
+// would hold up later parts, and its heartbeats and acknowledgements would be a multiple of the data on a
+// thin radio.
 TopicQos LinkTopicQos()
 {
     TopicQos qos;

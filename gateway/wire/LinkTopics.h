@@ -11,7 +11,7 @@ namespace Rabit
 TopicDescription DescribeLinkTopic();
 TopicQos LinkTopicQos();
 
-// Of a sample, beside its frame: encapsulation and length.
+// Bytes of a sample beside its frame: encapsulation and length.
 inline constexpr std::size_t LinkSampleOverhead = 8;
 // Bytes of a frame that goes in one datagram of so many bytes over every backend. Less than the headers leave
 // room for: the vendors cut a sample in two sooner, Fast DDS one that is less than 176 bytes smaller than the

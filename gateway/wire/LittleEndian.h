@@ -18,7 +18,7 @@ void Put(Number number, std::vector<std::uint8_t> &bytes)
     }
 }
 
-// Takes it from the front; there must be as many bytes.
+// Takes a number from the front; there must be enough bytes.
 template <typename Number>
 Number Take(std::span<const std::uint8_t> &bytes)
 {

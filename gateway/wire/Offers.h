@@ -8,7 +8,7 @@
 namespace Rabit::Offers
 {
 
-// What an announcement says of that message; null if nothing. Of several the first counts.
+// The first entry of that message in an announcement; null if there is none.
 inline const Gateway::PublishedMessage *Find(const Gateway::Announcement &announcement,
                                              const std::string &message)
 {

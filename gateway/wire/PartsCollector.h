@@ -8,8 +8,8 @@
 namespace Rabit
 {
 
-// Puts the parts of something together, in whatever order they come and however often. Takes the memory of
-// the whole, which who hands in parts has bounded, and an eighth more.
+// Puts parts together, in whatever order they come and however often. Uses the memory of the whole, which the
+// caller has bounded, and an eighth more.
 class PartsCollector
 {
 public:

@@ -6,14 +6,14 @@
 #include <span>
 #include <vector>
 
-// Parts of the IDL texts of types, as they go to who has asked for them: frames of the topic rabit/Link whose
+// Parts of the IDL texts of types, sent to the nodes that request them: frames of the topic rabit/Link whose
 // first byte is no version of the links.
 namespace Rabit::TypeFrames
 {
 
 inline constexpr std::uint8_t FirstByte = 'T';
 
-// Bytes of a text at most; what is larger is neither handed out nor taken.
+// Largest text in bytes; a larger one is neither sent nor accepted.
 inline constexpr std::size_t LargestText = 128 * 1024;
 
 struct Part
@@ -24,11 +24,11 @@ struct Part
     std::span<const std::uint8_t> Bytes;  // at least one
 };
 
-// Of a frame, beside the bytes of the text.
+// Bytes of a frame beside the text.
 inline constexpr std::size_t HeaderSize = 20;
 
 std::vector<std::uint8_t> Encode(const Part &part);
-// The bytes are views into the frame. Empty if it is no such frame, or says what cannot be.
+// The bytes are views into the frame. Empty if it is no such frame, or an impossible one.
 std::optional<Part> Decode(std::span<const std::uint8_t> frame);
 
 }  // namespace Rabit::TypeFrames

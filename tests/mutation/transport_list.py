@@ -158,8 +158,8 @@ MUTATIONS = [
     guard("silence makes a gap of any size", "KnownPeers.cpp",
           "std::min(LostInASecond * elapsed / 1000, LargestLoss)", "LostInASecond * elapsed / 1000"),
     guard("only a step forward is a word", "KnownPeers.cpp",
-          "Move(numbers, number, now); } // Who is heard from where he was has not gone far since: an honest "
-          "writer behind a forged number, too. numbers.Said = now;",
+          "Move(numbers, number, now); } // A writer heard at or below its highest number has not gone far since, "
+          "even if that number was forged. numbers.Said = now;",
           "Move(numbers, number, now); numbers.Said = now; }"),
     guard("the pace is how far, not how often", "KnownPeers.cpp", "++numbers.Steps;",
           "numbers.Steps += number - numbers.Highest;"),

@@ -18,7 +18,8 @@ namespace Rabit
 namespace
 {
 
-// An interface that comes up tells several things, each within milliseconds of the one before.
+// Changes less than this apart belong to one burst: an interface that comes up causes several within
+// milliseconds.
 constexpr std::chrono::milliseconds Pause{100};
 constexpr std::chrono::milliseconds LongestBurst{500};
 constexpr int Forever = -1;
@@ -87,8 +88,8 @@ AddressWatch::Event AddressWatch::Wait(int milliseconds)
     {
         return Event::Stop;
     }
-    // What exactly changed does not matter: the networks are listed afresh. An error says that more came
-    // than the kernel could keep, which is news too.
+    // The content does not matter, since all networks are listed afresh. An error means that more changes
+    // came than the kernel's buffer holds, which is a change too.
     std::array<char, 8192> ignored;
     for (int messages = 0; messages < 1000 && recv(_netlink.Get(), ignored.data(), ignored.size(), 0) > 0;
          ++messages)

@@ -12,9 +12,10 @@ namespace Rabit
 class AddressWatch
 {
 public:
-    // Calls `look` on a thread of its own: at once, after each burst of changes, and while changes come
-    // without a pause at least twice a second. What it returns is the time after which to call it again even
-    // without a change; none: only then. Throws std::system_error if the kernel does not tell of changes.
+    // Calls `look` on a thread of its own: at once, after each burst of changes, and at least twice a second
+    // while changes come without a pause. `look` returns the time after which to call it again even without a
+    // change; none: call it only after a change. Throws std::system_error if the kernel does not report
+    // changes.
     explicit AddressWatch(std::function<std::optional<std::chrono::milliseconds>()> look);
     // Returns when `look` does not run any more.
     ~AddressWatch();
@@ -38,7 +39,7 @@ private:
     enum class Event
     {
         News,
-        Silence,  // for that long
+        Silence,  // the wait ended without a change
         Stop
     };
 

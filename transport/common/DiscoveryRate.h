@@ -5,8 +5,8 @@
 namespace Rabit
 {
 
-// Bytes in a second that a session's discovery may take (TransportSession::SetDiscoveryRate), for whichever
-// of the vendor's sessions there is now; 0: as much as it needs.
+// Bytes per second that a session's discovery may take (TransportSession::SetDiscoveryRate); 0: unlimited.
+// Shared by the successive vendor's sessions of one session.
 using DiscoveryRate = std::atomic<double>;
 
 }  // namespace Rabit

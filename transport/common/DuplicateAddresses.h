@@ -1,5 +1,5 @@
-// Networks of this host whose address another host has too, on a network of its own: the same fixed address
-// inside of every vehicle, the same bridge for containers on every computer.
+// Networks of this host whose address another host also has, on a network of its own: the same fixed address
+// inside every vehicle, the same container bridge on every computer.
 #pragma once
 
 #include <string>
@@ -11,12 +11,13 @@
 namespace Rabit
 {
 
-// Remembers them as long as the address is there: a peer that has noticed it too tells of it no more. Pure.
+// Remembers a duplicate as long as this host has the address: a peer that also noticed it stops announcing
+// it. Pure.
 class DuplicateAddresses
 {
 public:
-    // What is there now. A peer is on another host if it has an address of another one of these networks that
-    // is not this host's.
+    // Takes the networks and peers of now. A peer is on another host if it has an address that is not this
+    // host's, on another of the usable networks.
     void Look(const std::vector<HostNetwork> &usable, const std::vector<PeerPlace> &peers);
     bool Has(const HostNetwork &network) const;
 

@@ -1,6 +1,5 @@
 // Runs the handlers of one reader (or of one session's peer events) one at a time, and stops them for good.
-//
-// Shared by the backends: it is how they keep the promises of Transport.h about handlers.
+// All backends use it to keep the rules of Transport.h for handlers.
 #pragma once
 
 #include <exception>
@@ -25,7 +24,8 @@ public:
     HandlerGate(const HandlerGate &) = delete;
     HandlerGate &operator=(const HandlerGate &) = delete;
 
-    // Calls `work` on this thread, after other calls have ended; does nothing once closed. Never throws.
+    // Calls `work` on this thread, after other calls have ended; does nothing once closed. Exceptions of
+    // `work` are logged.
     template <typename Work>
     void Run(Work &&work) noexcept
     {

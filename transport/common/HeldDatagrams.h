@@ -9,11 +9,11 @@
 namespace Rabit
 {
 
-// The datagrams of a sample that wait for their turn (TransportWriter::WriteHeld). While a Scope lives, the
-// backend's output offers each datagram that its thread sends to Scope::Keep, and leaves out what that takes.
-// The first one is not taken: it goes at once.
+// The datagrams of a sample that wait for SendHeld (TransportWriter::WriteHeld). While a Scope lives, the
+// backend's output offers each datagram that its thread sends to Scope::Keep, and does not send a datagram
+// that Keep accepts. Keep refuses the first one, which goes at once.
 //
-// Any thread. Nothing is sent with the lock held. Bounded by the largest sample: there is one at a time.
+// Thread-safe. Nothing is sent with the lock held. Holds at most one sample, and so at most LargestSample.
 class HeldDatagrams
 {
 public:
@@ -28,8 +28,8 @@ public:
         Scope(const Scope &) = delete;
         Scope &operator=(const Scope &) = delete;
 
-        // Returns whether `send` is kept, to be called later, instead of the datagram being sent now. To be
-        // called by the thread of the scope.
+        // Returns true if `send` is kept, to be called later; false if the datagram must be sent now. Call it
+        // on the thread of the scope.
         template <typename Send>
         bool Keep(std::size_t bytesOnAir, Send &&send)
         {
@@ -46,16 +46,16 @@ public:
         HeldDatagrams &_held;
         bool _isFirst = true;
     };
-    // Null: what this thread sends goes at once.
+    // The scope of the calling thread. Null: its datagrams go at once.
     static Scope *OfThisThread() { return _ofThread; }
 
-    // Of the next one; 0: there is none.
+    // Bytes of the next datagram on the air; 0: none is held.
     std::size_t NextBytes() const
     {
         const std::lock_guard lock(_mutex);
         return _held.empty() ? 0 : _held.front().first;
     }
-    // Returns false if there was none.
+    // Sends the next datagram. Returns false if none is held.
     bool SendNext()
     {
         std::function<void()> send;

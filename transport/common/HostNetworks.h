@@ -8,11 +8,11 @@
 namespace Rabit
 {
 
-// One address of an interface, or an interface without any. An interface with several addresses is in
-// several.
+// One address of an interface, or an interface without any. An interface with several addresses has several
+// entries.
 struct HostNetwork
 {
-    unsigned Index = 0;      // the kernel's, of the interface: another one of the same name has another
+    unsigned Index = 0;  // the kernel's index of the interface; a new interface of the same name gets another
     std::string Interface;   // name
     std::string Label;       // the name by which this address is listed: the interface's, or `eth0:1`
     std::string Address;     // IPv4, dotted; empty: none
@@ -26,18 +26,18 @@ struct HostNetwork
     {
         return name == Interface || name == Label || (!Address.empty() && name == Address);
     }
-    // The same address on the same interface: sockets that were opened on it serve again when it returns.
+    // Same address on the same interface: sockets opened on it work again when it returns.
     bool IsSame(const HostNetwork &other) const { return Index == other.Index && Address == other.Address; }
-    // Whether an address is of this network, by its mask. False for one that does not parse.
+    // True if the address belongs to this network, by its mask. False if it does not parse.
     bool Contains(const std::string &address) const;
 };
 
 // `eth0 10.0.0.1`, for people.
 std::string Describe(const HostNetwork &network);
-// All of them with commas between; `none` if there is none.
+// All of them, separated by commas; `none` if there is none.
 std::string Describe(const std::vector<HostNetwork> &networks);
 
-// Those of this host now, in the order of their interfaces. Empty if they cannot be listed.
+// The networks of this host now, in the order of their interfaces. Empty if they cannot be listed.
 std::vector<HostNetwork> ListHostNetworks();
 
 }  // namespace Rabit

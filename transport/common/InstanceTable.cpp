@@ -40,7 +40,7 @@ std::vector<KeyHash> InstanceTable::WriterGone(const WriterId &writer)
             ++entry;
         }
     }
-    // The order of a hash table is no order: sort, so that every run tells it alike.
+    // The order of a hash table is arbitrary: sort, so that runs are repeatable.
     std::sort(orphans.begin(), orphans.end());
     return orphans;
 }

@@ -1,4 +1,4 @@
-// Which writers have written which living instance of a keyed topic, as one reader has seen it.
+// Records, for one reader, which writers have written which living instance of a keyed topic.
 #pragma once
 
 #include <cstddef>

@@ -32,10 +32,10 @@ constexpr std::size_t PrefixAt = 8;  // in the header of a message
 constexpr std::size_t NumberSize = 8;
 // 7.4.4: BuiltinParticipantStatelessMessageWriter
 constexpr std::array<std::uint8_t, 4> HandshakeWriter{0x00, 0x02, 0x01, 0xc3};
-// 9.3.2.5: what the steps of a handshake are called begins so.
+// 9.3.2.5: common beginning of the names of a handshake's steps.
 constexpr std::string_view Steps = "DDS:Auth:PKI-DH:1.0+";
-// 7.4.3.3: before the participant that a message is for there are who said it and to which message it is the
-// answer, each a GUID and a number, after the header of CDR.
+// 7.4.3.3: offset of the addressee of a message. Before it are the CDR header, the message's identity and
+// that of the message it answers, each a GUID and a number.
 constexpr std::size_t AddresseeAt = 4 + 2 * (16 + 8);
 constexpr std::size_t LargestControl = 64;
 
@@ -60,8 +60,8 @@ std::uint64_t ReadNumber(const Submessage &submessage, std::size_t at)
            Read32(submessage.Body(), at + 4, submessage.LittleEndian);
 }
 
-// The content of a DATA or of the first of its fragments; empty if it is none, or has what the vendors do not
-// put before these.
+// The content of a DATA or of the first of its fragments. Empty for other submessages, and if an inline QoS
+// is present, which the vendors do not use for handshakes.
 Bytes ContentOf(const Submessage &submessage)
 {
     constexpr std::size_t ToInlineQos = 2;  // octetsToInlineQos, which counts from behind itself
@@ -181,7 +181,7 @@ private:
             _found.To != KeyExchange::Prefix{} && Has(content, AddresseeAt, _found.To.size()) &&
             !std::equal(_found.To.begin(), _found.To.end(), content.subspan(AddresseeAt).begin());
     }
-    // 9.5.2.3: which keys, and in which session. 9.5.2.1.2: those by which keys are exchanged have no number.
+    // 9.5.2.3: key and session. 9.5.2.1.2: the keys that protect the exchange of keys have the number 0.
     void ReadPrefix(Bytes body)
     {
         constexpr std::size_t KeyAt = 4;

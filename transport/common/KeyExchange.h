@@ -9,45 +9,46 @@
 namespace Rabit
 {
 
-// What a datagram is of what two participants with keys say to each other before they can read each other:
-// the handshake, the keys, which follow it, and what they can read of each other then.
+// Description of a datagram by which two participants with keys come to read each other: a handshake, the
+// keys that follow it, and the control messages about those keys.
 struct KeyExchange
 {
-    using Prefix = std::array<std::uint8_t, 12>;  // how the GUID of a participant begins
+    using Prefix = std::array<std::uint8_t, 12>;  // first bytes of a participant's GUID
 
-    // OMG DDS Security 1.1, 9.3.2.5 calls the steps of a handshake so. In the order in which they go: what
-    // ends an exchange before what begins one.
+    // The steps of a handshake, named as in OMG DDS Security 1.1, 9.3.2.5. In the order of priority: messages
+    // that end an exchange go before those that begin one.
     enum class Step : std::uint8_t
     {
         Final,
         Keys,     // 7.4.4: ParticipantVolatileMessageSecure, or its repair
         Control,  // heartbeats and acknowledgements alone
         Reply,
-        Ask,  // for a request: AUTH_REQUEST
+        Ask,  // asks for a request: AUTH_REQUEST
         Request,
-        Rest  // of a handshake's message, which came in fragments
+        Rest  // a later fragment of a handshake's message
     };
 
     Prefix From{};
-    Prefix To{};  // as INFO_DST says; zero: nobody is named
+    Prefix To{};  // from INFO_DST; zero: no addressee is named
     Step What = Step::Request;
-    // Of keys and control: tells the writers and readers of a participant apart, and what they say.
+    // For keys and control: identifies a participant's writer or reader and the kind of submessage.
     std::uint32_t Source = 0;
-    // 8.4.2.4: protected as a whole, as all is once keys were exchanged, but these and handshakes.
+    // 8.4.2.4: protected as a whole. Once keys were exchanged, all datagrams are but keys, control and
+    // handshakes.
     bool IsWhole = false;
-    // Signed as a whole and nothing else, and of builtin endpoints: of those that discovery has for nodes
-    // without keys, and that say nothing where it is protected.
+    // Protected as a whole without encryption, and from builtin discovery endpoints for nodes without keys,
+    // which are idle where discovery is protected.
     bool IsIdle = false;
-    // Of a handshake's message: that of the sample; its fragments have one.
+    // For a handshake's message: the sample's number, common to all its fragments.
     std::uint64_t Number = 0;
-    // Of a handshake's message: it is for another participant than the one that the datagram is for. There is
-    // one writer for all, and Fast DDS says it to all.
+    // For a handshake's message: it is for another participant than the datagram. Fast DDS has one writer for
+    // all peers and sends each message to all of them.
     bool IsForOther = false;
 
     bool IsHandshake() const { return What != Step::Keys && What != Step::Control; }
 };
 
-// Empty if it is something else. Of any bytes.
+// Empty if the datagram is something else. Accepts any bytes.
 std::optional<KeyExchange> ReadKeyExchange(std::span<const std::uint8_t> datagram);
 
 }  // namespace Rabit

@@ -1,4 +1,4 @@
-// What a KeyExchangeOutbox lets go next.
+// KeyExchangeOutbox: choice of the datagrams that go next.
 #include "common/KeyExchangeOutbox.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ bool KeyExchangeOutbox::IsBehindKeys(const Peer &peer, const ControlKind &kind)
     return !peer.KeysWaiting.empty() && peer.KeysWaiting.front().Source == kind.Source;
 }
 
-// Calls visit(choice) with what may go as far as the window is concerned.
+// Calls visit(choice) for each item that the window allows to go.
 template <typename Visit>
 void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
 {

@@ -9,7 +9,7 @@ namespace Rabit
 namespace
 {
 
-// Whether who has said this has no use any more for what was to be said to it.
+// True if a peer that has sent `theirs` no longer needs our message `ours`.
 bool IsPast(KeyExchange::Step ours, KeyExchange::Step theirs)
 {
     using Step = KeyExchange::Step;
@@ -27,7 +27,7 @@ bool IsPast(KeyExchange::Step ours, KeyExchange::Step theirs)
     }
 }
 
-// Whether that was the answer to this.
+// True if `theirs` answers `said`.
 bool Answers(std::optional<KeyExchange::Step> said, KeyExchange::Step theirs)
 {
     using Step = KeyExchange::Step;
@@ -167,7 +167,7 @@ void KeyExchangeOutbox::PutHandshake(Peer &peer, Datagram datagram, const KeyExc
     }
     if (what.What == Step::Rest)
     {
-        return;  // what begins it has given way to something newer
+        return;  // a newer message has replaced the one that this fragment belongs to
     }
     const Turn place = peer.Waiting ? peer.Waiting->Place : ++_turn;
     const TimePoint due = peer.Said == what.What ? std::max(now, peer.SaidAgainAt) : now;

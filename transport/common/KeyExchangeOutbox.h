@@ -15,29 +15,31 @@
 namespace Rabit
 {
 
-// What a session says to participants with keys until they can read each other, between the vendor and the
-// air. That is 30 to 40 kB for each pair of two; the vendors say it to all at once, and repeat each message
-// of a handshake twice a second, or every second, until it is answered. On a radio the repetitions then fill
-// the air, the answers wait behind them for longer than that, and nobody ever finds anybody.
+// Schedules a session's datagrams to participants with keys until both sides can read each other. Stands
+// between the vendor and the network. The exchange takes 30 to 40 kB for each pair. The vendors send to all
+// peers at once, and repeat each handshake message every 0.5 or 1 s until it is answered. On a radio these
+// repetitions fill the channel, answers queue behind them for longer than that, and no exchange ever
+// completes.
 //
-// - What is said and not answered, to all together, is bounded by a window. It grows with what is answered
-//   soon, and is halved by what is answered late or not at all.
-// - What ends an exchange goes before what begins one, in the order of KeyExchange::Step; within that, what
-//   has waited longest. The last message of a handshake, and control, do not wait for the window.
-// - Of a handshake's messages to a peer only the newest waits. What the peer has shown that it does not need
-//   any more is forgotten. The same one again goes when an answer had time to be here, at doubling distances.
-// - Keys are never left out, and stay in their order. Control of the same kind has a slot: the newest goes,
-//   at doubling distances, which begin anew when keys come or go. What a writer says of its keys stays behind
-//   them.
-// - Who asks for keys that are on their way, or may be, is not heard: the vendors would say all of them again
-//   each time. It asks again.
-// - The same holds for what is protected as a whole, to a peer with which something of all that was exchanged
-//   a short while ago, and for control of that to all: the vendors say that in haste, too. Else it goes as it
-//   is. Of endpoints that say nothing, always.
-// - A rate bounds it all, if one is set.
+// - A window bounds the unanswered bytes to all peers together. Quick answers enlarge it; late or missing
+//   answers halve it.
+// - Messages that end an exchange go before those that begin one, in the order of KeyExchange::Step; within a
+//   step, the longest waiting goes first. The last message of a handshake, and control, do not wait for the
+//   window.
+// - Of the handshake messages to a peer only the newest waits. A message that the peer has shown not to need
+//   any more is dropped. A repetition goes when an answer had time to arrive, with exponential backoff.
+// - Keys keep their order and are dropped only beyond MostWaiting bytes. Control of each kind has one slot:
+//   the newest goes, with exponential backoff, which is reset when keys come or go. A writer's control stays
+//   behind its keys.
+// - A request for keys that are under way, or may be, is ignored: the vendors would send all of them again
+//   each time. The peer repeats the request.
+// - Datagrams protected as a whole are scheduled in the same way if they are for a peer with a recent
+//   exchange. So is control of this kind to all peers, since the vendors repeat it too quickly as well.
+//   Otherwise they are sent unchanged, except those of idle endpoints, which are always held.
+// - A rate limits all of this, if one is set.
 //
-// The vendors repair what is lost here as if the air had lost it. A pure state machine, not thread-safe;
-// `now` never goes back by more than threads do.
+// The vendors repair datagrams dropped here as if the network had lost them. A pure state machine, not
+// thread-safe; `now` may go back only as far as the clock readings of threads that compete for the lock.
 class KeyExchangeOutbox
 {
 public:
@@ -49,22 +51,21 @@ public:
     static constexpr std::size_t FirstWindow = 9000;
     static constexpr std::size_t SmallestWindow = 5000;
     static constexpr std::size_t LargestWindow = 16000;
-    // Of answers. What is between them changes nothing.
+    // Bounds of the answer time: Quick answers enlarge the window, Late ones halve it.
     static constexpr Milliseconds Quick{200};
     static constexpr Milliseconds Late{1000};
-    // Between a message and its repetition: four times as long as answers take, within these bounds.
+    // Interval between a message and its repetition: four times the answer time, within these bounds.
     static constexpr Milliseconds FirstGap{500};
     static constexpr Milliseconds ShortestGap{250};
     static constexpr Milliseconds LongestFirstGap{4000};
     static constexpr Milliseconds LongestGap{8000};
-    // The same of control, of which each distance is twice the one before: twice as long as answers take at
-    // first, and then four times.
+    // The same for control, with intervals that double: from twice the answer time up to four times.
     static constexpr Milliseconds ShortestControlGap{50};
     static constexpr Milliseconds LongestFirstControlGap{1000};
     static constexpr Milliseconds ShortestLongControlGap{200};
     static constexpr Milliseconds LongestControlGap{1000};
     static constexpr Milliseconds LongestIdleGap{4000};  // KeyExchange::IsIdle
-    // After the last handshake or key.
+    // Time after the last handshake or key until an exchange counts as settled.
     static constexpr Milliseconds Settled{6000};
     static constexpr std::size_t Headers = 20 + 8;  // IPv4, UDP
     static constexpr std::size_t MostPeers = 1024;
@@ -78,21 +79,21 @@ public:
         std::vector<std::uint8_t> Bytes;
     };
 
-    // Bytes in a second; 0: unbounded.
+    // Limits the rate to `most` bytes per second; 0: unlimited.
     void SetRate(double most) { _most = most; }
-    // One that the vendor wants to send; `route` is any number. False if it names nobody and is to go as it
-    // is.
+    // Takes a datagram that the vendor wants to send; `route` is any number, returned by TakeDue. Returns
+    // false if the datagram was not taken and should be sent unchanged.
     bool Put(std::span<const std::uint8_t> datagram, const KeyExchange &what, std::uint64_t route,
              TimePoint now);
-    // One that came, to us. False if the vendor should not see it.
+    // Notes a datagram that arrived for us. Returns false if the vendor should not see it.
     bool Received(const KeyExchange &what, TimePoint now);
-    // When TakeDue has something.
+    // Time at which to call TakeDue; none: nothing waits.
     std::optional<TimePoint> Due() const;
-    // What is to go now.
+    // Returns the datagrams to send now.
     std::vector<Datagram> TakeDue(TimePoint now);
 
     std::size_t Window() const { return _window; }
-    // Bytes that are said and not answered.
+    // Bytes that are sent and not answered.
     std::size_t Unanswered() const { return _unanswered; }
     std::size_t Peers() const { return _peers.size(); }
 
@@ -116,12 +117,12 @@ private:
     };
     struct Control
     {
-        std::vector<std::uint8_t> Bytes;  // that waits; empty: none
+        std::vector<std::uint8_t> Bytes;  // waiting; empty: none
         bool IsIdle = false;
-        bool IsSaid = false;  // and then:
+        bool IsSaid = false;  // if true, the next two are valid
         TimePoint SaidAt;
         Duration Gap{0};  // until the next one
-        TimePoint Due;    // of what waits
+        TimePoint Due;    // of the waiting datagram
         Turn Place = 0;
     };
     struct Keys
@@ -134,18 +135,18 @@ private:
     struct Peer
     {
         std::optional<Message> Waiting;
-        std::optional<Step> Said;  // of the handshake, last; and then:
+        std::optional<Step> Said;  // handshake step sent last; if set, then:
         std::uint64_t SaidNumber = 0;
-        TimePoint SaidAgainAt;      // not before
-        Duration Gap{0};            // until that, and between later ones
-        std::deque<Datagram> Rest;  // of the message that was said last
+        TimePoint SaidAgainAt;      // no repetition before this
+        Duration Gap{0};            // interval until SaidAgainAt, and between later ones
+        std::deque<Datagram> Rest;  // later fragments of the message sent last
         std::deque<Keys> KeysWaiting;
         TimePoint KeysSaidAt{};
         std::map<ControlKind, Control> Controls;
-        std::size_t Unanswered = 0;  // bytes; and then:
+        std::size_t Unanswered = 0;  // bytes; if not 0, the next three are valid
         TimePoint UnansweredSince;
-        TimePoint UnansweredUntil;  // then they count as lost
-        bool IsRepeated = false;    // one of them, so that an answer tells no time
+        TimePoint UnansweredUntil;  // after this they count as lost
+        bool IsRepeated = false;    // a repetition is among them, so that an answer tells no time
         TimePoint TouchedAt;
         TimePoint ExchangedAt;
     };
@@ -160,7 +161,7 @@ private:
 
     Peer &PeerOf(const KeyExchange::Prefix &name, TimePoint now);
     void ForgetOldest();
-    // Whether what is protected as a whole waits.
+    // True if a datagram that is protected as a whole must wait.
     bool IsHeld(const KeyExchange &what, TimePoint now) const;
     void Exchanged(Peer &peer, TimePoint now);
     bool Fits(std::size_t size) const { return _unanswered == 0 || _unanswered + size <= _window; }
@@ -174,7 +175,7 @@ private:
     void Take(const Choice &choice, TimePoint now, std::vector<Datagram> &taken);
     void TakeMessage(Peer &peer, TimePoint now, std::vector<Datagram> &taken);
     void Charge(Peer &peer, std::size_t size, bool waits, TimePoint now);
-    // `tellsTime`: by what would not have been said but for what it answers.
+    // `tellsTime`: the peer sent it only as an answer, so that it tells the answer time.
     void Answered(Peer &peer, bool tellsTime, TimePoint now);
     void Expire(TimePoint now);
     void Lower(TimePoint now);
@@ -184,13 +185,13 @@ private:
     void BeginControlAnew(Peer &peer);
 
     double _most = 0.0;
-    TimePoint _freeAt{};  // by the rate
+    TimePoint _freeAt{};  // when the rate allows the next datagram
     std::size_t _window = FirstWindow;
     std::size_t _unanswered = 0;
     std::size_t _waiting = 0;             // bytes of keys
-    std::optional<Duration> _answerTime;  // the longest, by half less with each that is shorter
+    std::optional<Duration> _answerTime;  // the longest; each shorter one halves it at most
     TimePoint _loweredAt{};
-    TimePoint _exchangedAt{};  // with anybody
+    TimePoint _exchangedAt{};  // with any peer
     std::map<KeyExchange::Prefix, Peer> _peers;
     Turn _turn = 0;
 };

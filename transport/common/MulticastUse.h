@@ -5,8 +5,8 @@
 namespace Rabit
 {
 
-// Whether samples, and discovery between those who know each other, go by multicast where several want them.
-// Peers are listed where multicast does not pass, or not to all of them.
+// True if samples for several readers, and discovery between nodes that know each other, go by multicast.
+// Listed peers turn it off: multicast may not reach all of them.
 inline bool IsMulticastForData(const TransportSettings &settings)
 {
     return settings.Multicast && settings.Peers.empty();

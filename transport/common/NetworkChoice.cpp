@@ -19,7 +19,7 @@ SettingsProblem ProblemOf(const std::string &interface, const std::string &what)
     return {"interfaces", interface, "the interface " + interface + " " + what, false};
 }
 
-// Why there is nothing usable by that name.
+// Says why no network of that name is usable.
 SettingsProblem WhyNot(const std::string &name, const std::vector<HostNetwork> &host)
 {
     const auto found = std::find_if(host.begin(), host.end(),

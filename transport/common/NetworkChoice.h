@@ -1,8 +1,8 @@
-// Which of a host's networks a session is to use, and what is wrong with the others that it was told to use.
+// Decides which of a host's networks a session uses, and reports the named ones that it cannot use.
 //
-// A network is usable if its interface is up and has a carrier and an IPv4 address. One that nobody named
-// must also be capable of multicast, unless multicast is off or there are peers to look for by unicast; and
-// loopback is used only if it is named, or if there is no other.
+// A network is usable if its interface is up and has a carrier and an IPv4 address. If no interface is named,
+// it must also be capable of multicast, unless multicast is off or peers are listed. Loopback is used only if
+// it is named, or if there is no other.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -22,7 +22,8 @@ struct NetworkChoice
     std::vector<SettingsProblem> Problems;  // none of them impossible; one for each interface at fault
 };
 
-// What the settings ask for, of all the networks of the host; `most`: the backend uses no more.
+// Chooses from all the networks of the host by the settings. `most`: number of networks that the backend can
+// use.
 NetworkChoice ChooseNetworks(const std::vector<HostNetwork> &host, const TransportSettings &settings,
                              std::size_t most);
 

@@ -1,4 +1,4 @@
-// What a Rabit node tells of itself in DDS discovery, alike in all DDS backends so that they know each other.
+// The data by which a Rabit node identifies itself in DDS discovery, the same for all DDS backends.
 //
 // The participant's name is the node's name. The participant's USER_DATA (OMG DDS specification, 2.2.3.1) is
 // ASCII: `rabit=1;incarnation=<decimal>;`, followed by `card=2;` if the node exchanges cards
@@ -21,10 +21,10 @@ struct ParticipantIdentity
 
 std::string MakeUserData(std::uint64_t incarnation, bool hasCard = false);
 
-// The incarnation in a participant's USER_DATA; nothing if it is not a Rabit node's. For any bytes.
+// The incarnation in a participant's USER_DATA; none if it is not a Rabit node's. Accepts any bytes.
 std::optional<std::uint64_t> ParseUserData(std::span<const std::uint8_t> userData);
 
-// Whether it is a node that exchanges cards. For any bytes.
+// True if the USER_DATA is that of a node that exchanges cards. Accepts any bytes.
 bool HasCard(std::span<const std::uint8_t> userData);
 
 }  // namespace Rabit

@@ -12,7 +12,7 @@ namespace Rabit
 namespace
 {
 
-// As in DNS and /etc/hosts.
+// True if `text` is a host name as DNS and /etc/hosts allow it.
 bool IsHostName(const std::string &text)
 {
     constexpr std::size_t Longest = 253;

@@ -18,9 +18,9 @@ struct PeerAddress
 // Parses `host` or `host:port`; throws TransportError if it is neither.
 PeerAddress ParsePeer(const std::string &peer);
 
-// Whether it is an IPv4 address, dotted.
+// True if `text` is a dotted IPv4 address.
 bool IsAddress(const std::string &text);
-// Whether it consists of digits and dots, so that it can be no name.
+// True if `text` consists of digits and dots, so that it cannot be a name.
 bool LooksLikeAddress(const std::string &text);
 
 }  // namespace Rabit

@@ -6,7 +6,7 @@
 namespace Rabit
 {
 
-// The unicast IPv4 addresses that one other session of the network tells to be reached by.
+// The unicast IPv4 addresses that one other session announces.
 using PeerPlace = std::vector<std::string>;
 
 }  // namespace Rabit

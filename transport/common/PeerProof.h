@@ -14,7 +14,8 @@
 namespace Rabit
 {
 
-// Whether peers are who they say, by TransportSettings::Security; without it all are. Thread-safe.
+// Checks that peers are the nodes that they say, by TransportSettings::Security; without security all pass.
+// Thread-safe.
 class PeerProof
 {
 public:
@@ -25,12 +26,12 @@ public:
     {
     }
     bool IsWanted() const { return _security.has_value(); }
-    // Whether the one whose GUID begins so may call itself that; logs it if not.
+    // Returns true if the participant whose GUID begins with `prefix` may call itself `node`; logs it if not.
     bool MayBe(const std::string &node, std::span<const std::uint8_t, PrefixSize> prefix) const;
-    // What the other one, which calls itself that, announces of its own protection; logs it if it differs.
+    // Compares the peer's announced protection of discovery with this node's; logs a difference.
     void Compare(const std::string &node, bool encrypts) const;
-    // The vendor has not accepted the certificate or the permissions of one that calls itself that; empty if
-    // that is not known.
+    // Logs that the vendor has refused the certificate or the permissions of a participant that calls itself
+    // `node`; `node` is empty if its name is unknown.
     void Refused(const std::string &node) const;
 
 private:

@@ -27,8 +27,8 @@ struct PeerResolver::Shared
 {
     std::mutex Mutex;
     std::condition_variable Event;
-    std::map<std::string, std::string> Addresses;  // of those that have one; guarded by Mutex
-    bool Tried = false;                            // each of them once; guarded by Mutex
+    std::map<std::string, std::string> Addresses;  // of the hosts that have one; guarded by Mutex
+    bool Tried = false;                            // each host was looked up once; guarded by Mutex
     bool Stop = false;                             // guarded by Mutex
 };
 

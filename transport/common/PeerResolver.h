@@ -1,5 +1,5 @@
-// Looks up the names of hosts in the background, again and again until each has an address: a name may have
-// none before there is a network.
+// Looks up host names in the background, repeatedly until each has an address: a name may have none before
+// there is a network.
 #pragma once
 
 #include <functional>
@@ -14,21 +14,21 @@ namespace Rabit
 class PeerResolver
 {
 public:
-    // Gives the IPv4 address of a host now, or none; may block for as long as it likes.
+    // Returns the IPv4 address of a host now, or none; may block for any time.
     using Lookup = std::function<std::optional<std::string>(const std::string &host)>;
 
-    // Waits for the first answers for at most a second, so that what is known at once is known at once.
+    // Waits at most a second for the first answers, so that names that resolve at once have their address on
+    // return.
     explicit PeerResolver(std::vector<std::string> hosts, Lookup lookup = &LookUpHost);
-    // Does not wait for a lookup under way, which ends by itself.
+    // Does not wait for a lookup in progress, which ends by itself.
     ~PeerResolver();
     PeerResolver(const PeerResolver &) = delete;
     PeerResolver &operator=(const PeerResolver &) = delete;
 
-    // None as long as the host has none, or if it is not one of those to look up. An address that is found
-    // stays.
+    // The address found; none if there is none yet, or if the host is not in the list. A found address stays.
     std::optional<std::string> AddressOf(const std::string &host) const;
 
-    // By the system's resolver.
+    // Looks up the host with the system's resolver.
     static std::optional<std::string> LookUpHost(const std::string &host);
 
 private:

@@ -1,4 +1,4 @@
-// The sessions of other nodes that a participant knows, and which of them a node's name stands for.
+// The other nodes' sessions that a participant knows, and the sessions that a node's name stands for.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ class PeerSession : public ParticipantIdentity
 public:
     explicit PeerSession(ParticipantIdentity identity) : ParticipantIdentity(std::move(identity)) {}
 
-    // A sample of it has come. Called for each sample: a load in most cases.
+    // Notes that a sample of the session has come. Called for each sample: mostly a single load.
     void Hear() const
     {
         if (IsSuperseded())
@@ -27,7 +27,7 @@ public:
             _superseded.store(false, std::memory_order_relaxed);
         }
     }
-    // Another session of the node has appeared.
+    // Notes that another session of the node has appeared.
     void Supersede() const { _superseded.store(true, std::memory_order_relaxed); }
     // True if no sample has come since another session of the node appeared.
     bool IsSuperseded() const { return _superseded.load(std::memory_order_relaxed); }
@@ -36,19 +36,19 @@ private:
     mutable std::atomic<bool> _superseded{false};
 };
 
-// A node that was killed stays known until its lease runs out, while its next incarnation is there already.
-// Samples written to the node go to the session that appeared last, and also to those that were heard
-// after that: two live nodes of one name, or a live node whose name somebody else has announced. The order of
-// appearance decides, not the number of the incarnation: a clock that was set back makes that number fall.
+// A killed node stays known until its lease runs out, though its next incarnation may already be there.
+// Samples written to the node go to the session that appeared last, and to those that were heard after that:
+// two live nodes may have one name, or a forger may have announced a live node's name. The order of
+// appearance decides, not the number of the incarnation, which falls if a clock is set back.
 //
-// Guarded by its owner.
+// Not thread-safe: guarded by its owner.
 template <typename Id>
 class PeerSessions
 {
 public:
     using Session = std::shared_ptr<const PeerSession>;
 
-    // Null if that session is known.
+    // Adds a session. Null if it is already known.
     Session Add(const Id &id, const ParticipantIdentity &identity)
     {
         if (_sessions.contains(id))
@@ -65,21 +65,21 @@ public:
         return _sessions.emplace(id, std::make_shared<const PeerSession>(identity)).first->second;
     }
 
-    // Null if it was not known.
+    // Removes a session. Null if it is not known.
     Session Remove(const Id &id)
     {
         const auto found = _sessions.find(id);
         return found == _sessions.end() ? nullptr : std::move(_sessions.extract(found).mapped());
     }
 
-    // Null if it is not known.
+    // Null if the session is not known.
     Session Find(const Id &id) const
     {
         const auto found = _sessions.find(id);
         return found == _sessions.end() ? nullptr : found->second;
     }
 
-    // Those to which goes what is written to the node.
+    // The sessions to which samples written to the node go.
     std::vector<Id> Of(const std::string &node) const
     {
         std::vector<Id> ids;

@@ -16,7 +16,7 @@ bool Has(const std::vector<HostNetwork> &networks, const HostNetwork &wanted)
                        [&](const HostNetwork &network) { return network.IsSame(wanted); });
 }
 
-// Its address is there, and whatever is sent to it arrives, at least from this host.
+// True if the address is present: datagrams to it arrive, at least from this host.
 bool IsPresent(const std::vector<HostNetwork> &host, const HostNetwork &wanted)
 {
     return std::any_of(host.begin(), host.end(),
@@ -34,8 +34,8 @@ bool Names(const PeerPlace &peer, const std::string &address)
     return std::find(peer.begin(), peer.end(), address) != peer.end();
 }
 
-// The addresses of a peer that are on other hosts, as far as that can be told. Bridges of containers often
-// have one and the same address on all hosts.
+// The peer's addresses that are on other hosts, as far as that can be told. Container bridges often have the
+// same address on all hosts.
 PeerPlace Elsewhere(const PeerPlace &peer, const std::vector<HostNetwork> &host,
                     const std::vector<HostNetwork> &with)
 {
@@ -219,7 +219,7 @@ bool RejoinDecision::IsMissed(const HostNetwork &gone, const View &view) const
         const PeerPlace elsewhere = Elsewhere(peer, view.Host, _with);
         const bool onBoth = IsOn(elsewhere, {gone}) && IsOn(elsewhere, rest);
         const bool isRouted = !elsewhere.empty() && !IsOn(elsewhere, _with);
-        // Another process of this host.
+        // The peer is another process of this host.
         const bool isLocal =
             Names(peer, gone.Address) && !IsPresent(view.Host, gone) &&
             std::any_of(rest.begin(), rest.end(),

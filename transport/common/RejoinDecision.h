@@ -1,16 +1,16 @@
-// When a session is to join the network anew, because the host's networks are not those that it was opened
-// with. Neither vendor follows such a change, and joining anew costs everybody's matches and histories: so it
-// is done when it gains something, and seldom.
+// Decides when a session joins the network anew because the host's networks have changed since it was opened.
+// The vendors do not follow such changes. Joining anew costs all matches and histories, so it is done rarely
+// and only for a gain.
 //
-//   - A usable network that the session was not opened with is joined when it has lasted for Settle. Each
-//     time that an interface was there and went within Memory doubles that for it, up to LongestSettle.
-//   - A network of the session that comes back as it was (same interface, same address) needs nothing.
-//   - A network that goes needs nothing either, with two exceptions. If a peer was on it that is on another
-//     network of the session too, or that is on none (behind a router), that peer may go on to send to the
-//     address that is gone: the session joins anew without it after LostFor. And if no network of the session
-//     has its address any more, loopback is joined after LostFor, for the other processes of this host.
-//   - A network of the session that is not to be used any more, though it is there, is left.
-//   - Between two times there is Spacing; after one that failed, Retry, which doubles up to LongestRetry.
+// - A usable network that the session was not opened with is joined when it has lasted for Settle. Each time
+//   the interface vanished within Memory doubles that time, up to LongestSettle.
+// - A network of the session that returns with the same interface and address needs nothing.
+// - A network that vanishes needs nothing either, with two exceptions. If a peer on it is also on another
+//   network of the session, or is on none (behind a router), the peer may go on sending to the address that
+//   is gone: the session joins anew without it after LostFor. If no network of the session has its address
+//   any more, loopback is joined after LostFor, for the other processes of this host.
+// - A network of the session that is still present but not to be used any more is left.
+// - Spacing separates two joins; after a failed one Retry applies, which doubles up to LongestRetry.
 //
 // Pure: no thread, no clock, no system call.
 #pragma once
@@ -45,12 +45,12 @@ class RejoinDecision
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    // What is there now.
+    // The host's networks and the known peers now.
     struct View
     {
-        const std::vector<HostNetwork> &Host;    // all
-        const std::vector<HostNetwork> &Usable;  // those of them that the session is to use
-        const std::vector<PeerPlace> &Peers;     // that the session knows
+        const std::vector<HostNetwork> &Host;    // all networks of this host
+        const std::vector<HostNetwork> &Usable;  // those that the session is to use
+        const std::vector<PeerPlace> &Peers;     // those that the session knows
         bool PeersResolved = false;  // a peer's name has got an address since the session was opened
     };
 
@@ -58,16 +58,16 @@ public:
     {
         bool Join = false;
         std::string Why;                 // for the log, if Join
-        std::optional<TimePoint> Again;  // when to look again, even if nothing changes; if not Join
+        std::optional<TimePoint> Again;  // when to look again, even if nothing changes; set only if not Join
     };
 
     explicit RejoinDecision(const RejoinTimes &times = {}) : _times(times) {}
 
-    // To be called whenever something may have changed.
+    // Call whenever something may have changed.
     Verdict Look(TimePoint now, const View &view);
     // The session was opened with these networks.
     void Joined(TimePoint now, std::vector<HostNetwork> with);
-    // It was closed, or could not be opened.
+    // The session was closed, or could not be opened.
     void Failed(TimePoint now);
 
 private:
@@ -83,7 +83,7 @@ private:
 
     void Follow(TimePoint now, const View &view);
     std::chrono::milliseconds SettleOf(const std::string &interface) const;
-    // When the session is to join for the sake of that network, which it was not opened with.
+    // When the session is to join because of `network`, which it was not opened with.
     std::optional<TimePoint> DueFor(const HostNetwork &network) const;
     bool IsMissed(const HostNetwork &gone, const View &view) const;
     TimePoint Spaced(TimePoint due) const;
@@ -94,10 +94,10 @@ private:
     std::optional<TimePoint> _lastJoin;
     std::optional<TimePoint> _retryAt;
     std::chrono::milliseconds _retry{0};
-    std::map<Key, Seen> _usable;                             // now
-    std::map<std::string, std::deque<TimePoint>> _vanished;  // interface: when, within Memory
-    std::map<Key, TimePoint> _gone;                          // of _with: since when without carrier or worse
-    std::optional<TimePoint> _allGone;                       // since when no address of _with is there
+    std::map<Key, Seen> _usable;                             // the usable networks now
+    std::map<std::string, std::deque<TimePoint>> _vanished;  // by interface: when it vanished, within Memory
+    std::map<Key, TimePoint> _gone;     // networks of _with without a carrier or worse: since when
+    std::optional<TimePoint> _allGone;  // since when no address of _with is present
 };
 
 }  // namespace Rabit

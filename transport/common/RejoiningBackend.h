@@ -1,4 +1,4 @@
-// What a backend on a vendor's DDS does itself of a session. The rest is RejoiningSession's.
+// The part of a session that a backend on a vendor's DDS implements; RejoiningSession does the rest.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -17,7 +17,7 @@ namespace Rabit
 class BackendSession : public TransportSession
 {
 public:
-    // Of the Rabit nodes' sessions that it knows now. Any thread.
+    // The addresses of each Rabit session that it knows now. Any thread.
     virtual std::vector<PeerPlace> PeerPlaces() const = 0;
 };
 
@@ -25,23 +25,23 @@ class RejoiningBackend
 {
 public:
     virtual ~RejoiningBackend() = default;
-    // Joins the network. Of the settings, Interfaces are addresses that this host has; Peers are `address` or
-    // `address:port`. Interfaces are empty only if FindsNetworks(). Discovery heeds `rate`.
-    // Throws TransportError.
+    // Joins the network. In `settings`, Interfaces are addresses of this host, and empty only if
+    // FindsNetworks(); Peers are `address` or `address:port`. Discovery keeps to `rate`. Throws
+    // TransportError.
     virtual std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
                                                  std::shared_ptr<DiscoveryRate> rate) = 0;
-    // Throws TransportError if TransportSettings::BackendConfig cannot be read, or is not accepted by the
-    // vendor, as far as that can be told without joining the network.
+    // Throws TransportError if TransportSettings::BackendConfig cannot be read, or if the vendor refuses it,
+    // as far as that can be told without joining the network.
     virtual void CheckConfig(const TransportSettings &settings) const = 0;
-    // Whether the networks are those of TransportSettings::BackendConfig, which makes Interfaces meaningless.
+    // True if TransportSettings::BackendConfig chooses the networks, which makes Interfaces meaningless.
     // Throws TransportError if it cannot be read.
     virtual bool HasOwnNetworks(const TransportSettings &settings) const = 0;
-    // Whether the vendor takes all that the host has, loopback too, where no interface is named.
+    // True if the vendor uses all networks of the host, loopback included, where no interface is named.
     virtual bool FindsNetworks() const = 0;
-    // Whether the vendor sends to only one of a peer's addresses, which is this host itself if the peer has
-    // it on a network that only it sees, and this host has the same on another.
+    // True if the vendor sends to only one of a peer's addresses. Where this host has the same address on
+    // another network, such a datagram would reach this host instead of the peer.
     virtual bool IsMisledByDuplicates() const = 0;
-    // How many networks one session can use.
+    // Number of networks that one session can use.
     virtual std::size_t MostNetworks() const { return std::numeric_limits<std::size_t>::max(); }
 };
 

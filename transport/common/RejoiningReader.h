@@ -51,7 +51,7 @@ private:
     const std::vector<std::string> _partitions;
     const SampleHandler _handler;
     const TopicRegistry::Use _use;
-    std::unique_ptr<TransportReader> _inner;  // under the gate
+    std::unique_ptr<TransportReader> _inner;  // used under the gate
 };
 
 }  // namespace Rabit

@@ -19,7 +19,8 @@ namespace
 
 using std::chrono::milliseconds;
 
-// Between looks at what nobody tells of: addresses of peers that have none yet, and what peers say of theirs.
+// Interval of looks for changes that the kernel does not report: addresses of peers without one, and
+// addresses that peers announce.
 constexpr milliseconds PeerPeriod{500};
 
 TransportCounters Sum(TransportCounters a, const TransportCounters &b)
@@ -55,7 +56,7 @@ NetworkChoice Choose(const std::vector<HostNetwork> &host, TransportSettings set
     return ChooseNetworks(host, settings, backend.MostNetworks());
 }
 
-// Those that have an address, as `address` or `address:port`; the others are problems.
+// The peers that have an address, as `address` or `address:port`; the others become problems.
 std::vector<std::string> ResolvePeers(
     const std::vector<std::string> &peers,
     const std::function<std::optional<std::string>(const std::string &)> &addressOf,
@@ -157,7 +158,7 @@ TransportCounters RejoiningSession::Counters() const
     std::unique_lock structure(_shared->Structure, std::try_to_lock);
     if (!structure)
     {
-        // Whoever asks does not wait for the network to be joined.
+        // The caller does not wait for the network to be joined.
         const std::lock_guard lock(_mutex);
         return _lastCounters;
     }
@@ -205,7 +206,7 @@ std::optional<milliseconds> RejoiningSession::Look()
     std::optional<milliseconds> again;
     if (verdict.Again)
     {
-        // Up, so as not to come a moment too early.
+        // Rounded up, so that the next look is not a moment too early.
         again = std::chrono::ceil<milliseconds>(*verdict.Again - now);
     }
     const bool isLookedFor = current.Settings.Peers.size() < _settings.Peers.size();
@@ -397,7 +398,7 @@ std::vector<SettingsProblem> CheckRejoining(const TransportSettings &settings,
     }
     if (!problems.empty())
     {
-        return problems;  // what else is missing would only hide them
+        return problems;  // problems of the networks would only hide these
     }
     problems = Choose(ListHostNetworks(), settings, backend.HasOwnNetworks(settings), backend).Problems;
     const PeerResolver resolver(NamesToLookUp(settings));

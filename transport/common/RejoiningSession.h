@@ -1,9 +1,9 @@
-// A session that joins the network when there is one, and joins it anew when the host's networks change in
-// a way that matters (RejoinDecision says which).
+// A session that joins the network when there is one, and joins it anew when the host's networks change in a
+// way that matters (see RejoinDecision).
 //
-// Neither vendor follows a change of networks: what a participant announces of itself is fixed when it is
-// made. So the backend's session is closed and opened again, with all its writers and readers, while those
-// who hold them notice nothing but what Transport.h says of it.
+// Neither vendor follows a change of networks: a participant's announced addresses are fixed when it is made.
+// So the backend's session is closed and opened again, with all its writers and readers. Their holders notice
+// only the effects that Transport.h describes.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -34,12 +34,12 @@ namespace Rabit
 class RejoiningSession final : public TransportSession
 {
 public:
-    // Where the session lives. Called on the thread that looks; the functions must outlive the session.
+    // Access to the host. Called on the thread that calls Look(); the functions must outlive the session.
     struct Host
     {
         std::function<std::vector<HostNetwork>()> Networks;
         std::function<std::chrono::steady_clock::time_point()> Now;
-        // Of a peer's name: its address, if it is known now.
+        // Returns the address of a peer's name, if it is known now.
         std::function<std::optional<std::string>(const std::string &name)> AddressOf;
     };
 
@@ -49,8 +49,8 @@ public:
                      std::shared_ptr<RejoiningBackend> backend, Host host);
     ~RejoiningSession() override;
 
-    // Looks at the host, and joins the network anew if that is due. Gives the time after which to look again
-    // even if nothing is known to have changed. One at a time.
+    // Looks at the host, and joins the network anew if that is due. Returns the time after which to look
+    // again even if no change is reported. Must not run twice at once.
     std::optional<std::chrono::milliseconds> Look();
 
     std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
@@ -64,13 +64,13 @@ public:
     std::vector<SettingsProblem> NetworkProblems() const override;
     void SetDiscoveryRate(double bytesPerSecond) override { *_rate = bytesPerSecond; }
 
-    // Looks from now on, on a thread of the session, whenever the kernel tells of a change.
+    // Starts a thread of the session that calls Look() whenever the kernel reports a change.
     void Watch();
 
 private:
     using Identity = std::pair<std::string, std::uint64_t>;
 
-    // The settings for the backend, with what of them is there now.
+    // The settings for the backend, reduced to the interfaces and peers that are present now.
     struct Current
     {
         std::vector<HostNetwork> Host;
@@ -78,7 +78,7 @@ private:
         TransportSettings Settings;
     };
 
-    // Lists what is there; what is missing is told by NetworkProblems from then on.
+    // Lists the present networks and peers; NetworkProblems reports the missing ones from then on.
     Current See(const std::vector<PeerPlace> &peers);
     void LeaveOutDuplicates(const std::vector<PeerPlace> &peers, NetworkChoice &choice);
     std::vector<PeerPlace> PeerPlaces() const;
@@ -101,19 +101,19 @@ private:
     std::map<Identity, int> _peers;           // sessions that the backend knows now; guarded by _mutex
     std::vector<SettingsProblem> _problems;   // guarded by _mutex
     mutable TransportCounters _lastCounters;  // guarded by _mutex
-    // Of the one that looks:
+    // Used only by Look():
     RejoinDecision _decision;
     DuplicateAddresses _duplicates;
-    std::vector<std::string> _openedPeers;    // that the backend's session was opened with
+    std::vector<std::string> _openedPeers;    // the backend's session was opened with these
     std::optional<SettingsProblem> _failure;  // of the last attempt to join
-    std::unique_ptr<AddressWatch> _watch;     // the last, so that nobody looks when the others go
+    std::unique_ptr<AddressWatch> _watch;  // the last member, so that Look() has ended before the others go
 };
 
-// A RejoiningSession on this host, which follows its changes. Throws TransportError.
+// Opens a RejoiningSession on this host, which follows its changes. Throws TransportError.
 std::unique_ptr<TransportSession> OpenRejoining(const TransportSettings &settings, PeerHandler onPeer,
                                                 std::shared_ptr<RejoiningBackend> backend);
 
-// Transport::Check of such a backend.
+// Transport::Check of a backend with RejoiningSession.
 std::vector<SettingsProblem> CheckRejoining(const TransportSettings &settings,
                                             const RejoiningBackend &backend);
 

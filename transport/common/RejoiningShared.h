@@ -15,7 +15,7 @@
 namespace Rabit
 {
 
-// What the session shares with its writers and readers.
+// State that the session shares with its writers and readers.
 struct RejoiningShared
 {
     explicit RejoiningShared(const TransportSettings &settings)
@@ -24,15 +24,15 @@ struct RejoiningShared
     }
 
     const std::shared_ptr<SessionLog> Log;
-    // While there is no session of the backend, nobody else would refuse a topic that is impossible.
+    // Refuses an impossible topic even while there is no session of the backend.
     TopicRegistry Topics;
-    UseGate Gate;                                // of what the endpoints hold of the backend
-    std::mutex Structure;                        // of the session and the list; taken before Gate
-    std::unique_ptr<BackendSession> Inner;       // nullptr while it is not joined; guarded by Structure
+    UseGate Gate;                                // guards the backend's objects that the endpoints hold
+    std::mutex Structure;                        // guards the session and the list; taken before Gate
+    std::unique_ptr<BackendSession> Inner;       // nullptr while not joined; guarded by Structure
     std::vector<RejoiningEndpoint *> Endpoints;  // guarded by Structure
 };
 
-// Enters the list as it is made, and opens itself if there is a session.
+// Adds the endpoint to the list, and opens it if there is a session.
 inline void Enter(RejoiningShared &shared, RejoiningEndpoint &endpoint)
 {
     const std::lock_guard lock(shared.Structure);
@@ -43,7 +43,7 @@ inline void Enter(RejoiningShared &shared, RejoiningEndpoint &endpoint)
     shared.Endpoints.push_back(&endpoint);
 }
 
-// Leaves it and closes, before the session can.
+// Removes the endpoint from the list and closes it, before the session can.
 inline void Leave(RejoiningShared &shared, RejoiningEndpoint &endpoint)
 {
     const std::lock_guard lock(shared.Structure);

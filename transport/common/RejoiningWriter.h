@@ -94,7 +94,7 @@ private:
     const TopicQos _qos;
     const std::vector<std::string> _partitions;
     const TopicRegistry::Use _use;
-    std::unique_ptr<TransportWriter> _inner;  // under the gate
+    std::unique_ptr<TransportWriter> _inner;  // used under the gate
 };
 
 }  // namespace Rabit

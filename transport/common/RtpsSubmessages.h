@@ -1,5 +1,4 @@
-// What an RTPS message consists of (OMG DDSI-RTPS 2.3, 9.4), as far as those need it that look at what a
-// vendor sends and hears.
+// The parts of an RTPS message (OMG DDSI-RTPS 2.3, 9.4) that code needs to inspect a vendor's datagrams.
 #pragma once
 
 #include <algorithm>
@@ -23,16 +22,16 @@ struct RtpsSubmessage
     std::uint8_t Kind = 0;
     std::uint8_t Flags = 0;
     bool LittleEndian = false;
-    std::span<Byte> Whole;  // with its header, as far as the message reaches
+    std::span<Byte> Whole;  // with its header, up to the end of the message at most
     std::span<Byte> Body() const { return Whole.subspan(SubmessageHeaderSize); }
 };
 
-// Calls visit(submessage) with each that follows a header of that size. The message may be the beginning of
-// one alone, and says what it wants: nothing outside of it is touched.
+// Calls visit(submessage) for each submessage behind a header of `header` bytes. The message may be cut off
+// and its content may be invalid: nothing outside of it is touched.
 template <typename Byte, typename Visit>
 void VisitSubmessages(std::span<Byte> message, std::size_t header, const Visit &visit)
 {
-    // 9.4.5.1.3: of all others a length of 0 means up to the end.
+    // 9.4.5.1.3: for all other kinds, a length of 0 means up to the end of the message.
     constexpr std::uint8_t pad = 0x01;
     constexpr std::uint8_t timestamp = 0x09;
     auto rest = message.subspan(std::min(header, message.size()));

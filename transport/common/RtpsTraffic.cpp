@@ -14,7 +14,7 @@ namespace
 // OMG DDSI-RTPS 2.3, 9.4.5
 constexpr std::uint8_t Data = 0x15;
 constexpr std::uint8_t DataFrag = 0x16;
-constexpr std::uint8_t HasData = 0x04;  // of a DATA: not a key alone
+constexpr std::uint8_t HasData = 0x04;  // set in a DATA that carries more than a key
 constexpr std::size_t IdSize = ParticipantWriterId.size();
 constexpr std::size_t WriterInData = 8;
 constexpr std::size_t WriterElsewhere = 4;
@@ -34,7 +34,7 @@ bool Names(const Submessage &submessage)
     return submessage.Kind == Data || submessage.Kind == DataFrag || NamesWriter(submessage.Kind);
 }
 
-// The identity of the writer that it names; empty if that is cut off.
+// The identity of the writer that the submessage names; empty if it is cut off.
 std::span<const std::uint8_t> WriterOf(const Submessage &submessage)
 {
     const bool isData = submessage.Kind == Data || submessage.Kind == DataFrag;

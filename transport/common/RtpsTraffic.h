@@ -7,14 +7,15 @@
 namespace Rabit
 {
 
-// More of an RTPS message than IsOfSamples looks at where the vendors put it.
+// More bytes of an RTPS message than IsOfSamples inspects, where the vendors put them.
 inline constexpr std::size_t RtpsHeadSize = 128;
 
-// Whether a message of our own is of a topic, or of the repair of one, and not of discovery: by the first of
-// its submessages that names a writer. `head` is its beginning.
+// True if a message of our own carries samples of a topic or their repair; false if it is discovery. The
+// first submessage that names a writer decides. `head` is the beginning of the message.
 bool IsOfSamples(std::span<const std::uint8_t> head);
 
-// Whether a whole message announces a participant, and says nothing else. A goodbye is none.
+// Tells whether a whole message announces a participant (Any), and says nothing else (Alone). A goodbye is no
+// announcement.
 struct Announcing
 {
     bool Any = false;

@@ -3,7 +3,7 @@
 namespace Rabit
 {
 
-// While one lives, what this thread sends is of samples, though nobody can see it: it is encrypted.
+// While an object lives, this thread's datagrams count as samples: their encryption hides that.
 class SendingSamples
 {
 public:

@@ -15,13 +15,13 @@ void SessionLog::Line(const std::string &line) noexcept
     {
         _sink("transport of " + _node + ": " + line);
     }
-    catch (...)  // a sink that fails leaves nowhere to say so; the counters still tell
+    catch (...)  // a sink that fails leaves nowhere to log; the counters still tell
     {
         return;
     }
 }
 
-// So that a fault at full data rate does not flood the log.
+// Logs only the 1st, 2nd, 4th, 8th ... event, so that a fault at full data rate does not flood the log.
 template <typename MakeLine>
 void SessionLog::Count(std::atomic<std::uint64_t> &counter, MakeLine &&makeLine) noexcept
 {

@@ -1,4 +1,4 @@
-// Counts what goes wrong in a session and tells the user of it.
+// Counts what goes wrong in a session, and logs it.
 #pragma once
 
 #include <atomic>
@@ -21,21 +21,20 @@ public:
     void WriteTimedOut(const std::string &topic) noexcept;
     void WriteFailed(const std::string &topic, const char *why) noexcept;
     void IncompatibleQos(const std::string &topic) noexcept;
-    // `node` is the other side's; empty if it is unknown or no Rabit node.
+    // `node` is the other side's name; empty if it is unknown or no Rabit node.
     void InconsistentType(const std::string &topic, const std::string &ours, const std::string &theirs,
                           const std::string &node) noexcept;
     void MalformedSample(const std::string &topic, const char *why) noexcept;
     void MalformedDatagram() noexcept;
-    // Somebody calls itself that node and has the certificate of another one, or none.
+    // A participant calls itself `node` and has the certificate of another node, or none.
     void Impostor(const std::string &node) noexcept;
-    // The certificate or the permissions of one that calls itself that were not accepted.
+    // The certificate or the permissions of a participant that calls itself `node` were refused.
     void Stranger(const std::string &node) noexcept;
-    // One that calls itself that is protected less, or more, than this node.
+    // A participant that calls itself `node` is protected less, or more, than this node.
     void OtherLevel(const std::string &node) noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
 
-    // Counts what was given to sockets; `bytes` are those of all these datagrams, without headers of IP and
-    // UDP.
+    // Count datagrams given to sockets; `bytes` are those of all these datagrams, without IP and UDP headers.
     void SentDiscovery(std::uint64_t datagrams, std::uint64_t bytes) noexcept
     {
         _discovery.Add(datagrams, bytes);

@@ -15,7 +15,7 @@ namespace
 constexpr std::size_t MaxNodeName = 200;
 constexpr int MaxDomain = 232;
 
-// Whether it is an address, or could be the name of an interface of Linux.
+// True if `text` is an address, or could be the name of a Linux interface.
 bool IsInterface(const std::string &text)
 {
     if (LooksLikeAddress(text))

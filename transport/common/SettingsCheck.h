@@ -8,10 +8,10 @@
 namespace Rabit
 {
 
-// What is impossible in the settings, in the order of TransportSettings; whatever the network is like.
+// The impossible settings, in the order of TransportSettings, independent of the network's state.
 std::vector<SettingsProblem> FindImpossible(const TransportSettings &settings);
 
-// Throws TransportError if there is anything of the kind.
+// Throws TransportError if FindImpossible finds a problem.
 void CheckSettings(const TransportSettings &settings);
 
 // Throws TransportError if the depth is out of its range, 1 to 1,000,000.

@@ -1,4 +1,4 @@
-// The topics that one session has open, and what is known of their types elsewhere.
+// The topics that one session has open, and the types that other sessions use for them.
 #pragma once
 
 #include <map>
@@ -20,7 +20,7 @@ class TopicRegistry
 public:
     explicit TopicRegistry(std::shared_ptr<SessionLog> log) : _log(std::move(log)) {}
 
-    // Holds a topic open as long as it lives. The registry must outlive it.
+    // Keeps a topic open as long as it lives. The registry must outlive it.
     class Use
     {
     public:
@@ -35,11 +35,11 @@ public:
         const std::string _topic;
     };
 
-    // An endpoint of another session came (or told its topic anew) or went. Types that differ from ours are
-    // counted and logged, whichever of the two was there first.
+    // An endpoint of another session appeared (or announced another topic) or went. Types that differ from
+    // ours are counted and logged, whichever side was there first.
     void RemoteAppeared(const RemoteEndpoint &endpoint);
     void RemoteGone(const WriterId &endpoint);
-    // As TransportSession has them.
+    // As in TransportSession.
     std::vector<RemoteEndpoint> RemoteOn(const std::string &topic) const;
     std::vector<std::string> RemoteTopics() const;
 

@@ -1,5 +1,5 @@
-// Lets many threads use something, and one change it while nobody does. Nobody waits for a change: as soon as
-// one is wanted, users are turned away.
+// Lets many threads use an object, and one thread change it while nobody uses it. Users never wait for a
+// change: as soon as one is wanted, they are turned away.
 #pragma once
 
 #include <condition_variable>
@@ -11,7 +11,7 @@ namespace Rabit
 class UseGate
 {
 public:
-    // Holds the thing still while it lives, if Allowed().
+    // Keeps the object unchanged while it lives, if Allowed().
     class Use
     {
     public:
@@ -32,7 +32,8 @@ public:
         const bool _allowed;
     };
 
-    // Waits for the users that are there. Nobody uses the thing while it lives. One at a time.
+    // Its constructor waits for the current users. While it lives, the object has no user. Only one at a
+    // time.
     class Change
     {
     public:

@@ -30,7 +30,7 @@ const std::map<std::string, Maker> &Makers()
     return makers;
 }
 
-// The options of the build that bring in the backends that there are.
+// The backends that exist, and the build option of each.
 const std::map<std::string, std::string> OptionOf = {{"cyclonedds", "RABIT_WITH_CYCLONEDDS"},
                                                      {"fastdds", "RABIT_WITH_FASTDDS"}};
 

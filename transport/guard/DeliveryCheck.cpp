@@ -10,10 +10,10 @@ namespace Rabit::Rtps
 namespace
 {
 
-// Each number of a gap costs the vendor a step, and up to 56 bytes as long as an earlier sample is missing.
-// An honest gap is as wide as the hole in a history.
+// Each number of a gap costs the vendor a step, and up to 56 bytes while an earlier sample is missing. An
+// honest gap is as wide as the hole in a history.
 constexpr std::int64_t WidestGap = std::int64_t{1} << 20;
-// Smaller ones are of no use to anybody, and the vendor writes a mark for each into the sample's buffer.
+// Smaller fragments have no use, and the vendor writes a mark for each into the sample's buffer.
 constexpr std::uint16_t SmallestFragment = 64;
 constexpr int MostInlineParameters = 64;
 
@@ -28,14 +28,14 @@ void ReadEntities(RtpsReader &body, Delivery &delivery)
     delivery.Writer = body.Entity();
 }
 
-// Of a sample, heartbeat or gap: the reader may be left open.
+// For a sample, heartbeat or gap: the reader may be unspecified.
 bool AreFromWriter(const Delivery &delivery)
 {
     if (!IsWriter(delivery.Writer))
     {
         return false;
     }
-    // Readers of the protocol's own topics hear writers of the same topic alone, and nobody else does.
+    // Builtin readers hear only the builtin writer of the same topic, and other readers none of them.
     return delivery.Reader == 0 ||
            (IsReader(delivery.Reader) && IsBuiltin(delivery.Reader) == IsBuiltin(delivery.Writer) &&
             (!IsBuiltin(delivery.Reader) || delivery.Reader >> 8 == delivery.Writer >> 8));
@@ -79,7 +79,7 @@ bool ReadInlineQos(RtpsReader &body, Delivery &delivery)
     return false;
 }
 
-// The numbers of the fragments, and whether the bytes at hand are those that they promise.
+// Reads the fragment numbers; returns false if the payload has not the size that they imply.
 bool ReadFragments(RtpsReader &body, Delivery &delivery)
 {
     delivery.FirstFragment = body.U32();
@@ -113,8 +113,8 @@ std::optional<Delivery> CheckSample(const Submessage &submessage, RtpsReader bod
     const bool fragmented = submessage.Kind == SubmessageKind::DataFrag;
     const std::uint8_t dataFlag = fragmented ? 0x00 : 0x04;
     const std::uint8_t keyFlag = fragmented ? 0x04 : 0x08;
-    // Where the inline QoS begins, told from after this field on: behind the entities, the number and the
-    // fragments, and no version of the protocol has had anything else there.
+    // octetsToInlineQos, counted from behind itself: extends over the entities, the number and the fragments.
+    // No version of the protocol has had anything else there.
     const std::uint16_t toInlineQos = fragmented ? 28 : 16;
     Delivery delivery;
     delivery.Alive = true;
@@ -144,7 +144,7 @@ std::optional<Delivery> CheckSample(const Submessage &submessage, RtpsReader bod
     {
         return std::nullopt;
     }
-    // What is alive has a value; the vendor would hand on a sample without bytes.
+    // An alive sample has a value; the vendor would deliver a sample without bytes.
     if (delivery.Alive && !hasData)
     {
         return std::nullopt;

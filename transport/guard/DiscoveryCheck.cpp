@@ -18,7 +18,7 @@ namespace Rabit::Rtps
 namespace
 {
 
-// RTPS 2.3, 9.6.3; the last ones are the vendor's.
+// RTPS 2.3, 9.6.3; the last ones are vendor-specific.
 enum Parameter : std::uint16_t
 {
     Pad = 0x0000,
@@ -70,7 +70,7 @@ constexpr int MostParameters = 128;
 constexpr int MostLocators = 64;
 constexpr std::uint32_t MostPartitions = 1024;
 
-// What has been seen of one sample so far.
+// The parameters of one sample found so far.
 struct Found
 {
     EntityId Subject = 0;
@@ -104,7 +104,7 @@ struct Found
     }
 };
 
-// A string that ends where it says, within a limit that the vendor does not check but has.
+// True for a terminated string within a limit that the vendor has but does not check.
 bool IsString(RtpsReader &value)
 {
     constexpr std::uint32_t Longest = 256;
@@ -141,7 +141,7 @@ bool IsBytes(RtpsReader value)
     return value.IsGood() && value.Left() == (4 - size % 4) % 4;
 }
 
-// Of a sequence that IsBytes.
+// The content of a sequence that passed IsBytes.
 std::span<const std::uint8_t> ContentOf(RtpsReader value)
 {
     const std::uint32_t size = value.U32();
@@ -160,7 +160,7 @@ bool IsGuidOf(const GuidPrefix &sender, std::span<const std::uint8_t> guid)
     return std::equal(sender.begin(), sender.end(), prefix.begin(), prefix.end());
 }
 
-// Which endpoint an announcement of this topic may be about.
+// True if an announcement of this topic may be about `entity`.
 bool IsSubjectOf(EntityId writer, EntityId entity)
 {
     switch (writer)
@@ -176,7 +176,7 @@ bool IsSubjectOf(EntityId writer, EntityId entity)
     }
 }
 
-// A lease of nothing would have the vendor's timer run without a pause.
+// A zero lease would make the vendor's timer run without a pause.
 bool IsLease(RtpsReader value)
 {
     const auto seconds = static_cast<std::int32_t>(value.U32());
@@ -189,12 +189,12 @@ bool IsLease(RtpsReader value)
 bool IsLocator(RtpsReader value)
 {
     constexpr std::uint32_t LargestPort = 65535;
-    value.U32();  // kind: the vendor passes over those that it does not have
+    value.U32();  // kind: the vendor ignores those that it does not support
     const std::uint32_t port = value.U32();
     return value.IsGood() && value.Left() == 16 && port <= LargestPort;
 }
 
-// The host of a sound one.
+// The IPv4 host of a sound locator; empty for other kinds.
 std::optional<HostAddress> HostOf(RtpsReader locator)
 {
     constexpr std::uint32_t UdpV4 = 1;
@@ -209,8 +209,8 @@ std::optional<HostAddress> HostOf(RtpsReader locator)
     return host;
 }
 
-// The vendor reads these for participants and endpoints alike, and refuses another size or reads past the
-// end.
+// Size that the vendor expects, for participants and endpoints alike: it refuses another size or reads past
+// the end.
 std::size_t FixedSize(std::uint16_t id)
 {
     switch (id)
@@ -246,7 +246,7 @@ bool IsOneToken(RtpsReader value)
     return IsToken(value) && value.Left() < 4;
 }
 
-// Whether the parameter is sound, of those of DDS Security; `wanted` is false afterwards if it is none.
+// Returns true if a parameter of DDS Security is sound; sets `wanted` to false for any other parameter.
 bool CheckSecurity(std::uint16_t id, const RtpsReader &value, bool &wanted)
 {
     constexpr std::size_t InfoSize = 8;
@@ -265,7 +265,7 @@ bool CheckSecurity(std::uint16_t id, const RtpsReader &value, bool &wanted)
     }
 }
 
-// Whether the parameter is sound; `wanted` is false afterwards if we have no use for it.
+// Returns true if the parameter is sound; sets `wanted` to false if it is not used.
 bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
                     std::span<const std::uint8_t> bytes, bool littleEndian, Found &found, bool &wanted)
 {
@@ -413,7 +413,7 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
     return std::nullopt;
 }
 
-// Who is alive, and how it said so (8.4.13.5).
+// True if the payload asserts the liveliness of `sender` (8.4.13.5).
 bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payload)
 {
     constexpr std::size_t SmallestSize = 4 + 12 + 4 + 4;

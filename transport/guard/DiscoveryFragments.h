@@ -1,4 +1,4 @@
-// Puts announcements together that came in fragments.
+// Assembles announcements that arrive in fragments.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 namespace Rabit::Rtps
 {
 
-// An announcement is checked whole before the vendor sees it, so its fragments are put together here: one
-// with many partitions is larger than a datagram. Bounded: the announcements begun last, of up to 60 kB. Not
-// thread-safe.
+// An announcement is checked whole before the vendor sees it, so its fragments are assembled here: one with
+// many partitions is larger than a datagram. Bounded: keeps the announcements begun last, each up to 60 kB.
+// Not thread-safe.
 class DiscoveryFragments
 {
 public:
-    // Takes fragments of a sample of the sender in an RTPS header. Once they are all there, returns a message
-    // with this header and the whole sample, to that destination; empty until then.
+    // Takes fragments of a sample of the sender named in an RTPS header. Once the sample is complete, returns
+    // a message with this header and the whole sample, addressed to `destination`; empty until then.
     std::vector<std::uint8_t> Add(std::span<const std::uint8_t> header, const Delivery &delivery,
                                   const GuidPrefix &destination);
 

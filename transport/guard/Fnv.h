@@ -1,4 +1,4 @@
-// FNV-1a, of 64 bits: tells what differs by accident, not by intent.
+// 64-bit FNV-1a hash: detects accidental differences, not intended ones.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ namespace
 constexpr std::size_t VersionAt = 4;
 constexpr std::size_t SourceSize = 20;
 
-// Who says what follows, to all, and at a time that is not known (RTPS 2.3, 9.4.5).
+// Names the sender of the following submessages; destination: all; time: unknown (RTPS 2.3, 9.4.5).
 void AppendSource(std::vector<std::uint8_t> &whole, std::span<const std::uint8_t> message)
 {
     constexpr std::size_t unused = 4;
@@ -26,7 +26,7 @@ void AppendSource(std::vector<std::uint8_t> &whole, std::span<const std::uint8_t
     AppendSubmessageHeader(whole, SubmessageKind::InfoTimestamp, 0, invalidate);
 }
 
-// What follows a submessage begins at a multiple of four, and so the one before must end there.
+// Each submessage begins at a multiple of four, so the one before must end there.
 bool MayBeFollowed(const std::vector<std::uint8_t> &whole)
 {
     return whole.size() % SubmessageHeaderSize == 0;

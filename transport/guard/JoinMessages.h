@@ -1,4 +1,4 @@
-// One RTPS message out of several.
+// Joins several RTPS messages into one.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 namespace Rabit::Rtps
 {
 
-// Puts sound messages, and behind them the one with which the buffer begins, which may be empty, into one
-// message in the buffer: for a vendor that takes one datagram at a time, where RtpsGuard hands on several.
-// Each says what it said alone: who sends it, and to whom. What of them would not fit is left out, from the
-// last on, as if it had been lost on its way. Returns the length of the whole.
+// Joins the messages `first` and, behind them, the message of `last` bytes at the start of the buffer, which
+// may be empty. The result is in the buffer. For a vendor that takes one datagram at a time, where RtpsGuard
+// delivers several. Each part keeps its sender and its destination. A message that does not fit is left out,
+// as if the network had lost it. All messages must be sound. Returns the length of the result.
 std::size_t JoinMessages(const std::vector<std::vector<std::uint8_t>> &first, std::span<std::uint8_t> buffer,
                          std::size_t last);
 

@@ -16,32 +16,31 @@ constexpr std::size_t MostWriters = 4096;
 constexpr std::size_t MostReaders = 4096;
 // Longer than the announcement periods and leases in use.
 constexpr std::chrono::seconds Forgotten{60};
-// Where there is room, they are remembered for longer: who comes back is heard at once.
+// While there is room, peers are remembered for longer: a returning peer is heard at once.
 constexpr std::chrono::minutes LongSilence{5};
-// What is said otherwise is believed when it was said so often.
+// Number of identical contradicting copies in a row before a changed announcement is accepted.
 constexpr int OftenEnough = 3;
-// In which participants announce themselves, whatever was seen of it: forged repeats would shorten it, and an
-// outage make it long.
+// Bounds of the announcement period of a participant, whatever was measured: forged repeats would shorten it,
+// and an outage would lengthen it.
 constexpr std::chrono::milliseconds ShortestPeriod{1000};
 constexpr std::chrono::milliseconds LongestPeriod{15'000};
-// What a writer says first may be any number up to here: the vendor walks to it from 1 on, which takes it a
-// tenth of a second. More is believed when enough agree.
+// Largest first number of a writer that is believed at once: the vendor walks to it from 1 on, which takes a
+// tenth of a second. A larger one is believed when enough agree.
 constexpr std::int64_t LargestFirst = std::int64_t{1} << 22;
-// After so long without a word of a writer, more may have been lost of it than its pace tells.
+// After this time without a number of a writer, more samples may have been lost than its rate explains.
 constexpr std::chrono::seconds Silence{2};
 // Samples of a reliable writer that may be lost at once, whatever its rate.
 constexpr std::int64_t LargestStep = 16;
-// The same of a best-effort writer. It may write most of its samples to other nodes alone, so that none of
+// The same for a best-effort writer. It may write most of its samples to other nodes alone, so that none of
 // those numbers is seen here. A forged number up to here costs the writer two samples (SampleNumbers).
 constexpr std::int64_t LargestBestEffortStep = 1'000'000;
-// What may have been lost of a writer that was not heard for as long as Silence, whatever its pace before: so
-// many samples a second, and so many in all. What was announced comes by multicast and goes on while all the
-// rest is lost (an address that was away, a link in one direction), so such a gap is ordinary, and who writes
-// twice a second must not be refused until enough samples agree. The vendor takes note of each number in a
-// gap: of this many it can.
+// Samples that may have been lost of a writer that was silent for Silence, whatever its rate: per second, and
+// in all. Multicast announcements go on while everything else is lost (an address that was away, a link in
+// one direction), so such a gap is ordinary. A writer of two samples a second must not be refused until
+// enough numbers agree. The vendor records each number in a gap, and copes with this many.
 constexpr std::int64_t LostInASecond = 1000;
 constexpr std::int64_t LargestLoss = 50'000;
-// Heartbeats come every 20 ms, so it takes them 160 ms.
+// Number of agreeing numbers in a row. Heartbeats come every 20 ms, so they need 160 ms.
 constexpr int EnoughAgreeing = 8;
 
 }  // namespace
@@ -85,7 +84,7 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
     added.Placed = now;
     added.Period = ShortestPeriod;
     added.Heard = now;
-    // The protocol's own need no announcement.
+    // Builtin writers need no announcement.
     for (const EntityId writer :
          {ParticipantWriter, PublicationsWriter, SubscriptionsWriter, LivelinessWriter})
     {
@@ -174,7 +173,7 @@ bool KnownPeers::MakeRoom(TimePoint now)
     return true;
 }
 
-// A node that starts again and again is a new peer each time.
+// Needed because a node that restarts again and again is a new peer each time.
 void KnownPeers::ForgetSilent(TimePoint now)
 {
     std::erase_if(_peers,
@@ -249,7 +248,7 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
     {
         const auto silentLonger = [](const auto &a, const auto &b)
         {
-            // The protocol's own remain.
+            // Builtin writers remain.
             return std::pair(IsBuiltin(a.first), a.second.Said) <
                    std::pair(IsBuiltin(b.first), b.second.Said);
         };
@@ -284,7 +283,7 @@ bool KnownPeers::Reaches(const GuidPrefix &peer, EntityId writer, std::int64_t n
     {
         Move(numbers, number, now);
     }
-    // Who is heard from where he was has not gone far since: an honest writer behind a forged number, too.
+    // A writer heard at or below its highest number has not gone far since, even if that number was forged.
     numbers.Said = now;
     return true;
 }
@@ -324,7 +323,7 @@ void KnownPeers::Move(Numbers &numbers, std::int64_t number, TimePoint now)
     const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - numbers.Began);
     if (elapsed >= Window)
     {
-        // A pause does not make a fast writer a slow one at once.
+        // A pause does not make a fast writer slow at once.
         numbers.Pace = std::max(1000 * numbers.Steps / elapsed.count(), numbers.Pace / 2);
         numbers.Steps = 0;
         numbers.Began = now;
@@ -357,7 +356,7 @@ std::uint32_t KnownPeers::CountOf(const GuidPrefix &peer, EntityId writer, std::
     Numbers &numbers = _peers.at(peer).Writers.at(writer);
     if (numbers.OurCount == 0)
     {
-        // Above all that the vendor can have been given for it, in case that it was forgotten.
+        // Above all counts that the vendor can have been given for the writer, in case it was forgotten.
         numbers.OurCount = _highestCount + 1;
     }
     else if (count != numbers.TheirCount)

@@ -5,19 +5,19 @@
 namespace Rabit::Rtps
 {
 
-// Is told by the guard of the participants that it hears. Called on receiving threads with the guard's lock
-// held: the implementation must be quick, and must not call the guard.
+// Receives the guard's events about participants. Called on receiving threads with the guard's lock held: the
+// implementation must be quick, and must not call the guard.
 class PeerObserver
 {
 public:
     virtual ~PeerObserver() = default;
-    // A datagram came of a participant whose announcement has not been admitted.
+    // A datagram came from a participant whose announcement has not been admitted.
     virtual void HeardUnknown(const GuidPrefix &peer) = 0;
     // A participant announced itself on the network. `hasCard`: it says that it has a card.
     virtual void Announced(const GuidPrefix &peer, bool hasCard) = 0;
     // A participant said goodbye.
     virtual void Gone(const GuidPrefix &peer) = 0;
-    // Whether the vendor is told of the participant's endpoints by other means than the network.
+    // True if the vendor learns of the participant's endpoints by other means than the network.
     virtual bool IsReplayed(const GuidPrefix &peer) const = 0;
 };
 

@@ -9,8 +9,7 @@ namespace
 {
 
 constexpr int OftenEnough = 3;
-// What is said of discovery: of each endpoint, and a few more. When they are too many any of them is
-// forgotten.
+// Subjects of claims: each endpoint, and a few more. If there are too many, an arbitrary one is forgotten.
 constexpr std::size_t MostFromElsewhere = 1024;
 constexpr std::size_t MostOthers = 4;
 
@@ -55,7 +54,7 @@ bool PeerVoice::IsAt(const HostAddress &from) const
     return from == UnknownHost || IsLoopback(from) || Has(_hosts, from) || Has(_others, from);
 }
 
-// Not in an order that somebody could keep pace with by chance.
+// Forgets in a pseudorandom order, so that no forger keeps pace with it by chance.
 void PeerVoice::ForgetOne()
 {
     _chance = _chance * 6364136223846793005u + 1442695040888963407u;  // Knuth, MMIX

@@ -1,4 +1,4 @@
-// From where one participant speaks, and what was said in its name from elsewhere.
+// The addresses from which one participant speaks, and claims in its name from other addresses.
 #pragma once
 
 #include <cstddef>
@@ -12,31 +12,32 @@
 namespace Rabit::Rtps
 {
 
-// Discovery says most things once: an endpoint that somebody else announces before its owner, or a number
-// that he says is not to be had, is settled for the vendor, and the owner's own word is passed over as a
-// repeat of it. So what is said of discovery must come from an address that the participant announced, or
-// else be said three times in a row, which an honest one does since it is not received at first. Besides:
-// - Who is never heard from an address that it announced (behind an address translation, on a far network of
-//   a host with several) speaks from where its announcements come from.
-// - 127.0.0.0/8 is this host, whatever was announced: from a network the kernel does not take that
-//   (RFC 1122, 3.2.1.3).
+// Discovery sends most data once. If a forger announces an endpoint before its owner does, or declares a
+// number absent, the matter is settled for the vendor: it ignores the owner's data as a repeat. So discovery
+// data must come from an address that the participant announced, or else arrive three times in a row. An
+// honest sender repeats it, since it is not received at first. Besides:
+// - A participant that is never heard from an announced address (behind an address translation, on a far
+//   network of a host with several) speaks from the addresses from which its announcements come.
+// - 127.0.0.0/8 is this host, whatever was announced: the kernel does not accept it from a network (RFC 1122,
+//   3.2.1.3).
+//
 // Bounded. Not thread-safe.
 class PeerVoice
 {
 public:
-    // What is said: `about` what, and its content. In a row are those about the same.
+    // A claim: hash of its subject, and of its content. Repeats are counted for each subject.
     struct Saying
     {
         std::uint64_t About = 0;
         std::uint64_t Content = 0;
     };
 
-    // Its announcement was believed, in which it says that it is at these hosts, and which came from `from`.
-    // `anew`: for the first time, or since it has moved.
+    // An announcement of the participant was believed. It names `hosts` and came from `from`. `anew`: the
+    // first one, or the first since it has moved.
     void Announced(std::span<const HostAddress> hosts, const HostAddress &from, bool anew);
-    // Whether it speaks from there. An address that is not known is as good as any.
+    // True if the participant speaks from `from`, or if `from` is unknown.
     bool IsAt(const HostAddress &from) const;
-    // Whether that is to be looked at.
+    // True if the claim should be processed.
     bool Believes(const HostAddress &from, const Saying &saying);
 
 private:
@@ -50,7 +51,7 @@ private:
 
     std::vector<HostAddress> _hosts;
     bool _heardThere = false;          // from one of the hosts
-    std::vector<HostAddress> _others;  // where its announcements come from, if it was not
+    std::vector<HostAddress> _others;  // the sources of its announcements, if not a host of them
     std::map<std::uint64_t, Repeated> _fromElsewhere;
     std::uint64_t _chance = 0;
 };

@@ -29,14 +29,14 @@ bool IsSecure(const Submessage &submessage)
     return submessage.Kind >= SubmessageKind::FirstSecure && submessage.Kind <= SubmessageKind::LastSecure;
 }
 
-// 9.5.2.3 and 9.5.3.3.1: kind and number of the key, a session, and the rest of the start value.
+// 9.5.2.3 and 9.5.3.3.1: kind and number of the key, a session, and the rest of the initialization vector.
 bool IsPrefix(const Submessage &submessage)
 {
     constexpr std::size_t CryptoHeaderSize = 20;
     return submessage.Body().size() == CryptoHeaderSize;
 }
 
-// What is encrypted, after its own length.
+// Encrypted content, preceded by its own length.
 bool IsSealed(const Submessage &submessage)
 {
     RtpsReader body(submessage.Body(), false);
@@ -44,13 +44,13 @@ bool IsSealed(const Submessage &submessage)
     return body.IsGood() && size <= body.Left() && body.Left() - size < 4;
 }
 
-// Whether the vendor may see it between a prefix and a postfix, where all ends are known.
+// True if the vendor may see this submessage between a prefix and a postfix, where all ends are known.
 bool IsContent(const Submessage &submessage)
 {
     return KindOf(submessage) != 0 && !IsSecure(submessage) && submessage.Kind < SubmessageKind::Statistics;
 }
 
-// A tag for all, and one for each of those receivers who have one of their own.
+// A common tag, and one for each receiver that has its own.
 bool IsPostfix(const Submessage &submessage)
 {
     const bool endsWithTheDatagram = submessage.Whole[2] == 0 && submessage.Whole[3] == 0;
@@ -66,7 +66,7 @@ bool IsPostfix(const Submessage &submessage)
     return body.IsGood() && body.Left() % ReceiverTagSize == 0 && body.Left() / ReceiverTagSize == receivers;
 }
 
-// The one submessage that is between a prefix and a postfix, and the postfix.
+// Takes the single submessage between a prefix and a postfix, and the postfix.
 bool TakeContent(std::span<std::uint8_t> &rest)
 {
     if (rest.empty())
@@ -83,8 +83,8 @@ bool TakeContent(std::span<std::uint8_t> &rest)
     return postfix && KindOf(*postfix) == SecurePostfix && IsPostfix(*postfix);
 }
 
-// What is between the prefix of a message and its postfix, and the postfix, with which the message ends but
-// for statistics.
+// Takes everything between the prefix of a message and its postfix, and the postfix. Only statistics may
+// follow.
 bool TakeMessage(std::span<std::uint8_t> &rest)
 {
     for (bool first = true; !rest.empty(); first = false)

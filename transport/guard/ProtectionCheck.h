@@ -1,4 +1,5 @@
-// What DDS Security puts around encrypted and signed submessages, before anybody has looked at a signature.
+// Checks the framing that DDS Security puts around encrypted and signed submessages, before any signature is
+// verified.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +10,10 @@
 namespace Rabit::Rtps
 {
 
-// `from` begins with one of its submessages. How much of it belongs together: a prefix, what it protects, and
-// the tag that follows; nothing if that is unsound. The vendor adds up the lengths that it finds there and
-// feeds so many bytes to its cipher, whether they are there or not; the signature is looked at afterwards.
-// `wholeMessage`: whether it follows the header, where alone a whole message may be protected.
+// `from` begins with a submessage of DDS Security. Returns the size of the unit that it begins: a prefix, the
+// protected content, and the postfix with the tags; empty if it is unsound. The vendor adds up the lengths in
+// there and feeds that many bytes to its cipher, present or not; it checks the signature afterwards.
+// `wholeMessage`: the unit follows the RTPS header, where alone a whole message may be protected.
 std::optional<std::size_t> ProtectedSize(std::span<std::uint8_t> from, bool wholeMessage);
 
 }  // namespace Rabit::Rtps

@@ -33,8 +33,8 @@ void Write(std::span<std::uint8_t> bytes, std::uint32_t value, bool littleEndian
     }
 }
 
-// What Cyclone DDS says without protection where all has it: that it is alive, and how little those writers
-// of the protocol's own have said that it does not use then.
+// Submessages that Cyclone DDS sends unprotected even where all else is protected: its liveliness, and the
+// state of those builtin writers that it does not use then.
 bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
 {
     constexpr std::int64_t Most = 65536;  // one in some seconds: days
@@ -44,7 +44,7 @@ bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
     return is && IsBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
 }
 
-// An honest sender repeats a submessage of discovery as it was until it is answered, but for the count and,
+// An honest sender repeats a discovery submessage unchanged until it is answered. Only the count changes and,
 // in a heartbeat, how far it has come.
 PeerVoice::Saying SayingOf(SubmessageKind kind, const Delivery &delivery)
 {
@@ -73,7 +73,7 @@ bool HasSize(const Submessage &submessage, std::size_t size)
     return submessage.Body().size() >= size;
 }
 
-// Of an INFO_TS: seconds, and their fractions.
+// Time of an INFO_TS: seconds, and their fractions.
 std::uint64_t StampOf(const Submessage &submessage)
 {
     RtpsReader body(submessage.Body(), submessage.LittleEndian);
@@ -81,7 +81,7 @@ std::uint64_t StampOf(const Submessage &submessage)
     return seconds << 32 | body.U32();
 }
 
-// 9.4.5.3, 9.4.5.4: behind flags, an offset and two entities; the high half comes first.
+// 9.4.5.3, 9.4.5.4: offset behind flags, inline QoS offset and two entities; the high half comes first.
 void WriteNumber(const Submessage &submessage, std::int64_t number)
 {
     constexpr std::size_t NumberAt = 12;
@@ -145,7 +145,7 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
                 passage.Honest = false;
                 return {};
             }
-            // It is covered by a signature: nothing of it is changed.
+            // A signature covers it: no byte of it is changed.
             rest = passage.Datagram.subspan(at + *size);
             passage.Useful = true;
             continue;
@@ -190,8 +190,8 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
             return (submessage.Flags & Invalidate) != 0 || HasSize(submessage, 8) ? Verdict::Pass
                                                                                   : Verdict::Drop;
         case SubmessageKind::InfoSource:
-            // Cyclone DDS puts what the participants of a process say into one message. In whose name
-            // somebody speaks here is no more and no less true than the name in the header.
+            // Cyclone DDS puts submessages of all participants of a process into one message. The sender
+            // named here is as trustworthy as the one in the header.
             if (!PutSource(submessage, passage.Header))
             {
                 return Verdict::Drop;
@@ -223,12 +223,12 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
             {
                 return Verdict::Drop;
             }
-            // What is said to several at once is of builtin endpoints, which all have by the same names.
+            // Data for several participants at once is from builtin endpoints, whose entity ids are the same
+            // everywhere.
             return IsForOthers(passage) ? Verdict::Ignore : JudgeDelivery(submessage, *delivery, passage);
         }
         default:
-            // Those that redirect answers (INFO_REPLY), which neither vendor sends, are among those that are
-            // not known here.
+            // Includes submessages that redirect answers (INFO_REPLY), which neither vendor sends.
             return IsOfVendor(submessage.Kind) && submessage.Kind != SubmessageKind::Statistics
                        ? Verdict::Ignore
                        : Verdict::Drop;
@@ -258,7 +258,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     }
     else if (isHandshake && submessage.Kind == SubmessageKind::HeartbeatFrag)
     {
-        verdict = Verdict::Ignore;  // of fragments that are put together here
+        verdict = Verdict::Ignore;  // fragments are assembled here
     }
     else if (IsBuiltin(delivery.Writer) && !IsKnownBuiltin(delivery.Writer) && !isHandshake)
     {
@@ -296,7 +296,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return delivery.Alive && IsGenericMessage(delivery.Payload) ? Verdict::Pass : Verdict::Drop;
     }
-    // A short payload that is a key would be taken for the key hash.
+    // The vendor would take a short payload that is a key for the key hash.
     constexpr std::size_t KeySize = 16;
     if ((!delivery.KeyHash.empty() && !IsKeyOf(delivery.Writer, passage.Sender, delivery.KeyHash)) ||
         (delivery.HasKeyPayload && delivery.Payload.size() <= KeySize))
@@ -375,8 +375,8 @@ bool RtpsGuard::IsReplayed(const Delivery &delivery, const Passage &passage) con
 
 bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
 {
-    const bool announces = delivery.Writer == ParticipantWriter && delivery.Alive;  // places are told by that
-    return announces || submessage.Kind == SubmessageKind::DataFrag ||  // it is looked at when whole
+    const bool announces = delivery.Writer == ParticipantWriter && delivery.Alive;  // it tells addresses
+    return announces || submessage.Kind == SubmessageKind::DataFrag ||  // it is checked when whole
            _peers.SpeaksFrom(passage.Sender, passage.From) ||
            _peers.Believes(passage.Sender, passage.From, SayingOf(submessage.Kind, delivery));
 }
@@ -384,8 +384,8 @@ bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery,
 RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delivery &delivery,
                                       const Passage &passage)
 {
-    // The vendor has no use either for what comes before the announcement of the participant, or of the
-    // writer: there is nobody yet who takes it.
+    // The vendor does not use data that comes before the announcement of the participant, or of the writer:
+    // no reader would accept it.
     if (!_peers.Hears(passage.Sender, passage.Now))
     {
         if (_observer != nullptr && passage.Whence == Origin::Network && passage.Sender != _own)

@@ -1,8 +1,8 @@
-// Stands between the network and the vendor's parser, which trusts what it reads.
+// Stands between the network and the vendor's parser, which trusts its input.
 //
-// Debian builds Fast DDS with its assertions on, so a datagram that breaks one ends the process; and others
-// have it allocate gigabytes, or walk through numbers for hours with its locks held. Cyclone DDS looks
-// closer, but one forged number far ahead silences a writer for it until one of the two is started again.
+// Debian builds Fast DDS with its assertions on, so a datagram that violates one ends the process. Others
+// make it allocate gigabytes, or walk through numbers for hours with its locks held. Cyclone DDS checks more,
+// but one forged number far ahead silences a writer for it until one of the two is restarted.
 #pragma once
 
 #include <array>
@@ -26,89 +26,89 @@ namespace Rabit::Rtps
 
 struct Announcement;
 
-// What is let through is sound in itself (RtpsMessage, DeliveryCheck, DiscoveryCheck) and agrees with what
-// its sender has said before (KnownPeers, SentFragments). Whoever forges a neighbour's datagrams with care
-// still does harm to its streams, though not to the process: that is a matter for DDS Security. Thread-safe.
+// Admits only data that is sound in itself (RtpsMessage, DeliveryCheck, DiscoveryCheck) and agrees with what
+// its sender has sent before (KnownPeers, SentFragments). A careful forger of a neighbour's datagrams can
+// still harm its streams, though not the process: only DDS Security prevents that. Thread-safe.
 class RtpsGuard
 {
 public:
     enum class Mode
     {
         Full,
-        // Only what a datagram shows by itself is checked: what peers say of themselves may come another way,
-        // by shared memory.
+        // Checks each datagram by itself only: peers' announcements may come another way, by shared memory.
         StructureOnly,
-        // As StructureOnly, and what DDS Security needs gets through as it is, if it is sound.
+        // Like StructureOnly; sound submessages of DDS Security pass unchanged.
         Secured,
-        // As Secured, where nothing is said without protection but who is there, and handshakes.
+        // Like Secured, for a domain where only participant announcements and handshakes are unprotected.
         Protected
     };
 
     using TimePoint = KnownPeers::TimePoint;
-    // It may change what it is given.
+    // It may change the bytes.
     using Deliver = std::function<void(std::span<std::uint8_t>)>;
 
-    // Whether requests for fragments are held against what was sent, for a vendor that would read past the
-    // end of a sample. The guard must be told of all that is sent then.
+    // Checked: requests for fragments are compared with what was sent, for a vendor that would read past the
+    // end of a sample. The guard must then be told of all that is sent.
     enum class Requests
     {
         Checked,
         AsTheyCome
     };
 
-    // The period in which all announce themselves.
+    // `period`: announcement period of all participants.
     RtpsGuard(Mode mode, std::chrono::milliseconds period, Requests requests = Requests::Checked)
         : _mode(mode), _requests(requests), _replies(period)
     {
     }
 
-    // Tells the observer, which must outlive the guard, of participants. Before anything is admitted. With an
-    // observer, announcements of participants that have a card are not handed on: the observer sees to it
-    // that the vendor is told of them.
+    // Sets the observer of participants, which must outlive the guard. Call before anything is admitted. With
+    // an observer, announcements of participants that have a card are not delivered: the observer sees to it
+    // that the vendor learns of them.
     void SetObserver(PeerObserver &observer) { _observer = &observer; }
-    // Whether a participant whose announcement was admitted has said that it is at that address.
+    // True if a participant whose announcement was admitted has announced that address.
     bool IsKnownAt(const GuidPrefix &peer, const HostAddress &from);
-    // When a participant was heard last; empty: its announcement has not been admitted.
+    // When a participant was last heard; empty: its announcement has not been admitted.
     std::optional<TimePoint> LastHeard(const GuidPrefix &peer);
     // True if a participant at that address was heard since then, and all that were listen to the group.
     bool GroupReaches(const HostAddress &host, TimePoint since);
 
-    // Where a datagram comes from.
+    // Source of a datagram.
     enum class Origin
     {
         Network,
-        Card  // it says what a card says, in the name of the participant whose card it is
+        Card  // replays a card, in the name of the participant whose card it is
     };
 
-    // Hands on what of a datagram the vendor may see: all, a part, or nothing. Parts that it must not see are
-    // blanked in place, and the counts that it tells repeats of announcements and heartbeats by are replaced.
-    // `from` is whence it came. Returns false if something was kept back that an honest sender does not send.
+    // Delivers the part of a datagram that the vendor may see: all, some, or nothing. Parts that it must not
+    // see are blanked in place. The counts by which it detects repeated announcements and heartbeats are
+    // replaced. `from`: source address. Returns false if something was kept back that an honest sender does
+    // not send.
     bool Admit(std::span<std::uint8_t> datagram, const HostAddress &from, TimePoint now,
                const Deliver &deliver, Origin origin = Origin::Network);
 
-    // Takes note of what we send.
+    // Records a datagram that we send.
     void Sending(std::span<const std::uint8_t> datagram);
 
-    // Whether somebody of whom a datagram was admitted waits for our announcement. Says so once.
+    // True, once, if a peer of whom a datagram was admitted waits for our announcement.
     bool TakeReplyDue() { return _replyDue.exchange(false); }
 
-    // How many announcements of other participants were admitted.
+    // Number of admitted announcements of other participants.
     std::uint64_t AnnouncementsHeard() const { return _announcementsHeard; }
 
 private:
     enum class Verdict
     {
         Pass,
-        Ignore,  // of no use to us: blanked
+        Ignore,  // blanked: we do not use it
         Refuse,  // blanked and counted
-        Drop     // the whole datagram, and counted
+        Drop     // refuse the whole datagram, and count it
     };
 
-    // One datagram under way. Holds _mutex.
+    // State of the datagram being checked. Used under _mutex.
     struct Passage
     {
         std::span<std::uint8_t> Datagram;
-        // As if who speaks now had sent it alone.
+        // Header of a message with only the submessages of the current sender.
         std::array<std::uint8_t, RtpsHeaderSize> Header{};
         GuidPrefix Sender{};
         GuidPrefix Destination{};
@@ -118,23 +118,23 @@ private:
         TimePoint Now{};
         bool Useful = false;
         bool Honest = true;
-        // Announcements whose last fragment came, as messages of their own.
+        // Announcements completed by their last fragment here, as messages of their own.
         std::vector<std::vector<std::uint8_t>> Whole;
     };
 
     bool IsSecured() const { return _mode == Mode::Secured || _mode == Mode::Protected; }
-    // What is left of the datagram; empty if nothing.
+    // Returns the remaining datagram; empty if nothing remains.
     std::span<std::uint8_t> Filter(Passage &passage);
     Verdict Judge(const Submessage &submessage, Passage &passage);
     bool IsForOthers(const Passage &passage) const;
-    // Whether the observer sees to this instead of the network.
+    // True if the observer handles this instead of the network.
     bool IsReplayed(const Delivery &delivery, const Passage &passage) const;
     Verdict JudgeParticipant(const Announcement &announcement, const Passage &passage);
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
-    // Whether what is said of discovery comes from whose name it is said in, as far as an address tells.
+    // True if the discovery data comes from the participant in whose name it is, as far as an address tells.
     bool IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
-    // Against what was said before.
+    // Compares with what was sent before.
     Verdict Compare(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     void ReplaceNumber(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     void ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
@@ -149,7 +149,7 @@ private:
     SentFragments _sent;            // guarded by _mutex
     DiscoveryFragments _fragments;  // guarded by _mutex
     AnnouncementReplies _replies;   // guarded by _mutex
-    GuidPrefix _own{};              // once we have sent; guarded by _mutex
+    GuidPrefix _own{};              // set once we have sent; guarded by _mutex
     std::atomic<bool> _replyDue{false};
     std::atomic<std::uint64_t> _announcementsHeard{0};
 };

@@ -64,8 +64,8 @@ std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest)
     {
         length = left;  // 9.4.5.1.3: it extends to the end of the message
     }
-    // 9.4.1: each begins at a multiple of 4. A parser that rounds up would go on elsewhere than one that does
-    // not.
+    // 9.4.1: each submessage begins at a multiple of 4. A parser that rounds up would continue at another
+    // byte than one that does not.
     if (length > left || (length < left && length % 4 != 0))
     {
         return std::nullopt;
@@ -87,7 +87,7 @@ std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram)
     {
         return datagram.size();
     }
-    // A message that would end like statistics without them keeps them.
+    // A message keeps its statistics if it would still end like statistics without them.
     const std::size_t size = datagram.size() - StatisticsSize;
     return EndsLikeStatistics(datagram.first(size)) ? datagram.size() : size;
 }
@@ -103,7 +103,7 @@ void AppendSubmessageHeader(std::vector<std::uint8_t> &message, SubmessageKind k
 
 void Blank(const Submessage &submessage)
 {
-    // A length of 0 says "to the end" for other kinds, but nothing for padding: written out here.
+    // For padding a length of 0 means 0, for other kinds "to the end": the length is written out here.
     const auto length = submessage.Whole.size() - SubmessageHeaderSize;
     submessage.Whole[0] = static_cast<std::uint8_t>(SubmessageKind::Pad);
     submessage.Whole[submessage.LittleEndian ? 2 : 3] = static_cast<std::uint8_t>(length);

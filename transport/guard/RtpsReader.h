@@ -1,4 +1,4 @@
-// Reads numbers off the front of bytes that cannot be trusted.
+// Reads numbers off the front of untrusted bytes.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace Rabit::Rtps
 {
 
-// Reads nothing outside of the bytes: once something was not there, everything read is 0 and IsGood() false.
+// Never reads out of bounds: once bytes are missing, all further values are 0 and IsGood() is false.
 class RtpsReader
 {
 public:
@@ -36,8 +36,8 @@ public:
     std::uint16_t U16() { return static_cast<std::uint16_t>(Number(2, _littleEndian)); }
     std::uint32_t U32() { return static_cast<std::uint32_t>(Number(4, _littleEndian)); }
     EntityId Entity() { return static_cast<EntityId>(Number(4, false)); }
-    // A sequence number: a signed high word, then a low one. -1 if it is negative, or so large that one could
-    // not reckon with it.
+    // A sequence number: a signed high word, then a low one. -1 if it is negative, or too large for
+    // arithmetic.
     std::int64_t Sequence()
     {
         constexpr std::uint32_t TooHigh = 1u << 30;
@@ -45,7 +45,7 @@ public:
         const std::uint32_t low = U32();
         return high < TooHigh ? static_cast<std::int64_t>(std::uint64_t{high} << 32 | low) : -1;
     }
-    // The bits of a set of at most 256 numbers (9.4.2.6, 9.4.2.8); returns how many they are.
+    // Skips the bits of a set of at most 256 numbers (9.4.2.6, 9.4.2.8); returns how many they are.
     std::uint32_t Bits()
     {
         const std::uint32_t bits = U32();

@@ -9,7 +9,7 @@ namespace
 {
 
 constexpr int OftenEnough = 3;
-// How far a writer's clock may be from where its last sample and the time since let expect it. One that was
+// Largest distance of a writer's clock from its last sample's time plus the time elapsed. A clock that was
 // set is believed with the second sample.
 constexpr std::chrono::seconds Doubtful{10};
 
@@ -50,7 +50,7 @@ std::int64_t SampleNumbers::Of(std::int64_t number, std::uint64_t stamp, TimePoi
 void SampleNumbers::GoOn(const Sample &sample, TimePoint now)
 {
     const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - _wentOn);
-    // A day is enough to reckon with.
+    // Limited to a day, which keeps the arithmetic in range.
     const auto expected = std::min<std::chrono::milliseconds>(elapsed, std::chrono::hours(24));
     const std::uint64_t distance = ToStamp(Doubtful + 2 * expected);
     const bool isFirst = _highest == 0;
@@ -82,7 +82,7 @@ bool SampleNumbers::GoesBack(const Sample &sample, TimePoint now)
     const bool isLater = sample.Number > _below.Number && sample.Stamp > _below.Stamp;
     if (_belowInARow > 0 && sample.Stamp == _below.Stamp && sample.Number >= _below.Number)
     {
-        // Another fragment, or written together with it.
+        // Another fragment of it, or a sample written at the same time.
         _below.Number = sample.Number;
         return false;
     }

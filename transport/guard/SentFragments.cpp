@@ -8,15 +8,15 @@ namespace Rabit::Rtps
 namespace
 {
 
-// More than a history keeps of samples that are so large.
+// More than a history keeps of samples that are large enough for fragments.
 constexpr std::size_t MostSamples = 4096;
 
 }  // namespace
 
 void SentFragments::Sent(std::span<const std::uint8_t> datagram)
 {
-    // Our own: it is sound. Fragments are alone in a datagram but for what is said of the time and the
-    // destination, so the walk is short.
+    // It is our own and therefore sound. Beside fragments a datagram has only a time and a destination, so
+    // the walk is short.
     RtpsReader rest(datagram, true);
     rest.Skip(RtpsHeaderSize);
     while (rest.Left() >= SubmessageHeaderSize)
@@ -32,7 +32,7 @@ void SentFragments::Sent(std::span<const std::uint8_t> datagram)
         fragment.Skip(8);  // flags, where the inline QoS is, the reader
         const EntityId writer = fragment.Entity();
         const std::int64_t sequence = fragment.Sequence();
-        fragment.Skip(6);  // which ones these are
+        fragment.Skip(6);  // fragment number and count
         const std::uint32_t size = fragment.U16();
         const std::uint32_t whole = fragment.U32();
         if (!fragment.IsGood() || size == 0)

@@ -1,4 +1,4 @@
-// Into how many fragments the samples that we sent were cut.
+// Records into how many fragments our sent samples were cut.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 namespace Rabit::Rtps
 {
 
-// A peer that asks for a fragment beyond the last one would have the vendor read past the end of the sample.
-// Bounded: the samples that were begun last are known. Not thread-safe.
+// If a peer requests a fragment beyond the last one, the vendor would read past the end of the sample.
+// Bounded: keeps the samples begun last. Not thread-safe.
 class SentFragments
 {
 public:
-    // Takes note of the fragments in a datagram of our own.
+    // Records the fragments in a datagram of our own.
     void Sent(std::span<const std::uint8_t> datagram);
-    // Whether a sample has been sent that has a fragment of this number, and all before it.
+    // True if a sample was sent that has a fragment of this number, and all before it.
     bool Has(EntityId writer, std::int64_t sequence, std::uint32_t fragment) const;
 
     std::size_t Size() const { return _fragments.size(); }

@@ -11,7 +11,7 @@ namespace
 constexpr std::uint32_t MostTokens = 16;
 constexpr std::uint32_t MostProperties = 64;
 
-// A string, or bytes, behind their number. What fills it up to a multiple of 4 may lack at the end.
+// A string, or bytes, preceded by their number. The padding to a multiple of 4 may be missing at the end.
 bool TakeBytes(RtpsReader &from)
 {
     const std::uint32_t size = from.U32();
@@ -24,7 +24,7 @@ bool TakeBytes(RtpsReader &from)
     return from.IsGood();
 }
 
-// Each is two of those: a name and a value.
+// Each property consists of two of those: a name and a value.
 bool TakeProperties(RtpsReader &from)
 {
     const std::uint32_t count = from.U32();
@@ -51,7 +51,7 @@ bool IsGenericMessage(std::span<const std::uint8_t> payload)
         return false;
     }
     RtpsReader body(payload.subspan(EncapsulationSize), payload[1] == 1);
-    // Who says it under which number, to what that answers, and from and to whom it is.
+    // Skips the message's identity, that of the related message, and the GUIDs of source and destination.
     constexpr std::size_t GuidSize = 16;
     constexpr std::size_t NumberSize = 8;
     body.Skip(2 * (GuidSize + NumberSize) + 3 * GuidSize);

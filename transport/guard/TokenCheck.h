@@ -1,4 +1,4 @@
-// What participants show each other before they are authenticated (OMG DDS Security 1.1, 7.2 and 7.4.3).
+// Checks tokens and handshake messages, which precede authentication (OMG DDS Security 1.1, 7.2 and 7.4.3).
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 namespace Rabit::Rtps
 {
 
-// The vendor makes room for as many things, and as many bytes, as it is told that there are, and does so
-// before it looks for them: a few bytes of a stranger took gigabytes, or ended the process.
+// The vendor allocates for as many elements and bytes as a message declares, before it looks for them. A few
+// bytes of an unauthenticated peer took gigabytes, or ended the process.
 
-// A token, or data holder: a name, properties, and properties of bytes. Reads it.
+// Reads a token, or data holder: a name, properties, and binary properties. Returns false if it is unsound.
 bool IsToken(RtpsReader &from);
-// The payload of a message of a handshake, or of what else participants say to each other so.
+// True if the payload is a sound message of a handshake, or another generic message between participants.
 bool IsGenericMessage(std::span<const std::uint8_t> payload);
 
 }  // namespace Rabit::Rtps

@@ -34,16 +34,16 @@ public:
         _interval = _settings.First;
         _left = _settings.Most;
     }
-    // The next repetition is due by then; the intervals after it stay as they are.
+    // Makes the next repetition due by `due`; the intervals after it stay unchanged.
     void Hasten(TimePoint due) { _due = _due ? std::min(*_due, due) : _due; }
-    // The next repetition is due then at the earliest; the intervals after it stay as they are.
+    // Makes the next repetition due at `due` at the earliest; the intervals after it stay unchanged.
     void Postpone(TimePoint due) { _due = _due ? std::max(*_due, due) : _due; }
     void Stop() { _due.reset(); }
-    // When the next repetition is due; empty: there is none.
+    // When the next repetition is due; empty: never.
     std::optional<TimePoint> Due() const { return _due; }
     bool IsDue(TimePoint now) const { return _due && *_due <= now; }
-    // The repetition that was due is done. `least` is the shortest interval to the next one, such as two
-    // round trips; it may be above the longest of the settings.
+    // Notes that the due repetition was made. `least`: shortest interval to the next one, such as two round
+    // trips; it may exceed the longest interval of the settings.
     void Done(TimePoint now, Duration least = Duration(0))
     {
         if (_settings.Most > 0 && --_left <= 0)

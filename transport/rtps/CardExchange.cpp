@@ -42,7 +42,7 @@ CardExchange::Peer *CardExchange::Find(const GuidPrefix &peer, TimePoint now)
     return &known;
 }
 
-// Forgets the one without a card that was silent for longest: anybody can invent participants.
+// Forgets the peer without a card that was silent for longest: a forger can invent participants.
 bool CardExchange::MakeRoom()
 {
     auto oldest = _peers.end();
@@ -61,7 +61,7 @@ bool CardExchange::MakeRoom()
     return true;
 }
 
-// A peer that was heard is in reach: its request begins anew with the shortest interval, unless the channel
+// A peer that was heard is in reach: its request starts again with the shortest interval, unless the channel
 // is full.
 void CardExchange::Ask(Peer &peer, TimePoint due, TimePoint now)
 {
@@ -203,8 +203,8 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     return card;
 }
 
-// Requests that are out are repeated no sooner than the round trip allows. A peer that was not asked, or not
-// so long ago, lies.
+// Pending requests are repeated no sooner than the round trip allows. An answer to a request that was never
+// sent, or not that early, is a lie.
 void CardExchange::Answered(Peer &peer, std::uint32_t sentAt, TimePoint now)
 {
     if (!peer.LacksSince || static_cast<std::int32_t>(sentAt - QueueingDelay::Stamp(*peer.LacksSince)) < 0)
@@ -241,7 +241,7 @@ void CardExchange::Refuse(const GuidPrefix &peer, TimePoint now)
 
 void CardExchange::Take(const CardRequest &request, const CardMessage &message, TimePoint now)
 {
-    const bool isForSeveral = message.Requests.size() > 1;  // went to all, and so do the answers
+    const bool isForSeveral = message.Requests.size() > 1;  // they went to all, and so do the answers
     const auto found = _peers.find(request.Of);
     if (request.Of == _self)
     {
@@ -257,8 +257,8 @@ void CardExchange::Take(const CardRequest &request, const CardMessage &message, 
     }
 }
 
-// `askedAt`: when a request for them was sent, by this node's clock. One from before the part can have come
-// has crossed with it.
+// `askedAt`: when the request was sent, by this node's clock. If the part cannot have arrived by then,
+// request and part have crossed.
 void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by,
                         const AnsweredRequest &request, TimePoint askedAt, TimePoint now)
 {
@@ -325,9 +325,8 @@ std::optional<CardExchange::TimePoint> CardExchange::Due() const
     return due && _self != GuidPrefix{} ? std::optional(std::max(*due, Free())) : std::nullopt;
 }
 
-// How long messages wait in queues now: the middle of what the other nodes' messages tell, the lower one of
-// two, since one node may lie. Where answers tell it, they alone count: the others' messages may all have
-// waited alike.
+// Current queueing delay: the median of the other nodes' measurements (the lower of two), since one node may
+// lie. Measurements from answers alone count if there are any: the others may share the same delay.
 CardExchange::Duration CardExchange::Delay(TimePoint now) const
 {
     std::vector<Duration> delays;
@@ -400,7 +399,7 @@ std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
     return taken;
 }
 
-// Those whose requests have been due for longest. None if none is due: what is due soon goes along.
+// Peers whose requests have been due for longest. Empty if none is due; those due soon are included.
 std::vector<std::pair<GuidPrefix, CardExchange::Peer *>> CardExchange::ToBeAsked(TimePoint now)
 {
     std::vector<std::pair<GuidPrefix, Peer *>> peers;

@@ -15,7 +15,7 @@
 namespace Rabit::Rtps
 {
 
-// Brings the own card to all other nodes, and theirs here.
+// Brings the own card to all other nodes, and theirs to this node.
 //
 // - A card that has changed is sent to all, in parts. Its summary follows at growing intervals, and after
 //   that once a period: a node that lacks the card, or parts of it, asks for them.
@@ -41,48 +41,48 @@ public:
 
     static constexpr std::chrono::milliseconds FirstRetry{50};
     static constexpr std::chrono::milliseconds LongestRetry{1000};
-    // Slowly: a radio that loses datagrams is not full.
+    // The intervals grow slowly: loss alone does not show that the channel is full.
     static constexpr double GapFactor = 1.25;
-    // The factor for a part that several nodes ask for: it is less likely to be lost for all of them than to
-    // wait in a queue.
+    // The factor for a part that several nodes request: that all of them lost it is less likely than that it
+    // waits in a queue.
     static constexpr double CrowdFactor = 2.0;
     // Delays: a request waits in one queue, its answer in another.
     static constexpr int DelaysOfAnAnswer = 2;
-    // So many nodes that have not answered are a crowd: the intervals of requests double.
+    // This many nodes that have not answered are a crowd: the intervals of requests double.
     static constexpr std::size_t Several = 3;
-    // A repeated request that is due so soon goes in one datagram with one that is due now.
+    // A repeated request that is due within this time goes in one datagram with one that is due now.
     static constexpr std::chrono::milliseconds Together{200};
-    // To a participant that may have no card, and to one that has. After so many there is a rest, a short one
-    // for a participant that says that it has a card.
+    // Requests in vain to a participant that may have no card, and requests to one that has a card. Then
+    // there is a rest, a short one for a participant that says that it has a card.
     static constexpr int MostVainRequests = 10;
     static constexpr int MostRequests = 30;
     static constexpr std::chrono::seconds Rest{5};
     static constexpr std::chrono::seconds ShortRest{1};
-    // Within a Rest so many participants at most that may have no card are asked: anybody can invent some.
+    // Most participants without a known card that are asked within a Rest: a forger can invent any number.
     static constexpr std::size_t MostUnknown = 16;
-    // From the word of another card to the first request: the parts may be on their way.
+    // From a card's summary to the first request: its parts may be on their way.
     static constexpr std::chrono::milliseconds Patience{30};
     static constexpr std::chrono::milliseconds FirstSummary{100};
     static constexpr std::chrono::milliseconds LongestSummary{2000};
     static constexpr double SummaryFactor = 1.5;
-    // All of them are lost once in 100,000 times where 40 % of the datagrams are.
+    // All of them are lost once in 100,000 times where 40 % of the datagrams are lost.
     static constexpr int InitialSummaries = 12;
     // For a newcomer, which may know nothing of this node.
     static constexpr int GreetingSummaries = 4;
     static constexpr std::chrono::milliseconds FirstAnswerGap{50};
     static constexpr std::chrono::milliseconds LongestAnswerGap{500};
-    // Without a request for so long the gap is short again.
+    // After this time without a request the interval is short again.
     static constexpr std::chrono::seconds Quiet{5};
     static constexpr std::size_t MostPeers = 1024;
-    // Bytes in a second, with the headers of IP and UDP, and how many may go at once.
+    // Bytes per second, with the headers of IP and UDP, and the largest burst in bytes.
     static constexpr double UsualRate = 20000.0;
     static constexpr double UsualBurst = 6000.0;
     static constexpr std::size_t IpAndUdp = 28;
 
     struct Settings
     {
-        Duration Period{0};  // in which the own summary is said again
-        // Whether all that is sent goes to all. Else requests for one card, and their answers, go to one
+        Duration Period{0};  // interval of the own card's summary
+        // True if all messages go to all nodes. False: requests for one card, and their answers, go to one
         // node.
         bool IsMulticast = true;
     };
@@ -90,12 +90,12 @@ public:
     explicit CardExchange(const Settings &settings) : _settings(settings) {}
 
     void SetSelf(const GuidPrefix &self) { _self = self; }
-    // 0: the usual one.
+    // Limits the bytes per second; 0: the usual rate.
     void SetRate(double bytesPerSecond);
-    // The own card, packed (PackedCard.h).
+    // Sets the own card, packed (PackedCard.h).
     void SetOwn(std::vector<std::uint8_t> packed, TimePoint now);
 
-    // A participant of which no card is known was heard.
+    // A participant without a known card was heard.
     void Heard(const GuidPrefix &peer, TimePoint now);
     // A participant announced itself, and says that it has a card.
     void Announced(const GuidPrefix &peer, TimePoint now);
@@ -104,9 +104,9 @@ public:
         GuidPrefix Of{};
         std::vector<std::uint8_t> Packed;
     };
-    // A message of another node. Returns the packed card of the node if this completes it.
+    // Takes a message of another node. Returns the packed card of the node if the message completes it.
     std::optional<Card> Received(const CardMessage &message, TimePoint now);
-    // The card was not what its sender should have sent: it is asked for again.
+    // The card was not a valid one: it is requested again.
     void Refuse(const GuidPrefix &peer, TimePoint now);
     void Forget(const GuidPrefix &peer) { _peers.erase(peer); }
 
@@ -122,28 +122,28 @@ public:
 private:
     struct Peer
     {
-        CardSummary Wanted;                                      // what the peer says that it has
-        CardSummary Held;                                        // what is complete here
-        std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted one
+        CardSummary Wanted;                                      // the card that the peer says it has
+        CardSummary Held;                                        // the card that is complete here
+        std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted card
         Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
-        bool IsAnnounced = false;  // it has said that it has a card, since its datagrams were a reason to ask
+        bool IsAnnounced = false;  // it has said that it has a card
         bool HasCard = false;      // a message of it has come
-        int Asked = 0;             // since something came of it
+        int Asked = 0;             // requests since its last message
         TimePoint FirstAsked{};
-        std::optional<TimePoint> LacksSince;  // when it was asked first for what is lacking
+        std::optional<TimePoint> LacksSince;  // first request for the missing parts
         TimePoint LastAsked{};
-        bool IsSpared = false;  // another node has asked for the same since LastAsked
+        bool IsSpared = false;  // another node has requested the same since LastAsked
         TimePoint Heard{};
         QueueingDelay Late;
     };
     struct OwnPart
     {
         bool IsWanted = false;
-        std::optional<GuidPrefix> By;  // the only one that asks; empty: several do, or nobody
+        std::optional<GuidPrefix> By;  // the only node that requests it; empty: several do, or none
         TimePoint NotBefore{};
         std::optional<TimePoint> SentAt{};
         std::optional<GuidPrefix> SentTo;  // empty: to all
-        AnsweredRequest Answers{};         // its SentAt counts from when the request came
+        AnsweredRequest Answers{};         // its SentAt counts from the request's arrival
         Duration Gap = FirstAnswerGap;
         TimePoint Asked{};
     };

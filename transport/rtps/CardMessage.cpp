@@ -13,13 +13,13 @@ namespace
 
 constexpr std::array<std::uint8_t, 8> Header{'R', 'T', 'P', 'S', 2, 2, 'R', 'b'};
 constexpr auto Kind = static_cast<SubmessageKind>(0xd2);
-// Other nodes know by `card=2;` that this one understands it (common/ParticipantIdentity.h).
+// The USER_DATA `card=2;` tells other nodes that this node understands it (common/ParticipantIdentity.h).
 constexpr std::uint8_t Format = 2;
 constexpr std::size_t RequestsAt = 20;
 constexpr std::size_t RequestSize = GuidPrefix{}.size() + 8;
 constexpr std::size_t AnswersSize = GuidPrefix{}.size() + 4;
 constexpr std::size_t Alignment = 4;
-// More than it takes until padding alone stands where statistics would begin.
+// Enough for padding alone to stand where statistics would begin.
 constexpr std::size_t MostPadding = StatisticsSize + 2 * Alignment;
 
 std::uint64_t U64(RtpsReader &body)

@@ -1,7 +1,7 @@
 // The datagrams by which nodes exchange their cards.
 //
-// Each is an RTPS message of one vendor-specific submessage (OMG DDSI-RTPS 2.3, 9.4.5.1.1), from a vendor
-// number that no DDS vendor has, so that DDS programs pass over it. All numbers are little-endian:
+// Each is an RTPS message of one vendor-specific submessage (OMG DDSI-RTPS 2.3, 9.4.5.1.1). Its vendor number
+// is unassigned, so that DDS programs ignore it. All numbers are little-endian:
 //
 //   offset  size  of the submessage's body
 //   0       1     format, 2
@@ -31,7 +31,7 @@
 namespace Rabit::Rtps
 {
 
-// Names one version of a node's card.
+// Identifies one version of a node's card.
 struct CardSummary
 {
     std::uint64_t Digest = 0;  // of the packed card (PackedCard.h)
@@ -46,7 +46,7 @@ struct CardSummary
 struct CardRequest
 {
     GuidPrefix Of{};          // the node that is asked for parts of its card
-    std::uint64_t Parts = 0;  // bit k: part k is lacking; all bits: the requester knows nothing of the card
+    std::uint64_t Parts = 0;  // bit k: part k is missing; all bits: the requester knows nothing of the card
 };
 
 // The request that a part answers, so that its sender learns how long the answer took.
@@ -64,20 +64,20 @@ struct CardMessage
     std::vector<CardRequest> Requests{};
     bool HasPart = false;
     std::size_t Part = 0;
-    AnsweredRequest Answers{};              // by the part
+    AnsweredRequest Answers{};              // the request that the part answers
     std::span<const std::uint8_t> Bytes{};  // of the part; borrowed
 };
 
-// Bytes of a part, but for the last one. With all headers a datagram stays below the MTU of radios.
+// Bytes of each part but the last. With all headers a datagram stays below the MTU of radios.
 constexpr std::size_t CardPartSize = 1000;
 constexpr std::size_t MostCardParts = 64;
 constexpr std::size_t LargestCard = MostCardParts * CardPartSize;
-// Requests in one message, so that a full message fits a datagram.
+// Limit of requests in one message, so that a full message fits a datagram.
 constexpr std::size_t MostCardRequests = 40;
 
-// Whether a datagram claims to be such a message. It may be any bytes.
+// True if a datagram claims to be a card message. Accepts any bytes.
 bool IsCardMessage(std::span<const std::uint8_t> datagram);
-// Nothing if the bytes are not a sound message. `Bytes` refers to the datagram.
+// Empty if the bytes are not a sound message. `Bytes` refers to the datagram.
 std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagram);
 std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message);
 

@@ -18,7 +18,7 @@ constexpr std::uint16_t Sentinel = 0x0001;
 constexpr std::uint16_t LeaseDuration = 0x0002;
 constexpr std::uint16_t EntityName = 0x0062;
 
-// Where the payload of an announcement begins; 0: it has none.
+// Offset of the payload of an announcement; 0: it has none.
 std::size_t PayloadAt(std::span<const std::uint8_t> announcement)
 {
     const auto said = ReadAnnouncement(announcement);
@@ -32,7 +32,7 @@ bool IsLittleEndianList(std::span<const std::uint8_t> announcement)
 }
 
 // Calls visit(id, offset of the value in the submessage, length) for each parameter of an announcement's
-// list. Stops at what is not sound.
+// list. Stops at the first unsound one.
 template <typename Visit>
 void VisitParameters(std::span<const std::uint8_t> announcement, const Visit &visit)
 {
@@ -319,7 +319,7 @@ void CardReplay::Say(const GuidPrefix &name, Peer &peer, bool all, const OwnCard
             {
                 messages.push_back(std::exchange(message, begin()));
             }
-            if (next < number)  // a newer announcement took the place of these
+            if (next < number)  // a newer announcement has replaced these
             {
                 AppendGap(message.Bytes, writer, next, number);
             }

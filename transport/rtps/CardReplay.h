@@ -14,14 +14,14 @@
 namespace Rabit::Rtps
 {
 
-// Says to the own DDS implementation what the cards of peers say, in the peers' names, as reliably as if the
-// peers said it themselves (OMG DDSI-RTPS 2.3, 8.4): each announcement of an endpoint has a number,
-// heartbeats name the numbers, and what the implementation has not acknowledged is said again. It also
-// acknowledges to the implementation in the peers' names (OwnCard). So between nodes with cards none of that
-// is on the air.
+// Tells the own DDS implementation the content of peers' cards, in the peers' names, as reliably as if the
+// peers had sent it themselves (OMG DDSI-RTPS 2.3, 8.4). Each announcement of an endpoint has a number,
+// heartbeats name the numbers, and unacknowledged announcements are repeated. It also acknowledges to the
+// implementation in the peers' names (OwnCard). So between nodes with cards none of these datagrams use the
+// network.
 //
-// `Put` replaces the lease in a peer's announcement: a silent participant is remembered for long, since
-// beats tell whether it is there.
+// `Put` replaces the lease in a peer's announcement, so that a silent participant is remembered for long:
+// beats tell whether it is alive.
 //
 // A pure state machine, not thread-safe.
 class CardReplay
@@ -30,36 +30,36 @@ public:
     using TimePoint = Backoff::TimePoint;
     using Duration = Backoff::Duration;
 
-    // In answer to the implementation, no more often than this.
+    // Shortest interval between answers to the implementation.
     static constexpr std::chrono::milliseconds ShortestGap{5};
     // First and longest interval between two repetitions of announcements that are not acknowledged.
     static constexpr std::chrono::milliseconds FirstRetry{50};
     static constexpr std::chrono::milliseconds LongestRetry{1000};
-    // An implementation that does not take a peer, because it has too many, is not asked without end.
+    // Bounds the repetitions to an implementation that refuses a peer because it has too many.
     static constexpr int MostRetries = 60;
-    // Bytes of a message that holds several announcements.
+    // Limit in bytes of a message with several announcements.
     static constexpr std::size_t LargestMessage = 8000;
 
     explicit CardReplay(Duration memory) : _memory(memory) {}
 
     void SetSelf(const GuidPrefix &self) { _self = self; }
 
-    // The unpacked card of a peer. Returns false, and changes nothing, if it is no card of that peer.
+    // Sets the unpacked card of a peer. Returns false, and changes nothing, if it is no card of that peer.
     bool Put(const GuidPrefix &peer, std::span<const std::uint8_t> card, TimePoint now);
     bool Has(const GuidPrefix &peer) const { return _peers.contains(peer); }
-    // The implementation has lost the peer, or was told that it is gone.
+    // The implementation has lost the peer, or was told that it left.
     void Forget(const GuidPrefix &peer) { _peers.erase(peer); }
-    // Tells the implementation that the peer is gone, and forgets it.
+    // Tells the implementation that the peer left, and forgets it.
     void End(const GuidPrefix &peer);
     // The name that the peer's announcement gives it; empty: none.
     std::string NameOf(const GuidPrefix &peer) const;
     std::vector<GuidPrefix> Peers() const;
 
-    // Says all of that peer again, because it was forgotten on the way to the implementation. Does nothing
-    // while that is under way.
+    // Repeats everything of that peer, after a message to the implementation was lost. Does nothing while a
+    // replay is in progress.
     void Again(const GuidPrefix &peer, TimePoint now);
 
-    // The implementation said something to that peer, or to all: a heartbeat, or an acknowledgement.
+    // The implementation sent something to that peer, or to all: a heartbeat, or an acknowledgement.
     void Said(const EndpointSubmessage &said, TimePoint now);
 
     std::optional<TimePoint> Due() const;
@@ -69,7 +69,7 @@ public:
         GuidPrefix From{};
         std::vector<std::uint8_t> Bytes;
     };
-    // `own` says what is acknowledged to the implementation.
+    // `own`: tells which announcements are acknowledged to the implementation.
     std::vector<Message> TakeDue(TimePoint now, const OwnCard &own);
 
 private:
@@ -84,15 +84,15 @@ private:
     {
         std::map<EntityId, Announcement> Endpoints;
         std::int64_t Last = 0;
-        std::int64_t Acknowledged = 1;  // all before, by the implementation
-        bool IsConfirmed = false;       // it has said so since all was said anew
+        std::int64_t Acknowledged = 1;  // the implementation has all before this one
+        bool IsConfirmed = false;       // it has acknowledged since the last restart
         bool OwesAcknowledgement = false;
     };
     struct Peer
     {
         std::vector<std::uint8_t> Header;
         std::vector<std::uint8_t> Participant;
-        std::int64_t Announced = 0;  // how often; the number of its announcement
+        std::int64_t Announced = 0;  // number of its announcement, counted from 1
         std::map<EntityId, Stream> Streams;
         bool IsKnown = false;  // the implementation has answered since the last retry
         Backoff Retry{{FirstRetry, LongestRetry, 2.0, MostRetries}};

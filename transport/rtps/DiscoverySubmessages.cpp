@@ -52,7 +52,7 @@ void AppendNumber(std::vector<std::uint8_t> &bytes, std::int64_t number)
     Append(bytes, static_cast<std::uint64_t>(number), 4);
 }
 
-// For CheckDelivery, which does not write to it.
+// Wraps bytes for CheckDelivery, which does not write to them.
 Submessage ToBeRead(std::span<const std::uint8_t> whole)
 {
     return {.Kind = SubmessageKind{whole[0]},
@@ -84,7 +84,7 @@ std::vector<std::int64_t> NumbersOfGap(const Submessage &gap, const Delivery &sa
     return numbers;
 }
 
-// False: it is of something else.
+// Returns false if the submessage is of another kind.
 bool Read(const Submessage &submessage, EndpointSubmessage &read)
 {
     const auto delivery = CheckDelivery(submessage);
@@ -103,7 +103,7 @@ bool Read(const Submessage &submessage, EndpointSubmessage &read)
     return true;
 }
 
-// The GUID in a list of parameters that names the subject; empty: there is none.
+// The GUID in a parameter list that names the subject; empty if there is none.
 std::span<const std::uint8_t> GuidIn(std::span<const std::uint8_t> payload)
 {
     constexpr std::size_t encapsulation = 4;

@@ -17,16 +17,14 @@
 namespace Rabit::Rtps
 {
 
-// How a node and other nodes find each other: by cards (PackedCard.h) in place of the endpoint discovery of
-// DDS.
+// Lets nodes find each other by cards (PackedCard.h), in place of the endpoint discovery of DDS.
 //
-// It stands between the own DDS implementation and the network. `OwnCard` gathers what the implementation
-// wants to say of its endpoints, `CardExchange` brings it to other nodes, and `CardReplay` tells the
-// implementation what the other nodes' cards say. Programs without a card get the implementation's own
-// datagrams.
+// It stands between the own DDS implementation and the network. `OwnCard` gathers the implementation's
+// announcements, `CardExchange` brings them to other nodes, and `CardReplay` tells the implementation the
+// content of other nodes' cards. Programs without a card get the implementation's own datagrams.
 //
-// A participant is remembered for as long as Settings::Memory, however silent it is. When a participant of
-// the same name has appeared since, and it is silent, it is ended (CardReplay::End).
+// A silent participant is remembered for Settings::Memory. If another participant of the same name has
+// appeared since, the silent one is ended (CardReplay::End).
 //
 // A pure state machine, not thread-safe.
 class Meeting
@@ -37,20 +35,20 @@ public:
 
     struct Settings
     {
-        Duration Period{0};       // in which the own card's summary is said again
+        Duration Period{0};       // interval of the own card's summary
         Duration Memory{0};       // how long a silent participant is remembered
-        bool IsMulticast = true;  // whether card messages go to all (CardExchange::Settings)
+        bool IsMulticast = true;  // card messages go to all (CardExchange::Settings)
     };
 
-    // The own announcements come together.
+    // Own announcements within this time are packed together.
     static constexpr std::chrono::milliseconds Hold{10};
-    // The source address of a participant's card messages may change: another one is believed when so many
-    // messages in a row came from there.
+    // The source address of a participant's card messages may change: another address is accepted after this
+    // many messages in a row from it.
     static constexpr int OftenEnough = 3;
-    // Of programs without a card that do not announce themselves any more.
+    // After this time, programs without a card that do not announce themselves any more are forgotten.
     static constexpr std::chrono::minutes ProgramsForgotten{5};
     static constexpr std::size_t MostRemembered = 1024;
-    // Of more participants with cards than this the ones that are silent for longest are ended.
+    // If more participants with cards are known, those that are silent for longest are ended.
     static constexpr std::size_t MostSilent = 256;
 
     explicit Meeting(const Settings &settings)
@@ -60,22 +58,22 @@ public:
     {
     }
 
-    // The own implementation is about to send this datagram, which has no samples. True if it is not to go:
-    // all whom it is for have cards.
+    // The own implementation is about to send this datagram, which has no samples. Returns true if it should
+    // not be sent: all its addressees have cards.
     bool Sending(std::span<const std::uint8_t> datagram, TimePoint now);
-    // A datagram that IsCardMessage. `isKnownAt`: its sender has said that it is at that address. Returns
-    // false if it is not sound, or not from where its sender is.
+    // Takes a datagram that IsCardMessage. `isKnownAt`: its sender has announced that address. Returns false
+    // if it is unsound, or not from its sender's address.
     bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt,
                   TimePoint now);
 
-    // A datagram came of a participant that the implementation does not know.
+    // A datagram came from a participant that the implementation does not know.
     void HeardUnknown(const GuidPrefix &peer, TimePoint now);
     // A participant announced itself on the network.
     void Announced(const GuidPrefix &peer, bool hasCard, TimePoint now);
-    // A participant said goodbye; or the implementation has lost it.
+    // A participant said goodbye (`forGood`), or the implementation has lost it.
     void Gone(const GuidPrefix &peer, bool forGood);
-    // Whether the implementation is told of that participant here. Endpoint discovery in the participant's
-    // name from the network is to be ignored then.
+    // True if the implementation learns of that participant here. Endpoint discovery in the participant's
+    // name from the network must then be ignored.
     bool IsReplayed(const GuidPrefix &peer) const { return _replay.Has(peer); }
 
     void SetRate(double bytesPerSecond) { _exchange.SetRate(bytesPerSecond); }
@@ -95,14 +93,14 @@ public:
     // Participants to be ended once they are silent for EndAfter(): former sessions of nodes that have
     // another one, and all if there are more than MostSilent.
     std::vector<GuidPrefix> Endable() const;
-    // Two periods and a half: who lives has announced itself twice.
+    // Two and a half periods: a living participant has announced itself twice.
     Duration EndAfter() const { return 5 * _settings.Period / 2; }
     void End(const GuidPrefix &peer);
-    // Whether it was ended here, and did not say goodbye.
+    // True if it was ended here, and did not say goodbye.
     bool WasEnded(const GuidPrefix &peer) const;
 
 private:
-    // Where a participant's card messages come from.
+    // Source address of a participant's card messages.
     struct Place
     {
         HostAddress From{};
@@ -121,10 +119,10 @@ private:
     OwnCard _own;
     CardExchange _exchange;
     CardReplay _replay;
-    DiscoveryFragments _fragments;  // of the own implementation
+    DiscoveryFragments _fragments;  // of the own implementation's announcements
     std::optional<TimePoint> _packAt;
     std::map<GuidPrefix, Place> _places;
-    std::map<GuidPrefix, TimePoint> _programs;  // without a card; when each was announced last
+    std::map<GuidPrefix, TimePoint> _programs;  // without a card: when each was last announced
     std::map<GuidPrefix, std::string> _superseded;
     std::deque<GuidPrefix> _gone;   // the last that said goodbye
     std::deque<GuidPrefix> _ended;  // the last that were ended here

@@ -27,7 +27,7 @@ void MeetingThread::Stop()
     }
 }
 
-// Does the work, and wakes the thread if something is due earlier than it waits for.
+// Does the work, and wakes the thread if something is now due earlier than the thread's wake-up.
 template <typename Work>
 auto MeetingThread::With(const Work &work)
 {
@@ -144,7 +144,7 @@ void MeetingThread::EndSilent()
         const std::lock_guard lock(_mutex);
         peers = _meeting.Endable();
     }
-    // Those that are not known any more first.
+    // Participants that are no longer known come first.
     std::multimap<Clock::time_point, GuidPrefix> silent;
     for (const GuidPrefix &peer : peers)
     {

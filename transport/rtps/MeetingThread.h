@@ -13,20 +13,20 @@
 namespace Rabit::Rtps
 {
 
-// A Meeting with a thread of its own, which does what is due. Thread-safe.
+// Runs a Meeting on a thread of its own, which does due work. Thread-safe.
 class MeetingThread final : public PeerObserver
 {
 public:
     using Clock = std::chrono::steady_clock;
 
-    // Called on the thread, without a lock.
+    // Called on that thread, without a lock.
     struct Calls
     {
         // Sends to one participant, or to all if `to` is empty.
         std::function<void(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)> Send;
-        // Hands a message to the own DDS implementation, as if it came from that address.
+        // Delivers a message to the own DDS implementation, as if it came from that address.
         std::function<void(const HostAddress &from, std::span<std::uint8_t> datagram)> Deliver;
-        // When the participant was heard last; empty: it is not known.
+        // When the participant was last heard; empty: it is not known.
         std::function<std::optional<Clock::time_point>(const GuidPrefix &)> LastHeard;
     };
 
@@ -34,11 +34,11 @@ public:
     ~MeetingThread() override { Stop(); }
 
     void Start(Calls calls);
-    // No call is under way or made when this returns. A call must not stop the thread.
+    // When this returns, no call is in progress and none will be made. A call must not stop the thread.
     void Stop();
 
-    // These are Meeting's; any thread. They call nobody.
-    // `rate`: bytes in a second that the exchange may take; 0: as much as it needs.
+    // Forwarded to Meeting. Any thread; no call is made inside. `rate`: bytes per second that the exchange
+    // may take; 0: unlimited.
     bool Sending(std::span<const std::uint8_t> datagram, double rate);
     bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt);
     // The implementation has lost the participant.

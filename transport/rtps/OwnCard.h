@@ -12,33 +12,34 @@
 namespace Rabit::Rtps
 {
 
-// The card of the own participant, gathered from what its DDS implementation says to others: the newest
-// announcement of the participant and of each endpoint. The implementation says its endpoints to each peer
-// that it knows, until the peer acknowledges. This object is the reader that acknowledges for all peers that
-// take cards: it knows which numbers it has seen, and asks for the others.
+// The card of the own participant, gathered from the datagrams of its DDS implementation: the newest
+// announcement of the participant and of each endpoint. The implementation sends announcements of endpoints
+// to each known peer until the peer acknowledges. This object is the reader that acknowledges for all peers
+// that take cards: it records the numbers that it has seen, and requests the others.
 //
 // A pure state machine, not thread-safe.
 class OwnCard
 {
 public:
-    // The newest announcements that say that an endpoint is gone are kept, so that peers learn of it from the
-    // card. Of more endpoints than this the ones that are gone for longest are left out.
+    // The newest announcements that an endpoint is gone are kept, so that peers learn of it from the card. If
+    // there are more endpoints than this, those gone for longest are left out.
     static constexpr std::size_t MostEndpoints = 1024;
 
-    // A message by which the participant announces itself.
+    // Takes a message by which the participant announces itself.
     void Announced(std::span<const std::uint8_t> message);
-    // An announcement of an endpoint, a gap or a heartbeat, in the order in which they are said.
+    // Takes an announcement of an endpoint, a gap or a heartbeat, in the order in which they are sent.
     void Said(const EndpointSubmessage &said);
 
-    // The acknowledgement to an endpoint writer, of the numbers that its last heartbeat named.
+    // Acknowledgement to an endpoint writer, for the numbers that its last heartbeat named.
     struct Acknowledged
     {
-        std::int64_t Base = 1;              // all before have been seen
-        std::vector<std::int64_t> Missing;  // from there on
+        std::int64_t Base = 1;              // all before this one were seen
+        std::vector<std::int64_t> Missing;  // from Base on
     };
     Acknowledged Of(EntityId writer) const;
 
-    // Whether Message has changed since this was asked. False as long as there is no announcement.
+    // True if Message has changed since the last call. False as long as there is no announcement of the
+    // participant.
     bool TakeChanged();
     // The card as one RTPS message.
     std::vector<std::uint8_t> Message() const;
@@ -46,8 +47,8 @@ public:
 private:
     struct Writer
     {
-        std::set<std::int64_t> Seen;  // beyond Base
-        std::int64_t Base = 1;        // all before have been seen, or will not come
+        std::set<std::int64_t> Seen;  // from Base on
+        std::int64_t Base = 1;        // all before this one were seen, or will not come
         std::int64_t Last = 0;
     };
     struct Endpoint

@@ -9,16 +9,16 @@
 namespace Rabit::Rtps
 {
 
-// How long the datagrams of one sender wait on their way, beyond the least that any of them took: the time in
-// queues in front of a radio that is full. Each datagram says when it was sent, by its sender's clock; only
+// Queueing delay of one sender's datagrams: their time on the way beyond the shortest of any. It shows the
+// queues in front of a full radio. Each datagram carries its sending time by its sender's clock; only
 // differences count, so the clocks need not agree (LEDBAT, RFC 6817).
 //
-// A node that comes to a channel which is full already has heard no datagram that did not wait. The round
-// trip of a request and its answer tells it: half of that is taken for the delay of the answer, with the time
-// of the path itself, and so the least is known.
+// A node that comes to a full channel hears no datagram without a delay. The round trip of a request and its
+// answer tells it: half of that counts as the delay of the answer, path included, which gives the shortest
+// time.
 //
-// The least is that of the last one to two minutes, so clocks that drift apart by 100 ppm add 12 ms at most.
-// A delay above Longest is none: a clock has stood still, with its computer.
+// The shortest time is that of the last one to two minutes, so clocks that drift apart by 100 ppm add at most
+// 12 ms. A delay above Longest counts as none: a clock has stood still, with its computer.
 //
 // Pure; the time is injected. Not thread-safe.
 class QueueingDelay
@@ -29,11 +29,11 @@ public:
 
     static constexpr Duration Longest{10000};
     static constexpr std::chrono::seconds Window{60};
-    // A measurement counts for so long. Where a round trip was measured it counts for one longer: until the
+    // Validity of a measurement. After a measured round trip it is valid for that time longer, until the
     // answer to the next request can have come.
     static constexpr std::chrono::seconds Fresh{3};
 
-    // The time of the own clock that a datagram carries. Wraps around every 49 days.
+    // The own clock's time for a datagram to carry. Wraps around every 49 days.
     static std::uint32_t Stamp(TimePoint now)
     {
         return static_cast<std::uint32_t>(
@@ -66,7 +66,7 @@ public:
         _heardAt = now;
     }
 
-    // The datagram that was heard last answers what this node sent at that time of its clock.
+    // The last datagram heard answers one that this node sent at `sentAt` of its clock.
     void Answered(std::uint32_t sentAt, TimePoint now)
     {
         const Duration took(static_cast<std::int32_t>(Stamp(now) - sentAt));
@@ -84,15 +84,15 @@ public:
         _roundTrip = took;
     }
 
-    // Of the datagram that was heard last.
+    // Delay of the last datagram heard.
     Duration OfLast() const { return _delay; }
-    // Of now; empty: nothing was heard lately.
+    // Current delay; empty: nothing was heard lately.
     std::optional<Duration> At(TimePoint now) const
     {
         const Duration longer = IsByAnswer(now) ? _roundTrip : Duration(0);
         return _heardAt && now - *_heardAt < Fresh + longer ? std::optional(_delay) : std::nullopt;
     }
-    // Whether a round trip has told what the least is, of late.
+    // True if a recent round trip has determined the shortest time.
     bool IsByAnswer(TimePoint now) const { return _answeredAt && now - *_answeredAt < Window; }
 
 private:

@@ -14,8 +14,8 @@
 namespace Rabit
 {
 
-// The beginning of a message of which parts are still to come. Memory is taken as bytes arrive, not when the
-// peer says how many there will be.
+// The received beginning of a message in several parts. Memory grows as bytes arrive, not with the size that
+// the peer announces.
 class Assembly
 {
 public:
@@ -25,14 +25,16 @@ public:
     Assembly &operator=(const Assembly &) = delete;
 
     bool IsOpen() const { return _open; }
-    // One that is too large, or does not begin at its beginning: its parts are consumed, and it is refused.
+    // True for a message that is too large, or whose first part is missing: its parts are consumed, and it is
+    // refused.
     bool IsRefused() const { return _refused; }
 
     void Begin(std::string_view type, std::uint64_t size);
     void BeginRefused();
-    // Adds a part. False: there is no memory for it now. More than was announced: refused.
+    // Adds a part. Returns false if there is no memory for it now. A message that exceeds its announced size
+    // is refused.
     bool Append(std::span<const std::uint8_t> part, LinkTime now);
-    // Takes so many bytes off again.
+    // Removes the last `bytes` bytes again.
     void TakeBack(std::size_t bytes) { _size -= bytes; }
     bool IsComplete() const { return !_refused && _size == _total; }
     void Drop();

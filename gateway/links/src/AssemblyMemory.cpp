@@ -34,7 +34,7 @@ bool AssemblyMemory::Take(Assembly &who, std::size_t bytes, LinkTime now)
     return true;
 }
 
-// The one that has been stalled for longest goes first.
+// Refuses stalled beginnings, the one stalled for longest first.
 void AssemblyMemory::RefuseStalled(std::size_t bytes, const Assembly &except, LinkTime now)
 {
     while (!_users.empty() && _used + bytes > _limit)

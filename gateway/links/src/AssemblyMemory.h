@@ -12,9 +12,9 @@ class Assembly;
 
 // Bounds the bytes that the beginnings of large messages take on all links of a node.
 //
-// When they have taken all, a beginning to which nothing was added for Stalled is refused in favour of one
-// that grows: its sender is gone. If there is none, one beginning at a time may grow beyond the limit, so
-// that they never all wait for each other. The bound is the limit and one largest message.
+// At the limit, a beginning to which nothing was added for Stalled is refused in favour of one that grows:
+// its sender is gone. If none is stalled, one beginning at a time may grow beyond the limit, so that they
+// never all wait for each other. The bound is the limit and one largest message.
 class AssemblyMemory
 {
 public:
@@ -25,9 +25,9 @@ public:
 
     explicit AssemblyMemory(std::size_t limit) : _limit(limit) {}
 
-    // `who` wants so many bytes more. True if it gets them.
+    // Takes `bytes` more bytes for `who`. Returns true if it gets them.
     bool Take(Assembly &who, std::size_t bytes, LinkTime now);
-    // `who` has no message any more, and gives so many bytes back.
+    // `who` has no message any more, and returns `bytes` bytes.
     void Give(Assembly &who, std::size_t bytes);
     std::size_t Used() const { return _used; }
 

@@ -13,7 +13,7 @@
 namespace Rabit
 {
 
-// What all links of one node share. Owned by the LinkNode, which outlives them.
+// State shared by all links of one node. Owned by the LinkNode, which outlives them.
 struct LinkContext
 {
     LinkContext(LinkSettings settings, LinkOutput &output, LocalQueues &queues, std::uint64_t incarnation);
@@ -23,7 +23,7 @@ struct LinkContext
     LocalQueues &Queues;
     // The name of this process's clock in frames.
     const std::uint32_t Clock;
-    // The life this node is in to peers that it meets now: s_inc of all streams to them and r_inc of all
+    // The incarnation of this node for peers that it meets now: s_inc of all streams to them and r_inc of all
     // their sessions.
     std::uint64_t Incarnation = 0;
     LinkNodeCounters Counters;

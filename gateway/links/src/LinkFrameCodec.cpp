@@ -14,19 +14,19 @@ namespace
 constexpr std::int64_t Microsecond = 1000;
 constexpr std::uint64_t MostMicroseconds = (std::uint64_t{1} << 62) / 1000;
 
-// Of a frame.
+// Flags of a frame.
 constexpr std::uint8_t IsShort = 1;
 constexpr std::uint8_t Asks = 2;
 constexpr std::uint8_t CarriesData = 4;
 constexpr std::uint8_t CarriesAcks = 8;
 constexpr std::uint8_t CarriesEcho = 16;
 constexpr std::uint8_t FrameFlags = 31;
-// Of an item, beside the LinkFlags.
+// Flags of an item, beside the LinkFlags.
 constexpr std::uint8_t LinkFlags = LinkFlagSkip | LinkFlagRedelivered | LinkFlagFirst | LinkFlagLast;
 constexpr std::uint8_t HasTtl = 16;
 constexpr std::uint8_t HasTypeName = 32;
 constexpr std::uint8_t HasGap = 64;
-// Of an acknowledgement, in the low bits of its first number.
+// Flags of an acknowledgement, in the low bits of its first number.
 constexpr std::uint64_t IsOpen = 1;
 
 std::uint64_t Micro(std::int64_t nanoseconds)
@@ -58,7 +58,7 @@ bool CarriesSize(const LinkItem &item)
     return (item.Flags & LinkFlagFirst) != 0 && (item.Flags & LinkFlagLast) == 0;
 }
 
-// What comes before the payload, without the gap.
+// Bytes of an item before its payload, without the gap.
 std::size_t ItemHead(const LinkItem &item)
 {
     if (IsWholeSkip(item))
@@ -178,7 +178,7 @@ void Put(WireWriter &writer, const LinkItem &item, bool gap, std::uint64_t skipp
     writer.Bytes(item.Payload.data(), item.Payload.size());
 }
 
-// `next`: the number that the item has if it has no gap; afterwards that after the item.
+// `next`: the number of the item if there is no gap; on return the number after the item.
 void Get(WireReader &reader, LinkItem &item, std::uint64_t &next)
 {
     const std::uint8_t flags = reader.Byte();

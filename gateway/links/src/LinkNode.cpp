@@ -56,7 +56,7 @@ LinkPeer *LinkNode::FindOrAddPeer(std::string_view name, LinkTime now)
     return _peers.emplace(std::string(name), std::move(peer)).first->second.get();
 }
 
-// Whoever has no link loses nothing: it goes first. Then who has been silent for longest.
+// Forgets a peer without links first, since it loses nothing; then the peer that has been silent for longest.
 bool LinkNode::ForgetOne(LinkTime now)
 {
     const auto rank = [](const Peers::value_type &entry)
@@ -79,8 +79,8 @@ bool LinkNode::ForgetOne(LinkTime now)
     return true;
 }
 
-// If it comes back, this node is to it in a new life. So nothing of the forgotten streams and sessions, which
-// neither this node nor rule R3 could tell from new ones, is continued.
+// If the peer comes back, this node has a new incarnation for it. So no forgotten stream or session is
+// continued: neither this node nor rule R3 could tell it from a new one.
 void LinkNode::Forget(Peers::iterator peer)
 {
     _context->Incarnation += peer->second->HasLinks() ? 1 : 0;
@@ -191,8 +191,9 @@ LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view qu
     return {.Refusal = LinkRefusal::None, .Id = _nextId++, .Due = peer->NextDue()};
 }
 
-// Rules R1 and S6, and the rule for hellos: a peer that remembers a higher life of this node than its present
-// one makes it take a yet higher one. Nothing received or sent in the old one is continued.
+// Rules R1 and S6, and the rule for hellos: a peer that knows a higher incarnation of this node than the
+// present one makes this node take a yet higher one. Nothing received or sent in the old incarnation is
+// continued.
 void LinkNode::HeardOfMyself(const LinkPeer *from, std::uint64_t incarnation, LinkTime now)
 {
     if (incarnation <= (from == nullptr ? _context->Incarnation : from->OwnLife()))
@@ -218,8 +219,7 @@ void LinkNode::HeardOfMyself(const LinkPeer *from, std::uint64_t incarnation, Li
     }
 }
 
-// Whether the frame can be what it says it is, and is for this node. Changes nothing but the frame and
-// counters.
+// True if the frame is well-formed and for this node. Changes only the frame and counters.
 bool LinkNode::Accepts(LinkFrame &frame, const LinkPeer *peer, LinkTime now)
 {
     if (!IsWellFormed(frame) || frame.Source == _context->Settings.Node)
@@ -248,7 +248,7 @@ bool LinkNode::Accepts(LinkFrame &frame, const LinkPeer *peer, LinkTime now)
     return true;
 }
 
-// Its sender takes this node for one that knows it. A hello, which is long, sets that right.
+// The sender of a short frame wrongly assumes that this node knows it. A hello, which is long, corrects that.
 void LinkNode::OnUnknownShort(const LinkFrame &frame, LinkTime now)
 {
     ++_context->Counters.UnknownShort;

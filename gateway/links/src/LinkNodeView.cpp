@@ -1,4 +1,4 @@
-// What a LinkNode shows to who schedules and who watches.
+// The views of a LinkNode for the scheduler and for reports.
 #include <rabit/gateway/links/LinkNode.h>
 
 #include "LinkContext.h"

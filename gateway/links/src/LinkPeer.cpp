@@ -39,7 +39,7 @@ bool LinkPeer::Expand(LinkFrame &frame, LinkTime now) const
     frame.ReceiverLife = _ownLife;
     frame.Clock = _token.Clock;
     frame.Echo.Clock = _context.Clock;
-    // The peer's clock reads about this now; ours has passed the echoed reading.
+    // The peer's clock shows about this now; our clock is past the echoed reading.
     const std::int64_t expected = (_token.Time + (now - _token.CameAt).count()) / Microsecond;
     const auto behind = static_cast<std::int32_t>(static_cast<std::uint32_t>(expected) -
                                                   static_cast<std::uint32_t>(frame.Time / Microsecond));
@@ -108,7 +108,7 @@ bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
 
 void LinkPeer::HeardNow(LinkTime now)
 {
-    // After an outage nothing that was known of the path need be so.
+    // After an outage the measurements of the path may be wrong.
     if (_unansweredSince != LinkNever &&
         now - _unansweredSince > std::max(_context.Settings.MaxResend, 2 * _path.ProbeTimeout()))
     {
@@ -150,7 +150,7 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
     const bool isNewest = TakeToken(frame.Clock, frame.Time, now);
     if (frame.ReceiverLife != _ownLife)
     {
-        // Rule R1: it does not know this life of ours yet.
+        // Rule R1: the peer does not know this node's present incarnation yet.
         _context.Counters.Stale += frame.IsHello() ? 0 : 1;
         _knowsMe = false;
         HelloSoon(now);
@@ -176,7 +176,7 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
 void LinkPeer::Measure(const LinkFrame &frame, LinkTime now)
 {
     const LinkTime roundTrip = now - LinkTime(frame.Echo.Time) - LinkTime(frame.Echo.HeldFor);
-    // What was held for long says more about the two clocks than about the path.
+    // An echo that was held for long tells more about the two clocks than about the path.
     if (frame.Echo.Clock == _context.Clock && frame.Echo.Time <= now.count() && roundTrip >= LinkTime(0) &&
         frame.Echo.HeldFor <= LinkTime(std::chrono::seconds(1)).count())
     {
@@ -254,8 +254,8 @@ LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
     return receiver;
 }
 
-// All parts are refused, whatever came before them and whatever is between them: nothing but the numbers has
-// to be remembered, and these only until they are acknowledged.
+// Refuses all parts, whatever came before them or is missing between them. Only their numbers have to be
+// remembered, until they are acknowledged.
 void LinkPeer::Refuse(const LinkData &data)
 {
     std::uint64_t refused = 0;

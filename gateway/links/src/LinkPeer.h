@@ -18,8 +18,8 @@
 namespace Rabit
 {
 
-// One other node: its life, its token, the path to it, hellos and acknowledgements, and the links to and from
-// it. A node's life and clock are the same for all its links, so what one link learns of them holds for all.
+// One other node: its incarnation, its token, the path to it, hellos and acknowledgements, and the links to
+// and from it. A node's incarnation and clock are the same for all its links, so they are kept here.
 class LinkPeer
 {
 public:
@@ -28,27 +28,27 @@ public:
 
     LinkPeer(LinkContext &context, std::string name, LinkTime now);
 
-    // The life in which this node is to the peer.
+    // The incarnation of this node for the peer.
     std::uint64_t OwnLife() const { return _ownLife; }
-    // The life that the peer is in as far as known; 0: not heard yet.
+    // The known incarnation of the peer; 0: not heard yet.
     std::uint64_t Incarnation() const { return _incarnation; }
 
-    // Fills in what a short frame of the peer leaves out. False: it is not for this node, not of the peer's
-    // present life, or not for that of this node.
+    // Fills in the fields that a short frame of the peer leaves out. False: the frame is not for this node,
+    // or not of both present incarnations.
     bool Expand(LinkFrame &frame, LinkTime now) const;
-    // Whether all acknowledgements in a frame of the present lives can be.
+    // True if all acknowledgements in a frame of the present incarnations are possible.
     bool AreAcksPossible(const LinkFrame &frame) const;
-    // A frame has come. Rules S4, S5, R1 and R2, and what follows for the links.
+    // Processes a frame by rules S4, S5, R1 and R2, and passes it to the links.
     void OnFrame(const LinkFrame &frame, LinkTime now);
 
-    // The peer says, or something else heard, that it is in this life. Rule S5: a higher one than known is
-    // a restart, all streams to it start anew; a lower one is old, or the peer has lost its storage and must
-    // be told by a hello. Returns whether it is the life known now.
+    // Reports the peer's incarnation. Rule S5: a higher one than known is a restart, and all streams to the
+    // peer start anew; a lower one is old, or the peer has lost its storage and must be told by a hello.
+    // Returns true if it is the known incarnation now.
     bool HeardOf(std::uint64_t incarnation, LinkTime now);
     // Sends a hello as soon as HelloGap allows.
     void HelloSoon(LinkTime now);
 
-    // Whether nothing is lost with it but what can be learnt again: nothing waits for it here.
+    // True if nothing is lost with the peer that cannot be learnt again: nothing waits for it here.
     bool MayBeForgotten() const { return !HasPending(); }
     bool HasLinks() const { return !_senders.empty() || !_receivers.empty(); }
     bool IsUnheardAt(LinkTime now) const { return now - _heardAt >= _context.Settings.SilentAfter; }
@@ -65,18 +65,19 @@ public:
     const Receivers &AllReceivers() const { return _receivers; }
     const PathControl &Path() const { return _path; }
 
-    // A message was enqueued for the peer: one that has given no token, or is silent, is asked.
+    // A message was enqueued for the peer: sends a hello to a peer that has given no token or is silent.
     void OnEnqueued(LinkTime now);
 
     // Everything that is due, except sending.
     void Advance(LinkTime now);
     // Advances, and sends all that may be sent now.
     void Run(LinkTime now);
-    // Acknowledgements and hellos that are due: their bytes, about; 0: none. And sends them.
+    // UrgentBytes returns the approximate bytes of the acknowledgements and hellos that are due, 0 if none;
+    // SendUrgent sends them.
     std::size_t UrgentBytes(LinkTime now) const;
     bool SendUrgent(LinkTime now);
-    // The next datagram of one link: its bytes, about, if it has at most so many on the air; 0: it has none
-    // now. And sends it, of at most so many bytes.
+    // DataBytes returns the approximate bytes of the link's next datagram, which takes at most `most` bytes
+    // on the air; 0: it has none now. SendData sends it.
     std::size_t DataBytes(const LinkSender &sender, std::size_t most, LinkTime now) const;
     bool SendData(LinkSender &sender, std::size_t most, LinkTime now);
     LinkTime NextDue() const;
@@ -89,11 +90,11 @@ private:
     void OnData(const LinkFrame &frame, LinkTime now);
     void OnAcks(const LinkFrame &frame, LinkTime now);
     void Measure(const LinkFrame &frame, LinkTime now);
-    // Whether it is newer than the one that was known.
+    // Takes the token if it is newer than the known one. Returns true if it was.
     bool TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now);
     void HeardNow(LinkTime now);
 
-    // True if the frame says an incarnation that no wall clock gives yet, and does not prove by an echo that
+    // True if the frame names an incarnation that no wall clock gives yet, and does not prove by an echo that
     // its sender hears this node.
     bool IsIncredible(const LinkFrame &frame) const;
     bool HasPending() const;
@@ -126,22 +127,24 @@ private:
     std::uint64_t _ownLife;
     std::uint64_t _incarnation = 0;
     PeerToken _token;
-    bool _knowsMe = false;  // the peer has this node's life and clock
-    LinkTime _heardAt;      // when something of its present life came last; at first, when it was made
-    LinkTime _unansweredSince = LinkNever;  // since when something that was sent wants an answer
+    bool _knowsMe = false;  // the peer knows this node's incarnation and clock
+    LinkTime _heardAt;      // when a frame of its present incarnation came last; at first, when this object
+                            // was made
+    LinkTime _unansweredSince = LinkNever;  // since when a sent frame waits for an answer
     bool _silent = false;                   // for SilentAfter
     LinkTime _helloAt = LinkNever;
-    LinkTime _helloGap;  // until the next one at least; doubles until a frame of both present lives comes
+    LinkTime _helloGap;  // least time to the next hello; doubles until a frame of both present incarnations
+                         // comes
     LinkTime _lastHelloAt = LinkNever;  // LinkNever: none was sent
     PathControl _path;
     Senders _senders;
     std::vector<LinkSender *> _byNumber;  // number 1 is at index 0
-    std::size_t _nextTurn = 0;            // whose turn it is to send, by number
+    std::size_t _nextTurn = 0;            // the link whose turn it is to send, by number
     Receivers _receivers;
     std::map<std::uint32_t, LinkReceiver *> _receiverOf;  // by the peer's numbers
-    std::vector<std::uint32_t> _unknownLinks;             // numbers that the peer must say the queues of
+    std::vector<std::uint32_t> _unknownLinks;             // numbers whose queues the peer must name
     std::vector<Refusal> _refusals;                       // to be acknowledged
-    // Of the frame that is being made: the receivers of its first acknowledgements; reused.
+    // The receivers of the first acknowledgements of the frame that is being made; reused.
     std::vector<LinkReceiver *> _acknowledged;
     bool _droppedBeyondGaps = false;  // since the peer was heard
 };

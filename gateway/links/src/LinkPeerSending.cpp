@@ -1,4 +1,4 @@
-// What goes out to one other node, and when.
+// The sending half of LinkPeer: chooses the frames to one other node, and their times.
 #include "LinkPeer.h"
 
 #include <rabit/gateway/links/LinkCheck.h>
@@ -16,14 +16,15 @@ namespace
 
 using namespace std::chrono_literals;
 
-// A token that was held for longer is echoed with the whole time: 32 bits of microseconds are an hour.
+// A token held for longer is echoed in a long frame with the whole time: 32 bits of microseconds wrap after
+// an hour.
 constexpr LinkTime LongestShortHold = 60s;
-// Of a frame's head, with an acknowledgement.
+// Approximate bytes of a frame's head with one acknowledgement.
 constexpr std::size_t AboutAnAck = 40;
 
 }  // namespace
 
-// Rule S2: messages go to who has given a token, and answers.
+// Rule S2: messages go only to a peer that has given a token and is not silent.
 bool LinkPeer::IsOpen() const
 {
     return _token.Known() && !_silent;
@@ -132,7 +133,7 @@ bool LinkPeer::SendData(LinkSender &sender, std::size_t most, LinkTime now)
     frame.Ask = filled == LinkSender::Filled::Question ||
                 (hasParts && (sender.WaitsForAck() || (sender.HasMore() && _path.TakeAsk(now))));
     Send(frame, filled != LinkSender::Filled::Nothing, now);
-    // The payloads are the outbox's: keep none of them.
+    // The outbox owns the payloads: keep none of them.
     frame.Data.Items.clear();
     return filled != LinkSender::Filled::Nothing;
 }
@@ -246,7 +247,7 @@ void LinkPeer::Send(const LinkFrame &frame, bool asks, LinkTime now)
     _context.Output.Send(frame);
 }
 
-// Hellos to a peer that does not make sense of this node, or is not there, become more and more seldom.
+// Hellos to a peer that does not know this node's incarnation, or is away, become more and more seldom.
 void LinkPeer::SendHello(LinkTime now)
 {
     LinkFrame &frame = BeginFrame(false, now);

@@ -10,8 +10,8 @@ namespace Rabit
 namespace
 {
 
-// Two monotonic clocks, each adjusted by at most 500 ppm (what the kernel's clock discipline may do), differ
-// by less than this part of the time passed.
+// Two monotonic clocks, each adjusted by at most 500 ppm (the limit of the kernel's clock discipline), differ
+// by less than the time passed divided by this.
 constexpr std::int64_t DriftPart = 990;
 
 }  // namespace
@@ -93,7 +93,7 @@ void LinkReceiver::DropBeyondGap()
     _kept.DropBeyondGap(_cumulative);
 }
 
-// A message that is here to its end may still go into the queue.
+// A message that is complete here may still go into the queue.
 void LinkReceiver::SourceEnded()
 {
     DropBeyondGap();
@@ -152,7 +152,7 @@ void LinkReceiver::OnItem(const LinkFrame &frame, const LinkItem &item, LinkTime
 }
 
 // Rules R5 and R6: the frame was made after the echoed reading of our clock plus the time that the sender
-// held it; so its transit took at most what has passed since.
+// held it; so its transit took at most the time since then.
 LinkTime LinkReceiver::AliveUntil(const LinkItem &item, const LinkEcho &echo, LinkTime now) const
 {
     if ((item.Flags & LinkFlagSkip) != 0 || (item.Flags & LinkFlagLast) == 0 || item.TtlLeft == LinkNoExpiry)
@@ -169,7 +169,7 @@ LinkTime LinkReceiver::AliveUntil(const LinkItem &item, const LinkEcho &echo, Li
     return now + LinkTime(left - left / DriftPart);
 }
 
-// Rule R4: the sender says a type's name until it knows that the number is known here.
+// Rule R4: the sender sends a type's name until it knows that the number is known here.
 std::string_view LinkReceiver::TypeOf(const LinkItem &item)
 {
     if ((item.Flags & LinkFlagFirst) == 0 || item.TypeNumber >= LinkMaxTypes)
@@ -262,7 +262,7 @@ bool LinkReceiver::TakeTurn(LinkTime now)
     }
     else if (_heldBack)
     {
-        _ackAt = ackAt;  // somebody else took the room: no news for the sender
+        _ackAt = ackAt;  // another link took the room: no news for the sender
     }
     return _counters.Delivered != delivered;
 }

@@ -25,13 +25,14 @@ class LinkReceiver
 public:
     LinkReceiver(LinkContext &context, std::string source, std::string queue);
 
-    // Data of the present lives of both nodes. `ackDelay`: how long the acknowledgement may wait for more.
+    // Processes data of the present incarnations of both nodes. `ackDelay`: how long the acknowledgement may
+    // wait for more.
     void OnData(const LinkFrame &frame, LinkTime ackDelay, LinkTime now);
     // True if parts wait here, or the sender was told that there is no room.
     bool IsWaiting() const { return HasSession() && (_heldBack || !_kept.Empty()); }
-    // The local queue has room again, for which so many links wait: the sender is told soon of its share.
+    // The local queue has room again, for which `waiting` links wait: the sender is told of its share soon.
     void OnRoom(std::size_t waiting, LinkTime now);
-    // Consumes what waits, up to one message that goes into the local queue. True if one did.
+    // Consumes waiting parts, up to one message that goes into the local queue. True if one did.
     bool TakeTurn(LinkTime now);
     // See LinkNode::Prepared.
     void Prepared(std::uint64_t senderLife, std::uint64_t number, std::shared_ptr<void> prepared,
@@ -41,13 +42,13 @@ public:
     // The source has been silent: gives back the memory of parts that wait for an earlier one. The sender
     // sends them again if it returns.
     void DropBeyondGap();
-    // The incarnation of the source is over: nothing more comes of what is incomplete.
+    // The incarnation of the source is over: no more parts of incomplete messages come.
     void SourceEnded();
     bool KeepsParts() const { return !_kept.Empty(); }
 
-    // When it has to be acknowledged; LinkNever: not at all.
+    // When an acknowledgement is due; LinkNever: none is.
     LinkTime AckDue() const { return _ackAt; }
-    // Makes the acknowledgement of now. `sourceLife`: the present incarnation of the source.
+    // Makes the present acknowledgement. `sourceLife`: the present incarnation of the source.
     void Describe(LinkAck &ack, std::uint64_t sourceLife) const;
     // That acknowledgement was sent.
     void Acknowledged(const LinkAck &ack);
@@ -70,7 +71,7 @@ private:
     bool MayOpen(const LinkFrame &frame, LinkTime now) const;
     void Open(const LinkFrame &frame, LinkTime now);
     void OnItem(const LinkFrame &frame, const LinkItem &item, LinkTime soon, LinkTime now);
-    // Rules R5 and R6: what is not alive even now may have expired.
+    // Rules R5 and R6: if the returned time is not after `now`, the message may have expired.
     LinkTime AliveUntil(const LinkItem &item, const LinkEcho &echo, LinkTime now) const;
     std::string_view TypeOf(const LinkItem &item);
     void Keep(const ReceivedPart &part);
@@ -92,7 +93,7 @@ private:
     const std::string _queue;
     std::uint32_t _link = 0;
 
-    // The session: the stream of the sender's life that is being received.
+    // The session: the stream of the sender's incarnation that is being received.
     std::uint64_t _senderLife = 0;  // s_inc; 0: there is no session
     std::uint64_t _cumulative = 0;  // cum: highest number consumed
     std::uint64_t _oldest = 0;      // the sender knows the outcomes of all before it
@@ -107,7 +108,7 @@ private:
     std::size_t _unacknowledgedBytes = 0;  // of their payloads
     bool _heldBack = false;                // the sender was last told that there is no room, or nearly none
     std::uint32_t _toldCredit = 0;         // by the last acknowledgement
-    std::size_t _sharers = 1;              // links that waited for the room that the sender is told of next
+    std::size_t _sharers = 1;              // links that share the room that the sender is told of next
     bool _noMemory = false;                // for the next piece of a large message
     // Number of the message that the driver prepares or has prepared; 0: none. It is the next one.
     std::uint64_t _givenOut = 0;

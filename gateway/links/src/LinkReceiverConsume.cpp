@@ -1,4 +1,4 @@
-// Rules R6 to R8: what becomes of the part whose turn it is.
+// Rules R6 to R8: consumes or holds back the part whose turn it is.
 #include "LinkReceiver.h"
 
 namespace Rabit
@@ -26,7 +26,7 @@ LinkReceiver::Result LinkReceiver::Consume(const ReceivedPart &part, LinkTime no
     return Has(part, LinkFlagLast) ? ConsumeLast(part, now) : ConsumePiece(part, now);
 }
 
-// A part that others of its message follow.
+// Consumes a part that is not the last one of its message.
 LinkReceiver::Result LinkReceiver::ConsumePiece(const ReceivedPart &part, LinkTime now)
 {
     if (Has(part, LinkFlagFirst) && part.Size <= _context.Settings.LargestMessage)
@@ -45,7 +45,8 @@ LinkReceiver::Result LinkReceiver::ConsumePiece(const ReceivedPart &part, LinkTi
     return Result::Consumed;
 }
 
-// False: there is no memory for it now. As with a full queue, the sender probes until there is.
+// Returns false if there is no memory for the part now. As with a full queue, the sender probes until there
+// is.
 bool LinkReceiver::Append(const ReceivedPart &part, LinkTime now)
 {
     _noMemory = !_assembly.Append(part.Payload, now);

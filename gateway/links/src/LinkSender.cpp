@@ -10,7 +10,7 @@ namespace Rabit
 namespace
 {
 
-// After so many bytes of probes in vain, whether there is a path is found out with less: others need the air.
+// After this many bytes of unanswered probes the next probes are smaller: others need the air.
 constexpr std::size_t BytesInVain = 2'000;
 
 }  // namespace
@@ -92,8 +92,8 @@ void LinkSender::Advance(bool open, LinkTime now)
     }
 }
 
-// A message that expires before anything of it was sent needs no word from the receiver. All messages of a
-// link live equally long, so the oldest is the first to expire.
+// A message that expires before any part of it was sent needs no acknowledgement. All messages of a link live
+// equally long, so the oldest is the first to expire.
 void LinkSender::ExpireWaiting(LinkTime now)
 {
     while (_outbox.HasWaiting() && now >= _outbox.FirstWaiting().ExpiresAt)
@@ -102,7 +102,7 @@ void LinkSender::ExpireWaiting(LinkTime now)
     }
 }
 
-// Rule S3: nothing more of a message that expires half sent is sent, but that it is to be skipped.
+// Rule S3: of a message that expires half sent only a SKIP is still sent.
 void LinkSender::ExpireSent(LinkTime now)
 {
     if (!_outbox.IsInPart() || now < _outbox.Next().ExpiresAt)
@@ -137,7 +137,7 @@ void LinkSender::SettleExpired(LinkTime now)
 }
 
 // Nothing was acknowledged for a round trip and more: ask again with one datagram (the tail loss probe of RFC
-// 8985), later and later. What is lost will show when it is answered: a path that has only become slow must
+// 8985), later and later. The answer will show which parts are lost: a path that has only become slow must
 // not get everything once more.
 void LinkSender::OnProbeTimer()
 {
@@ -177,8 +177,8 @@ void LinkSender::ArmProbe(bool turnedAway, LinkTime now)
         return;
     }
     const LinkTime plain = _path.ProbeTimeout(_doublings);
-    // A queue that is full makes room known: then asking is for the case that this got lost, the more so if
-    // the receiver has the message already.
+    // The receiver of a full queue announces room itself: asking only covers the loss of that, even more so
+    // if the receiver has the message already.
     const int stalls = _stalls + (IsFirstHeld() ? 2 : 0);
     const LinkTime slow = std::min<LinkTime>(plain * (1LL << std::min(stalls, 8)),
                                              std::max(plain, _context.Settings.MaxResend));
@@ -210,7 +210,7 @@ bool LinkSender::MayCut() const
            (_outbox.IsInPart() || _outbox.SentCount() < _options.Window) && HasCredit(_outbox.NextIs());
 }
 
-// When a datagram may go out: at once, when the path is paced so, or never.
+// When a datagram may be sent: at once, at the time of the path's pacing, or never.
 LinkTime LinkSender::ReadyAt() const
 {
     if (_outbox.Empty())
@@ -265,7 +265,8 @@ void LinkSender::OnEcho(LinkTime echo)
 {
     if (IsInVain() && echo > _inVainSince)
     {
-        // There is a path. Parts were in vain on it all the same: large ones may not get through.
+        // There is a path. Probes with parts were unanswered on it all the same: large ones may not get
+        // through.
         _bytesInVain = 0;
         _probesInVain = _partsInVain;
         _doublings = std::min(_doublings, _partsInVain);
@@ -273,8 +274,8 @@ void LinkSender::OnEcho(LinkTime echo)
     }
 }
 
-// Rule S5: what was sent as a whole but not acknowledged is in doubt, or is sent again as redelivered; what
-// was sent in part or not at all continues after it, from its beginning. The credit is forgotten.
+// Rule S5: a message that was sent whole and not acknowledged is in doubt, or is sent again as redelivered.
+// Messages that were sent in part or not at all follow, from their beginning. The credit is forgotten.
 void LinkSender::Restart()
 {
     for (std::uint64_t left = _outbox.NextSequence() - _outbox.FirstSequence(); left > 0; --left)

@@ -21,8 +21,8 @@ namespace Rabit
 class LinkSender
 {
 public:
-    // `path` and `ownLife`, the life in which this node is to the destination, must outlive the object.
-    // `number` is this link's among those to the destination.
+    // `path` and `ownLife`, this node's incarnation for the destination, must outlive the object. `number` is
+    // the number of this link among those to the destination.
     LinkSender(LinkContext &context, PathControl &path, const std::uint64_t &ownLife, std::uint32_t number,
                std::string destination, std::string queue, const LinkOptions &options);
 
@@ -32,37 +32,37 @@ public:
     // Rules S3 and S7 and the timers: everything that is due except sending. `open`: the peer has given a
     // token and is not silent.
     void Advance(bool open, LinkTime now);
-    // Whether a datagram may go out now, if the peer is open.
+    // True if a datagram may be sent now, if the peer is open.
     bool IsReady(LinkTime now) const;
-    // Bytes of parts that the next datagram would carry, about, and at most so many. What goes again first is
-    // not cut anew.
+    // Approximate bytes of parts in the next datagram, at most `most`. Parts that are sent again come first
+    // and are not cut anew.
     std::size_t NextBytes(std::size_t most) const;
     enum class Filled
     {
         Nothing,
         Parts,
-        Question  // no parts: whether anybody hears it
+        Question  // no parts: asks only whether the receiver hears it
     };
     // Rule S2: puts the next datagram's parts into the frame, whose header is complete, such that it is not
     // larger than `most` unless a single small part makes it so.
     Filled Fill(LinkFrame &frame, std::size_t most, LinkTime now);
-    // Whether there is more to send as soon as the path lets it.
+    // True if there is more to send as soon as the path allows it.
     bool HasMore() const { return HasLost() || MayCut(); }
-    // Whether there is more that may go only after an acknowledgement, whatever the path.
+    // True if there is more that may be sent only after an acknowledgement, whatever the path.
     bool WaitsForAck() const { return _outbox.HasMore() && !MayCut(); }
     // When Advance or sending is due; see LinkNode::NextDue.
     LinkTime NextDue(bool open) const;
 
-    // Whether the acknowledgement can be one of this stream: a number never sent cannot be acknowledged.
+    // True if the acknowledgement is possible for this stream: a number never sent cannot be acknowledged.
     bool IsPossible(const LinkAck &ack) const;
-    // Rule S4, for an acknowledgement of the present lives. `time`: the receiver's clock when it was sent.
-    // `echo`: when the newest frame was sent that the receiver had then; 0: unknown.
+    // Rule S4, for an acknowledgement of the present incarnations. `time`: the receiver's clock when it was
+    // sent. `echo`: when the newest frame was sent that the receiver had then; 0: unknown.
     void OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, LinkTime now);
-    // The peer has a frame that was sent at that time.
+    // The peer has received the frame that was sent at `echo`.
     void OnEcho(LinkTime echo);
-    // Something came from the peer after a silence: what waits for the probe timer need not wait longer.
+    // A frame came from the peer after a silence: the wait for the probe timer ends.
     void OnPeerHeard(LinkTime now);
-    // Rules S5 and S6: the receiver, or this node, is in a new life. The stream starts anew.
+    // Rules S5 and S6: the receiver, or this node, has a new incarnation. The stream starts anew.
     void Restart();
     // Reports everything pending as never to be delivered, or in doubt.
     void Close();
@@ -80,10 +80,11 @@ private:
     void ExpireSent(LinkTime now);
     void SettleExpired(LinkTime now);
     void OnProbeTimer();
-    // So much was sent without an answer that more goes only to who shows that he hears.
+    // True if so many probes were unanswered that whole datagrams are sent only once the receiver shows that
+    // it hears.
     bool IsInVain() const;
     LinkTime ReadyAt() const;
-    // Whether there is credit for this sent message, or the first as a probe.
+    // True if there is credit for this sent message, or if it is the first one and goes as a probe.
     bool HasCredit(std::uint64_t message) const;
     bool HasLost() const;
     bool MayCut() const;
@@ -106,9 +107,9 @@ private:
     void SetLost(SentPart &part, bool onTheWay);
     void LeavePath(SentPart &part);
     void ArmProbe(bool turnedAway, LinkTime now);
-    // The receiver has no room, for the first message or for what it has already.
+    // True if the receiver has no room for the first message, or for parts that it has already.
     bool IsTurnedAway() const;
-    // The receiver has the first part, and waits for room.
+    // True if the receiver has the first part, and waits for room.
     bool IsFirstHeld() const;
     void Report(const OutboxMessage &message, LinkOutcome outcome);
     void ReportExpired(const OutboxMessage &message);
@@ -128,7 +129,7 @@ private:
     std::size_t _inFlight = 0;
     std::size_t _lost = 0;  // parts that are to be sent again
     std::size_t _held = 0;  // parts that the receiver has, beyond a gap
-    // The first sent message that there is no credit for, and the receiver's clock when it said so.
+    // The first sent message without credit, and the receiver's clock in that acknowledgement.
     std::uint64_t _creditLimit = 0;
     std::int64_t _ackTime = 0;
 
@@ -141,9 +142,9 @@ private:
     int _partsInVain = 0;
     std::size_t _bytesInVain = 0;
     LinkTime _inVainSince{0};
-    int _stalls = 0;  // the same since anything was acknowledged, while the receiver is what holds it up
+    int _stalls = 0;  // the same since anything was acknowledged, while the receiver holds the stream up
     LinkTime _probeAt = LinkNever;
-    LinkTime _lostAt = LinkNever;  // when what was overtaken counts as lost
+    LinkTime _lostAt = LinkNever;  // when overtaken parts count as lost
     LinkTime _lastEcho{0};
     LinkTime _lastSentAt{0};
 

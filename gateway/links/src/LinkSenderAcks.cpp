@@ -1,4 +1,4 @@
-// Rule S4: what acknowledgements mean.
+// Rule S4: processes acknowledgements.
 #include "LinkSender.h"
 
 #include "OutcomeHistory.h"
@@ -17,7 +17,7 @@ bool IsHeldIn(const LinkAck &ack, std::uint64_t sequence)
     return bit < LinkWindowParts && ((ack.Held[bit / 64] >> (bit % 64)) & 1) != 0;
 }
 
-// The highest number that the acknowledgement speaks of.
+// The highest number in the acknowledgement.
 std::uint64_t HighestIn(const LinkAck &ack)
 {
     for (std::size_t word = ack.Held.size(); word-- > 0;)
@@ -51,7 +51,7 @@ void LinkSender::OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, Lin
 {
     if (!ack.Open)
     {
-        // There is no session yet. What it does not know is said again.
+        // There is no session yet. Names that the receiver does not know are sent again.
         _isKnown = _isKnown && time < _ackTime;
         return;
     }
@@ -79,7 +79,7 @@ void LinkSender::OnAck(const LinkAck &ack, std::int64_t time, LinkTime echo, Lin
     }
 }
 
-// Everything up to `cum` leaves the outbox, each message with the outcome that the bit of its last part says.
+// Everything up to `cum` leaves the outbox, each message with the outcome in the bit of its last part.
 void LinkSender::TakeUpTo(const LinkAck &ack, LinkTime now)
 {
     while (_outbox.FirstSequence() < _outbox.NextSequence() && _outbox.FirstSequence() <= ack.Cumulative)
@@ -115,7 +115,8 @@ void LinkSender::TakeUpTo(const LinkAck &ack, LinkTime now)
     }
 }
 
-// What the receiver has beyond a gap need not be sent again, unless it says later that it has it no more.
+// Parts that the receiver holds beyond a gap need not be sent again, unless a later acknowledgement shows
+// that it dropped them.
 void LinkSender::TakeHeld(const LinkAck &ack, LinkTime now)
 {
     if (_held == 0 && HighestIn(ack) == ack.Cumulative)
@@ -158,8 +159,8 @@ void LinkSender::OnArrived(SentPart &part, LinkTime now)
     }
 }
 
-// RACK (RFC 8985): lost is what was sent before something that has arrived, a round trip and some time for
-// reordering ago.
+// RACK (RFC 8985): a part is lost if it was sent before one that has arrived, and a round trip and some time
+// for reordering ago.
 void LinkSender::FindLost(LinkTime echo, LinkTime now)
 {
     _lastEcho = std::max(_lastEcho, echo);
@@ -171,7 +172,7 @@ void LinkSender::FindLost(LinkTime echo, LinkTime now)
         SentPart &part = _outbox.Part(sequence);
         if (part.SentAt > _lastEcho && !part.IsAgain)
         {
-            return;  // so were all after it
+            return;  // all parts after it were sent later, too
         }
         if (part.Cost == 0 || part.SentAt > _lastEcho)
         {

@@ -1,4 +1,4 @@
-// Rule S2: what goes into a datagram.
+// Rule S2: fills a datagram.
 #include "LinkSender.h"
 
 #include <rabit/gateway/links/LinkFrameCodec.h>
@@ -11,16 +11,16 @@ namespace Rabit
 namespace
 {
 
-// A rest of a datagram smaller than this takes no piece of a message.
+// A piece of a message is put into a datagram only if at least this much room is left.
 constexpr std::size_t SmallestPiece = 128;
-// Where more than this part is lost, small parts without an acknowledgement go along once more with what is
-// sent anyway, as far as these bytes of each and this part of the datagram.
+// If the loss rate exceeds LossThatCalls, small unacknowledged parts are sent once more in datagrams that are
+// sent anyway: parts up to SmallPart bytes, in up to this share of the datagram.
 constexpr double LossThatCalls = 0.02;
 constexpr std::size_t SmallPart = 256;
 constexpr std::size_t PartOfDatagram = 4;
-// What of parts a probe carries after others were in vain.
+// Most bytes of parts in a probe after others were unanswered.
 constexpr std::size_t SmallProbe = 128;
-// What stands before a message in a datagram, names left out.
+// Approximate bytes before a message in a datagram, without names.
 constexpr std::size_t AboutAnItem = 12;
 constexpr std::size_t AboutNames = 64;
 // The payload's length may take one byte more than that of an empty one, twice.
@@ -36,7 +36,7 @@ struct LinkSender::Filling
     LinkTime SentAt;
     std::size_t Head = 0;   // bytes before the parts
     std::size_t Used = 0;   // bytes of the parts
-    std::size_t Along = 0;  // of these, what goes along once more
+    std::size_t Along = 0;  // those of parts that go along once more
 
     LinkData &Data() { return Frame.Data; }
     bool IsFull() const { return Frame.Data.Items.size() >= LinkMaxItems; }
@@ -116,7 +116,7 @@ LinkSender::Filled LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime
     {
         if (_probe && _outbox.FirstSequence() < _outbox.NextSequence())
         {
-            // The receiver has everything: it is asked to take it.
+            // The receiver has every part: the first one is sent again to ask it to consume them.
             std::uint64_t first = _outbox.FirstSequence();
             _outbox.Part(first).IsHeld = false;
             --_held;
@@ -133,7 +133,7 @@ LinkSender::Filled LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime
     return Filled::Parts;
 }
 
-// A datagram of so many bytes is complete.
+// A datagram of `bytes` bytes is complete.
 void LinkSender::OnSent(std::size_t bytes, bool hasParts, bool turnedAway, LinkTime now)
 {
     const std::size_t onAir = bytes + _context.Settings.AirOverhead;
@@ -152,7 +152,7 @@ void LinkSender::OnSent(std::size_t bytes, bool hasParts, bool turnedAway, LinkT
     ArmProbe(turnedAway, now);
 }
 
-// Whether what a probe begins with is.
+// True if the part that a probe would begin with fits a small probe.
 bool LinkSender::IsProbeSmall(LinkTime now) const
 {
     std::uint64_t sequence = _outbox.FirstSequence();
@@ -162,7 +162,7 @@ bool LinkSender::IsProbeSmall(LinkTime now) const
     }
     if (sequence == _outbox.NextSequence())
     {
-        sequence = _outbox.FirstSequence();  // it has everything, and is asked to take it
+        sequence = _outbox.FirstSequence();  // the receiver has every part, and is asked to consume them
     }
     if (sequence == _outbox.NextSequence())
     {
@@ -173,7 +173,7 @@ bool LinkSender::IsProbeSmall(LinkTime now) const
     return part.Length <= SmallProbe || message.IsSkipped || now >= message.ExpiresAt;
 }
 
-// What was lost, all of it that is not acknowledged if this is a probe, and what goes along once more.
+// Adds lost parts (all unacknowledged parts, if this is a probe), and parts that go along once more.
 void LinkSender::FillAgain(Filling &filling)
 {
     const bool along = _path.LossRate() > LossThatCalls && !_probe;
@@ -215,7 +215,8 @@ std::size_t LinkSender::BytesAgain(const Filling &filling, std::uint64_t sequenc
     return LinkFrameCodec::ItemSize(item) + item.Payload.size();
 }
 
-// What the next new part takes at least. If what goes along once more took that, nothing new would ever go.
+// Least bytes of the next new part. They are kept free of parts that go along once more, which would
+// otherwise keep new parts out for ever.
 std::size_t LinkSender::BytesForNext(const Filling &filling) const
 {
     if (!MayCut())
@@ -296,7 +297,7 @@ void LinkSender::Describe(const SentPart &part, const OutboxMessage &message, st
     }
 }
 
-// Adds what fits of the next message: all that is left of it, or a piece. False: nothing more fits or may be
+// Adds as much of the next message as fits: its whole rest, or a piece. False: nothing more fits or may be
 // sent.
 bool LinkSender::FillNew(Filling &filling)
 {
@@ -312,7 +313,7 @@ bool LinkSender::FillNew(Filling &filling)
     std::size_t length = left;
     if (filling.Head + filling.Used + head + left > filling.Most)
     {
-        // What a datagram of its own has room for waits for that; what does not is cut.
+        // A message that fits a datagram of its own waits for that; a larger one is cut.
         const bool empty = filling.Data().Items.empty();
         const std::size_t room = filling.Room() > head ? filling.Room() - head : 0;
         if (!empty && (room < SmallestPiece || (next.Cut == 0 && left <= filling.Most / 2)))

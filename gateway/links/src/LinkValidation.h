@@ -1,4 +1,4 @@
-// Checks on what comes from the wire, made before anything changes. They use the message alone.
+// Checks on frames from the wire, made before anything changes. They use the frame alone.
 #pragma once
 
 #include <rabit/gateway/links/LinkMessages.h>
@@ -9,7 +9,7 @@ namespace Rabit
 
 // 1 to LinkMaxName bytes.
 bool IsPossibleName(std::string_view name);
-// Not 0, and such that a higher one exists.
+// True if it is not 0 and a higher one exists.
 bool IsPossibleIncarnation(std::uint64_t incarnation);
 
 bool IsWellFormed(const LinkFrame &frame);

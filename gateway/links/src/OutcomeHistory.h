@@ -5,7 +5,7 @@
 namespace Rabit
 {
 
-// What became of the last LinkWindowParts parts that a receiver consumed, in rings of bits: part n is bit n
+// The outcomes of the last LinkWindowParts parts that a receiver consumed, in rings of bits: part n is bit n
 // modulo their size, so that nothing has to be shifted.
 class OutcomeHistory
 {

@@ -9,8 +9,8 @@
 namespace Rabit::OutcomeRuns
 {
 
-// The outcomes of an acknowledgement as runs of equal ones: nearly always all are delivered, and one byte
-// says so. A run is a number: its length, and in the low two bits which outcome it is.
+// The outcomes of an acknowledgement as runs of equal ones: nearly always all are delivered, which takes one
+// byte. A run is a number: its length, and in the low two bits which outcome it is.
 enum Kind : std::uint64_t
 {
     Neither = 0,  // skipped
@@ -42,13 +42,13 @@ void Visit(const LinkAck &ack, const Visitor &visit)
     }
 }
 
-// The largest number that a run of at most so many can be.
+// The largest number that encodes a run of at most `length` outcomes.
 inline std::uint64_t Largest(std::uint64_t length)
 {
     return (length << 2) | Refused;
 }
 
-// Takes a run of at most what is left up to ack.Cumulative. False if it is none.
+// Decodes a run that ends at ack.Cumulative or earlier. False if it is none.
 inline bool Take(std::uint64_t run, std::uint64_t &sequence, LinkAck &ack)
 {
     const std::uint64_t length = run >> 2;

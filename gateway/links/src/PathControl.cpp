@@ -15,26 +15,28 @@ using Seconds = std::chrono::duration<double>;
 // Round trips up to this are those of wires. There nothing is paced: timers are too coarse.
 constexpr LinkTime ShortRoundTrip = 10ms;
 constexpr LinkTime PacedFrom = 5ms;
-// What is lost on a short path reduces its window to this many datagrams at least.
+// Losses on a short path do not reduce its window below this many datagrams.
 constexpr std::size_t LeastOnWire = 8;
 // How long the shortest round trip may take to be measured.
 constexpr LinkTime LongestDrain = 2s;
-// An acknowledgement is asked for after so many datagrams, or this part of the window if that is more.
+// An acknowledgement is requested after DatagramsToAsk datagrams, or after the window divided by PartToAsk,
+// if that is more.
 constexpr std::size_t DatagramsToAsk = 3;
 constexpr std::size_t PartToAsk = 4;
 constexpr LinkTime LongestDatagramTime = 250ms;
-// The window grows to so many times what arrives in the round trip that is aimed at (BBR).
+// The window grows to at most this multiple of the bytes that arrive in the target round trip (BBR).
 constexpr double UsefulWindow = 2.0;
 constexpr double SlowStartPace = 2.0;
 constexpr double PaceGain = 1.25;
 constexpr double MostLossToPace = 0.75;
-// A pace is used up if so much of it was sent.
+// A pace is used up if at least this share of it was sent.
 constexpr double UsedPace = 0.8;
-// Slow start ends when something was lost and what arrives has not grown by this, for so many round trips.
+// Slow start ends when something was lost and the delivery rate has not grown by the factor Growth for
+// StalledRounds round trips.
 constexpr double Growth = 1.25;
 constexpr int StalledRounds = 2;
-// The probe timer doubles so many times at first: where much is lost, waiting longer does not help. When
-// there is no path it goes on doubling.
+// The probe timer first doubles this many times: where much is lost, waiting longer does not help. When there
+// is no path it goes on doubling.
 constexpr int FirstDoublings = 3;
 // A round trip that was once very long is no reason to wait for the next ones that long.
 constexpr LinkTime LongestProbe = 3s;
@@ -92,9 +94,9 @@ void PathControl::Sent(std::size_t bytes, LinkTime now)
     _pacedUntil = std::max(_pacedUntil, now - timeOf(Datagram())) + timeOf(bytes);
 }
 
-// A quarter faster than the window would go by itself, so that it is the window that limits. But not faster
-// than what arrives calls for: what is sent in bursts overflows the buffers in front of a slow medium, and
-// leaves them empty in between, so that no round trip tells.
+// A quarter faster than the window per round trip, so that the window is the limit. But no faster than the
+// delivery rate justifies: bursts overflow the buffers in front of a slow medium and leave them empty in
+// between, so that no round trip shows it.
 double PathControl::Pace() const
 {
     const double roundTrip = Seconds(_times.Smoothed()).count();
@@ -126,7 +128,7 @@ void PathControl::Lost(std::size_t bytes)
     _lossRate += (1 - _lossRate) * WeightOf(bytes);
 }
 
-// Of so many bytes in an average over some tens of datagrams.
+// Weight of `bytes` bytes in an average over some tens of datagrams.
 double PathControl::WeightOf(std::size_t bytes) const
 {
     const double datagrams = static_cast<double>(bytes) / static_cast<double>(Datagram());
@@ -184,7 +186,7 @@ void PathControl::EndRound(LinkTime now)
     _wasFull = _inFlight + Datagram() >= Window();
 }
 
-// Some is lost, and more does not arrive however much is sent (BBR's full pipe).
+// Data is lost, and the delivery rate no longer grows (BBR's full pipe).
 void PathControl::LookForEndOfSlowStart(double rate)
 {
     if (!_slowStart || _roundAcknowledged + _roundLost < FirstWindow())
@@ -195,7 +197,8 @@ void PathControl::LookForEndOfSlowStart(double rate)
     _slowStart = _stalled < StalledRounds;
 }
 
-// Without a full window nothing of ours waits anywhere, and what was measured is what the path takes.
+// Without a full window nothing of this node waits in buffers, so the measured round trip is that of the
+// path.
 void PathControl::RememberShortest(LinkTime roundTrip, LinkTime now)
 {
     if (_draining || now - _shortestAt < _settings.PathMemory)
@@ -254,7 +257,7 @@ void PathControl::Decide(LinkTime roundTrip)
                                  : empty    ? _window / 4
                                             : Scaled(_window, std::max(factor, 1.0) - 1) / 2;
         _window += std::max<std::size_t>(more, 1);
-        // Sent in bursts, what is under way leaves the buffer empty in between, however much it is.
+        // Bytes under way that were sent in bursts leave the buffer empty in between, however many they are.
         if (!_slowStart && _rate > 0)
         {
             const double useful = UsefulWindow * _rate * Seconds(_shortest + target).count();

@@ -28,22 +28,22 @@ class PathControl
 public:
     explicit PathControl(const LinkSettings &settings);
 
-    // So many bytes went out / arrived / were found to be lost / are not waited for any more.
+    // That many bytes were sent / acknowledged / found to be lost / are not waited for any more.
     void Sent(std::size_t bytes, LinkTime now);
     void Acknowledged(std::size_t bytes, LinkTime now);
     void Lost(std::size_t bytes);
     void Forget(std::size_t bytes) { _inFlight -= bytes; }
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
-    // Nothing came back for long: what was known of the path may be wrong.
+    // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
 
-    // Whether the window has room for another datagram, or the larger part of one.
+    // True if the window has room for another datagram, or the larger part of one.
     bool HasRoom() const;
-    // More is to follow what was sent last: whether that must ask for an acknowledgement at once, so that the
-    // sender need not wait for one. If so it counts as asked.
+    // True if the datagram being sent, which others follow, must ask for an immediate acknowledgement, so
+    // that the sender need not wait for one. If true, it counts as asked.
     bool TakeAsk(LinkTime now);
-    // Not before this should it be sent.
+    // The next datagram should not be sent before this.
     LinkTime PacedUntil() const { return _pacedUntil; }
 
     std::size_t InFlight() const { return _inFlight; }
@@ -51,17 +51,17 @@ public:
     const RoundTrip &Times() const { return _times; }
     LinkTime Shortest() const { return _shortest; }  // 0: not measured yet
     LinkTime QueueingDelay() const { return _queueingDelay; }
-    // Part of what was sent that got lost lately, 0 to 1.
+    // Share of the sent bytes that was lost lately, 0 to 1.
     double LossRate() const { return _lossRate; }
     // Bytes per second that arrived in the last round trip with a full window; 0: not known.
     double DeliveryRate() const { return _rate; }
     // How long an acknowledgement may wait for others.
     LinkTime AckDelay() const;
-    // After so many probes in vain there is no path.
+    // After this many unanswered probes there is no path.
     static constexpr int ProbesInVain = 40;
-    // How long to wait for an answer before asking again, and the same after so many times in vain.
+    // How long to wait for an answer before the next probe, after `doublings` unanswered ones.
     LinkTime ProbeTimeout(int doublings = 0) const;
-    // How much later than others of its time a frame may come and not count as lost.
+    // How much later than frames sent at the same time a frame may come without counting as lost.
     LinkTime ReorderingTime() const;
     // A round trip that only a wire has.
     bool IsShort() const;

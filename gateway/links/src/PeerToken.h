@@ -7,7 +7,7 @@
 namespace Rabit
 {
 
-// The token: the newest reading of a peer's clock that came, and when it came by our own clock. Its echo
+// The token: the newest reading of a peer's clock that came, and when it came by this node's clock. Its echo
 // proves to the peer that a frame is younger than Time, and bounds how long the frame was on its way.
 struct PeerToken
 {

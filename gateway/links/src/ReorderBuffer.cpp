@@ -9,7 +9,7 @@ namespace Rabit
 namespace
 {
 
-// What a part takes beside its payload, roughly.
+// Approximate bytes that a part takes beside its payload.
 constexpr std::size_t PartOverhead = 128;
 
 }  // namespace
@@ -40,7 +40,7 @@ bool ReorderBuffer::Keep(const ReceivedPart &part)
         }
         if ((part.Flags & LinkFlagSkip) == 0)
         {
-            return true;  // it is to be skipped
+            return true;  // the message is to be skipped
         }
     }
     const std::size_t cost = PartOverhead + part.Payload.size() + part.Type.size();

@@ -20,19 +20,19 @@ struct ReceivedPart
     std::uint64_t Sequence = 0;
     std::uint64_t Through = 0;
     std::uint8_t Flags = 0;
-    // Its message has surely not expired before this, by the own clock.
+    // Its message surely lives until this time, by this node's clock.
     LinkTime AliveUntil = LinkNever;
-    std::string_view Type;  // of the first part; empty: a number was said that means nothing
+    std::string_view Type;  // of the first part; empty: its type number is unknown
     std::uint64_t Size = 0;
     std::span<const std::uint8_t> Payload;
 };
 
-// Parts of one link that came before an earlier one, or could not be consumed yet. What does not fit is not
-// kept: the sender is not told that it is here, and sends it again.
+// Parts of one link that came before an earlier one, or could not be consumed yet. A part that does not fit
+// is not kept: it is not acknowledged as held, and the sender sends it again.
 class ReorderBuffer
 {
 public:
-    // `bytesOfNode`: what all such buffers of the node hold; must outlive the object.
+    // `bytesOfNode`: bytes in all such buffers of the node; must outlive the object.
     ReorderBuffer(std::size_t limit, std::size_t limitOfNode, std::size_t &bytesOfNode)
         : _limit(limit), _limitOfNode(limitOfNode), _bytesOfNode(bytesOfNode)
     {
@@ -42,13 +42,13 @@ public:
     ReorderBuffer &operator=(const ReorderBuffer &) = delete;
 
     bool Empty() const { return _parts.empty(); }
-    // Keeps a copy. One that is here already, with that number, is replaced if the new one reaches further or
-    // may live longer. Whether it is here now.
+    // Keeps a copy. It replaces a part of the same number if it reaches further or may live longer. Returns
+    // true if the part is here now.
     bool Keep(const ReceivedPart &part);
     // The first one; there must be one. Valid until it is dropped or replaced.
     ReceivedPart First() const;
     void DropFirst();
-    // Drops what ends at this number or before it.
+    // Drops the parts that end at this number or before it.
     void DropThrough(std::uint64_t sequence);
     void Clear();
     // Drops the parts that wait for one between them and `cumulative`.

@@ -6,7 +6,7 @@ namespace Rabit
 {
 
 // The smoothed round trip of a path and its variation, as RFC 6298 has them. Every frame carries the time of
-// the newest one that came the other way (RFC 7323), so that each gives a measurement, also of what was sent
+// the newest one that came the other way (RFC 7323), so each gives a measurement, even if data was sent
 // twice.
 class RoundTrip
 {

@@ -9,7 +9,7 @@
 namespace Rabit
 {
 
-// The numbers of the types on one link, so that each name is said until the receiver has it.
+// The numbers of the types on one link. Each name is sent until the receiver has it.
 class TypeNumbers
 {
 public:
@@ -38,7 +38,7 @@ public:
             _types[number].IsKnown = true;
         }
     }
-    // Another life of the receiver knows none.
+    // A new incarnation of the receiver knows no numbers.
     void ForgetKnown()
     {
         for (Type &type : _types)

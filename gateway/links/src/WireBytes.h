@@ -20,7 +20,7 @@ inline std::size_t VarintSize(std::uint64_t value)
     return size;
 }
 
-// Writes little-endian into memory that is large enough: who uses it has counted before.
+// Writes little-endian, without bounds checks: the caller has computed the size before.
 class WireWriter
 {
 public:
@@ -62,8 +62,8 @@ private:
     std::uint8_t *_at;
 };
 
-// Reads what a WireWriter wrote, or anybody else: never beyond the end. Once something was missing or
-// impossible, IsGood is false and all further values are zero or empty.
+// Reads the format of WireWriter from untrusted bytes, never beyond the end. After a missing or impossible
+// value IsGood is false, and all further values are zero or empty.
 class WireReader
 {
 public:

@@ -31,7 +31,7 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
             {
                 return 0;
             }
-            // Before the gateway, which tells it what goes through queues.
+            // The recorder comes before the gateway, which tells it of queue messages.
             if (config.Record)
             {
                 reactor.AddManager(std::make_unique<RecorderManager>(config));

@@ -5,12 +5,12 @@
 namespace Rabit::Mcap
 {
 
-// Where the bytes of a file go, one after the other.
+// Takes the bytes of a file, one after the other.
 class ByteSink
 {
 public:
     virtual ~ByteSink() = default;
-    // All of them; false if not all could be written. Nothing is written after that.
+    // Writes all bytes; false if not all could be written. The caller writes nothing after that.
     virtual bool Write(ByteView bytes) = 0;
 };
 

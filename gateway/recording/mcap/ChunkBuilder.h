@@ -8,12 +8,12 @@
 namespace Rabit::Mcap
 {
 
-// Puts one chunk together after the other: schemas, channels and messages, and then an index of the messages
-// of each channel. Keeps its memory from chunk to chunk. Not thread-safe.
+// Builds one chunk after the other: schemas, channels and messages, then an index of the messages of each
+// channel. Keeps its memory from chunk to chunk. Not thread-safe.
 class ChunkBuilder
 {
 public:
-    // Compressed where that makes it smaller, or as it is.
+    // If `compresses`, a chunk is compressed where that makes it smaller.
     explicit ChunkBuilder(bool compresses) : _compresses(compresses) {}
 
     void Add(const Schema &schema);
@@ -31,7 +31,8 @@ public:
         ByteView Indexes;
         ChunkIndex Index;
     };
-    // As it is to be written at that offset of the file. Valid until Clear, which begins the next chunk.
+    // Returns the chunk as it must be written at that offset of the file. Valid until Clear, which begins
+    // the next chunk.
     Written Finish(std::uint64_t offset);
     void Clear();
 

@@ -5,8 +5,8 @@
 namespace Rabit::Mcap
 {
 
-// The fields of one record, from bytes of unknown origin. After the first that does not fit nothing fits any
-// more: all that is read then is empty, and IsGood is false.
+// Reads the fields of one record from untrusted bytes. After the first field that does not fit, IsGood is
+// false, and every further read returns an empty value.
 class FieldReader
 {
 public:

@@ -8,8 +8,8 @@
 namespace Rabit::Mcap
 {
 
-// The fields of one record, appended to bytes: little endian, lengths before what they are of. The record is
-// whole when the writer goes.
+// Appends the fields of one record to bytes: little endian, each length before its content. The destructor
+// completes the record.
 class FieldWriter
 {
 public:
@@ -56,9 +56,9 @@ public:
         }
         EndArray(length);
     }
-    // So many bytes of the record are written by somebody else.
+    // The caller writes so many further bytes of the record itself.
     void Beyond(std::size_t bytes) { _beyond = bytes; }
-    // What was written of the record's content.
+    // Return the size and the bytes of the content written so far.
     std::size_t Size() const { return _to.size() - _begin; }
     ByteView Content() const { return ByteView(_to).subspan(_begin); }
 

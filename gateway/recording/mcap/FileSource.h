@@ -7,7 +7,7 @@
 namespace Rabit::Mcap
 {
 
-// A file of the file system, which may be growing: its size is that of the beginning.
+// A file of the file system, which may be growing: Size is its size at construction.
 class FileSource final : public ByteSource
 {
 public:

@@ -19,7 +19,7 @@ using TextMap = std::map<std::string, std::string>;
 
 // At the beginning and at the end of a file.
 inline constexpr std::array<std::uint8_t, 8> Magic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
-// Of each record: opcode, length of what follows.
+// Bytes of the head of each record: opcode, and length of the content.
 inline constexpr std::size_t RecordHead = 9;
 
 enum class Opcode : std::uint8_t
@@ -82,7 +82,7 @@ struct Message
     std::uint64_t PublishTime = 0;  // when it was posted or sent
     ByteView Data;
 };
-// What a message takes in a chunk beside its data, the head of the record included.
+// Bytes that a message takes in a chunk beside its data, the head of the record included.
 inline constexpr std::size_t MessageHead = RecordHead + 22;
 
 struct Chunk

@@ -7,7 +7,7 @@
 namespace Rabit::Mcap
 {
 
-// What of a file was taken over into another.
+// The result of a recovery.
 struct Recovered
 {
     std::uint64_t Messages = 0;
@@ -16,8 +16,8 @@ struct Recovered
     bool IsWritten = false;             // whether the other file is whole
 };
 
-// Writes all that can be read of a file into another, in the order in which it was written, with an index,
-// and ends that. Whatever the file holds: it was truncated, has damaged chunks or none at all.
+// Writes all that can be read of a file into another file, in the same order, with an index, and ends that
+// file. The source may be truncated, or have damaged chunks or none at all.
 Recovered Recover(ByteSource &source, McapWriter &writer);
 
 }  // namespace Rabit::Mcap

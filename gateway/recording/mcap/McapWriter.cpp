@@ -80,7 +80,7 @@ bool McapWriter::Add(const Message &message)
     return true;
 }
 
-// Each of the two kinds of chunks is read without the other.
+// Writes a channel and its schema once into each kind of chunk, since one kind is read without the other.
 void McapWriter::Introduce(KnownChannel &channel, ChunkBuilder &chunk, bool Places::*place)
 {
     if (channel.In.*place)

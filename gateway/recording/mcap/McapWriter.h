@@ -10,23 +10,23 @@
 namespace Rabit::Mcap
 {
 
-// Writes one MCAP file: the beginning when it is made, chunks as they are full or FinishChunks is called, and
-// with Finish the summary that readers need to find anything without reading all.
+// Writes one MCAP file. The constructor writes the beginning. A chunk is written when it is full, or by
+// FinishChunks. Finish writes the summary, by which readers find messages without reading all.
 //
-// A file that ends anywhere can be read up to the last whole record: schema and channel stand in the chunks
-// before the first message of each. Messages are compressed with zstd, but for large ones, pictures as a
-// rule, which have chunks of their own as they are: neither do they cost time in vain, nor do the others wait
-// for a chunk to be full of them.
+// A truncated file can be read up to the last whole record: a schema and a channel stand in the chunks
+// before their first message. Messages are compressed with zstd, except large ones, pictures as a rule.
+// These have chunks of their own: compressing them would cost time in vain, and other messages would wait
+// for a chunk to fill with them.
 //
 // After the sink has failed nothing is written any more, and IsGood is false. Not thread-safe.
 class McapWriter
 {
 public:
     static constexpr std::size_t ChunkSize = 1U << 20;
-    // From here on a message is large.
+    // A message of this size or more is large.
     static constexpr std::size_t LargeMessage = 16U << 10;
     static constexpr std::size_t LargeChunkSize = 4U << 20;
-    // What is larger is refused: readers have their bounds, too.
+    // Larger messages are refused: readers have their bounds, too.
     static constexpr std::size_t LargestMessage = 128U << 20;
 
     struct Options
@@ -35,32 +35,33 @@ public:
         std::string Profile;
         bool Compresses = true;
     };
-    // The sink must outlive it.
+    // The sink must outlive the writer.
     McapWriter(ByteSink &sink, const Options &options);
 
-    // Return the number by which it is named. No more than 65535 of each: then 0 for a schema, which is
-    // none, and nothing for a channel. A schema that the writer does not have throws std::invalid_argument.
+    // Return the number of the new schema or channel. At most 65535 of each: beyond that AddSchema returns
+    // 0, which means none, and AddChannel nothing. A schema that the writer does not have throws
+    // std::invalid_argument.
     std::uint16_t AddSchema(const std::string &name, const std::string &encoding, const std::string &data);
     std::optional<std::uint16_t> AddChannel(std::uint16_t schema, const std::string &topic,
                                             const std::string &encoding, const TextMap &metadata = {});
-    // False if it is larger than LargestMessage, or the sink has failed. A channel that the writer does not
-    // have throws std::invalid_argument.
+    // Adds a message; false if it is larger than LargestMessage, or the sink has failed. A channel that the
+    // writer does not have throws std::invalid_argument.
     bool Add(const Message &message);
     bool AddMetadata(const Metadata &metadata);
     bool AddAttachment(const Attachment &attachment);
-    // Writes what is in unfinished chunks.
+    // Writes the unfinished chunks.
     bool FinishChunks();
-    // What is in unfinished chunks and the summary. Nothing may be added after it.
+    // Writes the unfinished chunks and the summary. Nothing may be added after it.
     bool Finish();
 
     bool IsGood() const { return _good; }
-    // What the sink took, and with it what waits in chunks.
+    // Bytes that the sink took; and the same with the bytes that wait in chunks.
     std::uint64_t BytesWritten() const { return _offset; }
     std::uint64_t BytesToWrite() const { return _offset + _small.Size() + _large.Size(); }
     const Statistics &Counted() const { return _statistics; }
 
 private:
-    // Where a schema or channel has been written to.
+    // The kinds of chunks into which a schema or channel has been written.
     struct Places
     {
         bool Small = false;

@@ -11,8 +11,8 @@
 namespace Rabit::Mcap
 {
 
-// The messages of a file by the time at which they were recorded; those of the same time in the order of the
-// file. Loads chunks as it comes to them. Not thread-safe.
+// Returns the messages of a file in the order of log times; messages of one time in the order of the file.
+// Loads chunks as it comes to them. Not thread-safe.
 class MessageCursor
 {
 public:
@@ -22,15 +22,16 @@ public:
         std::uint64_t To = std::numeric_limits<std::uint64_t>::max();  // included
         std::function<bool(std::uint16_t channel)> Wants{};            // null: all
     };
-    // Chunks that overlap in time are held together. More than this of them are not read, and a problem.
+    // Memory for chunks that overlap in time, which must be held together. Chunks beyond it are not read,
+    // and are a problem.
     static constexpr std::size_t MostBytes = 1U << 30;
 
-    // Both must outlive it, and the file must not become shorter.
+    // Both must outlive the cursor, and the file must not become shorter.
     MessageCursor(ByteSource &source, const Contents &contents, Selection selection);
     ~MessageCursor();
-    // Nothing at the end. Valid until the next call.
+    // Returns the next message, valid until the next call; nothing at the end.
     std::optional<Message> Next();
-    // What could not be read, one line each.
+    // The chunks that could not be read, one line each.
     const std::vector<std::string> &Problems() const { return _problems; }
 
 private:
@@ -53,7 +54,7 @@ private:
     std::vector<const ChunkIndex *> _chunks;  // by their beginning
     std::size_t _next = 0;                    // of _chunks
     std::priority_queue<std::shared_ptr<Loaded>, std::vector<std::shared_ptr<Loaded>>, Later> _loaded;
-    std::shared_ptr<Loaded> _current;  // holds what was returned last
+    std::shared_ptr<Loaded> _current;  // holds the message that was returned last
     std::size_t _bytes = 0;
     std::vector<std::string> _problems;
 };

@@ -4,10 +4,10 @@
 
 #include "recording/mcap/McapRecords.h"
 
-// Records to bytes, appended with their heads; and back, from the bytes behind the head. Reading gives
-// nothing for bytes that are no such record, never reads past them, and takes no more memory than a small
-// multiple of their number. What follows the fields that are known here is passed over, as the format wants
-// it. Views in what was read point into the bytes.
+// Append functions encode a record with its head. Read functions decode a record from the bytes behind its
+// head. They return nothing for bytes that are no such record, never read past them, and take no more
+// memory than a small multiple of their number. Bytes behind the fields that are known here are ignored, as
+// the format requires. Views in a decoded record point into the bytes.
 namespace Rabit::Mcap
 {
 
@@ -25,9 +25,9 @@ void Append(Bytes &to, const Metadata &record);
 void Append(Bytes &to, const MetadataIndex &record);
 void Append(Bytes &to, const SummaryOffset &record);
 void AppendDataEnd(Bytes &to);
-// All of a chunk but its records, which are to follow: those that chunk.Records stands for.
+// Appends all of a chunk but its records (chunk.Records), which the caller must write next.
 void AppendChunkHead(Bytes &to, const Chunk &chunk);
-// A footer of which SummaryCrc was computed over `summary` and what of the footer comes before it.
+// Appends a footer, with a SummaryCrc over `summary` and the bytes of the footer before it.
 void AppendFooter(Bytes &to, Footer footer, ByteView summary);
 
 std::optional<Header> ReadHeader(ByteView content);

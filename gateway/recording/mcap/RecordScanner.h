@@ -8,11 +8,12 @@
 namespace Rabit::Mcap
 {
 
-// The records of a file one after the other, from its beginning, whatever the file holds. Not thread-safe.
+// Returns the records of a file one after the other, from its beginning, whatever the file holds. Not
+// thread-safe.
 class RecordScanner
 {
 public:
-    // The content of a larger record is passed over.
+    // The content of a larger record is skipped.
     static constexpr std::uint64_t LargestRecord = 256U << 20;
 
     enum class End
@@ -20,7 +21,7 @@ public:
         NotYet,
         Whole,      // the magic number, behind a footer
         Truncated,  // a record, or what would tell that it was the last one, is not whole
-        Damaged     // what stands there is no record
+        Damaged     // the bytes there are no record
     };
     struct Record
     {
@@ -31,12 +32,12 @@ public:
         bool IsPassedOver = false;
     };
 
-    // The source must outlive it.
+    // The source must outlive the scanner.
     explicit RecordScanner(ByteSource &source);
-    // Nothing at the end.
+    // Returns the next record; nothing at the end.
     std::optional<Record> Next();
     End HowItEnded() const { return _end; }
-    // All before it are whole records.
+    // The offset before which all records are whole.
     std::uint64_t GoodUntil() const { return _offset; }
 
 private:
@@ -50,7 +51,7 @@ private:
     Bytes _content;
 };
 
-// The records within bytes, a chunk's for instance, one after the other.
+// Returns the records within bytes, a chunk's for instance, one after the other.
 class RecordIterator
 {
 public:
@@ -62,7 +63,7 @@ public:
         ByteView Content;
     };
     std::optional<Record> Next();
-    // Whether all bytes were records.
+    // True if all bytes were records.
     bool WasGood() const { return _offset == _bytes.size(); }
 
 private:

@@ -8,7 +8,7 @@
 namespace Rabit::Mcap
 {
 
-// Compresses with zstd at its quickest ordinary level, again and again with the same memory. Not thread-safe.
+// Compresses with zstd at its quickest ordinary level, and reuses its memory. Not thread-safe.
 class ZstdCompressor
 {
 public:
@@ -22,7 +22,8 @@ private:
     std::unique_ptr<Context> _context;
 };
 
-// Exactly `size` bytes come of it, or it is refused. Takes no more memory than that, and 8 MiB besides.
+// Decompresses to exactly `size` bytes; false if that is impossible. Takes no more memory than that, and 8
+// MiB besides.
 bool DecompressZstd(ByteView compressed, std::uint64_t size, Bytes &to);
 
 }  // namespace Rabit::Mcap

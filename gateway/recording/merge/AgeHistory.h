@@ -9,18 +9,19 @@
 namespace Rabit::Merge
 {
 
-// How old what a node knew of a message was, over time: it grows with time, and falls when something newer
-// comes. In bounded memory, however long it goes on: for a plot the range of ages in each column of it, and
+// The age of a message, as a node knew it, over time: it grows with time, and falls when a newer value
+// comes. Memory is bounded, whatever the length: it keeps the range of ages in each column of a plot, and
 // how much time was spent at which age. Not thread-safe.
 class AgeHistory
 {
 public:
-    // For a plot of that time, in so many columns, one at least. What is outside is cut off.
+    // For a plot of that time with that number of columns, one at least. Ages outside of that time are not
+    // plotted.
     AgeHistory(Moment begin, Moment end, std::size_t columns);
 
-    // A value came that was posted at that moment; in the order in which they came.
+    // A value that was posted at `postedAt` came at `at`. To be called in the order in which values came.
     void Receive(Moment at, Moment postedAt);
-    // The knower's life ended, or the plot.
+    // The life of the knowing node, or the plot, ended.
     void End(Moment at);
 
     struct Column
@@ -31,11 +32,11 @@ public:
     };
     const std::vector<Column> &Columns() const { return _columns; }
     std::size_t Values() const { return _values; }
-    // What the age did not exceed for that part of the time, from 0 to 1, to some percent of it. 0 if no time
-    // has passed.
+    // Returns the age that was not exceeded for that part of the time, from 0 to 1, to within some percent
+    // of the age. 0 if no time has passed.
     Moment Percentile(double part) const;
     Moment Oldest() const { return _oldest; }
-    // When it was.
+    // The moment of the oldest age.
     Moment OldestAt() const { return _oldestAt; }
 
 private:
@@ -48,8 +49,8 @@ private:
     std::vector<Column> _columns;
     std::vector<double> _bins;  // of ages, each a little longer than the one before
     std::size_t _values = 0;
-    std::optional<Moment> _postedAt;  // of what is known
-    Moment _at = 0;                   // so far it is in columns and bins
+    std::optional<Moment> _postedAt;  // of the known value
+    Moment _at = 0;                   // columns and bins are complete up to here
     Moment _oldest = 0;
     Moment _oldestAt = 0;
 };

@@ -21,7 +21,7 @@ constexpr double PanelHeight = 130;
 constexpr double PanelFoot = 26;
 constexpr double Foot = 24;
 
-// Told apart by those who see few colours, too (Okabe and Ito).
+// Colours that colour-blind people can tell apart, too (Okabe and Ito).
 constexpr std::array<const char *, 7> Colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                  "#56b4e9", "#e69f00", "#444444"};
 
@@ -32,7 +32,7 @@ std::string Number(double value)
     return text.data();
 }
 
-// What stands in a file may be anything.
+// Escapes XML, and replaces all but printable ASCII by `?`: texts of a file may hold anything.
 std::string Escaped(const std::string &text)
 {
     std::string escaped;
@@ -65,7 +65,7 @@ std::string AgeText(int decade)
                                        : "1e" + std::to_string(decade) + " s";
 }
 
-// The step of marks for some ten of them.
+// Returns a step that gives no more than twelve marks.
 double StepFor(double seconds)
 {
     for (double step :
@@ -125,7 +125,7 @@ private:
                 }
             }
         }
-        // From 0.1 ms up: what is below is no more than noise.
+        // The axis begins at 0.1 ms or above: smaller ages are noise.
         _least =
             static_cast<int>(std::floor(std::log10(std::max(1e-9 * static_cast<double>(youngest), 1e-4))));
         _most = static_cast<int>(std::ceil(std::log10(std::max(1e-9 * static_cast<double>(oldest), 1e-3))));
@@ -189,7 +189,7 @@ private:
         }
     }
 
-    // Stretches without a gap.
+    // Draws each stretch without a gap.
     void Draw(const AgeHistory &ages, double top, const std::string &colour)
     {
         const auto &columns = ages.Columns();

@@ -10,11 +10,11 @@ namespace Rabit::Merge
 
 // Ages over time as a picture (SVG 1.1, nothing else needed): a panel for each pair of nodes, one below the
 // other, with a line for each message. Time goes to the right, the same in all panels; age goes up, by
-// decades, the same in all panels. Of each column of the picture the range of ages is shown, the oldest as a
+// decades, the same in all panels. Each column of the picture shows its range of ages, and the oldest as a
 // line.
 struct AgePlot
 {
-    // Of the histories, so that each is as wide as it is drawn.
+    // Columns that each history must have, so that it is as wide as it is drawn.
     static constexpr std::size_t Columns = 880;
 
     struct Line

@@ -55,14 +55,14 @@ void ClockGraph::Finish()
     }
 }
 
-// Pairs that know nothing are no edges.
+// An edge always has a reading: Finish makes none for pairs without one.
 ClockPair::Reading ClockGraph::ReadEdge(const Edge &edge, Moment time)
 {
     const auto reading = edge.IsForward ? edge.Pair->ToSecond(time) : edge.Pair->ToFirst(time);
     return reading.value_or(ClockPair::Reading());
 }
 
-// The way of the least sum of bounds (Dijkstra), with the time carried along.
+// Finds the path with the least sum of bounds (Dijkstra), and carries the time along.
 std::optional<ClockGraph::Reading> ClockGraph::Read(Clock clock, Clock other, Moment shows) const
 {
     struct Reached
@@ -111,7 +111,7 @@ std::optional<ClockGraph::Reading> ClockGraph::Read(Clock clock, Clock other, Mo
         reading.By.push_back(reached[at].From);
     }
     std::reverse(reading.By.begin(), reading.By.end());
-    // Where two ways disagree by more than their bounds, a clock stood still and one of them does not know.
+    // If two paths disagree by more than their bounds, a clock stood still, and one path does not show it.
     Moment disagreement = 0;
     for (Clock at = clock;; at = reached[at].From)
     {

@@ -13,20 +13,21 @@
 namespace Rabit::Merge
 {
 
-// The source clocks of the lives of nodes, and how they stand to each other: what all of them told. From one
-// clock to another it goes by whichever clocks between them make the bound of the error least, also by those
-// of nodes of which there is no recording. Where other ways beside it contradict it, that is part of the
+// A graph of the source clocks of the lives of nodes. Its edges are the relations between clocks that all
+// of them reported. A reading takes the path between two clocks with the least bound of the error, also
+// through nodes without a recording. If a parallel path contradicts it, the difference is part of the
 // bound. Not thread-safe; constant after Finish.
 class ClockGraph
 {
 public:
     using Clock = std::size_t;
 
-    // The source clock of that life.
+    // Returns the source clock of that life.
     Clock Of(const std::string &node, std::uint64_t incarnation);
-    // What that life of a node told at that log time of its recording. In the order of log times.
+    // Adds what the life with the clock `teller` reported at that log time of its recording. To be called
+    // in the order of log times.
     void Add(Clock teller, Moment logTime, const ClockReport &report);
-    // Before anything is asked; nothing is added after it.
+    // To be called once, after the last Add and before the first query.
     void Finish();
 
     struct Reading
@@ -35,11 +36,11 @@ public:
         Moment Bound = 0;
         std::vector<Clock> By;  // between the two, in order
     };
-    // What one clock showed when the other showed that; empty if nothing leads from one to the other.
+    // Returns what `clock` showed when `other` showed `shows`; empty if no path joins them.
     std::optional<Reading> Read(Clock clock, Clock other, Moment shows) const;
-    // How many clocks that one has relations with, of those that are asked for.
+    // Returns to how many of `others` the clock has relations.
     std::size_t Relations(Clock clock, const std::vector<Clock> &others) const;
-    // How many relations of it are known, over all time.
+    // Returns how many reports about relations of the clock are of use, over all time.
     std::size_t Count(Clock clock) const;
     const std::string &NodeOf(Clock clock) const { return _clocks[clock].Node; }
     std::size_t Size() const { return _clocks.size(); }
@@ -61,7 +62,7 @@ private:
     static ClockPair::Reading ReadEdge(const Edge &edge, Moment time);
 
     std::map<std::pair<std::string, std::uint64_t>, Clock> _byLife;
-    std::map<std::pair<Clock, Clock>, std::shared_ptr<ClockPair>> _pairs;  // who told, of whom
+    std::map<std::pair<Clock, Clock>, std::shared_ptr<ClockPair>> _pairs;  // by reporting clock and peer
     std::vector<Known> _clocks;
 };
 

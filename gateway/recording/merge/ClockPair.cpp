@@ -8,18 +8,19 @@ namespace
 {
 
 constexpr Moment LeastApart = OneSecond / 2;
-// Half of what the filter remembers at most, and all of what it does at least.
+// The filter remembers one to two of these periods.
 constexpr Moment FilterPeriod = 15 * OneSecond;
-// So long before it is told a beat may have come.
+// A beat may have come this long before its report.
 constexpr Moment ToldEvery = OneSecond;
-// What it takes for a step, beside what is uncertain: less passes for a delay in the estimate, too.
+// A step is a change by more than this, beyond the uncertainty: a smaller one may be a delay in the
+// estimate.
 constexpr Moment LeastStep = OneSecond / 10;
-// So long it takes until a step is seen.
+// A step is seen after this time at most.
 constexpr Moment StepMargin = 5 * OneSecond;
-// So far around an estimate others may contradict it, or be used in its place.
+// Other estimates may contradict one within `Contradiction` of it, and take its place within `Near`.
 constexpr Moment Contradiction = 32 * OneSecond;
 constexpr Moment Near = 60 * OneSecond;
-// More says nothing.
+// Reports that are more uncertain are ignored.
 constexpr Moment MostUncertain = 3600 * OneSecond;
 
 }  // namespace
@@ -37,7 +38,8 @@ void ClockPair::Add(Moment first, Moment second, std::optional<Moment> uncertain
         return;
     }
     _lastHalfRoundTrip = uncertainBy;
-    // Clocks do not go back: what this one contradicts was guessed while the other clock stood still.
+    // Clocks do not go back: the entries that this one contradicts were guessed while the other clock stood
+    // still.
     while (!_entries.empty() && _entries.back().Second >= second)
     {
         _entries.pop_back();
@@ -75,8 +77,8 @@ void ClockPair::Split()
     }
 }
 
-// The filter took its smallest difference from beats among which those of the last period are; half of its
-// smallest round trip was subtracted, which may be from two periods ago.
+// The filter's smallest difference is from beats that include those of the last period. Half of its
+// smallest round trip was subtracted, and that may be from two periods ago.
 void ClockPair::BoundByRoundTrips()
 {
     std::size_t inPeriod = 0;  // the first whose beat is of the last period for sure
@@ -110,14 +112,15 @@ void ClockPair::BoundByRoundTrips()
                 ofPeriod = std::min(ofPeriod, _entries[j].HalfRoundTrip);
             }
         }
-        // After a step the filter has forgotten differences, and no round trips, of which not all are told.
+        // After a step the filter has forgotten its differences, but not its round trips, and these are not
+        // all reported.
         const bool isNewSegment = _entries[oldest].Segment != entry.Segment;
         entry.RoundTripBound = 2 * ofPeriod - (isNewSegment ? 0 : ofAll);
         entry.Lag = entry.First - remembers;
     }
 }
 
-// Between a good estimate early and one late in the longest stretch without a step.
+// Measures between a good early and a good late estimate of the longest stretch without a step.
 void ClockPair::MeasureDrift()
 {
     std::size_t begin = 0;
@@ -271,7 +274,7 @@ std::optional<ClockPair::Reading> ClockPair::At(Moment time, Moment Entry::*from
     const Moment between = (*after).*from - before.*from;
     if (before.Segment != after->Segment)
     {
-        // Somewhere between the two the step was.
+        // The step was somewhere between the two.
         return Reading{(past < between / 2 ? left : right).Time,
                        Within(std::max(left.Bound, right.Bound) + Apart(left.Time, right.Time))};
     }

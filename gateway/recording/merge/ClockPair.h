@@ -9,31 +9,31 @@
 namespace Rabit::Merge
 {
 
-// How the clocks of two nodes stand to each other over time, from what one of them told once a second
-// (ClockReport), with a bound of the error.
+// The relation between the clocks of two nodes over time, with a bound of its error, from the reports that
+// one of them made once a second (ClockReport).
 //
-// What is told is the estimate of a minimum filter that remembers 15 to 30 seconds, and half of the last
-// round trip. The bound of one such estimate is half of the smallest round trip that the filter is known to
-// remember, and what the clocks may have drifted meanwhile. How quickly they drift is measured over all of
-// it; where that cannot tell they are taken to run within MostDrift of each other. Where estimates differ by
-// more than that explains (a clock was slewed), their difference is part of the bound; and around a step (a
-// clock stood still), so is the step.
+// A report holds the estimate of a minimum filter that remembers 15 to 30 seconds, and half of the last
+// round trip. The bound of an estimate is half of the smallest round trip that the filter is known to
+// remember, plus the possible drift of the clocks meanwhile. The drift is measured over all reports; if
+// they are too few, it is taken as MostDrift. If estimates differ by more than drift explains (a clock was
+// slewed), their difference is part of the bound. Around a step (a clock stood still), the step is part of
+// the bound, too.
 //
-// An estimate whose round trip is that of the one before says nothing new: nothing was heard. Between two,
-// the clocks are taken to have drifted evenly; of those near by that with the least bound is used. Not
-// thread-safe; constant after Finish.
+// An estimate with the round trip of the one before is ignored, since nothing was heard meanwhile. Between
+// two estimates the clocks are taken to have drifted evenly. Of the estimates near by, the one with the
+// least bound is used. Not thread-safe; constant after Finish.
 class ClockPair
 {
 public:
-    // Of each other, unless they are seen to run worse.
+    // Most drift between two clocks, unless more is measured.
     static constexpr double MostDrift = 100e-6;
-    // However even they seem to run.
+    // Least drift that is assumed, however even the clocks seem to run.
     static constexpr double LeastDrift = 5e-6;
 
-    // The same moment on both clocks. Those after the first are told in the order of the first clock, or
-    // passed over; and so is what comes within half a second of the one before.
+    // Adds the same moment on both clocks. To be called in the order of the first clock: moments that are
+    // not at least half a second after the one before are ignored.
     void Add(Moment first, Moment second, std::optional<Moment> uncertainBy);
-    // Before anything is asked; nothing is added after it.
+    // To be called once, after the last Add and before the first query.
     void Finish();
 
     struct Reading
@@ -41,12 +41,12 @@ public:
         Moment Time = 0;   // on the other clock
         Moment Bound = 0;  // how wrong that may be
     };
-    // Empty if nothing of use was told.
+    // Convert a reading of one clock to the other; empty if no report is of use.
     std::optional<Reading> ToSecond(Moment first) const { return At(first, &Entry::First, &Entry::Second); }
     std::optional<Reading> ToFirst(Moment second) const { return At(second, &Entry::Second, &Entry::First); }
-    // How much of what was told is of use.
+    // Number of reports that are of use.
     std::size_t Count() const { return _entries.size(); }
-    // By how much the clocks may drift apart, of the time that passes.
+    // The part of the passing time by which the clocks may drift apart.
     double Drift() const { return _drift; }
 
 private:
@@ -56,11 +56,11 @@ private:
         Moment Second = 0;
         Moment HalfRoundTrip = 0;
         Moment RoundTripBound = 0;  // without drift
-        Moment Lag = 0;             // so old may be what the filter remembers
-        Moment Doubt = 0;           // by how much others near by differ, if drift does not explain it
+        Moment Lag = 0;             // so old may be the memory of the filter
+        Moment Doubt = 0;           // difference to others near by, if drift does not explain it
         Moment Bound = 0;
         std::size_t Segment = 0;  // between steps
-        std::size_t Best = 0;     // that is to be used at this moment
+        std::size_t Best = 0;     // the entry to be used at this moment
 
         Moment Offset() const { return Within(Second - First); }
     };

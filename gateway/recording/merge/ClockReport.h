@@ -10,7 +10,8 @@
 namespace Rabit::Merge
 {
 
-// What a node tells of clocks in its recording once a second: a message of `<node>/Recorder/Clocks`.
+// A node's report about clocks, which its recording holds once a second: a message of
+// `<node>/Recorder/Clocks`.
 struct ClockReport
 {
     struct Peer
@@ -25,10 +26,10 @@ struct ClockReport
     std::vector<Peer> Peers;
 };
 
-// Nothing if it is none. Peers that make no sense are left out.
+// Reads a report; nothing if the text is none. Malformed peers are left out.
 std::optional<ClockReport> ReadClockReport(Mcap::ByteView json);
 
-// The same report for a file whose log times are later by so much; nothing if it is none.
+// Returns the report for a file whose log times are later by `later`; nothing if the text is no report.
 std::optional<Mcap::Bytes> ShiftClockReport(Mcap::ByteView json, Moment later);
 
 }  // namespace Rabit::Merge

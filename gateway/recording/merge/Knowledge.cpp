@@ -16,7 +16,7 @@ namespace Rabit::Merge
 namespace
 {
 
-// Around a moment, of what is told of clocks: what ClockPair looks at.
+// Clock reports are read this far around a moment, since ClockPair looks no further.
 constexpr Moment ClocksAround = 100 * OneSecond;
 
 template <typename Number>
@@ -28,7 +28,7 @@ std::optional<Number> NumberIn(const Mcap::TextMap &values, const std::string &k
     return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
 
-// `Pose` of `uav1/Pose`.
+// Returns `Pose` for `uav1/Pose`.
 std::string WithoutNode(const std::string &topic, const std::string &node)
 {
     return topic.compare(0, node.size() + 1, node + "/") == 0 ? topic.substr(node.size() + 1) : topic;
@@ -56,7 +56,7 @@ std::vector<KnowerLife> LivesOf(const Mcap::Contents &contents)
     return lives;
 }
 
-// In a recording that was not merged all is of its one life.
+// True if a channel is of that life. A recording that was not merged has only one life.
 bool IsOf(const Mcap::Channel &channel, const KnowerLife &life)
 {
     return channel.Metadata.count("rabit.recorded_by") == 0 ||
@@ -90,7 +90,8 @@ std::optional<Last> LastOf(Mcap::ByteSource &source, const ChannelChunks &chunks
     return last;
 }
 
-// How the knower stood to the one who posted when it received that.
+// Fills in the poster's incarnation, and how uncertain its clock was to the knower when the value was
+// received.
 void AddUncertainty(Mcap::ByteSource &source, const Mcap::Contents &contents, const KnowerLife &knower,
                     const std::string &node, KnownValue &value)
 {
@@ -113,7 +114,7 @@ void AddUncertainty(Mcap::ByteSource &source, const Mcap::Contents &contents, co
                 continue;
             }
             pairs[peer.Incarnation].Add(at, Within(at - peer.SourceToLog), peer.UncertainBy);
-            // The life that was known then, or the first that became known.
+            // The incarnation that was known at that time, or else the first that became known.
             const bool isKnown = value.Incarnation != 0 && at > value.ReceivedAt;
             value.Incarnation = isKnown ? value.Incarnation : peer.Incarnation;
         }
@@ -178,7 +179,7 @@ std::optional<KnownValue> ValueAt(Mcap::ByteSource &source, const Mcap::Contents
     const KnowerLife &knower = knowledge.Lives[stream.Life];
     const ChannelChunks chunks(contents, stream.Channels);
     std::optional<Last> last;
-    // Further and further back, since most came lately.
+    // Looks further and further back, since most values are recent.
     for (Moment back = 10 * OneSecond; !last; back *= 8)
     {
         const Moment from = std::max(knower.Begin, at - back);

@@ -12,7 +12,7 @@
 namespace Rabit::Merge
 {
 
-// One life of a node that was recorded.
+// One recorded life (incarnation) of a node.
 struct KnowerLife
 {
     std::string Node;
@@ -26,21 +26,21 @@ struct KnowerLife
 struct KnownStream
 {
     std::size_t Life = 0;  // of Knowledge::Lives
-    std::string Node;      // who posts it
+    std::string Node;      // that posts it
     std::string Message;
     std::string Type;    // IDL name
     std::string Schema;  // IDL text
     std::set<std::uint16_t> Channels;
 };
 
-// Who knew what, in a file that was merged, or in the recording of one node.
+// The messages that nodes knew, in a merged file or in the recording of one node.
 struct Knowledge
 {
     explicit Knowledge(const Mcap::Contents &contents);
 
     std::vector<KnowerLife> Lives;
     std::vector<KnownStream> Streams;  // by knower, its life, node and message
-    // Of the times in the file; empty: not known, or it is none that was merged.
+    // The worst error of the times in the file; empty if not known, or if the file was not merged.
     std::optional<Moment> WorstBound;
 };
 
@@ -54,8 +54,8 @@ struct KnownValue
     std::uint64_t Incarnation = 0;      // of the life of the node that posted it; 0: not known
 };
 
-// What a stream had at that moment, which is within the knower's life; empty: nothing yet. What could not be
-// read is added to problems, one line each.
+// Returns the value of a stream at a moment within the knower's life; empty if there was none yet. Parts
+// that could not be read are added to `problems`, one line each.
 std::optional<KnownValue> ValueAt(Mcap::ByteSource &source, const Mcap::Contents &contents,
                                   const Knowledge &knowledge, const KnownStream &stream, Moment at,
                                   std::vector<std::string> &problems);

@@ -14,7 +14,7 @@ namespace Rabit::Merge
 namespace
 {
 
-// A file, and whose it is.
+// A file, and the node that recorded it.
 struct Found
 {
     LifeFile File;
@@ -140,7 +140,7 @@ private:
                          });
     }
 
-    // Calls take(log time, report) until that is false.
+    // Calls take(log time, report) for each report, until it returns false.
     template <typename Take>
     void ReadClocks(const Found &found, Take take)
     {
@@ -164,7 +164,8 @@ private:
         }
     }
 
-    // A file of a moment may tell nothing: then it is as those of its recording beside it.
+    // A very short file may hold no report: then it has the incarnation of its neighbours in the same
+    // recording.
     void FindIncarnations()
     {
         for (Found &found : _found)

@@ -36,20 +36,20 @@ struct Life
     Moment SourceToLog = 0;  // from its source clock
 };
 
-// What files hold, put in order by lives, and what all of them tell of clocks.
+// The contents of files, in the order of lives, and the clock reports of all of them.
 struct Lives
 {
     std::vector<Life> All;  // by node and beginning
     ClockGraph Graph;
-    std::vector<std::string> Remarks;  // what could not be read, or was passed over, one line each
-    std::string Problem;               // why nothing can be done with them; empty: nothing
+    std::vector<std::string> Remarks;  // parts and files that were skipped, one line each
+    std::string Problem;               // why the files cannot be used; empty: they can
 };
 
-// Opens a file, again and again; throws if it cannot be read.
+// Opens a file, several times if asked; throws if it cannot be read.
 using OpenFile = std::function<std::unique_ptr<Mcap::ByteSource>(const std::string &path)>;
 
-// Reads of each file what it holds, and the messages of clocks. Two files that are the same one of a
-// recording, as `rabit recover` makes them, are taken once: that with more messages.
+// Reads the contents and the clock reports of each file. Of two copies of one file, as `rabit recover`
+// makes them, the one with more messages is taken.
 Lives ReadLives(const OpenFile &open, const std::vector<std::string> &paths);
 
 }  // namespace Rabit::Merge

@@ -89,8 +89,8 @@ private:
         }
     }
 
-    // A recording begins by its node's wall clock. If another life of that node, on that computer, is on the
-    // time line, that says how the wall clock stood, unless it was set meanwhile.
+    // Puts lives without relations on the time line. A recording begins by its node's wall clock. Another
+    // life of that node on the same host shows the offset of that clock, unless it was set meanwhile.
     void TakeOthers()
     {
         const Life &timeLine = _lives.All[_plan.TimeLine];

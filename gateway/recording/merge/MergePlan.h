@@ -9,26 +9,26 @@
 namespace Rabit::Merge
 {
 
-// How one life comes on the time line.
+// How one life is put on the time line.
 struct PlannedLife
 {
     enum class Way
     {
         TimeLine,   // its clock is the time line
-        Relations,  // by what was told of clocks
-        WallClock   // nothing relates its clock: as it is, or as that of another life of that node stands
+        Relations,  // by the relations in clock reports
+        WallClock   // no relation: its wall clock, or the offset of another life of that node
     };
     unsigned Number = 1;  // of the lives of that node, from 1, by their beginning on the time line
     Way By = Way::Relations;
     TimeMap Map = TimeMap::Constant(0, std::nullopt);
 };
 
-// What to do with lives.
+// How all lives are put on the time line.
 struct MergePlan
 {
     std::vector<PlannedLife> Lives;  // as in Lives::All
-    std::size_t TimeLine = 0;        // which of them is
-    std::string Problem;             // why they cannot be merged; empty: nothing
+    std::size_t TimeLine = 0;        // the index of the life that is it
+    std::string Problem;             // why they cannot be merged; empty: they can
 
     // How wrong the time of a message may be at most; empty: not known.
     std::optional<Moment> WorstBound() const;
@@ -36,10 +36,11 @@ struct MergePlan
 
 struct MergeWishes
 {
-    // Of the lives of this node one is the time line. Empty: that life which has relations with most others;
-    // of several that which has most of them over time.
+    // The node of which one life is the time line. Empty: the life with relations to most others; of
+    // several, the one with most relations over time.
     std::string Reference;
-    // Lives whose clocks nothing relates to that are taken by their wall clocks, and not refused.
+    // True: lives without a relation to the time line are put on it by their wall clocks. False: they are
+    // refused.
     bool TakesWallClocks = false;
 };
 

@@ -12,20 +12,20 @@
 namespace Rabit::Merge
 {
 
-// The channels of a merged file. What a node posted keeps its topic. What it received of others is named as
-// what it knew: `uav2/Pose` in the recording of uav1 becomes `uav1/Recorder/knew/uav2/Pose`. Each life has
-// channels of its own, told apart by their metadata:
+// The channels of a merged file. Messages that a node posted keep their topic. Messages from other nodes
+// get the topic of a known one: `uav2/Pose` in the recording of uav1 becomes
+// `uav1/Recorder/knew/uav2/Pose`. Each life has channels of its own, told apart by their metadata:
 //   rabit.recorded_by   the node whose recording it is from
 //   rabit.life          1, 2, ...; with rabit.incarnation
-//   rabit.kind          `knew` for what was received; else as in the recording
-//   rabit.node, rabit.message   of `knew`: who posted it, and its name there
+//   rabit.kind          `knew` for received messages; else as in the recording
+//   rabit.node, rabit.message   of `knew`: the node that posted it, and its name there
 class MergedChannels
 {
 public:
-    // They must outlive it.
+    // The arguments must outlive the object.
     MergedChannels(const Lives &lives, const MergePlan &plan, Mcap::McapWriter &writer);
 
-    // What in a message must be put on the time line beside its times.
+    // Times within the data of a message that must be put on the time line, too.
     enum class Inside
     {
         Nothing,
@@ -37,11 +37,11 @@ public:
         std::uint16_t Number = 0;
         Inside Times = Inside::Nothing;
     };
-    // Of a channel in a file of that life; empty if there are too many.
+    // Returns the channel for one in a file of that life; empty if there are too many.
     std::optional<Made> Of(std::size_t life, const Mcap::Contents &contents, std::uint16_t channel);
-    // `uav1/Recorder/TimeLine`: how a life is put on the time line.
+    // Returns the channel `uav1/Recorder/TimeLine`, which tells how a life is put on the time line.
     std::optional<std::uint16_t> TimeLineOf(std::size_t life);
-    // What becomes of a topic in the recording of that life.
+    // Returns the merged name of a topic in the recording of that life.
     std::string TopicOf(std::size_t life, const Mcap::Channel &channel) const;
 
 private:

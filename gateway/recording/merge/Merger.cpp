@@ -14,7 +14,7 @@ namespace
 using Json = nlohmann::ordered_json;
 
 constexpr Moment TellPeriod = 10 * OneSecond;
-// So that a few large messages do not keep a chunk open over much time.
+// A chunk ends after this time, so that a few large messages do not keep it open for long.
 constexpr Moment LongestChunk = 10 * OneSecond;
 constexpr std::uint64_t MessagesBetweenLooks = 1000;
 
@@ -41,7 +41,7 @@ std::string TextOf(std::optional<Moment> bound)
     return bound ? std::to_string(*bound) : "not known";
 }
 
-// The time of a line is in it, for Foxglove's panel.
+// Puts the time within a log line, which Foxglove's panel shows, on the time line.
 std::optional<Mcap::Bytes> ShiftLogLine(Mcap::ByteView bytes, const TimeMap &map)
 {
     Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
@@ -64,7 +64,7 @@ std::optional<Mcap::Bytes> ShiftLogLine(Mcap::ByteView bytes, const TimeMap &map
 
 }  // namespace
 
-// A file, and the message in it that is next.
+// A file, and its next message.
 struct Merger::Stream
 {
     std::size_t Life = 0;
@@ -204,7 +204,7 @@ void Merger::Write(Stream &stream)
     }
 }
 
-// At the beginning of a file stands the last message of each state, for who has this file alone.
+// True for a state that is repeated at the beginning of a file, so that the file can be understood alone.
 bool Merger::IsRepeated(const Stream &stream, std::uint16_t channel)
 {
     const auto [last, isFirst] = _lastPublishTime.try_emplace(channel, stream.Message.PublishTime);
@@ -214,7 +214,7 @@ bool Merger::IsRepeated(const Stream &stream, std::uint16_t channel)
            stream.File != &_lives.All[stream.Life].Files.front();
 }
 
-// Empty: the message is as it was.
+// Returns the data of a message with its times on the time line; empty if the data stays as it is.
 Mcap::Bytes Merger::OnTimeLine(const Stream &stream, MergedChannels::Inside inside) const
 {
     const TimeMap &map = _plan.Lives[stream.Life].Map;
@@ -316,7 +316,7 @@ void Merger::WriteLife(std::size_t life, std::map<std::string, std::uint64_t> &l
     WriteCopy(life, "rabit.configuration");
     WriteCopy(life, "rabit.not_recorded");
 
-    // Counted since the beginning of the recording, by topic.
+    // Losses are counted by topic since the beginning of the recording, so the last file has the sums.
     std::map<std::string, std::string> topics;
     Mcap::TextMap losses;
     for (const LifeFile &file : recorded.Files)

@@ -14,7 +14,7 @@
 namespace Rabit::Merge
 {
 
-// What became of a merge.
+// The result of a merge.
 struct Merged
 {
     std::vector<std::uint64_t> Messages;  // by life
@@ -25,23 +25,23 @@ struct Merged
     bool IsWritten = false;  // whether the file is whole
 };
 
-// Writes the messages of all lives on one time line into one file, in the order of that, and ends it. Reads
-// files as it comes to them, a few chunks at a time. Beside the messages it writes
+// Writes the messages of all lives into one file, in the order of the time line, and ends it. Reads files
+// as it comes to them, a few chunks at a time. Beside the messages it writes
 //   <node>/Recorder/TimeLine   every ten seconds, how a life is put on the time line, and the bound of the
 //                              error
 //   metadata rabit.merge       which clock is the time line, and the worst bound
-//   metadata rabit.recording   for each life: whose, when, of which files, by which way, the bounds
+//   metadata rabit.recording   for each life: its node, times, files, way to the time line, bounds
 //   metadata rabit.configuration, rabit.not_recorded   of each life, with `node` and `life`
 //   metadata rabit.losses      of all, by topic
-// Reports of clocks and log lines hold times themselves, which are put on the time line, too.
+// Times within clock reports and log lines are put on the time line, too.
 class Merger
 {
 public:
-    // They must outlive it.
+    // The arguments must outlive the object.
     Merger(const OpenFile &open, const Lives &lives, const MergePlan &plan, Mcap::McapWriter &writer);
     ~Merger();
 
-    // `stops` is asked now and then. Once.
+    // To be called once. `stops` is called now and then; true ends the merge early.
     Merged Run(const std::function<bool()> &stops);
 
 private:

@@ -8,8 +8,8 @@
 namespace Rabit::Merge
 {
 
-// What a clock shows, or a length of time, in nanoseconds. No further from 0 than FarthestMoment (the year
-// 2067), so that three of them can be added up whatever a file says.
+// A reading of a clock, or a length of time, in nanoseconds. No further from 0 than FarthestMoment (the
+// year 2067), so that three of them can be added up, whatever a file holds.
 using Moment = std::int64_t;
 
 inline constexpr Moment FarthestMoment = std::numeric_limits<Moment>::max() / 3;
@@ -20,7 +20,7 @@ inline Moment Within(Moment moment)
     return std::clamp(moment, -FarthestMoment, FarthestMoment);
 }
 
-// Of a file, and for one.
+// Convert a time of a file to a Moment, and back.
 inline Moment FromFile(std::uint64_t time)
 {
     return static_cast<Moment>(std::min(time, static_cast<std::uint64_t>(FarthestMoment)));

@@ -78,7 +78,7 @@ Moment TimeMap::At(Moment logTime) const
     return place.Left->To + PartOf(place.Right->To - place.Left->To, place.Part);
 }
 
-// What the two clocks differ by between knots may have come at once.
+// The change of the offset between two knots may have come at once, so it is part of the bound.
 Moment TimeMap::BoundOf(const Knot &left, const Knot &right)
 {
     return Within(std::max(left.Bound, right.Bound) + Apart(right.To - left.To, right.From - left.From));

@@ -9,11 +9,12 @@
 namespace Rabit::Merge
 {
 
-// From the log times of one recording to those of the time line. Never maps a later time to an earlier one.
+// Maps the log times of one recording to the time line, and never a later time to an earlier one.
 class TimeMap
 {
 public:
-    // The recording is the time line, or is put on it by a constant that may be wrong by anything.
+    // For a recording that is the time line, or is put on it by a constant. `bound`: error of the constant;
+    // empty: not known.
     static TimeMap Constant(Moment later, std::optional<Moment> bound);
 
     struct Side
@@ -21,7 +22,7 @@ public:
         ClockGraph::Clock Clock = 0;
         Moment SourceToLog = 0;
     };
-    // For a recording from its first to its last log time; empty if nothing leads from its clock to that of
+    // For a recording from its first to its last log time; empty if no path joins its clock with that of
     // the time line.
     static std::optional<TimeMap> Along(const ClockGraph &graph, const Side &recording, const Side &timeLine,
                                         Moment begin, Moment end);
@@ -30,9 +31,9 @@ public:
     // How wrong that may be; empty: not known.
     std::optional<Moment> BoundAt(Moment logTime) const;
     std::optional<Moment> WorstBound() const;
-    // Half of the time it is no larger.
+    // The bound that is not exceeded half of the time.
     std::optional<Moment> MedianBound() const;
-    // The clocks that led there, at any time; none if the two heard each other.
+    // The clocks between the two, at any time; none if the two nodes heard each other.
     const std::vector<ClockGraph::Clock> &By() const { return _by; }
 
 private:
@@ -42,7 +43,8 @@ private:
         Moment To = 0;
         Moment Bound = 0;
     };
-    // The two around that time and how far it is between them, from 0 to 1; the same one twice at the ends.
+    // The two knots around a time, and how far it is between them, from 0 to 1; at the ends the same knot
+    // twice.
     struct Place
     {
         const Knot *Left;

@@ -11,7 +11,7 @@ namespace Rabit::Merge
 namespace
 {
 
-// Digits behind a point, as nanoseconds; the text is at its end then, but for a Z.
+// Reads a fraction of a second, as nanoseconds. Nothing but a Z may follow it.
 std::optional<Moment> ParseFraction(const char *text)
 {
     Moment fraction = 0;

@@ -14,7 +14,7 @@ std::ptrdiff_t Stars(std::string_view text)
     return std::count(text.begin(), text.end(), '*');
 }
 
-// Whether it would be a name if its `*` were a letter.
+// True if the text would be a node name if its `*` were letters.
 bool CanBeName(std::string_view text)
 {
     std::string name(text);

@@ -7,19 +7,19 @@
 namespace Rabit::Replay
 {
 
-// What the nodes of a recording are called when it is played: by rules `FROM=TO`, of which the first that
-// fits holds, else by a prefix, so that they are not taken for those that fly. `*` in FROM stands for any
-// characters, which `*` in TO repeats: `*=*` leaves all names as they were.
+// The names of recorded nodes in a replay. The first rule `FROM=TO` that fits holds. Without one the name
+// gets a prefix, so that replayed nodes are not taken for nodes that fly. `*` in FROM stands for any
+// characters, which `*` in TO repeats: `*=*` keeps all names.
 class NodeRenames
 {
 public:
     static constexpr std::string_view Prefix = "replay.";
 
-    // Takes a rule in. Returns an empty text, or why it is none.
+    // Adds a rule. Returns an empty text, or why the text is no rule.
     std::string Add(std::string_view rule);
-    // May be no valid name, if the old one is long.
+    // Returns the new name. It may be too long to be valid.
     std::string NewNameOf(const std::string &node) const;
-    // By the rules alone: for nodes to which something is sent, and which are not played.
+    // Applies the rules alone: for nodes that are not played, but get messages.
     std::string RuledNameOf(const std::string &node) const;
 
 private:

@@ -10,19 +10,19 @@
 namespace Rabit::Replay
 {
 
-// When a message that is played is said to have been posted: as long ago as it was old when it was recorded.
-// But a receiver takes nothing that was posted before what it has: what would be is said to have been posted
-// just after it, and is younger there than it was.
+// Gives replayed messages their post times, so that each is as old as when it was recorded. But a receiver
+// ignores a message that was posted before the one that it has. Such a message gets a post time just after
+// that one, and is younger than it was.
 class PostTimes
 {
 public:
     using Duration = std::chrono::nanoseconds;
-    // Between two posts of one stream; receivers tell them apart by it.
+    // Between the post times of two messages of one stream, so that receivers can tell them apart.
     static constexpr Duration Least = std::chrono::microseconds(2);
 
     explicit PostTimes(std::size_t streams) : _last(streams) {}
 
-    // By the clock that shows `now`.
+    // Returns the post time of a message of that age, by the clock of `now`.
     Duration Of(std::size_t stream, Duration now, Duration age)
     {
         std::optional<Duration> &last = _last.at(stream);
@@ -32,9 +32,9 @@ public:
         last = posted;
         return posted;
     }
-    // Nobody has anything of it any more: its node begins a new life.
+    // Forgets a stream: its node begins a new life, so no receiver has a message of it.
     void Forget(std::size_t stream) { _last.at(stream).reset(); }
-    // Messages that came out younger than they were, by more than a millisecond.
+    // Number of messages that became younger than they were by more than a millisecond.
     std::uint64_t NotKept() const { return _notKept; }
 
 private:

@@ -9,7 +9,7 @@ namespace Rabit::Replay
 namespace
 {
 
-// How far it is looked back at first for what was there; then further and further.
+// How far LastBefore looks back at first, in nanoseconds; each further look is four times as long.
 constexpr Time FirstLook = 2'000'000'000;
 
 }  // namespace
@@ -154,7 +154,7 @@ std::vector<ReplayItem> RecordedMessages::LastBefore(Time time)
     return found;
 }
 
-// Whether a chunk that begins before that time holds one of them, as far as the index tells.
+// True if a chunk that begins before that time may hold one of the streams, as far as the index tells.
 bool RecordedMessages::MayHold(std::size_t file, Time before, const std::set<std::size_t> &streams) const
 {
     const auto holds = [&](const Mcap::ChunkIndex &chunk)

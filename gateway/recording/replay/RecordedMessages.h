@@ -15,8 +15,8 @@
 namespace Rabit::Replay
 {
 
-// The messages of several files on one time line, as their log times say. A state that a recorder repeats at
-// the beginning of a file comes once, if it was the last of its stream. Not thread-safe.
+// The messages of several files, in the order of their log times. A state that a recorder repeats at the
+// beginning of a file is skipped if it equals the last message of its stream. Not thread-safe.
 class RecordedMessages final : public ReplaySource
 {
 public:
@@ -25,19 +25,19 @@ public:
         Mcap::ByteSource *Bytes = nullptr;
         const Mcap::Contents *Contents = nullptr;
     };
-    // All that is handed over must outlive it.
+    // The bytes and contents of the files, and the plan, must outlive the object.
     RecordedMessages(std::vector<File> files, const ReplayPlan &plan);
 
-    // Of the first and of the last message of the files, selected or not; 0 if there is none.
+    // Log times of the first and of the last message of the files, selected or not; 0 if there is none.
     Time First() const;
     Time Last() const;
 
     void Begin(Time from) override;
     std::optional<ReplayItem> Next() override;
-    // All streams but queues. Reads no more than it must: backwards, until it has them all.
+    // Covers all streams but queues. Reads backwards, until it has a message of each, and no further.
     std::vector<ReplayItem> LastBefore(Time time) override;
 
-    // What could not be read, one line each.
+    // The chunks that could not be read, one line each.
     std::vector<std::string> Problems() const { return {_problems.begin(), _problems.end()}; }
 
 private:
@@ -56,7 +56,7 @@ private:
     const std::vector<File> _files;
     const ReplayPlan &_plan;
     std::vector<Open> _open;
-    // By stream what was given last: when it was posted, and its bytes.
+    // By stream, the message that was given last.
     std::vector<std::optional<ReplayItem>> _given;
     std::set<std::string> _problems;
 };

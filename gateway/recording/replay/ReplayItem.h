@@ -22,16 +22,16 @@ struct ReplayItem
     Mcap::Bytes Data;
 };
 
-// Where the messages of a replay come from.
+// Gives the messages of a replay.
 class ReplaySource
 {
 public:
     virtual ~ReplaySource() = default;
-    // From now on Next gives what was recorded at that time or later.
+    // From now on Next gives the messages that were recorded at that time or later.
     virtual void Begin(Time from) = 0;
-    // By log time. Nothing at the end.
+    // Returns the next message by log time; nothing at the end.
     virtual std::optional<ReplayItem> Next() = 0;
-    // The last one before that time of each stream that is restored, by log time.
+    // Returns the last message before that time of each stream that is restored, by log time.
     virtual std::vector<ReplayItem> LastBefore(Time time) = 0;
 };
 

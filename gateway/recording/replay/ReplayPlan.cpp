@@ -26,7 +26,7 @@ struct Candidate
     std::uint64_t Messages = 0;
 };
 
-// The same for all that recorded the same thing.
+// Returns a key that is the same for all recordings of one message or queue.
 std::string ThingOf(const ReplayStream &stream)
 {
     return std::to_string(static_cast<int>(stream.What)) + ' ' + stream.Node + ' ' + stream.Name + ' ' +
@@ -64,7 +64,7 @@ bool FillMessage(const Mcap::Channel &channel, const std::string &recorder, Cand
 {
     ReplayStream &stream = candidate.Stream;
     const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
-    // In a merged recording topics that a node had from others are told by their metadata.
+    // In a merged recording the metadata name the topics that a node had from others.
     const auto topic = SplitTopic(kind == "knew" ? Mcap::ValueOf(channel.Metadata, "rabit.node") + "/" +
                                                        Mcap::ValueOf(channel.Metadata, "rabit.message")
                                                  : channel.Topic);
@@ -126,7 +126,7 @@ bool IsSelected(const Candidate &candidate, const PlanSettings &settings)
            !MatchesAny(settings.Exclude, name);
 }
 
-// Of each thing what one recorder has of it.
+// Keeps one recorder of each message or queue: its own node, or else the recorder with most messages.
 std::vector<Candidate> OneRecorderEach(std::vector<Candidate> candidates)
 {
     std::map<std::pair<std::string, std::string>, std::uint64_t> counts;       // by thing and recorder
@@ -148,7 +148,7 @@ std::vector<Candidate> OneRecorderEach(std::vector<Candidate> candidates)
     return candidates;
 }
 
-// Of a node that posts nothing which is played, and yet was there.
+// True if a node is played even if none of its messages is.
 bool IsNodeSelected(const std::string &node, const PlanSettings &settings)
 {
     const std::string name = node + "/";
@@ -156,7 +156,7 @@ bool IsNodeSelected(const std::string &node, const PlanSettings &settings)
            !MatchesAny(settings.Exclude, name);
 }
 
-// Who recorded a file, or a part of one that was merged.
+// Adds the node that recorded a file, or a part of a merged one, and its domain.
 void TakeRecorder(const Mcap::TextMap &about, const PlanSettings &settings, ReplayPlan &plan)
 {
     const std::string node = Mcap::ValueOf(about, "node");
@@ -171,7 +171,7 @@ void TakeRecorder(const Mcap::TextMap &about, const PlanSettings &settings, Repl
     }
 }
 
-// What is selected of all files; tells the plan of nodes and domains.
+// Returns the selected channels of all files. Adds nodes and domains to the plan.
 std::vector<Candidate> CandidatesOf(const std::vector<const Mcap::Contents *> &files,
                                     const PlanSettings &settings, ReplayPlan &plan)
 {

@@ -40,8 +40,8 @@ bool ReplayPresence::IsRecorded(const std::string &recorder, Time time) const
     return sign != _signs.end() && time <= sign->second + Silence;
 }
 
-// A recorder itself is there while it records. Of others a recorder tells that it was LOST only of what came
-// before: whose message came later was there.
+// A recorder is there while it records. A message of a node that is later than LOST in a recorder's list
+// shows that the node is back.
 bool ReplayPresence::IsThere(const std::string &node, Time time) const
 {
     if (_recorders.count(node) > 0)

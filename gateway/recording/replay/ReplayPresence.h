@@ -11,28 +11,29 @@
 namespace Rabit::Replay
 {
 
-// Who was there when, as far as recordings tell: by what recorders knew of the others, once a second at least
-// (Gateway/Fleet), and by their own messages. By recorded names and times.
+// Tells which nodes were there at a time, by recorded names and times. Its sources are the recorders' lists
+// of nodes, once a second at least (Gateway/Fleet), and the messages of the nodes.
 class ReplayPresence
 {
 public:
-    // A recorder of which nothing comes for so long has ended, and with it what it knew.
+    // A recorder from which nothing comes for this long (3.5 s) has ended, and its lists no longer hold.
     static constexpr Time Silence = 3'500'000'000;
 
-    // Of these nodes there are streams of Gateway/Fleet.
+    // `recorders` are the nodes with streams of Gateway/Fleet.
     explicit ReplayPresence(std::set<std::string> recorders);
 
-    // What was told so far no longer holds: the replay has jumped.
+    // Forgets all: the replay has jumped.
     void Reset();
-    // A message of that node was recorded then.
+    // `recorder` recorded a message of that node at that time.
     void Heard(const std::string &node, const std::string &recorder, Time time);
-    // The recorder knew then of these nodes, and of some of them that they were LOST.
+    // A node in a recorder's list, and whether it was LOST.
     struct Known
     {
         std::string Node;
         bool IsLost = false;
     };
-    // By the gateway of that name, of which it may have several: who is heard by one of them is there.
+    // A gateway of the recorder had that list at that time. A recorder may have several gateways: one that
+    // hears a node suffices.
     void Told(const std::string &recorder, const std::string &gateway, Time time,
               const std::vector<Known> &known);
 

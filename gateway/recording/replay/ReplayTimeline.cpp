@@ -9,7 +9,7 @@ namespace Rabit::Replay
 namespace
 {
 
-// More lies between no two things that were recorded: about 47 years.
+// Longest time between two recorded messages: about 47 years.
 constexpr Time Longest = 1'500'000'000'000'000'000;
 
 ReplayTimeline::Duration Between(Time from, Time to)
@@ -91,7 +91,7 @@ bool ReplayTimeline::IsTurnOf(Time time, Duration now) const
     return !_paused && (_settings.Rate == 0.0 || now >= When(time));
 }
 
-// By the clock that is handed in, unless it is paused.
+// Returns when that moment of the recording is due, by the caller's clock, unless the replay is paused.
 ReplayTimeline::Duration ReplayTimeline::When(Time time) const
 {
     constexpr double never = 4e18;

@@ -10,9 +10,9 @@
 namespace Rabit::Replay
 {
 
-// What of a recording is due when. `now` is any clock that never goes back; it is handed in, and is not the
-// recording's. After a jump (the beginning, a seek, a new round) the last message before it of each stream
-// comes first, so that nothing is missing which was known then. Not thread-safe.
+// Tells which message of a recording is due when. `now` is any clock of the caller that never goes back,
+// not the recording's. After a jump (the beginning, a seek, a new round) the last message before it of each
+// stream comes first, so that all is there that was known then. Not thread-safe.
 class ReplayTimeline
 {
 public:
@@ -22,12 +22,12 @@ public:
     {
         Time From = 0;
         Time To = 0;  // included
-        // Recorded seconds in one; 0: as fast as messages are taken.
+        // Recorded seconds in one second; 0: as fast as messages are taken.
         double Rate = 1.0;
         bool Loops = false;
         bool Paused = false;
     };
-    // Of one that loops, however little there is in it.
+    // Shortest duration of a round of a looping replay, in nanoseconds.
     static constexpr Time ShortestRound = 1'000'000'000;
 
     struct Due
@@ -40,24 +40,24 @@ public:
     // The source must outlive it. Jumps to the beginning.
     ReplayTimeline(ReplaySource &source, const Settings &settings, Duration now);
 
-    // What is due now, one at a time: nothing, if it is not its turn yet.
+    // Returns one message that is due now; nothing if none is.
     std::optional<Due> Next(Duration now);
-    // When to ask again; nothing: not before one of the calls below.
+    // Returns when to call Next again; nothing: not before one of the calls below.
     std::optional<Duration> DueAt(Duration now) const;
 
     void Pause(Duration now);
     void Resume(Duration now);
     bool IsPaused() const { return _paused; }
-    // Pauses, and has the next message come.
+    // Pauses, and makes the next message due.
     void Step(Duration now);
-    // Goes on from there; what is outside of From and To is taken as the nearer of them.
+    // Goes on from `to`, which is clamped to From and To.
     void Seek(Time to, Duration now);
 
-    // Where it is.
+    // The present moment of the recording.
     Time Position(Duration now) const;
-    // Nothing comes any more, unless it is told to seek.
+    // True if no message comes any more, unless Seek is called.
     bool IsAtEnd(Duration now) const;
-    // How often it has jumped, the first time included: what was there before a jump no longer holds.
+    // Number of jumps, the first one included. The messages before a jump no longer hold.
     std::uint64_t Jumps() const { return _jumps; }
     Time JumpedTo() const { return _jumpedTo; }
     std::uint64_t Rounds() const { return _rounds; }
@@ -77,7 +77,7 @@ private:
     std::deque<ReplayItem> _restored;
     std::optional<ReplayItem> _next;  // up to To
     bool _anyInRound = false;
-    // The replay was there when the clock showed that.
+    // The replay was at _anchor when the clock showed _anchorNow.
     Time _anchor = 0;
     Duration _anchorNow{0};
     Time _jumpedTo = 0;

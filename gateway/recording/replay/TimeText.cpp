@@ -11,10 +11,10 @@ namespace
 {
 
 constexpr Time SecondNs = 1'000'000'000;
-// About 30 years: what is longer is a mistake.
+// About 30 years: a longer time is a mistake.
 constexpr double LongestSeconds = 1e9;
 
-// Digits and a point alone.
+// Reads a number of digits and a point alone.
 std::optional<double> SecondsIn(std::string_view text)
 {
     double seconds = 0.0;

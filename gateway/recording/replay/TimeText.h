@@ -9,11 +9,11 @@
 namespace Rabit::Replay
 {
 
-// A moment of a recording that begins then, as a person writes it: seconds from its beginning, as 12.5, or
-// UTC, as 2026-11-23T04:04:06.5. Nothing if the text is neither.
+// Reads a moment as a person writes it: seconds from `begin`, as 12.5, or UTC, as 2026-11-23T04:04:06.5.
+// Nothing if the text is neither.
 std::optional<Time> TimeOf(std::string_view text, Time begin);
 
-// As TimeOf reads it, to the millisecond.
+// Writes a moment as TimeOf reads it, to the millisecond.
 std::string TextOf(Time time);
 
 }  // namespace Rabit::Replay

@@ -7,7 +7,7 @@
 namespace Rabit::Rerun
 {
 
-// Where two samples of a type differ first, in the order of its fields.
+// The first difference of two samples of a type, in the order of its fields.
 struct FieldDifference
 {
     std::string Field;  // such as `items[2].stage`; empty: as a whole
@@ -15,10 +15,10 @@ struct FieldDifference
     std::string Computed;
 };
 
-// The type is one of this program. Empty samples are none.
+// Compares two samples. The program must have the type. An empty sample means that there is none.
 FieldDifference FirstDifference(const std::string &type, const std::vector<std::uint8_t> &recorded,
                                 const std::vector<std::uint8_t> &computed);
-// A sample as JSON, cut off where it is long; `nothing` if there is none.
+// Returns a sample as JSON, cut off after 400 characters; `nothing` if there is none.
 std::string JsonOf(const std::string &type, const std::vector<std::uint8_t> &sample);
 
 }  // namespace Rabit::Rerun

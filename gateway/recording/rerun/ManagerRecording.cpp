@@ -124,7 +124,7 @@ std::vector<ManagerRecording> ManagerRecording::Read(const std::vector<std::stri
                                                      const std::string &manager, const std::string &node,
                                                      std::vector<std::string> &problems)
 {
-    // Their names are numbered.
+    // File names are numbered in the order of time.
     std::vector<std::string> inOrder = files;
     std::sort(inOrder.begin(), inOrder.end(),
               [](const std::string &left, const std::string &right)

@@ -29,14 +29,14 @@ struct StepEvent
     Kind What = Kind::Monotonic;
     std::string Name{};  // of the message or the queue
     std::string Type{};  // IDL name; empty: none, then there is no sample
-    // Of a post: the how manieth of that message it is.
+    // Of a post: its number among the posts of that message.
     std::uint64_t Number = 0;
-    // A reading, or when it was posted; of a message in a queue: if it ever was posted.
+    // The reading, or the time of the post; of a message in a queue only if it was ever posted.
     std::chrono::nanoseconds Monotonic{0};
     double GpsTime = 0;
     bool WasPosted = false;
     bool IsRedelivered = false;
-    // Empty: the sample could not be expressed, or it is the post that was fetched before.
+    // Empty: the sample could not be encoded, or it is the post that was fetched before.
     std::vector<std::uint8_t> Sample{};
     std::vector<std::pair<std::string, std::string>> Names{};  // with their types
 

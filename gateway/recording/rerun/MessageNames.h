@@ -10,13 +10,13 @@
 namespace Rabit::Rerun
 {
 
-// What the messages of a workspace are called there. For one thread.
+// The names of the messages of a workspace. Used by one thread.
 class MessageNames
 {
 public:
     explicit MessageNames(const RabitWorkspace &workspace) : _workspace(workspace) {}
 
-    // Empty if it has none any more.
+    // Returns the name of a message; empty if it has none any more.
     const std::string &Of(const PublishSubscribeMessage &global)
     {
         const auto known = _known.find(&global);

@@ -124,7 +124,8 @@ bool RerunTrace::Register(const std::string &name, const std::string &type)
            _workspace.AddPublishSubscribeMessage(name, known->CreateShared());
 }
 
-// What the manager fetches next of that message, unless it posts it before. Later posts wait for that.
+// Posts the value that the manager fetches next of that message, unless the manager posts it before. Later
+// values wait.
 void RerunTrace::Bring(const std::string &name)
 {
     const Events &events = _posts[name];
@@ -174,7 +175,7 @@ void RerunTrace::Passed(const std::string &name, StepEvent::Kind what)
     Bring(name);
 }
 
-// As much as there is room for; the rest when something was taken.
+// Adds messages to the queues as far as there is room; the rest follows when the manager has taken one.
 void RerunTrace::BringToQueue()
 {
     while (!_forQueues.empty())
@@ -294,7 +295,7 @@ std::optional<bool> RerunTrace::Adding(const std::string &queue, const RabitMess
     return recorded != nullptr && recorded->What == Kind::Added;
 }
 
-// Those that there were, as far as their types are known here.
+// Lists the messages that were there in flight, as far as this program has their types.
 void RerunTrace::Listed(std::vector<MessageInfo> &messages)
 {
     if (!_runs)

@@ -19,7 +19,7 @@
 namespace Rabit::Rerun
 {
 
-// Has a manager read again what it read in a recorded step, and compares what it does.
+// Gives a manager the inputs of a recorded step again, and compares its outputs.
 class RerunTrace final : public RabitManagerTrace
 {
 public:
@@ -28,7 +28,8 @@ public:
     {
     }
 
-    // The step that is run next: brings what it reads into the workspace. Null: what is run is not looked at.
+    // Prepares the step that runs next: brings the messages that it reads into the workspace. Null: what
+    // runs is ignored.
     void Prepare(const ManagerStep *step, double sinceStartupS);
 
     void BeginStep(Step step, bool isTurn) override;
@@ -53,7 +54,7 @@ private:
     void Bring(const std::string &name);
     void Passed(const std::string &name, StepEvent::Kind what);
     void BringToQueue();
-    // What comes next of those; null: nothing.
+    // Takes out the next event; null if there is none.
     static const StepEvent *Next(Events &events);
     void Compare(const StepEvent *recorded, StepEvent::Kind what, const std::string &name,
                  const RabitMessage &message);
@@ -66,11 +67,11 @@ private:
     MessageNames _names;
 
     const ManagerStep *_step = nullptr;
-    bool _runs = false;  // that step does, now
+    bool _runs = false;  // true while _step runs
     double _sinceStartupS = 0;
     std::chrono::nanoseconds _monotonic{0};  // the last readings
     double _gpsTime = 0;
-    // What the step has yet to read and to do.
+    // The inputs and outputs of the step that are still to come.
     Events _monotonicReadings;
     Events _gpsReadings;
     Events _outputs;

@@ -83,7 +83,7 @@ bool Read(const Json &json, const char *key, std::string &text)
     return good;
 }
 
-// Missing: false.
+// Returns false if the key is missing.
 bool Flag(const Json &json, const char *key)
 {
     const auto found = json.find(key);

@@ -9,11 +9,11 @@
 namespace Rabit::Rerun
 {
 
-// A step as one line of JSON, which is what a recording holds of it.
+// Returns a step as one line of JSON, as recordings hold it.
 std::string TextOf(const ManagerStep &step);
-// Nothing if it is none. Never throws on account of the text.
+// Reads a step; nothing if the text is none. No text makes it throw.
 std::optional<ManagerStep> StepOf(std::string_view text);
-// What the JSON is, as a JSON schema.
+// Returns the JSON schema of that line.
 const char *StepSchema();
 
 }  // namespace Rabit::Rerun

@@ -10,7 +10,7 @@ namespace Rabit::Tool::Doctor
 namespace
 {
 
-// What the gateways' transports ask for; the kernel gives less if it may not.
+// Bytes that the gateways' transports ask for; the kernel grants at most net.core.rmem_max.
 constexpr std::uint64_t WantedBuffer = 4u << 20;
 constexpr std::size_t SmallestDatagram = 1000;
 
@@ -30,7 +30,7 @@ bool IsCalled(const Interface &one, const std::string &name)
            std::find(one.Addresses.begin(), one.Addresses.end(), name) != one.Addresses.end();
 }
 
-// Of the ports of a domain (OMG DDSI-RTPS 2.3, 9.6.1.1).
+// True for the ports of a domain (OMG DDSI-RTPS 2.3, 9.6.1.1).
 bool IsOfDomain(int port, int domain)
 {
     const int first = 7400 + 250 * domain;
@@ -95,8 +95,8 @@ std::vector<Finding> OfInterfaces(const GatewayConfig &config, const std::vector
     {
         findings.push_back({Level::Good, "interface " + one.Name,
                             Listed(one.Addresses) + ", MTU " + std::to_string(one.Mtu)});
-        // Linux gives loopback no such flag, and carries multicast on it all the same; the trial tells if
-        // not.
+        // Linux does not set the flag on loopback, yet carries multicast on it; NetworkTrial finds out if it
+        // does not.
         if (config.Multicast && !one.HasMulticast && !one.IsLoopback)
         {
             findings.push_back({Level::Problem, "interface " + one.Name,

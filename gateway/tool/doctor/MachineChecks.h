@@ -7,17 +7,17 @@
 #include "doctor/Finding.h"
 #include "doctor/MachineFacts.h"
 
-// What is wrong with this machine, for a node with that configuration. Pure.
+// Problems of this machine, for a node with that configuration. Pure.
 namespace Rabit::Tool::Doctor
 {
 
-// The interfaces that such a node uses: those named, or all that are up.
+// Returns the interfaces that such a node uses: those named, or all that are up.
 std::vector<Interface> UsedBy(const GatewayConfig &config, const std::vector<Interface> &interfaces);
 
 std::vector<Finding> OfInterfaces(const GatewayConfig &config, const std::vector<Interface> &interfaces);
-// Whether its datagrams go in one piece.
+// Finds interfaces whose MTU is too small for the configured datagrams.
 std::vector<Finding> OfMtu(const GatewayConfig &config, const std::vector<Interface> &used);
-// Before and after a while.
+// Finds datagrams lost at socket buffers between the two looks at the machine.
 std::vector<Finding> OfBuffers(const GatewayConfig &config, const MachineFacts &before,
                                const MachineFacts &after);
 

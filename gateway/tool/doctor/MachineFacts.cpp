@@ -77,7 +77,7 @@ std::vector<Interface> Interfaces()
 
 }  // namespace
 
-// Two lines that begin with `Udp:`, the names and the numbers.
+// Reads the two lines that begin with `Udp:`, the names and the numbers.
 UdpCounters UdpCountersIn(const std::string &snmp)
 {
     UdpCounters counters;
@@ -106,7 +106,7 @@ UdpCounters UdpCountersIn(const std::string &snmp)
     return counters;
 }
 
-// `sl local_address ... drops`, the address as hexadecimal `ADDRESS:PORT`.
+// Reads lines of `sl local_address ... drops`, the address as hexadecimal `ADDRESS:PORT`.
 std::map<int, std::uint64_t> DropsIn(const std::string &udp)
 {
     constexpr std::size_t columns = 13;

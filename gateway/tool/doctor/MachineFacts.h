@@ -20,14 +20,14 @@ struct Interface
     unsigned Mtu = 0;
 };
 
-// Of UDP over IPv4, since the machine started.
+// Counters of UDP over IPv4, since the machine started.
 struct UdpCounters
 {
     std::uint64_t NoRoom = 0;   // datagrams dropped because a receive buffer was full
     std::uint64_t NotSent = 0;  // likewise of send buffers
 };
 
-// What this machine says of itself.
+// Facts that this machine reports of itself.
 struct MachineFacts
 {
     std::vector<Interface> Interfaces;
@@ -36,10 +36,10 @@ struct MachineFacts
     std::map<int, std::uint64_t> DropsOfPorts;  // datagrams dropped of UDP sockets that are open now
 };
 
-// Looks at the machine.
+// Reads them from the machine.
 MachineFacts LookAtMachine();
 
-// Out of /proc/net/snmp and /proc/net/udp; nothing of what they do not say.
+// Parse /proc/net/snmp and /proc/net/udp; missing numbers are 0 or left out.
 UdpCounters UdpCountersIn(const std::string &snmp);
 std::map<int, std::uint64_t> DropsIn(const std::string &udp);
 

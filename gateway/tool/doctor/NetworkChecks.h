@@ -8,16 +8,16 @@
 #include "doctor/MachineFacts.h"
 #include "doctor/NetworkFacts.h"
 
-// What is wrong with the network, by what was tried. Pure.
+// Problems of the network, by what NetworkTrial found. Pure.
 namespace Rabit::Tool::Doctor
 {
 
-// Multicast on the interfaces used, out and in.
+// Judges multicast on the interfaces used, out and in.
 std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<Interface> &used,
                                  const NetworkFacts &facts);
-// Other domains in use. `anyNode`: somebody was heard in ours.
+// Finds other domains in use. `anyNode`: a node was heard in ours.
 std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
-// Who in our domain has keys and we have none, or the other way round.
+// Finds participants of our domain with keys if this program has none, and the reverse.
 std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
 
 }  // namespace Rabit::Tool::Doctor

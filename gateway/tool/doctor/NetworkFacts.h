@@ -7,22 +7,22 @@
 namespace Rabit::Tool::Doctor
 {
 
-// Who announced itself by multicast from one address.
+// The participants that announced themselves by multicast from one address.
 struct Voices
 {
     std::set<std::string> Names;
-    bool AreNodes = false;  // one of them at least is a node of Rabit
+    bool AreNodes = false;             // at least one of them is a node of Rabit
     std::set<std::string> WithKeys{};  // those of them that take part in DDS Security
 };
 
-// What was tried on one interface, and came of it.
+// The result of sending by multicast on one interface.
 struct MulticastTrial
 {
-    std::string Error;              // why nothing could be sent; empty: it was
+    std::string Error;              // why nothing could be sent; empty: sent
     std::set<std::string> HeardOn;  // interfaces of this machine on which it came in
     std::set<std::string>
         HeardFrom;  // addresses of participants that announced themselves on it by multicast
-    std::set<std::string> AnsweredFrom;  // and of those that answered what was announced on it by multicast
+    std::set<std::string> AnsweredFrom;  // those that answered the announcement sent on it
 };
 
 struct NetworkFacts

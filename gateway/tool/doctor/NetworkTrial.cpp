@@ -25,7 +25,7 @@ namespace Rabit::Tool::Doctor
 namespace
 {
 
-// What anybody can have us remember.
+// Limits of the memory that senders of datagrams can take.
 constexpr std::size_t MostAddresses = 256;
 constexpr std::size_t MostNames = 64;
 
@@ -49,7 +49,7 @@ UdpSocket OpenSocket(const std::string &address, int port)
 {
     UdpSocket socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const int on = 1;
-    // Beside the participants that listen there.
+    // Shares the port with the participants that listen there.
     socket.Set(SOL_SOCKET, SO_REUSEADDR, on);
     socket.Set(SOL_SOCKET, SO_REUSEPORT, on);
     socket.Set(IPPROTO_IP, IP_PKTINFO, on);
@@ -87,7 +87,7 @@ void Join(const UdpSocket &socket, const std::vector<Interface> &interfaces)
     }
 }
 
-// Why it was not sent; empty: it was.
+// Returns the error; empty if it was sent.
 std::string SendToGroup(const UdpSocket &socket, int port, const std::vector<std::uint8_t> &bytes)
 {
     const sockaddr_in group = AddressOf(CallGroup, port);
@@ -168,13 +168,12 @@ public:
     }
 
 private:
-    // A socket, and what comes there.
+    // A socket, and the kind of datagrams that come there.
     struct Ear
     {
         UdpSocket Where;
-        int Domain = -1;  // announcements of that domain
-        std::string
-            Interface{};  // answers to what was sent there; both empty: what this machine sends itself
+        int Domain = -1;          // announcements of that domain
+        std::string Interface{};  // answers to what was sent there; both unset: this machine's own multicast
     };
 
     void AddEars()
@@ -193,7 +192,7 @@ private:
         }
     }
 
-    // One participant for each interface: what answers tells on which it was heard.
+    // Announces one participant on each interface, so that answers tell on which interface it was heard.
     void Call(const std::vector<int> &domains)
     {
         for (std::size_t i = 0; i < _interfaces.size(); ++i)
@@ -280,7 +279,7 @@ private:
             return;
         }
         const auto heard = HeardIn(datagram.Bytes);
-        // Those that this program makes itself, here and with DDS, are passed over.
+        // Ignores the participants that this program makes itself, here and with DDS.
         if (!heard || !heard->Announces || heard->Name == _ownName ||
             std::equal(_id.begin(), _id.end() - 1, heard->Sender.begin()))
         {

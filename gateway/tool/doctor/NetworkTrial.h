@@ -10,21 +10,21 @@
 namespace Rabit::Tool::Doctor
 {
 
-// Tries the network, beside DDS, with sockets of its own: sends by multicast on each interface, listens where
-// the participants of all domains announce themselves, and announces itself once in some of them, so that
-// they answer. That costs some 180 bytes on the air for each domain and interface, and what each participant
-// answers. All from the construction on, on a thread of its own.
+// Tries the network beside DDS, with sockets of its own. Sends by multicast on each interface, and listens
+// where the participants of all domains announce themselves. Also announces itself once in some domains, so
+// that participants answer. That costs some 190 bytes on the air for each domain and interface, and the
+// answers. Listens from the construction on, on a thread of its own.
 class NetworkTrial
 {
 public:
-    // `ownName`: a participant that is this program. `callIn`: the domains in which to ask.
+    // `ownName`: the participant of this program, which is ignored. `callIn`: the domains in which to ask.
     NetworkTrial(const std::vector<Interface> &interfaces, std::string ownName,
                  const std::vector<int> &callIn);
     ~NetworkTrial();
     NetworkTrial(const NetworkTrial &) = delete;
     NetworkTrial &operator=(const NetworkTrial &) = delete;
 
-    // What has come of it by now.
+    // The results so far.
     NetworkFacts Facts() const;
 
 private:

@@ -12,9 +12,10 @@ namespace Rabit::Tool::Doctor
 namespace
 {
 
-// Differences that people notice in logs and recordings, and that one round trip does not explain.
+// Seconds. A larger difference confuses logs and recordings, and half of a usual round trip does not explain
+// it.
 constexpr double ClockTolerance = 1.0;
-// Of beats: fewer are chance.
+// The loss of fewer beats than this may be chance.
 constexpr std::uint64_t FewBeats = 10;
 constexpr double MuchLost = 0.1;
 
@@ -40,7 +41,7 @@ double RoundTripOf(const std::string &node, const Gateway::Fleet &fleet)
 
 std::string Many(unsigned messages)
 {
-    // What a beat can count to.
+    // The largest number in a beat.
     constexpr unsigned most = 65535;
     return std::to_string(messages) + (messages >= most ? " or more" : "");
 }
@@ -144,7 +145,7 @@ std::vector<Finding> OfClocks(const std::vector<FleetSession::Node> &nodes, cons
                  "set it (chrony, or GPS)"});
         }
     }
-    // All others agree.
+    // If all nodes agree with each other, this machine's clock is the wrong one.
     if (findings.size() > 1 && findings.size() == known && most - least < ClockTolerance)
     {
         return {{Level::Problem, "clock of this machine",

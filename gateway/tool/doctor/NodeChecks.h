@@ -6,19 +6,19 @@
 #include "FleetSession.h"
 #include "doctor/Finding.h"
 
-// What is wrong with the fleet, by what its nodes say. Pure.
+// Problems of the fleet, by what its nodes say. Pure.
 namespace Rabit::Tool::Doctor
 {
 
-// Who is there, what this program itself lacks, and nodes of one name.
+// Lists live nodes, and finds nodes of one name, missing announcements and problems of this program.
 std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet);
-// Definitions of types that differ.
+// Finds types with different definitions.
 std::vector<Finding> OfTypes(const std::vector<FleetSession::Node> &nodes);
-// Wall clocks that differ from this machine's.
+// Finds wall clocks that differ from this machine's.
 std::vector<Finding> OfClocks(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet);
-// Links that do not get on, by what the nodes at their ends say.
+// Finds links that are blocked or in doubt, by what the nodes at their ends say.
 std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes);
-// Beats that were lost on the way.
+// Finds beats that were lost on the way.
 std::vector<Finding> OfLosses(const std::vector<FleetSession::Node> &nodes);
 
 }  // namespace Rabit::Tool::Doctor

@@ -13,12 +13,12 @@ namespace
 
 using namespace Rabit::Rtps;
 
-// 9.3.1.3 and 9.6.2.2.2.
+// OMG DDSI-RTPS 2.3, 9.3.1.3 and 9.6.2.2.2.
 constexpr EntityId ParticipantWriter = 0x000100c2;
 constexpr EntityId ParticipantEntity = 0x000001c1;
 constexpr std::uint8_t FlagInlineQos = 2;
 constexpr std::uint8_t FlagData = 4;
-constexpr std::uint16_t ParameterListLittleEndian = 0x0300;  // as its bytes are in a big-endian number: 00 03
+constexpr std::uint16_t ParameterListLittleEndian = 0x0300;  // the bytes 00 03, read as a big-endian number
 
 enum Parameter : std::uint16_t
 {
@@ -50,7 +50,7 @@ std::string Printable(std::span<const std::uint8_t> bytes)
     return text;
 }
 
-// The parameters of an announcement, behind its encapsulation.
+// Reads the parameters of an announcement, which follow its encapsulation.
 void ReadParameters(RtpsReader &reader, bool littleEndian, HeardCall &heard)
 {
     while (reader.IsGood() && reader.Left() >= 4)
@@ -170,7 +170,7 @@ std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram)
     }
     HeardCall heard;
     heard.Sender = SenderOf(datagram);
-    // TakeSubmessage gives what may be changed.
+    // TakeSubmessage needs bytes that may be changed.
     std::vector<std::uint8_t> copy(datagram.begin(), datagram.end());
     std::span<std::uint8_t> rest = std::span(copy).subspan(header);
     while (!rest.empty())
@@ -191,7 +191,7 @@ std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram)
 std::vector<std::uint8_t> MakeCall(const ParticipantId &sender, std::array<std::uint8_t, 4> address,
                                    std::uint16_t port)
 {
-    // It announces itself, and takes the announcements of others.
+    // The participant announces itself, and takes the announcements of others.
     constexpr std::uint32_t announcer = 1;
     constexpr std::uint32_t detector = 2;
     constexpr std::uint16_t toQos = 16;

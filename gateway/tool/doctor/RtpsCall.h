@@ -1,5 +1,5 @@
-// What DDS participants say to find each other (OMG DDSI-RTPS 2.3, 8.5.3 and 9.6), for who listens to a
-// network.
+// The announcements by which DDS participants find each other (OMG DDSI-RTPS 2.3, 8.5.3 and 9.6), for a
+// listener on a network.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 namespace Rabit::Tool::Doctor
 {
 
-// A participant, in its first 12 bytes.
+// A participant: the 12 bytes of its GUID prefix.
 using ParticipantId = std::array<std::uint8_t, 12>;
 
-// A datagram from a network; nothing of it is trusted.
+// An RTPS datagram from a network, read without trust.
 struct HeardCall
 {
     ParticipantId Sender{};
@@ -25,15 +25,15 @@ struct HeardCall
     bool HasKeys = false;  // it says that it takes part in DDS Security
     bool Announces = false;
 };
-// Nothing if it is not of RTPS.
+// Empty if the datagram is not RTPS.
 std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram);
 
-// An announcement by which a participant that is none asks all others for theirs: it has no writers and no
-// readers, and is forgotten after a second.
+// Returns an announcement of a participant without writers and readers, which makes all others announce
+// themselves to it. They forget it after one second.
 std::vector<std::uint8_t> MakeCall(const ParticipantId &sender, std::array<std::uint8_t, 4> address,
                                    std::uint16_t port);
 
-// The port of a domain's announcements by multicast.
+// Returns the port of a domain's announcements by multicast.
 constexpr int CallPort(int domain)
 {
     return 7400 + 250 * domain;

@@ -16,14 +16,14 @@ namespace Rabit::Tool
 
 class LiveSession;
 
-// What the sessions of a LiveServer share; of the server's thread, but for the counters.
+// Shared by the sessions of a LiveServer. For the server's thread, except the counters.
 struct LiveContext
 {
     struct Offered
     {
         LiveProtocol::Channel Channel;
         bool IsState = false;
-        std::shared_ptr<const LiveValue> Last;  // of a state
+        std::shared_ptr<const LiveValue> Last;  // of a State
     };
 
     LiveServer::Settings Settings;

@@ -13,7 +13,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-// In ASCII; what is no UTF-8 is replaced.
+// Writes ASCII; text that is not UTF-8 is replaced.
 std::string Dump(const Json &json)
 {
     return json.dump(-1, ' ', true, Json::error_handler_t::replace);

@@ -7,13 +7,13 @@
 #include <string_view>
 #include <vector>
 
-// What a server and a viewer say to each other by the Foxglove WebSocket protocol, version 1: a server offers
-// channels, a viewer subscribes to some of them. Pure. What comes from a viewer is looked at without trust.
+// The Foxglove WebSocket protocol, version 1, between a server and a viewer: the server offers channels, the
+// viewer subscribes to some of them. Pure. Requests of a viewer are read without trust.
 // (https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md)
 namespace Rabit::Tool::LiveProtocol
 {
 
-// Names of the protocol in the HTTP request. Viewers of today ask for the second, and say the same.
+// Names of the protocol in the HTTP request. Newer viewers ask for the second, which means the same protocol.
 inline constexpr std::string_view Names[] = {"foxglove.websocket.v1", "foxglove.sdk.v1"};
 
 struct Channel
@@ -26,7 +26,7 @@ struct Channel
     std::string SchemaEncoding = "omgidl";
 };
 
-// Which of the names that a request asks for, by commas, this server speaks; empty: none.
+// Returns the first name in a request's comma-separated list that this server speaks; empty if there is none.
 std::optional<std::string_view> ChosenOf(std::string_view asked);
 
 // Texts for a viewer.
@@ -38,15 +38,15 @@ enum class Level : int
     Warning = 1,
     Error = 2
 };
-// A later one with the same id takes its place on the screen.
+// A later status with the same id replaces it on the screen.
 std::string Status(Level level, const std::string &message, const std::string &id = "");
 
-// A value for a subscription, with the time when it came, UTC in nanoseconds since 1970.
+// Returns a value for a subscription; `time` is its arrival, UTC in nanoseconds since 1970.
 std::vector<std::uint8_t> MessageData(std::uint32_t subscription, std::uint64_t time,
                                       std::span<const std::uint8_t> bytes);
 inline constexpr std::size_t MessageDataHeader = 1 + 4 + 8;
 
-// What a viewer wants.
+// A request of a viewer.
 struct Request
 {
     enum class Kind
@@ -63,7 +63,7 @@ struct Request
     Kind What = Kind::Unknown;
     std::vector<Subscription> Subscriptions{};  // of Subscribe
     std::vector<std::uint32_t> Ids{};           // of Unsubscribe
-    std::string Problem{};                      // of Unknown: in words, for its person
+    std::string Problem{};                      // of Unknown: the reason, for people
 };
 Request ReadRequest(std::string_view text);
 

@@ -12,7 +12,7 @@
 namespace Rabit::Tool
 {
 
-// A value of a channel, shared by all that it is sent to.
+// A value of a channel, shared by all viewers that it is sent to.
 struct LiveValue
 {
     std::uint32_t Channel = 0;
@@ -20,9 +20,10 @@ struct LiveValue
     std::vector<std::uint8_t> Bytes;
 };
 
-// What waits for one viewer. Texts go first. Values take so many bytes at most: where one has no room the
-// oldest of its channel make it, so that a slow viewer sees less of what is said often, and never a State
-// that is not the newest. What is not shown is counted by channel. Not thread-safe.
+// Texts and values that wait for one viewer. Texts go first. Values take a limited number of bytes. If a new
+// value has no room, the oldest values of its channel are dropped, so that a slow viewer sees fewer values of
+// busy channels; if that is not enough, the new value is dropped too. Drops are counted by channel. Not
+// thread-safe.
 class LiveQueue
 {
 public:
@@ -30,10 +31,10 @@ public:
 
     explicit LiveQueue(std::size_t mostBytes) : _most(mostBytes) {}
 
-    // False: too many wait, so that nobody reads them.
+    // Returns false if MostTexts wait already: the viewer does not read them.
     bool AddText(std::string text);
     void AddValue(std::uint32_t subscription, std::shared_ptr<const LiveValue> value);
-    // What waits for that subscription is not wanted any more.
+    // Drops the values that wait for that subscription.
     void Remove(std::uint32_t subscription);
 
     struct Value
@@ -42,18 +43,18 @@ public:
         std::shared_ptr<const LiveValue> What;
     };
     std::optional<std::string> TakeText();
-    // In the order in which they came.
+    // Takes values in the order in which they came.
     std::optional<Value> TakeValue();
     bool IsEmpty() const { return _texts.empty() && _values.empty(); }
     std::size_t Bytes() const { return _bytes; }
 
-    // Values that were dropped since this was asked last, by channel.
+    // Returns the numbers of dropped values since the last call, by channel.
     std::map<std::uint32_t, std::uint64_t> TakeDropped();
 
 private:
     struct Waiting
     {
-        std::uint64_t Turn = 0;  // rises with each that is added
+        std::uint64_t Turn = 0;  // rises with each value added
         Value What;
     };
     static std::size_t SizeOf(const LiveValue &value);

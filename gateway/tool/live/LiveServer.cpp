@@ -117,7 +117,8 @@ private:
             {
                 if (error)
                 {
-                    // No file descriptors, for instance. Trying again at once would keep the processor busy.
+                    // For instance, no file descriptors are left. Trying again at once would keep the
+                    // processor busy.
                     _pause.expires_after(PauseAfterFailure);
                     _pause.async_wait([this](const boost::system::error_code &) { Accept(); });
                     return;
@@ -141,7 +142,7 @@ private:
             }
         }
     }
-    // A copy: who cannot be written to goes.
+    // A copy, because a session that cannot be written to removes itself.
     std::vector<LiveSession *> Sessions() const
     {
         return {_context.Sessions.begin(), _context.Sessions.end()};

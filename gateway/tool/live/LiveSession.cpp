@@ -18,7 +18,7 @@ constexpr std::chrono::seconds RequestTime{10};
 constexpr std::chrono::seconds TellPeriod{1};
 constexpr std::size_t MostSubscriptions = 10'000;
 
-// Sites of viewers, and pages of this machine.
+// Sites of viewers, and pages from files of this machine.
 constexpr std::string_view Viewers[] = {"https://app.foxglove.dev", "https://studio.foxglove.dev",
                                         "https://lichtblick-suite.github.io", "file://"};
 
@@ -176,7 +176,7 @@ void LiveSession::Read()
                                self->End();
                                return;
                            }
-                           // Binary is what viewers send values with.
+                           // Binary messages carry values of viewers, which are not taken.
                            const std::string text =
                                self->_stream.got_text() ? beast::buffers_to_string(self->_buffer.data()) : "";
                            self->OnRequest(LiveProtocol::ReadRequest(text));
@@ -226,13 +226,13 @@ void LiveSession::Say(std::string text)
 {
     if (!_queue.AddText(std::move(text)))
     {
-        End();  // it asks, and takes no answers
+        End();  // the viewer asks, and does not read the answers
         return;
     }
     WriteNext();
 }
 
-// One write at a time.
+// Begins a write if none is under way.
 void LiveSession::WriteNext()
 {
     if (!_open || _writing)
@@ -281,7 +281,7 @@ void LiveSession::Tick()
         });
 }
 
-// One text for each topic, which replaces the one before.
+// Sends one text for each topic, which replaces the one before.
 void LiveSession::TellDropped()
 {
     for (const auto &[channel, count] : _queue.TakeDropped())
@@ -295,7 +295,7 @@ void LiveSession::TellDropped()
     }
 }
 
-// An orderly close would wait for a viewer that may not read.
+// Closes at once: an orderly close would wait for a viewer that may not read.
 void LiveSession::End()
 {
     _open = false;

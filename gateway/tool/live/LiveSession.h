@@ -18,7 +18,7 @@
 namespace Rabit::Tool
 {
 
-// The connection of one viewer, from the HTTP request on. It owns itself: it lives while something is under
+// The connection of one viewer, from the HTTP request on. Owns itself: it lives while an operation is under
 // way. Server's thread only.
 class LiveSession : public std::enable_shared_from_this<LiveSession>
 {
@@ -29,14 +29,14 @@ public:
     LiveSession &operator=(const LiveSession &) = delete;
 
     void Begin();
-    // There is one channel more.
+    // Offers a new channel to the viewer.
     void Offer(const LiveProtocol::Channel &channel);
     void Show(const std::shared_ptr<const LiveValue> &value);
 
 private:
     using Request = boost::beast::http::request<boost::beast::http::string_body>;
 
-    // Why it is no viewer that may look; empty if it is.
+    // Returns why the request is refused; empty if the viewer may look.
     std::string WhyNot() const;
     void Refuse(const std::string &why);
     void Accept();
@@ -58,9 +58,9 @@ private:
     LiveQueue _queue;
     std::map<std::uint32_t, std::vector<std::uint32_t>> _subscribed;  // subscriptions, by channel
     std::map<std::uint32_t, std::uint32_t> _subscriptions;            // channels, by subscription
-    std::map<std::uint32_t, std::uint64_t> _dropped;                  // all that it was told of, by channel
-    std::string _text;                                                // being written
-    std::vector<std::uint8_t> _frame;                                 // likewise
+    std::map<std::uint32_t, std::uint64_t> _dropped;  // values that the viewer was told it missed, by channel
+    std::string _text;                                // being written
+    std::vector<std::uint8_t> _frame;                 // likewise
     bool _open = false;
     bool _writing = false;
 };

@@ -23,11 +23,11 @@ std::uint64_t Nanoseconds(double gpsSeconds)
 
 }  // namespace
 
-// One local message. Several threads may post.
+// Shows one local message. Several threads may post it.
 class LiveTaps::Tap : public std::enable_shared_from_this<Tap>
 {
 public:
-    // What a panel makes of it, in a channel of its own.
+    // A panel's form of the message, in a channel of its own.
     struct Made
     {
         const PanelMapping *Panel = nullptr;
@@ -47,14 +47,14 @@ public:
 
     bool Shows(const std::shared_ptr<PublishSubscribeMessage> &global) const { return _global == global; }
     void SetChannel(std::uint32_t channel) { _channel = channel; }
-    // `type` knows the message in JSON.
+    // `type` converts the message to JSON.
     void SetPanels(std::vector<Made> panels, std::shared_ptr<const DynamicType> type)
     {
         _panels = std::move(panels);
         _dynamic = std::move(type);
     }
 
-    // What was posted last, if anything was, and then all posts.
+    // Shows the last post, if there is one, and all later ones.
     void Begin()
     {
         const std::lock_guard lock(_mutex);
@@ -125,7 +125,7 @@ private:
     std::vector<Made> _panels;
     std::shared_ptr<const DynamicType> _dynamic;
     std::mutex _mutex;
-    std::unique_ptr<RabitMessage> _copy;  // guarded, as the next
+    std::unique_ptr<RabitMessage> _copy;  // guarded by _mutex, as the next
     bool _told = false;
     RabitScopedConnection _connection;
 };
@@ -144,7 +144,7 @@ LiveTaps::~LiveTaps() = default;
 
 void LiveTaps::Look()
 {
-    // The name of a forgotten node's message goes, and may come again with another global copy.
+    // The name of a forgotten node's message is removed, and may return with another global copy.
     std::erase_if(_taps,
                   [this](const auto &entry)
                   {
@@ -216,7 +216,7 @@ bool LiveTaps::IsState(const std::string &node, const std::string &message) cons
             }
         }
     }
-    return true;  // of this program: who is there
+    return true;  // a message of this program, such as Gateway/Fleet
 }
 
 void LiveTaps::TellProblems()

@@ -17,17 +17,18 @@
 namespace Rabit::Tool
 {
 
-// Shows each post of the local messages that a FleetFollower has subscribed to, and what panels are to make
-// of it, on the thread that posts it; and problems of Gateway/Fleet as they come and go. Main thread only.
+// Shows each post of the local messages that a FleetFollower has subscribed to, also in the form for panels,
+// on the thread that posts it. Shows problems of Gateway/Fleet as they come and go. Functions are for the
+// main thread.
 class LiveTaps
 {
 public:
-    // `except`: names and patterns of messages that are not shown. All must outlive it.
+    // `except`: names and patterns of messages that are not shown. All arguments must outlive the object.
     LiveTaps(FleetSession &session, const GatewayConfig &config, const std::vector<std::string> &except,
              LiveServer &server);
     ~LiveTaps();
 
-    // Taps what is new.
+    // Taps new messages, and shows new problems.
     void Look();
     std::size_t Messages() const { return _taps.size(); }
 
@@ -44,7 +45,7 @@ private:
     std::vector<PanelMapping> _panels;
     std::map<std::string, std::shared_ptr<Tap>> _taps;  // by local name; null: it cannot be shown
     std::uint32_t _log;
-    std::set<std::string> _problems;  // that were told
+    std::set<std::string> _problems;  // that were shown
 };
 
 }  // namespace Rabit::Tool

@@ -26,7 +26,7 @@ struct Member
 struct Schema
 {
     std::string_view Name;
-    std::vector<Member> Members;  // but timestamp
+    std::vector<Member> Members;  // without timestamp, which all have
 };
 
 const Schema &SchemaOf(Panel panel)
@@ -77,7 +77,7 @@ Json TimeOf(std::uint64_t nanoseconds)
     return {{"sec", nanoseconds / second}, {"nsec", nanoseconds % second}};
 }
 
-// `a.b.0`; null if it leads nowhere.
+// Follows a path as `a.b.0`; null if it leads nowhere.
 const Json *Follow(std::string_view path, const Json *value)
 {
     while (value != nullptr && !path.empty())

@@ -14,20 +14,20 @@
 namespace Rabit::Tool
 {
 
-// Values of messages as panels of viewers know them, in JSON. Pure.
+// Converts values of messages to the schemas of viewers' panels, in JSON. Pure.
 class PanelMapping
 {
 public:
     explicit PanelMapping(PanelRule rule) : _rule(std::move(rule)) {}
 
     const std::string &Message() const { return _rule.Message; }
-    // The channel for that message of a node.
+    // Returns the channel for that message of a node.
     LiveProtocol::Channel ChannelFor(const std::string &node) const;
-    // A value, as idl/dynamic has it in JSON, that was posted then (UTC, nanoseconds since 1970). Empty: a
-    // field is not in it, or is no number where one has to be.
+    // Converts a value, in the JSON of idl/dynamic; `postedAt` is UTC in nanoseconds since 1970. Empty if a
+    // field is missing, or is no number where one is required.
     std::optional<std::string> Show(const std::string &node, const std::string &value,
                                     std::uint64_t postedAt) const;
-    // Why a value of that message cannot be shown, in one line.
+    // Says in one line why a value of that message cannot be shown.
     std::string WhyNot(const std::string &value) const;
 
 private:

@@ -46,7 +46,7 @@ std::uint16_t Short(std::span<const std::uint8_t> bytes)
     return static_cast<std::uint16_t>(Number(bytes, 2));
 }
 
-// The value of a parameter of a list in little-endian; empty if it has none.
+// The value of a parameter in a little-endian list; empty if the list has none.
 std::span<std::uint8_t> Find(std::span<std::uint8_t> list, std::uint16_t wanted)
 {
     while (list.size() >= 4)
@@ -66,7 +66,7 @@ std::span<std::uint8_t> Find(std::span<std::uint8_t> list, std::uint16_t wanted)
     return {};
 }
 
-// What follows a list of parameters.
+// The bytes behind a list of parameters.
 std::span<std::uint8_t> After(std::span<std::uint8_t> list)
 {
     while (list.size() >= 4)
@@ -81,8 +81,8 @@ std::span<std::uint8_t> After(std::span<std::uint8_t> list)
     return {};
 }
 
-// The list of parameters in the announcement of a participant; empty if this submessage is none, as a goodbye
-// is none, which has a key alone. This vendor announces in little-endian.
+// The parameter list in the announcement of a participant. Empty for other submessages, and for a goodbye,
+// which has a key alone. This vendor announces in little-endian.
 std::span<std::uint8_t> ParametersOf(std::span<std::uint8_t> body, std::uint8_t kind, std::uint8_t flags)
 {
     if (kind != Data || (flags & (LittleEndian | HasData)) != (LittleEndian | HasData) ||

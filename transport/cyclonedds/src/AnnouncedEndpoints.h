@@ -6,11 +6,11 @@
 namespace Rabit::Cyclone
 {
 
-// Takes out of a Rabit node's announcement which of the vendor's own endpoints it has that neither side uses:
-// those for the liveliness of single writers and for descriptions of types. Each pair of nodes would make
-// them known, ask and acknowledge, which is half of what their discovery says. Whatever is no such
-// announcement stays as it is: plain programs may use them, and with DDS Security they are signed. In place;
-// true if something was taken out.
+// Removes from a Rabit node's announcement those of the vendor's builtin endpoints that neither side uses:
+// for the liveliness of single writers and for descriptions of types. Each pair of nodes would announce,
+// request and acknowledge them: half of the nodes' discovery traffic. Announcements of plain programs are
+// unchanged, since these may use the endpoints, and so are those with DDS Security, which are signed. Works
+// in place; returns true if an endpoint was removed.
 bool LeaveOutIdleEndpoints(std::span<std::uint8_t> datagram);
 
 }  // namespace Rabit::Cyclone

@@ -31,7 +31,7 @@ AnnouncementRounds::AnnouncementRounds(Duration answerGap, TimePoint now, bool h
 
 void AnnouncementRounds::OnPeer(TimePoint now)
 {
-    // One that is due already is for this newcomer as well.
+    // An answer that is due already serves this newcomer too.
     if (!_answers.Due || _answers.Left < MostAnswers)
     {
         _answers.Begin(now, _answerGap, MostAnswers);

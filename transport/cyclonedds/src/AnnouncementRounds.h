@@ -6,39 +6,40 @@
 namespace Rabit::Cyclone
 {
 
-// Decides when our participant is announced to all beside its period. The vendor does so once as it comes;
-// whoever missed that, or comes later, would wait for a period, which may be minutes. So it is announced a
-// few times more at first; once soon after somebody has come; and further as long as somebody has not shown
-// that it heard us, since that answer may have been lost. Either series at doubling distances. A pure state
-// machine, not thread-safe.
+// Decides when our participant is announced to all beside its period. The vendor announces it once at first;
+// a peer that missed that, or comes later, would wait for a period, which may be minutes. So it is announced
+// a few times more at first, and once soon after a newcomer. Further announcements follow while a peer has
+// not shown that it heard us, since the answer may have been lost. The intervals of both series double. A
+// pure state machine, not thread-safe.
 class AnnouncementRounds
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
     using Duration = std::chrono::steady_clock::duration;
 
-    // After the very first: at 0.2, 0.6, 1.4, 3 and 6.2 s, unless somebody was just answered.
+    // After the first announcement: at 0.2, 0.6, 1.4, 3 and 6.2 s, unless a newcomer was just answered.
     static constexpr std::chrono::milliseconds InitialGap{200};
     static constexpr int InitialRounds = 5;
-    // The same where other nodes learn of this one by its card: programs without a card need them alone.
+    // The same where other nodes learn of this one by its card: only programs without a card need them.
     static constexpr int InitialRoundsWithCard = 2;
-    // After a newcomer; the last a minute or two after it.
+    // Limit of announcements for a newcomer; the last comes a minute or two after it.
     static constexpr int MostAnswers = 10;
-    // Newcomers who come one after another, as over a thin radio, are answered together: no sooner than that
-    // after the last announcement, twice as long after each that followed one within Rest.
+    // Newcomers in quick succession, as over a thin radio, are answered together. Shortest time between two
+    // announcements; it doubles with each announcement that follows another within Rest.
     static constexpr std::chrono::milliseconds ShortestSpacing{100};
     static constexpr std::chrono::milliseconds LongestSpacing{400};
     static constexpr std::chrono::milliseconds Rest{3200};
 
-    // Begins when the participant was announced. `answerGap`: from a newcomer to the answer; best not the
-    // same for all who answer.
+    // Begins when the participant was announced. `answerGap`: time from a newcomer to the answer, best
+    // different for each node.
     AnnouncementRounds(Duration answerGap, TimePoint now, bool hasCard = false);
 
-    // Somebody has come.
+    // A peer has appeared.
     void OnPeer(TimePoint now);
-    // When Next is to be called, if at all.
+    // When to call Next; empty: never.
     std::optional<TimePoint> Due() const;
-    // Whether to announce ourselves. `unheard`: somebody whom we know has not shown that it knows us.
+    // Returns true if the participant should be announced now. `unheard`: a known peer has not shown yet that
+    // it knows us.
     bool Next(TimePoint now, bool unheard);
 
 private:
@@ -49,13 +50,13 @@ private:
         int Left = 0;
 
         void Begin(TimePoint now, Duration gap, int rounds);
-        bool Pass(TimePoint now);  // whether one of them is due
+        bool Pass(TimePoint now);  // true if a round is due
     };
 
     const Duration _answerGap;
     Series _initial;
     Series _answers;
-    TimePoint _last;  // time that it was announced
+    TimePoint _last;  // when it was last announced
     Duration _spacing = ShortestSpacing;
 };
 

@@ -10,26 +10,26 @@
 namespace Rabit::Cyclone
 {
 
-// A thread that lives by AnnouncementRounds.
+// A thread that announces the participant when AnnouncementRounds says so.
 class AnnouncementThread
 {
 public:
     // Both are called on the thread, and may take the vendor's locks.
     struct Calls
     {
-        std::function<bool()> IsUnheard;  // whether somebody has not shown that it knows us
+        std::function<bool()> IsUnheard;  // true if a peer has not shown that it knows us
         std::function<void()> Announce;
     };
 
-    // answerGap, hasCard: AnnouncementRounds.
+    // `answerGap`, `hasCard`: see AnnouncementRounds.
     AnnouncementThread(std::chrono::milliseconds answerGap, bool hasCard);
-    ~AnnouncementThread();  // neither call is made afterwards
+    ~AnnouncementThread();  // no call is made afterwards
     AnnouncementThread(const AnnouncementThread &) = delete;
     AnnouncementThread &operator=(const AnnouncementThread &) = delete;
 
-    // When the participant is there, once.
+    // To be called once, when the participant exists.
     void Start(Calls calls);
-    // Somebody has come. Any thread; before Start too.
+    // A peer has appeared. Any thread; also before Start.
     void OnPeer();
 
 private:

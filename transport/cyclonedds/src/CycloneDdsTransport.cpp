@@ -80,8 +80,8 @@ public:
     std::size_t MostNetworks() const override { return RabitCycloneMostInterfaces(); }
 
 private:
-    // The vendor reads its configuration only as it makes a domain, which tells nothing to the network
-    // as long as there is no participant in it.
+    // The vendor reads its configuration only when it creates a domain. That sends nothing to the network as
+    // long as the domain has no participant.
     static void CheckDomainConfig(TransportSettings settings)
     {
         HasOwnInterfaces(settings.BackendConfig);
@@ -90,7 +90,7 @@ private:
             host.begin(), host.end(), [](const HostNetwork &one) { return one.Up && !one.Address.empty(); });
         if (network == host.end())
         {
-            return;  // it would only say that it has no interface
+            return;  // it would only report the missing interface
         }
         settings.Interfaces = {network->Address};
         settings.Peers.clear();

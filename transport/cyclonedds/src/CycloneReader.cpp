@@ -14,8 +14,8 @@ namespace
 
 constexpr std::size_t HeaderSize = 4;
 
-// The sample without the bytes that RTPS added at its end. A submessage is as long as a multiple of 4, so a
-// sample of another length came in fragments, which carry its true length.
+// The sample without the padding that RTPS added. A submessage's length is a multiple of 4, so a sample of
+// another length came in fragments, which carry its true length.
 SampleBytes WithoutPadding(const OpaqueSample &sample)
 {
     std::size_t size = sample.Size;
@@ -45,7 +45,8 @@ CycloneReader::CycloneReader(std::shared_ptr<SessionCore> core, const TopicDescr
         listener.get(),
         [](dds_entity_t, const dds_requested_incompatible_qos_status_t status, void *self)
         {
-            // Partitions that differ are not incompatible (OMG DDS 1.4, 2.2.3.13); the vendor tells of both.
+            // Different partitions are not incompatible (OMG DDS 1.4, 2.2.3.13), but the vendor reports them
+            // too.
             if (status.last_policy_id != DDS_PARTITION_QOS_POLICY_ID)
             {
                 const auto *reader = static_cast<CycloneReader *>(self);

@@ -19,13 +19,13 @@
 namespace Rabit::Cyclone
 {
 
-// Stands where the vendor keeps a reader's history: each sample is handed over on the vendor's receiving
-// thread, out of the object that it arrived in, and none is kept. So there is no queue, no further thread and
-// no history that could fill.
+// Takes the place of the vendor's history of a reader. It delivers each sample on the vendor's receiving
+// thread, out of the object in which it arrived, and keeps none: no queue, no further thread and no history
+// that could fill.
 //
-// Lifetime: dds_delete returns when no thread of the vendor's uses the reader or its cache any more (it waits
-// until its garbage collector has seen each of its threads leave), and the vendor's entity is the first
-// member to go.
+// Lifetime: dds_delete returns when no thread of the vendor's uses the reader or its cache any more: it waits
+// until its garbage collector has seen each of its threads leave. So the vendor's entity is the first member
+// to be destroyed.
 class CycloneReader final : public TransportReader
 {
 public:
@@ -38,16 +38,16 @@ public:
 private:
     struct Cache
     {
-        dds_rhc Base;  // the first, as the vendor demands
+        dds_rhc Base;  // first, as the vendor requires
         CycloneReader *Owner;
     };
 
     static const dds_rhc_ops &CacheOps();
     static CycloneReader &OwnerOf(ddsi_rhc *cache);
 
-    // These run under the gate.
+    // These run with the gate held.
     void HandOver(const OpaqueSample &sample, const WriterId &writer);
-    // So that nothing is lost with a sample that is lost.
+    // Keeps the reader in step with the writer, so that a lost sample costs no other one.
     void Follow(const WriterId &writer);
     void HandOverEnd(const OpaqueSample &sample, SampleInfo &info);
     void WriterGone(const WriterId &writer);
@@ -58,14 +58,14 @@ private:
     const TopicRegistry::Use _use;
     const SampleHandler _handler;
     HandlerGate _gate;
-    InstanceTable _instances;                      // under the gate
+    InstanceTable _instances;                      // used under the gate
     std::set<WriterId> _inStep;                    // with this reader; under the gate
     WriterId _lastWriter{};                        // under the gate
     std::shared_ptr<const PeerSession> _lastNode;  // of _lastWriter; under the gate
     Cache _cache{};
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;
-    Entity _reader;  // the last, see above
+    Entity _reader;  // last member, see above
 };
 
 }  // namespace Rabit::Cyclone

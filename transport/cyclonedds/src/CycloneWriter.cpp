@@ -19,7 +19,7 @@ namespace
 
 constexpr std::size_t HeaderSize = 4;
 
-// Tells readers how many bytes RTPS will add at the end (OMG DDS-XTypes 1.3, 7.6.3.1.2).
+// Tells readers how many padding bytes RTPS will add (OMG DDS-XTypes 1.3, 7.6.3.1.2).
 void MarkPadding(OpaqueSample &sample)
 {
     const std::size_t padding = (4 - sample.Size % 4) % 4;
@@ -31,9 +31,9 @@ struct Unref
     void operator()(OpaqueSample *sample) const { ddsi_serdata_unref(&sample->Header); }
 };
 
-// The key in place of a sample. The vendor writes the key hash beside it only if there is such a payload. It
-// is the serialized key in big-endian CDR if that has up to 16 bytes, as the hash then is; for larger keys,
-// readers of this make that do not look at the key hash beside it do not learn of the disposal.
+// The key in place of a sample. The vendor writes the key hash beside it only if there is such a payload. The
+// payload repeats the hash, which is the serialized key in big-endian CDR if that has up to 16 bytes. For
+// larger keys, readers of this make that ignore the key hash do not learn of the disposal.
 OpaqueSample *MakeKey(const ddsi_sertype *type, const KeyHash &key)
 {
     OpaqueSample *sample = NewSample(type, SDK_KEY, HeaderSize + key.size());
@@ -57,7 +57,8 @@ CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescr
         listener.get(),
         [](dds_entity_t, const dds_offered_incompatible_qos_status_t status, void *self)
         {
-            // Partitions that differ are not incompatible (OMG DDS 1.4, 2.2.3.13); the vendor tells of both.
+            // Different partitions are not incompatible (OMG DDS 1.4, 2.2.3.13), but the vendor reports them
+            // too.
             if (status.last_policy_id != DDS_PARTITION_QOS_POLICY_ID)
             {
                 const auto *writer = static_cast<CycloneWriter *>(self);
@@ -87,7 +88,7 @@ WriteResult CycloneWriter::WriteTo(const std::string &node, const SampleEncoder 
     {
         return Fail("only best-effort writers of topics without a key write to one node");
     }
-    // Whatever the vendor sends on this thread until the end of the scope.
+    // Directs all datagrams that the vendor sends on this thread until the end of the scope.
     class Direction
     {
     public:
@@ -126,7 +127,7 @@ int CycloneWriter::Destinations() const
     return MatchedReaders() == 0 ? 0 : RabitCycloneDestinations(_type, &known);
 }
 
-// All zero, which no writer has, if the session is closed.
+// The writer's GUID; all zero, which no writer has, if the session is closed.
 ddsi_guid_t CycloneWriter::VendorGuid() const
 {
     dds_guid_t guid{};
@@ -180,7 +181,7 @@ WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourc
     }
     sample->Header.timestamp.v = sourceTime;
     // Unregistered as well: the vendor keeps nothing of such an instance once its readers know, not even for
-    // late ones; and readers need not keep it for this writer.
+    // late ones. Readers need not keep it for this writer either.
     sample->Header.statusinfo = dispose ? StatusDisposed | StatusUnregistered : 0u;
     const SendingSamples sending;
     const dds_return_t result = dds_forwardcdr(_writer.Get(), &sample.release()->Header);

@@ -44,7 +44,7 @@ private:
     HeldDatagrams _held;
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;
-    Entity _writer;  // the last, so that no listener runs when the others go
+    Entity _writer;  // last member, so that no listener runs when the others are destroyed
 };
 
 }  // namespace Rabit::Cyclone

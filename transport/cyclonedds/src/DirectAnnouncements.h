@@ -9,16 +9,16 @@
 namespace Rabit::Cyclone
 {
 
-// Decides which announcements of ours go to one participant alone. The vendor answers each newcomer in that
-// way, four times: with each other of a fleet that starts, half of all that is said. An announcement to all
-// answers all newcomers at once; only who announces itself to us alone may be out of its reach. Thread-safe.
+// Decides which of our announcements go to one participant alone. The vendor answers each newcomer in that
+// way, four times: half of all traffic when a fleet starts. An announcement to all answers all newcomers at
+// once. Only a newcomer that announces itself to us alone may be out of its reach. Thread-safe.
 class DirectAnnouncements
 {
 public:
     using Address = std::array<std::uint8_t, 4>;  // IPv4
     static constexpr std::size_t MostAddresses = 256;
 
-    // Somebody there has announced itself to us alone.
+    // A participant at `from` has announced itself to us alone.
     void OnAnnouncement(const Address &from);
     bool MayGo(const Address &to) const;
 

@@ -14,14 +14,14 @@ namespace Rabit::Cyclone
 namespace
 {
 
-// Sessions on one host and domain; each has its own ports.
+// Limit of sessions on one host and domain; each has its own ports.
 constexpr int MostParticipants = 100;
 // A peer without a port is looked for at the ports of this many participants of its host, as with Fast DDS.
-// Left to the vendor it would be MostParticipants, each with every announcement.
+// The vendor's default would be MostParticipants, each with every announcement.
 constexpr int ParticipantsPerPeer = 16;
-// What the vendor's headers may take of a datagram beside a fragment of a sample.
+// Largest size of the vendor's headers in a datagram with a fragment of a sample.
 constexpr std::size_t HeaderRoom = 100;
-// And signatures, which the vendor adds to a message that is full already.
+// Largest size of signatures, which the vendor adds to a message that is already full.
 constexpr std::size_t SecurityRoom = 256;
 
 // OMG DDSI-RTPS 2.3, 9.6.1.1
@@ -38,7 +38,7 @@ void AddInterfaces(const TransportSettings &settings, std::ostream &xml)
     xml << "<Interfaces>";
     for (const auto &address : settings.Interfaces)
     {
-        // Linux does not call loopback capable of multicast, and it is.
+        // Linux does not mark loopback as capable of multicast, although it is.
         const bool isLoopback = address.starts_with("127.");
         xml << "<NetworkInterface address=\"" << address << "\" multicast=\""
             << (!settings.Multicast ? "false"
@@ -49,7 +49,7 @@ void AddInterfaces(const TransportSettings &settings, std::ostream &xml)
     xml << "</Interfaces>";
 }
 
-// Whether a peer is to be reached that is on none of our networks.
+// True if a peer is on none of our networks.
 bool IsRoutingNeeded(const TransportSettings &settings)
 {
     const auto host = ListHostNetworks();
@@ -125,31 +125,31 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         << "<MaxMessageSize>" << largest << "B</MaxMessageSize>"
         << "<FragmentSize>" << largest - HeaderRoom
         << "B</FragmentSize></General>"
-        // The vendor hands samples over inside Write between sessions that share its domain. Each session has
-        // one of its own, which is called as the user says on the network alone.
+        // Between sessions that share a domain, the vendor delivers samples inside Write. So each session has
+        // a domain of its own; only on the network it has the configured number.
         << "<Discovery><ExternalDomainId>" << settings.Domain << "</ExternalDomainId>"
         << "<ParticipantIndex>auto</ParticipantIndex>"
         << "<MaxAutoParticipantIndex>" << MostParticipants << "</MaxAutoParticipantIndex>"
         << "<LeaseDuration>" << settings.Lease.count() << "ms</LeaseDuration>"
         << "<SPDPInterval>" << settings.AnnouncementPeriod.count() << "ms</SPDPInterval>";
     AddPeers(settings, xml);
-    // A request for repair goes at once: the default would make that, and the end of a replay, as late as
-    // 100 ms and more. Who acknowledges nothing is asked less and less often. What several lack, as at a
-    // start, goes to all at once; and a reader asks a writer by itself only if that has not addressed it
-    // soon.
+    // Requests for repair go at once: the default delays them, and the end of a replay, by 100 ms and more.
+    // Readers that do not acknowledge get heartbeats less and less often. Samples that several readers lack,
+    // as at a start, are repaired for all at once. A reader asks a writer by itself only if the writer has
+    // not addressed it within 100 ms.
     xml << "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash>"
         << "<HeartbeatInterval max=\"4s\" minsched=\"100ms\">100ms</HeartbeatInterval>"
         << "<NackDelay>1ms</NackDelay><PreEmptiveAckDelay>100ms</PreEmptiveAckDelay>"
         << "<RetransmitMerging>always</RetransmitMerging>"
         << "<RetransmitMergingPeriod>20ms</RetransmitMergingPeriod>"
-        // The vendor ends further threads by a message to its own address, and waits for ever if that is
-        // gone.
+        // The vendor ends further threads by a message to its own address, and waits for ever if the address
+        // is gone.
         << "<MultipleReceiveThreads>false</MultipleReceiveThreads>"
         << "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
         << "<Watermarks><WhcHigh>128MB</WhcHigh></Watermarks></Internal>"
-        // The vendor fills a receive buffer from end to end and then takes another, a megabyte each by
-        // default. Between them the heap keeps a hole of that size for each one that small objects have
-        // broken up, so small ones keep the process small. A chunk holds the largest datagram.
+        // The vendor fills a receive buffer from end to end and then takes another, of a megabyte by default.
+        // Small objects on the heap keep each freed buffer from being reused whole, so small buffers keep the
+        // process small. A chunk holds the largest datagram.
         << "<Sizing><ReceiveBufferSize>96KiB</ReceiveBufferSize>"
         << "<ReceiveBufferChunkSize>72KiB</ReceiveBufferChunkSize></Sizing></Domain>";
     if (!settings.BackendConfig.empty())

@@ -8,7 +8,7 @@ namespace Rabit::Cyclone
 namespace
 {
 
-// The longest that Write waits for room in the writer's history.
+// Longest time that Write waits for room in the writer's history.
 constexpr dds_duration_t LongestWait = DDS_MSECS(100);
 
 Qos MakeEndpointQos(const TopicQos &qos, const std::vector<std::string> &partitions)
@@ -25,7 +25,7 @@ Qos MakeEndpointQos(const TopicQos &qos, const std::vector<std::string> &partiti
     dds_qset_ignorelocal(result.get(), DDS_IGNORELOCAL_PARTICIPANT);
     const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
     dds_qset_data_representation(result.get(), 1, &representation);
-    // An empty list is written out as the default partition: with it, another make would not match `*`.
+    // An empty list is written out as the default partition: an empty one would not match another make's `*`.
     std::vector<const char *> names;
     for (const auto &name : partitions)
     {

@@ -17,8 +17,8 @@ constexpr std::size_t MaxSample = LargestSample;
 Qos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions);
 Qos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions);
 
-// A topic of opaque samples, for one writer or reader. `type` becomes the vendor's type, which lives as long.
-// Throws TransportError.
+// Makes a topic of opaque samples, for one writer or reader. `type` is set to the vendor's type, which lives
+// as long as the topic. Throws TransportError.
 Entity MakeTopic(const SessionCore &core, const TopicDescription &topic, const ddsi_sertype *&type);
 
 }  // namespace Rabit::Cyclone

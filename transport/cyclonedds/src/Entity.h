@@ -11,14 +11,14 @@
 namespace Rabit::Cyclone
 {
 
-// An entity of the vendor's and all that belongs to it. Destroying it returns when no listener of it runs any
-// more.
+// Owns an entity of the vendor's and all that belongs to it. Its destructor returns when no listener of the
+// entity runs any more.
 class Entity
 {
 public:
     Entity() = default;
-    // Takes what a dds_create_ function returned; throws TransportError with `what` and the vendor's reason
-    // if that is an error.
+    // Takes the result of a dds_create_ function. If that is an error, throws TransportError with `what` and
+    // the vendor's reason.
     Entity(dds_entity_t handle, const std::string &what) : _handle(handle)
     {
         if (handle < 0)

@@ -11,7 +11,7 @@
 namespace Rabit::Cyclone
 {
 
-// What the GUIDs of one participant and all its endpoints have in common.
+// Common part of the GUIDs of a participant and its endpoints.
 using Prefix = std::array<std::uint8_t, 12>;
 
 WriterId ToWriterId(const ddsi_guid_t &guid);

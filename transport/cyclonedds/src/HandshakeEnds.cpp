@@ -11,7 +11,7 @@ namespace Rabit::Cyclone
 namespace
 {
 
-// OMG DDS Security 1.1, 9.3.2.5: how the messages of a handshake are called.
+// OMG DDS Security 1.1, 9.3.2.5: names of the messages of a handshake.
 constexpr std::string_view Reply = "DDS:Auth:PKI-DH:1.0+Reply";
 constexpr std::string_view Final = "DDS:Auth:PKI-DH:1.0+Final";
 constexpr std::size_t PrefixAt = 8;  // in the header

@@ -15,10 +15,10 @@
 namespace Rabit::Cyclone
 {
 
-// The last message of a handshake of DDS Security, which goes to who was asked for its certificate and has
-// shown it. The vendor says it once. Who did not get it shows its certificate again and again, and
-// nobody would ever answer: so it is said again here. A while later: Fast DDS does not listen while it shows
-// it, and never to the same once more. Thread-safe.
+// Repeats the last message of a DDS Security handshake, which goes to the peer that has sent its certificate
+// as a reply. The vendor sends it once. A peer that did not get it sends its certificate again and again, and
+// the vendor never answers. So it is repeated here, after Delay: Fast DDS does not listen while it sends its
+// certificate, and never a second time to the same message. Thread-safe.
 class HandshakeEnds
 {
 public:
@@ -31,15 +31,15 @@ public:
     static constexpr std::size_t MostPeers = 256;
     static constexpr std::chrono::milliseconds Delay{50};
 
-    // Of anything that is sent.
+    // Takes any datagram that is sent.
     void Sent(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route);
-    // Of anything that came.
+    // Takes any datagram that was received.
     void Received(std::span<const std::uint8_t> datagram, TimePoint now);
-    // What is to be sent again by now.
+    // Returns the datagrams to repeat by now.
     std::vector<Datagram> TakeDue(TimePoint now);
 
 private:
-    using Peer = std::array<std::uint8_t, 12>;  // how its GUID begins
+    using Peer = std::array<std::uint8_t, 12>;  // first bytes of its GUID
     struct End
     {
         Peer To;

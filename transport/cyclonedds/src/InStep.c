@@ -6,9 +6,9 @@
 #include <dds/ddsi/ddsi_proxy_endpoint.h>
 #include <dds/ddsi/q_thread.h>
 
-/* The vendor takes a reader to be in step once it follows the order of the writer's samples, a heartbeat has
- * come and it has what was written before. The last two are for reliable readers alone, and so are the
- * heartbeats that the vendor reads. The lock is held. */
+/* The vendor treats a reader as in step once three conditions hold: it follows the order of the writer's
+ * samples, a heartbeat has come, and it has the earlier samples. The last two are for reliable readers alone,
+ * and so are the heartbeats that the vendor reads. The lock is held. */
 static void LetFollow(struct ddsi_proxy_writer *writer)
 {
     if (!writer->have_seen_heartbeat)
@@ -36,8 +36,8 @@ bool RabitCycloneFollow(const ddsi_guid_t *writer)
     {
         return false;
     }
-    /* The vendor hands samples over on the thread that received them with the lock held, or, if its
-     * configuration says so, on another without it. */
+    /* The vendor delivers samples on the receiving thread with the lock held or, if its configuration says
+     * so, on another thread without it. */
     const bool locks = !known->deliver_synchronously;
     if (locks)
     {

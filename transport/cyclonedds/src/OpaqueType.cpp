@@ -48,7 +48,7 @@ ddsi_serdata *Refuse(const ddsi_sertype *type, const char *why, OpaqueSample *sa
     return nullptr;
 }
 
-// Computes the key of what arrived; nullptr (and freed) if there is none.
+// Computes the key of an arrived sample; nullptr (and freed) if it has none.
 ddsi_serdata *WithKey(OpaqueSample *sample, const ddsi_keyhash_t *sent)
 {
     const auto *type = Of(sample->Header.type);
@@ -136,7 +136,7 @@ ddsi_serdata *FromKeyHash(const ddsi_sertype *type, const ddsi_keyhash *hash)
 
 ddsi_serdata *FromValue(const ddsi_sertype *, ddsi_serdata_kind, const void *)
 {
-    return nullptr;  // values never come in: only bytes are written
+    return nullptr;  // values are never converted: only bytes are written
 }
 
 void ToBytes(const ddsi_serdata *sample, std::size_t offset, std::size_t size, void *buffer)
@@ -269,8 +269,8 @@ OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::s
 void OpaqueSample::SetKey(const KeyHash &key)
 {
     Key = key;
-    // The vendor's tables look at the low bits alone, and double while these collide, without a limit: keys
-    // that differ in any bit must differ there.
+    // The vendor's tables use only the low bits, and double without a limit while these collide. So keys that
+    // differ in any bit must differ there.
     const std::string_view bytes(reinterpret_cast<const char *>(key.data()), key.size());
     Header.hash ^= static_cast<std::uint32_t>(std::hash<std::string_view>()(bytes));
 }

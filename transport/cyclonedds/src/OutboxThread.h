@@ -16,11 +16,11 @@
 namespace Rabit::Cyclone
 {
 
-// A thread that sends what a KeyExchangeOutbox lets go.
+// A thread that sends the datagrams that a KeyExchangeOutbox releases.
 class OutboxThread
 {
 public:
-    // Called on the thread. `route` is one that was given to PutExchange.
+    // Called on the thread. `route` is one that was passed to PutExchange.
     using Send = std::function<void(const RabitCycloneRoute &route, std::span<const std::uint8_t> datagram)>;
 
     OutboxThread(std::shared_ptr<DiscoveryRate> rate, Send send);
@@ -28,16 +28,16 @@ public:
     OutboxThread(const OutboxThread &) = delete;
     OutboxThread &operator=(const OutboxThread &) = delete;
 
-    // Send is not called afterwards.
+    // Send is not called after this.
     void Stop();
 
-    // All that follows: any thread, with the vendor's locks held.
+    // The functions below: any thread, with the vendor's locks held.
 
-    // A datagram of an exchange of keys; false if it is to go as it is. What may go now is sent on this
-    // thread.
+    // Takes a datagram of a key exchange. Returns false if it should be sent unchanged. Datagrams that may go
+    // now are sent on the calling thread.
     bool PutExchange(std::span<const std::uint8_t> datagram, const KeyExchange &what,
                      const RabitCycloneRoute &route);
-    // One that came. False if the vendor should not see it.
+    // Takes a received datagram. Returns false if the vendor should not see it.
     bool ReceivedExchange(const KeyExchange &what);
 
 private:
@@ -52,8 +52,8 @@ private:
     std::mutex _mutex;
     std::condition_variable _changed;
     KeyExchangeOutbox _exchanges;            // guarded by _mutex
-    KeyExchange::Prefix _self{};             // once something was exchanged; guarded by _mutex
-    std::vector<RabitCycloneRoute> _routes;  // by their numbers; guarded by _mutex
+    KeyExchange::Prefix _self{};             // known once something was exchanged; guarded by _mutex
+    std::vector<RabitCycloneRoute> _routes;  // by number; guarded by _mutex
     bool _stop = false;                      // guarded by _mutex
     std::thread _thread;
 };

@@ -21,7 +21,7 @@ bool RabitCycloneLeaseHasExpired(const ddsi_guid_t *participant)
     {
         return false;
     }
-    /* The one that each message of the participant renews. */
+    /* The lease that each message of the participant renews. */
     const struct lease *lease = ddsrt_atomic_ldvoidp(&known->minl_auto);
     return lease != NULL && (int64_t)ddsrt_atomic_ld64(&lease->tend) <= ddsrt_time_elapsed().v;
 }

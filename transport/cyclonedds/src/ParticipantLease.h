@@ -1,4 +1,4 @@
-/* In C, because the vendor's header of a domain's state is none for C++. */
+/* In C, because the vendor's header of a domain's state does not compile as C++. */
 #pragma once
 
 #include <dds/ddsi/ddsi_guid.h>
@@ -9,9 +9,9 @@ extern "C"
 {
 #endif
 
-    /* Whether the lease of another participant has run out, that is, whether it said nothing for that long;
-       false for one that the vendor does not know. Only from a listener of a built-in topic: the vendor tells
-       there that a participant is gone while it still has it in its books, but does not tell why. */
+    /* True if another participant's lease has run out: it sent nothing for that long. False for one that the
+       vendor does not know. Call only from a listener of a built-in topic. There the vendor reports, without
+       a reason, that a participant is gone, and still has its entry. */
     bool RabitCycloneLeaseHasExpired(const ddsi_guid_t *participant);
 
 #ifdef __cplusplus

@@ -15,7 +15,7 @@ struct Visit
 static void VisitLocator(const ddsi_xlocator_t *locator, void *argument)
 {
     const struct Visit *visit = argument;
-    /* An IPv4 address is the last four of sixteen bytes; the first of a multicast one is 224 to 239. */
+    /* An IPv4 address is the last four of sixteen bytes; a multicast address begins with 224 to 239. */
     const unsigned char *address = locator->c.address + 12;
     if (locator->c.kind == NN_LOCATOR_KIND_UDPv4 && (address[0] & 0xf0) != 0xe0)
     {

@@ -16,24 +16,25 @@ namespace Rabit::Cyclone
 namespace
 {
 
-// Of those that went so many are remembered. The instances of their writers end after they are gone, and an
-// announcement may be overtaken by the goodbye that was sent after it.
+// Number of departed participants that are remembered. The instances of their writers end after they left,
+// and the goodbye may overtake an announcement that was sent before it.
 constexpr std::size_t MostGone = 64;
 
-// The settings, if they are possible ones.
+// Returns the settings; throws TransportError if they are impossible.
 const TransportSettings &Checked(const TransportSettings &settings)
 {
     CheckSettings(settings);
     return settings;
 }
 
-// From a newcomer to our answer: 50 to 150 ms, as the name has it, so that not all answer at once.
+// Time from a newcomer to our answer: 50 to 150 ms, depending on the name, so that not all nodes answer at
+// once.
 std::chrono::milliseconds AnswerGap(const TransportSettings &settings)
 {
     return std::chrono::milliseconds(50 + std::hash<std::string>()(settings.Node) % 100);
 }
 
-// The vendor's plugins are libraries that it loads by name.
+// The vendor's security plugins are libraries that it loads by name.
 void AddSecurity(const TransportSecurity &security, dds_qos_t *qos)
 {
     const auto add = [&](const std::string &name, const std::string &value)
@@ -80,7 +81,7 @@ Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain,
     return {participant, capture.FirstLine().empty() ? what : what + ": " + capture.FirstLine()};
 }
 
-// Only from a listener of a built-in topic.
+// Call only from a listener of a built-in topic.
 PeerPlace PlaceOf(const Prefix &prefix)
 {
     PeerPlace place;
@@ -297,7 +298,7 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
     const PeerPlace place = PlaceOf(prefix);
     Identity identity;
     {
-        // A prefix belongs to one life of one participant: the one who has left does not come back.
+        // A participant that left does not return: a prefix belongs to one incarnation of one participant.
         const std::lock_guard lock(_mutex);
         const auto gone = _gone.find(prefix);
         if (gone != _gone.end() && gone->second.How == PeerEvent::Kind::Left)

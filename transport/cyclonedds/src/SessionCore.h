@@ -1,4 +1,4 @@
-// What a session shares with its writers and readers: the participant and what it knows of the network.
+// State that a session shares with its writers and readers: the participant, its peers and their topics.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -28,28 +28,28 @@ namespace Rabit::Cyclone
 {
 
 // Lives until the session and all its writers and readers are gone, so that a writer that outlives its
-// session fails instead of touching freed memory. Only they own it: its last owner is never a thread of the
-// vendor's. Thread-safe.
+// session fails instead of touching freed memory. Only these own it, so a thread of the vendor's is never its
+// last owner. Thread-safe.
 class SessionCore
 {
 public:
     // Joins the network. Throws TransportError.
     SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate);
-    // Leaves it.
+    // Leaves the network.
     ~SessionCore();
     SessionCore(const SessionCore &) = delete;
     SessionCore &operator=(const SessionCore &) = delete;
 
-    // No peer handler runs afterwards, and writes fail.
+    // When this returns, no peer handler runs any more, and writes fail.
     void Close();
     bool IsClosed() const { return _closed; }
 
     dds_entity_t Participant() const { return _participant.Get(); }
-    // Who a writer's participant is or was; nullptr if it is not a Rabit node, or unknown.
+    // Identity of a writer's present or former participant; nullptr if it is not a Rabit node, or unknown.
     std::shared_ptr<const PeerSession> IdentityOf(const WriterId &writer) const;
-    // The participants to which goes what is written to the node (PeerSessions).
+    // The participants to which samples written to the node go (PeerSessions).
     std::vector<ddsi_guid_t> ParticipantsOf(const std::string &node) const;
-    // Where the Rabit nodes are that it knows.
+    // The addresses of the Rabit nodes that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _log; }
     TopicRegistry &Topics() { return _topics; }
@@ -79,14 +79,14 @@ private:
     Prefix _own{};  // set before anything is discovered
     mutable std::mutex _mutex;
     PeerSessions<Prefix> _peers;          // Rabit nodes; guarded by _mutex
-    std::map<Prefix, PeerPlace> _places;  // of those; guarded by _mutex
-    std::map<Prefix, Gone> _gone;         // the last that went; guarded by _mutex
+    std::map<Prefix, PeerPlace> _places;  // of the peers; guarded by _mutex
+    std::map<Prefix, Gone> _gone;         // the last peers that went; guarded by _mutex
     std::deque<Prefix> _goneOrder;        // guarded by _mutex
-    // Tells of peers: the vendor tells us under locks of its own.
+    // Runs the peer handler, because the vendor reports peers with its own locks held.
     Worker _worker;
     VendorDomain _domain;
     AnnouncementThread _announcements;
-    Entity _participant;  // the last, so that no listener runs when the others go
+    Entity _participant;  // last member, so that no listener runs when the others are destroyed
 };
 
 }  // namespace Rabit::Cyclone

@@ -30,8 +30,8 @@ namespace
 class Numbers
 {
 public:
-    // `wanted` if no session has it, so that a vendor's file that names the domain applies; else one that no
-    // domain of the network has.
+    // Returns `wanted` if no session has it, so that a vendor's file that names the domain applies; otherwise
+    // a number that no domain of the network has.
     static dds_domainid_t Take(dds_domainid_t wanted)
     {
         constexpr dds_domainid_t FirstOther = 1000;
@@ -62,7 +62,7 @@ private:
     }
 };
 
-// Whether something that is sent now is of samples.
+// True if a datagram sent now carries samples.
 bool IsOfSamplesSent(std::span<const std::uint8_t> head)
 {
     return SendingSamples::Now() || IsOfSamples(head);
@@ -143,7 +143,7 @@ void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span
     }
 }
 
-// The vendor takes what comes on its receiving thread alone.
+// The vendor accepts datagrams on its receiving thread alone.
 void VendorDomain::DeliverCard(const Rtps::HostAddress &from, std::span<std::uint8_t> datagram)
 {
     const auto handOn = [this](std::span<std::uint8_t> admitted)
@@ -229,7 +229,7 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     return true;
 }
 
-// The writer whose it is ends before the domain.
+// The writer, which owns the held datagrams, is destroyed before the domain.
 bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t size,
                         const RabitCycloneRoute *route)
 {
@@ -359,7 +359,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _meeting({.Period = settings.AnnouncementPeriod,
                 .Memory = _multicast ? settings.Memory : settings.Lease,
                 .IsMulticast = _multicast}),
-      // The vendor knows by itself which fragments it has sent.
+      // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
       _rate(rate),
       _outbox(std::move(rate), [this](const auto &route, auto datagram)

@@ -23,34 +23,34 @@
 namespace Rabit::Cyclone
 {
 
-// What the vendor calls a domain: sockets, threads, discovery and a configuration. Each session has its own.
+// A domain in the vendor's sense: sockets, threads, discovery and a configuration. Each session has its own.
 class VendorDomain
 {
 public:
-    // Throws TransportError. What the vendor says of the domain goes to the log.
-    // The exchange of cards and of keys stays within `rate`.
+    // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards and
+    // of keys stays within `rate`.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
                  std::shared_ptr<DiscoveryRate> rate);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
 
-    // The number by which this process's vendor knows it; not that of the network.
+    // The domain's number in this process; differs from the one on the network.
     dds_domainid_t Id() const { return _id; }
-    // Announces a participant of it to all, now.
+    // Announces a participant of the domain to all, now.
     void Announce(const ddsi_guid_t &participant) const;
-    // Whether somebody whom that participant knows has not shown that it knows it.
+    // True if a peer known to that participant has not shown yet that it knows the participant.
     bool IsUnheard(const ddsi_guid_t &participant) const;
-    // Whether the participant of the domain exchanges cards (rtps/Meeting.h).
+    // True if the domain's participant exchanges cards (rtps/Meeting.h).
     bool HasCard() const { return _meets; }
-    // Whether another participant does.
+    // True if the vendor learns of another participant by its card.
     bool IsReplayed(const Rtps::GuidPrefix &participant) const
     {
         return _meets && _meeting.IsReplayed(participant);
     }
     // The vendor has lost another participant.
     void Lost(const Rtps::GuidPrefix &participant);
-    // Whether the vendor was told here that it is gone, because it was silent.
+    // True if the vendor was told here that the participant is gone, because it was silent.
     bool WasEnded(const Rtps::GuidPrefix &participant) const { return _meeting.WasEnded(participant); }
 
 private:
@@ -62,30 +62,29 @@ private:
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);
-    // Looked at whenever something is said or comes: the vendor itself says something every now and then.
+    // Called whenever something is sent or received: the vendor sends something regularly.
     void RepeatHandshakes();
-    // How long what the vendor may see of a datagram is.
+    // Returns the size of the part of a datagram that the vendor may see.
     std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size, const Rtps::HostAddress &from);
-    // How a card reaches one participant, or all.
+    // Note the routes by which a card reaches one participant, or all.
     void NoteRoute(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route);
     void NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup);
-    // Both on the thread of the meeting.
+    // Both run on the meeting's thread.
     void SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram);
     void DeliverCard(const Rtps::HostAddress &from, std::span<std::uint8_t> datagram);
-    // Puts what cards say before a datagram that came.
+    // Puts messages from cards before a received datagram.
     std::size_t JoinDelivered(std::span<std::uint8_t> buffer, std::size_t size);
 
     dds_domainid_t _id = 0;
-    void *_watch = nullptr;  // of what it sends
+    void *_watch = nullptr;  // returned by RabitCycloneWatch
     const std::shared_ptr<SessionLog> _log;
-    const bool _multicast;  // reaches all, but for who announces itself to us alone
+    const bool _multicast;  // reaches all peers but those that announce themselves to us alone
     const bool _secured;
-    const bool _hasPeers;  // listed, who may not hear the group
+    const bool _hasPeers;  // peers are listed; they may not hear the group
     std::atomic<bool> _meets{false};
     Rtps::MeetingThread _meeting;
     std::mutex _cardMutex;
-    // Guarded by _cardMutex: the ways that announcements take, to the group first; and to single
-    // participants.
+    // Guarded by _cardMutex: routes of announcements to groups, and to listed peers; and to each participant.
     std::map<const void *, RabitCycloneRoute> _groups;
     std::vector<RabitCycloneRoute> _listed;
     std::map<Rtps::GuidPrefix, RabitCycloneRoute> _cardRoutes;

@@ -17,7 +17,7 @@ namespace
 struct Followed
 {
     std::shared_ptr<SessionLog> Log;
-    std::map<std::string, unsigned> Told;  // how often each function of the vendor's has said something
+    std::map<std::string, unsigned> Told;  // by function of the vendor's: number of lines
 };
 
 struct Table
@@ -43,8 +43,8 @@ std::string_view LineOf(const dds_log_data_t &data)
     return line;
 }
 
-// What it says of a participant with keys that it does not accept, and of any that is heard before the own
-// one is complete: a few such lines say nothing.
+// The vendor writes such lines for refused participants with keys, but also for any that is heard before its
+// own participant is complete. So the first few are not logged.
 constexpr unsigned MostOvertaken = 8;
 bool IsOvertaken(const std::string &line)
 {
@@ -69,13 +69,14 @@ void Sink(void *, const dds_log_data_t *data)
         auto found = table.Domains.find(data->domid);
         if (found == table.Domains.end())
         {
-            // Some lines, of sockets for instance, name no domain.
+            // Some lines, of sockets for instance, name no domain: the first one gets them.
             found = table.Domains.begin();
         }
         if (found != table.Domains.end())
         {
             log = found->second.Log;
-            // So that a fault at full data rate does not flood the log.
+            // Logs only the 1st, 2nd, 4th, 8th ... line, so that a fault at full data rate does not flood the
+            // log.
             const unsigned times = ++found->second.Told[data->function != nullptr ? data->function : ""];
             tell = (times & (times - 1)) == 0 && (times > MostOvertaken || !IsOvertaken(line));
         }

@@ -1,5 +1,5 @@
-// What the vendor says, by domain. The vendor has one sink for the whole process, which this takes when the
-// first session opens; what concerns no session of ours goes to standard error, as it would without it.
+// Distributes the vendor's messages by domain. The process has one sink of the vendor's, which this takes
+// when the first session opens. If no session is open, messages go to standard error, as the vendor does it.
 #pragma once
 
 #include <dds/dds.h>
@@ -15,14 +15,14 @@ namespace Rabit::Cyclone
 class VendorLog
 {
 public:
-    // From now on the vendor's lines about that domain go to the log.
+    // From now on the vendor's lines about that domain go to `log`.
     static void Follow(dds_domainid_t domain, std::shared_ptr<SessionLog> log);
-    // No more.
+    // Ends Follow.
     static void Leave(dds_domainid_t domain);
 };
 
-// Takes what the vendor says on this thread as long as it lives; one a thread at a time. For calls that can
-// fail: the vendor's return value does not tell what a line says.
+// Takes the vendor's lines on this thread as long as it lives; one per thread at a time. For calls that can
+// fail: the vendor's return value is less specific than its lines.
 class VendorLogCapture
 {
 public:
@@ -30,7 +30,7 @@ public:
     ~VendorLogCapture();
     VendorLogCapture(const VendorLogCapture &) = delete;
     VendorLogCapture &operator=(const VendorLogCapture &) = delete;
-    // The first line that it said, or "".
+    // The vendor's first line, or "".
     const std::string &FirstLine() const { return _firstLine; }
     void Add(const std::string &line);
 

@@ -45,7 +45,7 @@ struct Watch
 static pthread_rwlock_t lock = PTHREAD_RWLOCK_INITIALIZER;
 static struct Watch *first = NULL; /* guarded by lock */
 
-/* What the thread that writes is to send to. */
+/* Destinations of the samples that this thread writes. */
 struct Targets
 {
     bool chosen;
@@ -72,7 +72,7 @@ static struct Watch Find(const struct ddsi_domaingv *domain)
     return found;
 }
 
-/* Up to so many bytes of what is to be written; how many. */
+/* Copies at most `size` of the bytes to be written; returns how many. */
 static size_t Gather(unsigned char *buffer, size_t size, size_t parts, const ddsrt_iovec_t *part)
 {
     size_t filled = 0;
@@ -116,7 +116,7 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
     return watch->write(connection, destination, 1, &whole, flags);
 }
 
-/* Whether it is kept. */
+/* Returns true if the datagram is held. */
 static bool Hold(const struct Watch *watch, ddsi_tran_conn_t connection, const ddsi_locator_t *destination,
                  size_t parts, const ddsrt_iovec_t *part)
 {
@@ -144,8 +144,8 @@ static bool IsGroup(const ddsi_locator_t *locator)
     return (locator->address[AddressAt] & 0xf0) == 0xe0;
 }
 
-/* `participant`: the prefix of whom alone the samples are for, if they do not say so themselves; NULL: all
- * who hear them. */
+/* Sends samples to the group. `participant`: prefix of their only addressee, added if they name none; NULL:
+ * no INFO_DST is added. */
 static void WriteToGroup(const struct Watch *watch, ddsi_tran_conn_t connection, size_t parts,
                          const ddsrt_iovec_t *part, uint32_t flags, const unsigned char *head,
                          size_t headSize, const unsigned char *participant)
@@ -173,7 +173,7 @@ static void WriteToGroup(const struct Watch *watch, ddsi_tran_conn_t connection,
 static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *destination, size_t parts,
                         const ddsrt_iovec_t *part, uint32_t flags, const unsigned char *participant)
 {
-    /* It is there as long as its sockets are. */
+    /* The watch exists as long as the domain's sockets. */
     const struct Watch watch = Find(connection->m_base.gv);
     if (watch.write == NULL)
     {
@@ -202,7 +202,7 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
     {
         watch.calls.sent(watch.calls.argument, head, filled, (size_t)size);
     }
-    /* What was left out is as good as sent. */
+    /* Datagrams that are not sent are reported to the vendor as sent. */
     return size == 0 ? (ssize_t)SizeOf(parts, part) : size;
 }
 
@@ -212,7 +212,7 @@ static bool IsSame(const ddsi_locator_t *one, const ddsi_locator_t *other)
            memcmp(one->address, other->address, sizeof one->address) == 0;
 }
 
-/* The vendor sends a sample of a writer without delay on the thread that writes it, to the group or to each
+/* The vendor sends a writer's sample on the thread that writes it, without delay, to the group or to each
  * reader. */
 static ssize_t WriteAndTell(ddsi_tran_conn_t connection, const ddsi_locator_t *destination, size_t parts,
                             const ddsrt_iovec_t *part, uint32_t flags)
@@ -264,7 +264,7 @@ static bool HasPrefixOf(const ddsi_guid_t *one, const ddsi_guid_t *other)
     return memcmp(&one->prefix, &other->prefix, sizeof one->prefix) == 0;
 }
 
-/* The reader of the writer that the participant has, if any. */
+/* The reader of the participant that matches the writer, if any. */
 static bool FindReader(struct ddsi_writer *writer, const ddsi_guid_t *participant, ddsi_guid_t *reader)
 {
     bool found = false;
@@ -281,8 +281,8 @@ static bool FindReader(struct ddsi_writer *writer, const ddsi_guid_t *participan
     return found;
 }
 
-/* Where the reader is, not where its participant once said that it is: of a participant the vendor takes the
- * first word alone, which may have been forged. */
+/* Uses the reader's address, not the one that its participant announced: the vendor keeps only a
+ * participant's first announced address, which may be forged. */
 void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *writer,
                          const ddsi_guid_t *participants, size_t count)
 {
@@ -329,7 +329,7 @@ static ssize_t ReadAndTell(ddsi_tran_conn_t connection, unsigned char *buffer, s
     {
         return got;
     }
-    /* For the vendor a datagram of no bytes is none. */
+    /* The vendor ignores a datagram of no bytes. */
     return (ssize_t)watch.calls.received(
         watch.calls.argument, buffer, (size_t)got, size,
         source == NULL || source->kind != NN_LOCATOR_KIND_UDPv4 ? NULL : source->address + AddressAt,
@@ -352,7 +352,7 @@ void *RabitCycloneWatch(struct RabitCycloneCalls calls)
     watch->next = first;
     first = watch;
     pthread_rwlock_unlock(&lock);
-    /* Nothing is sent before there is a participant. */
+    /* No datagram is sent before there is a participant. */
     for (int i = 0; i < domain->n_interfaces; ++i)
     {
         if (domain->xmit_conns[i]->m_write_fn == watch->write)
@@ -360,7 +360,8 @@ void *RabitCycloneWatch(struct RabitCycloneCalls calls)
             domain->xmit_conns[i]->m_write_fn = WriteAndTell;
         }
     }
-    /* A thread of the vendor's may be about to read what somebody else announces: it does so either way. */
+    /* A thread of the vendor's may be about to read another participant's datagram: either function is
+     * correct for it. */
     ddsi_tran_conn_t reading[] = {domain->disc_conn_mc, domain->disc_conn_uc, domain->data_conn_mc,
                                   domain->data_conn_uc};
     for (size_t i = 0; i < sizeof reading / sizeof reading[0]; ++i)

@@ -1,4 +1,4 @@
-/* In C, because the vendor's header of a domain's state is none for C++. */
+/* In C, because the vendor's header of a domain's state does not compile as C++. */
 #pragma once
 
 #include <dds/ddsi/ddsi_guid.h>
@@ -13,7 +13,7 @@ extern "C"
 {
 #endif
 
-    /* From one of the vendor's sockets to an IPv4 address, or group. */
+    /* Route from one of the vendor's sockets to an IPv4 address, or group. */
     struct RabitCycloneRoute
     {
         void *connection;
@@ -34,60 +34,60 @@ extern "C"
         bool group;
     };
 
-    /* What is called for each datagram, on any thread. A head is its beginning, up to RtpsHeadSize bytes. */
+    /* Calls made for each datagram, on any thread. A head is its beginning, up to RtpsHeadSize bytes. */
     struct RabitCycloneCalls
     {
         void *argument;
-        /* Whether it is of discovery. These alone are asked about before they are sent: whether one may go
-           that way now, and what of it, which is changed in place. */
+        /* isDiscovery: true if the datagram is of discovery. For these alone, `may` is called before sending.
+           It returns true if the datagram may go that way now, and may change it in place. */
         bool (*isDiscovery)(const unsigned char *head, size_t headSize);
         bool (*may)(void *argument, unsigned char *datagram, size_t size,
                     const struct RabitCycloneRoute *route);
-        /* Whether datagrams that this thread sends now are asked about by hold: whether one waits for its
-           turn instead of being sent. */
+        /* holds: true if `hold` is to be called for this thread's datagrams. hold: true if it keeps the
+           datagram to be sent later. */
         bool (*holds)(void);
         bool (*hold)(void *argument, const unsigned char *datagram, size_t size,
                      const struct RabitCycloneRoute *route);
-        /* Where a datagram of samples goes that is for that address alone: to it, and to the group of
-         * samples? */
+        /* Where a datagram of samples for that address alone goes: to the host, to the group of samples, or
+           both. */
         struct RabitCycloneWays (*waysTo)(void *argument, const unsigned char *address);
-        /* It was given to a socket. */
+        /* The datagram was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
-        /* It came, into a buffer of that capacity, in which it may be changed in place. Returns how long what
-           the vendor may see of it is; 0 if nothing. `from` is NULL if that is not known. `direct`: it was
-           sent to us alone, for discovery. */
+        /* A datagram was received, into a buffer of that capacity, where it may be changed in place. Returns
+           the size of the part that the vendor may see; 0: nothing. `from` is NULL if unknown. `direct`: it
+           was sent to us alone, for discovery. */
         size_t (*received)(void *argument, unsigned char *datagram, size_t size, size_t capacity,
                            const unsigned char *from, bool direct);
     };
 
-    /* Watches the domain that this thread has just created, until it is deleted. NULL if that cannot be told.
-       To be given to RabitCycloneUnwatch after the domain was deleted. */
+    /* Watches the domain that this thread has just created, until it is deleted. NULL if that fails. Pass the
+       result to RabitCycloneUnwatch after the domain was deleted. */
     void *RabitCycloneWatch(struct RabitCycloneCalls calls);
     void RabitCycloneUnwatch(void *watch);
 
-    /* Sends a datagram of ours that way, without asking whether it may go, or from the same socket to the
-       group of discovery. Until the domain is deleted. */
+    /* Sends a datagram of ours that way or, as `to` says, from the same socket to a group; `may` is not
+       called. Valid until the domain is deleted. */
     void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
                           const unsigned char *datagram, size_t size);
 
-    /* Sends one zero byte to the own address of discovery, so that a receiving thread calls `received`. */
+    /* Sends one zero byte to the own discovery address, so that a receiving thread calls `received`. */
     void RabitCycloneWake(const void *watch);
 
-    /* Announces an own participant of a domain that is watched to all, now. */
+    /* Announces an own participant of a watched domain to all, now. */
     void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant);
-    /* Whether somebody whom it knows has not answered yet what it said of its writers: whoever knows us does.
-     */
+    /* True if a peer known to the participant has not answered yet the announcements of its writers, as a
+       peer that knows us does. */
     bool RabitCycloneIsUnheard(const void *watch, const ddsi_guid_t *participant);
 
-    /* What this thread writes, until RabitCycloneWriteToAll, goes to those of these participants alone that
-       have readers of this writer of a topic of that type, at their own addresses. Of more than four
-       addresses that they have the rest is left out. */
+    /* Until RabitCycloneWriteToAll, samples that this thread writes go to those of the participants alone
+       that have readers of this writer, at the readers' own addresses. `type` is the type of the writer's
+       topic. At most four addresses are used. */
     void RabitCycloneWriteTo(const struct ddsi_sertype *type, const ddsi_guid_t *writer,
                              const ddsi_guid_t *participants, size_t count);
     void RabitCycloneWriteToAll(void);
 
-    /* To how many addresses the vendor sends what this writer of a topic of that type writes. 0 if it does
-     * not exist. */
+    /* Number of addresses to which the vendor sends samples of this writer; `type` is the type of its topic.
+       0 if the writer does not exist. */
     int RabitCycloneDestinations(const struct ddsi_sertype *type, const ddsi_guid_t *writer);
 
 #ifdef __cplusplus

@@ -10,7 +10,7 @@
 namespace Rabit::Cyclone
 {
 
-// A thread that does what it is given, in order, and the rest of it before it ends.
+// A thread that runs the given work in order. It finishes the rest before it ends.
 class Worker
 {
 public:

@@ -22,14 +22,14 @@ constexpr std::uint8_t FirstSecure = 0x30;
 constexpr std::uint8_t LastSecure = 0x35;
 constexpr std::uint8_t LittleEndian = 0x01;
 constexpr std::uint8_t Final = 0x02;
-// Both kinds: reader, writer, a sequence number, a set, and the count.
+// AckNack and NackFrag consist of reader, writer, a sequence number, a set, and the count.
 constexpr std::size_t EntitiesSize = 8;
 constexpr std::size_t SequenceAt = 8;
 constexpr std::size_t AckNackBitsAt = 16;
 constexpr std::size_t NackFragBitsAt = 20;
 constexpr std::size_t CountSize = 4;
-// A count farther behind the last one is no straggler: either it or the last one was forged, and the honest
-// ones go on from the lower.
+// A count farther behind the last one is not merely late: one of the two was forged, and the honest ones go
+// on from the lower.
 constexpr std::uint32_t FarthestBehind = 16;
 
 std::uint32_t Read(std::span<const std::uint8_t> bytes, bool littleEndian)
@@ -65,7 +65,7 @@ void AcknowledgementTranslator::Translate(std::span<std::uint8_t> datagram)
         std::size_t length = Read(rest.subspan(2, 2), littleEndian);
         if (kind >= FirstSecure && kind <= LastSecure)
         {
-            return;  // what follows may be signed
+            return;  // the remaining submessages may be signed
         }
         rest = rest.subspan(SubmessageHeaderSize);
         if (length == 0 && kind != Pad && kind != InfoTimestamp)
@@ -74,7 +74,7 @@ void AcknowledgementTranslator::Translate(std::span<std::uint8_t> datagram)
         }
         if (kind == InfoSource)
         {
-            // Who says what follows; 9.4.5.9
+            // Sender of the following submessages; 9.4.5.9
             std::copy_n(rest.begin() + PrefixAt, sender.size(), sender.begin());
         }
         if (kind == AckNack || kind == NackFrag)
@@ -84,7 +84,7 @@ void AcknowledgementTranslator::Translate(std::span<std::uint8_t> datagram)
             const std::size_t bitsAt = kind == AckNack ? AckNackBitsAt : NackFragBitsAt;
             const std::uint32_t bits = number(bitsAt);
             const std::size_t countAt = bitsAt + 4 + 4 * std::size_t{(bits + 31) / 32};
-            // All samples before the base are there.
+            // The reader has all samples before the base.
             const bool something = number(SequenceAt) != 0 || number(SequenceAt + 4) > 1;
             Exchange exchange;
             std::copy_n(body.begin(), EntitiesSize, exchange.begin());
@@ -133,7 +133,7 @@ std::uint32_t AcknowledgementTranslator::CountOf(const Prefix &sender, const Exc
     return known->second.Ours;
 }
 
-// Its other readers, and requests for fragments of every sample, count anew as well.
+// Its other readers, and its fragment requests for every sample, start new counts as well.
 void AcknowledgementTranslator::Forget(const Prefix &sender)
 {
     const auto first = _exchanges.lower_bound({sender, {}});

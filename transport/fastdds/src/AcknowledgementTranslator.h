@@ -1,11 +1,11 @@
-// Has the vendor listen to readers that begin anew.
+// Makes the vendor accept acknowledgements of readers that have started anew.
 //
-// A peer whose lease for us ran out while ours for it did not (it heard nothing for a while, or our process
-// was stopped) has forgotten us and finds us again as if for the first time: its readers ask for all that
-// there is. The vendor provides for that, but in the form that its own readers use alone. Those of another
-// make it would not hear, for two reasons: it tells repeats and stragglers from news by a count that must
-// rise, and theirs begins at zero again; and it takes "I have nothing before sample 1" for no news of a
-// reader that had acknowledged more, "nothing before sample 0" for a new beginning. It would believe for ever
+// A peer may lose us while we do not lose it: it heard nothing for a while, or our process was stopped, and
+// its lease for us ran out first. It then finds us as if for the first time, and its readers request all
+// samples. The vendor supports that only in the form that its own readers use. It would ignore readers of
+// another make, for two reasons. It tells news from repeats and late datagrams by a count that must rise, and
+// theirs begins at zero again. And from a reader that had acknowledged more, it takes "I have nothing before
+// sample 1" for no news, and only "nothing before sample 0" for a new start. It would then believe for ever
 // that the peer knows our endpoints, and they would never match again.
 #pragma once
 
@@ -23,14 +23,14 @@ namespace Rabit::FastDds
 class AcknowledgementTranslator
 {
 public:
-    // Puts requests for all that there is into the vendor's form, and gives all acknowledgements and requests
-    // for fragments in a datagram counts of our own. They rise as the sender's do; but when one of the
-    // sender's readers that had acknowledged something asks for all, those of all its readers begin anew,
-    // above all that were given. A count far below the last is news as well. What DDS Security may have
-    // signed stays. The datagram must be sound (RtpsGuard.h).
+    // Converts requests for all samples into the vendor's form, and gives all acknowledgements and fragment
+    // requests in a datagram counts of our own. These rise as the sender's do. If a reader that had
+    // acknowledged something requests all, the counts of all readers of its participant start anew, above all
+    // that were given. A count far below the last one is treated as news as well. Submessages that DDS
+    // Security may have signed are unchanged. The datagram must be sound (RtpsGuard.h).
     void Translate(std::span<std::uint8_t> datagram);
 
-    // To forget does no harm beyond repairs that were not needed, so this is all that is kept.
+    // Bounded: forgetting an exchange costs no more than needless repairs.
     static constexpr std::size_t MostExchanges = 20'000;
     std::size_t Exchanges() const { return _exchanges.size(); }
 
@@ -51,8 +51,8 @@ private:
     void Forget(const Prefix &sender);
 
     std::map<std::pair<Prefix, Exchange>, Counts> _exchanges;
-    std::uint32_t _highest = 0;  // of all counts given
-    std::uint32_t _floor = 0;    // the highest when something was forgotten last
+    std::uint32_t _highest = 0;  // highest count given
+    std::uint32_t _floor = 0;    // value of _highest when an exchange was last forgotten
 };
 
 }  // namespace Rabit::FastDds

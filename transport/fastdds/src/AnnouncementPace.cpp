@@ -34,8 +34,8 @@ void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoi
     _told.clear();
 }
 
-// The vendor announces the participant besides whenever it finds another one; those who have a card need
-// none.
+// The vendor also announces the participant whenever it finds another one. Peers with a card do not need
+// that.
 bool AnnouncementPace::IsWanted(std::uint64_t heard, TimePoint now) const
 {
     return heard != _heard || (_initial > 0 && now >= _nextInitial) || now - *_begun >= _usual;

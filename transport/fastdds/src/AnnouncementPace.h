@@ -8,38 +8,38 @@
 namespace Rabit::FastDds
 {
 
-// Decides when the announcements of our participant go. The vendor sends one four times for each participant
-// that it discovers, to all: at a start of ten that is the greater part of what is said. One after it has
-// heard the newcomer is enough. So they go in rounds: within a round each destination gets one, and what else
-// the vendor sends waits for the next round, which is due if somebody was heard since this one began, and is
-// not held otherwise: nobody has come who lacks it. Rounds that follow each other do so at doubling
-// distances. By itself it asks for the first few rounds after the first, so that whoever lost that hears us
-// soon. A pure state machine, not thread-safe.
+// Decides when announcements of our participant go. The vendor sends one to all, four times for each
+// participant that it discovers: the greater part of the traffic when ten nodes start. One announcement after
+// the newcomer was heard is enough. So announcements go in rounds: within a round each destination gets one,
+// and further ones wait for the next round. That round is due if a participant was heard since this one
+// began. Otherwise nobody lacks the announcement, and it is dropped. Intervals between successive rounds
+// double. The class also requests the first few rounds by itself, so that a peer that lost the first
+// announcement hears us soon. A pure state machine, not thread-safe.
 class AnnouncementPace
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
-    // A place to send to, and by which socket: the numbers are the caller's.
+    // Number of an address and the socket that sends to it, chosen by the caller.
     using Destination = std::uint64_t;
 
-    // The distance of the first two rounds, and the greatest. After a rest the distances begin anew.
+    // First and longest interval between two rounds. After Rest without a round the intervals start anew.
     static constexpr std::chrono::milliseconds FirstGap{100};
     static constexpr std::chrono::milliseconds LongestGap{800};
     static constexpr std::chrono::milliseconds Rest{3200};
-    // Rounds that it asks for after the first one, at distances that double: 0.1, 0.2 ... 3.2 s.
+    // Rounds that it requests after the first one, at doubling intervals: 0.1, 0.2 ... 3.2 s.
     static constexpr int InitialRounds = 6;
-    // The same where other nodes learn of this one by its card: programs without a card need them alone.
+    // The same where other nodes learn of this one by its card: only programs without a card need them.
     static constexpr int InitialRoundsWithCard = 2;
     static constexpr std::size_t MostDestinations = 4096;
 
-    // The vendor announces us once a period by itself: no distance is longer than half of it.
+    // `period`: the vendor's announcement period. No interval is longer than half of it.
     explicit AnnouncementPace(std::chrono::milliseconds period, bool hasCard = false);
 
-    // Whether an announcement may go to this destination now. `content` differs if it says something else
-    // than before: then it always may. `heard` is how many announcements of others have been heard.
+    // True if an announcement may go to this destination now. `content` tells announcements apart: a changed
+    // one may always go. `heard`: number of other participants' announcements heard so far.
     bool MayGo(Destination destination, std::uint64_t content, std::uint64_t heard, TimePoint now);
 
-    // When all have to be told once more, if at all. Past that, each announcement may go.
+    // When all destinations need another announcement, if at all. From that time each announcement may go.
     std::optional<TimePoint> Due() const;
 
 private:
@@ -47,7 +47,7 @@ private:
     bool IsWanted(std::uint64_t heard, TimePoint now) const;
 
     const std::chrono::steady_clock::duration _longest;
-    const std::chrono::steady_clock::duration _usual;  // after so long an announcement is one of the period's
+    const std::chrono::steady_clock::duration _usual;  // after this, an announcement is a periodic one
     std::set<Destination> _told;                       // in this round
     std::optional<TimePoint> _begun;                   // this round
     std::uint64_t _content = 0;

@@ -7,11 +7,11 @@
 namespace Rabit::FastDds
 {
 
-// A call that one object provides as long as it lives, and another one makes whenever it likes. Thread-safe.
+// A call that one object provides while it lives, and another one makes at any time. Thread-safe.
 class DeferredCall
 {
 public:
-    // Nothing: from now on none is made, and none is under way.
+    // An empty `call` ends it: when this returns, none is in progress and none will be made.
     void Set(std::function<void()> call)
     {
         const std::lock_guard lock(_mutex);

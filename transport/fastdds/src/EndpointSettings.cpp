@@ -26,7 +26,7 @@ void Apply(const TopicDescription &topic, const TopicQos &qos, rtps::EndpointAtt
         qos.Durability == Durability::TransientLocal ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
 }
 
-// What the vendor's access control asks the permissions for; it has no other way to know.
+// The names for which the vendor's access control checks the permissions; it has no other source.
 void AddNames(const TopicDescription &topic, const std::vector<std::string> &partitions,
               rtps::PropertyPolicy &properties)
 {
@@ -47,7 +47,7 @@ void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, E
     result.m_durability.kind = qos.Durability == Durability::TransientLocal
                                    ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
                                    : dds::VOLATILE_DURABILITY_QOS;
-    // An empty list is written out as the default partition: with it, another make would not match `*`.
+    // An empty list is written out as the default partition: an empty one would not match another make's `*`.
     std::vector<std::string> names = partitions.empty() ? std::vector<std::string>{""} : partitions;
     result.m_partition.names(names);
     result.data_sharing.off();

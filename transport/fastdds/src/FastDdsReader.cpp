@@ -26,8 +26,8 @@ rtps::HistoryAttributes MakeHistoryAttributes()
     return {rtps::DYNAMIC_RESERVE_MEMORY_MODE, 0, ReservedChanges, 0};
 }
 
-// The payload without the bytes that RTPS added at its end. A submessage is as long as a multiple of 4, so a
-// payload of another length came in fragments, which carry its true length.
+// The payload without the padding that RTPS added. A submessage's length is a multiple of 4, so a payload of
+// another length came in fragments, which carry its true length.
 SampleBytes WithoutPadding(const rtps::SerializedPayload_t &payload)
 {
     std::size_t size = payload.length;
@@ -58,7 +58,8 @@ FastDdsReader::FastDdsReader(std::shared_ptr<SessionCore> core, const TopicDescr
     {
         throw TransportError("Fast DDS cannot make a reader of topic " + topic.Name);
     }
-    // A sample may come addressed to no reader in particular: only a matched writer's is meant for this one.
+    // A sample may be addressed to no reader in particular: this reader accepts only those of matched
+    // writers.
     _reader->enableMessagesFromUnkownWriters(false);
     if (!_core->Participant().registerReader(_reader, MakeTopicAttributes(topic),
                                              MakeReaderQos(qos, partitions)))

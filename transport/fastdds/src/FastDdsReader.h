@@ -18,8 +18,8 @@
 namespace Rabit::FastDds
 {
 
-// Hands each sample over from inside the vendor's "new change" call, out of the buffer that holds it, and
-// drops it from the vendor's history at once: the history never fills, so no sample pushes out another.
+// Delivers each sample inside the vendor's "new change" call, out of the buffer that holds it, and drops it
+// from the vendor's history at once. So the history never fills, and no sample pushes out another.
 class FastDdsReader final : public TransportReader, private eprosima::fastrtps::rtps::ReaderListener
 {
 public:

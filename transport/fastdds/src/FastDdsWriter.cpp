@@ -23,7 +23,7 @@ namespace
 constexpr std::chrono::milliseconds LongestWait{100};
 constexpr std::size_t HeaderSize = 4;
 
-// Tells readers how many bytes RTPS will add at the end (OMG DDS-XTypes 1.3, 7.6.3.1.2).
+// Tells readers how many padding bytes RTPS will add (OMG DDS-XTypes 1.3, 7.6.3.1.2).
 void MarkPadding(std::uint8_t *data, std::uint32_t size)
 {
     const std::uint32_t padding = (4 - size % 4) % 4;
@@ -114,7 +114,7 @@ WriteResult FastDdsWriter::Send(const SampleEncoder &sample, std::int64_t source
     {
         return Fail("the encoded sample is shorter than its header");
     }
-    // Encoded before the vendor's lock is taken: other threads that write encode at the same time.
+    // Encoded before the vendor's lock is taken, so that several threads encode at the same time.
     const auto size32 = static_cast<std::uint32_t>(size);
     const PayloadPool::Buffer buffer = _pool->Acquire(size32);
     KeyHash key{};
@@ -187,8 +187,8 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
     return WriteResult::Ok;
 }
 
-// The vendor asks on the thread that writes, with its lock held, as a sample goes out; there are no
-// repetitions.
+// The vendor calls this on the writing thread, with its lock held, as a sample goes out. There are no
+// repetitions, because the writer is best effort.
 bool FastDdsWriter::is_relevant(const rtps::CacheChange_t & /*change*/, const rtps::GUID_t &reader) const
 {
     const Targets *const targets = _targets;

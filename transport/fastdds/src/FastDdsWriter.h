@@ -40,7 +40,7 @@ public:
 
 private:
     using Targets = std::set<eprosima::fastrtps::rtps::GuidPrefix_t>;
-    // To the participants `to`, if there are any named.
+    // Sends to the participants in `to`; nullptr: to all.
     WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose,
                      const Targets *to = nullptr);
     WriteResult SendEncoded(PayloadPool::Buffer buffer, std::uint32_t size, const KeyHash &key,
@@ -54,7 +54,7 @@ private:
     void on_offered_incompatible_qos(eprosima::fastrtps::rtps::RTPSWriter *writer,
                                      eprosima::fastdds::dds::PolicyMask qos) override;
 
-    // Whether the reader is to get what is being written.
+    // True if the reader is to get the sample being written.
     bool is_relevant(const eprosima::fastrtps::rtps::CacheChange_t &change,
                      const eprosima::fastrtps::rtps::GUID_t &reader) const override;
 
@@ -67,7 +67,7 @@ private:
     HeldDatagrams _held;
     mutable std::mutex _mutex;
     std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex
-    std::atomic<const Targets *> _targets = nullptr;  // while it writes to them, with the vendor's lock held
+    std::atomic<const Targets *> _targets = nullptr;      // during WriteTo, with the vendor's lock held
     eprosima::fastrtps::rtps::RTPSWriter *_writer = nullptr;
 };
 

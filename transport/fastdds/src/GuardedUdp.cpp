@@ -110,8 +110,8 @@ public:
                low_level_transport_->transform_remote_locator(remote, result);
     }
 
-    // The vendor calls it with a lock held that it holds for OpenOutputChannel, too. Ours costs little beside
-    // it, and relies on nothing.
+    // The vendor calls it with a lock held that it also holds for OpenOutputChannel. Our own lock costs
+    // little beside that, and does not rely on it.
     bool send(rtps::SenderResource *sender, const rtps::octet *buffer, std::uint32_t size,
               rtps::LocatorsIterator *begin, rtps::LocatorsIterator *end,
               const std::chrono::steady_clock::time_point &timeout) override
@@ -190,7 +190,7 @@ public:
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
                  const rtps::Locator_t &local, const rtps::Locator_t &remote) override
     {
-        // The vendor's receive buffer, which is not used again before this returns.
+        // This is the vendor's receive buffer, which is not reused before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
         if (Meeting() != nullptr && IsCardMessage(datagram))
         {
@@ -227,7 +227,7 @@ public:
 
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
-    // Where what a card says is handed to.
+    // The vendor's receiver to which the content of cards is delivered.
     struct Receiver
     {
         TransportReceiverInterface *Next = nullptr;
@@ -236,7 +236,7 @@ private:
     };
 
     MeetingThread *Meeting() const { return _descriptor.Chosen().Meeting.get(); }
-    // How a participant is reached that the vendor has said something to, with _sending held.
+    // Notes the address of a participant to which the vendor sends. Requires _sending.
     void NoteRoute(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
                    rtps::LocatorsIterator &begin, const rtps::LocatorsIterator &end)
     {
@@ -251,7 +251,7 @@ private:
             }
         }
     }
-    // On the thread of the meeting.
+    // Runs on the meeting's thread.
     void SendCard(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)
     {
         constexpr std::chrono::milliseconds LongestWait{100};
@@ -271,7 +271,7 @@ private:
         std::for_each(_groups.begin(), _groups.end(), send);
         std::for_each(_listed.begin(), _listed.end(), send);
     }
-    // On the thread of the meeting. The vendor takes what comes on several threads.
+    // Runs on the meeting's thread. The vendor accepts datagrams on several threads.
     void DeliverCard(const HostAddress &from, std::span<std::uint8_t> datagram)
     {
         Receiver receiver;
@@ -291,15 +291,15 @@ private:
         }
     }
 
-    // Whether that socket does send to a destination that it is given.
+    // True if the socket sends to a destination that it is given.
     bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const
     {
         return _descriptor.Chosen().SocketsSendAll ||
                rtps::IPLocator::isMulticast(destination) != (socket == 0);
     }
 
-    // Samples for hosts whose hardware addresses are not known yet go to the group instead. `toOne`: all
-    // hosts are addresses of one participant, and one that works is enough.
+    // Samples for hosts with unknown hardware addresses go to the group instead. `toOne`: all destinations are
+    // addresses of one participant, and one that works is enough.
     void ChooseGroupWhereAddressesLack(std::uint32_t socket, bool toOne, TimePoint now)
     {
         const auto isAwaited = [this, now](const rtps::Locator_t &destination)
@@ -333,7 +333,7 @@ private:
                                                       [&](const rtps::Locator_t &destination)
                                                       { return Leaves(socket, destination); }));
     }
-    // To _chosen, with _sending held.
+    // Sends to _chosen. Requires _sending.
     bool SendChosen(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram, bool samples,
                     const TimePoint &timeout)
     {
@@ -344,8 +344,8 @@ private:
         return sender->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), &first, &last,
                             timeout);
     }
-    // Whether it waits for its turn, with _sending held (HeldDatagrams). The writer whose it is ends before
-    // this.
+    // Returns true if the datagram is held for SendHeld (HeldDatagrams). Requires _sending. The writer, which
+    // owns the held datagrams, is destroyed before this object.
     bool Hold(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram)
     {
         HeldDatagrams::Scope *const held = HeldDatagrams::OfThisThread();
@@ -368,7 +368,7 @@ private:
         const std::lock_guard lock(_sending);
         SendExchanges(std::chrono::steady_clock::now());
     }
-    // With _sending held.
+    // Requires _sending.
     void ScheduleOwed()
     {
         if (const auto due = _exchanges.Due())
@@ -382,7 +382,7 @@ private:
         return _descriptor.Chosen().Mode == RtpsGuard::Mode::Protected ? ReadKeyExchange(datagram)
                                                                        : std::nullopt;
     }
-    // With _sending held, as for the next one. False if it is to go as it is.
+    // Requires _sending, as does the next one. Returns false if the datagram should be sent unchanged.
     bool PutExchange(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
                      const KeyExchange &what, rtps::LocatorsIterator &begin,
                      const rtps::LocatorsIterator &end)
@@ -399,7 +399,7 @@ private:
                 _routes.insert_or_assign(route, std::pair(sender, *begin));
                 if (!_exchanges.Put(datagram, what, route, now))
                 {
-                    return false;  // nor was any before
+                    return false;  // no earlier one was put either
                 }
             }
         }
@@ -417,7 +417,7 @@ private:
         }
         ScheduleOwed();
     }
-    // Of what came. False if the vendor should not see it.
+    // Notes a received datagram. Returns false if the vendor should not see it.
     bool NoteExchange(std::span<const std::uint8_t> datagram)
     {
         const auto what = KeyExchangeOf(datagram);
@@ -455,16 +455,16 @@ private:
         }
     }
 
-    // The vendor's sockets know those destinations alone that a writer means to use when it matches, and end
-    // the process at an assertion when it then uses another one: the reader's own address, where several
-    // share a group.
+    // The vendor's sockets know only the destinations that a writer names when it matches. If the writer
+    // later uses another one, an assertion ends the process: the reader's own address, for instance, where
+    // several share a group.
     std::uint32_t NumberOf(const rtps::Locator_t &destination)
     {
         const auto number = static_cast<std::uint32_t>(_destinations.size());
         const auto [found, isNew] = _destinations.emplace(destination, number);
         if (isNew)
         {
-            // Makes no sockets: there are some, one of them is about to send.
+            // Opens no socket: one exists already, and is about to send.
             low_level_transport_->OpenOutputChannel(_noSockets, destination);
         }
         return found->second;
@@ -476,26 +476,26 @@ private:
 
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
-    std::mutex _receiving;                  // several sockets receive at once
+    std::mutex _receiving;                  // several sockets receive at the same time
     AcknowledgementTranslator _translator;  // guarded by _receiving
     Receiver _receiver;                     // guarded by _receiving
-    std::mutex _sending;                    // guards what follows
+    std::mutex _sending;                    // guards the members below
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
     KeyExchangeOutbox _exchanges;
     HardwareAddresses _addresses;
-    GuidPrefix _self{};  // once something was exchanged
+    GuidPrefix _self{};  // known once something was exchanged
     std::map<std::uint64_t, std::pair<rtps::SenderResource *, rtps::Locator_t>> _routes;
-    // Where announcements go to all.
+    // Routes of announcements to groups.
     std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _groups;
-    // Where announcements go besides.
+    // Other routes of announcements.
     std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _listed;
     std::map<GuidPrefix, std::pair<rtps::SenderResource *, rtps::Locator_t>> _cardRoutes;
     std::map<rtps::Locator_t, std::uint32_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;
-    std::vector<std::uint8_t> _shortened;  // what goes, if it is less than the vendor says
+    std::vector<std::uint8_t> _shortened;  // the datagram to send, if shorter than the vendor's
     eprosima::fastdds::rtps::SendResourceList _noSockets;
 };
 

@@ -48,7 +48,7 @@ void HeartbeatPace::OnAcknowledgement(const Acknowledgement &acknowledgement, Ti
         _acknowledged.clear();
     }
     std::int64_t &before = _acknowledged[reader];
-    // One that knows less than it did begins anew.
+    // A reader that now acknowledges less has started anew.
     const bool isNew = acknowledgement.Base != std::exchange(before, acknowledgement.Base);
     if (!isNew && !acknowledgement.Asks)
     {
@@ -58,7 +58,7 @@ void HeartbeatPace::OnAcknowledgement(const Acknowledgement &acknowledgement, Ti
     for (auto at = _sent.lower_bound(Place{acknowledgement.Writer, 0, {}});
          at != _sent.end() && std::get<0>(at->first) == acknowledgement.Writer; ++at)
     {
-        // Who asks is answered at once.
+        // A reader that requests something is answered at once.
         const bool isTheirs = std::get<GuidPrefix>(at->first) == acknowledgement.Peer;
         at->second.Gap = first;
         at->second.Next = std::min(at->second.Next, isTheirs && acknowledgement.Asks ? now : now + first);

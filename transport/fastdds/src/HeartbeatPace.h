@@ -12,12 +12,11 @@
 namespace Rabit::FastDds
 {
 
-// Decides when a heartbeat that says nothing new goes out again. The vendor repeats it, every 20 ms (that of
-// discovery every second), as long as a reader has not acknowledged all: for a reader that is out of reach
-// for the rest of its lease, and all who did acknowledge answer each time. Here repetitions follow each other
-// at doubling distances, and begin anew when a reader acknowledges or asks for something. A heartbeat with
-// other numbers, or to somebody else, goes at once. Since the vendor goes on, what is held is not lost. A
-// pure state machine, not thread-safe.
+// Decides when an unchanged heartbeat goes out again. The vendor repeats it every 20 ms (in discovery every
+// second) until every reader has acknowledged all samples: for an unreachable reader until its lease ends.
+// All other readers answer each time. Here the intervals of repetitions double, and start anew when a reader
+// acknowledges or requests something. A heartbeat with other numbers, or to another destination, goes at
+// once. Held heartbeats are not lost, since the vendor repeats them. A pure state machine, not thread-safe.
 class HeartbeatPace
 {
 public:
@@ -30,11 +29,11 @@ public:
     };
     static constexpr Gaps OfTopics{std::chrono::milliseconds(20), std::chrono::milliseconds(1000)};
     static constexpr Gaps OfDiscovery{std::chrono::milliseconds(1000), std::chrono::milliseconds(4000)};
-    static constexpr std::size_t Most = 4096;  // heartbeats, and readers
+    static constexpr std::size_t Most = 4096;  // number of heartbeats, and of readers
 
-    // `destination` numbers the places to send to.
+    // `destination`: number of an address, chosen by the caller.
     bool MayGo(std::uint64_t destination, const LoneHeartbeat &heartbeat, TimePoint now);
-    // Somebody has acknowledged to a writer of ours, or asked for something.
+    // A peer has acknowledged samples of a writer of ours, or requested something.
     void OnAcknowledgement(const Acknowledgement &acknowledgement, TimePoint now);
     std::size_t Size() const { return std::max(_sent.size(), _acknowledged.size()); }
 
@@ -43,7 +42,7 @@ private:
     {
         std::int64_t First = 0;
         std::int64_t Last = 0;
-        TimePoint Next;  // time that it may go again
+        TimePoint Next;  // when it may go again
         std::chrono::milliseconds Gap{};
     };
     using Place = std::tuple<Rtps::EntityId, std::uint64_t, Rtps::GuidPrefix>;    // the writer first
@@ -52,7 +51,7 @@ private:
     static Gaps GapsOf(Rtps::EntityId writer);
 
     std::map<Place, Sent> _sent;
-    std::map<Reader, std::int64_t> _acknowledged;  // all before
+    std::map<Reader, std::int64_t> _acknowledged;  // all samples before this one
 };
 
 }  // namespace Rabit::FastDds

@@ -1,4 +1,4 @@
-// Which samples of each instance are kept: the last ones, and none when it has ended.
+// Selects the samples kept for each instance: the last ones, and none after the instance has ended.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace Rabit::FastDds
 {
 
-// The numbers of the samples in a history, by instance. Every call looks one instance up, however many there
-// are and however many samples are kept. Not thread-safe.
+// The sample numbers in a history, by instance. Every call takes one look-up, however many instances and
+// samples there are. Not thread-safe.
 template <typename Key, typename Hash>
 class KeepLast
 {
@@ -20,7 +20,7 @@ public:
     // Keeps at most `depth` samples of each instance, at least one.
     explicit KeepLast(std::size_t depth) : _depth(depth) {}
 
-    // The sample that another one of this instance pushes out; nothing if there is room.
+    // The sample that a new one of this instance pushes out; empty if there is room.
     std::optional<std::uint64_t> PushedOut(const Key &instance) const
     {
         const auto found = _instances.find(instance);
@@ -31,7 +31,7 @@ public:
         return found->second.Numbers[found->second.First];
     }
 
-    // The oldest sample of this instance, if its number is up to that one.
+    // The oldest sample of this instance, if its number is at most `number`.
     std::optional<std::uint64_t> OldestUpTo(const Key &instance, std::uint64_t number) const
     {
         const auto found = _instances.find(instance);
@@ -43,13 +43,14 @@ public:
         return oldest <= number ? std::optional(oldest) : std::nullopt;
     }
 
-    // The instance ends with the sample of that number: nobody who comes later needs it, nor those before it.
+    // The instance ends with this sample: later readers need neither it nor the samples before it.
     void End(const Key &instance, std::uint64_t number)
     {
         _instances[instance].End = number;
         _lastEnd = number;
     }
-    // Whether its instance ended with that sample or a later one. Looks at no key unless an end is that late.
+    // True if the instance ended with this sample or a later one. Reads no key unless some instance ended
+    // that late.
     bool HasEnded(const Key &instance, std::uint64_t number) const
     {
         if (number > _lastEnd)
@@ -60,10 +61,10 @@ public:
         return found != _instances.end() && number <= found->second.End;
     }
 
-    // Numbers rise.
+    // Adds a sample. Numbers must rise.
     void Add(const Key &instance, std::uint64_t number) { _instances[instance].Numbers.push_back(number); }
 
-    // Whatever the reason. A number that is not there is passed over.
+    // Removes a sample, for any reason. An unknown number is ignored.
     void Remove(const Key &instance, std::uint64_t number)
     {
         const auto found = _instances.find(instance);
@@ -81,11 +82,11 @@ public:
     std::size_t Instances() const { return _instances.size(); }
 
 private:
-    // Of no samples any more: they are kept up to this number so that the same few instances, written again
-    // and again, cost no allocation.
+    // Instances without samples that are kept, so that a few instances that are written again and again cause
+    // no allocation.
     static constexpr std::size_t MostEmpty = 256;
 
-    // In rising order. The oldest goes by a step of First, not by moving the others.
+    // In rising order. The oldest is removed by advancing First, without moving the others.
     struct Samples
     {
         std::vector<std::uint64_t> Numbers;

@@ -17,7 +17,7 @@ namespace
 
 rtps::HistoryAttributes MakeAttributes(int depth)
 {
-    // The buffers are our own pool's, so only the changes are reserved here.
+    // Our own pool provides the buffers, so only the changes are reserved here.
     constexpr int MostReserved = 16;
     return {rtps::DYNAMIC_RESERVE_MEMORY_MODE, 0, std::min(depth + 1, MostReserved), 0};
 }
@@ -39,7 +39,7 @@ bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
     {
         Drop(instance, *oldest);
     }
-    // Before it is sent: with nobody to wait for, it is dropped again on the way.
+    // Before it is sent: without readers it is dropped again while being sent.
     const std::uint64_t number = next_sequence_number().to64long();
     _kept.Add(instance, number);
     if (change.kind != rtps::ALIVE)
@@ -48,7 +48,7 @@ bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
         {
             Drop(instance, *oldest);
         }
-        // What some reader still misses is dropped when it has it.
+        // Samples that some reader still lacks are dropped when it has them.
         _kept.End(instance, number);
     }
     if (!add_change_(&change, params, deadline))
@@ -59,7 +59,7 @@ bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
     return true;
 }
 
-// Only this sample: the vendor is going through the history, from the newest to the oldest.
+// Drops only this sample: the vendor is iterating the history, from the newest to the oldest.
 void KeepLastHistory::ReceivedByAll(const Change &change)
 {
     const std::uint64_t number = change.sequenceNumber.to64long();
@@ -73,7 +73,7 @@ void KeepLastHistory::ReceivedByAll(const Change &change)
 void KeepLastHistory::Drop(const rtps::InstanceHandle_t &instance, std::uint64_t number)
 {
     remove_change_nts(Find(number));
-    _kept.Remove(instance, number);  // even if the history had lost it: this must end
+    _kept.Remove(instance, number);  // even if the history had lost it, so that the caller's loop ends
 }
 
 KeepLastHistory::iterator KeepLastHistory::remove_change_nts(const_iterator removal, bool release)

@@ -1,5 +1,5 @@
-// A writer's history: the last samples, of each instance if the topic is keyed, and what of them is of use to
-// nobody any more.
+// A writer's history: the last samples, of each instance if the topic is keyed, without those that no reader
+// needs any more.
 #pragma once
 
 #include <fastdds/rtps/common/InstanceHandle.h>
@@ -13,26 +13,26 @@
 namespace Rabit::FastDds
 {
 
-// Use it under the writer's mutex.
+// Guarded by the writer's mutex.
 class KeepLastHistory final : public eprosima::fastrtps::rtps::WriterHistory
 {
 public:
     using Change = eprosima::fastrtps::rtps::CacheChange_t;
 
-    // Samples that all readers have are kept for late ones, or not.
+    // `keepsForLateReaders`: samples that all matched readers have are kept for late readers.
     KeepLastHistory(int depth, bool keepsForLateReaders);
 
-    // Drops the oldest samples that the new one pushes out, then adds and sends it. If it says that its
-    // instance is no more, drops all samples of the instance that all readers have. False if it was not
-    // added; the change is still the caller's then.
+    // Drops the oldest samples that the new one pushes out, then adds and sends it. If the new one disposes
+    // its instance, drops all samples of the instance that all readers have. Returns false if it was not
+    // added; the caller then still owns the change.
     bool Add(Change &change, eprosima::fastrtps::rtps::WriteParams &params,
              std::chrono::steady_clock::time_point deadline);
-    // All readers that are matched have this sample. Drops it, and only it, if it is of no use any more: it
-    // is not kept for late readers, or it or a later one has ended the instance. May be called while it is
+    // All matched readers have this sample. Drops this sample alone, if it is no longer needed: it is not
+    // kept for late readers, or it or a later one has ended the instance. May be called while it is being
     // added.
     void ReceivedByAll(const Change &change);
 
-    // Of WriterHistory; all that is dropped goes this way.
+    // From WriterHistory; every removal uses it.
     iterator remove_change_nts(const_iterator removal, bool release = true) override;
 
 private:
@@ -45,9 +45,9 @@ private:
     void Drop(const eprosima::fastrtps::rtps::InstanceHandle_t &instance, std::uint64_t number);
 
     const bool _keepsForLateReaders;
-    std::uint64_t _receivedByAll = 0;  // the highest number of which that was said
+    std::uint64_t _receivedByAll = 0;  // highest number passed to ReceivedByAll
 
-    // All samples of a topic without a key are of the same instance.
+    // A topic without a key has a single instance.
     KeepLast<eprosima::fastrtps::rtps::InstanceHandle_t, HashOf> _kept;
 };
 

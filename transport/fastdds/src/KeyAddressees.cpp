@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <mutex>
 
-// The library has it for its own sake, and no header that is installed: a writer of a participant of this
+// A function of the library that no installed header declares: finds a writer of a participant of this
 // process, builtin ones included; nullptr if there is none.
 namespace eprosima::fastrtps::rtps
 {
@@ -35,7 +35,7 @@ bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
     {
         return false;
     }
-    // The vendor asks a filter with this held.
+    // The vendor calls a filter with this lock held.
     const std::lock_guard lock(writer->getMutex());
     writer->reader_data_filter(&addressees);
     return true;
@@ -43,8 +43,8 @@ bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
 
 bool KeyAddressees::is_relevant(const rtps::CacheChange_t &change, const rtps::GUID_t &reader) const
 {
-    // 7.4.4.1: before the participant that a sample is for there are who said it and to which it is the
-    // answer, each a GUID and a number, after the header of CDR.
+    // 7.4.4.1: offset of the addressee of a sample. Before it are the CDR header, the message's identity and
+    // that of the message it answers, each a GUID and a number.
     constexpr std::size_t addresseeAt = 4 + 2 * (16 + 8);
     const auto &payload = change.serializedPayload;
     const auto &prefix = reader.guidPrefix.value;

@@ -6,13 +6,15 @@
 namespace Rabit::FastDds
 {
 
-// Whom keys go to. There is one writer of them in a participant, reliable, for all others that are
-// authenticated (OMG DDS Security 1.1, 7.4.4), and each sample is for one of them (7.4.4.2). The vendor sends
-// each to all, who pass over what is not for them: with ten participants nine times as much as is needed.
+// Sends key-exchange samples only to their addressees. A participant has one reliable writer of keys for all
+// other authenticated participants (OMG DDS Security 1.1, 7.4.4), and each sample is for one of them
+// (7.4.4.2). The vendor sends each sample to all peers, which ignore those of others: with ten participants
+// nine times the traffic needed.
 class KeyAddressees final : public eprosima::fastdds::rtps::IReaderDataFilter
 {
 public:
-    // Of that participant, which is enabled. False if its writer of keys is not found: it goes on as it is.
+    // Installs the filter in an enabled participant. Returns false, and changes nothing, if its writer of
+    // keys is not found.
     static bool Heed(const eprosima::fastrtps::rtps::RTPSParticipant &participant);
 
     bool is_relevant(const eprosima::fastrtps::rtps::CacheChange_t &change,

@@ -7,14 +7,14 @@
 namespace Rabit::FastDds
 {
 
-// The samples of a reader that wait for earlier ones of their writer, in the order of their sequence numbers.
+// A reader's samples that wait for earlier ones of their writer, in the order of their sequence numbers.
 //
-// The vendor's own history is in the order of source timestamps, while the vendor's search in it ends at the
-// first sample of the writer with a higher number. A sample that came late, and whose timestamp is not
-// earlier than that of a later sample, was not found there: it was acknowledged, never handed over, and never
-// freed. Timestamps are equal or go back where a clock was set, or where an older value is sent again.
+// The vendor's own history is in the order of source timestamps, but its search ends at the first sample of
+// the writer with a higher number. So it did not find a late sample whose timestamp was not earlier than that
+// of a later sample. Such a sample was acknowledged, never delivered, and never freed. Timestamps are equal
+// or go back where a clock was set, or where an older value is sent again.
 //
-// Under the reader's mutex, on the vendor's receiving threads.
+// Guarded by the reader's mutex; used on the vendor's receiving threads.
 class NumberedHistory : public eprosima::fastrtps::rtps::ReaderHistory
 {
 public:

@@ -16,14 +16,14 @@ using namespace Rtps;
 namespace
 {
 
-constexpr std::uint8_t Final = 0x02;      // of an ACKNACK: no answer is wanted
-constexpr std::uint8_t InlineQos = 0x02;  // of a DATA
+constexpr std::uint8_t Final = 0x02;      // in an ACKNACK: no answer is wanted
+constexpr std::uint8_t InlineQos = 0x02;  // in a DATA
 // RTPS 2.3, 9.4.1 and 9.4.5
 constexpr std::size_t PrefixAt = 8;
 constexpr std::size_t ReaderInData = 4;
 constexpr std::size_t EntitySize = 4;
 
-// Of all but samples: the reader comes first.
+// For all submessages but samples: the reader comes first.
 EntityId WriterOf(RtpsReader body)
 {
     body.Skip(4);
@@ -51,7 +51,7 @@ GuidPrefix PrefixIn(std::span<const std::uint8_t> bytes)
     return prefix;
 }
 
-// True if the submessage announces that a participant is there.
+// True if the submessage announces a participant as alive.
 bool IsAnnouncement(const Part &part)
 {
     const auto said = ReadAnnouncement(part.Whole);
@@ -104,7 +104,7 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 const bool announces = whole && IsAnnouncement(part);
                 (announces ? announcements : others) += 1;
                 samples += whole && !IsBuiltin(writer) ? 1 : 0;
-                // Whatever reader it is for.
+                // The digest omits the reader that it is for.
                 digest =
                     31 * digest +
                     DigestOf(part.Body().subspan(std::min(ReaderInData + EntitySize, part.Body().size())));
@@ -212,7 +212,7 @@ void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vec
                 add(rest.first(rest.size() - list.Left()));
             }
         }
-        // 0 would mean that it goes on to the end, which remains true.
+        // A length of 0 means "to the end of the message", which remains true.
         if (part.Whole[2] != 0 || part.Whole[3] != 0)
         {
             const std::size_t length = to.size() - begins - SubmessageHeaderSize;

@@ -10,8 +10,8 @@
 namespace Rabit::FastDds
 {
 
-// A reader that asks a writer for the first time, and again until the writer answers: it has nothing yet, and
-// knows of nothing that it lacks.
+// A reader's first request to a writer, repeated until the writer answers: the reader has no sample yet, and
+// does not know of one that it lacks.
 struct FirstRequest
 {
     Rtps::GuidPrefix Peer{};
@@ -20,27 +20,26 @@ struct FirstRequest
     auto operator<=>(const FirstRequest &) const = default;
 };
 
-// All that a datagram says is which samples a writer has.
+// A datagram that states only which samples a writer has.
 struct LoneHeartbeat
 {
-    Rtps::GuidPrefix Peer{};  // zero: all
+    Rtps::GuidPrefix Peer{};  // zero: for all
     Rtps::EntityId Writer = 0;
     std::int64_t First = 0;
     std::int64_t Last = 0;
 };
 
-// What a datagram of our own is, as far as that decides when it goes and how it is counted.
+// Properties of a datagram of our own that decide when it goes and how it is counted.
 struct OutgoingMessage
 {
-    // Something in it is of other than builtin endpoints: samples, or what their repair needs.
+    // It contains data of other than builtin endpoints: samples, or their repair.
     bool HasSamples = false;
-    // One or more whole samples for one participant and nothing else: where it goes to that one's address
-    // alone, it need not say for whom it is (RTPS 2.3, 8.3.4.1: else it is for who receives it).
+    // It has one or more whole samples for one participant and nothing else. Sent to that participant's
+    // address alone, it needs no INFO_DST (RTPS 2.3, 8.3.4.1: without it, the receiver is the addressee).
     bool IsOfSamplesToOne = false;
-    // Says that our participant is there, and nothing else; a number that tells one content from another. Not
-    // set for a goodbye.
+    // Set if it only announces our participant: a hash of the announcement. A goodbye is no announcement.
     std::optional<std::uint64_t> Announcement;
-    // Set if there is nothing else in it.
+    // Each set if it contains nothing else.
     std::optional<FirstRequest> Request;
     std::optional<LoneHeartbeat> Heartbeat;
 };
@@ -48,28 +47,28 @@ struct OutgoingMessage
 // `datagram` comes from the vendor's writers and is trusted to be sound.
 OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram);
 
-// The participant that a datagram is for by its first INFO_DST; zero: none is named.
+// The participant named by the first INFO_DST of a datagram; zero: none is named.
 Rtps::GuidPrefix DestinationOf(std::span<const std::uint8_t> datagram);
 
-// The datagram without what says for whom it is; 16 bytes less.
+// Copies the datagram without its INFO_DST submessage, which takes 16 bytes.
 void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to);
 
-// An announcement of a participant without its list of properties, which is of use to the vendor's discovery
-// servers only (124 bytes of 420), and without inline QoS (32 bytes where the vendor answers another
+// Copies a participant's announcement without its list of properties, which only the vendor's discovery
+// servers use (124 bytes of 420), and without inline QoS (32 bytes when the vendor answers another
 // participant).
 void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to);
 
-// What somebody acknowledges to a writer of ours.
+// A peer's acknowledgement to a writer of ours.
 struct Acknowledgement
 {
     Rtps::GuidPrefix Peer{};
     Rtps::EntityId Reader = 0;
     Rtps::EntityId Writer = 0;
-    std::int64_t Base = 0;  // it has all before this one
-    bool Asks = false;      // for repair, or for what there is
+    std::int64_t Base = 0;  // the reader has all samples before this one
+    bool Asks = false;      // requests repair, or all samples
 };
 
-// Those in a datagram that came; it must be sound, and what is for others must be taken out of it.
+// The acknowledgements in a received datagram, which must be sound and without data for others.
 std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> datagram);
 
 }  // namespace Rabit::FastDds

@@ -1,9 +1,9 @@
 // The vendor's number of a participant within this process, and its GUID prefix.
 //
-// Left to the vendor, each participant of a process gets the next number, and with it the next ports, whether
-// those before it live or not: a session that joins the network anew would move out of the reach of those who
-// look for it at a given port, and run out of ports in the end. But the vendor makes the prefix of the number,
-// and a prefix belongs to one life of one participant. So both are given.
+// The vendor would give each participant of a process the next number, and with it the next ports, even if
+// earlier participants are gone. A session that joins the network anew would then leave the ports at which
+// peers look for it, and run out of ports in the end. But the vendor also derives the GUID prefix from the
+// number, and a prefix belongs to one incarnation of one participant. So this file sets both.
 #pragma once
 
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
@@ -13,8 +13,8 @@
 namespace Rabit::FastDds
 {
 
-// The smallest number that no other lives with. The ports begin with it; those that another process has are
-// skipped by the vendor. Any thread.
+// The smallest number that no living object of this process has. The search for ports starts with it; the
+// vendor skips ports that another process has. Any thread.
 class ParticipantNumber
 {
 public:
@@ -28,7 +28,7 @@ private:
     std::int32_t _number = 0;
 };
 
-// One that no other participant has or had. Begins as the vendor's do (OMG DDSI-RTPS 2.3, 9.3.1.5).
+// A prefix that no other participant has or had. Begins as the vendor's do (OMG DDSI-RTPS 2.3, 9.3.1.5).
 eprosima::fastrtps::rtps::GuidPrefix_t MakeGuidPrefix();
 
 }  // namespace Rabit::FastDds

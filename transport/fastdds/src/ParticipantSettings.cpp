@@ -35,12 +35,12 @@ namespace
 
 // The kernel caps them at net.core.rmem_max and wmem_max.
 constexpr std::uint32_t SocketBuffer = 4u << 20;
-// Who shows a certificate does so in one message, with its permissions: the vendor does not cut these in
-// pieces, and makes no larger ones than of any other message.
+// A participant shows its certificate and permissions in one message. The vendor does not fragment these
+// messages, and limits their size like that of any other message.
 constexpr std::size_t LargestHandshake = 16384;
 // A peer without a port is looked for at the ports of this many participants of its host.
 constexpr std::uint32_t ParticipantsPerPeer = 16;
-// OMG DDSI-RTPS 2.3, 9.6.1.4.1: the group of discovery, and by default of samples.
+// OMG DDSI-RTPS 2.3, 9.6.1.4.1: the discovery group, and by default the group of samples.
 constexpr const char *MulticastAddress = "239.255.0.1";
 
 eprosima::fastrtps::Duration_t ToDuration(std::chrono::milliseconds time)
@@ -52,7 +52,7 @@ eprosima::fastrtps::Duration_t ToDuration(std::chrono::milliseconds time)
 
 rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
 {
-    // The vendor's table of profiles is one for the process: load and read it in one go.
+    // The vendor has one table of profiles for the process: load and read it without interruption.
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
     if (!std::filesystem::is_regular_file(file))
@@ -111,7 +111,7 @@ RtpsGuard::Mode GuardMode(const TransportSettings &settings,
     return settings.SharedMemory ? RtpsGuard::Mode::StructureOnly : RtpsGuard::Mode::Full;
 }
 
-// So that strangers who announce themselves without end do not fill the memory.
+// Bounds the memory that invented participants can take.
 void LimitPeers(rtps::RTPSParticipantAttributes &attributes)
 {
     constexpr std::size_t MostParticipants = 1024;
@@ -139,8 +139,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = SocketBuffer;
     udp->receiveBufferSize = SocketBuffer;
-    // A full send buffer loses the datagram, which a reliable writer repairs, instead of blocking the thread
-    // that writes for as long as a slow link needs to drain the buffer.
+    // A full send buffer loses the datagram, which a reliable writer repairs. Blocking would hold the writing
+    // thread for as long as a slow link needs to drain the buffer.
     udp->non_blocking_send = true;
     udp->interfaceWhiteList = settings.Interfaces;
     udp->maxInitialPeersRange = ParticipantsPerPeer;
@@ -165,7 +165,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? std::move(calls.Meeting) : nullptr;
     guarded.HasPeers = !settings.Peers.empty();
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
-    // GuardedUdp asks for the first announcements after the very first, at growing distances.
+    // GuardedUdp requests the first announcements after the very first, at doubling intervals.
     attributes.builtin.discovery_config.initial_announcements.count = 0;
     attributes.userTransports.push_back(std::make_shared<GuardedUdpDescriptor>(udp, std::move(guarded)));
     if (settings.SharedMemory)
@@ -175,7 +175,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
 }
 
 // Where both sides have multicast, one datagram carries a sample to all of its readers, and discovery to all
-// participants. Where peers are listed it may not pass, and each one gets his own.
+// participants. Where peers are listed multicast may not pass, and each gets its own datagram.
 void AddMulticast(const TransportSettings &settings, rtps::RTPSParticipantAttributes &attributes)
 {
     attributes.builtin.avoid_builtin_multicast = !IsMulticastForData(settings);
@@ -184,8 +184,8 @@ void AddMulticast(const TransportSettings &settings, rtps::RTPSParticipantAttrib
         return;
     }
     attributes.defaultMulticastLocatorList.push_back(SampleGroup(settings, attributes));
-    // With a list of one kind the vendor makes none of the other. Any address: its own ones, at the usual
-    // port.
+    // If only one list of locators is given, the vendor makes none of the other kind. Any address: all
+    // addresses of the host, at the usual port.
     attributes.defaultUnicastLocatorList.push_back(rtps::Locator_t());
 }
 
@@ -235,7 +235,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
         attributes = LoadProfile(settings.BackendConfig);
     }
     attributes.setName(settings.Node.c_str());
-    // Nobody here is asked whether single writers live: participants have leases, and nodes beat.
+    // Liveliness of single writers is not used: participants have leases, and nodes send beats.
     attributes.builtin.use_WriterLivelinessProtocol = false;
     auto &discovery = attributes.builtin.discovery_config;
     discovery.leaseDuration = ToDuration(settings.Lease);

@@ -18,28 +18,29 @@
 namespace Rabit::FastDds
 {
 
-// What the participant's sockets need; called on threads of the network, as soon as there is a participant.
-// But for the first, with the vendor's locks held; of times, the last that is named counts.
+// Calls that the participant's sockets make, on threads of the network, from the participant's creation on.
+// All but the first are made with the vendor's locks held. Of several times given, the last one counts.
 struct NetworkCalls
 {
-    // Have the participant announce itself once more.
+    // Announce the participant once more, now or at a time.
     std::function<void()> Announce;
     std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt;
-    // Whether a participant listens to the group of discovery.
+    // Returns true if a participant listens to the discovery group.
     std::function<bool(const Rtps::GuidPrefix &)> IsInGroup;
-    // Has Owed run.
+    // Has Owed run at that time.
     std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
     std::shared_ptr<DeferredCall> Owed;
     std::shared_ptr<DiscoveryRate> Rate;
     std::shared_ptr<Rtps::MeetingThread> Meeting;
 };
 
-// Of the settings, Interfaces are addresses of this host, none for all, and so are the hosts of Peers. Throws
-// TransportError for settings that cannot be honoured. The log hears of datagrams that are dropped.
+// In `settings`, Interfaces are addresses of this host (empty: all), and the hosts of Peers are addresses.
+// Throws TransportError for settings that cannot be honoured. `log` counts dropped datagrams.
 eprosima::fastrtps::rtps::RTPSParticipantAttributes MakeParticipantAttributes(
     const TransportSettings &settings, const std::shared_ptr<SessionLog> &log, NetworkCalls calls);
 
-// Whether a profiles file, if there is one, defines transports. Throws TransportError if it is not accepted.
+// True if the profiles file, if any, defines transports. Throws TransportError if the vendor refuses the
+// file.
 bool HasOwnTransports(const std::string &profilesFile);
 
 // Switches intraprocess delivery off, once per process.

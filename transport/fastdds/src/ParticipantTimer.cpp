@@ -16,7 +16,7 @@ void ParticipantTimer::Start(const eprosima::fastrtps::rtps::RTPSParticipant &pa
         [call = std::move(call)]
         {
             call();
-            return false;  // not again by itself
+            return false;  // do not repeat
         },
         0);
     const std::lock_guard lock(_mutex);
@@ -30,7 +30,7 @@ void ParticipantTimer::Stop()
         const std::lock_guard lock(_mutex);
         event = std::move(_event);
     }
-    // Its end waits for the vendor's thread, which may be in At.
+    // Its destructor waits for the vendor's thread, which may be in At.
 }
 
 void ParticipantTimer::At(TimePoint time)

@@ -11,18 +11,18 @@
 namespace Rabit::FastDds
 {
 
-// Makes a call at a time of our choice, on the thread on which the vendor has its participant announce
-// itself. Thread-safe.
+// Makes a call at a chosen time, on the thread on which the vendor announces its participant. Thread-safe.
 class ParticipantTimer
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    // From now on At is heeded, until Stop returns; both before the participant is removed.
+    // At takes effect between Start and Stop. Call both before the participant is removed.
     void Start(const eprosima::fastrtps::rtps::RTPSParticipant &participant, std::function<void()> call);
     void Stop();
 
-    // In the place of the time that was set before. Does not block, so the vendor's locks may be held.
+    // Sets the time of the call, in place of an earlier one. Does not block, so the vendor's locks may be
+    // held.
     void At(TimePoint time);
 
 private:

@@ -1,8 +1,7 @@
 // The buffers of one writer or reader.
 //
-// An own pool instead of the vendor's, for three reasons: a writer encodes before it takes the vendor's lock,
-// a buffer's size is bounded whatever a datagram claims, and large buffers are given back when they are done
-// with.
+// It replaces the vendor's pool for three reasons: a writer encodes before it takes the vendor's lock, a
+// buffer's size is bounded whatever a datagram claims, and large buffers are freed after use.
 #pragma once
 
 #include <fastdds/rtps/common/CacheChange.h>
@@ -36,13 +35,13 @@ public:
         std::uint32_t Capacity = 0;
     };
 
-    // `onRefused` is called, on the vendor's thread, when a sample arrives that is larger than MaxSample, or
-    // for which MostArriving leaves no room.
+    // `onRefused` is called, on the vendor's thread, if an arriving sample is larger than MaxSample, or
+    // exceeds MostArriving.
     explicit PayloadPool(std::function<void()> onRefused) : _onRefused(std::move(onRefused)) {}
     ~PayloadPool() override;
 
-    // Samples whose fragments are still coming take no more bytes than this together: the first fragment says
-    // how large its sample is going to be, and the others may never come.
+    // Limit for all samples together whose fragments are still arriving: the first fragment declares the size
+    // of its sample, and the others may never come.
     static constexpr std::size_t MostArriving = 2 * std::size_t{MaxSample};
 
     // A buffer for at least `size` bytes, which the caller owns until it releases or adopts it. Throws

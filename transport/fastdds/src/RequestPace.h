@@ -12,33 +12,34 @@ namespace Rabit::FastDds
 {
 
 // Decides when a first request goes out again. The vendor repeats it every 10 or 70 ms until the writer
-// answers, for as long as the peer's lease: over a path that carries one way alone that is 2.6 kB/s for each
-// pair. Here repetitions follow each other at doubling distances. Since the vendor goes on asking, what is
-// held is not lost. A pure state machine, not thread-safe.
+// answers, for as long as the peer's lease: 2.6 kB/s for each pair over a one-way path. Here the intervals of
+// repetitions double. Held requests are not lost, since the vendor repeats them. A pure state machine, not
+// thread-safe.
 class RequestPace
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    // Discovery may well be asked for what it is about to say: whoever finds us addresses us.
+    // A first request to a discovery writer waits this long, because the peer often sends its discovery by
+    // itself.
     static constexpr std::chrono::milliseconds Patience{100};
     static constexpr std::chrono::milliseconds FirstGap{50};
     static constexpr std::chrono::milliseconds LongestGap{2000};
-    // Who has not asked for so long asks for something new.
+    // A request after a pause of this length is a new one.
     static constexpr std::chrono::milliseconds Rest{1000};
     static constexpr std::size_t MostRequests = 4096;
 
-    // `socket` numbers the sockets: the same request may go by several.
+    // `socket`: number of the socket. The same request may go through several.
     bool MayGo(std::uint32_t socket, const FirstRequest &request, TimePoint now);
     std::size_t Size() const { return _asked.size(); }
 
 private:
     struct Asked
     {
-        TimePoint Last;  // time that the vendor asked
-        TimePoint Next;  // time that it may
+        TimePoint Last;  // when the vendor last sent it
+        TimePoint Next;  // when it may go again
         std::chrono::milliseconds Gap{FirstGap};
-        bool Waits = false;  // none has gone yet
+        bool Waits = false;  // it was not sent yet
     };
 
     std::map<std::pair<std::uint32_t, FirstRequest>, Asked> _asked;

@@ -24,7 +24,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace
 {
 
-// Announcements are overtaken by milliseconds: nobody closes so many sessions in that time.
+// A goodbye overtakes an announcement by milliseconds: no more sessions close in that time.
 constexpr std::size_t MostDeparted = 64;
 
 // OMG DDS Security 1.1, 9.4.2.4: what a participant announces of its protection.
@@ -243,7 +243,7 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
             _proof.Compare(newcomer.Who->Node,
                            (peer.plugin_security_attributes_ & HasDiscoveryEncrypted) != 0);
         }
-        // What it has announced first is what it has shown: later ones may be of anybody.
+        // Authentication confirms the first announcement: later ones may be forged.
         const std::lock_guard lock(_mutex);
         if (!_proven.contains(prefix))
         {
@@ -288,8 +288,8 @@ void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
         return;
     }
     {
-        // An announcement may be overtaken by the goodbye that was sent after it, on another socket. The one
-        // who has gone does not come back: a prefix belongs to one life of one participant.
+        // The goodbye may overtake an announcement that was sent before it on another socket. A participant
+        // that left does not return: a prefix belongs to one incarnation of one participant.
         const std::lock_guard lock(_mutex);
         const auto departed = std::find(_departed.begin(), _departed.end(), prefix);
         if (departed != _departed.end() || _peers.Add(prefix, *identity) == nullptr)
@@ -357,7 +357,7 @@ void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtp
         _topics.RemoteGone(ToWriterId(info.info.guid()));
         return;
     }
-    // The vendor tells of the own ones, too.
+    // The vendor also reports our own endpoints.
     if (!IsOwn(info.info.guid().guidPrefix))
     {
         _topics.RemoteAppeared(Described(info.info, NodeOf(info.info.guid().guidPrefix)));

@@ -1,4 +1,4 @@
-// What a session shares with its writers and readers: the participant and what it knows of the network.
+// State that a session shares with its writers and readers: the participant, its peers and their topics.
 #pragma once
 
 #include <fastdds/rtps/common/Guid.h>
@@ -39,25 +39,25 @@ public:
 
     // Joins the network. Throws TransportError.
     SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate);
-    // Leaves it.
+    // Leaves the network.
     ~SessionCore() override;
     SessionCore(const SessionCore &) = delete;
     SessionCore &operator=(const SessionCore &) = delete;
 
-    // No peer handler runs afterwards, and writes fail.
+    // When this returns, no peer handler runs any more, and writes fail.
     void Close();
     bool IsClosed() const { return _closed; }
 
     eprosima::fastrtps::rtps::RTPSParticipant &Participant() { return *_participant; }
     bool IsOwn(const GuidPrefix &prefix) const;
-    // Who a participant is; nullptr if it is not a Rabit node, or unknown.
+    // Identity of a participant; nullptr if it is not a Rabit node, or unknown.
     std::shared_ptr<const PeerSession> IdentityOf(const GuidPrefix &prefix) const;
-    // The participants to which goes what is written to the node (PeerSessions).
+    // The participants to which samples written to the node go (PeerSessions).
     std::set<GuidPrefix> PrefixesOf(const std::string &node) const;
-    // Where the Rabit nodes are that it knows.
+    // The addresses of the Rabit nodes that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _log; }
-    // Whether samples go by multicast where several want them.
+    // True if samples for several readers go by multicast.
     bool HasMulticast() const { return _multicast; }
     TopicRegistry &Topics() { return _topics; }
 
@@ -72,9 +72,9 @@ private:
                                      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo &&info) override;
     // The name, or "" where IdentityOf gives nullptr.
     std::string NodeOf(const GuidPrefix &prefix) const;
-    // On a thread of the network, before and while the participant lives.
+    // Called on a thread of the network, also before the participant is complete.
     void Announce();
-    // Whether that participant listens to the group of discovery.
+    // True if the participant listens to the discovery group.
     bool IsInGroup(const GuidPrefix &prefix) const;
     void NotePlace(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo &info);
     void PeerAppeared(const eprosima::fastrtps::rtps::ParticipantProxyData &peer);
@@ -96,11 +96,11 @@ private:
     std::atomic<bool> _closed{false};
     mutable std::mutex _mutex;
     PeerSessions<GuidPrefix> _peers;          // Rabit nodes; guarded by _mutex
-    std::map<GuidPrefix, PeerPlace> _places;  // of those; guarded by _mutex
-    // Rabit nodes that have not shown yet who they are; guarded by _mutex
+    std::map<GuidPrefix, PeerPlace> _places;  // of the peers; guarded by _mutex
+    // Rabit nodes that are not authenticated yet; guarded by _mutex
     std::map<GuidPrefix, Newcomer> _unproven;
-    std::set<GuidPrefix> _proven;      // who has shown it; guarded by _mutex
-    std::set<GuidPrefix> _inGroup;     // who listens to the group of discovery; guarded by _mutex
+    std::set<GuidPrefix> _proven;      // authenticated participants; guarded by _mutex
+    std::set<GuidPrefix> _inGroup;     // listeners of the discovery group; guarded by _mutex
     std::deque<GuidPrefix> _departed;  // the last that said goodbye; guarded by _mutex
     const std::shared_ptr<Rtps::MeetingThread> _meeting;
     const ParticipantNumber _number;

@@ -1,4 +1,4 @@
-// How datagrams get over a medium that they share.
+// NetworkCore: transmission of datagrams over a shared medium.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -11,7 +11,7 @@ namespace Rabit::Simulated
 namespace
 {
 
-// Calls with each participant that the flight is for, once.
+// Calls `call` once for each participant that the flight is for.
 template <typename Call>
 void ForEachReceiver(const Flight &flight, const Call &call)
 {
@@ -58,7 +58,7 @@ void NetworkCore::AwaitPassage(const Medium &medium)
     Later(*medium.Passes() - _now, std::move(event));
 }
 
-// Of the packet that is on the air.
+// The packet on the air has passed the medium.
 void NetworkCore::OnPassage(Medium &medium)
 {
     const std::shared_ptr<Flight> flight = medium.Pass(_now).Content;
@@ -88,7 +88,7 @@ void NetworkCore::OnPassage(Medium &medium)
     }
 }
 
-// All its packets have passed, or have been lost.
+// All packets of the flight have passed, or have been lost.
 void NetworkCore::Land(Flight &flight)
 {
     const auto from = _participants.find(flight.From);

@@ -1,5 +1,5 @@
-// How participants exchange what they say of themselves and of their endpoints: by the cards of the real
-// backends.
+// NetworkCore: participants exchange the announcements of themselves and their endpoints, by the cards of the
+// real backends.
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -10,7 +10,7 @@
 namespace Rabit::Simulated
 {
 
-// The simulated time begins with the clock of a computer that has run for a while.
+// CardExchange's clock at simulated time 0 is that of a computer that has run for a while.
 Rtps::CardExchange::TimePoint NetworkCore::CardTime() const
 {
     return Rtps::CardExchange::TimePoint(std::chrono::hours(1)) + _now;
@@ -66,7 +66,7 @@ void NetworkCore::HearCard(const ParticipantPtr &me, ParticipantId from, const D
     AwaitCards(*me);
 }
 
-// A datagram of a participant that is not known is a reason to ask for its card.
+// A datagram of an unknown participant is a reason to request its card.
 void NetworkCore::HearUnknown(ParticipantState &me, ParticipantId from, const Datagram &datagram)
 {
     const bool isOfDiscovery = datagram.What == Datagram::Kind::Announce ||

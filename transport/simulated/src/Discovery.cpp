@@ -1,4 +1,4 @@
-// How participants find and lose each other.
+// NetworkCore: participants find and lose each other.
 #include <algorithm>
 #include <utility>
 
@@ -11,13 +11,13 @@ namespace Rabit::Simulated
 namespace
 {
 
-// After the first announcement, at distances that double; as with our real backends where nodes have cards.
+// Rounds after the first announcement, at doubling intervals, like our real backends for nodes with cards.
 constexpr int InitialRounds = 2;
 constexpr Time FirstGap = std::chrono::milliseconds(100);
 
 }  // namespace
 
-// To everybody in the domain, known or not; and again after a while.
+// To all participants in the domain, known or not; repeated periodically.
 void NetworkCore::Announce(const ParticipantPtr &participant)
 {
     Letters letters;
@@ -37,7 +37,7 @@ void NetworkCore::Announce(const ParticipantPtr &participant)
 
 void NetworkCore::HearAnnouncement(const ParticipantPtr &me, ParticipantId from)
 {
-    // One that has departed sent it before its goodbye, which has overtaken it.
+    // A departed participant sent it before its goodbye, which has overtaken it.
     if (!me->Departed.contains(from) && !me->Peers.contains(from))
     {
         me->Cards.Announced(PrefixOf(from), CardTime());
@@ -62,7 +62,7 @@ Peer &NetworkCore::MeetPeer(const ParticipantPtr &me, ParticipantId from, const 
     return peer;
 }
 
-// Once they have been silent for so long that they would have announced themselves twice.
+// Ends former sessions once they are silent for so long that two of their announcements are missing.
 void NetworkCore::EndFormerLives(const ParticipantPtr &me, const Peer &successor)
 {
     const Time silence = 5 * me->Settings.AnnouncementPeriod / 2;

@@ -1,4 +1,4 @@
-// How participants tell each other of their endpoints.
+// NetworkCore: participants announce their endpoints.
 #include <algorithm>
 #include <utility>
 
@@ -10,7 +10,7 @@ namespace Rabit::Simulated
 namespace
 {
 
-// As many bytes as a packed card takes, which tell one version of it from others.
+// Bytes of the size of a packed card, different for each version of it.
 std::vector<std::uint8_t> CardOf(const ParticipantState &me)
 {
     constexpr std::size_t participant = 150;
@@ -31,7 +31,7 @@ void NetworkCore::EndpointsChanged(ParticipantState &me, EndpointInfoPtr added, 
 {
     if (me.Gone)
     {
-        return;  // it crashed: its objects are destroyed later, and nobody hears of it
+        return;  // it crashed: its objects are destroyed later, and no peer is told
     }
     auto endpoints = std::make_shared<EndpointList>(*me.Endpoints);
     if (added != nullptr)

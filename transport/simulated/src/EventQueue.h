@@ -9,7 +9,7 @@
 namespace Rabit::Simulated
 {
 
-// Events by time, and by the order of their insertion within one time. Their storage is reused.
+// Events ordered by time, and by insertion within one time. Their storage is reused.
 template <typename Event>
 class EventQueue
 {

@@ -11,15 +11,15 @@
 namespace Rabit::Simulated
 {
 
-// Which faults hold between two nodes. Nodes have numbers here, so that a look-up costs no string comparison.
+// The faults between two nodes. Nodes have numbers here, so that a look-up compares no strings.
 class FaultPlan
 {
 public:
     void Set(const std::string &from, const std::string &to, const SimulatedFaults &faults);
     void Clear();
-    // The number of a node's name; the same for the same name.
+    // The number of a node's name; assigned at the first call.
     std::uint32_t NumberOf(const std::string &node);
-    // Nothing if nobody has asked for it.
+    // The number of a node's name; empty if none was assigned.
     std::optional<std::uint32_t> Find(const std::string &node) const;
     const SimulatedFaults &Between(std::uint32_t from, std::uint32_t to);
 

@@ -1,4 +1,4 @@
-// How endpoints of different participants match.
+// NetworkCore: endpoints of different participants match.
 #include <utility>
 
 #include "NetworkCore.h"

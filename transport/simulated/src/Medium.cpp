@@ -30,7 +30,7 @@ bool Medium::Offer(Packet packet, std::chrono::nanoseconds now)
     return true;
 }
 
-// The packet keeps the rate that holds now.
+// The packet keeps the present rate.
 void Medium::Begin(Packet packet, std::chrono::nanoseconds now)
 {
     _air.LongestWait = std::max(_air.LongestWait, now - packet.At);

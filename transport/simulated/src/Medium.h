@@ -14,34 +14,34 @@ namespace Rabit::Simulated
 
 struct Flight;
 
-// What a node has given to a medium: one datagram.
+// A datagram that a node has given to a medium.
 struct Packet
 {
-    std::uint32_t Node = 0;   // that sends it
+    std::uint32_t Node = 0;   // the sender
     std::uint64_t Bytes = 0;  // on the air
     std::shared_ptr<Flight> Content;
-    std::chrono::nanoseconds At{0};  // when it was given
+    std::chrono::nanoseconds At{0};  // when it was given to the medium
 };
 
-// A shared half-duplex medium: a queue for each node, first in first out, that drops what does not fit; one
-// packet at a time is on the air, and the nodes that have something take turns. A pure state machine.
+// A shared half-duplex medium: a first-in first-out queue for each node, which drops packets that do not fit.
+// One packet at a time is on the air, and nodes with packets take turns. A pure state machine.
 class Medium
 {
 public:
     void Set(const SimulatedMedium &settings) { _settings = settings; }
-    // Whether a packet has to wait, or takes time.
+    // True if a packet has to wait, or takes time.
     bool IsInTheWay() const { return _settings.BytesPerSecond > 0 || _onAir; }
 
-    // False: the node's queue is full.
+    // Returns false if the node's queue is full.
     bool Offer(Packet packet, std::chrono::nanoseconds now);
-    // When the packet that is on the air has passed; empty: none is.
+    // When the packet on the air has passed; empty: there is none.
     std::optional<std::chrono::nanoseconds> Passes() const;
-    // It has. The next one begins.
+    // Takes the packet that has passed, and begins the next one.
     Packet Pass(std::chrono::nanoseconds now);
 
-    // In a node's queue.
+    // Bytes in a node's queue.
     std::uint64_t WaitingBytes(std::uint32_t node) const;
-    // So far.
+    // Statistics since the creation.
     const SimulatedAir &Air() const { return _air; }
 
 private:
@@ -54,7 +54,7 @@ private:
     void Begin(Packet packet, std::chrono::nanoseconds now);
 
     SimulatedMedium _settings;
-    std::map<std::uint32_t, Queue> _queues;  // by node; those that have something
+    std::map<std::uint32_t, Queue> _queues;  // by node; only nodes with packets
     std::optional<Packet> _onAir;
     std::chrono::nanoseconds _passes{0};
     SimulatedAir _air;

@@ -12,20 +12,20 @@
 namespace Rabit::Simulated
 {
 
-// Which nodes share which medium. Nodes have the numbers of the fault plan, given out one after the other.
+// Assigns media to nodes. Nodes have the numbers of the fault plan, given out one after the other.
 class MediumPlan
 {
 public:
     // Makes a medium for the nodes that fit the pattern, or changes the one made for it.
     void Set(const std::string &nodes, const SimulatedMedium &settings);
-    // A node that nobody has asked for yet has the next number.
+    // Adds a node that has no number yet; it gets the next one.
     void AddNode(const std::string &node);
     // The medium made last that the node fits; nullptr if there is none.
     Medium *Of(std::uint32_t node) { return _of[node]; }
     const Medium *Of(std::uint32_t node) const { return _of[node]; }
     std::size_t NumberOf(const Medium &medium) const;
     Medium &ByNumber(std::size_t number) { return _media[number].Medium; }
-    // What the medium of that pattern has done; nothing if none was made.
+    // Statistics of the medium of that pattern; zeros if none was made.
     SimulatedAir AirOf(const std::string &nodes) const;
 
 private:
@@ -37,7 +37,7 @@ private:
 
     Medium *Find(const std::string &node);
 
-    std::deque<Entry> _media;  // stay in place
+    std::deque<Entry> _media;  // elements keep their addresses
     std::vector<std::string> _names;
     std::vector<Medium *> _of;  // by node
 };

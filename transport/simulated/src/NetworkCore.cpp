@@ -122,7 +122,7 @@ void NetworkCore::Leave(ParticipantState &participant)
     }
     participant.Gone = true;
     _participants.erase(participant.Id);
-    // To everybody: a peer may know this participant before it is known here.
+    // To all: a peer may know this participant before it is known here.
     Letters goodbyes;
     for (const auto &[id, other] : _participants)
     {

@@ -28,8 +28,8 @@ using ReaderPtr = std::shared_ptr<ReaderState>;
 
 // The simulation behind SimulatedNetwork and the sessions on it. Thread-safe.
 //
-// One mutex guards all state. What leads out of the simulation (handlers, log lines) is collected while it is
-// held and called after it is released.
+// One mutex guards all state. Calls that leave the simulation (handlers, log lines) are collected while it is
+// held, and made after it is released.
 class NetworkCore
 {
 public:
@@ -56,14 +56,14 @@ public:
                         const std::vector<std::string> &partitions, SampleHandler handler);
     void RemoveWriter(ParticipantState &participant, const WriterState &writer);
     void RemoveReader(ParticipantState &participant, const ReaderState &reader);
-    // Gives the sample its sequence number and sends it. False if the session is gone.
-    // To that node's readers alone, if one is named.
+    // Gives the sample its sequence number and sends it, to the readers of `node` alone if it is given.
+    // Returns false if the session is gone.
     bool Write(ParticipantState &participant, WriterState &writer, const std::shared_ptr<Sample> &sample,
                const std::string *node = nullptr, std::uint32_t partsBefore = 0);
-    // Sends the next datagram of a sample that takes more than one, but for its last: Write sends that, and
-    // takes how many went before. False if the session is gone.
+    // Sends the next datagram of a sample that takes several, except its last, which Write sends
+    // (`partsBefore`: number of datagrams sent earlier). Returns false if the session is gone.
     bool WritePart(const ParticipantState &participant, const WriterState &writer, const Sample &sample);
-    // Bytes of one of them on the air, to all destinations.
+    // Bytes of one such datagram on the air, to all destinations.
     std::size_t BytesOfPart(const ParticipantState &participant, const WriterState &writer,
                             const Sample &sample) const;
     int MatchedReaders(const WriterState &writer) const;
@@ -74,7 +74,7 @@ public:
                                     const std::string &topic) const;
 
 private:
-    // What goes together, in packets of one size.
+    // Cost of data that is sent together, in packets of one size.
     struct Cost
     {
         std::uint32_t Packets = 1;
@@ -90,12 +90,12 @@ private:
             CardTimer,
             LeaseTimer,
             HeartbeatTimer,
-            Passage  // of what is on the air of the medium number At
+            Passage  // the packet on the air of medium number At has passed
         };
         Kind What = Kind::Arrival;
         ParticipantId At = 0;     // where it happens
-        ParticipantId Other = 0;  // the sender of what arrives, or the peer that the timer is about
-        std::uint64_t Birth = 0;  // of that peer's entry; the number of another timer
+        ParticipantId Other = 0;  // the sender of an arrival, or the peer of the timer
+        std::uint64_t Birth = 0;  // of that peer's entry; or the number of another timer
         Datagram Content;         // of an arrival; the heartbeat timer uses its Writer
     };
     using Calls = std::vector<std::function<void()>>;
@@ -108,7 +108,7 @@ private:
 
     // Sending.cpp
     void Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing = Time(0));
-    // `partsBefore`: datagrams of each letter that went before, and count no more.
+    // `partsBefore`: datagrams of each letter that were sent earlier, and are not counted again.
     void SendTogether(const ParticipantState &from, Letters letters, bool multicast,
                       std::uint32_t partsBefore = 0);
     void SendAlone(const ParticipantState &from, Letter letter);
@@ -151,7 +151,7 @@ private:
                      const EndpointInfo &remote);
     void UnmatchWriter(const ReaderPtr &reader, std::map<EndpointId, WriterProxy>::iterator proxy);
 
-    // Traffic.cpp: what is sent, by the sizes that it has with RTPS.
+    // Traffic.cpp: counts datagrams by their sizes in RTPS.
     static std::uint64_t CountDestinations(const ParticipantState &me, const WriterState &writer);
     static Cost CostOfPart(const Sample &sample);
     static Cost CostOf(const ParticipantState &me, const Datagram &datagram);
@@ -185,7 +185,7 @@ private:
     EventQueue<Event> _events;
     FaultPlan _faults;
     MediumPlan _media;
-    std::vector<SimulatedSent> _sent;  // by number of the node
+    std::vector<SimulatedSent> _sent;  // by node number
     SimulatedTraffic _traffic;
     std::map<ParticipantId, ParticipantPtr> _participants;
     ParticipantId _lastParticipant = 0;

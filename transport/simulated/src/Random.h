@@ -6,8 +6,8 @@
 namespace Rabit::Simulated
 {
 
-// SplitMix64 (G. Steele, D. Lea, C. Flood: Fast splittable pseudorandom number generators, 2014). An own one,
-// because the distributions of <random> differ between standard libraries and a seed must replay everywhere.
+// SplitMix64 (G. Steele, D. Lea, C. Flood: Fast splittable pseudorandom number generators, 2014). The
+// distributions of <random> differ between standard libraries, and a seed must replay everywhere.
 class Random
 {
 public:
@@ -24,7 +24,7 @@ public:
     // In [0, 1).
     double Fraction() { return static_cast<double>(Next() >> 11) * 0x1.0p-53; }
 
-    // Draws nothing when the answer is certain, so that a fault that is off costs nothing.
+    // Draws no number if the answer is certain, so that a disabled fault costs nothing.
     bool Happens(double probability)
     {
         return probability > 0.0 && (probability >= 1.0 || Fraction() < probability);

@@ -1,4 +1,4 @@
-// How a reader takes what comes, and asks for what does not: the shape of RTPS 2.3, 8.4, without its
+// NetworkCore: a reader takes samples and requests missing ones, in the manner of RTPS 2.3, 8.4, without its
 // encoding.
 #include <algorithm>
 #include <utility>
@@ -11,7 +11,7 @@ namespace Rabit::Simulated
 namespace
 {
 
-// An RTPS acknowledgement names at most so many missing samples.
+// An RTPS acknowledgement names at most this many missing samples.
 constexpr std::size_t MostMissing = 256;
 
 }  // namespace
@@ -37,7 +37,7 @@ void NetworkCore::HearSample(const ParticipantPtr &me, const ReaderPtr &reader, 
     }
     if (writer.Started && sequence < writer.Expected)
     {
-        return;  // came twice, or too late
+        return;  // duplicate, or too late
     }
     if (writer.Started && sequence > writer.Expected)
     {
@@ -75,7 +75,7 @@ void NetworkCore::HearHeartbeat(const ParticipantPtr &me, const ReaderPtr &reade
     Send(*me, datagram.Writer.Participant, std::move(answer), _timings.ResponseDelay);
 }
 
-// Nothing below `first` will come any more: hands over what came early of it and gives up the rest.
+// No sample below `first` will come any more: delivers the early ones below it and gives up the rest.
 void NetworkCore::SkipTo(const ParticipantPtr &me, const ReaderPtr &reader, const EndpointId &from,
                          WriterProxy &writer, std::uint64_t first)
 {

@@ -1,4 +1,4 @@
-// How datagrams leave a participant.
+// NetworkCore: datagrams leave a participant.
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -16,7 +16,7 @@ void NetworkCore::Send(const ParticipantState &from, ParticipantId to, Datagram 
     SendTogether(from, std::move(letters), false);
 }
 
-// By multicast: as one datagram; else as one for each participant.
+// With multicast as one datagram, otherwise as one for each participant.
 void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bool multicast,
                                std::uint32_t partsBefore)
 {
@@ -50,7 +50,7 @@ void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bo
     }
 }
 
-// Where nothing is in the way.
+// Used if no medium is in the way.
 void NetworkCore::SendAlone(const ParticipantState &from, Letter letter)
 {
     const auto target = _participants.find(letter.To);
@@ -76,7 +76,7 @@ void NetworkCore::SendAlone(const ParticipantState &from, Letter letter)
     }
 }
 
-// Of a datagram that is not lost.
+// Transmits a datagram that is not lost.
 void NetworkCore::Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to,
                            Datagram datagram, Time processing)
 {

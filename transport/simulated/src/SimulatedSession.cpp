@@ -43,7 +43,7 @@ public:
     std::size_t HeldBytes() const override
     {
         const std::lock_guard lock(_mutex);
-        // One that nobody gets takes something all the same, or it would never go.
+        // At least 1: a datagram without a receiver would otherwise look as if none were held.
         return _held == nullptr
                    ? 0
                    : std::max<std::size_t>(_core->BytesOfPart(*_participant, *_state, *_held), 1);
@@ -135,7 +135,7 @@ private:
         return WriteResult::Ok;
     }
 
-    // Of _held, with _mutex held.
+    // Sends the next part of _held. Requires _mutex.
     bool SendPart()
     {
         if (_partsSent + 1 < _held->Datagrams)
@@ -154,9 +154,9 @@ private:
     const bool _bestEffort;
     const TopicRegistry::Use _use;
     const WriterPtr _state;
-    mutable std::mutex _mutex;  // guards what follows
+    mutable std::mutex _mutex;  // guards the members below
     std::shared_ptr<Sample> _held;
-    std::uint32_t _partsSent = 0;  // of it
+    std::uint32_t _partsSent = 0;  // of _held
 };
 
 class SimulatedReader final : public TransportReader

@@ -1,4 +1,4 @@
-// What the simulated datagrams would cost with RTPS; OMG DDSI-RTPS 2.3, 9.4.
+// NetworkCore: sizes of the simulated datagrams in RTPS; OMG DDSI-RTPS 2.3, 9.4.
 #include <algorithm>
 #include <set>
 
@@ -18,7 +18,7 @@ constexpr std::uint64_t Destination = 16;  // INFO_DST
 constexpr std::uint64_t Data = 24;
 constexpr std::uint64_t Heartbeat = 32;
 constexpr std::uint64_t Acknowledgement = 28;
-// An announcement takes so much, measured with Fast DDS.
+// Size of an announcement, measured with Fast DDS.
 constexpr std::uint64_t Participant = 232;
 
 }  // namespace

@@ -1,5 +1,4 @@
-// What the simulated network consists of. All of it is guarded by the NetworkCore's mutex, unless said
-// otherwise.
+// State of the simulated network. All of it is guarded by the NetworkCore's mutex, unless said otherwise.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -38,7 +37,7 @@ struct EndpointId
     auto operator<=>(const EndpointId &) const = default;
 };
 
-// Never changed once it is in a history.
+// Constant once it is in a history.
 struct Sample
 {
     std::vector<std::uint8_t> Bytes;
@@ -46,11 +45,11 @@ struct Sample
     std::int64_t SourceTime = 0;
     std::uint64_t Sequence = 0;
     bool Alive = true;
-    std::uint32_t Datagrams = 1;  // that it travels in
+    std::uint32_t Datagrams = 1;  // number in which it travels
 };
 using SamplePtr = std::shared_ptr<const Sample>;
 
-// What discovery tells of a writer or reader.
+// A writer or reader as discovery describes it.
 struct EndpointInfo
 {
     EndpointId Id;
@@ -70,12 +69,12 @@ struct Datagram
 {
     enum class Kind
     {
-        Announce,        // I am here
-        Bye,             // I go
-        Card,            // a message about cards; Endpoints is what the sender's card says
-        Data,            // Content; nothing below First will come any more
-        Heartbeat,       // I have First to Last for you
-        Acknowledgement  // I have all below First, but miss Sequences
+        Announce,        // the sender is alive
+        Bye,             // goodbye
+        Card,            // a card message; Endpoints: content of the sender's card
+        Data,            // Content; no sample below First will come any more
+        Heartbeat,       // samples First to Last are available
+        Acknowledgement  // all below First have arrived, Sequences are missing
     };
     Kind What = Kind::Announce;
     EndpointId Writer;
@@ -83,37 +82,37 @@ struct Datagram
     std::uint64_t First = 0;
     std::uint64_t Last = 0;
     SamplePtr Content;
-    std::shared_ptr<const std::vector<std::uint8_t>> Card;  // as it travels
+    std::shared_ptr<const std::vector<std::uint8_t>> Card;  // its bytes
     std::shared_ptr<const EndpointList> Endpoints;
     std::vector<std::uint64_t> Sequences;
-    std::shared_ptr<const ParticipantState> Sender;  // of a message about cards
+    std::shared_ptr<const ParticipantState> Sender;  // of a card message
 };
 
-// A datagram for one reader, or for one participant, of those that may share it on the way.
+// A datagram for one reader, or for one participant, which may share a multicast packet with others.
 struct Letter
 {
     ParticipantId To = 0;
     Datagram Content;
     std::chrono::nanoseconds Processing{0};
 };
-using Letters = std::vector<Letter>;  // those to one participant stand together
+using Letters = std::vector<Letter>;  // those to one participant are adjacent
 
-// Letters that go together, in as many packets as they need. They have arrived when the last packet has.
+// Letters sent together, in as many packets as they need. They arrive with the last packet.
 struct Flight
 {
     ParticipantId From = 0;
     std::uint32_t FromNode = 0;
     Simulated::Letters Letters;
     std::uint64_t Waiting = 0;                    // packets that have not passed yet
-    std::map<ParticipantId, std::uint32_t> Lost;  // packets, at whom
+    std::map<ParticipantId, std::uint32_t> Lost;  // packets lost, by receiver
 };
 
-// How a writer sees a matched reader.
+// A writer's view of a matched reader.
 struct ReaderProxy
 {
     bool Reliable = false;
-    std::uint64_t Acknowledged = 0;  // it needs nothing up to here
-    // Datagrams of large samples that have not got through yet; absent: all of them.
+    std::uint64_t Acknowledged = 0;  // it needs no sample up to here
+    // Number of missing datagrams of large samples; no entry: all of them are missing.
     std::map<std::uint64_t, std::uint32_t> Missing;
 };
 
@@ -122,24 +121,24 @@ struct WriterState
     EndpointInfoPtr Info;
     std::uint64_t LastSequence = 0;
     std::deque<SamplePtr> History;
-    std::deque<SamplePtr> Disposals;  // that some reader may not know yet
+    std::deque<SamplePtr> Disposals;  // disposals that some reader may not know yet
     std::map<EndpointId, ReaderProxy> Readers;
-    // When the next heartbeat goes, if anything waits for it; the distance to the one after it; and the
-    // number of its timer.
+    // When the next heartbeat goes, if any is needed; the interval to the one after it; and the number of its
+    // timer.
     std::optional<std::chrono::nanoseconds> HeartbeatAt;
     std::chrono::nanoseconds HeartbeatGap{0};
     std::uint64_t HeartbeatTimer = 0;
 };
 
-// How a reader sees a matched writer.
+// A reader's view of a matched writer.
 struct WriterProxy
 {
     std::shared_ptr<const PeerSession> Node;
     bool Reliable = false;
     bool Started = false;                               // Expected is known
-    std::uint64_t Expected = 0;                         // the next to hand over
-    std::map<std::uint64_t, SamplePtr> Early;           // came before Expected did
-    std::optional<std::chrono::nanoseconds> ArrivedAt;  // of a best-effort writer: the last sample
+    std::uint64_t Expected = 0;                         // the next sample to deliver
+    std::map<std::uint64_t, SamplePtr> Early;           // samples that came before Expected
+    std::optional<std::chrono::nanoseconds> ArrivedAt;  // when the last sample of a best-effort writer came
 };
 
 struct ReaderState
@@ -157,10 +156,10 @@ struct ReaderState
     InstanceTable Instances;  // under the gate
 };
 
-// How a participant sees another.
+// A participant's view of another.
 struct Peer
 {
-    std::uint64_t Birth = 0;  // tells this life of the entry from others, for its timers
+    std::uint64_t Birth = 0;  // distinguishes this entry from earlier ones of the peer, for its timers
     std::shared_ptr<const PeerSession> Who;
     std::chrono::nanoseconds Lease{};
     std::chrono::nanoseconds LastHeard{};
@@ -186,8 +185,8 @@ struct ParticipantState
     std::uint32_t NodeNumber = 0;  // in the fault plan
     bool Gone = false;             // closed or crashed
     std::map<ParticipantId, Peer> Peers;
-    PeerSessions<ParticipantId> Sessions;  // of these
-    std::set<ParticipantId> Departed;      // said goodbye: announcements of theirs that come later are void
+    PeerSessions<ParticipantId> Sessions;  // of Peers
+    std::set<ParticipantId> Departed;      // said goodbye: their later announcements are ignored
     std::map<EndpointId, std::shared_ptr<WriterState>> Writers;
     std::map<EndpointId, std::shared_ptr<ReaderState>> Readers;
     std::uint32_t LastEntity = 0;
@@ -196,8 +195,8 @@ struct ParticipantState
     int Announced = 0;  // times
 
     Rtps::CardExchange Cards;
-    std::optional<std::chrono::nanoseconds> CardsAt;  // when their timer is due
-    std::uint64_t CardTimer = 0;                      // the number of the one that counts
+    std::optional<std::chrono::nanoseconds> CardsAt;  // when the card timer is due
+    std::uint64_t CardTimer = 0;                      // number of the timer that is valid
 
     // Not guarded by the network's mutex.
     const std::shared_ptr<SessionLog> Log;
@@ -206,7 +205,7 @@ struct ParticipantState
     HandlerGate PeerGate;
 };
 
-// Of the RTPS GUIDs of its endpoints.
+// The prefix of the RTPS GUIDs of a participant's endpoints.
 inline Rtps::GuidPrefix PrefixOf(ParticipantId id)
 {
     Rtps::GuidPrefix result{};

@@ -1,4 +1,4 @@
-// How a writer sends and repairs: the shape of RTPS 2.3, 8.4, without its encoding.
+// NetworkCore: a writer sends and repairs, in the manner of RTPS 2.3, 8.4, without its encoding.
 #include <algorithm>
 #include <utility>
 
@@ -48,8 +48,8 @@ void PutIntoHistory(WriterState &writer, SamplePtr sample)
     history.push_back(std::move(sample));
 }
 
-// A volatile writer keeps a sample for those alone that are matched and have not acknowledged it yet; one
-// for late readers, a disposal and what it ended.
+// Drops unneeded samples. A volatile writer keeps a sample only while a matched reader has not acknowledged
+// it. A transient-local one also keeps samples for late readers, until their disposal is acknowledged.
 void LetGo(WriterState &writer)
 {
     const bool keepsForLateReaders = writer.Info->Qos.Durability == Durability::TransientLocal;
@@ -112,7 +112,7 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
     return true;
 }
 
-// Nobody reads a part: what is lost of a sample is decided with its last one.
+// No reader sees a part: whether a sample is lost is decided with its last part.
 bool NetworkCore::WritePart(const ParticipantState &participant, const WriterState &writer,
                             const Sample &sample)
 {
@@ -174,7 +174,7 @@ Datagram NetworkCore::MakeData(const WriterState &writer, const EndpointId &to, 
     return datagram;
 }
 
-// How many packets of a large sample that reader still lacks: only those are sent. nullptr if it is not one.
+// Number of packets of a large sample that the reader still lacks: only those are sent. nullptr for others.
 std::uint32_t *NetworkCore::MissingOf(const ParticipantState &me, const Datagram &datagram)
 {
     if (datagram.What != Datagram::Kind::Data || datagram.Content->Datagrams == 1)
@@ -213,7 +213,7 @@ bool NetworkCore::WaitsForHeartbeat(const WriterState &writer)
                        { return entry.second.Reliable && entry.second.Acknowledged < writer.LastSequence; });
 }
 
-// The next one goes after this delay, or earlier if it was to do so.
+// The next heartbeat goes after this delay, or earlier if it was due earlier.
 void NetworkCore::AwaitHeartbeat(WriterState &writer, Time delay)
 {
     if (!WaitsForHeartbeat(writer))
@@ -266,8 +266,7 @@ void NetworkCore::HearAcknowledgement(const ParticipantState &me, WriterState &w
     reader.Missing.erase(reader.Missing.begin(), reader.Missing.upper_bound(reader.Acknowledged));
     for (const std::uint64_t sequence : datagram.Sequences)
     {
-        // What the history no longer has needs no answer: the first that it has comes with everything sent
-        // later.
+        // Samples that left the history need no answer: all later data names the first one that it has.
         const auto sample = FindInHistory(writer, sequence);
         if (sequence > reader.Acknowledged && sample != writer.History.end() &&
             (*sample)->Sequence == sequence)

@@ -12,10 +12,10 @@ namespace Rabit
 class Exploration;
 class FleetExplorer;
 
-// Name of the local message (type Rabit::Gateway::Fleet, in rabit/gateway/Fleet.h) in which a gateway tells
-// what it knows, if the configuration gives it no name of its own.
+// Name of the local message in which a gateway reports the fleet, unless the configuration names the gateway.
+// Its type is Rabit::Gateway::Fleet (rabit/gateway/Fleet.h).
 inline constexpr const char *FleetMessageName = "Gateway/Fleet";
-// Likewise, with the name that the configuration gives.
+// The same with the name that the configuration gives.
 inline std::string FleetMessageNameOf(const GatewayConfig &config)
 {
     return config.Name + "/Fleet";
@@ -24,28 +24,28 @@ inline std::string FleetMessageNameOf(const GatewayConfig &config)
 // Joins this process to the other nodes of its domain.
 //
 // - Every `publish` message posted locally is written to the DDS topic of its name.
-// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, stamped with the
-//   time of its post by the wall clock of its origin, and with an age that counts from its post over there,
-//   whatever the clocks say and however they are set. Nothing of a node is posted before that node has been
-//   heard as live, so an old value never looks new.
+// - Every `subscribe` message of another node is posted locally as `<node>/<message>`, stamped with the time
+//   of its post by the wall clock of its origin. Its age counts from that post, whatever the clocks show.
+//   Nothing of a node is posted before a beat of that node has come, so an old value never looks new.
 // - AddMessageToQueue("<node>/<queue>", message) sends a message to a queue of another node,
 //   "*/<queue>" to that queue of every live node that accepts it. False means refused; Gateway/Fleet counts
 //   why. Every accepted message comes to exactly one outcome; give AddMessageToQueue a RabitQueueReceipt to
-//   learn which. At the gateway's end what waits has Expired, and what was sent and not acknowledged is
-//   InDoubt.
+//   learn which. When the gateway ends, waiting messages are Expired, and messages that were sent and not
+//   acknowledged are InDoubt.
 // - `accept` queues receive messages of other nodes in order; a full queue holds the sender back, without
 //   loss.
 // - Gateway/Fleet shows the other nodes, counters, and by name why expected data does not come. A problem
-// that
-//   lasts two seconds is logged once (RabitLog, as a warning), and once more when it is gone.
+//   that lasts two seconds is logged once (RabitLog, as a warning), and once more when it is gone.
 //
 // Threads: Startup, ExecuteUnitOfWork and Shutdown run as for every manager. Mirrored messages are posted on
-// the transport's thread, so handlers registered on them run there and must be quick.
+// the transport's thread. Handlers registered on them run on a thread of the gateway's that does nothing else
+// (RabitHandlerThread); RabitQuickHandlers run on the transport's thread, and so do all under a stepped
+// transport.
 //
 // Several gateways may serve one workspace, for instance one on a radio and one on a LAN, if each has a name
-// of its own (GatewayConfig::Name): the second of a name throws ConfigError. A queue message goes through the
-// one that knows the node, "*/<queue>" to the nodes of all. A node that two of them know is a problem by
-// name; the gateway that was there first takes the queue messages for it.
+// of its own (GatewayConfig::Name): a second gateway of one name throws ConfigError. A queue message goes
+// through the gateway that knows the node, "*/<queue>" to the nodes of all gateways. A node that two gateways
+// know is a problem by name; its queue messages go through the gateway that was there first.
 //
 // Errors: the constructor throws ConfigError for a configuration that cannot be used (a TransportError of the
 // backend included), and then nothing has been started. Afterwards nothing from the network throws or ends
@@ -62,11 +62,11 @@ public:
                    RabitWorkspace &workspace, RandomSource random = SystemRandom);
     ~GatewayManager() override;
 
-    // What this gateway knows of the others, and may be asked for while it runs, for programs that look at a
-    // fleet. As long as the manager lives; any thread.
+    // Returns the view of the fleet that tools use: announcements, types, subscriptions at run time. Valid as
+    // long as the manager lives; any thread.
     FleetExplorer &Explorer();
 
-    // A gateway that ran before joins again, in a new life.
+    // A gateway that ran before joins again, in a new incarnation.
     void Startup() final;
     void ExecuteUnitOfWork() final;
     // Says goodbye to the other nodes and leaves the network.

@@ -16,7 +16,7 @@ namespace Rabit
 // file, line and the nearest right word.
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride = "");
 
-// Says why there is no such IDL type, for the message; empty if there is one.
+// Returns why there is no such IDL type, for the error message; empty if there is one.
 using TypeCheck = std::function<std::string(const std::string &type)>;
 
 // The same for a program that was not built with the types of that node: `whyNoType` tells which there are.
@@ -24,7 +24,7 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
                                 const TypeCheck &whyNoType);
 
 // The same for a program that is another node in that network, perhaps one that knows none of the types: the
-// file's publish, subscribe, accept, send and foreign are passed over.
+// sections publish, subscribe, accept, send and foreign of the file are ignored.
 GatewayConfig LoadNetworkConfig(const std::string &file);
 
 }  // namespace Rabit

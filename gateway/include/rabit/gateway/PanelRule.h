@@ -6,11 +6,11 @@
 namespace Rabit
 {
 
-// How messages are shown in a viewer's panel that knows some schemas of its own: `rabit foxglove` makes such
-// a message of each value.
+// How a message is shown in a panel of a viewer that has schemas of its own: `rabit foxglove` converts each
+// value to that schema.
 struct PanelRule
 {
-    // Schemas of Foxglove, of the same names: for its map, its pictures and its log.
+    // Foxglove's schemas of the same names, for its map, pictures and log.
     enum class Panel
     {
         LocationFix,
@@ -20,8 +20,8 @@ struct PanelRule
 
     std::string Message;  // of whichever node
     Panel Schema = Panel::LocationFix;
-    // Members of the schema, and where their values are in the message, as `a.b`; `=text` is that text. Time
-    // and, unless it is named, frame_id (the node) are known without.
+    // Members of the schema, and where their values are in the message, as `a.b`; `=text` is that text. The
+    // time is added, and the node as frame_id unless Fields names that.
     std::map<std::string, std::string> Fields{};
     int Line = 0;
 };

@@ -7,7 +7,7 @@ namespace Rabit
 {
 
 // A source of 64 random bits at each call. A gateway needs few: to tell its clocks and lives from others.
-// Simulations hand in one that a seed decides. Must not throw; called by one thread at a time.
+// Simulations pass a seeded one. Must not throw; called by one thread at a time.
 using RandomSource = std::function<std::uint64_t()>;
 
 // From the system, or from a fast clock where the system has no source. Any thread.

@@ -3,14 +3,14 @@
 namespace Rabit
 {
 
-// How important something is that a node puts on the air, the most important first.
+// Priority of the bytes that a node puts on the air, the most important first.
 enum class TrafficClass
 {
-    Presence,   // who is there, and acknowledgements: the gateway's own, not to be chosen
-    Command,    // what somebody waits for
-    State,      // what must be known
-    Telemetry,  // what is soon replaced by a newer value
-    Bulk        // what has time: pictures, files
+    Presence,   // beats and acknowledgements of the gateway itself; a rule cannot choose it
+    Command,    // messages that somebody waits for
+    State,      // values that must be known
+    Telemetry,  // values that are soon replaced by newer ones
+    Bulk        // data that has time: pictures, files
 };
 
 }  // namespace Rabit

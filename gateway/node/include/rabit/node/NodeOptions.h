@@ -12,7 +12,7 @@ class App;
 namespace Rabit
 {
 
-// The options that every program in the network has, and those of nodes.
+// The options of every program that joins the network, and those of nodes.
 struct NodeOptions
 {
     std::string ConfigFile;
@@ -25,15 +25,15 @@ struct NodeOptions
 
 // Adds --config, --node, --domain, --transport and --keys.
 void AddNetworkOptions(CLI::App &app, NodeOptions &options);
-// The network settings of the file, with the options in place of what it says; without a file the defaults.
-// The name is the option's alone. Throws ConfigError.
+// Loads the network settings of the file; without a file, the defaults. Options replace them. The node's name
+// comes from --node alone. Throws ConfigError.
 GatewayConfig LoadNetworkConfig(const NodeOptions &options);
 
-// Adds these and --check.
+// Adds the network options and --check.
 void AddNodeOptions(CLI::App &app, NodeOptions &options);
-// The gateway's configuration, with the options in place of what the file says. Throws ConfigError. With
-// Check also for network settings that cannot work on this host; what is only missing yet is told on standard
-// error.
+// Loads the gateway's configuration; options replace settings of the file. Throws ConfigError. With Check, it
+// also throws for network settings that cannot work on this host, and names on standard error those that are
+// only missing yet.
 GatewayConfig LoadNodeConfig(const NodeOptions &options);
 
 }  // namespace Rabit

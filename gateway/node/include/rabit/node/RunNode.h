@@ -17,8 +17,8 @@ struct NodeProgram
     // The gateway's configuration file, unless the option --config names another.
     std::string ConfigFile;
     // Adds the program's managers to the reactor; the gateway is added after them. May complete the
-    // configuration. Also called with --check, when nothing is run: so no manager should start anything
-    // before its Startup.
+    // configuration. Also called with --check, when nothing is run: no manager should start anything before
+    // its Startup.
     std::function<void(RabitReactor &reactor, GatewayConfig &config)> AddManagers;
     // For --help, which lists the options.
     std::string Description{};

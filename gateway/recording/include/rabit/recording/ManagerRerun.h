@@ -10,33 +10,35 @@
 #include <string>
 #include <vector>
 
-// Running managers again with what they read in flight: to see what a manager did and why, in a debugger if
-// need be, and whether one that was changed does the same.
+// Runs managers again with what they read in flight. That shows what a manager did and why, in a debugger
+// if need be, and whether a changed manager does the same.
 //
-// A node records the steps of the managers that its configuration names (`record: steps: [MissionControl]`):
-// of each Startup, unit of work and Shutdown, in the manager's own order, every reading of the clock, every
-// message that a fetch brought, every message that it took from a queue, whether queues took what it added,
-// and the messages that it posted and added. The manager runs again alone, in a RabitSteppedReactor and a
-// workspace of its own: the same steps, whenever they ran, each of them reading the same; so neither the
-// order of threads nor the time that anything took matters. What it posts and adds to queues is compared with
-// what it posted and added then, byte for byte.
+// A node records the steps of the managers that are named in its configuration (`record: steps:`). A step
+// is one Startup, unit of work or Shutdown. It holds, in the manager's own order, every reading of the
+// clock, every message that a fetch brought or that was taken from a queue, whether queues accepted what
+// the manager added, and the messages that it posted and added. The manager runs again alone, in a
+// RabitSteppedReactor and a workspace of its own: the same steps, with the same readings. So neither the
+// order of threads nor the time that anything took matters. The messages that it posts and adds to queues
+// are compared with the recorded ones, byte for byte.
 //
-// It is exact for a manager that is a function of what it reads through Rabit. It needs for that:
+// A rerun is exact for a manager that is a function of what it reads through Rabit. It needs:
 // - The recording of the manager's Startup and of all steps since. A black box, or a recording whose oldest
-//   files were removed, has none. Steps that were lost end the rerun there; it says so.
+//   files were removed, lacks these. Lost steps end the rerun at that point, and its result says so.
 // - The same constructor arguments, and a constructor that reads nothing: no clock, no messages.
 // - Time from the clock of its workspace, which is the system's or a ManualClock: directly, as an age of a
 //   message (GetAgeSeconds), or as the stamp of a post. Not from std::chrono, SystemTimeClock or time stamps
 //   of messages that were made and not posted.
-// - Messages of types made from IDL. What others are fetched or taken is a problem that is told, with its
-//   name; of others that are posted, only the name is compared. The three ints of a RabitMessage are not
-//   recorded.
-// - Queues of RabitMessages that call themselves what they are registered as, as a manager's own queue does.
-//   How full a queue is, is not recorded: a manager that takes messages until there are no more is exact.
-// - Receipts are told at once whether the queue took the message, and nothing afterwards.
-// - No random numbers that differ from run to run, no threads, files, sockets or devices of its own, no order
-//   that follows from addresses, and no variables that it shares with other managers. A manager that reads
-//   what a device says is best split into one that reads and one that decides.
+// - Messages of types made from IDL. A message of another type that is fetched or taken is a problem, which
+//   the result names. Of a posted message of another type only the name is compared. The three ints of a
+//   RabitMessage are not recorded.
+// - Queues of RabitMessages that have the name under which they are registered, as a manager's own queue
+//   has. The fill of a queue is not recorded: a manager that takes messages until there are no more is
+//   exact.
+// - No later outcomes of receipts: a rerun tells a receipt at once whether the queue accepted the message,
+//   and nothing afterwards.
+// - No random numbers that differ from run to run, no threads, files, sockets or devices of its own, no
+//   order that follows from addresses, and no variables that it shares with other managers. A manager that
+//   reads a device is best split into one that reads and one that decides.
 // - The same types, compiler and libraries where numbers must agree to the last bit.
 namespace Rabit
 {
@@ -49,18 +51,18 @@ struct ManagerStep;
 class ManagerRecording
 {
 public:
-    // All lives of the managers of that name in the files of one node, which may be given in any order, or in
-    // a merged file; an empty node: of any. Several nodes: each has its own. Empty if there is none, then
-    // `problems` says why; what cannot be read is told there as well, one line each.
+    // Returns all lives of the managers of that name on that node; an empty `node` means any, and each node
+    // has lives of its own. `files` are the files of a recording, in any order, or a merged file. If there
+    // is no life, `problems` says why. It also names the parts that cannot be read, one line each.
     static std::vector<ManagerRecording> Read(const std::vector<std::string> &files,
                                               const std::string &manager, const std::string &node,
                                               std::vector<std::string> &problems);
 
     const std::string &Node() const { return _node; }
     const std::string &Manager() const { return _manager; }
-    // Its Startup included.
+    // The Startup included.
     std::size_t NumberOfSteps() const;
-    // Why its steps end where they do although more were recorded, or cannot be run; empty: they are whole.
+    // Why the steps end although more were recorded, or cannot be run; empty if they are complete.
     const std::string &Problem() const { return _problem; }
 
 private:
@@ -89,7 +91,7 @@ struct RerunDifference
 
 struct RerunResult
 {
-    // Why it did not run, or not to the end; empty: it did.
+    // Why it did not run, or not to the end, apart from a difference; empty if there is no such reason.
     std::string Problem;
     std::uint64_t Steps = 0;    // that ran
     std::uint64_t Outputs = 0;  // posts and messages for queues that were compared
@@ -103,7 +105,7 @@ struct RerunResult
 class ManagerRerun
 {
 public:
-    // Makes the manager, of the same name and arguments as then, in that workspace.
+    // Makes the manager in that workspace, with its recorded name and the arguments that it had in flight.
     using MakeManager = std::function<std::unique_ptr<RabitManager>(RabitWorkspace &workspace)>;
     static RerunResult Run(const ManagerRecording &recording, const MakeManager &make);
 };

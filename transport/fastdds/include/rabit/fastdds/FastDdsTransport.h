@@ -10,15 +10,14 @@ namespace Rabit
 
 // The backend on eProsima Fast DDS (RTPS over UDPv4; shared memory on request).
 //
-// It uses the vendor's RTPS layer: a sample is encoded into the buffer it is sent from, and handed over in
-// the buffer it was received in, on the vendor's receiving thread. Samples are limited to 64 MiB.
+// It uses the vendor's RTPS layer. A sample is encoded into the buffer from which it is sent, and delivered
+// in the buffer in which it arrived, on the vendor's receiving thread. Samples are limited to 64 MiB.
 //
-// TransportSettings::BackendConfig is a Fast DDS XML profiles file; its default participant profile is the
-// base on which the other settings are laid. Transports that it defines replace ours, interfaces included.
+// TransportSettings::BackendConfig is a Fast DDS XML profiles file; the other settings override its default
+// participant profile. Transports that it defines replace ours, interfaces included.
 //
-// Process-wide effect: the first Open switches Fast DDS's intraprocess delivery off, because with it a
-// handler would run inside another session's Write. Environment variables that Fast DDS itself reads stay in
-// force.
+// Process-wide effect: the first Open switches Fast DDS's intraprocess delivery off, which would run a
+// handler inside another session's Write. Environment variables that Fast DDS itself reads stay in force.
 class FastDdsTransport final : public Transport
 {
 public:

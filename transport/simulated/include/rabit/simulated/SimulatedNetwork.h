@@ -14,8 +14,8 @@ namespace Simulated
 class NetworkCore;
 }
 
-// What happens to the datagrams of one direction. Decided for each datagram when it is sent, over a limited
-// medium when it has passed that: those in flight when the faults change keep their fate.
+// Faults of the datagrams of one direction. Each datagram's fate is decided when it is sent, over a limited
+// medium when it has passed that. Datagrams in flight when the faults change keep their fate.
 struct SimulatedFaults
 {
     // Probability, 0 to 1, that a datagram is lost. A sample larger than TransportSettings::MaxDatagram
@@ -30,37 +30,37 @@ struct SimulatedFaults
     // Probability that a datagram takes a uniformly drawn part of StraggleDelay longer.
     double Straggle = 0.0;
     std::chrono::nanoseconds StraggleDelay = std::chrono::seconds(1);
-    // Nothing passes. A partition is two of these, one for each direction.
+    // Nothing passes. A partition needs two of these, one for each direction.
     bool Cut = false;
 };
 
 // The times of the simulated protocol; the defaults are those of our Fast DDS backend.
 struct SimulatedTimings
 {
-    // A reliable writer asks after this time, while something is not acknowledged, what its readers miss;
-    // then at distances that double up to the longest, and begin anew with each write and acknowledgement.
+    // While samples are unacknowledged, a reliable writer sends a heartbeat after this time. The interval
+    // then doubles up to the longest, and starts anew with each write and acknowledgement.
     std::chrono::nanoseconds HeartbeatPeriod = std::chrono::milliseconds(20);
     std::chrono::nanoseconds LongestHeartbeatPeriod = std::chrono::milliseconds(1000);
-    // A reader answers that, and a writer repairs, after this time.
+    // A reader answers a heartbeat, and a writer repairs, after this time.
     std::chrono::nanoseconds ResponseDelay = std::chrono::milliseconds(1);
-    // From the arrival of an announcement or a card to its being read.
+    // From the arrival of an announcement or a card until it is read.
     std::chrono::nanoseconds DiscoveryDelay = std::chrono::milliseconds(5);
 };
 
-// A half-duplex medium that nodes share, a radio: one datagram at a time is on the air, and the nodes that
-// have something to send take turns. What a node sends meanwhile waits in a queue of its own, first in first
-// out; it does so as well when its process has ended, and nobody who sends is told of it. A datagram takes
-// its size as TransportCounters counts it; one by multicast once, one by unicast once for each receiver.
+// A half-duplex medium that nodes share, a radio: one datagram at a time is on the air, and nodes with
+// datagrams take turns. Other datagrams of a node wait in its queue, first in first out, even if its process
+// has ended; the sender does not notice. A datagram takes its size as TransportCounters counts it: a
+// multicast one once, a unicast one once for each receiver.
 struct SimulatedMedium
 {
-    // Of all nodes together; 0: unlimited, nothing takes time or waits. What is on the air when it changes
-    // keeps the rate at which it began.
+    // For all nodes together; 0: unlimited, nothing takes time or waits. A datagram that is on the air during
+    // a change keeps its rate.
     std::uint64_t BytesPerSecond = 0;
-    // What a node's queue holds at most. A datagram for which there is no room is dropped.
+    // Capacity of a node's queue. A datagram for which there is no room is dropped.
     std::uint64_t QueueBytes = 16'000;
 };
 
-// What a medium did so far. Bytes are as on the air.
+// Statistics of a medium since its creation. Bytes are as on the air.
 struct SimulatedAir
 {
     std::uint64_t Carried = 0;  // datagrams
@@ -70,39 +70,41 @@ struct SimulatedAir
     std::chrono::nanoseconds LongestWait{0};  // of a datagram in the queue
 };
 
-// What a node's sessions have sent so far, those that are gone included; on the air or dropped before it.
+// Datagrams that a node's sessions have sent, past sessions included; on the air or dropped before it.
 struct SimulatedSent
 {
     std::uint64_t Datagrams = 0;
     std::uint64_t Bytes = 0;
-    std::uint64_t DiscoveryBytes = 0;  // of those: of participants and endpoints
-    std::uint64_t WaitingBytes = 0;    // of those: in the queue before its medium now
+    std::uint64_t DiscoveryBytes = 0;  // part of Bytes: announcements of participants and endpoints
+    std::uint64_t WaitingBytes = 0;    // part of Bytes: now in the queue of the medium
 };
 
-// What the network did so far.
+// Statistics of the whole network.
 struct SimulatedTraffic
 {
     std::uint64_t Sent = 0;  // datagrams, one for each receiver
-    std::uint64_t Lost = 0;  // of those sent: lost, cut off or dropped by a queue
+    std::uint64_t Lost = 0;  // part of Sent: lost, cut off or dropped by a queue
     std::uint64_t Duplicated = 0;
     std::uint64_t Events = 0;  // steps of the simulation
 };
 
 // A network in the memory of one process, for SimulatedTransport sessions, under its own time.
 //
-// What takes the air is counted as with the real backends: samples with several readers, announcements and
-// endpoints go by multicast where the sender's settings allow it (TransportSettings::Multicast).
+// Datagrams are counted as with the real backends. Samples with several readers, announcements and endpoints
+// go by multicast where the sender's settings allow it (TransportSettings::Multicast).
 //
-// Time stands still until AdvanceTo moves it. With one seed, the same calls in the same order give the same
-// deliveries in the same order. Nothing happens in between: AdvanceTo runs all handlers, on the calling
-// thread, each at its simulated time; things due at one time happen in the order in which they were caused.
+// Time stands still until AdvanceTo moves it. If the seed, the calls and their order are the same, so are the
+// deliveries and their order. AdvanceTo runs all handlers, on the calling thread, each at its simulated time;
+// nothing happens outside of it. Events due at one time happen in the order in which they were caused.
 //
-// It behaves like our backends on DDS, not like an ideal network: participants find each other by
-// announcements and cards (transport/rtps), and lose each other by leases, the two sides of a match come
-// about separately, a reliable writer repairs what its keep-last history still has as long as the match
-// holds, a best-effort reader drops what comes late or twice, a volatile reader loses what is written while
-// it is not matched, and a reader that was lost and found again gets a transient-local history once more (as
-// with Cyclone DDS; Fast DDS does not).
+// It behaves like our backends on DDS, not like an ideal network:
+// - Participants find each other by announcements and cards (transport/rtps), and lose each other by leases.
+// - The two sides of a match come about separately.
+// - A reliable writer repairs the samples of its keep-last history as long as the match holds.
+// - A best-effort reader drops late and duplicate samples.
+// - A volatile reader loses samples written while it is not matched.
+// - A reader that was lost and found gets a transient-local history again (as with Cyclone DDS; Fast DDS does
+//   not).
 //
 // Thread-safe; deterministic only if used by one thread at a time. Sessions keep the network alive.
 class SimulatedNetwork
@@ -113,38 +115,37 @@ public:
     SimulatedNetwork(const SimulatedNetwork &) = delete;
     SimulatedNetwork &operator=(const SimulatedNetwork &) = delete;
 
-    // Sets the faults from nodes to nodes; both are names, or patterns with `*` and `?`. Of several that fit
-    // a pair, the one set last holds; setting a pair of patterns again replaces it and makes it the last. At
-    // first, and after ClearFaults, every direction has the default SimulatedFaults.
+    // Sets the faults from nodes to nodes; both are names, or patterns with `*` and `?`. If several rules fit
+    // a pair, the one set last applies. Setting a pair of patterns again replaces it and makes it the last.
+    // At first, and after ClearFaults, every direction has the default SimulatedFaults.
     void SetFaults(const std::string &from, const std::string &to, const SimulatedFaults &faults);
     void ClearFaults();
 
-    // Makes a medium for the nodes that fit that pattern, or changes the one made for it. Of several that a
-    // node fits, the one made last is its own. What it sends takes the air of that medium alone, wherever the
-    // receiver is; what has been sent does not move to another one. At first all is unlimited.
+    // Makes a medium for the nodes that fit that pattern, or changes the one made for it. If a node fits
+    // several, it uses the one made last. Its datagrams occupy that medium alone, wherever the receiver is;
+    // datagrams already sent stay on theirs. At first all is unlimited.
     void SetMedium(const std::string &nodes, const SimulatedMedium &medium);
-    // Of the medium of that pattern; zeros if none was made.
+    // Statistics of the medium of that pattern; zeros if none was made.
     SimulatedAir Air(const std::string &nodes) const;
     SimulatedSent Sent(const std::string &node) const;
 
     // The simulated time; 0 at the start.
     std::chrono::nanoseconds Now() const;
-    // When the next thing will happen by itself, so that a driver can jump there. Nothing if there are no
-    // sessions.
+    // Time of the next event, so that a driver can jump there. Empty if there are no sessions.
     std::optional<std::chrono::nanoseconds> NextEvent() const;
-    // Makes everything happen that is due until `time`, then sets Now() to it. Does nothing if that is in the
+    // Runs all events that are due until `time`, then sets Now() to it. Does nothing if `time` is in the
     // past. Not from inside a handler; one thread at a time, others wait.
     void AdvanceTo(std::chrono::nanoseconds time);
 
-    // All sessions of that node vanish without a word, as by SIGKILL: their peers hear of it by their leases,
-    // their own handlers are not called any more, and their writes fail. A new session may be opened under
-    // the name at once. The dead session's objects are destroyed by their owner as usual.
+    // All sessions of that node vanish without a goodbye, as by SIGKILL. Their peers notice it by their
+    // leases, their own handlers are not called any more, and their writes fail. A new session may be opened
+    // under the name at once. The dead session's objects are destroyed by their owner as usual.
     void CrashNode(const std::string &node);
 
     SimulatedTraffic Traffic() const;
 
-    // When a best-effort sample of that topic last came from a node to readers of another one that are
-    // matched with its writer now; one that was overtaken does not count. Nothing if none came, or if no such
+    // Time of the last best-effort sample of that topic from node `from` to readers of node `to` that are
+    // matched with its writer now. An overtaken sample does not count. Empty if none came, or if no such
     // match is left.
     std::optional<std::chrono::nanoseconds> LastArrival(const std::string &from, const std::string &to,
                                                         const std::string &topic) const;

@@ -9,10 +9,10 @@
 namespace Rabit
 {
 
-// The backend for tests: its sessions talk over a SimulatedNetwork. Handlers run inside
-// SimulatedNetwork::AdvanceTo, on the thread that calls it, never anywhere else.
+// The backend for tests: its sessions communicate over a SimulatedNetwork. Handlers run only inside
+// SimulatedNetwork::AdvanceTo, on the thread that calls it.
 //
-// Of the settings it heeds Node, Incarnation, Domain, MaxDatagram, Multicast, Peers, Lease, Memory,
+// It uses these settings: Node, Incarnation, Domain, MaxDatagram, Multicast, Peers, Lease, Memory,
 // AnnouncementPeriod and Log. Samples are limited to 64 MiB, as with Fast DDS.
 class SimulatedTransport final : public Transport
 {

@@ -8,7 +8,7 @@
 namespace Rabit
 {
 
-// What LinkFrame::Check is: 32 bits of a hash (FNV-1a, with its halves folded).
+// Computes LinkFrame::Check: a 64-bit FNV-1a hash whose halves are folded into 32 bits.
 class LinkCheck
 {
 public:
@@ -30,9 +30,9 @@ public:
     }
     std::uint32_t Value() const { return static_cast<std::uint32_t>(_hash ^ (_hash >> 32)); }
 
-    // Of a long frame.
+    // The check of a long frame.
     static std::uint32_t OfName(std::string_view destination) { return LinkCheck().Add(destination).Value(); }
-    // Of a short one: of all that it leaves out.
+    // The check of a short frame, over all that it leaves out.
     static std::uint32_t OfShort(std::string_view destination, std::uint64_t senderLife,
                                  std::uint64_t receiverLife, std::uint32_t clock, std::uint32_t echoClock)
     {

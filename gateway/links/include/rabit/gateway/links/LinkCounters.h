@@ -58,17 +58,18 @@ struct LinkReceiverCounters
     std::size_t AssemblyBytes = 0;  // of a large message that is coming in
 };
 
-// What concerns the node and no single link. The counters only rise.
+// Counters of the node that belong to no single link. They only rise.
 struct LinkNodeCounters
 {
     std::uint64_t Malformed = 0;     // datagrams dropped because a field was impossible
     std::uint64_t OtherVersion = 0;  // datagrams dropped because they speak another version of the links
-    std::uint64_t Stale = 0;         // datagrams for or from another life (rules R1 and R2)
+    std::uint64_t Stale = 0;         // datagrams for or from another incarnation (rules R1 and R2)
     std::uint64_t UnknownShort = 0;  // short frames whose check means nothing here
     std::uint64_t NotForUs = 0;      // datagrams dropped because another node was addressed
     std::uint64_t TooManyPeers = 0;  // datagrams dropped because of LinkSettings::MaxPeers
     std::uint64_t TooManyLinks = 0;  // datagrams dropped because of LinkSettings::MaxLinksPerPeer
-    std::uint64_t NoSuchLink = 0;    // acknowledgements of links that this life of the node does not have
+    std::uint64_t NoSuchLink = 0;    // acknowledgements of links that this incarnation of the node does not
+                                     // have
     std::uint64_t FalseClaims = 0;  // incarnations above LinkLargestClaim, of this node or unproved of a peer
     std::uint64_t RefusedUnknown = 0;  // messages for queues that this node does not accept
     std::uint64_t RefusedBadName = 0;  // Enqueue: LinkRefusal::BadName

@@ -19,12 +19,12 @@ struct LinkDelivery
     std::string_view Source = {};
     std::string_view Queue = {};
     std::string_view Type = {};
-    // The sender's incarnation and the number of the message's last part. No two messages of a link have the
-    // same.
+    // The sender's incarnation and the number of the message's last part. The pair is unique among the
+    // messages of a link.
     std::uint64_t SenderLife = 0;
     std::uint64_t Number = 0;
     std::span<const std::uint8_t> Payload = {};
-    // Holds the bytes of Payload, which are its first ones. Null: nobody holds them beyond the call.
+    // Owns the bytes of Payload, which are its first bytes. Null: they are valid only during the call.
     LinkPayload Owner = nullptr;
     // An earlier incarnation of this node may have put the message into the queue already (only from links
     // with LinkOptions::RedeliverInDoubt).
@@ -57,8 +57,9 @@ public:
     // True if the accepted queue takes messages of that type. A constant, too: names of other types are not
     // remembered.
     virtual bool AcceptsType(std::string_view queue, std::string_view type) const = 0;
-    // Puts one message into an accepted queue, or says why not. Full holds the link back; Unknown, WrongType
-    // and Undecodable consume the message for good, and the sender learns LinkOutcome::RefusedThere.
+    // Puts one message into an accepted queue, or returns why not. Full holds the link back; Unknown,
+    // WrongType and Undecodable consume the message for good, and the sender learns
+    // LinkOutcome::RefusedThere.
     virtual LocalQueueResult Deliver(const LinkDelivery &delivery) = 0;
     // Messages that the accepted queue would take now; a hint for the sender's window, not a promise.
     virtual std::size_t Room(std::string_view queue) const = 0;
@@ -67,8 +68,8 @@ protected:
     ~LocalQueues() = default;
 };
 
-// What the links tell their driver. Called inside calls of LinkNode, on their thread; must not call LinkNode
-// and must not throw. Sending may fail or lose the datagram: the links repair it.
+// The output of the links to their driver. Called inside calls of LinkNode, on their thread; must not call
+// LinkNode and must not throw. Sending may fail or lose the datagram: the links repair it.
 class LinkOutput
 {
 public:
@@ -89,8 +90,8 @@ class IncarnationSource
 {
 public:
     // Returns an incarnation above `floor`. If there is a store, it must be safely stored before anything is
-    // sent that LinkOutput was given after this, so that no later life of this node starts below what others
-    // have heard. Called for the first incarnation (floor 0) and when a peer knows a higher one.
+    // sent that LinkOutput was given after this, so that no later incarnation of this node is below one that
+    // others have heard. Called for the first incarnation (floor 0) and when a peer knows a higher one.
     virtual std::uint64_t Above(std::uint64_t floor) = 0;
 
 protected:

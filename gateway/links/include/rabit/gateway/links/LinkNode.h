@@ -26,21 +26,21 @@ class LinkReceiver;
 class LinkSender;
 struct LinkContext;
 
-// Something that wants to send to another node: a link, or what keeps the links alive.
+// A source of datagrams to another node: one link, or the acknowledgements and hellos of all links.
 struct LinkStream
 {
     std::string_view Destination;
     std::string_view Queue;  // empty: acknowledgements and hellos, which go before everything else
-    std::size_t Bytes = 0;   // of its next datagram as on the air, about; never 0
+    std::size_t Bytes = 0;   // size of its next datagram on the air, approximately; never 0
 };
 
-// What is known of the path to another node.
+// Measurements of the path to another node.
 struct LinkPathState
 {
     LinkTime RoundTrip{0};      // smoothed; 0: not measured yet
-    LinkTime QueueingDelay{0};  // of it, what waits in buffers on the way, in the last round trip
+    LinkTime QueueingDelay{0};  // the part of it spent in buffers on the way, in the last round trip
     std::size_t Window = 0;     // bytes that may be under way, as on the air
-    std::size_t InFlight = 0;   // bytes that are
+    std::size_t InFlight = 0;   // bytes that are under way
     double DeliveryRate = 0;    // bytes per second that arrived when the window was last full; 0: not known
     double LossRate = 0;        // 0 to 1
 };
@@ -77,7 +77,7 @@ public:
     LinkRefusal Configure(std::string_view destination, std::string_view queue, const LinkOptions &options,
                           LinkTime now);
 
-    // Whether there is a link to that queue of that node, with options that no Configure changes.
+    // True if there is a link to that queue of that node; Configure no longer changes its options.
     bool HasLinkTo(std::string_view destination, std::string_view queue) const;
 
     // Accepts a message for a queue of another node, or refuses it at once. The link is made on first use,
@@ -85,12 +85,12 @@ public:
     LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
                          LinkPayload payload, LinkTime now);
 
-    // A frame has come from a peer's gateway, frame.Source. What is malformed or meant for another node is
-    // dropped and counted and changes nothing else: false. The frame is changed: what a short one leaves out
-    // is filled in.
+    // Processes a frame from a peer's gateway, frame.Source. A frame that is malformed or meant for another
+    // node is dropped and counted, and changes nothing else: false. Fills in the fields that a short frame
+    // leaves out.
     bool OnFrame(LinkFrame &frame, LinkTime now);
-    // Something else than the links has heard that a node is in that life: as a HELLO that says it. Does
-    // nothing if the links know of it, or do not know the node.
+    // Reports a node's incarnation that another source than the links has learnt; the effect is that of a
+    // hello. Does nothing if the links know that incarnation, or do not know the node.
     void HeardOf(std::string_view node, std::uint64_t incarnation, LinkTime now);
 
     // A message was taken out of this local queue, or the queue has come into being. The links that wait for
@@ -102,38 +102,40 @@ public:
     void Prepared(std::string_view source, std::string_view queue, std::uint64_t senderLife,
                   std::uint64_t number, std::shared_ptr<void> prepared, LinkTime now);
 
-    // Forgets a node and the links to and from it, unless messages for it wait here (false). What it had sent
-    // and was not told the outcome of will be in doubt there. Without this call a node is forgotten when
-    // LinkSettings::MaxPeers are known and another one comes.
+    // Forgets a node and the links to and from it, unless messages for it wait here (false). Messages from
+    // that node whose outcome it has not learnt will be in doubt there. Without this call a node is forgotten
+    // when LinkSettings::MaxPeers are known and another one comes.
     bool Forget(std::string_view node);
-    // Whether messages for that node wait here.
+    // True if messages for that node wait here.
     bool HasPending(std::string_view node) const;
 
     // Does everything that is due: expiry, sending, resending, acknowledging, hellos.
     void Run(LinkTime now);
-    // When Run has something to do: now or earlier if at once, LinkNever if nothing until the next input.
+    // When Run has work to do: now or earlier if at once, LinkNever if none until the next input.
     LinkTime NextDue() const;
 
-    // In place of Run, for a scheduler that decides what goes out next: Advance does everything that is due
-    // except sending; VisitStreams tells what could be sent now; SendOne sends one datagram of one of these.
+    // In place of Run, for a scheduler that chooses the next datagram: Advance does everything that is due
+    // except sending, VisitStreams lists the streams that could send now, SendOne sends one datagram of one
+    // of them.
     void Advance(LinkTime now);
-    // In datagrams of at most so many bytes as on the air. A part that was cut for a larger one goes whole.
+    // `most` is the largest datagram in bytes on the air. A part that was cut for a larger datagram goes
+    // whole.
     void VisitStreams(std::size_t most, LinkTime now,
                       const std::function<void(const LinkStream &)> &visit) const;
-    // Of at most so many bytes as on the air, unless a single small message is larger; acknowledgements and
-    // hellos are always sent. Returns whether anything was sent. LinkOutput::Send is called at most once.
+    // Sends at most `most` bytes on the air, unless a single small message is larger; acknowledgements and
+    // hellos are always sent. Returns true if anything was sent. LinkOutput::Send is called at most once.
     bool SendOne(std::string_view destination, std::string_view queue, std::size_t most, LinkTime now);
 
-    // Ends all links to other nodes in an orderly way: what was never sent is reported as Expired (it will
-    // never be delivered), what was sent and not acknowledged as InDoubt. The object must not be used
-    // afterwards, except for its counters.
+    // Ends all links to other nodes in an orderly way. Messages that were never sent are reported as Expired
+    // (they will never be delivered), messages that were sent and not acknowledged as InDoubt. The object
+    // must not be used afterwards, except for its counters.
     void Close();
 
     const std::string &Name() const;
-    // The life this node is in to whom it meets now. It rises when a peer remembers a higher one (rules R1
-    // and S6), and when one with links is forgotten.
+    // The incarnation of this node for peers that it meets now. It rises when a peer knows a higher one
+    // (rules R1 and S6), and when a peer with links is forgotten.
     std::uint64_t Incarnation() const;
-    // The life this node is in to that one: the same, or an earlier one that began before others were
+    // The incarnation of this node for that peer: the same, or an earlier one from before other peers were
     // forgotten.
     std::uint64_t IncarnationTo(std::string_view node) const;
     // The alarm of rule S6: incarnations had to be taken so often that another live node must have this name.
@@ -147,7 +149,7 @@ public:
                                                  const LinkReceiverCounters &)> &visit) const;
     // The same for the path to each node that there is a link to.
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
-    // To that node and back, measured anew now and then with nothing waiting; 0: not known, or
+    // The shortest round trip to that node, measured anew now and then with nothing waiting; 0: not known, or
     // nothing was ever sent there.
     LinkTime ShortestRoundTrip(std::string_view node) const;
     // The whole state except the counters as text, one line per peer and link: for logs, and for tests that

@@ -21,24 +21,23 @@ struct LinkOptions
     // Messages sent, in whole or in part, and not acknowledged, at most; 1 to LinkMaxWindow. How many bytes
     // may be under way is decided by the path (PathControl), and common to all links to a node.
     std::size_t Window = 256;
-    // What to do with messages that were sent and not acknowledged when the receiver restarted. False: they
-    // are in doubt. True: they are sent again, marked as redelivered, so that the queue gets each at least
-    // once.
+    // Treatment of messages that were sent and not acknowledged when the receiver restarted. False: they are
+    // in doubt. True: they are sent again, marked as redelivered, so that the queue gets each at least once.
     bool RedeliverInDoubt = false;
 };
 
-// What is common to all links of a node. The defaults suit anything from a wire to a thin radio.
+// Settings common to all links of a node. The defaults suit anything from a wire to a thin radio.
 struct LinkSettings
 {
     // Name of this node, 1 to LinkMaxName bytes.
     std::string Node;
     // A random number, not 0, drawn when the process starts: the name of its monotonic clock.
     std::uint64_t Clock = 0;
-    // Bytes of an encoded frame (LinkFrameCodec) at most, but for names longer than that leaves room for.
-    // What is larger is cut into parts.
+    // Largest encoded frame (LinkFrameCodec) in bytes; only names too long for it may exceed it. A larger
+    // message is cut into parts.
     std::size_t MaxDatagram = 1312;
-    // What a frame costs on the air beside its own bytes: IPv4 20, UDP 8, RTPS 72,
-    // encapsulation and length 8, one more for padding.
+    // Bytes that a frame takes on the air beside its own: IPv4 20, UDP 8, RTPS 72, encapsulation and length
+    // 8, padding 1.
     std::size_t AirOverhead = 109;
     // An acknowledgement waits for more to acknowledge: this long, or five quarters of the round trip, but
     // not longer than LongestAckDelay, unless the sender asks, or AckEvery parts or AckEveryBytes of payload
@@ -47,8 +46,7 @@ struct LinkSettings
     LinkTime LongestAckDelay{std::chrono::milliseconds(250)};
     std::size_t AckEvery = 16;
     std::size_t AckEveryBytes = 128 * 1024;
-    // The probe timer: at least this, its value before the first measurement, and how far backing off takes
-    // it.
+    // The probe timer: its minimum, its value before the first measurement, and the limit of its backoff.
     LinkTime MinResend{std::chrono::milliseconds(5)};
     LinkTime FirstResend{std::chrono::milliseconds(200)};
     LinkTime MaxResend{std::chrono::seconds(1)};
@@ -56,7 +54,7 @@ struct LinkSettings
     LinkTime QueueingTarget{std::chrono::milliseconds(60)};
     // Bytes under way to one node at most, however short the round trip.
     std::size_t LargestWindow = 4 * 1024 * 1024;
-    // The shortest round trip is measured anew when it was not seen for so long.
+    // The shortest round trip is measured anew when it was not seen for this long.
     LinkTime PathMemory{std::chrono::seconds(30)};
     // Bytes of parts that wait for earlier ones: of one link, and of all links of the node.
     std::size_t ReorderBytes = 1024 * 1024;
@@ -69,7 +67,7 @@ struct LinkSettings
     // after twice as long each time, up to HelloPeriod. A peer from which nothing came for SilentAfter
     // although something was asked of it is silent: it gets no messages, and is asked at SilentHelloPeriod
     // while messages wait. Hellos to one peer do not follow each other faster than HelloGap. While nothing
-    // waits nothing is said.
+    // waits, nothing is sent.
     LinkTime HelloPeriod{std::chrono::milliseconds(500)};
     LinkTime SilentAfter{std::chrono::seconds(10)};
     LinkTime SilentHelloPeriod{std::chrono::seconds(2)};

@@ -32,7 +32,7 @@ enum class LinkRefusal : std::uint8_t
     TooManyLinks   // LinkSettings::MaxLinksPerPeer links to this destination are in use already
 };
 
-// What became of a call of LinkNode::Enqueue.
+// Result of LinkNode::Enqueue.
 struct LinkEnqueued
 {
     LinkRefusal Refusal = LinkRefusal::None;

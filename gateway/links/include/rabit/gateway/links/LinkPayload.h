@@ -12,8 +12,8 @@ namespace Rabit
 
 class LinkBytes;
 
-// The bytes of a serialized message: held once however often and to however many nodes it is sent. Immutable
-// once shared. May be null, which is an empty payload.
+// The bytes of a serialized message, held once for all its sendings to all nodes. Immutable once shared. May
+// be null, which is an empty payload.
 using LinkPayload = std::shared_ptr<const LinkBytes>;
 
 // A block of bytes of a fixed length. Unlike a std::vector it is not filled with zeros before it is written.
@@ -41,7 +41,7 @@ public:
     std::span<const std::uint8_t> View() const { return {_memory.get(), _size}; }
 
 protected:
-    // For who uses the memory again when nobody holds the bytes any more.
+    // Gives the memory up, so that a derived class can reuse it when nobody holds the bytes any more.
     Memory GiveUp() { return std::move(_memory); }
 
 private:
