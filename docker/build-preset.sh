@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Configures and builds one CMake preset. Usage: build-preset.sh PRESET [TARGET...]
-# Shows progress on a terminal, else nothing unless it fails.
+# Shows progress on a terminal; otherwise prints only on failure.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=$1

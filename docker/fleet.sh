@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs a fleet in containers, and does to its network what the field does. usage() below and README.md say how.
+# Runs a fleet in containers, and injects faults into its network. See usage() below and README.md.
 set -euo pipefail
 
 usage() {
@@ -63,7 +63,7 @@ find_container() {
     fail "no node '$1' in the fleet '$fleet'; there are: $(containers | awk '{printf "%s ", $2}')" 2
 }
 
-# The authorities of a fleet with keys are in a volume, which no node has.
+# The authorities of a fleet with keys are in a volume that no node mounts.
 authority=$fleet-authority
 folder=/var/lib/rabit
 
@@ -71,7 +71,7 @@ has_keys() {
     docker volume inspect "$authority" >/dev/null 2>&1
 }
 
-# with_authority OPTION... IMAGE ARGUMENT...: a container that has them, and no network
+# with_authority OPTION... IMAGE ARGUMENT...: runs a container with that volume and no network
 with_authority() {
     docker run --rm --network none --label "$label" --cap-drop ALL --security-opt no-new-privileges \
         --volume "$authority:$folder" "$@"
@@ -82,7 +82,8 @@ make_authorities() {
     with_authority --entrypoint rabit "$image" keys init "$folder/keys" --name "$fleet" >/dev/null
 }
 
-# give_keys CONTAINER NODE OPTION... -- PROGRAM: makes them, and copies the node's own into the container
+# give_keys CONTAINER NODE OPTION... -- PROGRAM: makes the keys, and copies the node's own into its
+# container
 give_keys() {
     local container=$1 node=$2 options=() said
     shift 2
@@ -136,8 +137,8 @@ up() {
     done
 }
 
-# filter CONTAINER [NFT OPTION...]: nft in the container's network. The nodes have no right to do that themselves, so a
-# container that has does it and goes.
+# filter CONTAINER [NFT OPTION...]: nft in the container's network. The nodes lack the capability NET_ADMIN,
+# so a short-lived container that has it does this.
 filter() {
     local id=$1
     shift
@@ -145,8 +146,8 @@ filter() {
         --cap-drop ALL --cap-add NET_ADMIN --entrypoint nft "$image" "$@"
 }
 
-# set_loss NODE PERCENT in|out|both. Lost on the way in and on the way out of the interface, where a sender's socket
-# is not told.
+# set_loss NODE PERCENT in|out|both. Packets are dropped at the interface, inbound and outbound, where the
+# sender's socket gets no error.
 set_loss() {
     local id percent=$2 direction=$3 chain hook rule
     id=$(find_container "$1")
@@ -188,13 +189,13 @@ radio_table() {
     echo "bridge rabit_${1:0:12}"
 }
 
-# on_bridge NFT OPTION...: nft in the network that has the engine's bridges
+# on_bridge NFT OPTION...: nft in the network namespace of the engine's bridges
 on_bridge() {
     docker run --rm --interactive --network host --label "$label" --user 0 \
         --cap-drop ALL --cap-add NET_ADMIN --entrypoint nft "$image" "$@"
 }
 
-# set_radio KBIT|off. Counted where a packet comes in to the bridge, before it is copied to those that hear it.
+# set_radio KBIT|off. Packets count where they enter the bridge, before they are copied to their receivers.
 set_radio() {
     local network subnet table
     [ "$1" = off ] || [[ $1 =~ ^[1-9][0-9]{0,6}$ ]] || fail "KBIT is a number from 1 to 9999999, or 'off'" 2
@@ -212,7 +213,7 @@ set_radio() {
     done < <(subnets)
 }
 
-# radio_status: what set_radio has set, in words
+# radio_status: describes the limit of set_radio
 radio_status() {
     local network subnet
     while read -r network subnet; do
@@ -221,7 +222,7 @@ radio_status() {
     done < <(subnets)
 }
 
-# faults CONTAINER: what set_loss has set, in words
+# faults CONTAINER: describes the faults of set_loss
 faults() {
     { filter "$1" list table netdev rabit </dev/null 2>/dev/null || true; } | awk '
         $1 == "chain" { way = $2 == "ingress" ? "in" : "out" }
@@ -243,7 +244,7 @@ status() {
     printf '%-12s %-12s %-16s %s\n' NODE STATE ADDRESS FAULTS
     while read -r id node; do
         status_of "$id" "$node" </dev/null &
-    done < <(containers) | sort -V # which waits for them all
+    done < <(containers) | sort -V # sort waits for all of them
     radio_status
 }
 
@@ -261,7 +262,7 @@ down() {
     [ -z "$ids" ] || docker volume rm $ids >/dev/null
 }
 
-# need COUNT "$@": so many arguments after the command
+# need COUNT "$@": checks the number of arguments after the command
 need() {
     [ $(($# - 2)) -ge "$1" ] || fail "$2 needs more arguments (fleet.sh --help)" 2
 }

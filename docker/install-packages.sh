@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are listed in packages-build.txt and missing here.
-# Usage: install-packages.sh [LIST...]   Quiet and without network when nothing is missing.
+# Installs those Debian packages of packages-build.txt that are missing. Usage: install-packages.sh [LIST...]
+# Quiet and without network when nothing is missing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 lists=("$@")

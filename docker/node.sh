@@ -1,10 +1,12 @@
 #!/bin/sh
 # The entry point of the image. Usage: rabit-node uav|vision|ground [OPTION...], or rabit-node PROGRAM [ARGUMENT...].
-# The three find their name, their configuration, their backend and their keys by the variables in README.md. With
-# MAKE_KEYS, the folder of a fleet's keys, the keys of such a node are made there, and it does not run.
+# uav, vision and ground take name, configuration, backend and keys from the variables in README.md. If
+# MAKE_KEYS is set, to the folder of a fleet's keys, this only makes the node's keys there and does not run
+# the node.
 set -eu
 
-# A replica of a compose service is told its number by nobody but the network's name server: PROJECT-SERVICE-NUMBER.
+# A replica of a compose service can learn its number only from the network's name server:
+# PROJECT-SERVICE-NUMBER.
 name_on_network() {
     getent -s dns hosts "$(hostname -i | cut -d ' ' -f 1)" | awk '{print $2}' | sed -n "s/^[^.]*$1[-_]\([0-9]*\)\..*/\1/p"
 }
@@ -31,7 +33,7 @@ fi
 config=/etc/rabit/nodes/$NODE.yaml
 [ -f "$config" ] || config=/etc/rabit/$role.yaml
 
-# The backends in turn: the ground station and uav1 have the first, uav2 the second, and from the start again.
+# The backends in turn: the ground station and uav1 have the first, uav2 the second, and so on, round robin.
 transport=
 if [ -n "${TRANSPORTS:-}" ]; then
     number=$(expr "${NODE%.vision}" : '.*[^0-9]0*\([0-9][0-9]*\)$' || echo 1)

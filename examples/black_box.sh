@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Flies the demo with recorders on board, ends it as a loss of power would, and looks at what is left. See usage() below
-# and gateway/recording/after_a_flight.md.
+# Flies the demo with recorders on board, ends it like a loss of power, and examines the recordings. See
+# usage() below and gateway/recording/after_a_flight.md.
 set +m -uo pipefail # no job control: processes started with & keep the process id that $! names
 
 usage() {
@@ -89,7 +89,7 @@ mkdir -p -- "$folder" || exit 2
 cd -- "$folder" || exit 2
 
 demo_pid=
-pids=() # of what is played, and where
+pids=() # of the ground station and the player
 on_exit() {
     trap - EXIT
     trap '' INT TERM HUP
@@ -103,7 +103,7 @@ on_exit() {
 trap on_exit EXIT
 trap 'exit 130' INT TERM HUP
 
-# wait_for FILE PATTERN PID: until a line of the file matches, or the process has ended.
+# wait_for FILE PATTERN PID: waits until a line of the file matches, or the process has ended.
 wait_for() {
     until grep -q -- "$2" "$1"; do
         kill -0 "$3" 2>/dev/null || fail "$(tail -n 5 "$1")"
@@ -129,7 +129,7 @@ fly() {
     wait $!
 }
 
-# ids_of PATTERN: the processes of the fleet whose names fit, as the demo names them.
+# ids_of PATTERN: the processes of the fleet whose names, as given by the demo, match.
 ids_of() {
     grep '^DDS domain' demo.log | grep -oE "$1 \([0-9]+\)" | grep -oE '[0-9]+\)' | tr -d ')'
 }
@@ -163,7 +163,7 @@ show "$bin/rabit" merge flight.mcap rec/*_recovered.mcap || fail "the recordings
 echo "\$ rabit info flight.mcap | head -n 7"
 "$bin/rabit" info flight.mcap | head -n 7
 show "$bin/rabit" knew flight.mcap '*' 'uav?/Pose' --plot ages.svg || status=1
-# The last that uav1 has, a tenth of a second before its recording ends: all clocks are this machine's.
+# A tenth of a second before the end of uav1's recording: all clocks are this machine's.
 time_of() { # time_of KEY FILE: in milliseconds
     local time
     time=$("$bin/rabit" info --json "$2" | grep -o "\"$1\":[0-9]*" | head -n 1)

@@ -129,7 +129,7 @@ domain_in_use() {
     grep -q "^ *[0-9]*: [0-9A-F]*:$port " /proc/net/udp /proc/net/udp6 2>/dev/null
 }
 
-# tcp_port_in_use PORT: whether somebody listens on it.
+# tcp_port_in_use PORT: true if a program listens on it.
 tcp_port_in_use() {
     local port
     port=$(printf '%04X' "$1")
@@ -149,7 +149,7 @@ if [ -z "$domain" ]; then
     done
 fi
 
-# A recording is a section more in each configuration.
+# A recording is one more section in each configuration.
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
 if [ -n "$record" ]; then
@@ -181,7 +181,7 @@ transport_of() { # transport_of K: prints the transport of aircraft K; the groun
     *) echo "$transport" ;;
     esac
 }
-# The keys of a node: what its configuration needs is what they allow.
+# The keys of a node allow exactly the needs of its configuration.
 keys=
 if [ -n "$secure" ]; then
     keys=$(mktemp -d)
@@ -200,7 +200,7 @@ uav_arguments() { # uav_arguments K: sets the array `arguments`
     arguments=(--config "$uav_config" --node "uav$1" --domain "$domain"
         --transport "$(transport_of "$1")")
     keys_argument "uav$1"
-    # A recorded track may lie anywhere, over other ground than that of the simulated world.
+    # A recorded track may lie anywhere, over ground that differs from the simulated world's.
     if [ "$1" -le ${#tracks[@]} ]; then
         arguments+=(--track "${tracks[$1 - 1]}")
     else
@@ -288,7 +288,8 @@ on_exit() {
     rm -rf "$logs" ${keys:+"$keys"}
 }
 
-# The first time the ground station ends in its own time, with its summary; the second time everything ends at once.
+# The first time the ground station ends in an orderly way, with its summary; the second time everything
+# ends at once.
 on_interrupt() {
     interrupts=$((interrupts + 1))
     [ -n "$ground_pid" ] || exit 130

@@ -1,10 +1,11 @@
 # rabit_add_messages(<target> <file.idl>... [DEPENDS <target>...] [BASE <directory>] [CASE_SENSITIVE])
 #
 # Makes a library target from IDL files: for each `name.idl` the header `name.idl.h` and its implementation.
-# Linking the target gives its headers and puts all of its types into the program, so that they can be found by name
-# even if no code mentions them. DEPENDS names other targets made by this function whose IDL files these include.
-# BASE: files below this folder are included by their path from there, and so are their headers (`pkg/msg/Name.idl.h`).
-# CASE_SENSITIVE: names may differ in case alone, which IDL forbids and ROS 2 allows.
+# Linking the target gives its headers and puts all of its types into the program, so that they can be found
+# by name even if no code mentions them. DEPENDS names other targets made by this function whose IDL files
+# these include. BASE: files below this folder are included by their path from there, and so are their
+# headers (`pkg/msg/Name.idl.h`). CASE_SENSITIVE: names may differ only in case, which IDL forbids and ROS 2
+# allows.
 #
 # Works in Rabit's own build and from an installed package; needs idlc (Debian: cyclonedds-tools).
 include_guard(GLOBAL)
@@ -65,8 +66,8 @@ function(rabit_add_messages target)
     list(APPEND sources ${header} ${source})
   endforeach()
 
-  # The objects are linked directly, not from an archive, which would leave out those that nothing refers to and
-  # with them their registration.
+  # The objects are linked directly. From an archive the linker would leave out unreferenced objects, and
+  # their types would not be registered.
   add_library(${target}_objects OBJECT ${sources})
   target_include_directories(${target}_objects PUBLIC $<BUILD_INTERFACE:${directory}>)
   target_compile_features(${target}_objects PRIVATE cxx_std_20)

@@ -1,9 +1,10 @@
 # rabit_add_ros_messages(<target> PACKAGES <directory>... [MESSAGES <package/Name>...] [DEPENDS <target>...])
 #
-# Makes a library target, as rabit_add_messages, from message packages of ROS 2: folders with `msg/*.msg`, or with the
-# `msg/*.idl` of rosidl where there are no `.msg`, such as a clone of px4_msgs or /opt/ros/humble/share/std_msgs. A package
-# is called as its package.xml says, or as its folder. What a package uses of others must be among the PACKAGES, or in a
-# target that this function made before and DEPENDS names. MESSAGES: only these, and what they are made of.
+# Makes a library target, like rabit_add_messages, from message packages of ROS 2: folders with `msg/*.msg`,
+# or with the `msg/*.idl` of rosidl where there are no `.msg`, such as a clone of px4_msgs or
+# /opt/ros/humble/share/std_msgs. The name of a package is that in its package.xml, or its folder's.
+# Packages that it uses must be among the PACKAGES, or in a target of this function that DEPENDS names.
+# MESSAGES: only these messages, and the types that they use.
 #
 # The header of px4_msgs/VehicleOdometry is <px4_msgs/msg/VehicleOdometry.idl.h>, its class px4_msgs::msg::VehicleOdometry.
 include_guard(GLOBAL)
@@ -26,7 +27,7 @@ function(rabit_add_ros_messages target)
     if(NOT msg_files AND NOT idl_files)
       message(FATAL_ERROR "rabit_add_ros_messages(${target}): no msg/*.msg and no msg/*.idl in ${directory}")
     endif()
-    foreach(file IN LISTS idl_files msg_files)  # the later one, which says more, holds
+    foreach(file IN LISTS idl_files msg_files)  # a .msg file, which says more, replaces the .idl file
       cmake_path(GET file STEM name)
       set(file_${package}/${name} ${file})
       list(APPEND messages ${package}/${name})
@@ -46,7 +47,7 @@ function(rabit_add_ros_messages target)
         if(message IN_LIST ARG_MESSAGES)
           message(FATAL_ERROR "rabit_add_ros_messages(${target}): no message `${message}` in the PACKAGES")
         endif()
-        continue()  # of a target among the DEPENDS, or the compiler says what lacks it
+        continue()  # made by a target in DEPENDS; if it is missing, the compiler reports it
       endif()
       list(APPEND messages ${message})
       _rabit_ros_parts(${file_${message}} ${message} parts)
@@ -67,7 +68,8 @@ function(rabit_add_ros_messages target)
       VERBATIM)
     list(APPEND files ${file})
   endforeach()
-  # Each may include any other: all are there before the first is compiled, which then says what it needs.
+  # Any file may include any other, so all are made before the first is compiled. The compiler then writes
+  # the real dependencies.
   add_custom_target(${target}_ros_idl DEPENDS ${files})
   rabit_add_messages(${target} CASE_SENSITIVE BASE ${directory} ${files} DEPENDS ${ARG_DEPENDS})
   add_dependencies(${target}_objects ${target}_ros_idl)
@@ -85,7 +87,7 @@ function(_rabit_ros_package_name directory result)
   set(${result} ${name} PARENT_SCOPE)
 endfunction()
 
-# The messages, as package/Name, that the file of a message names as types.
+# Sets `result` to the messages, as package/Name, that the file uses as types.
 function(_rabit_ros_parts file message result)
   cmake_path(GET message PARENT_PATH package)
   set(parts)

@@ -250,8 +250,8 @@ double ByteArrayReader::readDouble()
     return ReadValue<double>();
 }
 
-// The length of the string at the position, whose bytes follow after 2 bytes of length; -1 if it is not all
-// there.
+// The length of the string at the position, read from its 2 bytes of length; -1 if its bytes do not all lie
+// within the buffer.
 int ByteArrayReader::StringLengthAtIdx() const
 {
     ByteArrayReader ahead(ByteArray, ByteArraySize, _endianOrder);

@@ -5,7 +5,7 @@
 namespace Rabit
 {
 
-// Says what the exception that is being handled is. To be called in a catch clause only.
+// Describes the exception that is being handled. Call it only in a catch clause.
 std::string CurrentExceptionText();
 
 }  // namespace Rabit

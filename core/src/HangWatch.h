@@ -8,8 +8,8 @@
 namespace Rabit
 {
 
-// Says in the log which managers do not end though they were told to shut down: once when the patience is
-// over, and again each time that twice as long has passed. For the one thread that waits for them.
+// Logs the managers that were told to shut down and have not ended: once after `patience`, and again each
+// time the wait has doubled. For the one thread that waits for them.
 class HangWatch
 {
 public:
@@ -17,8 +17,8 @@ public:
 
     HangWatch(std::size_t managers, std::chrono::nanoseconds patience);
 
-    // Called for each manager that has not ended, now and then. `step` is where it is in its life, null if it
-    // is between two steps.
+    // Called now and then for each manager that has not ended. `step` names the step that it is in; null
+    // between two steps.
     void Look(std::size_t manager, const std::string &name, bool toldToShutDown, const char *step,
               Clock::time_point now);
 

@@ -27,7 +27,7 @@ constexpr std::string_view Cut = " ... (cut)";
 class Line
 {
 public:
-    // Cuts the text where it does not fit.
+    // Adds the text, cut where it does not fit.
     void Add(std::string_view text)
     {
         const std::size_t room = _bytes.size() - 1 - _size;
@@ -55,7 +55,7 @@ private:
     std::size_t _size = 0;
 };
 
-// Keeps SIGPIPE of this thread's writes from the program, which may not expect the signal.
+// Hides the SIGPIPE of this thread's writes from the program, which may not expect the signal.
 class WithoutSigpipe
 {
 public:
@@ -97,8 +97,8 @@ bool IsFile(int descriptor)
     return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-// A terminal takes a part of a line and then waits, whatever poll(2) has said. Only a terminal can be opened
-// once more: a pipe or socket has no name, and a file would be written from its beginning.
+// A terminal can block in the middle of a line, even if poll(2) reported room. Only a terminal can be
+// opened again: a pipe or socket has no name, and a file would be written from its beginning.
 class OwnTerminal
 {
 public:

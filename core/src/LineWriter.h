@@ -12,11 +12,11 @@ namespace Rabit
 // that does not fit is dropped and counted, and the count precedes the next line that is written.
 // Thread-safe.
 //
-// Each line is one write(2) of at most PIPE_BUF bytes, so lines of several threads and processes do not mix.
-// A longer line is cut, and says so at its end.
+// Each line is one write(2) of at most PIPE_BUF bytes, so lines of several threads and processes do not
+// mix. A longer line is cut, and marked at its end.
 //
-// Neither a full pipe or socket, a stopped terminal, a full disk nor a closed descriptor blocks the caller or
-// raises SIGPIPE. O_NONBLOCK is not set: it would hold for all processes that share the descriptor. Three
+// A full pipe or socket, a stopped terminal, a full disk and a closed descriptor never block the caller or
+// raise SIGPIPE. O_NONBLOCK is not set: it would apply to all processes that share the descriptor. Three
 // limits remain:
 // - A file on a network disk that hangs blocks the caller.
 // - A kernel without RWF_NOWAIT for pipes (before 6.4) blocks if another process fills the pipe between

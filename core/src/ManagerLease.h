@@ -13,37 +13,36 @@ namespace Rabit
 {
 class RabitWakeup;
 
-// What one manager registered in its workspace: ends with the manager, goes when its reactor leaves, and
-// comes back when that runs again. Thread-safe.
+// The registrations of one manager in its workspace. They end with the manager, go when its reactor leaves,
+// and come back when that reactor runs again. Thread-safe.
 class ManagerLease
 {
 public:
     // Logs a warning if the workspace has a manager of that name already.
     ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup, std::string managerName);
-    // The names of a manager that never ran go with it; of one that ran its messages stay until a reactor
-    // leaves.
+    // If the manager never ran, its names go with it; otherwise its messages stay until a reactor leaves.
     ~ManagerLease();
     ManagerLease(const ManagerLease &) = delete;
     ManagerLease &operator=(const ManagerLease &) = delete;
 
     bool AddMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg);
     void AddQueue(const std::string &name, const std::shared_ptr<RabitQueueHandle> &handle);
-    // Has these managers, all of the one workspace, leave it together.
+    // Removes these managers, all of one workspace, together.
     static void Leave(RabitWorkspace &workspace, const std::vector<ManagerLease *> &leases);
-    // Before each run: registers everything again if it left. A message whose name was taken meanwhile is
-    // attached to what is there now, and its handlers with it. Warns as the constructor does.
+    // Before each run: registers everything again if it left. If a name has another global copy by now, the
+    // message and its handlers are attached to that one. Warns like the constructor.
     void Return();
     // The global copy of a message that the manager registered under that name, also while it has left; null
     // if there is none.
     std::shared_ptr<PublishSubscribeMessage> FindGlobal(const std::string &name) const;
-    // What the manager's queues are like now; the first is the one that was registered first.
+    // Fills in the current state of the manager's queues, in the order of registration.
     void ReadQueues(std::vector<QueueStatus_t> &queues) const;
     // Disconnects the handlers that were registered through the manager's messages: they usually call the
     // manager.
     void EndHandlers();
-    // Notes that the manager was given to a reactor.
+    // Notes that the manager was added to a reactor.
     void AddManagerName();
-    // Has all managers that are present in the workspace shut down.
+    // Shuts down all managers that are present in the workspace.
     void RequestShutdownOfAllManagers();
 
 private:

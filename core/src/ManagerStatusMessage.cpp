@@ -21,7 +21,7 @@ const char *NameOf(ManagerStatusMessage::RunningState_e state)
     return "unknown";
 }
 
-// The statistics in the order in which they are on the wire.
+// Visits the statistics in their order in the byte format.
 template <typename Stats, typename IntField, typename DoubleField>
 bool ForEachStat(Stats &stats, IntField intField, DoubleField doubleField)
 {

@@ -44,7 +44,7 @@ PublishSubscribeMessage::PublishSubscribeMessage(std::unique_ptr<RabitMessage> s
       _lastReading{-std::numeric_limits<double>::infinity(), std::chrono::nanoseconds::min()},
       _lastStamp(-std::numeric_limits<double>::infinity())
 {
-    // The copy must not hold on to another global copy, nor to itself.
+    // The global copy must hold neither another global copy nor itself.
     _message->_globalPublishSubscribeMessageRef.reset();
 }
 
@@ -133,7 +133,7 @@ void PublishSubscribeMessage::PostMessage(RabitMessage *msg, const PostTime &tim
     Post(*msg, time, false);
 }
 
-// By a manager that is traced. Its handlers are not.
+// A post by a traced manager. The handlers of the post are not traced.
 void PublishSubscribeMessage::PostTraced(RabitMessage &msg, const PostTime *time)
 {
     const RabitManagerTrace::Pause trace;
@@ -165,7 +165,7 @@ void PublishSubscribeMessage::TellFetched(const RabitMessage &msg) const
 
 inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
 {
-    // Overrides of one type that return false all the same are taken to have copied.
+    // If the type is the same, the copy counts as done even if the override returns false.
     if (!_message->CopyMessage(&msg) && typeid(msg) != _type)
     {
         throw std::invalid_argument("a message was posted under a name that holds another type");
@@ -177,15 +177,16 @@ inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
     }
 }
 
-// Makes the time stamp of a post later than that of the last one, unless the wall clock was set back. Asks
-// the clock again, with the lock given back, if the stamp would be too far ahead of it.
+// Makes the time stamp of a post later than that of the last one, unless the wall clock was set back. If
+// the stamp would be too far ahead of the clock, releases the lock and reads the clock again.
 void PublishSubscribeMessage::PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock)
 {
     const PostTime *latest = &time;
     double stamp = time.GpsTimeSeconds;
     while (time.GpsTimeSeconds <= _lastStamp)
     {
-        // A post of another thread may have overtaken this one, whose time is then old, not set back.
+        // A post of another thread may have overtaken this one: then this time is old, but the clock was
+        // not set back.
         const bool overtaken = time.Monotonic < _lastReading.Monotonic;
         if (!overtaken && time.GpsTimeSeconds < _lastReading.GpsTimeSeconds - SystemTimeClock::LeastStepBack)
         {
@@ -262,7 +263,7 @@ bool PublishSubscribeMessage::FetchIfChanged(RabitMessage *msg)
     std::unique_lock<std::mutex> lock(*_mutex);
     const bool stampsEqual = msg->_timeStamp == _message->_timeStamp;
     const bool samePost = msg->_seenSource == _identity && msg->_seenSequence == Sequence();
-    // A copy that was never registered, with nothing posted yet, differs by its time stamp alone.
+    // If nothing was posted yet, a copy that was never registered differs only by its time stamp.
     const bool neverPosted = Sequence() == 0 && msg->_seenSource == 0;
     if (stampsEqual && (samePost || neverPosted))
     {
@@ -299,8 +300,8 @@ bool PublishSubscribeMessage::ForceFetch(RabitMessage *msg)
     return copied;
 }
 
-// For the message that the global copy was just cloned from. If somebody posted in between, it is not
-// current.
+// Attaches the message that the global copy was just cloned from. It is current unless there was a post in
+// between.
 void PublishSubscribeMessage::AttachAsCurrent(RabitMessage &msg)
 {
     const std::lock_guard<std::mutex> lock(*_mutex);

@@ -15,21 +15,21 @@
 namespace Rabit
 {
 
-// What the queues of a workspace refused because they were full, and what was added to names that are no
-// queues. The first of each name is logged at once; those that follow are logged together, at most once a
-// minute for each name. Thread-safe; logs with no lock held.
+// Counts and logs the messages that queues of a workspace refused because they were full, and those added
+// to names that are no queues. The first refusal of each name is logged at once, later ones together, at
+// most once a minute for each name. Thread-safe; logs with no lock held.
 class QueueRefusals
 {
 public:
     static constexpr std::chrono::nanoseconds LogPeriod = std::chrono::minutes(1);
-    // Programs make names as they run: those beyond this number share one entry.
+    // Programs make names at run time, so names beyond this number share one entry.
     static constexpr std::size_t MaxNames = 200;
 
     explicit QueueRefusals(std::shared_ptr<const RabitClock> clock) : _clock(std::move(clock)) {}
 
     void NoteFull(const std::string &name, int capacity);
     void NoteUnknown(const std::string &name);
-    // Logs what has waited for its minute to be over. Cheap if nothing waits.
+    // Logs the refusals that waited for their minute to end. Cheap if nothing waits.
     void Report();
     // Sorted by name.
     std::vector<UnknownQueueInfo> Unknown() const;
@@ -43,11 +43,12 @@ private:
     };
     using Entries = std::map<std::string, Entry>;
 
-    // The entry of that name; its name in `name`.
+    // The entry for that name. Sets `name` to the name of the shared entry if that is used.
     Entry &EntryOf(Entries &entries, std::string &name);
-    // Counts one, and returns how many are to be logged now.
+    // Counts one refusal, and returns how many to log now.
     std::uint64_t Count(Entry &entry);
-    // One was refused. firstLine(): for the first of a name; line(name, count): for those since the last line.
+    // Notes a refusal. firstLine() gives the text for the first of a name; line(name, count) for those
+    // since the last line.
     template <typename FirstLine, typename Line>
     void Note(Entries &entries, const std::string &name, FirstLine firstLine, Line line);
     template <typename Line>

@@ -11,7 +11,7 @@ namespace Rabit
 namespace
 {
 
-// Clocks are read some twenty times for a message, and traces are rare: out of the way of the others.
+// A message costs some twenty clock readings, and traces are rare: keep this code out of the common path.
 [[gnu::noinline, gnu::cold]] std::chrono::nanoseconds SeenByTrace(std::chrono::nanoseconds monotonic)
 {
     const RabitManagerTrace::Pause trace;
@@ -26,7 +26,7 @@ namespace
     return gpsTimeSeconds;
 }
 
-// What a manager reads, its trace sees.
+// Passes a clock reading through the trace of the current manager, if there is one.
 template <typename Time>
 Time Seen(Time time)
 {

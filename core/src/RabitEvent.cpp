@@ -20,8 +20,8 @@ using SlotList = std::vector<std::shared_ptr<Detail::EventSlot>>;
 namespace Detail
 {
 
-// Takes the slots that meet the condition out of the list and returns them. What their handlers own is
-// destroyed with what is returned, after the lock is given back.
+// Takes the slots that meet the condition out of the list and returns them. The returned list keeps the
+// handlers alive until the lock is released.
 template <typename Condition>
 SlotList TakeSlots(EventState &event, Condition condition)
 {
@@ -174,8 +174,8 @@ void RabitEvent::DisownAllOf(const void *owner)
 
 void RabitEvent::Fire() const
 {
-    // A read-modify-write, so that either this sees a handler that was connected, or whoever connects it sees
-    // what happened before this.
+    // A read-modify-write: either this sees a newly connected handler, or the thread that connects it sees
+    // everything before this call.
     if (_state->Count.fetch_add(0, std::memory_order_acq_rel) == 0)
     {
         return;
@@ -190,7 +190,7 @@ void RabitEvent::Fire() const
 
 void RabitEvent::Handlers::CallAll() const
 {
-    const RabitManagerTrace::Pause pause;  // what they do is not the manager's
+    const RabitManagerTrace::Pause pause;  // the manager's trace does not see handlers
     const RabitHandlerThread::Scope *const scope = RabitHandlerThread::Scope::Current();
     for (const auto &slot : *_slots)
     {

@@ -40,7 +40,7 @@ bool RabitHandlerThread::Add(const std::shared_ptr<Detail::EventSlot> &handler, 
         {
             return false;
         }
-        // A read-modify-write, so that the call that waits sees what happened before this.
+        // A read-modify-write, so that the waiting call sees everything that happened before this event.
         if (handler->Waits.exchange(true, std::memory_order_acq_rel))
         {
             return true;
@@ -90,7 +90,7 @@ void RabitHandlerThread::Run()
 
 void RabitHandlerThread::Call(const Waiting &waiting)
 {
-    // Before the call: what happens from now on asks for another one.
+    // Reset before the call: later events need another call.
     waiting.Handler->Waits.exchange(false, std::memory_order_acq_rel);
     if (!waiting.Handler->Connected.load(std::memory_order_acquire))
     {

@@ -46,7 +46,7 @@ const char *PrefixOf(RabitLogLevel level)
     }
 }
 
-// Those that still listen.
+// The listeners that still exist.
 std::vector<std::shared_ptr<const RabitLog::Sink>> ListenersNow()
 {
     LogState &state = State();

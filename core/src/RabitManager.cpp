@@ -10,7 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
-// Names, messages, queues and wake-ups of a manager. Its life is in RabitManagerRun.cpp.
+// Names, messages, queues and wake-ups of a manager. RabitManagerRun.cpp has its loop.
 namespace Rabit
 {
 namespace
@@ -18,7 +18,7 @@ namespace
 
 constexpr double LongestDelay_Sec = 1e9;
 
-// Seconds of a caller's; more than 0 does not become 0.
+// Converts seconds given by a caller; a positive value never becomes 0.
 std::chrono::nanoseconds ToDuration(double seconds)
 {
     const std::chrono::duration<double> clamped(std::clamp(seconds, 0.0, LongestDelay_Sec));
@@ -80,7 +80,7 @@ RabitManager::~RabitManager()
     {
         return;
     }
-    // The derived class is gone already: this is too late to be safe, and only better than std::terminate.
+    // The derived class is already destroyed, so this is not safe, but better than std::terminate.
     RabitLog::Write(RabitLogLevel::Error, "manager \"" + _name + "\" was destroyed without being joined");
     _wakeup->RequestShutdown();
     if (_thread.get_id() == std::this_thread::get_id())
@@ -247,7 +247,7 @@ void RabitManager::AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg, co
     }
 }
 
-// After the names came back a message may be attached to another global copy than before.
+// After the names were registered again, a message may be attached to another global copy.
 void RabitManager::RenewMessageWakeups()
 {
     const std::lock_guard<std::mutex> lock(_wakeupsMutex);
@@ -263,7 +263,7 @@ void RabitManager::RenewMessageWakeups()
     }
 }
 
-// A queue that is gone may leave its address to another one.
+// A new queue may get the address of a destroyed one.
 void RabitManager::WakeUpManagerOnOutcome(const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     if (!receipt)

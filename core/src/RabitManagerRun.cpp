@@ -11,16 +11,17 @@
 
 #include <pthread.h>
 
-// The life of a manager: its thread, or a stepped reactor, goes through the steps below.
+// The loop of a manager: its thread, or a stepped reactor, calls the steps below.
 namespace Rabit
 {
 namespace
 {
 
-// The least sleep after a unit of work that threw, and that of a manager that otherwise does not sleep.
+// The least sleep after a unit of work that threw; the second value is for a manager that otherwise does
+// not sleep.
 constexpr std::chrono::milliseconds PauseAfterFailure(10);
 constexpr std::chrono::milliseconds PauseAfterFailureWithoutDelay(100);
-// A manager that fails again and again is logged at most this often.
+// The least time between two log lines about a manager that keeps failing.
 constexpr std::chrono::seconds FailureLogPeriod(1);
 
 double InSeconds(std::chrono::nanoseconds duration)
@@ -159,13 +160,13 @@ bool RabitManager::StartupStep()
     }
     _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Running;
     PostStatus();
-    _wakeup->ForgetSignals();  // the first unit of work sees what they were about
+    _wakeup->ForgetSignals();  // the first unit of work sees all that they announced
     return true;
 }
 
 bool RabitManager::CycleStep()
 {
-    // The way from a wake-up to the unit of work is kept short: no more is read here than must be.
+    // The path from a wake-up to the unit of work is kept short, so this reads as little as possible.
     if (_wakeup->TakeControlChange())
     {
         FetchControlMessages();
@@ -199,7 +200,7 @@ bool RabitManager::CycleStep()
     return true;
 }
 
-// The sleep before this pass, and the pass.
+// Adds this pass, and the sleep before it, to the statistics.
 void RabitManager::CountPass(std::chrono::nanoseconds start, std::chrono::nanoseconds end)
 {
     if (std::exchange(_slept, false))
@@ -269,7 +270,7 @@ RabitManager::ControlGlobals() const
             _mgrControlThisMgr_sptr->GetGlobalPublishSubscribeMessageRef()};
 }
 
-// What was posted so far is not for this manager: it was not there, or not running, at that time.
+// Ignores the control messages posted so far: this manager did not exist, or did not run, at that time.
 void RabitManager::TakeControlMessagesAsRead()
 {
     for (const auto &control : {_mgrControlAllMgrs_sptr, _mgrControlThisMgr_sptr})
@@ -377,7 +378,7 @@ void RabitManager::PostStatus()
         _lease->ReadQueues(_mgrStatus_sptr->Queues);
         _mgrStatus_sptr->PostMessage();
     }
-    catch (...)  // out of memory, at most: the manager goes on
+    catch (...)  // only out of memory can get here: the manager goes on
     {
         RabitLog::Write(RabitLogLevel::Error,
                         "manager \"" + _name + "\" cannot post its status: " + CurrentExceptionText());

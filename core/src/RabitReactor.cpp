@@ -34,7 +34,7 @@ struct RabitReactor::State
     void Leave();
 
     RabitWorkspace &Workspace;
-    // Guards the list of managers, which another thread may walk over to shut them down.
+    // Guards the list of managers, which another thread may iterate over to shut them down.
     std::mutex Mutex;
     std::vector<std::unique_ptr<RabitManager>> Managers;
     std::chrono::nanoseconds Patience = std::chrono::seconds(5);
@@ -55,7 +55,7 @@ RabitReactor::~RabitReactor()
     }
     _state->ShutdownAll();
     _state->JoinAll();
-    // Handlers that call a manager end before the manager begins to.
+    // Handlers that call a manager are disconnected before any manager is destroyed.
     for (const auto &manager : _state->Managers)
     {
         manager->EndHandlers();
@@ -111,7 +111,7 @@ void RabitReactor::AddManager(std::unique_ptr<RabitManager> manager)
 
 void RabitReactor::State::StartAll(ShutdownSignals &signals)
 {
-    // All names are back before the first manager runs.
+    // All names are registered again before the first manager runs.
     for (const auto &manager : Managers)
     {
         manager->PrepareRun();

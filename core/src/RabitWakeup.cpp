@@ -18,7 +18,7 @@ void Count(int &counter)
 
 }  // namespace
 
-// Notifies after the lock is given back, so that the woken thread does not run into it.
+// Notifies after the lock is released, so that the woken thread does not block on it.
 void RabitWakeup::NotifyIfWaiting(std::unique_lock<std::mutex> &lock)
 {
     const bool waiting = _waiting;
@@ -40,7 +40,8 @@ void RabitWakeup::Signal()
     }
 }
 
-// Earlier signals may not have woken who sleeps until a turn.
+// Notifies even if already signalled: earlier signals do not wake a manager that sleeps until its next
+// turn.
 void RabitWakeup::SignalControlChange()
 {
     _controlChanged.store(true, std::memory_order_release);

@@ -179,7 +179,7 @@ MessageRegistration RabitWorkspace::RegisterMessageFor(const std::string &name,
     MessageRegistration registration = _registry->AddMessage(name, msg, owner, std::move(global));
     if (comesBack && msg->_globalPublishSubscribeMessageRef == registration.Global)
     {
-        return registration;  // nothing changed for the message: it knows what it has seen
+        return registration;  // already attached here: it keeps what it has seen
     }
     switch (registration.Result)
     {

@@ -178,7 +178,7 @@ void ShutdownSignals::WaitFor(std::chrono::nanoseconds longest)
     std::timespec deadline{};
     deadline.tv_sec = static_cast<std::time_t>(seconds.count());
     deadline.tv_nsec = static_cast<long>((until - seconds).count());
-    // Interrupted by another signal: returns for no reason, as it may.
+    // Another signal may interrupt this: then WaitFor returns spuriously, as documented.
     sem_clockwait(&_place->Semaphore, CLOCK_MONOTONIC, &deadline);
 }
 

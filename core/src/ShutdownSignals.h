@@ -8,27 +8,28 @@
 namespace Rabit
 {
 
-// Where a running reactor waits for SIGINT and SIGTERM, and for its managers. While at least one listener
-// handles signals, a handler is installed for each of the two signals whose disposition is the default; the
-// last one to go restores it.
+// A running reactor waits here for SIGINT and SIGTERM, and for its managers. While at least one listener
+// handles signals, a handler is installed for each of the two signals whose disposition is the default. The
+// last listener restores the default.
 //
 // The first signal wakes all listeners and restores the default disposition, so that a second one ends the
 // process at once.
 class ShutdownSignals
 {
 public:
-    // Without `handle` no signal wakes this listener. The same, and logged, if too many (64) listen already.
+    // Without `handle`, no signal wakes this listener. The same holds, and is logged, if 64 others listen
+    // already.
     explicit ShutdownSignals(bool handle);
     ~ShutdownSignals();
     ShutdownSignals(const ShutdownSignals &) = delete;
     ShutdownSignals &operator=(const ShutdownSignals &) = delete;
 
-    // Blocks until a signal came or Wake was called, once for each, but no longer than that; may also return
-    // for no reason.
+    // Blocks until a signal arrives or Wake is called, at most for `longest`; each ends one wait. May also
+    // return spuriously.
     void WaitFor(std::chrono::nanoseconds longest);
     // From any thread.
     void Wake();
-    // Whether a signal came since construction.
+    // True if a signal arrived since construction.
     bool SignalCame() const;
 
     // A place that the signal handler looks at. Places are static: the handler may run at any time.

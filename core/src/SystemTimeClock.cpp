@@ -30,7 +30,7 @@ std::int64_t WallNow()
     return duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
 }
 
-// Whole Unix seconds of a UTC time in seconds since 1980; 0 if no calendar date goes with it.
+// Whole Unix seconds of a UTC time in seconds since 1980; 0 if it has no calendar date.
 std::time_t ToUnixSeconds(double utcSince1980)
 {
     constexpr double yearZero = -62167219200.0;
@@ -69,7 +69,7 @@ SystemTimeClock *SystemTimeClock::GetSystemTimeClock()
 SystemTimeClock::SystemTimeClock()
 {
     MeasureWallOffset();
-    _stepNotReported.store(0, std::memory_order_relaxed);  // from nothing to what the computer says
+    _stepNotReported.store(0, std::memory_order_relaxed);  // the first measurement is not a step
 }
 
 void SystemTimeClock::SetGpsTimeOffset()
@@ -77,9 +77,9 @@ void SystemTimeClock::SetGpsTimeOffset()
     MeasureWallOffset();
 }
 
-// Reads the wall clock between two readings of the uptime. A thread that is put aside in between would
-// give a bad measurement, so the closest of a few is taken, and a difference that is within the uncertainty
-// is not taken over, so that time does not jitter.
+// Reads the wall clock between two readings of the uptime. If the thread is preempted in between, the
+// measurement is bad, so the tightest of a few attempts counts. A difference within the uncertainty is
+// ignored, so that time does not jitter.
 void SystemTimeClock::MeasureWallOffset()
 {
     constexpr int attempts = 5;
@@ -104,7 +104,7 @@ void SystemTimeClock::MeasureWallOffset()
         }
     }
     std::int64_t former = _wallOffset.load(std::memory_order_relaxed);
-    // Of several threads that find a step at once, one counts it.
+    // If several threads find a step at once, only one counts it.
     if (std::llabs(bestOffset - former) > bestWidth &&
         _wallOffset.compare_exchange_strong(former, bestOffset, std::memory_order_relaxed) &&
         std::llabs(bestOffset - former) >= LeastStepReported)
@@ -126,7 +126,7 @@ void SystemTimeClock::WriteSteps()
     }
 }
 
-// For a reading that is not later than what the thread was given last.
+// Handles a reading that is not later than the thread's last time stamp.
 PostTime SystemTimeClock::ReadAfter(PostTime time)
 {
     LastOfThread &last = _last;
@@ -213,7 +213,8 @@ double SystemTimeClock::ConvertTimePointToGpsTimeInSecondsMethod2Resolution1Seco
 system_clock::time_point SystemTimeClock::GpsTimeSecondsToSystemClockTimepoint(double gpsTimeSeconds)
 {
     const double utc = gpsTimeSeconds - GetLeapSecondOffset();
-    // Whole seconds apart, so that adding the epochs' distance does not cost precision.
+    // Whole seconds are converted separately, so that adding the difference of the epochs keeps the
+    // precision.
     const double whole = std::floor(utc);
     constexpr double mostSeconds = 8e9;  // keeps the nanoseconds within 64 bits
     const std::int64_t wholeSeconds =

@@ -12,7 +12,7 @@ namespace Rabit
 namespace
 {
 
-// While it lives a receipt, if there is one, is not known.
+// Holds a receipt, which may be null, for as long as it lives.
 class ReceiptHold
 {
 public:
@@ -39,7 +39,7 @@ private:
 
 }  // namespace
 
-// The forwarders that there are, counted as in use for as long as it lives.
+// A snapshot of the forwarders, which count as in use while it lives.
 class WorkspaceForwarders::Calls
 {
 public:
@@ -91,7 +91,7 @@ bool WorkspaceForwarders::Add(const std::string &name, std::shared_ptr<QueueForw
 
 void WorkspaceForwarders::Replace(const std::string &name, std::shared_ptr<QueueForwarder> forwarder)
 {
-    // Both outlive the lock: the last of a forwarder goes outside of it.
+    // Both outlive the lock, so that a forwarder is destroyed outside of it.
     std::shared_ptr<Slot> former;
     std::shared_ptr<const Slots> before;
     auto slots = std::make_shared<Slots>();
@@ -141,7 +141,7 @@ std::optional<bool> WorkspaceForwarders::Forward(const std::string &name,
         return std::nullopt;
     }
     const Calls calls(*this);
-    if (calls.All().size() == 1)  // as nearly always: nothing to choose, and nothing to allocate
+    if (calls.All().size() == 1)  // the usual case: no choice, and no allocation
     {
         QueueForwarder &only = *calls.All().front()->Forwarder;
         return only.Handles(name) ? std::optional<bool>(only.Forward(name, message, receipt)) : std::nullopt;
@@ -191,7 +191,7 @@ bool WorkspaceForwarders::ForwardAmong(const std::vector<QueueForwarder *> &forw
             forwarder->TakenElsewhere(name);
         }
     }
-    if (taking.size() == 1)  // it knows all that the name stands for
+    if (taking.size() == 1)  // it knows all known queues of the name
     {
         return (*taking.begin())->Forward(name, message, receipt);
     }

@@ -12,17 +12,18 @@
 namespace Rabit
 {
 
-// The queue forwarders of a workspace, and which of them gets a message. Thread-safe; calls no forwarder
-// while it holds its lock.
+// The queue forwarders of a workspace. Chooses which of them gets a message. Thread-safe; calls no
+// forwarder while it holds its lock.
 class WorkspaceForwarders
 {
 public:
-    // False: there is one of that name.
+    // Returns false if there is a forwarder of that name.
     bool Add(const std::string &name, std::shared_ptr<QueueForwarder> forwarder);
-    // Null: none. Returns when no call of the former one is in progress.
+    // Replaces the forwarder of that name; null removes it. Returns when no call of the former one is in
+    // progress.
     void Replace(const std::string &name, std::shared_ptr<QueueForwarder> forwarder);
     std::vector<std::string> Names() const;
-    // Nothing: there is no forwarder for this name.
+    // Returns nothing if no forwarder handles this name.
     std::optional<bool> Forward(const std::string &name, const std::shared_ptr<RabitMessage> &message,
                                 const std::shared_ptr<RabitQueueReceipt> &receipt);
 
@@ -42,7 +43,7 @@ private:
 
     mutable std::mutex _mutex;
     std::condition_variable _idle;
-    // Never changed in place: a call keeps those that there were when it began.
+    // Replaced as a whole, never changed: a call keeps the list with which it began.
     std::shared_ptr<const Slots> _slots = std::make_shared<const Slots>();
 };
 

@@ -26,7 +26,7 @@ bool WorkspaceRegistry::ManagerIsPresent(std::uint64_t owner, const std::string 
     return alone;
 }
 
-// Takes the owners off all entries, and out those entries that have no owner left through that.
+// Removes the owners from all entries, and then the entries that thereby lost their last owner.
 template <typename Map, typename List>
 void WorkspaceRegistry::RemoveOwned(Map &map, const std::vector<std::uint64_t> &owners, List &removed)
 {
@@ -52,7 +52,7 @@ void WorkspaceRegistry::RemoveOwned(Map &map, const std::vector<std::uint64_t> &
 
 void WorkspaceRegistry::ManagerIsGone(std::uint64_t owner, bool ran)
 {
-    Removed removed;  // declared before the lock: what it holds is destroyed after the lock is given back
+    Removed removed;  // declared before the lock: its contents are destroyed after the lock is released
     const std::lock_guard<std::mutex> lock(_mutex);
     _present.erase(owner);
     RemoveOwned(_queues, {owner}, removed.Queues);
@@ -163,7 +163,7 @@ MessageRegistration WorkspaceRegistry::AddMessage(const std::string &name,
         {
             return {MessageRegistrationResult::Created, std::move(global)};
         }
-        found = inserted.first;  // somebody was quicker
+        found = inserted.first;  // another thread was quicker
     }
     if (found->second.Global->MsgTypeIndex() != msg->GetTypeIndex())
     {
@@ -175,7 +175,7 @@ MessageRegistration WorkspaceRegistry::AddMessage(const std::string &name,
 
 void WorkspaceRegistry::ReleaseMessage(const std::string &name, std::uint64_t owner)
 {
-    MessageMap::node_type removed;  // destroyed after the lock is given back
+    MessageMap::node_type removed;  // destroyed after the lock is released
     const std::lock_guard<std::mutex> lock(_mutex);
     const auto found = _messages.find(name);
     if (found != _messages.end() && found->second.OwnedBy.erase(owner) > 0 && found->second.OwnedBy.empty())

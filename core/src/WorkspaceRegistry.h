@@ -15,25 +15,24 @@ namespace Rabit
 {
 class RabitWakeup;
 
-// The tables behind a RabitWorkspace: names, who registered them, the managers present.
-// Thread-safe; calls nothing of the user's while it holds its lock, except that a message is cloned when it
-// becomes a global copy.
+// The tables behind a RabitWorkspace: names, their owners, the managers present. Thread-safe; runs no user
+// code while it holds its lock.
 //
-// A name has owners: the managers that registered it (by number), or nobody in particular (number 0). That is
-// how the names of one reactor go without disturbing those of another.
+// A name has owners: the managers that registered it (by number), or 0 if the program did. So the names of
+// one reactor can go without disturbing those of another.
 class WorkspaceRegistry
 {
 public:
     explicit WorkspaceRegistry(std::shared_ptr<const RabitClock> clock) : _clock(std::move(clock)) {}
 
-    // Managers. A manager is present from its construction until it is destroyed or its reactor has left, and
+    // Managers. A manager is present from its construction until it is destroyed or its reactor leaves, and
     // again when it runs again.
     std::uint64_t NewOwner();
     // False if another manager of that name is present.
     bool ManagerIsPresent(std::uint64_t owner, const std::string &name,
                           const std::shared_ptr<RabitWakeup> &wakeup);
-    // Forgets the queues of a manager that is destroyed, and all that it alone registered if it never ran.
-    // The messages of one that ran stay until a reactor leaves.
+    // Forgets the queues of a destroyed manager. If it never ran, also forgets all that it alone
+    // registered; otherwise its messages stay until a reactor leaves.
     void ManagerIsGone(std::uint64_t owner, bool ran);
     // Forgets what only these managers registered, and everything if no manager is present any more.
     void ManagersLeave(const std::vector<std::uint64_t> &owners);
@@ -43,11 +42,11 @@ public:
     void AddManagerName(const std::string &name, std::uint64_t owner);
     std::vector<std::string> ManagerNames() const;
 
-    // global is what becomes the global copy if the name is new; null: a clone of the message.
+    // If the name is new, `global` becomes its global copy; null: a clone of the message does.
     MessageRegistration AddMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
                                    std::uint64_t owner,
                                    std::shared_ptr<PublishSubscribeMessage> global = nullptr);
-    // Takes the owner off the name, which goes if it has no owner left through that.
+    // Removes the owner from the name. The name goes if that was its last owner.
     void ReleaseMessage(const std::string &name, std::uint64_t owner);
     std::shared_ptr<PublishSubscribeMessage> FindMessage(const std::string &name) const;
     std::vector<MessageInfo> Messages() const;
@@ -86,7 +85,7 @@ private:
     };
     using MessageMap = std::unordered_map<std::string, MessageEntry>;
     using QueueMap = std::unordered_map<std::string, QueueEntry>;
-    // What was taken out of the tables; destroyed by its holder after the lock is given back.
+    // Entries removed from the tables. The holder destroys them after the lock is released.
     struct Removed
     {
         std::vector<MessageEntry> Messages;

@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-# What the headers and the static libraries need is not seen by dpkg-shlibdeps.
+# Dependencies of headers and static libraries, which dpkg-shlibdeps does not find.
 set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev libssl-dev libtinyxml2-dev
     nlohmann-json3-dev cyclonedds-dev)
 if(RABIT_WITH_FASTDDS)
@@ -36,7 +36,7 @@ set(CPACK_DEBIAN_GROUND_PACKAGE_NAME rabit-ground-station)
 set(CPACK_DEBIAN_GROUND_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_GROUND_DESCRIPTION "A ground station that shows a fleet on a page and commands it.")
 
-# Debian wants to be told under what terms each package is.
+# Debian requires a copyright file in each package.
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME} RENAME copyright

@@ -1,7 +1,8 @@
-# rabit_compile_together() has the sources of all targets in the folders of RABIT_UNITY, and below, compiled in batches:
-# most of the time of one file goes into what it includes, and a batch includes it once. batches.py says which go together.
-# To be called last, when all targets are there. Configuring decides: when two files of a batch get names alike later, the
-# compiler says "redefinition", and cmake is to be run again.
+# rabit_compile_together() compiles the sources of all targets in the folders of RABIT_UNITY, and below, in
+# batches: most of the compile time of a file goes into its headers, and a batch includes them once.
+# batches.py chooses the batches. Call this last, when all targets exist. The batches are chosen when CMake
+# configures: if two files of a batch define the same name later, the compiler says "redefinition"; then run
+# cmake again.
 set(RABIT_UNITY "" CACHE STRING "Folders, relative to the project's, in which several files of a target are compiled as one")
 set(RABIT_UNITY_MOST 12 CACHE STRING "How many files are compiled as one, at most")
 mark_as_advanced(RABIT_UNITY_MOST)
@@ -25,7 +26,7 @@ function(rabit_list_units folder list)
     endif()
     get_target_property(sources ${target} SOURCES)
     foreach(source IN LISTS sources)
-      # Not what is generated, which may not be there yet, nor other targets' objects.
+      # Skips generated sources, which may not exist yet, and objects of other targets.
       if(source MATCHES "\\.cpp$" AND NOT IS_ABSOLUTE ${source})
         file(APPEND ${list} "${target}\t${folder}\t${source}\n")
       endif()

@@ -17,7 +17,7 @@ import re
 import sys
 
 IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
-# Comments and literals, in which nothing is defined. The quote within a number is none.
+# Comments and literals, which define no names. A quote within a number begins no literal.
 IGNORED = re.compile(r'//[^\n]*|/\*.*?\*/|R"(?P<d>[^(\s]*)\(.*?\)(?P=d)"|"(?:\\.|[^"\\\n])*"|(?<!\w)\'(?:\\.|[^\'\\\n])*\'',
                      re.S)
 DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\.)*(?:\\\n(?:[^\n\\]|\\.)*)*", re.M | re.S)
@@ -34,7 +34,7 @@ class Source:
         self.macros = set(re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w+)", text, re.M))
         self.mentioned = set(IDENTIFIER.findall(text))
         self.directives = set(re.findall(r"\busing\s+namespace\s+([\w:]+)", text))
-        # What `using` brings in: the full name by its last part.
+        # The names that `using` brings in: last part to full name.
         self.brought = dict((name.split("::")[-1], name) for name in re.findall(r"\busing\s+([\w:]+::\w+)\s*;", text))
         self.defined = set()
         self.read(TOKEN.findall(DIRECTIVE.sub(" ", text)))
@@ -91,7 +91,7 @@ class Source:
                 self.defined.add(words[1])
         elif words[0] in KINDS:
             name = next((word for word in words[1:] if IDENTIFIER.fullmatch(word) and word not in KINDS), None)
-            if name and words[-1] != name:  # not a mere announcement
+            if name and words[-1] != name:  # not a mere declaration
                 self.defined.add(name)
         elif words[0] == "typedef":
             self.defined.add(words[-1])
@@ -104,7 +104,8 @@ class Source:
         for at, word in enumerate(words):
             depth += (word == "<") - (word == ">")
             if depth == 0 and word in ("(", "=", "{}", "["):
-                # Without anything before it, it is a macro; after ::, a member that was declared elsewhere.
+                # A word with no word before it is a macro; a word after :: is a member that was declared
+                # elsewhere.
                 if at >= 2 and IDENTIFIER.fullmatch(words[at - 1]) and words[at - 2] != "::":
                     self.defined.add(words[at - 1])
                 return
@@ -158,7 +159,8 @@ def main():
         for path in paths:
             owners.setdefault((folder, path), []).append(target)
     for (target, folder), paths in targets.items():
-        # UNITY_GROUP is a property of a source in a folder: one that several targets there share has no group of its own.
+        # UNITY_GROUP is a property of a source in a folder, so a source shared by several targets of that
+        # folder gets no group.
         own = {path: Source((pathlib.Path(folder) / path).read_text()) for path in paths
                if len(owners[folder, path]) == 1}
         grouped = [group for group in batches(own, most) if len(group) > 1]

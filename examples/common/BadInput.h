@@ -5,8 +5,8 @@
 namespace Common
 {
 
-// An option or a file that a person gave is wrong. what() is one line for that person, and the program ends
-// as it does when its configuration is wrong.
+// Thrown if an option or a file given by a person is wrong. what() is one line for that person. The program
+// ends as for a wrong configuration.
 class BadInput : public Rabit::ConfigError
 {
 public:

@@ -1,4 +1,4 @@
-// How far a finding got, to compare two of one target.
+// The progress of a finding, to compare two findings of one target.
 #pragma once
 
 #include "uav.idl.h"
@@ -8,8 +8,8 @@
 namespace Common
 {
 
-// The farther it got the greater: what was rejected is least; of two in one stage the one that was followed
-// longer.
+// Greater for findings that got farther. A rejected finding is least; within one stage, the one followed
+// longer is greater.
 std::pair<int, double> ProgressOf(const Uav::Finding &finding);
 
 }  // namespace Common

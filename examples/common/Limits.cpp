@@ -7,7 +7,7 @@ namespace Common
 {
 namespace
 {
-// As short as tells it from every other number of its type.
+// The shortest text that tells the number from every other of its type.
 template <typename Number>
 std::string Text(Number value)
 {

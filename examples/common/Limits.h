@@ -1,5 +1,5 @@
-// What the numbers of a search area and of a point to fly to may be. Whoever makes one and whoever obeys one
-// asks here, so that they cannot disagree.
+// The allowed ranges of the numbers of a search area and of a point to fly to. Senders and receivers both
+// use them, so that they cannot disagree.
 #pragma once
 
 #include <string>
@@ -23,14 +23,13 @@ inline constexpr Range SpeedMps{0.1, 50};
 inline constexpr Range SideM{10, 20'000};
 inline constexpr Range LaneM{5, 1000};
 
-// Empty if the range contains the value, else one line for a person: `north_m must be from 10 to 20000, not
-// 5`.
+// Empty if the range contains the value, otherwise one line for a person: `north_m must be from 10 to
+// 20000, not 5`.
 std::string WhyNot(const std::string &name, double value, const Range &range);
 std::string WhyNot(const std::string &name, float value, const Range &range);
 
 // Calls visit(name, number, range) for each number of a Uav::SearchArea that a person chooses, in the order
-// of the IDL. A value of type double that its range contains is still in it as the float that the member may
-// be.
+// of the IDL. A double within its range stays in it when it is converted to float, as some members are.
 template <typename Area, typename Visit>
 void ForEachNumberOfArea(Area &area, Visit visit)
 {

@@ -7,7 +7,7 @@
 namespace Common
 {
 
-// The check of an option whose value is to be a number in that range. Unlike CLI::Range it refuses a NaN.
+// Checks that the value of an option is a number in that range. Unlike CLI::Range it refuses a NaN.
 CLI::Validator NumberWithin(const Range &range);
 
 }  // namespace Common

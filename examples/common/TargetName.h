@@ -1,4 +1,4 @@
-// The names of targets: how they are written, and which of two holds.
+// The names of targets: as text, and in order of precedence.
 #pragma once
 
 #include "uav.idl.h"
@@ -10,11 +10,11 @@ namespace Common
 
 // `uav1/3`.
 std::string TextOf(const Uav::TargetName &name);
-// Whether the first holds when one target has both.
+// True if the first name holds when one target has both.
 bool IsOlder(const Uav::TargetName &first, const Uav::TargetName &second);
-// Whether the target is or was called that.
+// True if the target has or had that name.
 bool IsCalled(const Uav::Target &target, const Uav::TargetName &name);
-// What a message may bring: an aircraft, a number and a time, none of them absurd.
+// True if a name from a message is plausible: it has an aircraft, a number and a time.
 bool MakesSense(const Uav::TargetName &name);
 
 }  // namespace Common

@@ -9,7 +9,7 @@ namespace Ground
 {
 namespace
 {
-// A command of another ground station, or of an earlier life of this one, has no number here.
+// Commands of another ground station, or of an earlier incarnation of this one, have no number here.
 std::string WithNumber(const std::string &mode, std::uint32_t id, const CommandTally &tally)
 {
     const std::uint32_t index = id - tally.first_id;
@@ -55,7 +55,7 @@ AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &worksp
     const auto pose = _arrivals->Pose->GetGlobalPublishSubscribeMessageRef();
     const auto mission = _arrivals->Mission->GetGlobalPublishSubscribeMessageRef();
     if (!pose || !mission)
-        return;  // the names are taken by messages of other types, which the workspace has logged
+        return;  // the names belong to messages of other types; the workspace has logged that
     // Quick handlers see each sample, not only the newest.
     _onPose = pose->ConnectSomethingPublished(Rabit::RabitQuickHandler(
         [arrivals = _arrivals]

@@ -19,24 +19,24 @@ namespace Ground
 // Follows the mirrored messages <node>/Pose, <node>/MissionState, <node>/Findings and <node>.vision/Targets
 // of one aircraft.
 //
-// Fetch gives a manager the latest of each. A manager that sleeps between fetches cannot count messages,
-// though, so each arrival is counted by a handler on the thread that posts it, which is the transport's.
+// Fetch gives a manager the latest of each. But a manager that sleeps between fetches cannot count
+// messages. So a handler counts each arrival on the posting thread, which is the transport's.
 class AircraftMonitor
 {
 public:
     // Registers these names in the workspace, which must outlive this object.
     AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace);
 
-    // Fills in the row's pose, its age, the mission and what of it is declined. The tally says by which
-    // numbers people know the commands. For one thread: the manager's.
+    // Fills in the row's pose, its age, the mission and the reason if the search area is declined. The
+    // tally gives the numbers by which people know the commands. Only for the manager's thread.
     void Show(FleetRow &row, const CommandTally &tally = {});
-    // What it said last of targets; valid until it is called again. For the same thread.
+    // The last targets and findings of the aircraft; valid until the next call. Only for the same thread.
     SaidOfTargets Targets();
-    // Any thread.
+    // May be called from any thread.
     PoseCount Count() const;
 
 private:
-    // Shared with the handlers, which may still run when this object is gone.
+    // Shared with the handlers, which may still run after this object is destroyed.
     struct Arrivals
     {
         std::mutex Mutex;

@@ -13,7 +13,7 @@ namespace
 constexpr std::size_t LongestName = 64;
 constexpr std::size_t LongestReason = 400;
 
-// How a command ended that its aircraft does not carry out; null for every other.
+// The way in which a command failed at its aircraft; null for all other commands.
 const char *HowItFailed(CommandProgress progress)
 {
     switch (progress)
@@ -59,7 +59,7 @@ std::vector<std::string> AttentionLines(const std::vector<FleetRow> &rows, const
             withoutOrders.insert(node.node);
 
     std::vector<std::string> lines;
-    // The states that the rows show then say nothing of the aircraft.
+    // Then the states in the rows are too old to tell anything about the aircraft.
     const bool silent = fleetAgeS > FleetFreshS;
     if (silent)
         lines.push_back("The gateway of this ground station is silent");

@@ -1,5 +1,5 @@
-// What a person should know of the aircraft beside their table, as text: what each declines or has not done,
-// what is missing of it, and what of this ground station is silent. Pure functions. Text that came from the
+// Problems that a person should know besides the table, as text: declined and failed commands, missing data
+// of an aircraft, and a silent gateway of this ground station. Pure functions. Text that came from the
 // network is made printable first.
 #pragma once
 
@@ -12,9 +12,9 @@
 namespace Ground
 {
 
-// One line for each thing, in the order of the rows: what is missing; the search area, if it is declined; the
-// last command, if it was declined or has not arrived for certain; that it is back without orders. Before all
-// others, if what the states rest on is too old, that this ground station's own gateway is silent.
+// One line for each problem, in the order of the rows: missing data; a declined search area; a last command
+// that was declined or may not have arrived; an aircraft that is back without orders. If the Fleet is too
+// old, the first line says that this ground station's own gateway is silent.
 std::vector<std::string> AttentionLines(const std::vector<FleetRow> &rows, const CommandList &commands,
                                         const CommandTally &tally, double fleetAgeS);
 

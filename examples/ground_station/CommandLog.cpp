@@ -6,7 +6,7 @@ namespace Ground
 {
 namespace
 {
-// How far a command is: what comes later has the higher number, and the last word has the highest.
+// Orders the progress of a command: later steps have higher numbers, and final ones the highest.
 int Rank(CommandProgress progress)
 {
     switch (progress)
@@ -74,7 +74,7 @@ void Step(CommandStatus &command, CommandProgress progress, const std::string &r
     command.steps.push_back(step);
 }
 
-// Goes on to that progress, unless the command is there or beyond.
+// Sets the progress, unless the command has reached it or a later one. Returns whether it was set.
 bool Advance(CommandStatus &command, CommandProgress progress, const std::string &reason, double nowS)
 {
     if (Rank(progress) <= Rank(command.progress))
@@ -134,7 +134,7 @@ CommandLog::Answer CommandLog::Answered(const Uav::CommandAck &answer, double no
         return Answer::WrongNode;
     }
     const bool first = Rank(command->progress) < Rank(CommandProgress::PROGRESS_ACCEPTED);
-    // Whoever answers has it, also where the receipt comes after the answer.
+    // An answer proves the delivery, even if the receipt comes later.
     if (command->progress == CommandProgress::PROGRESS_SENT)
         Advance(*command, CommandProgress::PROGRESS_DELIVERED, "", nowS);
     if (!Advance(*command, ProgressOf(answer.stage), ReasonOf(answer), nowS))
@@ -160,7 +160,7 @@ void CommandLog::StartedAnew(const std::string &node, double lastHeardS, double 
             Advance(command, CommandProgress::PROGRESS_REPLACED, "the aircraft has started anew", nowS);
 }
 
-// With the number of another command, where the answer has its id.
+// The reason of the answer, with ids of commands replaced by their numbers.
 std::string CommandLog::ReasonOf(const Uav::CommandAck &answer) const
 {
     if (answer.replaced_by == 0)

@@ -13,8 +13,8 @@
 namespace Ground
 {
 
-// Who was sent which command, and what has become of it, step by step. People know a command by its number,
-// counted from 1; only the aircraft know it by its id. Times are in seconds since the ground station's
+// Records each command sent to an aircraft, and its progress step by step. People know a command by its
+// number, counted from 1; the aircraft know it by its id. Times are in seconds since the ground station's
 // start. Not thread-safe.
 class CommandLog
 {
@@ -23,19 +23,19 @@ public:
     {
         std::uint64_t Sent = 0;          // accepted for sending
         std::uint64_t Acknowledged = 0;  // answered by the aircraft it was meant for
-        std::uint64_t Declined = 0;      // those of the acknowledged that the aircraft would not obey
+        std::uint64_t Declined = 0;      // acknowledged ones that the aircraft declined
         std::uint64_t Refused = 0;       // attempts that were not accepted: nothing was sent
     };
     enum class Answer
     {
         Counted,
-        Repeated,   // that command had this answer already, or its last one
-        WrongNode,  // another aircraft than the one it was meant for
+        Repeated,   // that command already had this answer, or a final one
+        WrongNode,  // the answer is from an aircraft that the command was not sent to
         Unknown     // no command of that id was sent
     };
 
-    // Commands get the ids from `firstId` on. Choose another one in each run: then a late answer to a command
-    // of an earlier run is not taken for one to a command of this run.
+    // Commands get the ids from `firstId` on. Choose a different one in each run, so that late answers to
+    // an earlier run are not taken for answers to this run.
     explicit CommandLog(std::uint32_t firstId = 1) : _firstId(firstId) {}
 
     // The id for the next command. The same one until Sent or RefusedForGood is called.
@@ -46,22 +46,23 @@ public:
     void Refused(const std::string &node) { ++_tallies[node].Refused; }
     // The command of NextId() was refused, and will not be tried again.
     void RefusedForGood(CommandStatus command, const std::string &reason, double nowS);
-    // What became of the command on the way to the aircraft. Pending changes nothing.
+    // Notes the outcome of delivering the command to the aircraft. Pending changes nothing.
     void OnWay(std::uint32_t id, Rabit::QueueOutcome outcome, double nowS);
-    // An answer has come.
+    // Notes an answer of an aircraft.
     Answer Answered(const Uav::CommandAck &answer, double nowS);
 
     // The id of the command of number 1.
     std::uint32_t FirstId() const { return _firstId; }
-    // The aircraft has started anew since then: it obeys no command any more that it had accepted by then.
+    // The aircraft has restarted since it was last heard: it has forgotten the commands that it had
+    // accepted by then.
     void StartedAnew(const std::string &node, double lastHeardS, double nowS);
 
-    // Zero for a node that was never sent anything.
+    // Zero for a node that never got a command.
     Tally Of(const std::string &node) const;
     // All of them, oldest first.
     const std::vector<CommandStatus> &Commands() const { return _commands; }
-    // Commands of which nobody knows what became: neither answered by the aircraft nor certain to have never
-    // arrived. Oldest first.
+    // Commands with an unknown outcome: neither answered by the aircraft, nor certainly not arrived. Oldest
+    // first.
     std::vector<CommandStatus> Outstanding() const;
     // Answers that were not Counted.
     std::uint64_t Repeated() const { return _repeated; }

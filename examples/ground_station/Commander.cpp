@@ -19,7 +19,7 @@ Commander::Commander(Settings settings, Rabit::RabitWorkspace &workspace)
     AddPublishSubscribeMessage("CommandTally", _tally);
     AddPublishSubscribeMessage("CommandList", _list);
     SetPeriodSec(std::chrono::duration<double>(WorkPeriod).count());
-    SetWakeupBetweenTurns(true);  // answers and outcomes are followed at once
+    SetWakeupBetweenTurns(true);  // answers and outcomes are handled at once
 }
 
 void Commander::Startup()
@@ -97,7 +97,7 @@ void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std:
         return;  // the name belongs to a message of another type, which the workspace has logged
     aircraft.Pose->FetchMessage();
     if (!(aircraft.Pose->GetAgeSeconds() <= PoseFreshS))
-        return;  // no aircraft, or one that is not heard well
+        return;  // no aircraft, or it is not UP with a fresh pose
     LookForNewLife(status.node, status.incarnation);
     if (!aircraft.First)
         aircraft.First = aircraft.NextGoto = elapsed + FirstAfter();
@@ -120,7 +120,7 @@ void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std:
         aircraft.NextGoto = elapsed + *_settings.Period;
 }
 
-// An aircraft that a person has commanded and that starts anew has forgotten that, and waits.
+// If an aircraft restarts after a person commanded it, it has forgotten the command, and waits.
 void Commander::LookForNewLife(const std::string &node, std::uint64_t life)
 {
     Aircraft &aircraft = AircraftOf(node);

@@ -22,42 +22,43 @@ namespace Ground
 
 // Commands the aircraft, and follows each command to its end: the manager `Commands`.
 //
-// Queue:   Commands takes Ground::Order, what a person wants of one aircraft; Uav::SearchArea, where a person
-//          wants the fleet to search; and Uav::CommandAck, from whichever aircraft has one.
+// Queue:   Commands takes Ground::Order, a person's order for one aircraft; Uav::SearchArea, an area in which
+//          the fleet should search; and Uav::CommandAck, from any aircraft.
 // Sends:   Uav::Goto, Uav::GoHome and Uav::Search to the queue MissionControl of an aircraft: those ordered,
-//          and by itself what its settings say.
+//          and those that its settings demand.
 // Posts:   SearchArea (Uav::SearchArea), at the start and when it changes; CommandList (Ground::CommandList)
 //          and CommandTally (Ground::CommandTally), when they change.
 // Fetches: Gateway/Fleet, and <node>/Pose of each node.
 //
-// It also ends the run, when its time is over or when it is asked to: it sends nothing more, waits for the
-// answers that are still out, and shuts all managers down.
+// It also ends the run when its time is over or on RequestEnd: it sends nothing more, waits for outstanding
+// answers, and shuts all managers down.
 class Commander : public Rabit::RabitManager
 {
 public:
     struct Settings
     {
-        // Name of this node: answers are to come to <node>/Commands.
+        // Name of this node: aircraft send their answers to <node>/Commands.
         std::string Node = "ground";
         // The id of the first command, see CommandLog.
         std::uint32_t FirstId = 1;
-        // Where the fleet is to search, until somebody says otherwise. Its number is set here.
+        // The first search area of the fleet. The Commander sets its number.
         Uav::SearchArea Area{};
-        // Aircraft that are told to search, once in each of their lives, as soon as they are heard well; `*`
-        // is all of them. Only until the first Order for that aircraft: from then on a person commands it.
+        // Aircraft that get a Search, once in each incarnation, as soon as they are UP with a fresh pose;
+        // `*` is all aircraft. Only until the first Order for that aircraft: from then on a person commands
+        // it.
         std::set<std::string> Searchers{};
-        // Every aircraft gets a Goto this often; none: never.
+        // Interval at which every aircraft gets a Goto; none: never.
         std::optional<std::chrono::milliseconds> Period{};
-        // From the first pose of an aircraft to the first command (but at most an eighth of the duration): so
-        // long it is seen flying by itself.
+        // Time from the first pose of an aircraft to its first command (at most an eighth of the duration),
+        // in which it is seen flying on its own.
         std::chrono::milliseconds FirstAfter{2000};
-        // How long to run; none: until RequestEnd.
+        // Duration of the run; none: until RequestEnd.
         std::optional<std::chrono::milliseconds> Duration{};
-        // Nothing is sent this long before the end (but for at most half of the duration), so that the last
-        // answers come in time. Those that have not are waited for as long again.
+        // Commands stop this long before the end (at most half of the duration), so that the last answers
+        // come in time. At the end, outstanding answers are awaited for as long again.
         std::chrono::milliseconds Quiet{3000};
     };
-    // CommandList holds so many at most, the newest.
+    // CommandList holds at most this many commands, the newest.
     static constexpr std::size_t MaxListed = 200;
 
     explicit Commander(Settings settings,
@@ -74,9 +75,9 @@ public:
     double ElapsedS() const { return _elapsedS; }
 
 private:
-    // Commands by settings are sent this often at most, and refused ones are tried again.
+    // Least interval at which commands by settings are sent, and refused ones are retried.
     static constexpr std::chrono::milliseconds WorkPeriod{100};
-    // An aircraft is commanded by itself only while its pose is known this well.
+    // The Commander sends commands by settings only while the aircraft's pose is younger than this.
     static constexpr double PoseFreshS = 1.0;
 
     // An aircraft that may be commanded.
@@ -86,9 +87,11 @@ private:
         std::optional<std::chrono::nanoseconds>
             First;  // when the first command is due; none: no pose has come
         std::optional<std::chrono::nanoseconds> NextGoto;  // when the next Goto of the period is due
-        std::uint64_t ToldToSearch = 0;                    // the life of it that was told
-        std::uint64_t Life = 0;                            // the last one that was heard well; 0: none
-        double HeardS = 0;                                 // when it was last heard well in that life
+        std::uint64_t ToldToSearch = 0;                    // the incarnation that got the Search
+        std::uint64_t Life = 0;                            // the last incarnation that was UP with a fresh
+                                                           // pose; 0: none
+        double HeardS = 0;                                 // when it was last UP with a fresh pose in that
+                                                           // incarnation
         bool WithoutOrders = false;                        // see NodeCommands
     };
 
@@ -113,7 +116,7 @@ private:
     std::chrono::nanoseconds _start{0};
     double _elapsedS = 0;
     std::atomic<bool> _endRequested{false};
-    std::optional<std::chrono::nanoseconds> _waitingSince;  // for the last answers
+    std::optional<std::chrono::nanoseconds> _waitingSince;  // for outstanding answers
     CommandLog _log;
     std::map<std::uint32_t, std::shared_ptr<Rabit::RabitQueueReceipt>> _onWay;  // by the command's number
     std::map<std::string, Aircraft> _aircraft;

@@ -49,7 +49,7 @@ int Urgency(RowState state)
     return 3;
 }
 
-// So that a small screen cuts off those that are well.
+// The most urgent first, so that a small screen cuts off aircraft without problems.
 std::vector<FleetRow> MostUrgentFirst(std::vector<FleetRow> rows)
 {
     std::stable_sort(rows.begin(), rows.end(),

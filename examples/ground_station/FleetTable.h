@@ -16,13 +16,13 @@ enum class RowState
 {
     Waiting,  // never heard
     Up,
-    Stale,  // not heard lately: what is shown grows old
+    Stale,  // not heard recently: its data gets old
     Lost
 };
 
 std::string ToText(RowState state);
 
-// What is known of one aircraft.
+// The data of one aircraft for the table.
 struct FleetRow
 {
     std::string Node;
@@ -33,7 +33,7 @@ struct FleetRow
     double AltitudeM = 0;
     double SpeedMps = 0;
     std::string Mission;       // empty: not known
-    std::string AreaDeclined;  // why it declines the search area; empty if it does not
+    std::string AreaDeclined;  // reason why it declines the search area; empty if it does not
     std::uint64_t Sent = 0;
     std::uint64_t Acknowledged = 0;
     double RoundTripS = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
@@ -41,11 +41,11 @@ struct FleetRow
 
     // A pose older than this is marked as old even if the aircraft is UP.
     static constexpr double FreshS = 1.0;
-    // Whether pose and mission may be read as the present.
+    // True if pose and mission are current.
     bool IsFresh() const { return State == RowState::Up && AgeS && *AgeS <= FreshS; }
 };
 
-// How a line of the table stands out on a terminal that can show it.
+// Emphasis of a line of the table, on a terminal that can show it.
 enum class Emphasis
 {
     None,
@@ -60,18 +60,18 @@ struct TableLine
     Emphasis Shown = Emphasis::None;
 };
 
-// The table with a title and a heading, for a screen of so many columns: what is LOST first, then STALE,
-// WAITING and UP, and otherwise in the order of the rows. What is not fresh stands in
-// parentheses and its age behind an exclamation mark, so that it is told apart without colours too. How the
-// way to each aircraft does stands in columns of its own, or below the table where there is no room for them.
+// The table with a title and a heading, for a screen of `columns` columns: LOST aircraft first, then STALE,
+// WAITING and UP, otherwise in the order of the rows. Old values are in parentheses, and their age has an
+// exclamation mark before it, so that they stand out without colours too. Round trip and delivery rate have
+// columns of their own, or are below the table if there is no room for them.
 std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS,
                                        std::size_t columns = 80);
 
 // One self-contained line for each row, for a log: time, then the same columns as in the table, named.
 std::vector<std::string> FleetLogLines(const std::vector<FleetRow> &rows, double elapsedS);
 
-// What is missing of an aircraft of which something is heard and something is not: `beats missing, poses
-// arriving`; empty if all is heard, or nothing. An aircraft is UP while its gateway's beats come.
+// Tells which data of an aircraft is missing while other data arrives: `beats missing, poses arriving`;
+// empty if all is heard, or nothing. An aircraft is UP while its gateway's beats come.
 std::string WhatIsMissing(const FleetRow &row);
 
 // The text with everything but printable ASCII replaced by `?`, and cut to a length.

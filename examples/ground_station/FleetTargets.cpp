@@ -11,7 +11,7 @@ namespace Ground
 {
 namespace
 {
-// What is said within this time of each other is said at one time.
+// Reports within this time of each other count as simultaneous.
 constexpr double TogetherS = 5;
 
 struct ByAge
@@ -22,7 +22,7 @@ struct ByAge
     }
 };
 
-// Which names are one: each leads to an older one, or to itself.
+// A union-find of names of one target: each name leads to an older one, or to itself.
 class OneName
 {
 public:
@@ -52,7 +52,7 @@ private:
     std::map<Uav::TargetName, Uav::TargetName, ByAge> _older;
 };
 
-// Whether somebody else denies that the target of the first name has been called by the second one as well.
+// True if another aircraft denies that the target of the first name also had the second one.
 bool IsDenied(const Uav::TargetName &name, const Uav::TargetName &former,
               const std::vector<SaidOfTargets> &said, double beforeAgeS)
 {

@@ -1,4 +1,4 @@
-// What all aircraft say of targets as one list: pure functions.
+// Merges the targets of all aircraft into one list: pure functions.
 #pragma once
 
 #include "TargetLines.h"
@@ -12,32 +12,32 @@
 namespace Ground
 {
 
-// What one aircraft said last.
+// The last targets and findings of one aircraft.
 struct SaidOfTargets
 {
     std::string Aircraft;
-    const Uav::Targets *Targets = nullptr;  // of its sensor fusion; null if it has said nothing
-    double AgeS = 0;                        // of that
+    const Uav::Targets *Targets = nullptr;  // of its sensor fusion; null if none came
+    double AgeS = 0;                        // of the Targets
     const std::vector<Uav::Finding> *Findings = nullptr;
 };
 
-// A target, once, however many aircraft know it.
+// A target, listed once, even if several aircraft know it.
 struct ListedTarget
 {
     Uav::TargetName Name;
     std::vector<Uav::TargetName> Formerly;  // the other names by which any aircraft knew or knows it
-    // As the aircraft knows it that has heard of the last detection; not set if it is only in the findings.
+    // From the aircraft that knows the latest detection; not set if the target is only in findings.
     std::optional<Uav::Target> Target;
-    double AgeS = std::numeric_limits<double>::quiet_NaN();  // since what said so came
+    double AgeS = std::numeric_limits<double>::quiet_NaN();  // since that message came
     double UnseenS = 0;                                      // before that
     std::string ToldBy;
-    // What came of it at the aircraft that got farthest; not set if none has taken it up.
+    // The finding of the aircraft that got farthest with it; not set if no aircraft has taken it up.
     std::optional<FoundTarget> Found;
 };
 
-// In the order of their names. An aircraft that is gone goes on knowing a target by a name that the others
-// have merged into another one since: what any aircraft calls a former name is one, unless another one denies
-// it, or has a target of that name later.
+// Lists the targets in the order of their names. An aircraft that is gone may still know a target by a name
+// that the others have merged since. So a name that any aircraft calls a former one counts as such, unless
+// another aircraft denies it, or has a target of that name later.
 std::vector<ListedTarget> ListTargets(const std::vector<SaidOfTargets> &said);
 
 }  // namespace Ground

@@ -73,7 +73,7 @@ void FleetView::Look()
         }
         aircraft.Monitor->Show(seen.Row, *_tally);
         if (!aircraft.Expected && !seen.Row.AgeS && seen.Row.Mission.empty())
-            continue;  // not an aircraft, as far as can be told
+            continue;  // not known to be an aircraft
         for (const NodeCommands &commands : _tally->nodes)
         {
             if (commands.node != node)
@@ -158,7 +158,7 @@ std::vector<std::string> FleetView::Attention(const std::vector<FleetRow> &rows)
     return AttentionLines(rows, *_commands, *_tally, _fleet->WasPosted() ? _fleet->GetAgeSeconds() : 0);
 }
 
-// What was not so a line of the log before.
+// The attention lines that the previous log line did not have.
 std::vector<std::string> FleetView::NewAttention(const std::vector<FleetRow> &rows)
 {
     const std::vector<std::string> now = Attention(rows);

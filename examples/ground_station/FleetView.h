@@ -25,13 +25,12 @@
 namespace Ground
 {
 
-// Shows the fleet on the standard output: the manager `FleetView`. On a terminal it redraws a table in place,
-// else it writes a line a second for each aircraft. What else a person should know of the aircraft stands
-// below, what the radio does, and what keeps data from flowing, as long as it is so.
+// Shows the fleet on the standard output: the manager `FleetView`. On a terminal it redraws a table in
+// place, otherwise it writes a line a second for each aircraft. Below follow other problems of the
+// aircraft, the state of the radio, and current problems of the data flow.
 //
-// Fetches: Gateway/Fleet, from which it learns who is there; <node>/Pose, <node>/MissionState,
-// <node>/Findings and <node>.vision/Targets of each of them; and CommandTally and CommandList of the
-// Commander.
+// Fetches: Gateway/Fleet, from which it learns the nodes; <node>/Pose, <node>/MissionState, <node>/Findings
+// and <node>.vision/Targets of each of them; and CommandTally and CommandList of the Commander.
 //
 // A node counts as an aircraft once a pose or mission state of it has come, or if it is expected.
 class FleetView : public Rabit::RabitManager
@@ -46,17 +45,17 @@ public:
         RateLimits MaxRates{};              // of this node's configuration
     };
 
-    // Where to show it. The stream must outlive the manager; nobody else may write to it while the manager
+    // The output. The stream must outlive the manager, and no other code may write to it while the manager
     // runs.
     struct Output
     {
         std::ostream &Stream;
         bool IsTerminal = false;  // the standard output is one
-        // If it is set and the output is a terminal: what to write once, above the table.
+        // If set and the output is a terminal: returns lines to write once, above the table.
         std::function<std::vector<std::string>()> TakeLog{};
     };
 
-    // What was seen of one aircraft, for the summary at the end.
+    // Results of one aircraft, for the summary at the end.
     struct Seen
     {
         FleetRow Row;
@@ -81,7 +80,7 @@ private:
         bool Expected = false;
     };
 
-    // How far a target had come, and how many other names it had.
+    // The stage of a target, and the number of its other names.
     using Shown = std::pair<Uav::TargetStage, std::size_t>;
 
     void Look();

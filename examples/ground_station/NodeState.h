@@ -10,14 +10,13 @@
 namespace Ground
 {
 
-// A Fleet older than this tells nothing of the present any more: the gateway posts it every second.
+// A Fleet older than this is out of date: the gateway posts it every second.
 inline constexpr double FleetFreshS = 3.0;
 
-// What the gateway knows of that node; null if nothing.
+// The gateway's status of that node; null if there is none.
 const Rabit::Gateway::NodeStatus *StatusOf(const Rabit::Gateway::Fleet &fleet, const std::string &node);
 
-// How to show that node. A node that was UP in a Fleet of that age, when that is too old, is shown as STALE:
-// nobody knows whether it is there.
+// The state to show for that node. If the Fleet is too old, a node that was UP in it is shown as STALE.
 RowState StateOf(const Rabit::Gateway::Fleet &fleet, double fleetAgeS, const std::string &node);
 
 // Names in the order that people expect: uav2 before uav10.

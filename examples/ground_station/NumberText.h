@@ -1,4 +1,4 @@
-// Numbers as an operator reads them: few digits, and never more than a few letters, whatever the number is.
+// Numbers for an operator: few digits, and a short text for every number.
 #pragma once
 
 #include <string>

@@ -6,7 +6,7 @@ namespace Ground
 void PoseCount::OnPose(std::uint32_t number)
 {
     if (number < _newest)
-        StartNewLife();  // poses of one life never overtake each other
+        StartNewLife();  // poses of one incarnation never overtake each other
     if (number == 0 || number == _newest)
         return;  // not numbered, or a repetition
     if (_first == 0)

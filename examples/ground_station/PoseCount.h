@@ -14,7 +14,7 @@ namespace Ground
 // the two are compared by their numbers: neither clocks nor the order in which the two messages arrive
 // matter.
 //
-// An aircraft that starts again counts from 1 again; its lives are added up. Not thread-safe.
+// A restarted aircraft counts from 1 again; its incarnations are added up. Not thread-safe.
 class PoseCount
 {
 public:
@@ -23,19 +23,20 @@ public:
 
     // Poses published between the first and the last mission state that count.
     std::uint64_t Published() const { return _earlierPublished + (_open ? _end - _begin : 0); }
-    // Those of them that arrived.
+    // The number of those poses that arrived.
     std::uint64_t Heard() const { return _earlierHeard + (_open ? _heard : 0); }
 
 private:
-    // Poses that wait for their mission state; more than a day's silence of it is not kept.
+    // Limit of poses that wait for their mission state: more than a day without one.
     static constexpr std::size_t MaxWaiting = 1'000'000;
 
     void StartNewLife();
 
     std::uint64_t _earlierPublished = 0;
     std::uint64_t _earlierHeard = 0;
-    bool _open = false;                  // a mission state has opened the count of this life
-    std::uint32_t _first = 0;            // number of the first pose of this life that arrived; 0: none yet
+    bool _open = false;                  // a mission state has opened the count of this incarnation
+    std::uint32_t _first = 0;            // number of the first pose of this incarnation that arrived; 0:
+                                         // none yet
     std::uint32_t _newest = 0;           // number of the newest
     std::uint32_t _begin = 0;            // the poses (_begin, _end] count
     std::uint32_t _end = 0;              //

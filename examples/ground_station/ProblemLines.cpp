@@ -31,7 +31,7 @@ std::string More(std::size_t problems)
     return "and " + std::to_string(problems - ProblemsOnScreen) + " more";
 }
 
-// The subject names the node where it must.
+// The subject of a problem, with the name of the node where needed.
 std::string Name(const Rabit::Gateway::Problem &problem, const char *before, const char *after)
 {
     std::string name = Printable(problem.subject, LongestName);

@@ -1,5 +1,5 @@
-// What keeps data from flowing now, as text: pure functions from the gateway's list to lines. Text that came
-// from the network is made printable first.
+// The gateway's current problems as text: pure functions from its list to lines. Text that came from the
+// network is made printable first.
 #pragma once
 
 #include "FleetTable.h"
@@ -13,11 +13,11 @@
 namespace Ground
 {
 
-// The rest is counted.
+// Problems shown on the screen; the others are counted.
 inline constexpr std::size_t ProblemsOnScreen = 5;
 
-// For a screen: how many there are and the first few by name. Nothing if there are none. The list is of that
-// age; if that is too old, the lines say so.
+// For a screen: the number of problems, and the first few by name. Empty if there are none. If the list, of
+// the given age, is too old, the lines say so.
 std::vector<TableLine> ProblemTableLines(const std::vector<Rabit::Gateway::Problem> &problems,
                                          double fleetAgeS);
 

@@ -31,7 +31,7 @@ std::string Limits(const Rabit::Gateway::AirStatus &air)
     return text.empty() ? "not limited" : text;
 }
 
-// `3.8 posts/s, 3 queue messages`; empty: nothing is held back.
+// `3.8 posts/s, 3 queue messages`; empty if nothing is held back.
 std::string Held(const RadioUse &use)
 {
     std::string text;

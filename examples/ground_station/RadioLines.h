@@ -1,4 +1,4 @@
-// What the radio of this node does, as text: pure functions to lines. Text that came from the network is made
+// The state of this node's radio as text: pure functions to lines. Text that came from the network is made
 // printable first.
 #pragma once
 
@@ -12,12 +12,12 @@
 namespace Ground
 {
 
-// Of what is held back; the rest is counted.
+// Number of held-back streams and links shown; the others are counted.
 inline constexpr std::size_t HeldOnScreen = 5;
 
-// For a screen: one line for a radio that nothing limits; else what limits it, what each class uses of it,
-// and what is held back by name. Nothing before the first Fleet. What is told is of that age; if that is too
-// old, the lines say so.
+// For a screen: one line if nothing limits the radio; otherwise the limit, the use by each class, and by
+// name the streams and links that are held back. Empty before the first Fleet. If the Fleet, of the given
+// age, is too old, the lines say so.
 std::vector<TableLine> RadioTableLines(const RadioUse &use, double fleetAgeS, std::size_t columns);
 
 // For a log: the same in one line. Empty before the first Fleet.

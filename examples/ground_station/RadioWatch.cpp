@@ -6,9 +6,9 @@ namespace Ground
 {
 namespace
 {
-// A Fleet may come at any moment; so many are enough.
+// Least time between two kept counters: a Fleet may come more often than needed.
 constexpr RadioWatch::Duration Spacing = std::chrono::milliseconds(500);
-// What is between counting and counting again at another moment is nothing held back.
+// Smaller differences come from the times of counting: posts and samples are not counted at one moment.
 constexpr double Clearly = 0.9;
 }  // namespace
 
@@ -16,7 +16,7 @@ void RadioWatch::Look(const Rabit::Gateway::Fleet &fleet, Duration postedAt)
 {
     if (_use.Known && postedAt == _history.back().At)
         return;
-    // Another life of the gateway counts from zero.
+    // Another incarnation of the gateway counts from zero.
     if (_use.Known && (fleet.incarnation != _incarnation || postedAt < _history.back().At))
         _history.clear();
     _incarnation = fleet.incarnation;

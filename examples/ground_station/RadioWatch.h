@@ -13,10 +13,10 @@
 namespace Ground
 {
 
-// By the name of a published message: samples a second that the configuration allows.
+// Maximum rate of a published message by name, in samples a second, from the configuration.
 using RateLimits = std::map<std::string, double>;
 
-// A message of which more is posted than the radio takes.
+// A message that is posted faster than the radio can send it.
 struct HeldStream
 {
     std::string Message;
@@ -24,7 +24,7 @@ struct HeldStream
     double SentPerS = 0;
 };
 
-// A queue of another node for which messages wait, or became too old while they did.
+// A queue of another node for which messages wait, or have expired while waiting.
 struct HeldLink
 {
     std::string Node;
@@ -33,36 +33,37 @@ struct HeldLink
     std::uint64_t Expired = 0;  // since the gateway's start
 };
 
-// What the radio of this node does.
+// The state of this node's radio.
 struct RadioUse
 {
     bool Known = false;  // a Fleet has come
     Rabit::Gateway::AirStatus Air;
     std::vector<HeldStream> Streams;  // the most held back first
     std::vector<HeldLink> Links;      // the most waiting first
-    double PostsHeldPerS = 0;         // of all streams: that were posted and may be sent, and are not
-    std::uint64_t MessagesHeld = 0;   // of all links: that wait
+    double PostsHeldPerS = 0;         // of all streams: posts that max_rate allows, but that were not sent
+    std::uint64_t MessagesHeld = 0;   // of all links: waiting messages
 
     bool IsLimited() const { return Air.budget > 0 || Air.capacity > 0; }
 };
 
-// Tells what is held back from how the counters of Gateway/Fleet rise within a few seconds. For one thread.
+// Finds held-back streams and links by the rise of the counters of Gateway/Fleet within a few seconds. Not
+// thread-safe.
 //
-// A stream is held back where something limits the radio and clearly less is sent than is posted; what the
-// configuration's max_rate leaves out is not. A link is held back if messages have waited there for a second
-// without a break, and more of them than are delivered in a second, or if some expired lately.
+// A stream is held back if something limits the radio and clearly less is sent than posted; posts dropped
+// by max_rate do not count. A link is held back if messages have waited there for a second without a break,
+// and more of them than are delivered in a second, or if some expired recently.
 class RadioWatch
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
     static constexpr Duration Window = std::chrono::seconds(5);
-    // A shorter time tells nothing of a rate, nor that something waits.
+    // Shortest time from which a rate, or that messages wait, can be derived.
     static constexpr Duration Shortest = std::chrono::seconds(1);
 
     explicit RadioWatch(RateLimits maxRates = {}) : _maxRates(std::move(maxRates)) {}
 
-    // Takes in a Fleet that was posted at that moment. One that was taken in before changes nothing.
+    // Accepts a Fleet that was posted at that moment. The same Fleet again changes nothing.
     void Look(const Rabit::Gateway::Fleet &fleet, Duration postedAt);
 
     const RadioUse &Use() const { return _use; }
@@ -77,7 +78,7 @@ private:
     {
         std::uint64_t Delivered = 0;
         std::uint64_t Expired = 0;
-        Duration EmptyAt{0};  // when nothing waited last, as far as is known
+        Duration EmptyAt{0};  // last time at which no message is known to have waited
     };
     using LinkName = std::pair<std::string, std::string>;  // node, queue
     struct Counters

@@ -8,9 +8,9 @@
 namespace Ground
 {
 
-// The nodes that are there and play what was recorded before.
+// The present nodes that play a recording.
 std::vector<std::string> ReplayedNodes(const Rabit::Gateway::Fleet &fleet);
-// Says that what is shown is not live; empty if it is.
+// A line that says that the shown data is a replay; empty if it is live.
 std::string ReplayLine(const Rabit::Gateway::Fleet &fleet);
 
 }  // namespace Ground

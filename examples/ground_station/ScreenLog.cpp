@@ -9,7 +9,7 @@
 namespace Ground
 {
 
-// Shared with the sink, which may still run on another thread when it has been replaced.
+// Shared with the sink, which may still run on another thread after it was replaced.
 struct ScreenLog::State
 {
     std::mutex Mutex;

@@ -8,13 +8,13 @@
 namespace Ground
 {
 
-// While it lives, what the library logs is kept for whoever draws the terminal, so that no line of the log is
-// written into a table that is redrawn in place. What nobody took goes to the standard error in the end. One
-// at a time.
+// While it lives, keeps the library's log lines for the code that draws the terminal, so that no line is
+// written into a table that is redrawn in place. Its destructor writes lines that were not taken to the
+// standard error. There may be only one at a time.
 class ScreenLog
 {
 public:
-    // What is beyond is counted, and a line says so.
+    // Lines beyond this number are counted, and a line tells their number.
     static constexpr std::size_t MaxLines = 100;
 
     ScreenLog();

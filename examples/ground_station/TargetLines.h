@@ -19,7 +19,7 @@ struct FoundTarget
 
 std::string ToText(Uav::TargetStage stage);
 
-// `uav1/3`: what the fleet calls it.
+// The name of the target in the fleet: `uav1/3`.
 std::string NameOf(const Uav::TargetName &name);
 std::string NameOf(const FoundTarget &target);
 
@@ -27,7 +27,7 @@ std::string NameOf(const FoundTarget &target);
 // followed for 12 s`.
 std::string TargetLine(const FoundTarget &target);
 
-// Whether the search has done all with it: found by one aircraft, validated by another, followed.
+// True if the search is done with the target: found by one aircraft, validated by another, followed.
 bool IsTracked(const FoundTarget &target);
 
 }  // namespace Ground

@@ -33,7 +33,7 @@ std::string TerminalScreen::Redraw(const std::vector<TableLine> &lines, const Si
 {
     std::string text;
     if (_drawn > 0 && size != _size)
-        text = EraseScreen;  // the terminal has wrapped the old lines anew: nobody knows where they are
+        text = EraseScreen;  // the terminal has wrapped the old lines again: their positions are unknown
     else if (_drawn > 0)
         text = "\x1b[" + std::to_string(_drawn) + "A\r";
 

@@ -10,7 +10,7 @@ namespace Ground
 {
 
 // Draws lines over the lines drawn before, by ECMA-48 control sequences that every Linux terminal knows. It
-// only makes the text; the caller writes it, and writes nothing in between.
+// only makes the text; the caller writes it, and nothing else in between.
 class TerminalScreen
 {
 public:
@@ -22,9 +22,9 @@ public:
         bool operator==(const Size &) const = default;
     };
 
-    // What to write so that the terminal shows these lines in place of the last ones. Lines too wide are cut,
-    // because a wrapped line would spoil the next redraw; if there are too many, the last line shown says how
-    // many are not. `above` is written once, above them, and scrolls away like any other output.
+    // The text that makes the terminal show these lines in place of the last ones. Lines too wide are cut,
+    // because a wrapped line would spoil the next redraw. If there are too many lines, the last one tells
+    // how many are missing. `above` is written once, above them, and scrolls away like any other output.
     std::string Redraw(const std::vector<TableLine> &lines, const Size &size,
                        const std::vector<std::string> &above = {});
 

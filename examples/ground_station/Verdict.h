@@ -12,7 +12,7 @@
 namespace Ground
 {
 
-// What a run has shown of one aircraft.
+// The results of a run for one aircraft.
 struct AircraftResult
 {
     std::string Node;
@@ -23,7 +23,7 @@ struct AircraftResult
     std::vector<FoundTarget> Targets;
 };
 
-// What a run must have shown beside what every run must.
+// Demands on a run besides those on every run.
 struct Demands
 {
     std::set<std::string> Commanded{};  // these aircraft must have been sent a command
@@ -35,7 +35,7 @@ struct Demands
 // demands are met.
 struct Verdict
 {
-    std::vector<std::string> Failures;  // one line for each thing that is wrong
+    std::vector<std::string> Failures;  // one line for each failure
     std::vector<std::string> Summary;   // for people: aircraft, outstanding commands, failures, result
 
     bool Passed() const { return Failures.empty(); }

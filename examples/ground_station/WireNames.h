@@ -1,5 +1,5 @@
-// What the page and the terminal call the values of the enumerations. What is none of them, for it came from the network, is
-// `unknown`.
+// The names of enumeration values on the page and the terminal. Undeclared values, which the network may
+// bring, are `unknown`.
 #pragma once
 
 #include "FleetTable.h"

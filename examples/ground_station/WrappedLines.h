@@ -7,8 +7,8 @@
 namespace Ground
 {
 
-// The parts behind the head, with `, ` between them, in as many lines as it takes to stay within the columns.
-// No part is cut; further lines are indented. None if there are no parts.
+// The parts behind the head, with `, ` between them, wrapped into lines that fit the columns. No part is
+// cut; further lines are indented. Empty if there are no parts.
 std::vector<std::string> WrappedLines(const std::string &head, const std::vector<std::string> &parts,
                                       std::size_t columns);
 

@@ -117,7 +117,7 @@ Uav::SearchArea AreaOf(const Options &options)
     return area;
 }
 
-// Another one in each second of four days, so that the answers to an earlier run are told apart.
+// Different in each second of four days, so that answers to an earlier run are told apart.
 std::uint32_t FirstCommandId()
 {
     const auto seconds =
@@ -125,7 +125,8 @@ std::uint32_t FirstCommandId()
     return 1 + static_cast<std::uint32_t>(seconds.count() % 400'000) * 10'000;
 }
 
-// Of a page that others than this machine reach, unless everybody is to; nothing if it needs none.
+// The secrets of a page that other machines can reach. Nothing if only this machine reaches it, or if it is
+// open to everybody.
 std::optional<Ground::WebSecrets> SecretsOf(const Options &options, const boost::asio::ip::address &address)
 {
     if (options.WebIsOpen || (options.WebKeys.empty() && address.is_loopback()))
@@ -139,7 +140,7 @@ std::optional<Ground::WebSecrets> SecretsOf(const Options &options, const boost:
                                    : Ground::WebSecretsIn(options.WebKeys, names, now, !options.Node.Check);
 }
 
-// Null if no page is wanted. Listens already, so that an address that cannot be had is known at once.
+// Null if no page is configured. Already listens, so that an unavailable address is reported at once.
 std::unique_ptr<Ground::WebServer> MakeWebServer(const Options &options)
 {
     if (options.Web.empty())
@@ -183,8 +184,8 @@ Ground::Commander::Settings CommanderSettings(const Options &options, const std:
     return settings;
 }
 
-// Ends a run in order at the first SIGINT or SIGTERM; the second ends the process as usual. The reactor
-// leaves signals alone that a program handles itself.
+// Ends a run in an orderly way at the first SIGINT or SIGTERM; the second ends the process as usual. The
+// reactor ignores signals that a program handles itself.
 class EndOnSignal
 {
 public:

@@ -12,7 +12,7 @@ namespace
 class HelloManager : public Rabit::RabitManager
 {
 public:
-    // A count of 0 or less means for ever.
+    // A count of 0 or less means endlessly.
     explicit HelloManager(int count) : RabitManager("HelloManager"), _remaining(count)
     {
         SetWakeupTimeDelayMSec(1000);

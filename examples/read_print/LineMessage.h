@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-// One line of text: what the reading manager tells the printing manager, both ways.
+// One line of text from the reading manager to the printing manager, as a post or in a queue.
 class LineMessage : public Rabit::RabitMessage
 {
 public:

@@ -30,13 +30,13 @@ void PrintManager::ExecuteUnitOfWork()
 bool PrintManager::PrintWhatIsThere()
 {
     bool printed = false;
-    // A fetch brings the last line only, however many were posted since the one before.
+    // A fetch brings only the last line, even if several were posted since the previous fetch.
     if (_line->FetchMessage() && _line->WasPosted())
     {
         printed = true;
         std::osyncstream(std::cout) << "posted: " << _line->Line << std::endl;
     }
-    // A queue keeps them all.
+    // A queue keeps all lines.
     std::shared_ptr<Rabit::RabitMessage> message;
     while (GetManagerMessageQueue()->GetMessage(message))
     {

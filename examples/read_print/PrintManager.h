@@ -20,11 +20,11 @@ public:
     explicit PrintManager(const Options &options);
     void Startup() final;
     void ExecuteUnitOfWork() final;
-    // Prints what is still there.
+    // Prints the lines that are left.
     void Shutdown() final;
 
 private:
-    bool PrintWhatIsThere();  // whether there was something
+    bool PrintWhatIsThere();  // true if there was a line
     static void SayThatItWaits();
 
     const std::shared_ptr<LineMessage> _line = std::make_shared<LineMessage>();

@@ -14,7 +14,7 @@
 namespace
 {
 
-// The unit of work blocks no longer than this, so that the manager notices when it is told to shut down.
+// The unit of work blocks no longer than this, so that the manager notices a shutdown request.
 constexpr int LongestWait_MSec = 200;
 
 std::string Trimmed(const std::string &text)
@@ -24,7 +24,7 @@ std::string Trimmed(const std::string &text)
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-// In whatever case.
+// Ignores case.
 bool StartsWith(const std::string &text, std::string_view lowerCaseWord)
 {
     return text.size() >= lowerCaseWord.size() &&

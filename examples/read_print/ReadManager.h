@@ -16,7 +16,7 @@ class ReadManager : public Rabit::RabitManager
 public:
     ReadManager();
     void Startup() final;
-    // Waits a moment for input and handles all lines that are there.
+    // Waits at most 200 ms for input, and handles all available lines.
     void ExecuteUnitOfWork() final;
     void Shutdown() final;
 

@@ -1,5 +1,4 @@
-// What an aircraft's mission control and health monitor are told on the command line, be it to fly or to be
-// run again.
+// Command-line options of an aircraft's mission control and health monitor, in flight and in uav_rerun.
 #pragma once
 
 #include "HealthMonitor.h"

@@ -68,7 +68,7 @@ bool Airframe::IsOnCircle() const
     return std::hypot(way.NorthM, way.EastM) < _circle.RadiusM * 1.3;
 }
 
-// Straight at the middle from afar, along the vector field near the circle.
+// From afar straight towards the middle, near the circle along the vector field.
 double Airframe::WantedTurnRadps(const Offset &fromCentre, double distanceM) const
 {
     const double bearing = std::atan2(fromCentre.EastM, fromCentre.NorthM);
@@ -83,7 +83,7 @@ double Airframe::WantedTurnRadps(const Offset &fromCentre, double distanceM) con
     return turn + TurnPerRad * WrapRad(course - _yawRad);
 }
 
-// So fast that it can still slow down for the circle.
+// The highest speed from which it can still slow down for the circle.
 double Airframe::WantedSpeedMps(double distanceM) const
 {
     const double onCircle = std::min(_circle.SpeedMps, _wayThereMps);

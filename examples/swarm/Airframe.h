@@ -13,10 +13,10 @@ struct Circle
     double SpeedMps = 8;
 };
 
-// How an aircraft moves through still air: as a point that turns by banking, within limits of bank, roll
-// rate, climb and acceleration. It flies straight towards a circle, slows down for it, joins it along the
-// vector field of Nelson, Barber, McLain and Beard ("Vector field path following for miniature air vehicles",
-// IEEE Transactions on Robotics 23(3), 2007) and stays on it.
+// A model of an aircraft in still air: a point that turns by banking, within limits of bank, roll rate,
+// climb and acceleration. It flies straight towards a circle, slows down for it, joins it along the vector
+// field of Nelson, Barber, McLain and Beard ("Vector field path following for miniature air vehicles", IEEE
+// Transactions on Robotics 23(3), 2007) and stays on it.
 //
 // Not thread-safe.
 class Airframe
@@ -28,15 +28,15 @@ public:
     static constexpr double MaxClimbChangeMps2 = 2;
     static constexpr double MaxAccelerationMps2 = 2.5;
 
-    // Moves on from there at that velocity, on its way to the circle at the circle's speed.
+    // Starts with that position and velocity, on its way to the circle at the circle's speed.
     Airframe(const Motion &start, const Circle &circle);
 
-    // Another circle, and the speed (m/s, above 0) at which to go there.
+    // Sets another circle, and the speed (m/s, above 0) on the way to it.
     void FlyTo(const Circle &circle, double speedMps);
-    // Moves on in time.
+    // Advances the motion in time.
     void Advance(double seconds);
     Motion Now() const;
-    // Whether it has joined the circle.
+    // True if it has joined the circle.
     bool IsOnCircle() const;
 
 private:

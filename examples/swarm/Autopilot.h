@@ -13,13 +13,13 @@
 namespace Swarm
 {
 
-// The interface to what flies: the manager `Autopilot`.
+// The interface to the vehicle: the manager `Autopilot`.
 //
-// Posts:  Pose (Uav::Pose), whenever the vehicle tells where it is, a simulated one ten times a second, and
-// nothing while it does not; FlightMode (Uav::FlightMode), at the start and when it changes: also whether
-// courses are flown now.
-// Queue:  Autopilot takes Uav::Course, checked before; it flies there at once. A Course at speed 0 takes the
-// last one back.
+// Posts:  Pose (Uav::Pose), for each new motion of the vehicle, ten times a second if it is simulated;
+// FlightMode (Uav::FlightMode), at the start and when it changes, with the reason if it would not fly a
+// course now.
+// Queue:  Autopilot takes Uav::Course, already checked, and flies there at once. A Course at speed 0 takes
+// the last one back.
 class Autopilot : public Rabit::RabitManager
 {
 public:

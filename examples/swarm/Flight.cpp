@@ -48,7 +48,7 @@ Motion Flight::CatchUp::At(double seconds) const
     return motion;
 }
 
-// The track moves on meanwhile: where it will be on arrival is found by trying the last duration again.
+// The track moves on meanwhile, so the point of arrival is found iteratively, with the last duration.
 Flight::CatchUp Flight::WayToTrack(const Motion &from, double startS) const
 {
     constexpr int rounds = 8;
@@ -99,7 +99,7 @@ void Flight::Release(double seconds)
         return;
     }
     if (!_airframe)
-        return;  // flies the track, or catches it up
+        return;  // flies the track, or catches up with it
     _catchUp = WayToTrack(now, seconds);
     _airframe.reset();
     _phase = FlightPhase::Track;

@@ -10,19 +10,19 @@
 namespace Swarm
 {
 
-// What a simulated aircraft is flying.
+// The phase of an aircraft's flight.
 enum class FlightPhase
 {
-    Idle,     // nothing of its own: somebody else flies it
+    Idle,     // flies nothing itself: somebody else flies the aircraft
     Track,    // a recorded track
-    Pattern,  // circles of its own, for want of a track
+    Pattern,  // its own circle, as it has no track
     Goto,     // on the way to a commanded point
     Hold      // circling the commanded point
 };
 
-// The flight of one simulated aircraft: a recorded track or a circle of its own until it is told to fly to a
-// point, which it then circles; and its own again when it is released. It catches the track up where that
-// will be by then, along a smooth curve. Positions never jump, and velocities only where a track's do.
+// The flight of one simulated aircraft. It flies a recorded track or its own circle. FlyTo sends it to a
+// point, which it then circles; Release sends it back. It joins the track along a smooth curve, at the
+// place where the track will be by then. Positions never jump, and velocities only where a track's do.
 //
 // The time is an argument everywhere, in seconds since the start of the flight, and must not go back.
 // Not thread-safe.
@@ -40,7 +40,7 @@ public:
     Motion At(double seconds);
     // Leaves for the point at that speed (m/s, above 0), from where the aircraft is at that time.
     void FlyTo(const GeoPoint &point, double speedMps, double seconds);
-    // Leaves for the track or the circle of its own.
+    // Leaves for the track or its own circle.
     void Release(double seconds);
     // As of the last call of At, FlyTo or Release.
     FlightPhase Phase() const { return _phase; }
@@ -62,7 +62,7 @@ private:
 
     std::optional<Swarm::Track> _track;
     Circle _pattern;
-    std::optional<Airframe> _airframe;  // none while it flies the track or catches it up
+    std::optional<Airframe> _airframe;  // none while it flies the track or catches up with it
     std::optional<CatchUp> _catchUp;
     double _nowS = 0;
     FlightPhase _phase;

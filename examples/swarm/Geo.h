@@ -1,7 +1,7 @@
 // Positions on the earth, and how an aircraft moves there.
 //
-// Over the few kilometres that these aircraft fly the earth is taken for flat around the point that a
-// calculation starts from; the error is below a metre for each kilometre.
+// The earth is taken for flat around the start point of a calculation. Over the few kilometres that these
+// aircraft fly, the error is below a metre for each kilometre.
 #pragma once
 
 namespace Swarm
@@ -25,8 +25,7 @@ struct Offset
     double LengthM() const;
 };
 
-// Where an aircraft is, how fast it moves (m/s) and how it lies in the air (rad; yaw clockwise from true
-// north).
+// Position, velocity (m/s) and attitude (rad; yaw clockwise from true north) of an aircraft.
 struct Motion
 {
     GeoPoint Position;

@@ -7,7 +7,7 @@ namespace Swarm
 {
 namespace
 {
-// The gateway posts each second; older than this it has stopped.
+// The gateway posts Fleet each second; if Fleet is older than this, the gateway has stopped.
 constexpr double FleetIsOldS = 3;
 }  // namespace
 
@@ -44,7 +44,7 @@ void HealthMonitor::ExecuteUnitOfWork()
         SendHome();
 }
 
-// An autopilot that was not ready when it was asked may be by now.
+// If the command was declined, it is sent again: an autopilot that was not ready may be by now.
 void HealthMonitor::TakeAnswers()
 {
     std::shared_ptr<Rabit::RabitMessage> message;
@@ -73,7 +73,7 @@ float HealthMonitor::BatteryPercent() const
     return static_cast<float>(std::max(0.0, 100 * (1 - flown.count() / *_options.EnduranceS)));
 }
 
-// NaN if the ground station was never heard. A gateway that tells nothing any more hears nothing either.
+// NaN if the ground station was never heard. A gateway that stopped posting counts as hearing nothing.
 double HealthMonitor::GroundSilentS()
 {
     _fleet->FetchMessage();

@@ -30,8 +30,8 @@ public:
     struct Options
     {
         std::string Ground = "ground";  // the node of the ground station
-        double SilenceLimitS = 10;      // longer, and the aircraft goes home
-        // How long a simulated battery lasts, from full to empty; nothing: the battery is not known.
+        double SilenceLimitS = 10;      // after a longer silence the aircraft flies home
+        // Endurance of a simulated battery, from full to empty; nothing: the battery is not known.
         std::optional<double> EnduranceS;
     };
 
@@ -50,7 +50,7 @@ private:
     const Names _names;
     const Options _options;
     HomeRule _rule;
-    std::string _toSend;  // why to go home, if that was not told yet
+    std::string _toSend;  // reason to fly home that is not sent yet
     std::chrono::nanoseconds _start{0};
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::Health> _health = std::make_shared<Uav::Health>();

@@ -16,7 +16,7 @@
 namespace Swarm
 {
 
-// The camera of an aircraft and what recognizes targets in its frames, both simulated: the manager
+// The camera of an aircraft and the recognition of targets in its frames, both simulated: the manager
 // `ImageProcessing`.
 //
 // Fetches: Pose of its aircraft, at the moment of capture, and that of the others.
@@ -25,7 +25,7 @@ namespace Swarm
 //          its own aircraft and of each other one; a small JPEG every four seconds, as Uav::Picture to the
 //          queue Pictures of every ground station.
 //
-// Without a pose that is new and fresh there is no frame.
+// Without a new and fresh pose there is no frame.
 class ImageProcessing : public Rabit::RabitManager
 {
 public:
@@ -33,7 +33,7 @@ public:
     static constexpr std::chrono::seconds PicturePeriod{4};
     static constexpr double MaxPoseAgeS = 1;
 
-    // The seed decides what the camera misses.
+    // The seed decides which targets the camera misses.
     ImageProcessing(const Names &names, World world, std::uint64_t seed,
                     Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 

@@ -10,7 +10,7 @@ namespace Swarm
 {
 namespace
 {
-constexpr std::size_t MaxText = 128;  // what MissionState takes
+constexpr std::size_t MaxText = 128;  // bound of the text in MissionState
 }
 
 MissionControl::MissionControl(const Names &names, const std::string &ground, const Floor &floor,

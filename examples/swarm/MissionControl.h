@@ -17,8 +17,8 @@
 namespace Swarm
 {
 
-// Decides what the aircraft does: the manager `MissionControl`. What decides is class Mission; this one
-// brings it what it needs to know and carries out what it decides.
+// Controls the mission of the aircraft: the manager `MissionControl`. Class Mission decides; this class
+// gives it the data, and carries out its decisions.
 //
 // Queue:   MissionControl takes Uav::Goto, Uav::GoHome and Uav::Search, and answers with Uav::CommandAck to
 //          the queue that the command names in reply_to; and from the other aircraft Uav::TargetReport and
@@ -34,7 +34,7 @@ public:
     static constexpr std::chrono::seconds StatePeriod{1};
     static constexpr std::chrono::milliseconds ActPeriod{200};
 
-    // `ground` is the node of the ground station, whose SearchArea holds.
+    // `ground` is the node of the ground station whose SearchArea is used.
     MissionControl(const Names &names, const std::string &ground = "ground", const Floor &floor = Floor(),
                    Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 

@@ -8,12 +8,11 @@
 namespace Swarm
 {
 
-// What the messages, queues and managers of an aircraft are called in this process.
+// The names of an aircraft's messages, queues and managers in this process.
 //
-// An aircraft is two nodes: `uav1` flies, `uav1.vision` looks. The names of a node that is local are plain
-// here (`Pose`); those of every other node are full (`uav1/Pose`), and the gateway makes them work. If no
-// node is local all names are full: then any number of whole aircraft live in one workspace, and need no
-// gateway.
+// An aircraft is two nodes: `uav1` flies, `uav1.vision` has the camera. Names of the local node are plain
+// (`Pose`); those of every other node are full (`uav1/Pose`), and the gateway serves them. If no node is
+// local, all names are full: then any number of whole aircraft share one workspace, without a gateway.
 //
 // Immutable; may be used from any thread.
 class Names
@@ -26,7 +25,7 @@ public:
     }
 
     const std::string &Aircraft() const { return _aircraft; }
-    // The number that the last three characters of an aircraft's name end with; 0 if there is none.
+    // The number at the end of the last three characters of an aircraft's name; 0 if there is none.
     static int NumberOf(const std::string &aircraft)
     {
         const std::string end = aircraft.size() > 3 ? aircraft.substr(aircraft.size() - 3) : aircraft;

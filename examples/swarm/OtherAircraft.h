@@ -15,22 +15,22 @@
 namespace Swarm
 {
 
-// The other aircraft: whoever's Pose is heard in this workspace, be it posted by managers of this process or
-// mirrored by the gateway. For one thread: the manager's.
+// The other aircraft: all whose Pose is in this workspace, posted by managers of this process or mirrored
+// by the gateway. Only for the manager's thread.
 class OtherAircraft
 {
 public:
-    // An aircraft whose pose is older than this counts as not there.
+    // An aircraft whose pose is older than this counts as absent.
     static constexpr double MaxAgeS = 3;
-    // New ones are looked for this often.
+    // Interval at which new aircraft are looked for.
     static constexpr std::chrono::seconds LookPeriod{1};
 
     // The workspace must outlive this object.
     OtherAircraft(Names names, Rabit::RabitWorkspace &workspace);
 
-    // Where those are that are there now, by name.
+    // The poses of the aircraft that are present now, by name.
     std::map<std::string, Uav::Pose> Poses();
-    // What they have found, of all that were ever there.
+    // The findings of all aircraft that were ever present.
     std::map<std::string, Uav::Findings> Findings();
 
 private:

@@ -5,9 +5,9 @@
 namespace Swarm
 {
 
-// Beats at a steady rate for a manager that sleeps in whole milliseconds. Deadlines are multiples of the
-// period from the first beat, so that lateness does not add up. Beats that were slept through altogether are
-// left out. Not thread-safe. Times are of any clock that does not go back.
+// Beats at a steady rate, for a manager that sleeps in whole milliseconds. Deadlines are multiples of the
+// period from the first beat, so that lateness does not add up. Missed beats are skipped. Not thread-safe.
+// Times are of any clock that does not go back.
 class Schedule
 {
 public:
@@ -15,7 +15,7 @@ public:
 
     explicit Schedule(Duration period) : _period(period) {}
 
-    // Whether a beat is due at that time; then the next one is set. The first call is the first beat.
+    // If a beat is due at that time, returns true and sets the next one. The first call is the first beat.
     bool Due(Duration now)
     {
         if (!_started)

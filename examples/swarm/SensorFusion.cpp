@@ -44,7 +44,7 @@ bool SensorFusion::TakeMessages()
     return any;
 }
 
-// What does not arrive is told again after a while.
+// Sends the targets to tell. Lost messages do no harm: TargetTable::Tell repeats names after a while.
 void SensorFusion::TellOthers(double gpsTimeS)
 {
     const auto told = std::make_shared<Uav::Targets>(_table.Tell(gpsTimeS));

@@ -14,12 +14,12 @@
 namespace Swarm
 {
 
-// Makes targets of what the cameras of this aircraft and of the others detect: the manager `SensorFusion`.
+// Makes targets from the detections by the cameras of all aircraft: the manager `SensorFusion`.
 //
 // Queue: SensorFusion takes Uav::Detections, and Uav::Targets from the sensor fusion of other aircraft.
 // Posts: Targets (Uav::Targets), after each batch of messages and every second.
 // Sends: Uav::Targets, those whose names the others may not know, to the queue SensorFusion of each of them.
-// Fetches: Pose of the others, to know who they are.
+// Fetches: Pose of the others, to know their names.
 class SensorFusion : public Rabit::RabitManager
 {
 public:

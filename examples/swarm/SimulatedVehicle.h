@@ -6,7 +6,7 @@
 namespace Swarm
 {
 
-// An aircraft that exists in the computer alone: flies a Flight, and tells of it ten times a second.
+// A simulated aircraft: flies a Flight, and gives a new motion ten times a second.
 class SimulatedVehicle final : public Vehicle
 {
 public:

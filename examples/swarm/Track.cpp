@@ -18,7 +18,7 @@ namespace
 {
 constexpr std::uintmax_t MaxFileBytes = 100'000'000;
 constexpr double WayBackSpeedMps = 5;
-constexpr double MaxAngleRad = 6.2832;  // a whole turn either way: recorders differ in the range they use
+constexpr double MaxAngleRad = 6.2832;  // a whole turn either way: recorders use different ranges
 
 struct Column
 {
@@ -38,7 +38,7 @@ constexpr std::array<Column, 10> Columns{{{"time_s", 0, 1e9},
                                           {"pitch_rad", -MaxAngleRad, MaxAngleRad},
                                           {"yaw_rad", -MaxAngleRad, MaxAngleRad}}};
 
-// One line of the file, and where it is, for errors.
+// One line of the file, with its position for errors.
 struct Line
 {
     const std::string &File;
@@ -86,7 +86,7 @@ Field Trimmed(std::string_view text, std::size_t column)
     return {text, column};
 }
 
-// Exactly as many fields as there are columns, or a TrackError.
+// Splits a line into exactly one field per column. Throws TrackError otherwise.
 std::array<Field, Columns.size()> Split(const Line &line)
 {
     std::array<Field, Columns.size()> fields;
@@ -121,7 +121,7 @@ void CheckHeader(const Line &line)
                                         Quoted(field.Text));
         start = comma == std::string_view::npos ? line.Text.size() : comma + 1;
     }
-    Split(line);  // nothing may follow
+    Split(line);  // refuses further fields
 }
 
 double Value(const Line &line, const Field &field, const Column &column)

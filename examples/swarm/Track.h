@@ -19,7 +19,7 @@ public:
     using Common::BadInput::BadInput;
 };
 
-// A recorded flight, flown again and again.
+// A recorded flight, flown in a loop.
 //
 // The file is CSV text (fields separated by commas, no quotes). Its first line is
 //   time_s,latitude_deg,longitude_deg,altitude_m,velocity_north_mps,velocity_east_mps,velocity_down_mps,
@@ -43,8 +43,8 @@ public:
     static Track Parse(std::istream &text, const std::string &name);
 
     // The motion that many seconds after the start, linear between the rows (angles the short way round).
-    // After the last row the aircraft flies straight back to the first, at 5 m/s, and starts anew. Negative
-    // counts as 0.
+    // After the last row the aircraft flies straight back to the first, at 5 m/s, and starts again.
+    // Negative times count as 0.
     Motion At(double seconds) const;
 
     std::size_t Rows() const { return _rows.size(); }

@@ -35,8 +35,8 @@ struct Options
     Swarm::AircraftOptions Aircraft;
 };
 
-// Circles south of the field, beside those of the other aircraft: the number at the end of the name says
-// where.
+// A circle south of the field, beside those of the other aircraft, placed by the number at the end of the
+// name.
 Swarm::Circle PatternFor(const std::string &node)
 {
     constexpr int perRow = 5;

@@ -1,5 +1,5 @@
-// What of an aircraft decides, once more: mission control, with the mission and its book of targets, and the
-// health monitor, run again with what they read in flight.
+// Runs the deciding parts of an aircraft again with their recorded inputs: mission control, with the
+// mission and its book of targets, and the health monitor.
 #include "AircraftOptions.h"
 #include "HealthMonitor.h"
 #include "MissionControl.h"
@@ -27,7 +27,7 @@ struct Options
     Swarm::AircraftOptions Aircraft;
 };
 
-// Whether all runs did what was recorded.
+// True if all runs matched the recording.
 bool RunAgain(const Rabit::ManagerRecording &recording, const Rabit::ManagerRerun::MakeManager &make,
               int times)
 {
@@ -55,7 +55,7 @@ bool RunAgain(const Rabit::ManagerRecording &recording, const Rabit::ManagerReru
 
 int Run(const Options &options)
 {
-    Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Error);  // what they warned of, they do again
+    Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Error);  // they repeat the warnings of the flight
     const Swarm::Floor floor = options.Aircraft.MissionFloor();
     std::vector<std::string> problems;
     bool alike = true;

@@ -1,5 +1,5 @@
-// The eyes of one simulated aircraft: a camera, what makes targets of its detections, and the gateway that
-// joins them to the other nodes.
+// The vision node of one simulated aircraft: a camera, the sensor fusion, and the gateway that joins them
+// to the other nodes.
 #include "AircraftConfig.h"
 #include "ImageProcessing.h"
 #include "Names.h"
@@ -29,7 +29,8 @@ int main(int argc, char **argv)
     {
         const Swarm::Names names(Swarm::AircraftOf(config.Node), config.Node);
         const Swarm::World world = Swarm::World::Load(worldFile);
-        const std::size_t seed = std::hash<std::string>()(config.Node);  // each camera misses something else
+        const std::size_t seed = std::hash<std::string>()(config.Node);  // each camera misses different
+                                                                         // targets
         reactor.AddManager(std::make_unique<Swarm::ImageProcessing>(names, world, seed));
         reactor.AddManager(std::make_unique<Swarm::SensorFusion>(names));
     };

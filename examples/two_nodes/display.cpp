@@ -40,7 +40,7 @@ private:
     {
         auto calibration = std::make_shared<TwoNodes::Calibration>();
         calibration->offset_celsius = -0.5;
-        _receipt = std::make_shared<Rabit::RabitQueueReceipt>();  // one for each message
+        _receipt = std::make_shared<Rabit::RabitQueueReceipt>();  // a receipt for each message
         WakeUpManagerOnOutcome(_receipt);
         AddMessageToQueue("sensor/Sensor", calibration, _receipt);  // the queue Sensor of the node sensor
     }

@@ -27,7 +27,7 @@ public:
     void Reserve(std::size_t size) { _bytes.reserve(size); }
     // Bytes written, the encapsulation header included.
     std::size_t Size() const { return _bytes.size(); }
-    // One number of so many bytes, given by its bits.
+    // Appends a number of `size` bytes, given by its bits.
     void Put(std::uint64_t bits, unsigned size)
     {
         Align(size);
@@ -45,7 +45,8 @@ public:
         _bytes.insert(_bytes.end(), text.begin(), text.end());
         _bytes.push_back(0);
     }
-    // Sets the number of 4 bytes at an offset that Size() gave before it was put; it was aligned then.
+    // Overwrites a 4-byte number at `at`: the value of Size() before it was put. Size() was a multiple of 4
+    // then.
     void Replace(std::size_t at, std::uint32_t number) { std::memcpy(_bytes.data() + at, &number, 4); }
     void Align(unsigned size)
     {

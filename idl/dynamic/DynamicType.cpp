@@ -23,13 +23,13 @@ namespace Rabit
 namespace
 {
 
-// What a text may grow to, as what decoding may allocate.
+// The largest text for a sample: the same bound as for allocation in decoding.
 std::size_t MostText(std::size_t sampleSize)
 {
     return Idl::CdrReader::MaxGrowth * sampleSize + Idl::CdrReader::Allowance;
 }
 
-// Until the process ends, as the registry asks of its types.
+// Keeps a type until the process ends, as the registry requires.
 void Keep(const std::shared_ptr<const DynamicType> &type)
 {
     static std::mutex mutex;
@@ -106,7 +106,7 @@ public:
         }
         catch (const nlohmann::ordered_json::exception &error)
         {
-            // Without the library's own name before it.
+            // Cuts off the prefix with the library's name.
             const std::string_view what = error.what();
             Reason = "not JSON: " + std::string(what.substr(std::min(what.find("] ") + 2, what.size())));
         }
@@ -146,7 +146,7 @@ const MessageType *DynamicType::Register(const std::shared_ptr<const DynamicType
         }
         catch (const std::logic_error &)
         {
-            return nullptr;  // another thread was faster, with another text
+            return nullptr;  // another thread was faster, with a different text
         }
         registered = MessageTypeRegistry::Find(type->Name());
         if (registered == type.get())

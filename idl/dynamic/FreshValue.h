@@ -1,4 +1,4 @@
-// New values, as those of generated code start.
+// New values, equal to those of generated code.
 #pragma once
 
 #include "dynamic/CdrBuilder.h"
@@ -9,7 +9,7 @@ namespace Rabit::Dynamic
 
 // At most Shape::FreshSize bytes.
 void PutFresh(CdrBuilder &out, const Shape &shape);
-// A member: its @default, else a new value of its type.
+// For a member: its @default, else a new value of its type.
 void PutFresh(CdrBuilder &out, const Part &part);
 
 }  // namespace Rabit::Dynamic

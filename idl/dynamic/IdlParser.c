@@ -5,9 +5,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* The parser writes what it does not like to the standard error output, by functions that it calls through
-   the dynamic linker and that are defined here again: a text of a stranger must not write to our terminal,
-   and its sender is to be told the reason. Outside of RabitParseIdl they write as the parser's own do. */
+/* The parser reports errors to the standard error output, by functions that it calls through the dynamic
+   linker. They are redefined here: an untrusted text must not write to our terminal, and its sender should be
+   told the reason. Outside of RabitParseIdl they write like the parser's own. */
 static _Thread_local char *CollectedReason;
 static _Thread_local size_t CollectedSize;
 static _Thread_local bool Collecting;

@@ -133,7 +133,7 @@ private:
         Add(kind, begin);
     }
 
-    // Decimal, without leading zeros, with which others begin octal and hexadecimal.
+    // Reads a decimal number. Leading zeros are refused: they begin octal and hexadecimal numbers.
     void Number()
     {
         const std::size_t begin = _at;

@@ -1,4 +1,4 @@
-// The words and signs of an IDL text from a stranger.
+// The tokens of an untrusted IDL text.
 #pragma once
 
 #include <cstddef>
@@ -24,13 +24,13 @@ struct Token
         End
     };
     Kind What = Kind::End;
-    std::string_view Text;  // in the text that was read
+    std::string_view Text;  // points into the text
     std::size_t Line = 0;
 };
 
-// All of them, End last; comments are left out. Nothing and a reason if the text has a character, a number or
-// an escape that is not supported, or exceeds a limit. Time and memory are linear in the text, which must
-// outlive the tokens.
+// Returns all tokens without comments, End last. If the text has an unsupported character, number or
+// escape, or exceeds a limit, returns none and sets the reason. Time and memory are linear in the text,
+// which must outlive the tokens.
 std::vector<Token> TokensOf(std::string_view idlText, std::string &reason);
 
 }  // namespace Rabit::Dynamic

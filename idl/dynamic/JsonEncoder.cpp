@@ -44,7 +44,7 @@ const Named *FindNamed(const std::vector<Named> &all, std::string_view name)
     return found == all.end() ? nullptr : &*found;
 }
 
-// Puts a step of the path behind it for as long as it lives, and leaves it there after a refusal.
+// Appends a step to the path for as long as it lives. After a refusal the step stays, for Reason.
 class Step
 {
 public:

@@ -1,4 +1,4 @@
-// From JSON to the bytes of a value, or why it does not fit.
+// Encodes JSON as the bytes of a value, or tells why it does not fit.
 #pragma once
 
 #include "dynamic/CdrBuilder.h"
@@ -18,7 +18,8 @@ public:
     using Json = nlohmann::ordered_json;
 
     explicit JsonEncoder(CdrBuilder &out) : _out(out) {}
-    // Appends the value. False if it does not fit: then Reason tells why, and what was appended is of no use.
+    // Appends the value. False if it does not fit: then Reason tells why, and the appended bytes are
+    // invalid.
     bool Put(const Shape &shape, const Json &json);
     // `legs[2].kind: expected "IDLE" or "BUSY", not 7`; printable, however hostile the JSON.
     std::string Reason() const { return (_path.empty() ? "" : _path + ": ") + _reason; }
@@ -36,7 +37,7 @@ private:
     bool PutStruct(const Shape &shape, const Json &json);
     bool PutUnion(const Shape &shape, const Json &json);
     bool CheckLength(const Shape &shape, std::size_t length, const char *what);
-    // The discriminator of that value.
+    // Reads the discriminator of that value.
     bool ReadLabel(const Shape &discriminator, const Json &json, std::int64_t &label);
 
     bool Refuse(std::string reason);

@@ -7,7 +7,7 @@ namespace Rabit::Dynamic
 
 void JsonSink::Char(char value)
 {
-    // As the character of Unicode that has this number, which is what Latin 1 is.
+    // The Unicode character with this number, as in Latin 1.
     const auto code = static_cast<std::uint8_t>(value);
     const char two[] = {static_cast<char>(0xc0 | code >> 6), static_cast<char>(0x80 | (code & 0x3f))};
     AppendJsonText(_out, code < 0x80 ? std::string_view(&value, 1) : std::string_view(two, 2));

@@ -1,4 +1,4 @@
-// Writes a value as JSON as it is walked over. DynamicType.h says how.
+// A sink of a walk that writes the value as JSON, in the form that DynamicType.h describes.
 #pragma once
 
 #include "dynamic/Shape.h"
@@ -16,7 +16,7 @@ namespace Rabit::Dynamic
 class JsonSink
 {
 public:
-    // maxSize: of the text; more is not Ok.
+    // If the text exceeds maxSize, Ok() is false.
     JsonSink(std::string &out, std::size_t maxSize) : _out(out), _maxSize(maxSize) {}
 
     void Bool(bool value) { _out += value ? "true" : "false"; }
@@ -39,8 +39,8 @@ public:
         }
         if constexpr (std::is_same_v<T, float>)
         {
-            // The one float whose fewest digits, read as a double as JSON is, are halfway to the next one and
-            // become that. All were tried.
+            // The only float (all were checked) that its shortest digits do not restore: read as a double,
+            // as JSON is, they lie halfway to the next float and round to that.
             if (std::fabs(value) == 0x1.5c87fap-84F)
             {
                 Number(static_cast<double>(value));

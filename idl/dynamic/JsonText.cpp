@@ -41,7 +41,7 @@ bool IsUtf8(std::string_view text)
 void AppendJsonText(std::string &out, std::string_view utf8)
 {
     out += '"';
-    std::size_t plain = 0;  // what was not appended yet begins here
+    std::size_t plain = 0;  // start of the part that is not appended yet
     for (std::size_t at = 0; at < utf8.size(); ++at)
     {
         const std::uint8_t byte = At(utf8, at);
@@ -120,7 +120,7 @@ std::optional<std::vector<std::uint8_t>> FromBase64(std::string_view text)
         const unsigned unused = missing == 2 ? 0xffff : missing == 1 ? 0xff : 0;
         if ((group & unused) != 0)
         {
-            return std::nullopt;  // bits that no byte holds
+            return std::nullopt;  // leftover bits that belong to no byte
         }
         for (unsigned i = 0; i < 3 - missing; ++i)
         {

@@ -10,7 +10,8 @@ namespace Rabit::Dynamic
 namespace
 {
 
-// The beginning of a text, in whole characters; all of it if it is short. Nothing of what is not UTF-8.
+// The first `size` bytes of a text, cut to whole characters; all of it if it is shorter. Empty if they are
+// not UTF-8.
 std::string Beginning(const std::string &whole, std::size_t size)
 {
     std::string cut = whole.substr(0, size);
@@ -92,7 +93,7 @@ bool ReadInteger(const nlohmann::ordered_json &json, const Range &range, std::ui
         return false;
     }
     const auto value = json.get<double>();
-    constexpr double exact = 9007199254740992.0;  // 2^53: whole numbers beyond are not all there
+    constexpr double exact = 9007199254740992.0;  // 2^53: a double cannot hold all whole numbers beyond
     if (!(std::fabs(value) <= exact) || std::trunc(value) != value)
     {
         return false;

@@ -1,4 +1,4 @@
-// Single values of JSON: what they are, and how they are shown in a reason.
+// Single values of JSON: reading them, and showing them in the reason of a refusal.
 #pragma once
 
 #include "dynamic/Shape.h"
@@ -23,9 +23,9 @@ struct Range
     std::uint64_t Most;
 };
 Range RangeOfKind(Kind kind);
-// A whole number in the range, as its bits. JSON writes 1e3 for a thousand, too.
+// Reads a whole number in the range, as its bits. JSON may also write 1000 as 1e3.
 bool ReadInteger(const nlohmann::ordered_json &json, const Range &range, std::uint64_t &bits);
-// The number of a text that stands for a char: its one character, which JSON has as UTF-8.
+// Reads a char from a text of one character, which JSON has as UTF-8.
 bool ReadChar(const nlohmann::ordered_json &json, char &value);
 
 }  // namespace Rabit::Dynamic

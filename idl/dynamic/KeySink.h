@@ -1,4 +1,4 @@
-// Hashes the key of a struct as it is walked over.
+// A sink of a walk that hashes the key of a struct.
 #pragma once
 
 #include "dynamic/Shape.h"
@@ -50,7 +50,7 @@ public:
     Idl::KeyHasher *Enter(const Shape &shape, std::size_t index)
     {
         Idl::KeyHasher *const outside = _key;
-        // Without keys of its own a struct is, as a key, all of its members.
+        // If a struct without keys of its own is a key, all of its members count.
         if (shape.HasKey && !shape.Parts[index].Key)
         {
             _key = nullptr;

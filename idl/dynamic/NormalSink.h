@@ -1,4 +1,4 @@
-// Writes a value as it is walked over: the one form that equal values have.
+// A sink of a walk that writes the value in normal form: equal values give equal bytes.
 #pragma once
 
 #include "dynamic/CdrBuilder.h"

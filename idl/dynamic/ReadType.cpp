@@ -18,7 +18,7 @@ struct FreeState
     void operator()(const void *state) const { RabitFreeIdl(state); }
 };
 
-// One line that may be shown on any terminal: names in it come from the text.
+// Makes the reason one line that is safe for any terminal: names in it come from the text.
 std::string Line(std::string_view reason)
 {
     std::string line(reason.substr(0, 300));
@@ -36,7 +36,7 @@ std::unique_ptr<const Shapes> ReadType(std::string_view idlText, const std::stri
     {
         return nullptr;
     }
-    // Nowhere is said that the parser may be used by several threads.
+    // The parser does not promise to be thread-safe.
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
     const std::string text(idlText);  // ends in zero
@@ -54,7 +54,7 @@ std::unique_ptr<const Shapes> ReadType(std::string_view idlText, const std::stri
         const RabitIdl::Model model = RabitIdl::ModelReader(state.get(), refusals).Read();
         if (!refusals.Empty())
         {
-            // `:12: reason`, for there is no file.
+            // The line is `:12: reason`, as there is no file.
             reason = Line("line " + refusals.First().substr(1));
             return nullptr;
         }

@@ -1,4 +1,4 @@
-// From an IDL text to the shapes of one message in it.
+// Makes the shapes of one message from an IDL text.
 #pragma once
 
 #include "dynamic/Shape.h"
@@ -10,8 +10,8 @@
 namespace Rabit::Dynamic
 {
 
-// Null and a reason, in one line, if the text is refused. May be called from any thread; one at a time
-// parses.
+// If the text is refused, returns null and a reason in one line. May be called from any thread; calls wait
+// for each other while they parse.
 std::unique_ptr<const Shapes> ReadType(std::string_view idlText, const std::string &name,
                                        std::string &reason);
 

@@ -7,7 +7,7 @@ namespace Rabit::Dynamic
 
 const NamedNumber *EnumeratorOf(const Shape &shape, std::uint64_t value)
 {
-    // Most start at 0 and leave nothing out.
+    // Most enums start at 0 and have no gaps.
     if (value < shape.Names.size() && shape.Names[value].Number == value)
     {
         return &shape.Names[value];

@@ -57,7 +57,7 @@ struct NamedNumber
     std::uint64_t Number = 0;  // of an enumerator; of a bit: its mask
 };
 
-// What a discriminator selects besides the cases.
+// Results of CaseOf for a discriminator that selects no case.
 inline constexpr int NoCase = -1;  // allowed, selects nothing
 inline constexpr int NotAllowed = -2;
 
@@ -76,7 +76,7 @@ struct Shape
     std::uint64_t AllBits = 0;       // of a bitmask
     const Shape *Discriminator = nullptr;
     std::vector<std::pair<std::int64_t, int>> Labels;  // of a union: label and case, sorted
-    int OtherCase = NotAllowed;                        // of a union: what other labels select
+    int OtherCase = NotAllowed;                        // of a union: the case of all other labels
 
     unsigned Depth = 1;           // types within types, itself counted
     std::uint64_t MinSize = 0;    // fewest bytes of any value, alignment not counted

@@ -16,7 +16,7 @@ namespace Rabit::Dynamic
 namespace
 {
 
-// Sums and products of sizes that no text can make overflow.
+// Sums and products of sizes are capped at Huge, so that no text makes them overflow.
 constexpr std::uint64_t Huge = std::uint64_t{1} << 60;
 std::uint64_t Sum(std::uint64_t a, std::uint64_t b)
 {
@@ -34,7 +34,7 @@ unsigned SizeOfNumber(unsigned bitBound)
 
 Kind KindOf(RabitIdl::Primitive primitive)
 {
-    // In the same order.
+    // Both enumerations have the same order.
     return static_cast<Kind>(primitive);
 }
 static_assert(static_cast<int>(Kind::Double) == static_cast<int>(RabitIdl::Primitive::Double));
@@ -50,7 +50,8 @@ Shape OfPrimitive(RabitIdl::Primitive primitive)
     return shape;
 }
 
-// JSON could not tell the two apart. The parser misses a member whose name is that of a module around it.
+// Refuses equal names, which JSON could not tell apart. The parser does not notice if a member has the name
+// of an enclosing module.
 template <typename Named>
 void RefuseTwice(const std::vector<Named> &all)
 {
@@ -143,7 +144,7 @@ void ReadPart(Part &part, const RabitIdl::Member &member, const Shape &type)
     }
 }
 
-// The farthest end of a key, or of what counts in it, that starts at an offset; anything above 16 if it takes
+// The largest end offset of a key, or of a part of it, that starts at an offset. Any value above 16 means
 // more than 16 bytes.
 std::uint64_t KeyEnd(const Shape &type, std::uint64_t start)
 {
@@ -154,7 +155,7 @@ std::uint64_t KeyEnd(const Shape &type, std::uint64_t start)
             return type.Bound == 0 ? tooFar : (start + 3) / 4 * 4 + 4 + type.Bound + 1;
         case Kind::Sequence:
         case Kind::Union:
-            return tooFar;  // the reader refuses them as keys
+            return tooFar;  // the reader refuses these types as keys
         case Kind::Array:
             for (std::uint32_t i = 0; i < type.Length && start < tooFar; ++i)
             {
@@ -330,7 +331,7 @@ Shape ShapeBuilder::OfUnion(const RabitIdl::UnionDefinition &definition)
             shape.OtherCase = place;
         }
         least = std::min(least, type.MinSize);
-        // Not only of the first: JSON may start any of them.
+        // The largest of all cases, not that of the first: JSON may select any case.
         shape.FreshSize = std::max(shape.FreshSize, type.FreshSize);
         shape.Depth = std::max(shape.Depth, type.Depth + 1);
     }

@@ -1,4 +1,4 @@
-// From the model of an IDL text to the shapes of one of its messages.
+// Makes the shapes of one message from the model of an IDL text.
 #pragma once
 
 #include "dynamic/Shape.h"

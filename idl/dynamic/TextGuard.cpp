@@ -29,7 +29,7 @@ std::string Lower(std::string_view name)
 
 constexpr std::uint64_t Max32 = std::numeric_limits<std::uint32_t>::max();
 
-// Follows the grammar of IDL (OMG IDL 4.2, 7.4, and XTypes 7.3.1), and builds nothing.
+// Checks the grammar of IDL (OMG IDL 4.2, 7.4, and XTypes 7.3.1) without building a tree.
 class Guard : private TokenCursor
 {
 public:
@@ -53,7 +53,7 @@ private:
                                                        "value", "default_literal", "position"};
         return annotations.count(name) != 0;
     }
-    // Seen from here.
+    // True if the name is visible from the current scope.
     bool IsAmong(const NamesOfScopes &names, const std::string &name) const
     {
         return std::any_of(
@@ -61,8 +61,8 @@ private:
             [&](const auto &of)
             { return _scope.compare(0, of.first.size(), of.first) == 0 && of.second.count(name) != 0; });
     }
-    // An annotation behind a type of that name, seen from there, is what the parser crashes on: it takes the
-    // type for it.
+    // Reads an annotation. If a type of its name is visible there, the parser takes the type for the
+    // annotation and crashes, so that is refused.
     bool IsAnnotation() const
     {
         if (Now().What != Token::Kind::Annotation)
@@ -82,8 +82,8 @@ private:
         return true;
     }
     using TokenCursor::IsAnnotation;
-    // A name that is declared. One that differs from an annotation's in case alone has the parser crash on
-    // it, too.
+    // Reads a name that is declared. The parser also crashes on a name that differs from an annotation's
+    // only in case.
     void Name()
     {
         const std::string name = Lower(Now().Text);
@@ -93,7 +93,7 @@ private:
         }
         TokenCursor::Name();
     }
-    // The name of a type that the parser looks up among others.
+    // Reads the name of a type, which the parser looks up.
     void TypeName()
     {
         const std::string name = Lower(Now().Text);
@@ -148,7 +148,7 @@ private:
     void Annotated()
     {
         std::size_t count = 0;
-        bool isStructured = false;  // has what only a struct or union may have
+        bool isStructured = false;  // has annotations that only a struct or union may have
         bool isNested = false;
         bool hasBound = false;
         while (IsAnnotation())
@@ -385,7 +385,7 @@ private:
         }
     }
 
-    // Whether another one follows.
+    // Reads the name of a value or bit. True if another one follows.
     bool NamedPart()
     {
         Count(_parts, MaxParts, "members, cases, values and bits");
@@ -453,8 +453,8 @@ private:
     std::size_t _definitions = 0;
     std::size_t _parts = 0;
     std::string _scope;    // the modules around, `::a::b`
-    NamesOfScopes _types;  // those that have the name of an annotation
-    NamesOfScopes _alike;  // of annotations that something else is called, but for the case
+    NamesOfScopes _types;  // types that have the name of an annotation
+    NamesOfScopes _alike;  // names of annotations that are declared in another case
 };
 
 }  // namespace

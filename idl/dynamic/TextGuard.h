@@ -1,4 +1,4 @@
-// Refuses, before the C parser sees it, what a text from a stranger must not contain.
+// Refuses unsafe constructs of untrusted texts before the C parser sees them.
 #pragma once
 
 #include <string>
@@ -7,14 +7,13 @@
 namespace Rabit::Dynamic
 {
 
-// Why a text is not given to the parser, or an empty text.
+// Returns why a text must not be given to the parser; empty if it may.
 //
-// The parser is made for its user's own files: idlc 0.10.2 crashes while it tidies up after some texts that
-// are not grammatical, and spends a time that doubles with each line of others. So what reaches it is
-// grammatical, and of the part of IDL that MessageType::IdlText gives: no directives, constants, expressions,
-// forward declarations nor annotations but those of types, and within Limits.h. Names and what they mean are
-// the parser's matter, except that all must be declared before they are used, once. Time and memory are
-// linear in the text, but for a logarithm.
+// The parser is made for its user's own files: idlc 0.10.2 crashes while it cleans up after some
+// ungrammatical texts; on others its time doubles with each line. So only grammatical texts within Limits.h
+// pass, in the part of IDL that MessageType::IdlText uses: no directives, constants, expressions, forward
+// declarations, and no annotations except those of types. The parser resolves names; this only checks that
+// each is declared once, before it is used. Time and memory are linear in the text, except for a logarithm.
 std::string WhyNotParsed(std::string_view idlText);
 
 }  // namespace Rabit::Dynamic

@@ -1,4 +1,4 @@
-// Writes a value for people as it is walked over, as the generated ToString does.
+// A sink of a walk that writes the value as text for people, like the generated ToString.
 #pragma once
 
 #include "dynamic/Shape.h"
@@ -14,7 +14,7 @@ namespace Rabit::Dynamic
 class TextSink
 {
 public:
-    // maxSize: of the text; more is not Ok.
+    // If the text exceeds maxSize, Ok() is false.
     TextSink(Idl::TextWriter &out, std::size_t maxSize) : _out(out), _maxSize(maxSize) {}
 
     void Bool(bool value) { Put(value); }
@@ -128,7 +128,7 @@ private:
     Idl::TextWriter &_out;
     std::size_t _maxSize;
     std::vector<List> _lists;
-    bool _hidden = false;  // behind what is shown of a list
+    bool _hidden = false;  // past the shown elements of a list
 };
 
 }  // namespace Rabit::Dynamic

@@ -1,4 +1,4 @@
-// Goes over tokens and refuses what is not expected there.
+// Steps through tokens and refuses unexpected ones.
 #pragma once
 
 #include "dynamic/IdlTokens.h"
@@ -12,7 +12,7 @@
 namespace Rabit::Dynamic
 {
 
-// Leaves a cursor's user from any depth: the reason, with its line.
+// Thrown from any depth of the grammar: the reason, with its line.
 struct NotGrammatical : std::runtime_error
 {
     using std::runtime_error::runtime_error;
@@ -35,16 +35,17 @@ public:
     [[noreturn]] void Refuse(const std::string &reason) const;
     [[noreturn]] void Expected(const std::string &what) const;
 
-    // On to the next token; not at the end.
+    // Moves to the next token. Must not be called at End.
     void Step() { ++_at; }
     void Sign(char sign);
-    // Whether it is that word; then past it.
+    // If the token is that word, steps past it and returns true.
     bool TakeWord(std::string_view word);
-    // A name that is declared, or a part of one: no word of IDL, unless an underscore stands before it.
+    // Reads a declared name, or a part of one. Keywords of IDL are refused unless an underscore precedes
+    // them.
     void Name();
     void ScopedName();
     std::uint64_t Number(std::uint64_t least, std::uint64_t most);
-    // A value as a label or @default has it. withTexts: also real numbers and texts.
+    // Reads a value, as in a label or @default. withTexts: also real numbers and texts.
     void Literal(bool withTexts);
 
 private:

@@ -1,5 +1,5 @@
-// Reads a value from bytes by its shape, by the rules of generated code (idl/runtime's Shapes.h), and tells a
-// sink what is there. What may be refused is decided here, and so is the same for all sinks.
+// Reads a value from bytes by its shape, by the rules of generated code (idl/runtime's Shapes.h), and
+// passes its parts to a sink. Bytes are checked here, so all sinks refuse the same ones.
 #pragma once
 
 #include "dynamic/Shape.h"
@@ -17,7 +17,7 @@
 namespace Rabit::Dynamic
 {
 
-// A sink has, in the order in which a value is told:
+// A sink has these functions, in the order of the calls:
 //   Bool, Char, Number (std::uint8_t to std::int64_t, float, double), Text
 //   Enumerator(shape, enumerator), Bits(shape, mask)
 //   Octets(span)                      an array or sequence of octets, whole
@@ -31,7 +31,7 @@ class Walk
 public:
     Walk(Idl::CdrReader &reader, Sink &sink) : _reader(reader), _sink(sink) {}
 
-    // False if the bytes are not such a value, or the sink is not Ok.
+    // False if the bytes are no value of that shape, or the sink is not Ok.
     bool Value(const Shape &shape)
     {
         switch (shape.What)
@@ -168,7 +168,8 @@ private:
         }
     }
 
-    // Numbers with a sign as they count, all others as they are, as the labels of a union are given.
+    // Reads a discriminator as the labels of a union are stored: signed types sign-extended, all others
+    // zero-extended.
     bool Label(const Shape &shape, std::int64_t &label)
     {
         std::uint64_t value = 0;

@@ -286,7 +286,7 @@ std::string Quote(const std::string &text)
         }
         else if (code < 0x20 || code >= 0x7f || letter == '?')
         {
-            // Three octal digits end an escape by themselves, whatever follows.
+            // An escape of three octal digits ends by itself, whatever character follows.
             quoted += '\\';
             quoted += digits[code >> 6];
             quoted += digits[(code >> 3) & 7];

@@ -12,18 +12,18 @@ namespace RabitIdl
 std::string CppPrimitive(Primitive primitive);
 // The C++ type, fully qualified: `::std::vector<::Uav::Pose>`.
 std::string CppType(const Type &type);
-// What makes new values of the type where C++ by itself would make an enum 0 that does not start at 0:
-// `::Rabit::Idl::FreshEnum<::Uav::Mode, ::Uav::Mode::IDLE>`; empty if C++ makes the right ones.
+// The maker of new values of the type: `::Rabit::Idl::FreshEnum<::Uav::Mode, ::Uav::Mode::IDLE>`. Needed
+// for enums that do not start at 0, as C++ would make them 0; empty if C++ makes the right values.
 std::string MakerOf(const Type &type);
-// The codec that runs over values of the type: `::Rabit::Idl::List<::Rabit::Idl::Codec<::Uav::Pose>, 0>`.
+// The codec for values of the type: `::Rabit::Idl::List<::Rabit::Idl::Codec<::Uav::Pose>, 0>`.
 std::string CodecOf(const Type &type);
 // A value of the type.
 std::string CppLiteral(const Literal &value, const Type &type);
 // A value of a union's discriminator.
 std::string CppLabel(std::int64_t value, const Type &discriminator);
-// What follows a member's name in its declaration: ` = 5`, `{}` or nothing.
+// The text behind a member's name in its declaration: ` = 5`, `{}` or nothing.
 std::string Initializer(const Member &member);
-// Whether a function should take the type by value.
+// True if a function should take the type by value.
 bool IsSmall(const Type &type);
 // A string literal of C++ with that content.
 std::string Quote(const std::string &text);

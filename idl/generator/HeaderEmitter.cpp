@@ -22,7 +22,7 @@ std::string UnsignedOf(unsigned bitBound)
                             : "::std::uint64_t";
 }
 
-// Keeps the text inside the namespaces of the definition that comes next.
+// Opens and closes namespaces, to match the scope of the next definition.
 class Namespaces
 {
 public:
@@ -75,7 +75,7 @@ void EmitComparison(TextBuilder &out, const std::string &name)
     out.Close();
 }
 
-// Of a string or sequence that has one; else 0.
+// The bound of a string or sequence; 0 if it has none.
 std::uint32_t BoundOf(const Type &type)
 {
     return Unalias(type).Bound;

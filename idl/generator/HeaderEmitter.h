@@ -1,4 +1,4 @@
-// Writes the generated header, `<name>.idl.h`: what users of the messages see.
+// Writes the generated header, `<name>.idl.h`, which users of the messages include.
 #pragma once
 
 #include "model/Model.h"

@@ -25,9 +25,8 @@ std::string Lower(std::string text)
     return text;
 }
 
-// Names that are declared anywhere but outermost, in lower case. A scoped name whose first part is among them
-// could be taken for one of those, and gets `::` before it; others do without, which readers that know no
-// `::` understand.
+// Names that are declared in an inner scope, in lower case. A scoped name that begins with one of them
+// would be ambiguous, and gets `::` before it. Other names get no `::`, for readers that do not support it.
 using Inner = std::set<std::string>;
 
 void AddNames(const Definition &definition, Inner &inner)

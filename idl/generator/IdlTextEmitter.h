@@ -1,5 +1,4 @@
-// Writes one struct back as IDL, together with all that it uses, in one fixed form: what MessageType::IdlText
-// gives.
+// Writes one struct with all types that it uses back as IDL, in one fixed form, for MessageType::IdlText.
 #pragma once
 
 #include "model/Model.h"
@@ -9,8 +8,8 @@
 namespace RabitIdl
 {
 
-// IDL that compiles by itself, in as few words as it can: members of bases are the struct's own, constants
-// are their values, names have `::` before them and enumerators and bits a number only where it is needed.
+// IDL that compiles by itself, as short as possible: members of bases are the struct's own, and constants
+// are their values. Names have `::` before them, and enumerators and bits a number, only where needed.
 // Depends on the definitions alone, not on comments, layout, constants or files.
 std::string EmitIdlText(const Model &model, const StructDefinition &definition);
 

@@ -25,8 +25,8 @@ unsigned BitmaskSize(unsigned bitBound)
     return bitBound <= 32 ? EnumSize(bitBound) : 8;
 }
 
-// The farthest end of a value that starts at an offset. With only == Fixed: nothing if ends differ between
-// values; with only == Bounded: nothing if there is no farthest.
+// For the largest end offset of a value that starts at an offset. Fixed: nothing if the ends of values
+// differ. Bounded: nothing if there is no largest end.
 enum class Only
 {
     Fixed,
@@ -54,7 +54,7 @@ Offset EndOfMembers(const StructDefinition &definition, std::uint64_t start, Onl
     return end;
 }
 
-// The end of count elements depends on a start modulo 8 alone, so the pattern repeats after at most 8
+// The size of an element depends only on its start modulo 8, so the pattern repeats after at most 8
 // elements.
 Offset EndOfArray(const Type &element, std::uint64_t count, std::uint64_t start, Only only, bool keysOnly)
 {

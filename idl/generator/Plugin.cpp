@@ -12,7 +12,7 @@
 namespace
 {
 
-// Writes a whole file or nothing: an interrupted run must not leave half a header behind.
+// Writes the whole file or nothing: an interrupted run must not leave half a header behind.
 void WriteFile(const std::filesystem::path &path, const std::string &text)
 {
     std::filesystem::path partial = path;
@@ -29,7 +29,7 @@ void WriteFile(const std::filesystem::path &path, const std::string &text)
     std::filesystem::rename(partial, path);
 }
 
-// What make and ninja read to know which files the output depends on.
+// The dependency file for make and ninja: the files that the output depends on.
 std::string DependencyFile(const std::filesystem::path &target, const std::vector<std::string> &sources)
 {
     const auto escaped = [](const std::string &path)

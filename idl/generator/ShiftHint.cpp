@@ -11,7 +11,7 @@ namespace RabitIdl
 namespace
 {
 
-// The end of a comment, string or character that begins there; else the same place.
+// The end of a comment, string or character that begins at `at`; otherwise `at`.
 std::size_t EndOfWhatIsNoCode(const std::string &text, std::size_t at)
 {
     std::size_t end = at;

@@ -1,4 +1,4 @@
-// idlc 0.10.2 takes the `>>` of `sequence<sequence<long>>` for a shift and says no more than "syntax error".
+// idlc 0.10.2 takes the `>>` of `sequence<sequence<long>>` for a shift and reports only "syntax error".
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 namespace RabitIdl
 {
 
-// One line for each such place in a text, each with its number in the text: `3: write "> >" ...`.
+// Returns a line for each such place in a text, with its line number: `3: write "> >" ...`.
 std::vector<std::string> ShiftHints(const std::string &text);
 
 }  // namespace RabitIdl

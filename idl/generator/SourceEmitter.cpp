@@ -116,7 +116,7 @@ void EmitMessageFunctions(TextBuilder &out, const Model &model, const StructDefi
     out.Line();
 }
 
-// `return A && B && C;` over the members of a struct.
+// Writes `return A && B && C;` over the members of a struct.
 template <class Each>
 void EmitConjunction(TextBuilder &out, const std::vector<const Member *> &members, const Each &each)
 {
@@ -153,7 +153,7 @@ void EmitStructCodec(TextBuilder &out, const StructDefinition &definition)
     EmitConjunction(out, members,
                     [&](const Member &member)
                     {
-                        // Without keys of its own a struct is, as a key, all of its members.
+                        // If a struct without keys of its own is a key, all of its members count.
                         const bool isKey = !someKeys || member.Key;
                         return CodecOf(member.Type) + "::Scan(reader, " + (isKey ? "key" : "nullptr") + ")";
                     });
@@ -179,7 +179,7 @@ void EmitStructCodec(TextBuilder &out, const StructDefinition &definition)
     out.Line();
 }
 
-// The codec of an enum or bitmask: an unsigned number that a test of its own accepts.
+// Writes the codec of an enum or bitmask: an unsigned number with a check for declared values.
 void EmitNumberCodec(TextBuilder &out, const Definition &definition, const std::string &isKnown)
 {
     const std::string name = CppScopedName(definition.Scope, definition.Name);

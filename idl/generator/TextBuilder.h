@@ -10,7 +10,7 @@ namespace RabitIdl
 class TextBuilder
 {
 public:
-    // Appends a line at the current depth; an empty one without blanks.
+    // Appends a line at the current depth; an empty line gets no blanks.
     void Line(const std::string &text = "")
     {
         if (!text.empty())
@@ -44,7 +44,7 @@ public:
         Line(text);
         ++_depth;
     }
-    // Deeper and back, without braces.
+    // Changes the depth without braces.
     void Indent() { ++_depth; }
     void Outdent() { --_depth; }
     const std::string &Text() const { return _text; }

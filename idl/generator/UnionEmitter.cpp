@@ -28,7 +28,7 @@ std::string KeptType(const Type &type)
     return "::Rabit::Idl::Kept<" + CppType(type) + (maker.empty() ? ">" : ", " + maker + ">");
 }
 
-// A new union selects its first member, as its maker makes it.
+// A new union selects its first member, with the value from the maker of its type.
 std::string FirstContent(const UnionDefinition &definition)
 {
     const Type &type = definition.Cases.front().Content.Type;
@@ -48,7 +48,7 @@ std::string ContentType(const UnionDefinition &definition)
     return text + (definition.HasUnusedValue ? ", ::std::monostate>" : ">");
 }
 
-// How setters take a value: a large one to be copied and to be moved.
+// Parameter types of the setters: a large value has two, to copy and to move.
 std::vector<std::string> Parameters(const Type &type)
 {
     const std::string name = CppType(type);
@@ -264,7 +264,7 @@ void EmitUnionCodec(TextBuilder &out, const UnionDefinition &definition)
     const std::string selector = CppType(definition.Discriminator);
     const std::string selectorCodec = CodecOf(definition.Discriminator);
 
-    // One function that does something with the discriminator and then with the selected member.
+    // Emits a function that handles the discriminator and then the selected member.
     const auto function = [&](const std::string &head, const std::string &first, const auto &each,
                               const std::string &none, const std::string &switchOn)
     {

@@ -1,5 +1,5 @@
-// What the generator knows of an IDL file: its definitions, in the order of the file, with every name
-// resolved. ModelReader fills it; the emitters only read it.
+// The definitions of an IDL file, in the order of the file, with every name resolved. ModelReader fills it;
+// the emitters only read it.
 #pragma once
 
 #include <cstdint>
@@ -141,7 +141,7 @@ struct BitmaskDefinition : Definition
 struct TypedefDefinition : Definition
 {
     RabitIdl::Type Type;
-    bool InIdlOnly = false;  // its name is reserved in C++: what it names stands for it there
+    bool InIdlOnly = false;  // its name is reserved in C++, so the C++ code uses its target instead
 };
 
 struct ConstDefinition : Definition
@@ -163,11 +163,11 @@ struct Model
 const Type &Unalias(const Type &type);
 // A struct's own members and those of its bases, bases first.
 std::vector<const Member *> AllMembers(const StructDefinition &definition);
-// Whether a struct or one of its bases has @key members.
+// True if a struct or one of its bases has @key members.
 bool HasKey(const StructDefinition &definition);
 // The members that make up the key of a struct: those with @key or, if there are none, all.
 std::vector<const Member *> KeyMembers(const StructDefinition &definition);
-// Whether a struct that is a message, or a base of it that is one.
+// True if the struct or one of its bases is a message.
 bool IsMessage(const StructDefinition &definition);
 
 }  // namespace RabitIdl

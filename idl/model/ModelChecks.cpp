@@ -1,5 +1,5 @@
-// The rules by which ModelReader refuses what parses but has no faithful C++ class or no plain XCDR1
-// encoding.
+// The rules by which ModelReader refuses definitions that parse but have no faithful C++ class or no plain
+// XCDR1 encoding.
 #include "model/ModelReader.h"
 #include "model/Names.h"
 
@@ -58,7 +58,8 @@ void ModelReader::CheckAnnotations(TreeNode node)
 {
     static const std::set<std::string> refused{"external", "max",   "min",          "must_understand",
                                                "optional", "range", "try_construct"};
-    // Structs and unions are asked for what holds in the end, defaults included: IsAppendable.
+    // `mutable` on structs and unions is left to IsAppendable, which sees the final extensibility, defaults
+    // included.
     const TreeKind kind = TreeKindOf(node);
     const bool isAggregate = kind == TreeStruct || kind == TreeUnion;
     for (TreeNode item = TreeAnnotations(node); item != nullptr; item = TreeNext(item))
@@ -74,7 +75,7 @@ void ModelReader::CheckAnnotations(TreeNode node)
 namespace
 {
 
-// The first member whose id is below that of one before it, or null.
+// The first member whose id is below that of an earlier one, or null.
 const Member *FirstOutOfOrder(const std::vector<const Member *> &members)
 {
     for (std::size_t i = 1; i < members.size(); ++i)
@@ -89,8 +90,8 @@ const Member *FirstOutOfOrder(const std::vector<const Member *> &members)
 
 }  // namespace
 
-// The order of the keys in a key hash goes by member id (OMG DDS-XTypes 1.3, 7.6.8); the generator keeps that
-// of declaration.
+// The order of the keys in a key hash goes by member id (OMG DDS-XTypes 1.3, 7.6.8); the generator keeps
+// the order of declaration.
 void ModelReader::CheckIds(const StructDefinition &definition)
 {
     const Member *member = HasKey(definition) ? FirstOutOfOrder(KeyMembers(definition)) : nullptr;
@@ -122,7 +123,7 @@ void ModelReader::CheckKey(TreeNode place, const Type &type)
     CheckKey(place, type, seen);
 }
 
-// Each struct once: one may hold another many times, and that one a third.
+// Each struct is visited once: nested repetition could otherwise take exponential time.
 void ModelReader::CheckKey(TreeNode place, const Type &type, std::set<const Definition *> &seen)
 {
     const Type &real = Unalias(type);
@@ -163,7 +164,7 @@ void ModelReader::CheckKey(TreeNode place, const Type &type, std::set<const Defi
     }
 }
 
-// Some compilers read keys out of comments. A topic without its key would match nobody, and say nothing.
+// Some compilers read keys from comments. Without its key, a topic would silently match no other program.
 void ModelReader::CheckKeyInComment(TreeNode place, const Member &member)
 {
     const bool isKey = std::any_of(member.Comment.begin(), member.Comment.end(),

@@ -16,13 +16,13 @@ namespace RabitIdl
 class ModelReader
 {
 public:
-    // state: idlc's const idl_pstate_t *. The model names the files below `base` by their path from there,
-    // all others without a path.
+    // state: idlc's const idl_pstate_t *. The model names files below `base` by their relative path, all
+    // others without a path.
     ModelReader(const void *state, Refusals &refusals, std::string base = "")
         : _state(state), _refusals(refusals), _base(std::move(base))
     {
     }
-    // The model is usable only if nothing was refused.
+    // Returns the model, which is usable only if nothing was refused.
     Model Read();
 
 private:
@@ -51,10 +51,10 @@ private:
     void CheckKeyInComment(TreeNode place, const Member &member);
     void CheckDefault(TreeNode place, const Member &member);
 
-    // What the comments in the file say of a node; nothing for included files.
+    // The comments in the file on a node; nothing for included files.
     std::vector<std::string> CommentOn(TreeNode node);
-    // The same for a part of a definition; nothing if that begins in the same line, whose comment is about
-    // the whole.
+    // The same for a part of a definition. Nothing if the definition begins in the same line: then the
+    // comment is about the whole.
     std::vector<std::string> CommentOnPart(TreeNode node, const Definition &whole);
     void Refuse(TreeNode place, const std::string &message);
     template <class T>

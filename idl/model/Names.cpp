@@ -64,7 +64,7 @@ std::string WhyNotCpp(const std::string &name)
     {
         return "is a macro of the C++ standard headers";
     }
-    // Those of Rabit's private members and of the generator's begin so, too.
+    // Private members of Rabit and of generated code begin with an underscore, too.
     return name[0] == '_' || name.find("__") != std::string::npos ? "is reserved in C++" : "";
 }
 

@@ -1,4 +1,4 @@
-// The reasons for which an IDL file is refused, each with its place.
+// The reasons why an IDL file is refused, each with its place.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ class Refusals
 public:
     void Add(const std::string &file, std::uint32_t line, const std::string &message);
     bool Empty() const { return _lines.empty(); }
-    // The first one, as Print has it; there must be one.
+    // The first reason, as Print writes it. There must be one.
     const std::string &First() const { return _lines.front(); }
-    // Writes each as `file:line: message` to the standard error output, in the order of Add, each once.
+    // Writes each reason once as `file:line: message` to the standard error output, in the order of Add.
     void Print() const;
 
 private:

@@ -15,8 +15,8 @@ std::string Trimmed(const std::string &text, const char *letters)
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(letters) - first + 1);
 }
 
-// Without what marks comments for documentation, and without a backslash at the end, which would draw the
-// next line of C++ into the comment.
+// Removes documentation markers, and a backslash at the end, which would continue the comment into the next
+// line of C++.
 std::string Cleaned(const std::string &comment)
 {
     std::string text = Trimmed(comment, " \t\r");
@@ -79,7 +79,7 @@ void SourceComments::Read(const std::string &text)
     }
 }
 
-// One letter, or a whole string or character, in which nothing begins a comment.
+// Skips one letter, or a whole string or character literal, which contains no comment.
 std::size_t SourceComments::ReadCode(const std::string &text, std::size_t at)
 {
     const char quote = text[at];

@@ -1,4 +1,4 @@
-// What the comments of an IDL file say about its definitions: idlc drops them.
+// The comments of an IDL file on its definitions, which idlc drops.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,9 @@ public:
     // No comments if the file cannot be read.
     explicit SourceComments(const std::string &path);
 
-    // The comment on what is declared in that line, counted from 1: the lines of comment right above it,
-    // where lines of annotations may be in between, then the one behind it. Without the signs of comments,
-    // and fit to stand behind `//` in C++.
+    // The comment on the declaration in that line, counted from 1: first the comment lines right above it,
+    // with lines of annotations allowed in between, then the comment behind it. Without comment markers,
+    // and fit to follow `//` in C++.
     std::vector<std::string> About(std::uint32_t line) const;
 
 private:

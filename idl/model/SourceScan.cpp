@@ -18,7 +18,7 @@ struct Found
     std::string Name;
 };
 
-// Walks over IDL text; comments, strings and characters are passed by.
+// Scans IDL text and skips comments, strings and characters.
 class Scanner
 {
 public:
@@ -80,7 +80,7 @@ private:
         _at = std::min(_text.size(), _at + (end == "\n" ? 0 : end.size()));
     }
 
-    // A string or character; neither goes on over the end of a line.
+    // Skips a string or character, which ends at the end of the line at the latest.
     void SkipQuoted(char quote)
     {
         ++_at;
@@ -180,7 +180,7 @@ const std::set<std::string> &KnownToIdlc()
         "default_nested", "extensibility", "external", "final", "hashid", "id", "key", "max", "min",
         "mutable", "must_understand", "nested", "optional", "position", "range", "topic", "try_construct",
         "unit", "value",
-        // Documentation, or what becomes of it in other languages: nothing of ours.
+        // Documentation, or texts for other languages, which the generator does not use.
         "verbatim"};
     return names;
 }

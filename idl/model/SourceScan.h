@@ -1,4 +1,4 @@
-// Finds in the text of IDL files what idlc drops or misreads without an error, so that it can be refused.
+// Refuses constructs in IDL files that idlc drops or misreads without an error.
 #pragma once
 
 #include "model/Refusals.h"
@@ -11,12 +11,11 @@ namespace RabitIdl
 
 // Refuses, in the text of these IDL files,
 //   - every annotation `@name` that neither idlc knows nor one of the files declares (`@annotation name`):
-//   idlc
-//     passes over it with a warning;
-//   - `#pragma DCPS_DATA_KEY`, by which some compilers are told the keys: idlc passes over it;
+//     idlc ignores it with a warning;
+//   - `#pragma DCPS_DATA_KEY`, which declares keys for some compilers: idlc ignores it;
 //   - hexadecimal escapes with letters in strings and characters: idlc 0.10.2 takes '\x1f' for another
-//   character.
-// The text is looked at before the preprocessor: what a branch of #if leaves out is refused too.
+//     character.
+// The text is scanned before preprocessing, so excluded branches of #if are scanned too.
 void RefuseWhatIdlcMisreads(const std::vector<std::string> &paths, Refusals &refusals);
 
 }  // namespace RabitIdl

@@ -1,4 +1,4 @@
-// What a `.msg` file of ROS 2 says.
+// The contents of a `.msg` file of ROS 2.
 #pragma once
 
 #include <cstdint>

@@ -34,7 +34,7 @@ bool IsIdentifier(const std::string &text)
                        [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; });
 }
 
-// Where the remark begins, which is not within quotes.
+// The position at which the remark begins; quoted text is skipped.
 std::size_t RemarkIn(const std::string &line)
 {
     char quote = '\0';
@@ -140,7 +140,7 @@ void MsgReader::ReadLine(std::string line)
     const std::string code = Trimmed(line.substr(0, remark));
     if (code.empty() && remark == std::string::npos)
     {
-        // What stands alone at the beginning is about the whole.
+        // A comment block at the beginning is about the whole message.
         if (_file.Constants.empty() && _file.Fields.empty() && _file.Comment.empty())
         {
             _file.Comment = std::move(_comment);
@@ -153,7 +153,7 @@ void MsgReader::ReadLine(std::string line)
     const std::string words = said == std::string::npos ? "" : Trimmed(line.substr(said));
     if (code.empty())
     {
-        // Indented below an entry it goes on with the remark behind that.
+        // An indented comment below an entry continues the remark behind it.
         if (remark > 0 && _last != nullptr)
         {
             TakeRemark(words);

@@ -14,9 +14,9 @@ namespace RabitIdl
 class MsgReader
 {
 public:
-    // `path` is for what is refused.
+    // `path` is used in refusals.
     MsgReader(std::string path, Refusals &refusals) : _path(std::move(path)), _refusals(refusals) {}
-    // Usable only if nothing was refused.
+    // The result is usable only if nothing was refused.
     MsgFile Read(const std::string &text, const std::string &package, const std::string &name);
 
 private:
@@ -38,7 +38,7 @@ private:
     MsgFile _file;
     std::uint32_t _line = 0;
     std::vector<std::string> _comment;
-    MsgEntry *_last = nullptr;  // what a remark behind it, or indented below it, is about
+    MsgEntry *_last = nullptr;  // the entry that a remark behind it or below it describes
 };
 
 }  // namespace RabitIdl

@@ -48,7 +48,7 @@ std::string Declared(const MsgEntry &field)
     return "";
 }
 
-// A backslash at the end would make the next line part of the comment.
+// A backslash at the end would continue the comment into the next line.
 void AddComment(std::string &text, const std::vector<std::string> &comment, const char *indent)
 {
     for (std::string line : comment)

@@ -8,8 +8,9 @@
 namespace RabitIdl
 {
 
-// The struct `package::msg::Name`, the module `Name_Constants` beside it if it has constants, and includes of
-// `package/msg/Other.idl` for the messages that it holds, as rosidl makes it. Arrays need no typedefs here.
+// Returns IDL as rosidl writes it: the struct `package::msg::Name`, the module `Name_Constants` beside it
+// if there are constants, and includes of `package/msg/Other.idl` for the messages that it contains. Unlike
+// in rosidl, arrays have no typedefs.
 std::string MsgToIdl(const MsgFile &file);
 
 }  // namespace RabitIdl

@@ -13,7 +13,7 @@ namespace RabitIdl
 namespace
 {
 
-// Copies a text and leaves out what is not wanted of it; what is within quotes or comments stays as it is.
+// Copies a text without the constructs that idlc refuses. Quoted text and comments are copied unchanged.
 class Copier
 {
 public:
@@ -37,7 +37,7 @@ private:
         return _text.compare(_at, std::char_traits<char>::length(word), word) == 0;
     }
 
-    // Where what begins here ends: a string, or a comment; the place itself if it is none.
+    // The end of the string or comment that begins here; the current position if there is none.
     std::size_t EndOfQuoted() const
     {
         if (StartsWith("//"))
@@ -73,7 +73,7 @@ private:
         return true;
     }
 
-    // Only its line breaks stay, so that all others keep their numbers.
+    // Skips an @verbatim, but keeps its line breaks, so that the other lines keep their numbers.
     bool SkipVerbatim()
     {
         if (!StartsWith("@verbatim"))
@@ -100,7 +100,7 @@ private:
 
     static bool IsLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-    // A keyword, as IDL writes it, or a name that needs an escape.
+    // Copies a word. A name that IDL would take for a keyword is escaped.
     bool CopyWord()
     {
         std::size_t end = _at;
@@ -126,8 +126,8 @@ private:
                             [](unsigned char letter) { return std::isupper(letter) != 0; });
     }
 
-    // Of a word that ends there: whether it stands behind a type, and nothing more follows but what follows a
-    // name.
+    // True if the word that ends there is a declared name: it stands behind a type, and is followed as a
+    // name is.
     bool IsName(std::size_t end) const
     {
         const std::size_t next = _text.find_first_not_of(" \t", end);

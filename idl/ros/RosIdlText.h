@@ -1,4 +1,4 @@
-// IDL files of ROS 2, as rosidl makes them, for idlc.
+// Adapts IDL files of ROS 2, as rosidl makes them, to idlc.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 namespace RabitIdl
 {
 
-// The same file, line by line, without what idlc 0.10.2 does not take:
-// - typedefs of arrays (`double__36`), which each file of a package has for itself, are defined once;
+// Returns the same file, line by line, without the constructs that idlc 0.10.2 refuses:
+// - typedefs of arrays (`double__36`), which each file of a package repeats, are defined once;
 // - `>>` that ends two sequences becomes `> >`;
-// - names that IDL takes for keywords, in whatever case (`Char`, `INT8`), are escaped;
-// - `@verbatim`, of which idlc only warns, is left out.
+// - names that IDL takes for keywords, in any case (`Char`, `INT8`), are escaped;
+// - `@verbatim`, which only causes a warning of idlc, is left out.
 std::string RosIdlText(const std::string &text);
 
 }  // namespace RabitIdl

@@ -1,4 +1,4 @@
-// Makes a file of a ROS 2 message package into IDL that idlc and the generator read.
+// Converts a file of a ROS 2 message package to IDL that idlc and the generator accept.
 //
 //     rabit_ros_idl PACKAGE FILE.msg|FILE.idl OUTPUT.idl
 #include "model/Names.h"
@@ -31,7 +31,7 @@ std::string ReadFile(const fs::path &path)
     return text;
 }
 
-// A whole file or nothing.
+// Writes the whole file or nothing.
 void WriteFile(const fs::path &path, const std::string &text)
 {
     fs::path partial = path;
@@ -90,7 +90,7 @@ int main(int argc, char **argv)
                                                       : std::optional(RabitIdl::RosIdlText(ReadFile(input)));
         if (text)
         {
-            // Files of ROS 2 have no guards: rosidl reads none of what they include.
+            // IDL files of ROS 2 have no include guards, as rosidl does not read includes.
             const std::string guard = std::string("RABIT_IDL_") + argv[1] + "_" + input.stem().string();
             WriteFile(argv[3], "#ifndef " + guard + "\n#define " + guard + "\n" + *text + "#endif\n");
         }

@@ -34,8 +34,8 @@ public:
     void Clear();
     std::uint8_t *GetByteArrayAddrPtrAtIdx();
     int GetNumberBytesAvailable();
-    // Copies up to NoBytes bytes from data[startIdx] on: no more than the source has (arraySize) and than
-    // there is room for. Returns the number of bytes written.
+    // Copies up to NoBytes bytes from data[startIdx] on, limited by the source (arraySize) and by the room
+    // left. Returns the number of bytes written.
     int WriteBytes(std::uint8_t data[], int arraySize, int startIdx, int NoBytes);
 
     bool writeByte(byte value);
@@ -63,9 +63,8 @@ private:
     EndianOrder_e _endianOrder;
 };
 
-// Reads what a ByteArrayWriter of the same byte order wrote. Past the end of the buffer, and after a value
-// that does not fit any more, it returns 0 and stays where it is. Never reads outside the buffer. Not
-// thread-safe.
+// Reads what a ByteArrayWriter of the same byte order wrote. If a value does not lie within the buffer,
+// reading it returns 0 and leaves the position. The reader never reads outside the buffer. Not thread-safe.
 class ByteArrayReader
 {
 public:
@@ -96,7 +95,7 @@ public:
     double readDouble();
     // Empty if the string does not lie within the buffer.
     std::string readString();
-    // These return true on error and then leave the target and the position as they are. The array gets a
+    // These return true on error, and then leave the target and the position unchanged. The array gets a
     // terminating zero, for which it must have room.
     bool readString(std::string *value);
     bool readString(char value[], int maxSize);

@@ -9,9 +9,8 @@
 namespace Rabit
 {
 
-// Tells managers what to do. Every manager listens to two of them: "ManagerControlMessage", which all share,
-// and
-// "<its name>:ManagerControlMessage".
+// Tells managers what to do. Every manager listens to two of them: "ManagerControlMessage", which all
+// managers share, and "<its name>:ManagerControlMessage".
 class ManagerControlMessage : public RabitMessage
 {
 public:

@@ -6,7 +6,7 @@
 namespace Rabit
 {
 
-// What a manager counts and measures about itself. All times in seconds.
+// Counters and durations that a manager measures of its own loop. All times in seconds.
 struct ManagerStats_t
 {
     int TotalNumberOfExecuteCycles = 0;  // since the manager was made; never cleared
@@ -23,7 +23,7 @@ struct ManagerStats_t
     int NumberOfWakeUpCallsWhileAsleep = 0;
     int NumberOfWakeUpCallsWhileAwake = 0;
 
-    // How many times the minima, maxima and averages are of.
+    // Numbers of measurements behind the minima, maxima and averages.
     int NumberOfExecuteTimes = 0;
     int NumberOfSleepTimes = 0;
     // Turns of the manager's period that passed without a unit of work of their own.

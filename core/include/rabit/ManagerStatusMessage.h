@@ -11,16 +11,16 @@
 namespace Rabit
 {
 
-// A queue of a manager as it was when the status was posted.
+// The state of a manager's queue when the status was posted.
 struct QueueStatus_t
 {
     std::string Name;
     int Capacity = 0;
     int FillLevel = 0;              // messages that waited in it
-    std::uint64_t RefusedAdds = 0;  // messages that it had no room for, since it was made
+    std::uint64_t RefusedAdds = 0;  // messages refused because the queue was full, since it was made
 };
 
-// What a manager tells about itself, as "<its name>:ManagerStatusMessage".
+// The status that a manager posts about itself as "<its name>:ManagerStatusMessage".
 class ManagerStatusMessage : public RabitMessage
 {
 public:

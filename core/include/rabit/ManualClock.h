@@ -9,7 +9,7 @@
 namespace Rabit
 {
 
-// A clock that moves only when it is told to. For stepped reactors, simulations and tests.
+// A clock that moves only by its own methods. For stepped reactors, simulations and tests.
 //
 // Thread-safe: one thread may move it while others read it. A manager that runs on a thread of its own still
 // sleeps in real time; use RabitSteppedReactor to have its sleep follow this clock.

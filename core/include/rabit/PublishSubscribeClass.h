@@ -21,8 +21,8 @@ class RabitMessage;
 // The global copy of a publish-subscribe message: one for each message name of a workspace. Managers hold
 // local copies; a post copies local to global, a fetch copies global to local.
 //
-// What is new is decided by a sequence number that rises with each post, not by time stamps, so that no post
-// is missed even if two fall into one tick of the clock. A time stamp that was changed by hand also counts as
+// A sequence number that rises with each post decides whether a fetch brings something new. Time stamps do
+// not: two posts may fall into one tick of the clock. A time stamp that was changed by hand also counts as
 // new. Any number of managers may post one name: the posts happen one after the other, each fetch gets the
 // last, and a poster fetches what others posted after it.
 //
@@ -51,33 +51,33 @@ public:
     // The same, with a connection that ends it.
     RabitConnection ConnectSomethingPublished(RabitHandler handler);
 
-    // A clone of the global copy, registered under no name. Its first FetchMessage here is false until
+    // A clone of the global copy, registered under no name. Its FetchMessage here returns false until
     // something new is posted.
     std::unique_ptr<RabitMessage> GetCopyOfMessage();
 
     // Stamps the message with the current time, copies it to the global copy, then calls the handlers. Time
-    // stamps of one name strictly increase, by the least step of a double if the clock did not move on,
-    // unless the wall clock was set back: then they follow it. By the system's clock a burst of posts, from
-    // however many threads, runs ahead by 4 us at most: then a post waits. (By another clock, which may stand
-    // still, it runs ahead as far as it must.) Throws std::invalid_argument, changing nothing, if the message
-    // is of another type and refuses the copy. If CopyMessage throws, that passes to the caller and the post
-    // did not happen.
+    // stamps of one name strictly increase, by the least step of a double if the clock did not move on. If
+    // the wall clock was set back, they follow it. Under the system's clock a burst of posts, from any
+    // number of threads, runs ahead by at most 4 us, then a post waits. (Another clock may stand still, so
+    // there is no such limit.) Throws std::invalid_argument, changing nothing, if the message is of another
+    // type and refuses the copy. If CopyMessage throws, that passes to the caller and the post did not
+    // happen.
     void PostMessage(RabitMessage *msg);
-    // Posts with a time given by the caller: for messages that were posted elsewhere and keep the time of
-    // their origin. The time may repeat or go back; the post is never missed for that.
+    // Posts with a time given by the caller: for messages from other nodes, which keep the time of their
+    // origin. Readers see the post even if its time repeats or goes back.
     void PostMessage(RabitMessage *msg, const PostTime &time);
 
-    // Copies the global copy to the message if it holds something else than what it last posted or fetched
-    // here. Returns whether it did. Takes no lock if there is nothing new. A message that was never posted or
-    // fetched here gets its copy; only if it was never attached either and nothing was ever posted, an equal
-    // time stamp means that there is nothing new. False if the message is of another type and refuses the
-    // copy.
+    // Copies the global copy to the message if it differs from what the message last posted or fetched
+    // here. Returns whether it copied. Takes no lock if there is nothing new. A message that was never
+    // posted or fetched here is always copied to, with one exception: if it was never attached either,
+    // nothing was ever posted, and the time stamps are equal. False if the message is of another type and
+    // refuses the copy.
     bool FetchMessage(RabitMessage *msg);
     // Copies in any case.
     void ForceFetchMessage(RabitMessage *msg);
 
-    // The global copy itself, for tests: reading it is safe only while nobody posts. From the first call on,
-    // FetchMessage takes the lock to notice what a test does to the copy.
+    // The global copy itself, for tests: reading it is safe only while nobody posts. From the first call
+    // on, FetchMessage takes the lock to notice changes that a test makes to the copy.
     const std::unique_ptr<RabitMessage> &GetTestMessage();
 
     // How many posts there were.
@@ -89,7 +89,7 @@ private:
     friend class RabitMessage;
     friend class RabitWorkspace;
     friend class ManagerLease;
-    // Set in _sequence when GetTestMessage was called: no message's remembered sequence equals it then.
+    // Set in _sequence once GetTestMessage was called: then no sequence that a message remembers equals it.
     static constexpr std::uint64_t Exposed = std::uint64_t{1} << 63;
 
     void Post(RabitMessage &msg, PostTime time, bool byOwnClock);
@@ -118,7 +118,7 @@ private:
     RabitEvent _published;
     std::unique_ptr<RabitMessage> _message;
     const std::type_index _type;
-    // Of the last post that was stamped here: its time by the clock, and the stamp that it got.
+    // The last post that was stamped here: its time by the clock, and its stamp.
     PostTime _lastReading;
     double _lastStamp;
 };

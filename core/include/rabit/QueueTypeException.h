@@ -7,8 +7,8 @@
 namespace Rabit
 {
 
-// Thrown when a queue is used as one of another type: it was asked for under another type, or an element was
-// offered to it that is not, and does not convert to, what it holds.
+// Thrown when a queue is used as one of another type: it was requested as another type, or an element was
+// added that neither is of its element type nor converts to it.
 class QueueTypeException : public std::bad_any_cast
 {
 public:

@@ -6,7 +6,7 @@
 namespace Rabit
 {
 
-// When something was posted, by both of a node's clocks.
+// The moment of a post, by both clocks of a node.
 struct PostTime
 {
     // GPS seconds since 1980-01-06: the time stamp that messages carry. Can step when the wall clock is set.
@@ -15,8 +15,8 @@ struct PostTime
     std::chrono::nanoseconds Monotonic{0};
 };
 
-// A source of time. A RabitWorkspace has one; everything in it that depends on time asks it, so that a test
-// or a simulation can put another one in its place (ManualClock).
+// A source of time. A RabitWorkspace has one, and everything in the workspace takes its time from it. A
+// test or a simulation uses another one (ManualClock).
 //
 // All methods may be called from any thread at any time and do not throw.
 class RabitClock
@@ -26,12 +26,12 @@ public:
     RabitClock(const RabitClock &) = delete;
     RabitClock &operator=(const RabitClock &) = delete;
 
-    // Time since some fixed moment; never goes back. On a computer it also counts the time for which that was
-    // suspended, so it is not std::chrono::steady_clock.
+    // Time since some fixed moment; never goes back. Unlike std::chrono::steady_clock, the system's also
+    // counts the time for which the computer was suspended.
     virtual std::chrono::nanoseconds Monotonic() const = 0;
     // GPS seconds since 1980-01-06. Follows the wall clock: it may step in either direction.
     virtual double GpsTimeSeconds() const = 0;
-    // Both, of the same moment. The system clock overrides it to pay for one clock read only.
+    // Both clocks at the same moment. The system clock overrides it to read only one clock.
     virtual PostTime Now() const { return PostTime{GpsTimeSeconds(), Monotonic()}; }
 
     // The clocks of this computer: UptimeClock, and SystemTimeClock for GPS seconds.

@@ -10,11 +10,11 @@
 namespace Rabit
 {
 
-// What is called when an event happens.
+// A function that is called when an event fires.
 using RabitHandler = std::function<void()>;
 
-// Marks a handler that never waits for anything and takes microseconds, such as one that wakes a manager: it
-// is called on the thread that fires, always. Handlers without the mark may be called elsewhere
+// Marks a handler that never waits for anything and takes microseconds, such as one that wakes a manager:
+// it is always called on the thread that fires. Handlers without the mark may be called elsewhere
 // (RabitHandlerThread). Converts to a RabitHandler; a boost::function made of it loses the mark.
 class RabitQuickHandler
 {
@@ -33,16 +33,17 @@ struct EventSlot;
 struct EventState;
 }  // namespace Detail
 
-// A handler's connection to an event. Copies stand for the same connection; dropping them all leaves it in
-// place. Thread-safe as a shared pointer is: one object belongs to one thread at a time.
+// A handler's connection to an event. Copies stand for the same connection; destroying them does not end
+// it. Thread-safe like a shared pointer: one object belongs to one thread at a time.
 class RabitConnection
 {
 public:
     RabitConnection() = default;
 
-    // The handler is not called again, except by a thread that is just calling it: that call may still be
-    // running when this returns. A handler must therefore own (share) what it uses, or be known to be quiet.
-    // Does nothing if already disconnected or if the event is gone. May be called from inside the handler.
+    // After this the handler is not called again, but a call that another thread has begun may still be
+    // running. A handler must therefore share ownership of what it uses, unless the caller knows that no
+    // call is running. Does nothing if already disconnected or if the event is gone. May be called from
+    // inside the handler.
     void Disconnect();
     bool IsConnected() const;
 
@@ -69,12 +70,12 @@ private:
     RabitConnection _connection;
 };
 
-// Something that happens, and the handlers that are to be told.
+// A list of handlers that are called whenever the event fires.
 //
 // Handlers run on the thread that fires, in the order of their connection, with no lock held: they may
-// connect, disconnect, post and fire. What a handler throws is caught and logged, and the other handlers
-// still run. All methods may be called from any thread. A thread that must not be held up hands all but
-// RabitQuickHandlers over to another one (RabitHandlerThread).
+// connect, disconnect, post and fire. Exceptions of a handler are caught and logged, and the other handlers
+// still run. All methods may be called from any thread. A thread that must not block hands all handlers
+// except RabitQuickHandlers over to another thread (RabitHandlerThread).
 class RabitEvent
 {
 public:
@@ -106,12 +107,13 @@ public:
 
     // Throws std::invalid_argument if the handler is empty. The owner is a mark for DisconnectAllOf.
     RabitConnection Connect(RabitHandler handler, const void *owner = nullptr);
-    // Disconnect the handlers with that mark (not null), or all; take the mark off them.
+    // DisconnectAllOf disconnects the handlers with that mark (not null), DisconnectAll all; DisownAllOf
+    // takes the mark off them.
     void DisconnectAllOf(const void *owner);
     void DisconnectAll();
     void DisownAllOf(const void *owner);
-    // Has the other event call the handlers with that mark (not null) from now on instead of this one, behind
-    // those that it has. Connections to them end nothing any more.
+    // Moves the handlers with that mark (not null) to the other event, behind its own handlers. Their
+    // RabitConnections still stop them while this event exists, but the slots then stay in the other event.
     void HandOverAllOf(const void *owner, RabitEvent &other);
     // Tells all handlers. Takes no lock if there are none.
     void Fire() const;
@@ -128,16 +130,14 @@ namespace Detail
 struct EventSlot
 {
     EventSlot(RabitHandler handler, const void *owner)
-        : Handler(std::move(handler)),
-          IsQuick(Handler.target<RabitQuickHandler>() != nullptr),
-          Owner(owner)
+        : Handler(std::move(handler)), IsQuick(Handler.target<RabitQuickHandler>() != nullptr), Owner(owner)
     {
     }
     const RabitHandler Handler;
     const bool IsQuick;
     const void *Owner;  // guarded by the event's mutex
     std::atomic<bool> Connected{true};
-    std::atomic<bool> Waits{false};  // handed over to a RabitHandlerThread, and not begun yet
+    std::atomic<bool> Waits{false};  // handed over to a RabitHandlerThread, and not called yet
 };
 
 // Logs what the handler throws.

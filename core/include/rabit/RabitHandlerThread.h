@@ -12,14 +12,13 @@
 namespace Rabit
 {
 
-// Calls the handlers of events in place of threads that must not be held up, such as those that receive from
-// a network. A handler that takes seconds then delays the other handlers that are called here, and nothing
-// else.
+// Calls the handlers of events in place of threads that must not block, such as those that receive from a
+// network. A handler that takes seconds delays only the other handlers that are called here.
 //
-// A thread that must not be held up makes a Scope and fires events in it. RabitQuickHandlers are called at
-// once, on the firing thread; all other handlers are called here, in the order in which they were handed
-// over. A handler that waits already is not handed over again: one call then stands for several events, and
-// it begins after the last of them. So no more calls wait than there are handlers.
+// A thread that must not block makes a Scope and fires events in it. RabitQuickHandlers are called at once,
+// on the firing thread; all other handlers are called here, in the order in which they were handed over. A
+// handler that already waits is not handed over again: one call then stands for several events, and begins
+// after the last of them. So at most one call per handler waits.
 //
 // Threads: any thread may make a Scope; Stop and the destructor may be called by one thread at a time, and
 // not by a handler. The thread is started with the first handler; if the system has no more threads, handlers
@@ -27,7 +26,7 @@ namespace Rabit
 class RabitHandlerThread
 {
 public:
-    // Sees what is called, on the thread that calls it. Must not throw.
+    // Is told when a handler begins and returns, on the thread that calls it. Must not throw.
     class Watch
     {
     public:
@@ -47,10 +46,9 @@ public:
     // handlers are called on the thread that fires.
     void Stop();
 
-    // Events that are fired on this thread while one of these lives are told as described above. `subject`
-    // names for people what they are about, such as `uav1/Pose`; `owner`, of which the events are part, is
-    // kept until their handlers have returned. Both must outlive the object. Without a thread it does
-    // nothing.
+    // While a Scope lives, events fired on this thread are handled as described above. `subject` describes
+    // them for people, such as `uav1/Pose`. `owner` contains the events and is kept alive until their
+    // handlers have returned. Both must outlive the Scope. If `thread` is null, the Scope does nothing.
     class Scope
     {
     public:
@@ -72,9 +70,9 @@ public:
         Scope(const Scope &) = delete;
         Scope &operator=(const Scope &) = delete;
 
-        // The innermost one of this thread; null if there is none.
+        // The innermost Scope of this thread; null if there is none.
         static Scope *Current() { return _current; }
-        // False: the handler is to be called here and now.
+        // Returns false if the caller must call the handler itself, now.
         bool HandOver(const std::shared_ptr<Detail::EventSlot> &handler) const;
 
     private:
@@ -82,7 +80,8 @@ public:
 
         RabitHandlerThread *const _thread;
         const std::string &_subject;
-        // The owner's shared pointer, and how to copy it: most scopes hand nothing over.
+        // The owner's shared pointer, and the function that copies it. It is copied only when a handler is
+        // handed over, which few scopes do.
         const void *const _owner;
         std::shared_ptr<const void> (*const _shareOwner)(const void *shared);
         Scope *const _outer;

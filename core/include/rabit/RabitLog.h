@@ -16,8 +16,8 @@ enum class RabitLogLevel
     Off  // only as a threshold: nothing is logged
 };
 
-// The one place through which the library says something. Warnings and errors go to stderr, one line each,
-// unless the program sets another sink; nothing else is printed.
+// The log of the library, which prints nothing elsewhere. Warnings and errors go to stderr, one line each,
+// unless the program sets another sink.
 //
 // stderr never blocks the thread that logs. A line that stderr does not take at once (a full pipe that nobody
 // reads, a stopped terminal, a full disk, a closed descriptor) is dropped. The next line that is written says
@@ -34,8 +34,8 @@ public:
     // Replaces the sink; an empty one restores stderr. A call of the former sink may still be running on
     // another thread when this returns.
     static void SetSink(Sink sink);
-    // Has each line told to somebody besides the sink, who is called as it is, for as long as what this
-    // returns is kept. A call may still be running when that is dropped.
+    // Adds a listener that gets each line besides the sink, and is called like it. It ends when the
+    // returned pointer is destroyed; a call may still be running then.
     [[nodiscard]] static std::shared_ptr<void> Listen(Sink listener);
     // Lines below this level are dropped. The default is Warning.
     static void SetLevel(RabitLogLevel level);

@@ -41,9 +41,9 @@ class ManagerLease;
 // second, and not also whenever it is woken, sets a period: SetPeriodSec.
 //
 // Exceptions of any type that leave one of the three are caught, logged, and reported in the status message
-// (ManagerStatusMessage::ErrorCode_e). After a unit of work that threw the manager sleeps as usual, at least
-// 10 ms and, if it otherwise would not sleep, 100 ms. A manager whose Startup threw does not run its unit of
-// work: it goes on to Shutdown.
+// (ManagerStatusMessage::ErrorCode_e). After a unit of work that threw, the manager sleeps as usual but at
+// least 10 ms; if it otherwise would not sleep, 100 ms. A manager whose Startup threw does not run its unit
+// of work: it goes on to Shutdown.
 //
 // Threads: the public methods may be called from any thread unless they say otherwise. The messages and
 // queues that the protected members point to are the manager's own; others attach to the same names.
@@ -60,8 +60,8 @@ public:
     // "<name>:ManagerStatusMessage", which it posts. Throws std::invalid_argument if one of these names
     // belongs to a message of another type.
     //
-    // Logs a warning if a manager of that name is there already: the one that was made last gets all messages
-    // for the queue of that name. The capacity of the manager's own queue is clamped as that of any queue.
+    // Logs a warning if another manager has that name: the newest one gets all messages for the queue of
+    // that name. The capacity of the manager's own queue is clamped as that of any queue.
     explicit RabitManager(std::string name);
     RabitManager(std::string name, int queueCapacity);
     // The same in another workspace, which must outlive the manager.
@@ -82,8 +82,7 @@ public:
     std::shared_ptr<ManagerStatusMessage> GetManagerStatusMessage() { return _mgrStatus_sptr; }
     std::shared_ptr<RabitQueue> GetManagerMessageQueue() { return _mgrMessageQueue_sptr; }
 
-    // Whether the manager is woken when a message is added to its own queue; it is, unless this says
-    // otherwise.
+    // Sets whether a message added to the manager's own queue wakes it (default: true).
     void SetWakeupManagerUponMessagePostedToManagersMessageQueue(bool wakeUp);
     void SetWakeupManagerUponMessagePostedToManagersMessageQueue();
 
@@ -92,31 +91,33 @@ public:
     // years is taken as that. NaN throws std::invalid_argument.
     void SetWakeupTimeDelayMSec(int delay_MSec);
     void SetWakeupTimeDelaySec(double delay_Sec);
-    // Rounded to milliseconds, but not to 0 if the manager does sleep; at most the largest int.
+    // The delay rounded to milliseconds, at most the largest int. It is 0 only if the manager does not
+    // sleep.
     int GetWakeupTimeDelayMSec() const;
     double GetWakeupTimeDelaySec() const;
 
-    // The period: the unit of work runs once in each, however often the manager is woken in between; what
-    // would have woken it is seen at the next turn. This is what a sensor that posts once a second needs: the
-    // delay above is only the longest sleep, so each message that comes makes one more pass.
+    // The period: the unit of work runs once in each. Wake-ups in between are seen at the next turn. A
+    // sensor that posts once a second needs a period: the delay above is only the longest sleep, so each
+    // wake-up causes one more pass.
     //
     // Turns lie a period apart, counted from the first unit of work, or from the moment at which a running
-    // manager was given the period. They do not drift: one that comes late, because the unit of work took too
-    // long, moves none of the others. If several have come meanwhile, the unit of work runs once for all of
-    // them, and all but the last are counted as missed. Time for which the computer was suspended has no
-    // turns. Shutdown and control messages are obeyed between turns as well.
+    // manager was given the period. They do not drift: a turn that is late because the unit of work took
+    // too long does not move the others. If several turns have come meanwhile, the unit of work runs once
+    // for all of them, and all but the last are counted as missed. Time for which the computer was
+    // suspended has no turns. Shutdown and control messages are obeyed between turns as well.
     //
-    // While there is a period, the delay counts for nothing. 0 or less: none, as at first. May be set at any
-    // time; the same value once more changes nothing. More than about 31 years is taken as that. NaN throws
-    // std::invalid_argument.
+    // While there is a period, the delay is ignored. 0 or less: no period, the default. May be set at any
+    // time; setting the same value again changes nothing. More than about 31 years is taken as that. NaN
+    // throws std::invalid_argument.
     void SetPeriodSec(double period_Sec);
     double GetPeriodSec() const;
-    // For a manager that does something once a period and answers at once besides: has it woken between turns
-    // as well. Its unit of work asks IsTurn whether it is time for what is done once a period.
+    // Lets events wake the manager between turns as well. Its unit of work then asks IsTurn whether to do
+    // the periodic part.
     void SetWakeupBetweenTurns(bool wakeUp);
-    // For the unit of work: whether it runs because a turn has come. True if there is no period.
+    // For the unit of work: true if it runs because a turn has come, or if there is no period.
     bool IsTurn() const;
-    // Since the manager was made. Those since the statistics were reset are in its status message.
+    // The missed turns since the manager was made. The status message has those since the statistics were
+    // reset.
     std::uint64_t GetNumberOfMissedTurns() const;
 
     // Registers a message (a shared pointer to a class derived from RabitMessage) and attaches it to the
@@ -136,8 +137,8 @@ public:
     int GetManagerIndexNumber();
     std::vector<std::string> GetListOfManagerNames();
 
-    // Has this manager woken after each post of the message, which must be registered: otherwise throws
-    // GlobalPublishSubscribeException. Doing it twice has no effect.
+    // Wakes this manager after each post of the message. Throws GlobalPublishSubscribeException if the
+    // message is not registered. A second call has no effect.
     template <typename T>
     void WakeUpManagerOnMessagePost(T msg)
     {
@@ -154,7 +155,7 @@ public:
     {
         return _workspace.template GetManagerMessageQueue<T>(std::move(name));
     }
-    // Have this manager woken after each message that is added to, or taken from, the queue.
+    // Wake this manager after each message that is added to, or taken from, the queue.
     template <typename T>
     void WakeUpManagerOnEnqueue(T queue)
     {
@@ -169,30 +170,30 @@ public:
                        [&](RabitHandler handler)
                        { return queue->ConnectSomethingDequeued(std::move(handler)); });
     }
-    // See RabitWorkspace. False: no such queue, or it is full. With a receipt, what becomes of the message
-    // can be asked later (RabitQueueReceipt).
+    // See RabitWorkspace. False: no such queue, or it is full. A receipt tells the outcome of the message
+    // later (RabitQueueReceipt).
     template <typename T>
     bool AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt = nullptr)
     {
         return _workspace.AddMessageToQueue(std::move(name), std::move(msg), std::move(receipt));
     }
-    // Has this manager woken when all messages added with the receipt have come to an outcome. Call it before
-    // the first message is added: an outcome that came earlier wakes nobody. Neither does a message that is
-    // refused at the call (RabitQueueReceipt).
+    // Wakes this manager when all messages added with the receipt have an outcome. Call it before the first
+    // message is added: earlier outcomes do not wake the manager. Messages refused at the call do not wake
+    // it either (RabitQueueReceipt).
     void WakeUpManagerOnOutcome(const std::shared_ptr<RabitQueueReceipt> &receipt);
 
     // Starts the thread and returns. Throws std::logic_error if it was started and not joined.
     void Run();
     // Waits for the thread to end. Throws std::system_error if it was not started.
     void Join();
-    // Has this manager finish its unit of work and shut down; wakes it. A call before Run has it shut down
-    // right after Startup.
+    // Wakes this manager, which finishes its unit of work and shuts down. After a call before Run it shuts
+    // down right after Startup.
     void ShutdownManager();
-    // True: has all managers of the workspace shut down, and says so in "ManagerControlMessage". False: only
-    // posts that message with its flag cleared.
+    // True: shuts down all managers of the workspace, and posts "ManagerControlMessage" with the flag set.
+    // False: only posts that message with its flag cleared.
     void ShutdownAllManagers(bool value);
-    // The wake-up, for handlers of the user's own. WakeUpHandler gives one that is safe to call after the
-    // manager is gone; WakeUpManagerEH is not.
+    // Wakes the manager, for the user's own handlers. The handler that WakeUpHandler returns is safe to
+    // call after the manager is gone; WakeUpManagerEH is not.
     void WakeUpManagerEH();
     RabitHandler WakeUpHandler() const;
 
@@ -248,9 +249,9 @@ private:
     void ForgetEndedQueueWakeups();
     bool HasQueueWakeup(const void *queue, QueueEvent event) const;
 
-    // The manager's life in steps. Its thread calls them one after the other; a RabitSteppedReactor does so
-    // on its own thread.
-    void PrepareRun();                         // restores the names after an earlier run
+    // The manager's run in steps. Its thread calls them one after the other; a RabitSteppedReactor calls
+    // them on the thread that drives it.
+    void PrepareRun();                         // registers the names again after an earlier run
     bool StartupStep();                        // false: go on with ShutdownStep
     bool CycleStep();                          // one pass; false: go on with ShutdownStep
     void SleepStep();                          // real sleep until the next pass
@@ -260,7 +261,7 @@ private:
     std::chrono::nanoseconds PauseOfThisSleep() const;
     void CountPass(std::chrono::nanoseconds start, std::chrono::nanoseconds end);
     void ShutdownStep();
-    void FinishRun();  // forgets what told it to shut down, ready for another run
+    void FinishRun();  // forgets the shutdown request, ready for another run
     void ThreadMain();
 
     void FetchControlMessages();

@@ -17,17 +17,17 @@ class PublishSubscribeMessage;
 class RabitMessage;
 struct MessageInfo;
 
-// Sees what one manager reads of the world around it, and what it does to it: the hook by which a manager's
-// steps can be recorded, and be run again with what they read then. Given by
-// RabitWorkspace::SetManagerTracing.
+// A hook that sees the inputs and the actions of one manager, and may replace them. With it a manager's
+// steps can be recorded, and run again with the recorded inputs. RabitWorkspace::SetManagerTracing installs
+// it.
 //
-// Seen is what the manager does on its own thread in its Startup, its units of work and its Shutdown:
-// readings of the clock of its workspace; fetches that brought something; posts; messages that it takes from
-// queues of RabitMessages, and those that it adds to queues by name; lists of messages. Not what its handlers
-// do, nor what handlers of others do on its thread.
+// It sees these actions on the manager's own thread in Startup, units of work and Shutdown: readings of the
+// clock of its workspace; fetches that brought something; posts; messages taken from queues of
+// RabitMessages, and messages added to queues by name; lists of messages. It does not see handlers: neither
+// the manager's nor those of others that run on its thread.
 //
-// All methods are called on the manager's thread, with no lock held. What they do themselves is not seen.
-// They must not throw. A trace belongs to one manager.
+// All methods are called on the manager's thread, with no lock held. Their own actions are not traced. They
+// must not throw. A trace belongs to one manager.
 class RabitManagerTrace
 {
 public:
@@ -40,38 +40,39 @@ public:
 
     virtual ~RabitManagerTrace() = default;
 
-    // `isTurn`: what IsTurn says in it. `threw`: an exception left it.
+    // `isTurn`: the value of IsTurn during the step. `threw`: an exception left the step.
     virtual void BeginStep(Step step, bool isTurn) = 0;
     virtual void EndStep(bool threw) = 0;
 
-    // A reading of a clock: the system's (RabitClock::System) or a ManualClock. What is left in `time` is
-    // what the manager gets. A reading of both clocks is told as two, GPS time first.
+    // A reading of a clock: the system's (RabitClock::System) or a ManualClock. The manager gets the value
+    // that the trace leaves in the argument. A reading of both clocks comes as two calls, GPS time first.
     virtual void ReadMonotonic(std::chrono::nanoseconds &time) = 0;
     virtual void ReadGpsTime(double &gpsTimeSeconds) = 0;
 
-    // The manager has a copy of what was posted last, the `number`-th post of that message.
+    // The manager fetched `message`, the `number`-th post of that name.
     virtual void Fetched(const PublishSubscribeMessage &global, const RabitMessage &message,
                          std::uint64_t number) = 0;
-    // Before a post of its own that is to be stamped now: nothing, or the time that it gets.
+    // Called before a post of the manager that would get the current time. Returns another time for it, or
+    // nothing.
     virtual std::optional<PostTime> Posting(const PublishSubscribeMessage &global) = 0;
-    // After it, and after its handlers; the message has its time.
+    // Called after each post and its handlers; the message has its time stamp.
     virtual void Posted(const PublishSubscribeMessage &global, const RabitMessage &message,
                         std::uint64_t number) = 0;
 
-    // From the queue that calls itself so (GetMessageQueueName). Never null.
+    // The manager took the message from a queue. `queue` is the queue's own name (GetMessageQueueName).
     virtual void Taken(const std::string &queue, const RabitMessage &message) = 0;
-    // Before a message is added to the queue of that name: nothing, or what AddMessageToQueue returns; then
-    // it is not added.
+    // Called before a message is added to the queue of that name. If it returns a value, AddMessageToQueue
+    // returns that value and does not add the message.
     virtual std::optional<bool> Adding(const std::string &queue, const RabitMessage &message) = 0;
     virtual void Added(bool accepted) = 0;
 
-    // What GetListOfMessages is about to return.
+    // GetListOfMessages is about to return `messages`.
     virtual void Listed(std::vector<MessageInfo> &messages) = 0;
 
-    // That of the manager whose step runs on this thread; null: none does, or it is not traced.
+    // The trace of the manager whose step runs on this thread; null if no step runs, or it is not traced.
     static RabitManagerTrace *Current() noexcept { return _current; }
 
-    // Nothing that this thread does is seen while one of these lives; it gives access to the trace itself.
+    // While a Pause lives, the actions of this thread are not traced. It gives access to the trace itself.
     class Pause
     {
     public:
@@ -88,14 +89,14 @@ public:
 
 private:
     friend class RabitManager;
-    // Asked for with each reading of a clock, so it is here to be inlined.
+    // Read at each clock reading, so it is here to be inlined.
     static inline thread_local RabitManagerTrace *_current = nullptr;
 
-    // For the time of one step.
+    // Makes a trace the current one of this thread for the time of one step.
     class Scope
     {
     public:
-        // The trace, if there is one, must outlive the object, and its step begins.
+        // The trace may be null. Otherwise it must outlive the Scope, and Begin must be called.
         explicit Scope(RabitManagerTrace *trace) : _trace(trace), _former(std::exchange(_current, nullptr)) {}
         void Begin(Step step, bool isTurn)
         {
@@ -122,7 +123,7 @@ private:
     };
 };
 
-// Gives the trace of the manager of that name, which is about to start; null: none.
+// Returns the trace for the manager of that name, which is about to start; null: no trace.
 using RabitManagerTracing = std::function<std::shared_ptr<RabitManagerTrace>(const std::string &manager)>;
 
 }  // namespace Rabit

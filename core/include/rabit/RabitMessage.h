@@ -23,8 +23,9 @@ class PublishSubscribeMessage;
 // Base of all messages. A message of a derived class is both what managers share under a name (post and
 // fetch) and what they put into queues.
 //
-// A message object belongs to one thread at a time, usually its manager's; sharing happens through the global
-// copy (PublishSubscribeMessage) to which registering under a name attaches it.
+// A message object belongs to one thread at a time, usually its manager's; sharing happens through the
+// global copy (PublishSubscribeMessage). Registering a message under a name attaches it to that name's
+// global copy.
 //
 // A registration belongs to the object, not to its contents. Assignment, copy or move, takes the contents of
 // the other message and keeps the registration of this one: after `*mine = *theirs`, `mine` posts to its own
@@ -33,7 +34,7 @@ class PublishSubscribeMessage;
 class RabitMessage
 {
 public:
-    // For the user; no meaning to Rabit.
+    // For the user; Rabit does not use them.
     int MessageType = 0;
     int MessageSource = 0;
     int MessageDestination = 0;
@@ -82,20 +83,21 @@ public:
     double GetAgeSeconds() const;
     // The same by a given clock, which must be the one of the workspace in which the contents were posted.
     double GetAgeSeconds(const RabitClock &clock) const;
-    // Whether the contents were ever posted: by this message, or where they were fetched or copied from.
+    // True if the contents were ever posted: by this message, or by the message that they were fetched or
+    // copied from.
     bool WasPosted() const { return _postedAt != NeverPosted; }
     // Time stamp, and the moment of the post by the monotonic clock (zero if there was none).
     PostTime GetPostTime() const;
 
-    // Of a message taken from a queue: whether an earlier life of this process may have got it already. Only
-    // for queues elsewhere whose sender asked for messages in doubt to be sent again; false otherwise.
+    // For a message taken from a queue: true if an earlier incarnation of this process may already have got
+    // it. Only for messages from other nodes whose sender asked to resend those in doubt; false otherwise.
     bool IsRedelivered() const { return _redelivered; }
     void SetRedelivered(bool redelivered) { _redelivered = redelivered; }
 
     // These four work on the global copy and throw GlobalPublishSubscribeException if there is none.
     //
-    // Has the handler called after each post of this name, with no lock held, for as long as the name exists:
-    // on the posting thread. A gateway that posts for other nodes has a thread of its own for handlers. One
+    // Has the handler called after each post of this name, with no lock held, for as long as the name
+    // exists: on the posting thread. Handlers of posts from other nodes run on a thread of the gateway. One
     // call there may stand for several posts (RabitHandlerThread). Returns true.
     bool Register_SomethingPublished(const boost::function<void()> &handler);
     // Stamps this message with the current time, copies it to the global copy and calls the handlers.
@@ -103,8 +105,8 @@ public:
     // Posts with a time that the caller gives, see PublishSubscribeMessage.
     void PostMessage(const PostTime &time);
     void PostMessageWin();
-    // Copies the global copy to this message if it is something new; returns whether it was. Takes no lock
-    // when nothing is new. The first fetch after registering is true if anything was ever posted.
+    // Copies the global copy to this message if it is new; returns whether it was. Takes no lock when
+    // nothing is new. The first fetch after registering is true if anything was ever posted.
     bool FetchMessage();
 
     // The common header: the three ints as int32, the time stamp as double.
@@ -126,12 +128,12 @@ private:
     [[noreturn]] void ThrowNotRegistered() const;
     void CopyStampFrom(const RabitMessage &msg);
 
-    // In _seenSource: attached, and not fetched yet. The first fetch then copies whatever the time stamps
-    // are.
+    // In _seenSource: attached, and not fetched yet. The first fetch then copies, even if the time stamps
+    // are equal.
     static constexpr std::uint64_t NothingSeenYet = ~std::uint64_t{0};
 
-    // Which post the contents are: identity and sequence number of the global copy, and the time stamp they
-    // had then. Travels with the time stamp.
+    // The post that the contents come from: identity and sequence number of the global copy, and their time
+    // stamp then. Travels with the time stamp.
     std::uint64_t _seenSource = 0;
     std::uint64_t _seenSequence = 0;
     double _seenTimeStamp = 0.0;

@@ -11,9 +11,8 @@ class RabitMessage;
 class RabitWorkspace;
 
 // Registers a message under a name for as long as the lease lives: for names that come and go while the
-// program runs. The name leaves the workspace with the lease, unless a manager or somebody else has
-// registered it besides. A global copy that somebody still holds remains usable. The next registration of the
-// name makes another one.
+// program runs. The name leaves the workspace with the lease, unless it was also registered otherwise. A
+// global copy that is still shared remains usable. The next registration of the name makes another one.
 //
 // Thread-safe. The workspace must outlive the lease.
 class RabitMessageLease

@@ -25,10 +25,10 @@ namespace Rabit
 // A named, bounded first-in-first-out queue for any number of threads: the receiver gets each and every
 // message.
 //
-// Handlers run on the thread that added (or took), or on the RabitHandlerThread that this has for them, after
-// it did, with no lock held; what they throw is caught and logged. For messages of other nodes that is a
-// thread of the gateway's, and one call may stand for several messages. Elements are destroyed outside the
-// lock.
+// Handlers run after the message was added (or taken), with no lock held, on the thread that added (or
+// took) it or on its RabitHandlerThread. Their exceptions are caught and logged. For messages of other
+// nodes they run on a thread of the gateway, and one call may stand for several messages. Elements are
+// destroyed outside the lock.
 template <typename T>
 class RabitMessageQueue
 {
@@ -51,8 +51,8 @@ public:
     const std::string &Name() const { return _name; }
     int GetMaxNoMessagesAllowedInQueue() { return static_cast<int>(_ring.Capacity()); }
 
-    // Have the handler called after each message that was added, or taken, for as long as the queue lives.
-    // Any number of handlers. Throw std::invalid_argument if it is empty.
+    // Call the handler after each message that was added, or taken, for as long as the queue lives. Any
+    // number of handlers. Throw std::invalid_argument if the handler is empty.
     void Register_SomethingEnqueued(const boost::function<void()> &handler)
     {
         ConnectSomethingEnqueued(handler);
@@ -70,21 +70,21 @@ public:
     {
         return _dequeued.Connect(std::move(handler));
     }
-    // Has the handler called after each message for which AddMessage had no room.
+    // Calls the handler after each message that AddMessage refused because the queue was full.
     RabitConnection ConnectSomethingRefused(RabitHandler handler)
     {
         return _refusal.Connect(std::move(handler));
     }
 
-    // Disconnects all handlers of messages added and taken, for an owner that goes while others may still
-    // hold the queue.
+    // Disconnects all handlers of messages added and taken. For an owner that is destroyed while others may
+    // still hold the queue.
     void DisconnectAllHandlers()
     {
         _enqueued.DisconnectAll();
         _dequeued.DisconnectAll();
     }
 
-    // False when full; then the handlers of what is refused are called, and no others.
+    // Returns false when full, and then calls only the handlers of refused messages.
     bool AddMessage(T msg)
     {
         RabitEvent::Handlers handlers;
@@ -105,11 +105,12 @@ public:
         return Push(msg);
     }
 
-    // Calls the handlers for what AddMessageNoEventTrigger added: for an adder that may call nobody while it
-    // adds.
+    // Calls the handlers for messages that AddMessageNoEventTrigger added, for callers that must not run
+    // handlers while they add.
     void NotifyEnqueued() { _enqueued.Fire(); }
 
-    // Takes the oldest message. False, the target untouched and no handler called, when empty.
+    // Takes the oldest message. When empty, returns false, leaves the target unchanged and calls no
+    // handler.
     bool GetMessage(T &msg)
     {
         std::optional<T> oldest;
@@ -152,7 +153,7 @@ public:
 
     bool IsEmpty() { return NoMessagesInQueue() == 0; }
 
-    // How many messages were not added because the queue was full, since it was made.
+    // The number of messages refused because the queue was full, since it was made.
     std::uint64_t GetNumberOfRefusedMessages()
     {
         const std::lock_guard<std::mutex> lock(*_mutex);

@@ -61,13 +61,13 @@ public:
     {
         return _dequeued.Connect(std::move(handler));
     }
-    // Has the handler called after each message for which AddMessage had no room.
+    // Calls the handler after each message that AddMessage refused because the queue was full.
     RabitConnection ConnectSomethingRefused(RabitHandler handler)
     {
         return _refusal.Connect(std::move(handler));
     }
 
-    // False when full; then the handlers of what is refused are called, and no others.
+    // Returns false when full, and then calls only the handlers of refused messages.
     bool AddMessage(T const &msg)
     {
         if (!AddMessageNoEventTrigger(msg))
@@ -87,7 +87,8 @@ public:
         return added;
     }
 
-    // Takes the oldest message. False, the target untouched and no handler called, when empty.
+    // Takes the oldest message. When empty, returns false, leaves the target unchanged and calls no
+    // handler.
     bool GetMessage(T &msg)
     {
         if (!_queue.pop(msg))
@@ -105,8 +106,8 @@ public:
         _queue.consume_all([this](T &) { Count(_taken); });
     }
 
-    // How many messages wait: from any thread, but for others than the two at work the number of a moment
-    // ago.
+    // The number of messages that wait. From threads other than producer and consumer it may be slightly
+    // out of date.
     int NoMessagesInQueue()
     {
         const std::uint64_t taken = _taken.load(std::memory_order_acquire);
@@ -118,7 +119,7 @@ public:
     }
     bool IsEmpty() { return NoMessagesInQueue() == 0; }
 
-    // How many messages were not added because the queue was full, since it was made.
+    // The number of messages refused because the queue was full, since it was made.
     std::uint64_t GetNumberOfRefusedMessages() { return _refused.load(std::memory_order_relaxed); }
 
 private:

@@ -8,12 +8,13 @@
 namespace Rabit
 {
 
-// The turns of a period: moments that are exactly a period apart, counted from its beginning, however late
-// each of them is taken. Knows no clock: whoever has one asks. Not thread-safe.
+// The turns of a period: moments exactly a period apart, counted from its beginning, even if a turn is
+// taken late. The caller passes the time: there is no clock in here. Not thread-safe.
 class RabitPeriod
 {
 public:
-    // Zero or less: none. Another period than before begins anew; the same one goes on as it is.
+    // Sets the period; zero or less: no period. A different value begins a new period; the same value
+    // changes nothing.
     void Set(std::chrono::nanoseconds period)
     {
         period = std::max(period, std::chrono::nanoseconds::zero());
@@ -26,16 +27,16 @@ public:
     std::chrono::nanoseconds Get() const { return _period; }
     bool IsSet() const { return _period > std::chrono::nanoseconds::zero(); }
 
-    // The next turn is a period after `start`, which is itself one that was taken.
+    // Begins the period with a turn at `start`, which counts as taken; the next turn is one period later.
     void Begin(std::chrono::nanoseconds start) { _next = start + _period; }
-    // Of a period that is set. Before Begin: if it began at `start`.
+    // The next turn; the period must be set. Before Begin: the next turn of a period that began at `start`.
     std::chrono::nanoseconds Next(std::chrono::nanoseconds start) const
     {
         return _next ? *_next : start + _period;
     }
-    // Takes all turns that have come by now, and says whether there was one. All but the last of them are
-    // missed. A period that has not begun began at `start`, or now if its first turn has come already: what
-    // lies before it was set is not missed.
+    // Takes all turns that have come by `now`, and returns whether there was one. All but the last of them
+    // are missed. A period that has not begun begins at `start`, or at `now` if its first turn has already
+    // come: turns before the period was set do not count as missed.
     bool Take(std::chrono::nanoseconds start, std::chrono::nanoseconds now)
     {
         if (!_next)
@@ -53,7 +54,7 @@ public:
         *_next += (late + 1) * _period;
         return true;
     }
-    // Since construction.
+    // Missed turns since construction.
     std::uint64_t Missed() const { return _missed; }
 
 private:

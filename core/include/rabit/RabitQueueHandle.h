@@ -14,13 +14,13 @@
 namespace Rabit
 {
 
-// What became of a message that was offered to a queue.
+// The result of adding a message to a queue.
 enum class QueueAddResult
 {
     Ok,
     Full,
     UnknownQueue,
-    WrongType  // the queue holds something else, and the message does not convert to it
+    WrongType  // the queue has another element type, and the message does not convert to it
 };
 
 // For logs: `ok`, `full`, `unknown queue`, `wrong type`.
@@ -39,19 +39,20 @@ public:
     virtual std::type_index QueueType() const = 0;
     virtual std::shared_ptr<void> Queue() const = 0;
     virtual int Capacity() const = 0;
-    // How many messages wait in it now, and how many were refused because it was full, since it was made.
+    // FillLevel: the number of messages that wait. RefusedAdds: those refused because the queue was full,
+    // since it was made.
     virtual int FillLevel() const = 0;
     virtual std::uint64_t RefusedAdds() const = 0;
 
-    // Adds *element, which is of the given type; moves from it unless the result is WrongType.
+    // Adds *element, which has the given type. Moves from it unless the result is WrongType.
     virtual QueueAddResult AddElement(std::type_index type, void *element) = 0;
     // Adds a message to a queue of shared pointers to RabitMessage or to a class that this one is derived
     // from.
     virtual QueueAddResult AddMessage(const std::shared_ptr<RabitMessage> &message) = 0;
     virtual QueueAddResult AddString(std::string text) = 0;
     // Adds a shared pointer to a queue of shared pointers to a base of its class. throwPointer throws the
-    // object's address as a pointer to its static type: a handler for pointers to the queue's class then
-    // catches it exactly if the language converts the one to the other.
+    // object's address as a pointer to its static type. A catch clause for pointers to the queue's class
+    // catches it exactly if C++ converts the one pointer to the other.
     virtual QueueAddResult AddPointer(const std::shared_ptr<void> &owner, void (*throwPointer)(void *),
                                       void *object) = 0;
 

@@ -10,22 +10,23 @@
 namespace Rabit
 {
 
-// What became of a message that was added to a queue with a receipt.
+// The outcome of a message that was added to a queue with a receipt.
 enum class QueueOutcome
 {
     Pending,    // it is on its way, or nothing was added with this receipt yet
     Delivered,  // it is in the queue
     Expired,    // its time ran out on the way; it was not delivered and never will be
-    InDoubt,    // where it went, or from where, somebody restarted: it may or may not have been delivered
-    Refused     // it was not accepted, at the call or over there; it was not delivered and never will be
+    InDoubt,    // sender or receiver restarted: it may or may not have been delivered
+    Refused     // refused at the call or at the destination; it was not delivered and never will be
 };
 
-// Tells the sender of a queue message what became of it. Hand one to AddMessageToQueue, keep it, and ask it
-// whenever it suits, or have the manager woken with RabitManager::WakeUpManagerOnOutcome.
+// Tells the sender of a queue message its outcome. Pass a receipt to AddMessageToQueue, keep it, and ask it
+// at any time, or let RabitManager::WakeUpManagerOnOutcome wake the manager.
 //
-// A message for a local queue has its outcome at once. One for a queue elsewhere (`node/queue`) gets it when
-// the other side acknowledged it, or when it is certain that it never will. A receipt given to several calls,
-// or to one that sends to several nodes (`*/queue`), stands for all of them together.
+// A message for a local queue has its outcome at once. A message for another node (`node/queue`) gets it
+// when that node acknowledges the message, or when it is certain that it never will. A receipt given to
+// several calls, or to a call that sends to several nodes (`*/queue`), stands for all of these messages
+// together.
 //
 // AddMessageToQueue returns false for a message that is refused at the call. The receipt counts that message
 // as Refused and calls no handler for it: a manager that tries again when it is woken would never sleep.
@@ -35,7 +36,7 @@ enum class QueueOutcome
 class RabitQueueReceipt
 {
 public:
-    // How many messages came to which outcome.
+    // The number of messages for each outcome.
     struct Counts
     {
         std::uint32_t Pending = 0;
@@ -49,29 +50,29 @@ public:
     RabitQueueReceipt(const RabitQueueReceipt &) = delete;
     RabitQueueReceipt &operator=(const RabitQueueReceipt &) = delete;
 
-    // Pending while any message is; then Delivered if all were, else what went wrong: InDoubt if that holds
-    // for any, else Expired, else Refused.
+    // Pending while any message is pending. Then Delivered if all were delivered; else InDoubt if any is in
+    // doubt, else Expired if any expired, else Refused.
     QueueOutcome Outcome() const;
     Counts GetCounts() const;
 
-    // Has the handler called whenever no message is pending any more and at least one got its outcome since
-    // the last call of the handlers. Messages that were refused at the call do not count for that. The
-    // handler runs with no lock held: for a local queue on the thread of the caller, else on a thread of the
-    // gateway's that calls handlers; if it is a RabitQuickHandler, on the thread that learns the outcome,
-    // often one of the network's. Throws std::invalid_argument if it is empty.
+    // Calls the handler whenever no message is pending any more and at least one got its outcome since the
+    // handlers were last called. Messages refused at the call do not count. The handler runs with no lock
+    // held: for a local queue on the thread of the caller, else on the gateway's thread for handlers. A
+    // RabitQuickHandler runs on the thread that learns the outcome, often a network thread. Throws
+    // std::invalid_argument if it is empty.
     RabitConnection ConnectOutcomeKnown(RabitHandler handler);
 
     // The methods below are for the code that delivers: the workspace, a QueueForwarder.
     //
-    // Counts `messages` more as pending. Each of them then gets one Settle or one Refuse; without its Begin
-    // these two throw std::logic_error.
+    // Counts `messages` more as pending. Each of them then gets one Settle or one Refuse; these throw
+    // std::logic_error if no message is pending.
     void Begin(std::uint32_t messages = 1);
     // One message came to this outcome. Throws std::invalid_argument if the outcome is Pending.
     void Settle(QueueOutcome outcome);
     // One message is refused at the call: AddMessageToQueue will return false.
     void Refuse();
-    // Between Hold and Release the outcome is Pending, and no handler is called: one message goes to several
-    // queues, and more of them may begin.
+    // Between Hold and Release the outcome is Pending, and no handler is called. Used while one message
+    // goes to several queues, as further Begins may follow.
     void Hold();
     void Release();
 

@@ -12,9 +12,9 @@ namespace Rabit
 
 // Owns managers and runs them, each on its own thread.
 //
-// While Run is active, SIGINT and SIGTERM have all running reactors of the process shut down in order; a
-// second such signal ends the process at once, as if there were no handler. Signals that the program handles
-// or ignores itself are left alone, and SetHandleSignals(false) switches the whole off.
+// While Run is active, SIGINT and SIGTERM shut down all running reactors of the process in an orderly way.
+// A second such signal ends the process at once, as if there were no handler. Signals that the program
+// handles or ignores itself are left alone, and SetHandleSignals(false) switches signal handling off.
 //
 // Threads: ShutdownAllManagers may be called from any thread; the rest belongs to the thread that owns the
 // reactor. Several reactors may run at once, in one workspace or in several, without disturbing each other.
@@ -38,14 +38,15 @@ public:
     // Throws std::logic_error if it is running already, std::system_error if a thread cannot be started
     // (those already started are shut down first).
     void Run();
-    // Has all managers of this reactor shut down. Before Run: Run will return after their Startup and
+    // Shuts down all managers of this reactor. After a call before Run, Run returns after their Startup and
     // Shutdown.
     void ShutdownAllManagers();
-    // Whether Run reacts to SIGINT and SIGTERM; it does unless told otherwise. Not while it runs.
+    // Sets whether Run reacts to SIGINT and SIGTERM (default: true). Must not be called while the reactor
+    // runs.
     void SetHandleSignals(bool handle);
-    // A manager that was told to shut down and has not ended after this time, because a step of it does not
-    // return, is named in the log, as a warning, while Run goes on waiting for it; again each time that twice
-    // as long has passed. 5 s unless set; at least 1 ms. Not while it runs.
+    // If a manager has not ended this long after it was told to shut down, a warning names it, and Run goes
+    // on waiting for it. The warning is repeated each time the wait has doubled. Default 5 s, at least 1
+    // ms. Must not be called while the reactor runs.
     void SetPatience(std::chrono::nanoseconds patience);
 
 private:

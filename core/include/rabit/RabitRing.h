@@ -20,7 +20,7 @@ public:
     std::size_t Capacity() const { return _capacity; }
     std::size_t Size() const { return _count; }
 
-    // False, and the element untouched, when full.
+    // Returns false when full, and then leaves the element unchanged.
     bool Push(T &element)
     {
         if (_count == _capacity)
@@ -41,7 +41,7 @@ public:
         return true;
     }
 
-    // The oldest element; nothing when empty.
+    // Takes the oldest element; returns nothing when empty.
     std::optional<T> Pop()
     {
         std::optional<T> oldest;
@@ -55,8 +55,7 @@ public:
         return oldest;
     }
 
-    // Takes all elements out and hands their memory over, so that the caller can destroy them without its
-    // lock.
+    // Returns all elements with their memory, so that the caller can destroy them outside its lock.
     std::vector<std::optional<T>> TakeAll()
     {
         _head = 0;

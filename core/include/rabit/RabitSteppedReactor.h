@@ -12,23 +12,23 @@
 namespace Rabit
 {
 
-// Runs managers without threads: everything happens on the calling thread, in a fixed order, and time is what
-// the workspace's clock says (normally a ManualClock). Whole nodes run deterministically so.
+// Runs managers without threads: on the calling thread, in a fixed order, by the workspace's clock
+// (normally a ManualClock). This way whole nodes run deterministically.
 //
 // Managers that are due at the same time run in the order of addition. A manager that has been woken is due
-// at once. One that does not sleep (delay 0) is due again after NoSleepStep, as time would otherwise stand
-// still. A manager must not block in its unit of work.
+// at once. A manager that does not sleep (delay 0) is due again after NoSleepStep, as time would otherwise
+// stand still. A manager must not block in its unit of work.
 //
 // Not thread-safe. Other threads may still post, and add to queues.
 class RabitSteppedReactor
 {
 public:
     static constexpr std::chrono::nanoseconds NoSleepStep = std::chrono::milliseconds(1);
-    // More passes than this at one moment mean managers that wake each other for ever.
+    // More passes than this at one moment mean that managers wake each other endlessly.
     static constexpr int MaxPassesAtOneMoment = 100000;
 
     explicit RabitSteppedReactor(RabitWorkspace &workspace);
-    // Shuts down the managers that still run, then destroys all in the reverse order of addition.
+    // Shuts down the managers that still run, then destroys all managers in the reverse order of addition.
     ~RabitSteppedReactor();
     RabitSteppedReactor(const RabitSteppedReactor &) = delete;
     RabitSteppedReactor &operator=(const RabitSteppedReactor &) = delete;
@@ -41,19 +41,20 @@ public:
     // When the next pass is due by the workspace's clock (now, if a manager was woken); nothing if no manager
     // runs.
     std::optional<std::chrono::nanoseconds> NextDue() const;
-    // Runs all passes that are due now, and those that they cause, and the Shutdown of managers that were
-    // told to. Returns the number of passes. Throws std::runtime_error after MaxPassesAtOneMoment.
+    // Runs all passes that are due now, those that they cause, and the Shutdown of managers that were told
+    // to shut down. Returns the number of passes. Throws std::runtime_error after MaxPassesAtOneMoment.
     int RunDue();
     // Moves the clock on to `until`, stopping at each due moment on the way to run what is due. The clock
     // must be the one of the workspace. Returns the number of passes.
     int RunUntil(ManualClock &clock, std::chrono::nanoseconds until);
     int RunFor(ManualClock &clock, std::chrono::nanoseconds duration);
-    // Runs one pass of a manager of this reactor that runs, whether it is due or not; IsTurn says in it what
-    // this says. For running again what was recorded. False: it has shut down, or is none of this reactor's.
+    // Runs one pass of a running manager of this reactor, even if it is not due; IsTurn returns `isTurn` in
+    // that pass. For replaying a recording. Returns false if the manager has shut down or belongs to
+    // another reactor.
     bool RunPassOf(const RabitManager &manager, bool isTurn);
-    // Whether any manager has not shut down yet.
+    // True while any manager has not shut down yet.
     bool IsRunning() const;
-    // Has all managers shut down, in order. They can be started again.
+    // Shuts all managers down, in order. They can be started again.
     void Stop();
 
 private:
@@ -73,7 +74,7 @@ private:
     RabitWorkspace &_workspace;
     std::deque<Entry> _entries;  // stays in place when a unit of work adds managers
     bool _started = false;
-    bool _anyEnded = false;  // since it was last looked whether all have
+    bool _anyEnded = false;  // since the last check whether all have
 };
 
 }  // namespace Rabit

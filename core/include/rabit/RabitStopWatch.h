@@ -16,7 +16,7 @@ public:
     void tick();
     // Both captures become now: nothing has elapsed.
     void reset();
-    // The same, under the name that goes with stop.
+    // The same as reset, under the name that goes with stop.
     void start();
     // The newer capture becomes now.
     void stop();

@@ -1,8 +1,8 @@
 #pragma once
 
-// The version of Rabit. The build takes it from here. While the major version is 0, a new minor version may change what
-// programs are written and linked against (the shared libraries are then named librabit_*.so.0.MINOR, and find_package
-// takes no other minor version for it); a new patch version does not.
+// The version of Rabit. The build takes it from here. While the major version is 0, a new minor version may
+// change API and ABI; a new patch version does not. So the shared libraries are then named
+// librabit_*.so.0.MINOR, and find_package accepts only the same minor version.
 #define RABIT_VERSION_MAJOR 0
 #define RABIT_VERSION_MINOR 1
 #define RABIT_VERSION_PATCH 0

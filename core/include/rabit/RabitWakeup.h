@@ -27,9 +27,9 @@ public:
 
     // From any thread.
     void Signal();
-    // The same, and says that a control message was posted: this ends a sleep until a turn as well.
+    // Signals that a control message was posted. This also ends a sleep until the next turn.
     void SignalControlChange();
-    // Whether one was posted since this was asked last; true at first.
+    // True if a control message was posted since the last call; true at the first call.
     bool TakeControlChange() { return _controlChanged.exchange(false, std::memory_order_acq_rel); }
     // Ends the sleep, and every later one until Reset.
     void RequestShutdown();
@@ -40,11 +40,11 @@ public:
     // In place of the delay; zero: none. A sleep that is under way follows the new period at once.
     void SetPeriod(std::chrono::nanoseconds period);
     std::chrono::nanoseconds GetPeriod() const;
-    // Whether signals end a sleep until the next turn of the period; they do not unless this says so.
+    // Sets whether signals end a sleep until the next turn of the period (default: false).
     void SetSignalsBetweenTurns(bool count);
-    // Turns that passed without a pass of their own, since construction.
+    // Number of turns that passed without a pass of their own, since construction.
     std::uint64_t MissedTurns() const;
-    // Whether there are sleeps at all: false if the delay is zero and there is no period.
+    // True if the manager sleeps at all: false if the delay is zero and there is no period.
     bool MaySleep() const;
 
     // For the manager alone.
@@ -54,24 +54,24 @@ public:
     // Now, on the timeline that Sleep takes turns by: that of std::chrono::steady_clock.
     static std::chrono::nanoseconds SteadyNow();
     // Blocks until the next turn, or for the delay if there is no period, or until a signal or a shutdown
-    // request; then forgets the signals. For the first `pause` of it only a shutdown request counts. Returns
-    // whether it slept: false if there was no need to. Reads no clock after a signal, which is on its way to
-    // a unit of work, if there is no period.
+    // request; then forgets the signals. During the first `pause` only a shutdown request ends the sleep.
+    // Returns whether it slept. Without a period no clock is read after a signal, as that would delay the
+    // unit of work.
     bool Sleep(std::chrono::nanoseconds pause);
-    // The same sleep for a manager that is stepped: it sleeps between these two calls. SleepUntil says when
-    // that sleep ends if nothing else happens.
+    // The same sleep for a stepped manager, which sleeps between BeginSleep and EndSleep. SleepUntil
+    // returns when that sleep ends if nothing else ends it.
     void BeginSleep();
     std::chrono::nanoseconds SleepUntil(std::chrono::nanoseconds start) const;
     void EndSleep(std::chrono::nanoseconds start, std::chrono::nanoseconds now);
-    // What IsTurn and IsWorkDue say of the next pass, whatever ended the sleep before it.
+    // Sets the value of IsTurn for the next pass, and IsWorkDue to true, no matter what ended the sleep.
     void SetTurn(bool isTurn);
     bool IsSignalled() const;
     void ForgetSignals();
     Counts TakeCounts();
     // Forgets signals and the shutdown request.
     void Reset();
-    // What the last sleep ended for: whether a turn has come (always, if there is no period), and whether
-    // there is a reason for a unit of work at all, or only for a look at the control messages.
+    // Why the last sleep ended. IsTurn: a turn has come (always true without a period). IsWorkDue: a unit
+    // of work is due; false if only the control messages need a look.
     bool IsTurn() const { return _isTurn; }
     bool IsWorkDue() const { return _isWorkDue; }
 
@@ -94,7 +94,7 @@ private:
     std::atomic<bool> _shutdownRequested{false};
     std::atomic<bool> _controlChanged{true};
 
-    // Of the manager alone.
+    // Used by the manager's loop alone.
     bool _isTurn = true;
     bool _isWorkDue = true;
 };

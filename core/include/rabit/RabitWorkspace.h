@@ -32,22 +32,22 @@ class QueueRefusals;
 class WorkspaceForwarders;
 class WorkspaceRegistry;
 
-// What came of registering a message under a name.
+// The result of registering a message under a name.
 enum class MessageRegistrationResult
 {
     Created,   // the name is new: the message was cloned to become the global copy
     Attached,  // the name has a global copy of the same type
-    OtherType  // the name has a global copy of another type; the message is left as it was
+    OtherType  // the name has a global copy of another type; the message is unchanged
 };
 
 struct MessageRegistration
 {
     MessageRegistrationResult Result;
-    // The global copy of that name, also for OtherType. Never null.
+    // The global copy of that name, also for OtherType; not null.
     std::shared_ptr<PublishSubscribeMessage> Global;
 };
 
-// Entries of the lists of what is registered.
+// Entries of the lists of registered messages and queues.
 struct MessageInfo
 {
     std::string Name;
@@ -60,21 +60,21 @@ struct QueueInfo
     std::type_index ElementType;
     int Capacity;
     int FillLevel;              // messages that wait in it
-    std::uint64_t RefusedAdds;  // messages that it had no room for, since it was made
+    std::uint64_t RefusedAdds;  // messages refused because the queue was full, since it was made
 };
 struct UnknownQueueInfo
 {
     std::string Name;
-    std::uint64_t RefusedAdds;  // messages for it that nobody took
+    std::uint64_t RefusedAdds;  // messages refused because no such queue existed
 };
 
-// The names by which managers find each other's messages and queues. Most programs have the one of
-// GetWorkspace(); others may be made, for instance one for each simulated vehicle in a process. Managers of
+// The names by which managers find each other's messages and queues. Most programs use the default one,
+// GetWorkspace(). More can be made, for instance one for each simulated vehicle in a process. Managers of
 // different workspaces share nothing.
 //
 // Threads: all methods may be called from any thread at any time. No lock is held while handlers, queues or
-// the forwarder are called. Lifetime: a workspace must outlive its managers and reactors. Messages and queues
-// are shared: whoever holds one may go on using it after its name is gone. Errors: null messages and queues
+// forwarders are called. Lifetime: a workspace must outlive its managers and reactors. Messages and queues
+// are shared: their holders may go on using them after the name is gone. Errors: null messages and queues
 // throw std::invalid_argument.
 class RabitWorkspace
 {
@@ -94,8 +94,8 @@ public:
     // managers when its Run ends, and all of them if no manager of another reactor is left in the workspace.
     void LeavingReactor();
 
-    // The names of the managers that were given to a reactor, in that order, each once. -1: no such name. A
-    // name goes with a manager that is destroyed before it ever ran, unless another one has it too.
+    // The names of the managers that were added to a reactor, in that order, each once. Index -1: no such
+    // name. If a manager is destroyed before it ever ran, its name goes, unless another manager has it too.
     int GetManagerIndexNumber(std::string managerName);
     bool DoesManagerExist(std::string managerName);
     std::vector<std::string> GetListOfManagerNames();
@@ -127,31 +127,31 @@ public:
         return std::static_pointer_cast<QueueT>(handle->Queue());
     }
 
-    // Adds a message to the queue of that name. The message is of the queue's element type, or a shared
-    // pointer to a class derived from the one the queue holds pointers to, or something that converts to
-    // std::string for a queue of those. If there is no such queue, a message that converts to a shared
-    // pointer to RabitMessage is offered to the forwarder. False if the name is unknown, the queue full, the
-    // forwarder refuses, or the message is a null pointer to a RabitMessage, which no queue takes by name.
-    // Throws QueueTypeException if the queue holds something else.
+    // Adds a message to the queue of that name. The message is of the queue's element type. A queue of
+    // shared pointers also accepts a shared pointer to a derived class, and a queue of std::string accepts
+    // values that convert to it. If there is no such queue, a message that converts to a shared pointer to
+    // RabitMessage is offered to the forwarders. False if the name is unknown, the queue is full, the
+    // forwarder refuses, or the message is a null pointer to a RabitMessage. Throws QueueTypeException if
+    // the queue has another element type.
     //
-    // A queue that is full, and a name that nobody knows, are logged as warnings with their names: the first
-    // time at once, then together, at most once a minute. So is a full queue to which the program adds
-    // without its name. GetListOfQueues and GetListOfUnknownQueues have the numbers.
+    // Refusals by full queues and for unknown names are logged as warnings with the name: the first at
+    // once, later ones together, at most once a minute. This includes messages added to a registered queue
+    // directly. GetListOfQueues and GetListOfUnknownQueues return the counts.
     //
-    // The receipt, if there is one, tells what became of the message, see RabitQueueReceipt; it learns of a
-    // refusal as well. If this throws it learns nothing.
+    // The receipt, if there is one, tells the outcome of the message, also a refusal; see
+    // RabitQueueReceipt. If this throws, the receipt is not changed.
     template <typename T>
     bool AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt = nullptr);
 
-    // Adds a message knowing only the name of the queue. Does not ask the forwarder. For adapters that get
-    // messages from elsewhere and must tell what went wrong.
+    // Adds a message to the local queue of that name; asks no forwarder. For adapters that receive messages
+    // from elsewhere and must report why one was refused.
     QueueAddResult DeliverToQueue(const std::string &name, const std::shared_ptr<RabitMessage> &message);
     // The queue of that name as a handle; null if there is none.
     std::shared_ptr<RabitQueueHandle> FindQueue(const std::string &name) const;
 
-    // Has the handler called after each message that is added to (taken from) the queue registered under that
-    // name now, whatever its type (T is ignored). Returns true; throws MessageNotRegisteredException if there
-    // is none.
+    // Calls the handler after each message that is added to (taken from) the queue registered under that
+    // name now, of any type (T is ignored). Returns true; throws MessageNotRegisteredException if there is
+    // no such queue.
     template <typename T>
     bool Register_EnqueuedEvent(std::string name, const boost::function<void()> &handler)
     {
@@ -168,42 +168,44 @@ public:
     RabitConnection ConnectEnqueuedEvent(const std::string &name, RabitHandler handler);
     RabitConnection ConnectDequeuedEvent(const std::string &name, RabitHandler handler);
 
-    // Who takes messages for names that are not queues here; QueueForwarder.h says who of several. False, and
-    // nothing is added, if the workspace has a forwarder of that name.
+    // Adds a forwarder, which accepts messages for names that are not queues here. QueueForwarder.h tells
+    // which of several forwarders gets a message. Returns false, and adds nothing, if there is a forwarder
+    // of that name.
     bool AddQueueForwarder(const std::string &forwarderName, std::shared_ptr<QueueForwarder> forwarder);
-    // Takes away the one of that name, if there is one. Returns only when no call of it is in progress any
-    // more; so it must not be called from inside one.
+    // Removes the forwarder of that name, if there is one. Returns only when no call of it is in progress
+    // any more, so the forwarder itself must not call this.
     void RemoveQueueForwarder(const std::string &forwarderName);
-    // Their names, in the order in which they were added.
+    // The names of the forwarders, in the order in which they were added.
     std::vector<std::string> GetListOfQueueForwarders() const;
-    // For programs with one forwarder: it takes the place of the one that was set before; null: of none.
-    // Returns as RemoveQueueForwarder does. It has the name "".
+    // For programs with one forwarder: replaces the one that was set before; null removes it. Returns when
+    // RemoveQueueForwarder would. The forwarder has the name "".
     void SetQueueForwarder(std::shared_ptr<QueueForwarder> forwarder);
 
     // Registers the message under the name and attaches it to the name's global copy, see
     // MessageRegistration. The message is kept alive as long as the name. True if it is attached now; false
     // if the name belongs to a message of another type (also logged).
     bool AddPublishSubscribeMessage(std::string name, std::shared_ptr<RabitMessage> msg);
-    // The same, telling what happened. RabitMessageLease registers a name that goes again.
+    // The same, with the detailed result. RabitMessageLease registers a name for a limited time.
     MessageRegistration RegisterMessage(const std::string &name, const std::shared_ptr<RabitMessage> &msg);
     // The global copy of that name; null if there is none.
     std::shared_ptr<PublishSubscribeMessage> FindGlobalMessage(const std::string &name) const;
 
-    // By name: a clone of the global copy (null if there is no such name); and fetching to any message of the
-    // right type (false if there is no such name, or as PublishSubscribeMessage::FetchMessage).
+    // GetMessage returns a clone of the global copy of that name; null if there is none. The others fetch
+    // to any message of the right type: false if there is no such name, or as
+    // PublishSubscribeMessage::FetchMessage.
     std::unique_ptr<RabitMessage> GetMessage(std::string name);
     bool FetchMessage(std::string name, RabitMessage *msg);
     bool ForceFetchMessage(std::string name, RabitMessage *msg);
 
-    // Has each manager that starts from now on seen by the trace that this gives for it, see
-    // RabitManagerTrace. Empty: none. It is called by whoever starts the manager.
+    // Traces each manager that starts from now on with the trace that `tracing` returns for it, see
+    // RabitManagerTrace. Empty: no tracing. `tracing` is called on the thread that starts the manager.
     void SetManagerTracing(RabitManagerTracing tracing);
 
-    // What is registered now, sorted by name.
+    // The messages and queues registered now, sorted by name.
     std::vector<MessageInfo> GetListOfMessages() const;
     std::vector<QueueInfo> GetListOfQueues() const;
-    // Names of queues that were not there when messages were added to them, sorted; since the workspace was
-    // made. Those beyond 200 names share an entry.
+    // Names of missing queues to which messages were added since the workspace was made, sorted. Names
+    // beyond 200 share an entry.
     std::vector<UnknownQueueInfo> GetListOfUnknownQueues() const;
 
 private:
@@ -218,7 +220,7 @@ private:
     template <typename T>
     bool AddUntraced(const std::string &name, T &msg, const std::shared_ptr<RabitQueueReceipt> &receipt);
 
-    // global is what becomes the global copy if the name is new; null: a clone of the message.
+    // If the name is new, `global` becomes its global copy; null: a clone of the message does.
     MessageRegistration RegisterMessageFor(const std::string &name, const std::shared_ptr<RabitMessage> &msg,
                                            std::uint64_t owner,
                                            std::shared_ptr<PublishSubscribeMessage> global);

@@ -31,7 +31,7 @@ public:
         return _ring.Push(element);
     }
 
-    // False, and the target untouched, when empty.
+    // Returns false when empty, and then leaves the target unchanged.
     bool dequeue(T &element)
     {
         std::optional<T> oldest;

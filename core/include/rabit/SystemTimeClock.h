@@ -17,13 +17,13 @@ namespace Rabit
 // std::chrono. Both count from 1980-01-06T00:00:00; GPS seconds are ahead of UTC seconds by the leap second
 // offset. One object for the process. All methods may be called from any thread.
 //
-// The current time is computed from the UptimeClock and its distance to the wall clock, which is measured
-// anew when the last measurement is 10 ms old: a step of the wall clock shows within that time, and is logged
-// as a warning if it is 1 ms or more.
+// The current time is computed from the UptimeClock and the offset to the wall clock. The offset is
+// measured anew when the last measurement is 10 ms old: a step of the wall clock shows within that time,
+// and is logged as a warning if it is 1 ms or more.
 //
-// Leap seconds: 18, which holds since 2017-01-01 and until the IERS announces another in its Bulletin C. A
-// program that knows better calls SetLeapSecondOffset before it makes its first message; all nodes that
-// exchange time stamps with UTC should be set alike.
+// Leap seconds: 18, which holds since 2017-01-01 and until the IERS announces another in its Bulletin C.
+// After a change a program calls SetLeapSecondOffset before it makes its first message. All nodes that
+// exchange time stamps should be set alike.
 class SystemTimeClock
 {
 public:
@@ -46,24 +46,24 @@ public:
     // Takes effect at once. A value that is not finite is ignored.
     void SetTimeSyncOffset(double seconds);
 
-    // How far, in seconds, the current time may be given ahead of the clock; and how far that may go back
-    // without being followed.
+    // In seconds. MaxAhead: how far a time stamp may run ahead of the clock. LeastStepBack: up to here a
+    // backward step of the wall clock is bridged, beyond it is followed.
     static constexpr double MaxAhead = 2e-6;
     static constexpr double LeastStepBack = 1e-5;
 
-    // The current time, both clocks of one moment, for one clock read.
+    // The current time: both clocks at one moment, for one clock read.
     //
-    // A double holds GPS seconds in steps of 238 ns. Still, no two readings of one thread, one after the
-    // other, are equal: the second is one step later if the clock did not move on so far. A burst of readings
-    // thereby runs ahead of the clock, by MaxAhead at most: then a reading waits for the clock, so that a
-    // thread gets no more than one each 238 ns. A wall clock that is set back by more than LeastStepBack is
-    // followed; a smaller step is bridged like a burst.
+    // A double holds GPS seconds in steps of 238 ns. Still, two consecutive readings of one thread are
+    // never equal: if the clock moved on by less than a step, the second is one step later. A burst of
+    // readings thereby runs ahead of the clock, by MaxAhead at most. Then a reading waits for the clock, so
+    // that a thread gets at most one reading each 238 ns. A wall clock that is set back by more than
+    // LeastStepBack is followed; a smaller step is bridged like a burst.
     PostTime Now();
     double GetCurrentGpsTimeInSeconds();
     double GetCurrentUTCTimeInSeconds();
 
-    // Logs that the wall clock was set, if it was and this was not called since. Posts and managers call it:
-    // reading the time itself calls nobody. No lock may be held.
+    // Logs that the wall clock was set, if that was not logged yet. Posts and managers call it, because
+    // reading the time itself must not call the log. The caller must hold no lock.
     void ReportSteps()
     {
         if (_stepNotReported.load(std::memory_order_relaxed) != 0)
@@ -99,13 +99,13 @@ public:
     void printSystemClockCharacteristics();
 
 private:
-    // Age in nanoseconds at which the distance of the two clocks is measured anew.
+    // Age in nanoseconds at which the offset between the two clocks is measured anew.
     static constexpr std::int64_t MeasurementLifetime = 10000000;
 
-    // A step of the wall clock of so many nanoseconds is worth a line in the log.
+    // The least step of the wall clock, in nanoseconds, that is logged.
     static constexpr std::int64_t LeastStepReported = 1000000;
 
-    // What a thread was given last, and the reading that it was given for.
+    // The last time stamp that a thread got, and the clock reading behind it.
     struct LastOfThread
     {
         double Given;
@@ -129,11 +129,11 @@ private:
     // Wall clock minus monotonic clock in nanoseconds, and when it was measured by the monotonic clock.
     std::atomic<std::int64_t> _wallOffset{0};
     std::atomic<std::int64_t> _measuredAt{0};
-    // Nanoseconds.
+    // Sum of the steps of the wall clock that are not logged yet, in nanoseconds.
     std::atomic<std::int64_t> _stepNotReported{0};
 };
 
-// Inline for the sake of posting, of which it is the largest part.
+// Inline because it is the largest part of a post.
 inline PostTime SystemTimeClock::Read()
 {
     const std::chrono::nanoseconds monotonic = UptimeClock::now().time_since_epoch();

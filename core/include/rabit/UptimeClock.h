@@ -7,8 +7,8 @@ namespace Rabit
 {
 
 // The monotonic clock behind all times and ages in Rabit: the time since this computer was started. Unlike
-// std::chrono::steady_clock it goes on while the computer is suspended, so that what was posted or queued
-// before is afterwards as old as it is. Not for waiting: timed waits of the standard library do stand still.
+// std::chrono::steady_clock it goes on while the computer is suspended, so that the time of the suspension
+// counts in the age of messages. Not for waiting: timed waits of the standard library do not count it.
 struct UptimeClock
 {
     using duration = std::chrono::nanoseconds;

@@ -8,7 +8,7 @@
 namespace Rabit
 {
 
-// A fixed number of messages of one type, made once and lent out again and again, for programs that must not
+// A fixed number of messages of one type, made once and lent out repeatedly. For programs that must not
 // allocate while they run. The pool owns its messages: they must not be used after it is gone. Not
 // thread-safe.
 class MessagePool
@@ -26,8 +26,8 @@ public:
 
     // Lends a message out; null if none is free.
     RabitMessage *CheckOutMessage();
-    // Takes a message back and clears it. 0: done (also for null); 1: it is not checked out; 2: it is not of
-    // this pool, and was cleared all the same.
+    // Takes a message back and clears it. Returns 0 on success (also for null); 1 if it is not checked out;
+    // 2 if it is not of this pool: it was cleared nevertheless.
     int CheckInMessage(RabitMessage *msg);
     // Counts the free messages one by one.
     int findNumberOfFreeMessages();

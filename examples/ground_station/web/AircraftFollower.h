@@ -10,18 +10,19 @@
 namespace Ground
 {
 
-// Follows what one aircraft publishes: Pose, MissionState, Findings and Health of <node>, and Targets and
-// CameraView of <node>.vision. For one thread.
+// Follows the messages of one aircraft: Pose, MissionState, Findings and Health of <node>, and Targets and
+// CameraView of <node>.vision. Not thread-safe.
 class AircraftFollower
 {
 public:
     // Registers the names in the workspace, which must outlive this object.
     AircraftFollower(const std::string &node, Rabit::RabitWorkspace &workspace);
 
-    // Fetches the latest of each, and fills in what has come with its age. The data points into this object.
+    // Fetches the latest of each, and fills in the messages that have come, with their ages. The data
+    // points into this object.
     void Show(AircraftData &data);
-    // How many seconds ago it was that time by the clock of the aircraft: by its last pose, which carries
-    // that clock and has an age. NaN if there is none. For Show's results to be of use, call it after Show.
+    // Seconds since that time by the clock of the aircraft, computed from its last pose, which carries that
+    // clock and has an age. NaN if there is no pose. Call it after Show, which fetches the pose.
     double SecondsSince(double gpsTimeS) const;
 
 private:

@@ -11,13 +11,13 @@
 namespace Ground
 {
 
-// Decides which connections a WebServer holds, so that no stranger keeps its page from opening.
+// Decides which connections a WebServer holds, so that no attacker can keep the page from opening.
 //
-// A connection is idle until its request is there, and again when it is answered: whoever is there for the
-// page says at once what he wants. Where there is no room for one that comes, an idle one goes in its place,
-// the oldest of the address that holds the most of them; the idle ones are few in any case. One address holds
-// so many at most, and some places are kept for the known: the addresses that opened a page while there was
-// room. This machine itself is known, and may hold any number: a tunnel may bring many people from there.
+// A connection is idle until its request has arrived, and again after the answer: real browsers send their
+// request at once. If there is no room for a new connection, it replaces an idle one: the oldest of the
+// address that holds the most idle ones. The number of idle connections is limited, and so is that of one
+// address. Some places are reserved for known addresses: those that opened a page while there was room.
+// This machine itself is known, and has no limit: a tunnel may bring many people from there.
 //
 // Not thread-safe.
 class ConnectionGate
@@ -30,23 +30,23 @@ public:
     {
         std::size_t Most = 64;       // at once
         std::size_t MostIdle = 24;   // of these
-        std::size_t MostOfOne = 24;  // of one address, this machine apart
-        std::size_t ForKnown = 16;   // places that a stranger does not get
+        std::size_t MostOfOne = 24;  // of one address other than this machine
+        std::size_t ForKnown = 16;   // places reserved for known addresses
     };
-    // Addresses that are remembered; then the oldest is a stranger again.
+    // Number of known addresses; beyond it the oldest is forgotten.
     static constexpr std::size_t MostKnown = 64;
 
     struct Decision
     {
-        std::optional<Id> Taken;    // by which it is known from now on; nothing: it is to be closed
-        std::optional<Id> Dropped;  // is to be closed in its place, and is not counted any more
+        std::optional<Id> Taken;    // the id of the new connection; nothing: close it
+        std::optional<Id> Dropped;  // close this one in its place; it no longer counts
     };
 
     explicit ConnectionGate(const Limits &limits) : _limits(limits) {}
 
-    // One more has come. It is idle.
+    // Decides about a new connection, which is idle.
     Decision Arrive(const Address &from);
-    // Of one that was taken and not dropped; otherwise these do nothing.
+    // For a connection that was accepted and not dropped; otherwise these do nothing.
     void BecomesIdle(Id id);
     void BecomesBusy(Id id);
     void OpensPage(Id id);
@@ -58,7 +58,7 @@ private:
     struct Connection
     {
         Address From;
-        std::uint64_t IdleSince = 0;  // rises; 0: it is not idle
+        std::uint64_t IdleSince = 0;  // a rising number; 0: not idle
     };
 
     bool IsKnown(const Address &from) const;

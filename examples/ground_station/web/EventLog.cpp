@@ -128,7 +128,7 @@ void EventLog::LookAtTargets(const StationData &now)
     }
 }
 
-// Each step, also where a command has come through several since the last look.
+// Logs each step, even if a command went through several since the last call.
 void EventLog::LookAtCommands(const CommandList &list)
 {
     std::map<std::uint32_t, std::size_t> now;

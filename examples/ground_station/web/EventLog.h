@@ -14,7 +14,7 @@
 namespace Ground
 {
 
-// One thing that happened.
+// An event.
 struct StationEvent
 {
     enum class Weight
@@ -27,16 +27,16 @@ struct StationEvent
     std::uint64_t Number = 0;  // counted from 1
     double AtS = 0;            // StationData::NowS then
     Weight How = Weight::Info;
-    std::string Node;  // the aircraft that it is about; may be empty
+    std::string Node;  // the aircraft concerned; may be empty
     std::string Text;
 };
 
-// Finds what happened by comparing what is known now with what was known before. Bounded. Not thread-safe.
+// Finds events by comparing the present data with the previous data. Bounded. Not thread-safe.
 class EventLog
 {
 public:
     static constexpr std::size_t MaxEvents = 200;
-    // Of commands, targets and problems; what is beyond is not followed.
+    // Maximum number of commands, of targets and of problems that are followed; others are ignored.
     static constexpr std::size_t MaxFollowed = 2000;
 
     void Look(const StationData &now);
@@ -67,7 +67,7 @@ private:
     std::deque<StationEvent> _events;
     std::map<std::string, Known> _aircraft;
     std::map<std::string, Uav::TargetStage> _targets;  // by name
-    std::map<std::uint32_t, std::size_t> _commands;  // by id: how many of its steps were told
+    std::map<std::uint32_t, std::size_t> _commands;    // by id: how many of its steps were told
     std::set<std::string> _problems;
     std::uint32_t _area = 0;
 };

@@ -128,7 +128,7 @@ bool HasTokenInTarget(const HttpRequest &request)
 
 HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const std::string &token)
 {
-    // No redirection: a browser that came from another site's link would not send the cookie along with it.
+    // Not a redirection: after a link from another site the browser would not send the cookie with it.
     HttpResponse response =
         Make(http::status::ok, "text/html; charset=utf-8",
              "<!doctype html><meta http-equiv=\"refresh\" content=\"0; url=/\"><link rel=\"icon\" "

@@ -77,7 +77,7 @@ void HttpSession::TellWhetherTls()
             else if (isTls)
                 self->ShakeHands();
             else
-                self->Read();  // to say that it should speak TLS
+                self->Read();  // to answer that the page needs TLS
         });
 }
 
@@ -112,7 +112,7 @@ void HttpSession::OnRead(const boost::beast::error_code &error)
 {
     if (error)
     {
-        // What is not HTTP gets an answer; whoever left or was too slow does not.
+        // Bytes that are no HTTP get an answer; a peer that left or was too slow does not.
         if (error.category() == http::make_error_code(http::error::bad_method).category() &&
             error != http::error::end_of_stream && error != http::error::partial_message)
             Write(RefuseHttp(http::status::bad_request, "That is no request that is answered here.", 11,
@@ -132,7 +132,7 @@ void HttpSession::OnRead(const boost::beast::error_code &error)
         CheckToken();
 }
 
-// While it waits the connection is idle: another one may have its place.
+// While it waits the connection is idle, so another one may replace it.
 void HttpSession::CheckToken()
 {
     const ServerSecrets &secrets = *_context.Secrets;
@@ -215,7 +215,7 @@ void HttpSession::Close()
         Lowest().socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
         return;
     }
-    // Says that nothing was cut off, and waits for the other side to say so, or for one that needs the place.
+    // Sends TLS's close_notify, and waits for the peer's, or for a connection that needs the place.
     _context.Gate.BecomesIdle(_id);
     Lowest().expires_after(_context.Settings.RequestTime);
     tls->async_shutdown([self = shared_from_this()](const boost::beast::error_code &) {});

@@ -13,10 +13,10 @@
 namespace Ground
 {
 
-// Logs what there is to say of wrong tokens.
+// Logs wrong tokens, if a line is due.
 void SayWrongTokens(ServerContext &context);
 
-// One connection while it speaks HTTP. It owns itself: it lives while something is under way.
+// One connection while it speaks HTTP. It owns itself, and lives while an operation is pending.
 class HttpSession : public std::enable_shared_from_this<HttpSession>
 {
 public:
@@ -27,7 +27,7 @@ public:
     HttpSession &operator=(const HttpSession &) = delete;
 
     void Begin();
-    // Ends it, for another one needs its place.
+    // Closes the connection, as another one needs its place.
     void Drop();
 
 private:

@@ -14,7 +14,7 @@ namespace
 {
 using Json = nlohmann::json;
 
-// What is wrong with a request. Does not leave this file.
+// The reason to refuse a request. Used only in this file.
 class Refused : public std::runtime_error
 {
 public:
@@ -64,7 +64,7 @@ private:
     std::size_t _taken = 0;
 };
 
-// To be handed to ForEachNumberOf...: fills in each of the numbers.
+// A visitor for ForEachNumberOf...: fills in each of the numbers.
 auto TakeEach(Fields &fields)
 {
     return [&fields]<typename Number>(const char *name, Number &number, const Common::Range &range)

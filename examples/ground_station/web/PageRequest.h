@@ -11,14 +11,14 @@
 namespace Ground
 {
 
-// A page asks what the server's clock says, and tells what its own said.
+// A page requests the time of the server's clock, and sends that of its own.
 struct ClockRequest
 {
     double PageS = 0;
 };
 
-// What a page asks for. A text that is anything but one of the three, with exactly its fields, each of its
-// type and within its range, is refused.
+// A request of a page. The text must be one of these three, with exactly its fields, each of the right type
+// and in range; otherwise it is refused.
 //
 //   {"type": "clock", "page_s": 1.5}
 //   {"type": "order", "ref": 1, "kind": "goto", "node": "uav1", "latitude_deg": 47.4, "longitude_deg": 8.5,
@@ -28,8 +28,8 @@ struct ClockRequest
 struct PageRequest
 {
     std::variant<std::monostate, ClockRequest, Order, Uav::SearchArea> Wish;
-    std::optional<std::int64_t> Ref;  // the page's number for it, if that could be read
-    std::string Refusal;              // why there is no wish; empty if there is one
+    std::optional<std::int64_t> Ref;  // the page's number for the request, if that could be read
+    std::string Refusal;              // why the request was refused; empty if it was not
 };
 
 PageRequest ParsePageRequest(const std::string &text);
@@ -39,7 +39,7 @@ std::string ClockReply(const ClockRequest &request, double serverS);
 std::string AcceptedReply(std::int64_t ref);
 std::string RefusedReply(std::optional<std::int64_t> ref, const std::string &reason);
 
-// Whether it is a name that a node may have.
+// True if a node may have that name.
 bool IsNodeName(const std::string &name);
 
 }  // namespace Ground

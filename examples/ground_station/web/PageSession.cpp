@@ -106,7 +106,7 @@ void PageSession::Reply(std::string text)
 {
     if (_replies.size() >= WebServer::MaxRepliesWaiting)
     {
-        // It asks and takes no answers. An orderly close would wait behind them.
+        // The page sends requests but reads no answers. An orderly close would wait behind them.
         _open = false;
         boost::beast::get_lowest_layer(_stream).close();
         return;
@@ -115,7 +115,7 @@ void PageSession::Reply(std::string text)
     WriteNext();
 }
 
-// One write at a time. Replies first: somebody waits for them.
+// One write at a time. Replies go first, as a person waits for them.
 void PageSession::WriteNext()
 {
     if (!_open || _writing)

@@ -13,7 +13,7 @@
 namespace Ground
 {
 
-// The WebSocket of one open page. It owns itself: it lives while something is under way.
+// The WebSocket of one open page. It owns itself, and lives while an operation is pending.
 class PageSession : public std::enable_shared_from_this<PageSession>
 {
 public:
@@ -22,9 +22,9 @@ public:
     PageSession(const PageSession &) = delete;
     PageSession &operator=(const PageSession &) = delete;
 
-    // The request must have been found good.
+    // The request must have passed RefusalOfUpgrade.
     void Accept(const HttpRequest &request);
-    // There is a new snapshot.
+    // Sends a new snapshot as soon as the page can take it.
     void Offer(const std::shared_ptr<const std::string> &snapshot);
 
 private:
@@ -41,9 +41,10 @@ private:
     bool _open = false;
     bool _writing = false;
     std::size_t _underWay = 0;                     // snapshots sent and not yet seen
-    std::shared_ptr<const std::string> _snapshot;  // the one to send next; null: it has the latest
+    std::shared_ptr<const std::string> _snapshot;  // the snapshot to send next; null: the page has the
+                                                   // latest
     std::shared_ptr<const std::string> _beingSent;
-    std::deque<std::string> _replies;  // the first one may be being sent
+    std::deque<std::string> _replies;  // the first one may already be in a write
 };
 
 }  // namespace Ground

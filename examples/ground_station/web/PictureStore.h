@@ -20,8 +20,8 @@ public:
 
     using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
 
-    // False, and nothing kept, if it does not begin as a JPEG does, is too large, or is of one aircraft too
-    // many.
+    // Returns false, and keeps nothing, if it does not begin like a JPEG, is too large, or there are too
+    // many aircraft.
     bool Put(const std::string &node, std::vector<std::uint8_t> jpeg);
     // Null if there is none.
     Jpeg Get(const std::string &node) const;

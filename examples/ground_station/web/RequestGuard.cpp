@@ -11,7 +11,7 @@ namespace Ground
 {
 namespace
 {
-// The host without its port; nothing if that is not how a Host header is written.
+// The host without its port; nothing if the Host header is malformed.
 std::optional<std::string> NameOf(std::string_view host)
 {
     std::size_t end = host.find(':');

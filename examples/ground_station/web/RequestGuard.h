@@ -7,10 +7,10 @@
 namespace Ground
 {
 
-// Decides which browser pages may talk to the server: only its own. A page of another site in the same
-// browser reaches every port that the browser reaches; it must not command aircraft.
+// Allows only the server's own pages to talk to it. A page of another site in the same browser reaches
+// every port that the browser reaches; it must not command aircraft.
 //
-// - The Host of every request must be a name that nobody else can point here: a numerical address or
+// - The Host of every request must be a name that no attacker can point here: a numerical address or
 //   `localhost`, or a name of this machine or of its certificate. A site that points a name of its own at
 //   this machine (DNS rebinding) shows that name. A server that is bound to the loopback interface takes
 //   loopback names only.
@@ -23,7 +23,7 @@ public:
     RequestGuard(bool boundToLoopback, std::vector<std::string> names, bool hasTls = false);
 
     bool IsHostAllowed(std::string_view host) const;
-    // The host must have been allowed.
+    // The host must have passed IsHostAllowed.
     bool IsOriginAllowed(std::string_view origin, std::string_view host) const;
 
 private:

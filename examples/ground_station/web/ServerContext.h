@@ -19,7 +19,7 @@ namespace Ground
 class HttpSession;
 class PageSession;
 
-// What a server has that is not for everybody: see WebServer::Settings::Secrets.
+// The secrets of a server: see WebServer::Settings::Secrets.
 struct ServerSecrets
 {
     boost::asio::ssl::context Tls;
@@ -28,8 +28,8 @@ struct ServerSecrets
     std::string Cookie;  // its name
 };
 
-// What the sessions of a WebServer share. All but the counters and pictures is for the server's thread, or
-// set before it starts.
+// State shared by the sessions of a WebServer. Everything except the counters and pictures is used only on
+// the server's thread, or set before it starts.
 struct ServerContext
 {
     WebServer::Settings Settings;
@@ -39,7 +39,8 @@ struct ServerContext
     WebServer::RequestHandler Handler;
     PictureStore Pictures;
     ConnectionGate Gate;
-    std::map<ConnectionGate::Id, HttpSession *> Requests;  // each enters itself, and leaves in its destructor
+    std::map<ConnectionGate::Id, HttpSession *> Requests;  // each adds itself, and removes itself in its
+                                                           // destructor
     std::set<PageSession *> Pages;                         // likewise
     std::shared_ptr<const std::string> Latest;             // snapshot; null before the first
 
@@ -53,7 +54,7 @@ struct ServerContext
     std::atomic<std::uint64_t> SnapshotsSkipped{0};
 };
 
-// The place of one connection, for as long as it is held.
+// Holds the place of one connection while it lives.
 class ConnectionSlot
 {
 public:

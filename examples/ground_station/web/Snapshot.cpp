@@ -15,7 +15,7 @@ namespace
 {
 using Json = nlohmann::json;
 
-// Short numbers make short texts. What is not finite becomes null.
+// Rounds a number, to keep the text short. NaN and infinities become null.
 Json Rounded(double value, double steps)
 {
     const double scaled = value * steps;
@@ -55,7 +55,7 @@ Json ToJson(const Uav::MissionState &mission)
             {"area_declined", mission.area_declined}};
 }
 
-// What is known of heights and of home is told with the mission, and holds however old that is.
+// Adds heights and home from the mission state; they stay valid however old that is.
 void AddPlaces(Json &object, const Uav::MissionState &mission)
 {
     object["floor_m"] = mission.has_floor ? Rounded(static_cast<double>(mission.floor_m), 10) : Json(nullptr);
@@ -74,8 +74,8 @@ Json ToJson(const Uav::Health &health)
             {"reason", health.reason}};
 }
 
-// Each target once. Place and ellipse are those of the aircraft that told of it, and as old as what it said
-// last; if sensor fusion has told nothing of it they are the last that its finder knew.
+// Each target once. Place and ellipse come from the aircraft whose Targets are used, with their age. If no
+// sensor fusion reports the target, they are the last that its finder knew.
 Json ToJson(const ListedTarget &listed)
 {
     Json item = {{"name", Common::TextOf(listed.Name)}, {"stage", "found"}, {"validated_by", ""}};
@@ -164,8 +164,8 @@ Json ToJson(const AircraftData &aircraft)
     return object;
 }
 
-// The list says when things happened by a clock of its own, and is posted when one of them happens: so its
-// last change was when it was posted.
+// The list has times of its own clock, and is posted at each change. So its latest change has the time of
+// its post.
 Json ToJson(const CommandList &list, double ageS)
 {
     double nowS = 0;
@@ -235,7 +235,7 @@ Json ToJson(const std::vector<Rabit::Gateway::Problem> &problems)
     return {{"count", problems.size()}, {"items", std::move(items)}};
 }
 
-// Bytes a second. What is not set is null.
+// Bytes a second. Values that are not set are null.
 Json ToJson(const Rabit::Gateway::AirStatus &air)
 {
     const auto limit = [](double value) { return value > 0 ? Rounded(value, 1) : Json(nullptr); };

@@ -10,17 +10,17 @@
 namespace Ground
 {
 
-// The newest commands and events that go into a snapshot.
+// Numbers of the newest commands and events in a snapshot.
 inline constexpr std::size_t CommandsInSnapshot = 40;
 inline constexpr std::size_t EventsInSnapshot = 40;
-// The first of the problems there are now; all are counted.
+// Number of current problems in a snapshot; all are counted.
 inline constexpr std::size_t ProblemsInSnapshot = 20;
-// The first of the streams and of the links that are held back; all are counted.
+// Number of held-back streams, and of links, in a snapshot; all are counted.
 inline constexpr std::size_t HeldInSnapshot = 20;
 
-// What the page is told, as JSON. Units and names are those of the IDL; what is not known is null or left
-// out. Every part has the age that it had at `server_s`, so that the page can count on. Texts from the
-// network are made valid UTF-8, and are otherwise as they came: the page must show them as text only.
+// The snapshot for the page, as JSON. Units and names are those of the IDL; unknown values are null or left
+// out. Every part has its age at `server_s`, from which the page counts on. Texts from the network are made
+// valid UTF-8, but otherwise unchanged: the page must show them as text only.
 std::string SnapshotText(const StationData &data, const std::deque<StationEvent> &events);
 
 }  // namespace Ground

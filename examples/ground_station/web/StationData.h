@@ -17,7 +17,7 @@
 namespace Ground
 {
 
-// A message as it is known now. It belongs to somebody else, and must outlive this.
+// A message with its age. The message must outlive this object.
 template <typename Message>
 struct Aged
 {
@@ -27,7 +27,7 @@ struct Aged
     explicit operator bool() const { return Content != nullptr; }
 };
 
-// Fetches the latest of a message that was registered, with its age. Nothing if none has come, or if its name
+// Fetches the latest value of a registered message, with its age. Nothing if none has come, or if its name
 // belongs to a message of another type, which the workspace has logged.
 template <typename Message>
 Aged<Message> Latest(Message &message)
@@ -47,7 +47,7 @@ struct PictureData
     double AgeS = 0;  // since it was taken, or since it came if that is not known
 };
 
-// What is known of one aircraft now.
+// The present data of one aircraft.
 struct AircraftData
 {
     static constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
@@ -68,23 +68,25 @@ struct AircraftData
     bool WithoutOrders = false;  // see NodeCommands
 };
 
-// What the ground station knows now.
+// The present data of the ground station.
 struct StationData
 {
     std::string Node;                                            // of the ground station
-    std::string Life;                                            // differs in each life of the program
-    std::uint64_t Number = 0;                                    // counted from 1 in each life
-    double NowS = 0;                                             // by the clock that ages are counted with
-    double FleetAgeS = std::numeric_limits<double>::infinity();  // of what the states of the aircraft rest on
+    std::string Life;                                            // different in each incarnation of the
+                                                                 // program
+    std::uint64_t Number = 0;                                    // counted from 1 in each incarnation
+    double NowS = 0;                                             // by the clock of the ages
+    double FleetAgeS = std::numeric_limits<double>::infinity();  // of the Fleet with the states of the
+                                                                 // aircraft
     std::vector<AircraftData> Aircraft;
     Aged<Uav::SearchArea> Area;
     Aged<CommandList> Commands;
     std::vector<Rabit::Gateway::Problem> Problems;
-    std::vector<std::string> Replayed;  // nodes that are there, but whose messages were recorded before
-    RadioUse Radio;  // of this node, as old as the states of the aircraft
+    std::vector<std::string> Replayed;  // present nodes that play a recording
+    RadioUse Radio;                     // of this node, as old as the states of the aircraft
 };
 
-// What the aircraft say of targets, as one list.
+// The targets of all aircraft as one list.
 inline std::vector<ListedTarget> TargetsOf(const StationData &data)
 {
     std::vector<SaidOfTargets> said;

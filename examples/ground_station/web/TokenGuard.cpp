@@ -99,7 +99,8 @@ TokenGuard::Visitor &TokenGuard::VisitorFrom(const Address &from, Time now)
         return found->second;
     if (_visitors.size() >= MostAddresses)
     {
-        // The one that has the least to remember of it; one that was right is worth more than a stranger.
+        // Forgets the address with the fewest wrong tokens; addresses that showed the right token are kept
+        // longest.
         const auto least =
             std::min_element(_visitors.begin(), _visitors.end(),
                              [now](const auto &a, const auto &b)

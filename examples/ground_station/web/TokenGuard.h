@@ -15,23 +15,24 @@
 namespace Ground
 {
 
-// Knows the token of a page, and slows down who tries others.
+// Checks the token of a page, and slows down attempts with wrong tokens.
 //
-// A token is not looked at before a pause that grows with the wrong ones that came from its address lately,
-// and with those of all addresses; one wrong token is forgotten in ForgetsOneIn. The pause has an end, so
-// that the right token gets through from wherever it comes, and an address that has shown it does not pay for
-// the others'. Neighbours in one IPv6 network (64 bits) count as one address.
+// A token is checked only after a pause. The pause grows with the recent wrong tokens from its address and
+// from all addresses; one wrong token is forgotten in ForgetsOneIn. The pause is limited, so that the right
+// token gets through from every address. For an address that has shown the right one, wrong tokens of other
+// addresses do not count. Addresses in one IPv6 network (64 bits) count as one.
 //
-// What is kept is bounded. Not thread-safe; the time is what the caller says, and never goes back.
+// Memory is bounded. Not thread-safe; the caller passes the time, which must never go back.
 class TokenGuard
 {
 public:
     using Address = boost::asio::ip::address;
     using Time = std::chrono::steady_clock::time_point;
 
-    static constexpr double FreeOfOne = 5;    // wrong tokens before it becomes slow
+    static constexpr double FreeOfOne = 5;    // wrong tokens before pauses begin
     static constexpr double FreeOfAll = 50;   // for addresses that never showed the right one
-    static constexpr double Remembered = 15;  // beyond what is free; so an attack is forgotten when it ends
+    static constexpr double Remembered = 15;  // limit above the free ones, so that an attack is soon
+                                              // forgotten
     static constexpr std::chrono::milliseconds FirstPause{250};
     static constexpr std::chrono::milliseconds LongestPause{4000};
     static constexpr std::chrono::seconds ForgetsOneIn{10};
@@ -41,17 +42,17 @@ public:
 
     explicit TokenGuard(std::string_view token);
 
-    // How long to wait before a token from there is looked at.
+    // The pause before a token from that address may be checked.
     std::chrono::milliseconds PauseFor(const Address &from, Time now) const;
-    // Whether it is the token. Takes as long for each of that length.
+    // True if it is the token. The time taken depends only on the length.
     bool IsRight(const Address &from, std::string_view shown, Time now);
-    // What is to be logged of wrong ones now, if anything: a line in BetweenLines at most.
+    // The log line about wrong tokens, if one is due: at most one in BetweenLines.
     std::optional<std::string> Line(Time now);
 
 private:
     using Digest = std::array<unsigned char, 32>;
 
-    // Rises by one, and falls with time.
+    // A level that rises by one for each wrong token, and falls with time.
     struct Level
     {
         double Height = 0;

@@ -36,7 +36,7 @@ std::uint16_t ParsePort(const std::string &text, const std::string &port)
 
 using boost::asio::ip::address;
 
-// Nothing for what no browser reaches from elsewhere.
+// The address of an interface; nothing if no browser can reach it from elsewhere.
 std::optional<address> AddressIn(const ifaddrs &one)
 {
     if (one.ifa_addr == nullptr || (one.ifa_flags & IFF_UP) == 0 || (one.ifa_flags & IFF_LOOPBACK) != 0)

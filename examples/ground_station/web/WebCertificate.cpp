@@ -20,7 +20,7 @@ namespace Keys = Rabit::Keys;
 
 constexpr const char *What = "make a certificate";
 constexpr std::time_t DayS = 24 * 60 * 60;
-// Longer ones are refused by some browsers.
+// Some browsers refuse certificates with a longer validity.
 constexpr std::time_t LongestDays = 397;
 
 void AddExtension(X509 &certificate, int kind, const std::string &value)

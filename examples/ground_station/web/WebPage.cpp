@@ -15,7 +15,7 @@ namespace Ground
 {
 namespace
 {
-// The part of an aircraft that sees; shown with the aircraft.
+// Suffix of an aircraft's vision node, which is shown with the aircraft.
 constexpr std::string_view VisionSuffix = ".vision";
 
 bool IsVision(const std::string &node)
@@ -79,7 +79,7 @@ void WebPage::TakePictures()
         const auto *const picture = dynamic_cast<const Uav::Picture *>(message.get());
         if (picture == nullptr || !IsNodeName(picture->taken_by) ||
             !_server->Pictures().Put(picture->taken_by, picture->jpeg))
-            continue;  // the page shows that the last good one grows old
+            continue;  // the page shows the growing age of the last good one
         _pictures[picture->taken_by] = {picture->number, picture->pose.gps_time_s, NowS()};
     }
 }
@@ -138,7 +138,7 @@ void WebPage::Show(AircraftData &data, AircraftFollower &follower) const
     const auto picture = _pictures.find(data.Node);
     if (picture == _pictures.end())
         return;
-    // The clock of the aircraft may have been set meanwhile: the picture is never younger than its arrival.
+    // The clock of the aircraft may have been set meanwhile, so the age is at least the time since arrival.
     const double sinceArrivalS = NowS() - picture->second.ArrivedS;
     const double sinceTakenS = follower.SecondsSince(picture->second.TakenGpsS);
     data.Picture = {picture->second.Number,
@@ -157,7 +157,7 @@ std::string WebPage::Answer(const std::string &text)
     return refusal.empty() && request.Ref ? AcceptedReply(*request.Ref) : RefusedReply(request.Ref, refusal);
 }
 
-// Returns why not; empty if it was handed on.
+// Passes the request on. Returns the reason if it was refused; empty if it was accepted.
 std::string WebPage::Obey(const PageRequest &request)
 {
     if (NowS() - _rate.SecondBeganS >= 1)

@@ -21,22 +21,22 @@
 namespace Ground
 {
 
-// Shows the fleet on a page in the browser, and takes orders from there: the manager `WebPage`.
+// Shows the fleet on a page in the browser, and accepts orders from it: the manager `WebPage`.
 //
-// Fetches: Gateway/Fleet, from which it learns who is there; of each aircraft what AircraftFollower says;
-//          CommandList, CommandTally and SearchArea of the Commander.
+// Fetches: Gateway/Fleet, from which it learns the nodes; the messages of each aircraft that AircraftFollower
+//          lists; CommandList, CommandTally and SearchArea of the Commander.
 // Queue:   Pictures takes Uav::Picture, from whichever aircraft has one.
 // Sends:   Ground::Order and Uav::SearchArea to the queue Commands, as the page asks.
 //
-// Ten times a second it tells every open page all it knows, with the age of each part. A node counts as an
+// Ten times a second it sends all data to every open page, with the age of each part. A node counts as an
 // aircraft once a pose or mission state of it has come, or if it is expected.
 class WebPage : public Rabit::RabitManager
 {
 public:
     static constexpr std::chrono::milliseconds Period{100};
-    // Nodes that are followed; what is beyond is not shown.
+    // Number of nodes that are followed; others are not shown.
     static constexpr std::size_t MaxNodes = 200;
-    // Orders and search areas of all pages together, within one second; what is beyond is refused.
+    // Orders and search areas of all pages together within one second; further ones are refused.
     static constexpr int MaxOrdersPerSecond = 20;
     static constexpr int PicturesWaiting = 64;
 
@@ -91,7 +91,7 @@ private:
     std::shared_ptr<CommandList> _commands = std::make_shared<CommandList>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
-    const std::unique_ptr<WebServer> _server;  // last, for its thread uses the others
+    const std::unique_ptr<WebServer> _server;  // last, as its thread uses the others
 };
 
 }  // namespace Ground

@@ -83,7 +83,7 @@ WebSecrets WebSecretsIn(const std::string &folder, const WebNames &names, std::t
         if (IsThere(certificate) && !IsThere(key))
             throw WebServerError(key + " is missing, the key of " + certificate);
         WebSecrets secrets;
-        // The key first: a start that was cut short leaves a key alone, and the next one goes on with it.
+        // The key comes first: an interrupted start leaves only a key, which the next start uses.
         secrets.Key = IsThere(key) ? Keys::ReadSecret(key) : MakeWebKey();
         if (mayWrite && !IsThere(key))
             Keys::WriteSecret(key, secrets.Key);

@@ -22,7 +22,7 @@ namespace
 {
 using boost::asio::ip::tcp;
 
-// The names by which a browser may ask for it: of this machine, and those that its certificate says.
+// Guards by the allowed host names: those of this machine, and those in its certificate.
 RequestGuard GuardOf(const WebServer::Settings &settings)
 {
     std::vector<std::string> names = NamesOfThisHost();
@@ -52,8 +52,8 @@ std::unique_ptr<ServerSecrets> SecretsOf(const WebServer::Settings &settings, st
         throw WebServerError("The web page cannot be served with that certificate: " +
                              error.code().message());
     }
-    // Cookies are of a host, whatever the port: two ground stations of one machine must not share a name. The
-    // prefix has the browser take it from this host by TLS alone.
+    // Cookies belong to a host, for all its ports, so two ground stations on one machine need different
+    // names. Because of the prefix the browser accepts the cookie only from this host by TLS.
     return std::make_unique<ServerSecrets>(ServerSecrets{
         std::move(tls), TokenGuard(secrets.Token), secrets.Token, "__Host-rabit-" + std::to_string(port)});
 }
@@ -130,7 +130,7 @@ public:
         const std::lock_guard lock(_mutex);
         if (_postable == nullptr)
             return;
-        // At most one call waits, with the latest snapshot, however long the server's thread takes.
+        // At most one call waits, with the latest snapshot, even if the server's thread is slow.
         const bool waiting = _next != nullptr;
         _next = std::move(snapshot);
         if (!waiting)
@@ -200,7 +200,7 @@ private:
     {
         if (error)
         {
-            // No file descriptors, for instance. Trying again at once would keep the processor busy.
+            // For instance out of file descriptors. An immediate retry would keep the processor busy.
             _pause->expires_after(PauseAfterFailure);
             _pause->async_wait([this](const boost::system::error_code &) { Accept(); });
             return;
@@ -211,7 +211,7 @@ private:
     void Take(tcp::socket socket)
     {
         boost::system::error_code ignored;
-        const tcp::endpoint from = socket.remote_endpoint(ignored);  // of one that has left: no address
+        const tcp::endpoint from = socket.remote_endpoint(ignored);  // no address if the peer has left
         const ConnectionGate::Decision decision = _context.Gate.Arrive(from.address());
         if (decision.Dropped)
         {
@@ -250,7 +250,7 @@ private:
     std::optional<boost::asio::steady_timer> _pause;
     std::thread _thread;
     std::mutex _mutex;
-    boost::asio::io_context *_postable = nullptr;  // guarded; null: nobody may post
+    boost::asio::io_context *_postable = nullptr;  // guarded; null: posting is not allowed
     std::shared_ptr<const std::string> _next;      // guarded; not null: a call of Distribute waits
 };
 

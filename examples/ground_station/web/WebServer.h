@@ -25,17 +25,17 @@ namespace Ground
 // latest snapshot. Boost.Beast on a thread of its own.
 //
 // A page answers every snapshot that it has shown with the text `seen`. At most SnapshotsUnderWay are sent
-// ahead of that, and what comes meanwhile is skipped but for the latest: a slow page or line gets fewer
-// snapshots, never older ones, and what is kept for it does not grow. Any other text is handed to the request
-// handler; what that returns goes to the page that asked.
+// ahead of that; of later ones only the latest is kept. So a slow page or line gets fewer snapshots, never
+// older ones, and its memory does not grow. Any other text goes to the request handler, whose reply goes to
+// the page that sent it.
 //
-// What comes from the network is bounded: size of requests and messages, time for a request, silence (the
-// server sends pings), number of connections (see ConnectionGate), replies that wait. Whoever goes beyond is
-// disconnected. Nothing from the network throws out of here.
+// Input from the network is bounded: size of requests and messages, time for a request, silence (the server
+// sends pings), number of connections (see ConnectionGate), replies that wait. A peer that exceeds a limit
+// is disconnected. No input from the network makes a method throw.
 //
-// With secrets it speaks TLS alone, and gives nothing to who does not show the token (see TokenGuard): by the
-// address that Addresses says, and from then on by a cookie. Without, whoever reaches it may look and
-// command.
+// With secrets it speaks TLS only, and serves only browsers that show the token (see TokenGuard): first in
+// the address that Addresses returns, later by a cookie. Without secrets, anybody who reaches it may view
+// and command.
 //
 // Threads: Start, Stop and the destructor belong to one thread; the rest may be called from any.
 class WebServer
@@ -44,9 +44,10 @@ public:
     struct Settings
     {
         boost::asio::ip::tcp::endpoint Endpoint{boost::asio::ip::address_v4::loopback(), 0};
-        ConnectionGate::Limits Connections{};          // more are closed at once
-        std::chrono::milliseconds RequestTime{10000};  // for a request to come, or an answer to be taken
-        std::chrono::milliseconds Silence{15000};      // after which a WebSocket is given up
+        ConnectionGate::Limits Connections{};          // connections beyond are closed at once
+        std::chrono::milliseconds RequestTime{10000};  // for a request to arrive, or an answer to be
+                                                       // received
+        std::chrono::milliseconds Silence{15000};      // after which a WebSocket is closed
         std::optional<WebSecrets> Secrets{};
     };
     static constexpr std::size_t MaxHeaderBytes = 8192;
@@ -54,16 +55,16 @@ public:
     static constexpr std::size_t MaxRepliesWaiting = 64;
     static constexpr std::size_t SnapshotsUnderWay = 2;
 
-    // Gets a text from a page on the server's thread; returns the reply, empty if there is none. What it
-    // throws is logged, and the page is disconnected.
+    // Gets a text from a page on the server's thread; returns the reply, empty if there is none. If it
+    // throws, that is logged and the page is disconnected.
     using RequestHandler = std::function<std::string(const std::string &text)>;
 
-    // What has happened so far.
+    // Counts of events so far.
     struct Counters
     {
         std::uint64_t Connections = 0;         // taken
-        std::uint64_t ConnectionsRefused = 0;  // one too many
-        std::uint64_t ConnectionsDropped = 0;  // idle ones that made room for others
+        std::uint64_t ConnectionsRefused = 0;  // too many connections
+        std::uint64_t ConnectionsDropped = 0;  // idle ones closed to make room
         std::uint64_t HandshakesFailed = 0;    // of TLS
         std::uint64_t PagesOpened = 0;         // WebSockets
         std::uint64_t PagesOpen = 0;           // now
@@ -71,25 +72,26 @@ public:
         std::uint64_t SnapshotsSkipped = 0;  // replaced by a later one before they were sent to some page
     };
 
-    // Listens from here on, so that a port that is taken is known before anything else starts; connections
-    // wait until Start. Throws WebServerError. The files must outlive the server.
+    // Listens from here on, so that a port in use is reported before anything else starts; connections wait
+    // until Start. Throws WebServerError. The files must outlive the server.
     explicit WebServer(const Settings &settings, std::span<const PageFile> files = PageFiles());
     ~WebServer();
     WebServer(const WebServer &) = delete;
     WebServer &operator=(const WebServer &) = delete;
 
-    // Serves on a thread of its own until Stop. May be called again after Stop, and then listens again on the
-    // same port: throws WebServerError if it was taken meanwhile.
+    // Serves on a thread of its own until Stop. May be called again after Stop, and then listens again on
+    // the same port: throws WebServerError if another program uses it by now.
     void Start(RequestHandler handler);
-    // Closes everything and joins the thread. The handler is not called any more when it returns.
+    // Closes everything and joins the thread. After it returns, the handler is not called any more.
     void Stop();
 
-    // Where it listens; the port is the one that was chosen if the settings had 0.
+    // The address of the server; with port 0 in the settings, this has the chosen port.
     boost::asio::ip::tcp::endpoint Endpoint() const;
-    // Where the page is opened, with the token, and what its certificate is known by, in lines for a person.
+    // The addresses of the page with the token, and the fingerprint of its certificate, in lines for a
+    // person.
     std::vector<std::string> Addresses() const;
     PictureStore &Pictures();
-    // The text that every page is to show now. Returns at once.
+    // Sends a text for every page to show. Returns at once.
     void Broadcast(std::shared_ptr<const std::string> snapshot);
     Counters Count() const;
 

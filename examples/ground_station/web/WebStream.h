@@ -12,8 +12,7 @@
 namespace Ground
 {
 
-// A connection with TLS or without, as Boost.Beast wants its streams, whose names the lower-case ones here
-// are.
+// A connection with TLS or without, with the interface of a Boost.Beast stream, hence the lower-case names.
 class WebStream
 {
 public:
@@ -23,13 +22,13 @@ public:
 
     explicit WebStream(Plain plain) : _stream(std::in_place_type<Plain>, std::move(plain)) {}
 
-    // From now on with TLS; the handshake is the caller's.
+    // Uses TLS from now on; the caller does the handshake.
     Tls &UseTls(boost::asio::ssl::context &context)
     {
         Plain plain = std::move(std::get<Plain>(_stream));
         return _stream.emplace<Tls>(std::move(plain), context);
     }
-    // Null without.
+    // Null without TLS.
     Tls *GetTls() { return std::get_if<Tls>(&_stream); }
 
     Plain &next_layer() noexcept

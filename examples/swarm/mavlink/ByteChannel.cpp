@@ -69,14 +69,15 @@ public:
         _port.set_option(asio::serial_port::flow_control(asio::serial_port::flow_control::none));
     }
 
-    // Asio has no calls on serial ports that do not wait; it opens them such that the system's do not.
+    // Asio has no non-blocking calls for serial ports, but opens them such that the system's calls do not
+    // block.
     std::size_t Receive(std::span<std::uint8_t> buffer) override
     {
         const ssize_t size = ::read(_port.native_handle(), buffer.data(), buffer.size());
         return size > 0 ? static_cast<std::size_t>(size) : 0;
     }
 
-    // A part of a frame that was written is harmless: its checksum is wrong.
+    // A partly written frame is harmless: its checksum is wrong.
     bool Send(std::span<const std::uint8_t> bytes) override
     {
         return ::write(_port.native_handle(), bytes.data(), bytes.size()) ==

@@ -11,26 +11,28 @@
 namespace Swarm
 {
 
-// A channel that cannot be opened, or whose description is wrong. what() is one line for a person.
+// Thrown if a channel cannot be opened, or its description is wrong. what() is one line for a person.
 class ChannelError : public Common::BadInput
 {
 public:
     using Common::BadInput::BadInput;
 };
 
-// Bytes to and from an autopilot. Nothing here waits. Used by one thread.
+// Bytes to and from an autopilot. No method blocks. Used by one thread.
 class ByteChannel
 {
 public:
     virtual ~ByteChannel() = default;
 
-    // Copies what has come, up to the size of the buffer; 0 if there is nothing, or nothing any more.
+    // Copies received bytes, up to the size of the buffer. Returns 0 if there are none, or the channel has
+    // ended.
     virtual std::size_t Receive(std::span<std::uint8_t> buffer) = 0;
-    // Sends all or nothing. False: it could not be sent now, for instance because nobody has been heard yet.
+    // Sends all bytes or none. False if it cannot send now, for instance because no peer has been heard
+    // yet.
     virtual bool Send(std::span<const std::uint8_t> bytes) = 0;
 };
 
-// `udp:PORT` listens on that port of all interfaces and answers whoever sent last; `serial:DEVICE:BAUD` opens
+// `udp:PORT` listens on that port of all interfaces and answers the last sender; `serial:DEVICE:BAUD` opens
 // a serial port with 8 data bits, no parity, 1 stop bit. Throws ChannelError.
 std::unique_ptr<ByteChannel> OpenByteChannel(const std::string &description);
 

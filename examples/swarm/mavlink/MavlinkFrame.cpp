@@ -16,11 +16,11 @@ constexpr std::size_t HeaderOfOne = 6;
 constexpr std::size_t HeaderOfTwo = 10;
 constexpr std::size_t ChecksumSize = 2;
 constexpr std::size_t SignatureSize = 13;
-constexpr std::uint8_t IsSigned = 1;  // of the incompatible flags, the only one defined
+constexpr std::uint8_t IsSigned = 1;  // the only defined incompatible flag
 
 void AppendChecksum(std::vector<std::uint8_t> &bytes, std::uint8_t extra)
 {
-    // Of all but the start byte, then the extra byte of the message type.
+    // The checksum of all bytes except the start byte, followed by the extra byte of the message type.
     const std::uint16_t sum = MavlinkChecksum({&extra, 1}, MavlinkChecksum(std::span(bytes).subspan(1)));
     bytes.push_back(static_cast<std::uint8_t>(sum & 0xFF));
     bytes.push_back(static_cast<std::uint8_t>(sum >> 8));
@@ -172,7 +172,8 @@ MavlinkParser::Result MavlinkParser::TryAt(std::size_t start, MavlinkFrame &fram
     }
     if (!extra || (incompatible & ~IsSigned) != 0)
     {
-        // Its checksum cannot be computed. If a frame, or the end, follows, it was one.
+        // The checksum of an unknown type cannot be computed. If a frame or the end follows, it was a
+        // frame.
         const bool whole = rest.size() == length || rest[length] == StartOfOne || rest[length] == StartOfTwo;
         return whole ? Result::Unknown : Result::NotHere;
     }

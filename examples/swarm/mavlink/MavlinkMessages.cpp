@@ -9,7 +9,7 @@ namespace Swarm
 namespace
 {
 
-// Fields go by size, the largest first, least byte first; FieldsOf names them in that order.
+// Fields are sorted by size, the largest first, and little endian; FieldsOf lists them in that order.
 class Writer
 {
 public:

@@ -11,11 +11,11 @@ namespace Swarm
 // The messages of MAVLink's common set that an autopilot interface needs
 // (https://mavlink.io/en/messages/common.html), with the units of that page.
 //
-// For each: Encode makes a frame of it (version 2, sequence number 0, sender 1/1: change what differs);
-// Decode gives nothing if the frame is of another type. Payloads shorter than the type's are filled up with
-// zeros, as version 2 demands; longer ones (with extension fields) are cut.
+// For each: Encode makes a frame (version 2, sequence number 0, sender 1/1: the caller changes these as
+// needed); Decode returns nothing if the frame is of another type. Short payloads are filled up with zeros,
+// as version 2 demands; longer ones (with extension fields) are cut.
 
-// That a component is there, once a second.
+// The presence of a component, sent once a second.
 struct MavlinkHeartbeat
 {
     static constexpr std::uint32_t Number = 0;
@@ -38,7 +38,7 @@ struct MavlinkHeartbeat
     bool operator==(const MavlinkHeartbeat &) const = default;
 };
 
-// How the aircraft is turned. Radians, and radians per second.
+// The attitude of the aircraft, in radians and radians per second.
 struct MavlinkAttitude
 {
     static constexpr std::uint32_t Number = 30;
@@ -57,7 +57,7 @@ struct MavlinkAttitude
     bool operator==(const MavlinkAttitude &) const = default;
 };
 
-// Where the aircraft is, as the autopilot's filter knows it.
+// The position of the aircraft, estimated by the autopilot's filter.
 struct MavlinkGlobalPosition
 {
     static constexpr std::uint32_t Number = 33;
@@ -79,7 +79,7 @@ struct MavlinkGlobalPosition
     bool operator==(const MavlinkGlobalPosition &) const = default;
 };
 
-// Where the autopilot is to fly (SET_POSITION_TARGET_GLOBAL_INT).
+// The point for the autopilot to fly to (SET_POSITION_TARGET_GLOBAL_INT).
 struct MavlinkPositionTarget
 {
     static constexpr std::uint32_t Number = 86;

@@ -14,9 +14,10 @@ namespace
 {
 
 constexpr double DegreesE7 = 1e7;
-// Positions come ten times a second or so; looking five times as often keeps them fresh.
+// Positions come about ten times a second; polling five times as often keeps them fresh.
 constexpr int PollMSec = 20;
-// In one unit of work, so that a flood on the channel does not keep the manager from the rest.
+// Limit of reads in one unit of work, so that a flood on the channel does not keep the manager from its
+// other work.
 constexpr int MostReads = 200;
 
 }  // namespace
@@ -148,7 +149,7 @@ void MavlinkVehicle::Send(MavlinkFrame frame)
     frame.Sequence = _sequence++;
     frame.System = _system.value_or(1);  // a companion is a component of the aircraft
     frame.Component = OwnComponent;
-    static_cast<void>(_channel->Send(EncodeMavlink(frame)));  // what is lost is sent again
+    static_cast<void>(_channel->Send(EncodeMavlink(frame)));  // lost frames are sent again
 }
 
 FlightPhase MavlinkVehicle::Phase() const

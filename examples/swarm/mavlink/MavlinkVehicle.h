@@ -14,28 +14,28 @@ namespace Swarm
 
 // An aircraft behind a real autopilot that speaks MAVLink (ArduPilot, PX4), as its companion computer.
 //
-// The first autopilot that sends a HEARTBEAT is the one; others on the channel are ignored. Each
-// GLOBAL_POSITION_INT of it is told once, with the attitude that came before it. A point to fly to is sent as
-// SET_POSITION_TARGET_GLOBAL_INT, and again twice a second while it holds, because frames get lost and PX4
-// leaves its offboard mode without; the autopilot must be in a mode that obeys it, and flies at its own
-// speed.
+// The first autopilot that sends a HEARTBEAT is used; others on the channel are ignored. Update returns
+// each of its GLOBAL_POSITION_INT once, with the preceding attitude. A point to fly to is sent as
+// SET_POSITION_TARGET_GLOBAL_INT, and repeated twice a second while it is valid, because frames get lost
+// and PX4 otherwise leaves its offboard mode. The autopilot must be in a mode that obeys it, and flies at
+// its own speed.
 class MavlinkVehicle final : public Vehicle
 {
 public:
     // After this long without a heartbeat the autopilot counts as gone.
     static constexpr std::chrono::seconds SilentAfter{3};
     static constexpr std::uint8_t OwnComponent = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
-    // Nearer than this to the point it holds there.
+    // Nearer than this to the point, the vehicle counts as holding there.
     static constexpr double ArrivedM = 25;
 
     explicit MavlinkVehicle(std::unique_ptr<ByteChannel> channel);
 
     void Start(Time now) override;
     std::optional<Motion> Update(Time now) override;
-    // Not while no autopilot is heard.
+    // Not ready while no autopilot is heard.
     std::string NotReady(Time now) const override;
     void FlyTo(const GeoPoint &point, double speedMps, Time now) override;
-    // Sends no point any more; what the autopilot does then is its own affair.
+    // Stops sending the point; the autopilot itself decides how to go on.
     void Release(Time /*now*/) override { _target.reset(); }
     FlightPhase Phase() const override;
     int DelayMSec(Time now) const override;
@@ -61,7 +61,7 @@ private:
     std::uint8_t _component = 0;
     Time _heardAt{0};
     Motion _motion;
-    bool _news = false;  // a position came that was not told yet
+    bool _news = false;  // a position came that Update has not returned yet
     bool _positionKnown = false;
     std::optional<GeoPoint> _target;
 };

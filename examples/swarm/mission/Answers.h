@@ -12,9 +12,9 @@
 namespace Swarm
 {
 
-// The answers to commands that are still to be sent. The gateway does the rest of the way: an answer that it
-// has accepted arrives. One that it refuses (because it has not yet heard of the other node, or too much
-// waits for it already) is kept here and tried again, for half a minute. Not thread-safe.
+// Answers to commands that are not sent yet. An answer that the gateway accepts arrives. If the gateway
+// refuses it (because it does not know the other node yet, or too much waits already), it is kept here and
+// retried for half a minute. Not thread-safe.
 class Answers
 {
 public:
@@ -25,12 +25,12 @@ public:
     static constexpr std::chrono::seconds Keep{30};
     static constexpr std::size_t MaxKept = 1000;
 
-    // An empty address is that of nobody, and the answer is dropped.
+    // An answer to an empty address is dropped.
     void Add(const std::string &to, const Uav::CommandAck &ack, Time now);
-    // Tries all, in their order.
+    // Tries to send all answers, in order.
     void Send(Time now, const Sender &sender);
     bool AnyWait() const { return !_waiting.empty(); }
-    // How many wait and were given up; empty if none.
+    // The numbers of waiting and abandoned answers, as text; empty if there are none.
     std::string Text() const;
 
 private:

@@ -9,7 +9,7 @@ namespace Swarm
 {
 namespace
 {
-// A floor that came through a float is still the floor.
+// Accepts a floor that was rounded to a float.
 constexpr double ToleranceM = 0.01;
 
 // Metres, with a decimal only where there is one.

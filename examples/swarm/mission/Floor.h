@@ -6,10 +6,10 @@
 namespace Swarm
 {
 
-// How low an aircraft lets itself be led. All heights are metres above mean sea level.
+// The lowest altitude to which an aircraft obeys commands. All heights are metres above mean sea level.
 //
-// There are two limits, and the higher one holds: a height above sea level, and a clearance above the ground,
-// which counts only where the height of the ground is known. With neither there is no floor.
+// It is the higher of two limits: a height above sea level, and a clearance above the ground, which counts
+// only if the height of the ground is known. Without either there is no floor.
 //
 // Immutable.
 class Floor
@@ -26,9 +26,10 @@ public:
     explicit Floor(const Settings &settings) : _settings(settings) {}
 
     std::optional<double> GroundM() const { return _settings.GroundM; }
-    // The lowest altitude that it may be led to; none: there is no floor.
+    // The floor; nothing if there is none.
     std::optional<double> LowestM() const;
-    // Why it may not be led to that altitude, in one line for a person of up to 128 letters; empty if it may.
+    // The reason to decline that altitude, as one line of at most 128 characters for a person; empty if it
+    // is allowed.
     std::string WhyTooLow(double altitudeM) const;
     // That altitude, or the floor if that is higher.
     double Raised(double altitudeM) const;

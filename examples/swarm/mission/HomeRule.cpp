@@ -3,7 +3,7 @@
 namespace Swarm
 {
 
-// Written so that a NaN is no cause.
+// The comparisons are written so that a NaN is no cause.
 std::string HomeRule::Judge(float batteryPercent, double groundSilentS)
 {
     const bool low = batteryPercent < LowBatteryPercent;

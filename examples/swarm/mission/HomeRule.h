@@ -5,8 +5,8 @@
 namespace Swarm
 {
 
-// When an aircraft must go home for a reason of its own: its battery is low, or the ground station, having
-// been heard before, is silent for too long. Each cause counts once, until it has passed. Not thread-safe.
+// Decides when an aircraft flies home on its own: its battery is low, or the ground station, heard earlier,
+// is silent for too long. Each cause counts once, until it has passed. Not thread-safe.
 class HomeRule
 {
 public:
@@ -14,9 +14,10 @@ public:
 
     explicit HomeRule(double silenceLimitS) : _silenceLimitS(silenceLimitS) {}
 
-    // Both may be NaN: not known, and never heard. Empty if there is nothing new; otherwise why to go home.
+    // Returns a new reason to fly home; empty if there is none. The arguments may be NaN: not known, and
+    // never heard.
     std::string Judge(float batteryPercent, double groundSilentS);
-    // Why the aircraft should be at home now; empty if it need not.
+    // The reason why the aircraft should be at home now; empty if there is none.
     std::string Reason() const;
 
 private:

@@ -16,7 +16,7 @@ LawnMower::LawnMower(const Uav::SearchArea &area, std::size_t rank, std::size_t 
 {
 }
 
-// Of the lane, across from the middle of the area.
+// The offset of the lane, across from the middle of the area.
 double LawnMower::LaneM() const
 {
     return _breadthM * ((static_cast<double>(_lane) + 0.5) / static_cast<double>(_lanes) - 0.5);
@@ -34,7 +34,7 @@ LawnMower::Place LawnMower::PlaceOf(const GeoPoint &point) const
     return _lanesRunNorth ? Place{way.NorthM, way.EastM - LaneM()} : Place{way.EastM, way.NorthM - LaneM()};
 }
 
-// From the end that is nearer to a place so far along it.
+// Begins the lane at the end that is nearer to a place at `alongM`.
 void LawnMower::BeginLane(std::size_t lane, double alongM)
 {
     _lane = lane;
@@ -66,7 +66,7 @@ GeoPoint LawnMower::Next(const GeoPoint &from)
 
 void LawnMower::Interrupt()
 {
-    _onLane = false;  // Next comes to where it was on the lane
+    _onLane = false;  // Next leads back to its place on the lane
 }
 
 }  // namespace Swarm

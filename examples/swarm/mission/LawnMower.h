@@ -8,31 +8,32 @@
 namespace Swarm
 {
 
-// Where to fly to search an area in lanes, along its longer side, each begun at the end that is nearer. It
-// goes on around for ever, and comes back to the place where it was interrupted.
+// Plans the search of an area in lanes along its longer side. Each lane begins at its nearer end. The
+// search repeats endlessly, and after an interruption goes on at the same place.
 //
-// Each of several aircraft begins at another lane and goes on through all of them, so that losing one leaves
-// no part of the area out.
+// Each of several aircraft begins at another lane and goes on through all lanes, so that the loss of an
+// aircraft leaves no part of the area out.
 class LawnMower
 {
 public:
-    // An aircraft on a lane aims at a point so far ahead, and counts as having come to a place when it is so
-    // near: about its turning circle.
+    // An aircraft on a lane aims at a point this far ahead, and has reached a place when it is this near:
+    // about the size of its turning circle.
     static constexpr double AheadM = 90;
     static constexpr double NearM = 60;
     // Room to turn at both ends of a lane, outside the area.
     static constexpr double TurnM = 50;
-    // An aircraft beside the lane aims at a point so much farther to its other side.
+    // An aircraft beside the lane aims at the other side of the lane, at this multiple of its distance.
     static constexpr double Counter = 2;
 
-    // A valid area, and which of how many aircraft this one is, counted from 0.
+    // The area must be valid. `rank` is the place of this aircraft among `aircraft` aircraft, counted from
+    // 0.
     LawnMower(const Uav::SearchArea &area, std::size_t rank, std::size_t aircraft);
 
-    // Where to fly to from there. Moves on to the next lane at the end of one.
+    // The next point to fly to from there. Moves on to the next lane at the end of one.
     GeoPoint Next(const GeoPoint &from);
     // The aircraft is led away: the next call of Next leads it back.
     void Interrupt();
-    // Whether it has come to its first lane.
+    // True if the aircraft has reached its first lane.
     bool HasBegun() const { return _begun; }
     std::size_t Lane() const { return _lane; }
     std::size_t Lanes() const { return _lanes; }
@@ -59,7 +60,7 @@ private:
     double _comeToM = 0;    // the place on the lane to fly it from
     bool _onLane = false;
     bool _begun = false;
-    bool _chosen = false;  // which end of the first lane to begin at
+    bool _chosen = false;  // the end of the first lane to begin at is chosen
 };
 
 }  // namespace Swarm

@@ -15,22 +15,22 @@
 namespace Swarm
 {
 
-// What a mission does to the world around it.
+// The actions of a mission on its surroundings.
 class MissionOutput
 {
 public:
     virtual ~MissionOutput() = default;
-    // Has the autopilot fly there and circle; at speed 0 it flies what it has of its own. Returns the number
-    // of the course, 0 if the autopilot does not take it.
+    // Makes the autopilot fly there and circle; at speed 0 it flies its own track or pattern. Returns the
+    // number of the course, 0 if the autopilot does not accept it.
     virtual std::uint32_t Fly(const GeoPoint &point, float speedMps) = 0;
-    // Tells whoever gave a command, at that queue address, what becomes of it.
+    // Sends the progress of a command to that queue address.
     virtual void Answer(const std::string &replyTo, const Uav::CommandAck &ack) = 0;
-    // To the mission control of another aircraft. False if it cannot be sent.
+    // Sends to the mission control of another aircraft. False if it cannot be sent.
     virtual bool Send(const std::string &aircraft, const Uav::TargetReport &report) = 0;
     virtual bool Send(const std::string &aircraft, const Uav::Validation &validation) = 0;
 };
 
-// What a mission knows when it decides.
+// The inputs of a mission's decisions.
 struct Situation
 {
     double NowS = 0;      // by a clock that does not go back
@@ -39,27 +39,28 @@ struct Situation
     float BatteryPercent = 0;  // NaN if it is not known
     Uav::FlightMode Flight;
     Uav::Targets Targets;                                 // of this aircraft's sensor fusion
-    std::map<std::string, Uav::Pose> Others;              // the aircraft that are there now
-    std::map<std::string, Uav::Findings> OthersFindings;  // also of some that are not there any more
+    std::map<std::string, Uav::Pose> Others;              // the aircraft that are present now
+    std::map<std::string, Uav::Findings> OthersFindings;  // also of aircraft that are no longer present
 };
 
-// What one aircraft does, and why: decides, and has no threads, clocks or names of queues.
+// Decides the actions of one aircraft. Has no threads, clocks or names of queues.
 //
-// It does nothing of its own before it is told to. Told to search it flies to the search area and searches it
-// in lanes. When it is the first to see a target it circles it (CONFIRM) and asks the other aircraft, the
-// nearest first, one at a time, to come and look; those that are busy once more after a while. When one has
-// seen it, it follows it for a while (TRACK) and searches on; when nobody can, the target is rejected. Asked
-// itself while it searches it flies there and looks (VALIDATE). Of two aircraft that pursue one target, or
-// that wait for each other, the one whose name comes later gives way.
+// Without a command it does nothing. After a Search it flies to the search area and searches it in lanes.
+// If it is the first to see a target, it circles it (CONFIRM) and asks the other aircraft to come and look:
+// one at a time, the nearest first, busy ones again after a while. When one has seen the target, this
+// aircraft follows it for a while (TRACK) and searches on. If none can see it, the target is rejected. If
+// it is asked itself while it searches, it flies there and looks (VALIDATE). If two aircraft pursue one
+// target, or wait for each other, the one whose name comes later gives way.
 //
 // A Goto or GoHome ends all that. An aircraft that holds the point of a Goto and has a recorded track goes
 // back to the track after a while.
 //
-// It declines a point and a search area below its floor, and a Search while the last area is declined: it
-// would search another one than whoever commands it means. Home it flies no lower than its floor.
+// It declines a point and a search area below its floor. It also declines a Search while the last area is
+// declined, as it would search another area than the sender means. On the way home it flies no lower than
+// its floor.
 //
-// The owner calls Update first, then what came in, then Act, each time anything may have changed and a few
-// times a second. Not thread-safe.
+// The owner calls Update, then Take for each input, then Act: each time anything may have changed, and a
+// few times a second. Not thread-safe.
 class Mission
 {
 public:
@@ -70,11 +71,11 @@ public:
     static constexpr double AskAgainS = 10;    // those that were busy
     static constexpr double PatienceS = 60;    // with those that are busy
     static constexpr double BackToTrackS = 5;  // holds the point of a Goto if it has a recorded track
-    static constexpr double StepM = 15;        // a point to fly to is worth a new course if it moved so far
+    static constexpr double StepM = 15;        // a point to fly to gets a new course if it moved this far
     static constexpr double RepeatS = 2;       // a course that the autopilot does not fly is sent again
-    // While it searches and looks at targets an aircraft keeps to a layer of its own above the altitude of
-    // the search area, by the number in its name, so that those that cross or circle one target keep apart
-    // without agreeing on it. uav1 and uav11 share one.
+    // While it searches and looks at targets, an aircraft flies in its own layer above the altitude of the
+    // search area, by the number in its name. So aircraft that cross or circle one target stay apart
+    // without coordination. uav1 and uav11 share a layer.
     static constexpr double LayerM = 10;
     static constexpr int Layers = 10;
     static constexpr float HomeSpeedMps = 16;
@@ -82,8 +83,8 @@ public:
     Mission(std::string aircraft, MissionOutput &output, const Floor &floor = Floor());
 
     void Update(Situation situation);
-    // A new area takes effect at once. One that makes no sense or is too low is declined, and the one before
-    // stays in force for whoever searches it; returns why.
+    // A new area takes effect at once. An invalid or too low area is declined, and the previous one stays
+    // in force; returns the reason.
     std::string Take(const Uav::SearchArea &area);
     void Take(const Uav::Goto &command);
     void Take(const Uav::Search &command);
@@ -92,7 +93,7 @@ public:
     void Take(const Uav::Validation &validation);
     void Act();
 
-    // Everything but poses. The text is why it does what it does, if there is more to say.
+    // Fills in everything but poses. The text gives the reason for its actions, if there is more to say.
     void Describe(Uav::MissionState &state) const;
     std::vector<Uav::Finding> Findings() const { return _book.Report(); }
 
@@ -158,7 +159,7 @@ private:
     bool _hasTrack = false;
     Course _course;
 
-    std::optional<Command> _open;  // the last command, if its last word has not been said
+    std::optional<Command> _open;  // the last command, if it has no final answer yet
     std::uint32_t _lastCommand = 0;
     std::uint32_t _commands = 0;
     GeoPoint _gotoPoint;

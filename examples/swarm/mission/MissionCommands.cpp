@@ -1,4 +1,4 @@
-// What comes from the ground station and the health monitor.
+// Commands from the ground station and the health monitor.
 #include "Mission.h"
 #include "WhyNot.h"
 
@@ -8,7 +8,7 @@ namespace Swarm
 {
 namespace
 {
-// Within what MissionState takes.
+// Text within the bound of MissionState.
 std::string TextOf(const Uav::TargetName &name)
 {
     constexpr std::size_t longest = 64;
@@ -67,7 +67,7 @@ void Mission::Decline(const Message &command, const std::string &reason)
     _output.Answer(command.reply_to, ack);
 }
 
-// What it did before ends, for this.
+// Ends the previous command and target, and begins this command.
 template <typename Message>
 void Mission::Accept(const Message &command, Uav::MissionMode mode)
 {
@@ -89,7 +89,7 @@ void Mission::Accept(const Message &command, Uav::MissionMode mode)
     _modeSinceS = _now.NowS;
 }
 
-// The last word about the open command.
+// Sends the final answer to the open command.
 void Mission::Finish(Uav::CommandStage stage, const std::string &reason, std::uint32_t replacedBy)
 {
     if (!_open)
@@ -151,7 +151,7 @@ void Mission::Take(const Uav::GoHome &command)
     _gotoSpeedMps = HomeSpeedMps;
 }
 
-// It may have started on the ground.
+// The home point, raised to the floor: the aircraft may have started on the ground.
 GeoPoint Mission::WhereHomeIs() const
 {
     return {_home->LatitudeDeg, _home->LongitudeDeg, _floor.Raised(_home->AltitudeM)};
@@ -171,7 +171,7 @@ bool Mission::Fly(const GeoPoint &point, float speedMps)
     return number != 0;
 }
 
-// Also if the autopilot flies another course than it was sent, which one that was silent for a while does.
+// Also sends the course again if the autopilot flies another one, as after a silence of the autopilot.
 void Mission::FlyIfMoved(const GeoPoint &point, float speedMps)
 {
     const bool moved = _course.Number == 0 || _course.SpeedMps != speedMps ||

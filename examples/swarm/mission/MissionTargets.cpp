@@ -1,4 +1,4 @@
-// The search, and what the aircraft do about a target together.
+// The search, and the cooperation of the aircraft on a target.
 #include "Mission.h"
 
 #include "../Names.h"
@@ -30,7 +30,7 @@ GeoPoint Mission::InOwnLayer(const GeoPoint &place) const
     return {place.LatitudeDeg, place.LongitudeDeg, _area->altitude_m + layer * LayerM};
 }
 
-// Which lane to begin at follows from the names of the aircraft that are there, so that they need not agree.
+// The first lane follows from the names of the present aircraft, without coordination.
 void Mission::BeginSearch()
 {
     std::set<std::string> all = NamesOfOthers();
@@ -55,7 +55,7 @@ void Mission::ActOnSearch()
     Finish(Uav::CommandStage::COMMAND_DONE, "");
 }
 
-// After anything that interrupted the search.
+// Resumes the search after an interruption.
 void Mission::SearchOn()
 {
     _target = 0;
@@ -66,7 +66,7 @@ void Mission::SearchOn()
     _modeSinceS = _now.NowS;
 }
 
-// A target that was not come to the end of may be taken up again when it is seen again.
+// An unfinished target may be taken up again when it is seen again.
 void Mission::LeaveTarget(const std::string &reason)
 {
     if (_mode == Uav::MissionMode::MISSION_VALIDATE)
@@ -120,7 +120,7 @@ Uav::TargetReport Mission::ReportOf(const Uav::Finding &finding) const
     return report;
 }
 
-// The nearest that was not asked in this round.
+// Asks the nearest aircraft that was not asked in this round.
 void Mission::AskNext()
 {
     Uav::Finding &finding = *_book.Find(_target);
@@ -148,7 +148,7 @@ void Mission::ActOnConfirm()
 {
     const Uav::Finding &own = *_book.Find(_target);
     if (own.stage == Uav::TargetStage::TARGET_VALIDATED || own.stage == Uav::TargetStage::TARGET_TRACKED)
-        return SearchOn();  // it turned out to be a target that this aircraft has come to the end of
+        return SearchOn();  // it turned out to be a target that this aircraft has finished
     const GeoPoint place = PlaceOf(own);
     for (const auto &[name, findings] : _now.OthersFindings)
         for (const Uav::Finding &other : findings.items)
@@ -203,7 +203,7 @@ void Mission::ActOnTrack()
 void Mission::Take(const Uav::TargetReport &report)
 {
     if (!WhyNot(report).empty() || report.seen_by == _aircraft)
-        return;  // nobody to answer, or nothing to answer about
+        return;  // no sender to answer, or no target to answer about
     const std::string reason = WhyNotLook(report);
     if (!reason.empty())
         return Refuse(report, reason, true);
@@ -213,8 +213,8 @@ void Mission::Take(const Uav::TargetReport &report)
     _reportGpsTimeS = _now.GpsTimeS;
 }
 
-// An aircraft that circles a target of its own gives way to one whose name comes earlier, if both mean the
-// same target, or if it waits for somebody who has time.
+// The reason not to look; empty if it will. An aircraft that circles its own target gives way to one whose
+// name comes earlier, if both mean the same target, or if it waits for an aircraft that has time.
 std::string Mission::WhyNotLook(const Uav::TargetReport &report)
 {
     const Uav::Finding *own = _book.Find(_target);
@@ -234,7 +234,7 @@ std::string Mission::WhyNotLook(const Uav::TargetReport &report)
     return WhyNotNow(false);
 }
 
-// The target that is meant leads it there; if its name is not known here, the nearest one to the place in the
+// Flies to the named target; if its name is not known here, to the target nearest to the place in the
 // report.
 void Mission::ActOnValidate()
 {
@@ -284,7 +284,8 @@ void Mission::Answer(const Uav::TargetReport &report, Uav::Validation answer)
 {
     answer.target = report.target;
     answer.node = _aircraft;
-    _output.Send(report.seen_by, answer);  // if it gets lost the other asks somebody else after a while
+    _output.Send(report.seen_by, answer);  // if it gets lost, the other aircraft asks a third one after a
+                                           // while
 }
 
 }  // namespace Swarm

@@ -96,7 +96,7 @@ std::uint32_t TargetBook::TakeUp(const Knowledge &known)
     return 0;
 }
 
-// What an aircraft that is gone had not come to the end of is nobody's.
+// True if another aircraft has the target. Unfinished targets of an absent aircraft do not count.
 bool TargetBook::IsOthers(const Uav::Target &target, const Knowledge &known)
 {
     for (const auto &[aircraft, findings] : known.OthersFindings)
@@ -121,7 +121,7 @@ TargetBook::Entry *TargetBook::FindSame(const Uav::Target &target, const Uav::Ta
     return same == _entries.end() ? nullptr : &*same;
 }
 
-// Under the number of its name, unless that is another target's here.
+// Adds the target under the number of its name, or the next free one.
 std::uint32_t TargetBook::Add(const Uav::Target &target)
 {
     if (_entries.size() == MaxFindings)

@@ -12,33 +12,32 @@
 namespace Swarm
 {
 
-// The targets that this aircraft found, and what it has done about them. Not thread-safe.
+// The targets that this aircraft found, and their findings. Not thread-safe.
 class TargetBook
 {
 public:
-    static constexpr double NearM = 25;  // nearer than this what another aircraft speaks of may be meant
+    static constexpr double NearM = 25;  // two targets of two aircraft nearer than this may be the same
     static constexpr double FreshS = 5;  // its own camera has seen a new target within this time
     static constexpr double AgainAfterS = 120;  // a rejected target that is seen again gets another chance
     static constexpr std::size_t MaxFindings = 64;
 
-    // What is known when a target is judged.
+    // The inputs to judge a target.
     struct Knowledge
     {
         double GpsTimeS = 0;
         const Uav::Targets &Targets;  // of this aircraft's own sensor fusion
         const std::map<std::string, Uav::Findings> &OthersFindings;
-        const std::set<std::string> &Others;  // who is there now
+        const std::set<std::string> &Others;  // the aircraft present now
     };
 
     explicit TargetBook(std::string aircraft) : _aircraft(std::move(aircraft)) {}
 
-    // Moves the findings along with the targets, and calls them what the fleet calls them now. Of two that
-    // turn out to be one target the one that got farther is kept, under the number of the one that is
-    // pursued.
+    // Updates positions and names of the findings from the targets. If two findings turn out to be one
+    // target, the one that got farther is kept, under the number of the pursued one.
     void Follow(const Uav::Targets &targets, std::uint32_t pursued);
-    // Takes up a target that this aircraft is to pursue: one that its camera sees now, that it was the first
-    // to see (or the first did not live to pursue it), and that neither it nor another aircraft pursues or
-    // has done with. Returns its number, 0 if there is none.
+    // Takes up a target for this aircraft to pursue. Its camera must see it now, it must have seen it first
+    // (or the first aircraft is absent), and no aircraft pursues it or has finished it. Returns its number,
+    // 0 if there is none.
     std::uint32_t TakeUp(const Knowledge &known);
     // The finding of that number; null if there is none. Valid until the next TakeUp or Drop.
     Uav::Finding *Find(std::uint32_t number);
@@ -64,14 +63,14 @@ private:
     std::vector<Entry> _entries;
 };
 
-// A target, as one of the aircraft speaks of it.
+// Name and place of a target, as one of the aircraft knows it.
 struct SpokenOf
 {
     const Uav::TargetName &Name;
     GeoPoint Place;
 };
-// Whether both mean one target: by their names if sensor fusion knows them, now or formerly, else by their
-// places, as the names of aircraft that have not met yet say nothing.
+// True if both are one target. Decides by the names if sensor fusion knows them, also as former names;
+// otherwise by the places, as aircraft that have not met use different names.
 bool IsSame(const SpokenOf &a, const SpokenOf &b, const Uav::Targets &targets);
 
 // Where it is, at no height.

@@ -8,7 +8,7 @@ namespace
 {
 constexpr Common::Range SigmaM{0, 1000};
 
-// To be handed to ForEachNumberOf...: keeps what is wrong with the first that is.
+// A visitor for ForEachNumberOf...: keeps the problem of the first wrong number.
 auto KeepFirstProblem(std::string &problem)
 {
     return [&problem](const char *name, auto value, const Common::Range &range)

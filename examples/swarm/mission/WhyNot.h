@@ -1,4 +1,4 @@
-// What comes from outside is checked before it is obeyed.
+// Checks commands from outside.
 #pragma once
 
 #include "uav.idl.h"
@@ -8,7 +8,7 @@
 namespace Swarm
 {
 
-// Why the aircraft will not use this; empty if it will.
+// The reason why the aircraft declines this; empty if it accepts it.
 std::string WhyNot(const Uav::Goto &command);
 std::string WhyNot(const Uav::SearchArea &area);
 std::string WhyNot(const Uav::TargetReport &report);

@@ -62,7 +62,7 @@ void AddPx4Topics(Rabit::GatewayConfig &config, const std::string &prefix)
         rule.Type = topic.Type;
         rule.Local = topic.Local;
         rule.Names = ForeignRule::WireNames::Ros2;
-        // An answer comes now and then, the others many times a second.
+        // Only answers are rare; all other topics come many times a second.
         const bool isSteady = topic.Way == ForeignRule::Direction::Subscribe && rule.Local != "Px4/Ack";
         rule.StaleAfter = std::chrono::seconds(isSteady ? 3 : 0);
         config.Foreign.push_back(rule);

@@ -16,9 +16,9 @@ namespace Command = px4_msgs::msg::VehicleCommand_Constants;
 namespace Answer = px4_msgs::msg::VehicleCommandAck_Constants;
 namespace Status = px4_msgs::msg::VehicleStatus_Constants;
 
-// Positions come some ten times a second; looking five times as often keeps them fresh.
+// Positions come about ten times a second; polling five times as often keeps them fresh.
 constexpr int PollMSec = 20;
-// MAV_DO_REPOSITION_FLAGS_CHANGE_MODE: fly there whatever the present mode.
+// MAV_DO_REPOSITION_FLAGS_CHANGE_MODE: fly there in any present mode.
 constexpr float ChangeMode = 1;
 constexpr std::uint8_t CompanionComputer = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
 
@@ -39,7 +39,7 @@ std::string NameOf(std::uint8_t result)
     }
 }
 
-// PX4 publishes before it knows where it is. Older ones have no flags for that.
+// PX4 publishes positions before it has a valid one. Older versions have no flags for that.
 template <typename GlobalPosition>
 bool IsKnown(const GlobalPosition &position)
 {
@@ -184,7 +184,7 @@ void Px4Vehicle::SendCommand(Time now)
     _command->command = Command::VEHICLE_CMD_DO_REPOSITION;
     _command->param1 = static_cast<float>(_speedMps);
     _command->param2 = ChangeMode;
-    _command->param4 = std::numeric_limits<float>::quiet_NaN();  // whatever yaw
+    _command->param4 = std::numeric_limits<float>::quiet_NaN();  // any yaw
     _command->param5 = _target->LatitudeDeg;
     _command->param6 = _target->LongitudeDeg;
     _command->param7 = static_cast<float>(_target->AltitudeM);

@@ -20,21 +20,21 @@
 namespace Swarm
 {
 
-// An aircraft whose PX4 speaks DDS, through its agent (uXRCE-DDS). It knows local messages alone, which the
+// An aircraft whose PX4 speaks DDS, through its agent (uXRCE-DDS). It uses only local messages, which the
 // gateway's section `foreign` joins to PX4's topics (uav_px4.yaml): reads Px4/Status, Px4/Position,
 // Px4/LocalPosition, Px4/Attitude and Px4/Ack, posts Px4/Command.
 //
-// Each position is told once, with the velocity and attitude that came before it. A point to fly to is the
-// command DO_REPOSITION, which has PX4 hold there in its own mode for that; it is sent again each second
-// until PX4 answers, three times at most. PX4 must be armed and in the air.
+// Update returns each position once, with the preceding velocity and attitude. A point to fly to is sent as
+// the command DO_REPOSITION, after which PX4 holds there in its hold mode. The command is repeated each
+// second until PX4 answers, at most three times. PX4 must be armed and in the air.
 class Px4Vehicle final : public Vehicle
 {
 public:
     // After this long without a status PX4 counts as gone.
     static constexpr double SilentAfterS = 3;
-    // So long it is said that, and why, PX4 refused a point.
+    // Time for which NotReady reports that, and why, PX4 refused a point.
     static constexpr std::chrono::seconds RefusalShown{5};
-    // Nearer than this to the point it holds there.
+    // Nearer than this to the point, the vehicle counts as holding there.
     static constexpr double ArrivedM = 25;
     static constexpr int MostAttempts = 3;
 
@@ -43,10 +43,11 @@ public:
 
     void Start(Time /*now*/) override {}
     std::optional<Motion> Update(Time now) override;
-    // Not while PX4 is not heard, not armed, or without a position, nor for a while after it refused a point.
+    // Not ready while PX4 is not heard, not armed or without a position, and for a while after it refused a
+    // point.
     std::string NotReady(Time now) const override;
     void FlyTo(const GeoPoint &point, double speedMps, Time now) override;
-    // Sends nothing more: PX4 flies on to the last point, and holds there.
+    // Stops sending: PX4 flies on to the last point, and holds there.
     void Release(Time /*now*/) override;
     FlightPhase Phase() const override;
     int DelayMSec(Time now) const override;
@@ -72,11 +73,11 @@ private:
         std::make_shared<px4_msgs::msg::VehicleCommand>();
 
     Motion _motion;
-    bool _hasPosition = false;  // in what PX4 said last
+    bool _hasPosition = false;  // in PX4's last position message
     std::optional<GeoPoint> _target;
     double _speedMps = 0;
     bool _awaitsAnswer = false;
-    int _attempts = 0;  // that are left of the command
+    int _attempts = 0;  // attempts left for the command
     Schedule _repeats{std::chrono::seconds(1)};
     std::string _refusal;
     Time _refusedAt{0};

@@ -6,8 +6,8 @@
 namespace Swarm
 {
 
-// Row by row: from the new row the cheapest path of alternating exchanges to a free column is found (Dijkstra
-// over reduced costs), and followed back. Index 0 stands for "none".
+// Row by row: finds the cheapest path of alternating exchanges from the new row to a free column (Dijkstra
+// over reduced costs), and follows it back. Index 0 stands for "none".
 std::vector<int> Assign(const Eigen::MatrixXd &costs)
 {
     const auto rows = static_cast<std::size_t>(costs.rows());

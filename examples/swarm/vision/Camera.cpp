@@ -36,7 +36,7 @@ std::optional<Footprint> Camera::LookDown(const Uav::Pose &pose, double groundM)
 
 std::vector<Uav::Detection> Camera::Detect(const Footprint &view, const World &world, double gpsTimeS)
 {
-    constexpr std::size_t maxDetections = 64;  // what Uav::Detections takes
+    constexpr std::size_t maxDetections = 64;  // the bound of Uav::Detections
     const double sigma = SigmaPerHeight * view.HeightM;
     std::bernoulli_distribution isSeen(SeenShare);
     std::vector<Uav::Detection> seen;

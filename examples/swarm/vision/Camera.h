@@ -12,8 +12,8 @@
 namespace Swarm
 {
 
-// The rectangle on the ground that a camera sees. Places in the image are shares: right and forward from -1
-// to 1, forward being where the aircraft's nose points.
+// The rectangle on the ground that a camera sees. Places in the image are fractions: right and forward from
+// -1 to 1, where forward is the direction of the aircraft's nose.
 struct Footprint
 {
     struct Place
@@ -34,9 +34,9 @@ struct Footprint
     Place Find(const GeoPoint &point) const;
 };
 
-// A simulated camera that looks straight down however the aircraft banks, 60 degrees wide, 4:3, and the image
-// processing behind it: it sees most targets in its view, at places that are a little wrong, and now and then
-// one that is not there. The seed decides all that. Not thread-safe.
+// A simulated camera and its image processing. It looks straight down at any bank angle, 60 degrees wide,
+// 4:3. It detects most targets in its view, with small errors of position, and now and then gives a false
+// alarm. All randomness comes from the seed. Not thread-safe.
 class Camera
 {
 public:
@@ -50,9 +50,9 @@ public:
 
     explicit Camera(std::uint64_t seed) : _random(seed) {}
 
-    // What it looks at from that pose; nothing if it is too low.
+    // The ground in view from that pose; nothing if it is too low.
     static std::optional<Footprint> LookDown(const Uav::Pose &pose, double groundM);
-    // What is seen there at that time.
+    // The detections in that view at that time.
     std::vector<Uav::Detection> Detect(const Footprint &view, const World &world, double gpsTimeS);
 
 private:

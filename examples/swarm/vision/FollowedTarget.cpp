@@ -7,7 +7,8 @@
 namespace Swarm
 {
 
-// Who found it is whoever saw it first, also if that is heard later.
+// The finder is the aircraft that saw the target first, even if its report comes later (until the target
+// has a name).
 void FollowedTarget::NoteSighting(const std::string &by, double timeS, bool own)
 {
     if (Count == 0 || (timeS < FirstS && !Name))

@@ -14,7 +14,8 @@
 namespace Swarm
 {
 
-// One of the targets of a TargetTable: where it is, what it is called, and who has seen it. Not thread-safe.
+// One of the targets of a TargetTable: its place, its names, and the aircraft that have seen it. Not
+// thread-safe.
 struct FollowedTarget
 {
     static constexpr std::size_t MaxSeers = 32;
@@ -24,7 +25,7 @@ struct FollowedTarget
     TargetFilter Filter;
     std::string FoundBy;
     double FirstS = 0;
-    std::optional<TargetFilter::Place> FirstPlace{};  // not set if only others have seen it then
+    std::optional<TargetFilter::Place> FirstPlace{};  // not set if only other aircraft saw it then
     double LastS = 0;
     double OwnS = 0;
     std::uint32_t Count = 0;
@@ -33,20 +34,21 @@ struct FollowedTarget
 
     std::deque<double> SeenS{};             // while it is tentative
     std::optional<double> ConfirmedS{};     // not set: tentative
-    std::optional<Uav::TargetName> Name{};  // one that is not tentative gets one
+    std::optional<Uav::TargetName> Name{};  // a confirmed target gets one
     std::vector<Uav::TargetName> Formerly{};
 
-    double ToldS = -std::numeric_limits<double>::infinity();   // when this aircraft told the others of it
-    double HeardS = -std::numeric_limits<double>::infinity();  // when another one told
-    bool HasNews = false;                                      // of its names, which the others may not know
+    double ToldS = -std::numeric_limits<double>::infinity();   // when this aircraft last sent it to the
+                                                               // others
+    double HeardS = -std::numeric_limits<double>::infinity();  // when another aircraft last sent it
+    bool HasNews = false;                                      // its names may be unknown to the others
 
-    // That camera has seen it. `own`: it is this aircraft's.
+    // Notes that the camera of aircraft `by` has seen it. `own`: it is this aircraft's camera.
     void NoteSighting(const std::string &by, double timeS, bool own);
     void AddSeer(const std::string &aircraft);
     bool IsCalled(const Uav::TargetName &name) const;
-    // It has this name as well; the oldest one holds. Returns whether that was new.
+    // Adds a name of the target; the oldest one holds. Returns true if the name is new.
     bool AddName(const Uav::TargetName &name);
-    // The other one is the same target, followed at the same time or before.
+    // Merges the data of the other target, which is the same one, followed at the same time or earlier.
     void Merge(const FollowedTarget &other);
 };
 

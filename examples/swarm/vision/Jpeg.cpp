@@ -12,7 +12,7 @@ namespace Swarm
 {
 namespace
 {
-// The library's own way to end at an error is to end the process; this one goes back to Compress.
+// By default the library ends the process on an error; this handler jumps back to Compress.
 struct Errors
 {
     jpeg_error_mgr Manager;
@@ -26,7 +26,7 @@ void GoBack(j_common_ptr info)
 
 void SayNothing(j_common_ptr) {}
 
-// C alone between setjmp and longjmp: no object here has a destructor.
+// Only C between setjmp and longjmp: no object here has a destructor.
 bool Compress(const std::uint8_t *rgb, std::size_t width, std::size_t height, int quality,
               unsigned char **jpeg, unsigned long *size)
 {

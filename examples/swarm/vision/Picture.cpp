@@ -15,7 +15,7 @@ constexpr double RimM = 0.8;
 
 using Colour = std::array<double, 3>;
 
-// A number from 0 to 1 that looks random, of a square of a grid.
+// A pseudo-random number from 0 to 1 for a square of a grid.
 double Hash(std::int64_t x, std::int64_t y, std::uint64_t salt)
 {
     std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15u ^

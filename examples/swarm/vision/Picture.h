@@ -19,8 +19,8 @@ struct Image
     std::vector<std::uint8_t> Rgb;
 };
 
-// The ground in that view, the same at each place however it is looked at, and the targets on it as orange
-// discs, 320 by 240 pixels. The upper edge is forward.
+// The ground in that view, 320 by 240 pixels, with the targets as orange discs. A place on the ground looks
+// the same from every view. The upper edge is forward.
 Image Photograph(const Footprint &view, const World &world, double gpsTimeS);
 
 // The picture as a JPEG file. Empty if the library refuses it.

@@ -5,14 +5,13 @@
 namespace Swarm
 {
 
-// Weighs whether a target stands or walks, from how well its detections fit a place that hardly changes,
-// against how well they fit one that moves. What a target does decides how far it may be from where it was
-// seen last. Not thread-safe.
+// Estimates whether a target stands or walks: it compares how well its detections fit a fixed place and a
+// moving one. The answer determines how far the target may be from where it was seen last. Not thread-safe.
 class StandStill
 {
 public:
     static constexpr double DriftM2ps = 0.05;  // how its variance grows
-    static constexpr double MaxLogOdds = 2;    // never quite sure, as one that stands may walk off
+    static constexpr double MaxLogOdds = 2;    // never certain, as a standing target may walk off
     static constexpr double MaxStep = 4;       // of the log odds, by one detection
 
     StandStill(const Eigen::Vector2d &measured, double sigmaM, double timeS);
@@ -24,7 +23,7 @@ public:
     double LogDensity(const Eigen::Vector2d &measured, double sigmaM, double timeS) const;
     // `walkingLogDensity` is that of the same detection if it walks.
     void Update(const Eigen::Vector2d &measured, double sigmaM, double timeS, double walkingLogDensity);
-    // It is the same target as the one that was weighed there.
+    // Adds the evidence of another record of the same target.
     void AddEvidence(double logOdds);
     double LogOdds() const { return _logOdds; }
 

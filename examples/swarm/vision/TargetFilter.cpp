@@ -32,7 +32,7 @@ TargetFilter::Estimate TargetFilter::Walking(double timeS) const
     const double t = std::min(unseen, CoastS);
     Eigen::Matrix4d move = Eigen::Matrix4d::Identity();
     move.topRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * t;
-    // Of a white-noise acceleration over that time.
+    // The covariance from a white-noise acceleration over that time.
     Eigen::Matrix4d noise = Eigen::Matrix4d::Zero();
     noise.topLeftCorner<2, 2>().diagonal().setConstant(NoiseM2ps3 * t * t * t / 3);
     noise.topRightCorner<2, 2>().diagonal().setConstant(NoiseM2ps3 * t * t / 2);
@@ -54,7 +54,7 @@ TargetFilter::Estimate TargetFilter::Walking(double timeS) const
     return later;
 }
 
-// The mean and the covariance of both together.
+// Mean and covariance of the mixture of standing and walking.
 TargetFilter::Estimate TargetFilter::At(double timeS) const
 {
     const Estimate walking = Walking(timeS);
@@ -116,13 +116,13 @@ void TargetFilter::Update(const Place &measured, double sigmaM, double timeS)
     const Eigen::Matrix<double, 4, 2> gain =
         covariance * walking.Observation.transpose() * innovation.inverse();
     _estimate.State = walking.Walking.State + gain * (measured - walking.Measured);
-    // Joseph's form stays symmetric and positive.
+    // Joseph's form keeps the matrix symmetric and positive.
     const Eigen::Matrix4d rest = Eigen::Matrix4d::Identity() - gain * walking.Observation;
     _estimate.Covariance = rest * covariance * rest.transpose() + gain * noise * gain.transpose();
     _timeS = std::max(_timeS, timeS);
 }
 
-// That it is here again says whether it stood meanwhile.
+// The place of its return is evidence whether it stood meanwhile.
 void TargetFilter::Inherit(const TargetFilter &before)
 {
     const double sigma = std::sqrt(_stand.VarianceM2(_timeS));

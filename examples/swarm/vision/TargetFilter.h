@@ -7,11 +7,11 @@
 namespace Swarm
 {
 
-// Where one target is and how it moves, from detections: a Kalman filter in metres north and east of a fixed
-// point. The target is taken to move at a constant velocity that white noise changes (Bar-Shalom, Li,
-// Kirubarajan: "Estimation with Applications to Tracking and Navigation", 2001, section 6.2.2), or to stand:
-// which of the two, StandStill weighs. One that has not been seen for a while is taken to be where it was
-// last expected, with an uncertainty that goes on growing, slowly if it stands and quickly if it walks.
+// Estimates position and velocity of one target from detections: a Kalman filter in metres north and east
+// of a fixed point. The target either moves at a constant velocity with white-noise acceleration
+// (Bar-Shalom, Li, Kirubarajan: "Estimation with Applications to Tracking and Navigation", 2001, section
+// 6.2.2), or stands; StandStill weighs the two. If it has not been seen for a while, the estimate stays at
+// its last expected place, and its uncertainty keeps growing: slowly if it stands, quickly if it walks.
 //
 // A detection may be older than the last one: it is compared with where the target was then.
 //
@@ -31,29 +31,29 @@ public:
 
     static constexpr double StartSpeedSigmaMps = 1.5;
     static constexpr double NoiseM2ps3 = 0.05;   // spectral density of the acceleration
-    static constexpr double CoastS = 5;          // unseen for longer it wanders about
+    static constexpr double CoastS = 5;          // a target unseen for longer wanders about
     static constexpr double WanderM2ps = 30;     // growth of the variance then
     static constexpr double WanderMaxM2 = 1600;  // people turn round
 
     // Begins with one detection, `sigmaM` being its standard deviation in north and in east.
     TargetFilter(const Place &measured, double sigmaM, double timeS);
 
-    // At a later time. A time before the last detection counts as that.
+    // The estimate at a later time. An earlier time counts as that of the last detection.
     Estimate At(double timeS) const;
-    // How unlikely a detection is to be this target: its squared Mahalanobis distance, which is chi-square
-    // distributed with two degrees of freedom if it is.
+    // The squared Mahalanobis distance of a detection. If the detection is of this target, it is chi-square
+    // distributed with two degrees of freedom.
     double Distance2(const Place &measured, double sigmaM, double timeS) const;
     // Natural logarithm of the probability density, per square metre, of seeing it there.
     double LogDensity(const Place &measured, double sigmaM, double timeS) const;
     void Update(const Place &measured, double sigmaM, double timeS);
-    // The other one has followed the same target before this one did.
+    // Takes over the evidence of an earlier filter of the same target.
     void Inherit(const TargetFilter &before);
     double UpdatedS() const { return _timeS; }
     double StandsProbability() const { return _stand.Probability(); }
 
 private:
-    // What a detection at that time is expected to be if the target walks, and how it goes with the state at
-    // the time of the last detection, or later.
+    // The expected detection of a walking target at that time, and its relation to the state at the time of
+    // the last detection, or later.
     struct Expectation
     {
         Estimate Walking;                         // what the detection will change
@@ -66,7 +66,7 @@ private:
     Estimate Walking(double timeS) const;
     Expectation Expect(double timeS) const;
 
-    Estimate _estimate;  // of one that walks
+    Estimate _estimate;  // if it walks
     double _timeS;
     StandStill _stand;
 };

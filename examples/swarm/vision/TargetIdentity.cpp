@@ -1,4 +1,4 @@
-// Which targets of the table are one.
+// Finds targets of the table that are one and the same.
 #include "TargetTable.h"
 
 #include <Eigen/LU>
@@ -23,8 +23,7 @@ bool TargetTable::AreTwo(const FollowedTarget &a, const FollowedTarget &b) const
     return pair != _pairs.end() && pair->second.Frames >= TwoInFrames;
 }
 
-// Place and velocity. Their errors are taken for independent, which is careful: they are of one target if it
-// is one.
+// Compares place and velocity. Their errors are treated as independent, which is conservative.
 bool TargetTable::FitOnePlace(const FollowedTarget &a, const FollowedTarget &b) const
 {
     const TargetFilter::Estimate first = a.Filter.At(_newestS);
@@ -53,8 +52,8 @@ void TargetTable::Confirm()
     KnowAgain();
 }
 
-// A detection that was so far off that it fitted nothing begins a second one beside a target that is seen all
-// the time.
+// True if the tentative target is a duplicate of one that is seen all the time: a detection with a large
+// error begins one.
 bool TargetTable::IsSeenAlready(const FollowedTarget &tentative) const
 {
     return std::any_of(_items.begin(), _items.end(),
@@ -65,8 +64,7 @@ bool TargetTable::IsSeenAlready(const FollowedTarget &tentative) const
                        });
 }
 
-// Those that were not seen before against those that were not seen since: each pair once, the likeliest
-// first.
+// Compares new targets with those not seen since: each pair once, the likeliest first.
 void TargetTable::KnowAgain()
 {
     std::vector<std::tuple<double, std::uint64_t, std::uint64_t>> pairs;
@@ -117,8 +115,9 @@ void TargetTable::MergeThoseThatFit()
             Merge(first, second);
 }
 
-// Two that are two for certain cannot be where only one is seen: the one that has got less of it is where it
-// was before. What came since may then be that one: that they were seen side by side says nothing.
+// If two certainly different targets share a place where only one is seen, the one with fewer of its
+// detections is moved back to its earlier place. Newer targets may then be that one, so pairs of it with
+// newer targets are forgotten.
 void TargetTable::PartThoseOnOnePlace()
 {
     bool parted = false;
@@ -155,7 +154,7 @@ void TargetTable::ForgetPairsSince(const FollowedTarget &target)
             }
 }
 
-// What is known of the one that goes holds for the one that stays.
+// Merges the other target into the kept one, with all pairs that it was part of.
 void TargetTable::Merge(std::uint64_t keptId, std::uint64_t otherId)
 {
     Find(keptId)->Merge(*Find(otherId));

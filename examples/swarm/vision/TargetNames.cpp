@@ -1,4 +1,4 @@
-// What targets are called, by this aircraft and by the others.
+// The names that this and the other aircraft give to targets.
 #include "TargetName.h"
 #include "TargetTable.h"
 
@@ -9,7 +9,7 @@
 namespace Swarm
 {
 
-// Whoever found it names it; the others wait for that, but not for ever.
+// The finder names a target; the others wait for its name, at most NameWaitS.
 void TargetTable::GiveNames(double gpsTimeS)
 {
     for (FollowedTarget &item : _items)
@@ -50,7 +50,7 @@ Uav::Targets TargetTable::Tell(double gpsTimeS)
     return targets;
 }
 
-// Which of several near each other a target is, can only be said of all of them.
+// Neighbouring targets can only be told apart together, so all of them are sent with one that has news.
 void TargetTable::TellNeighbours()
 {
     std::vector<std::uint64_t> neighbours;
@@ -63,7 +63,7 @@ void TargetTable::TellNeighbours()
         Find(id)->HasNews = true;
 }
 
-// First those that are known by name, so that none of the others is taken for one of them.
+// Handles targets with known names first, so that no other one is taken for one of them.
 void TargetTable::Hear(const Uav::Targets &told)
 {
     if (told.told_by == _aircraft || told.told_by.empty() || !std::isfinite(told.gps_time_s) ||
@@ -114,7 +114,7 @@ void TargetTable::Hear(const Uav::Targets &told)
     Forget();
 }
 
-// Those that an earlier life of this aircraft gave are not given again.
+// Numbers that an earlier incarnation of this aircraft gave are not used again.
 void TargetTable::NoteNumbers(const Uav::Targets &told)
 {
     for (const Uav::Target &target : told.items)
@@ -122,7 +122,8 @@ void TargetTable::NoteNumbers(const Uav::Targets &told)
             _lastNumber = std::max(_lastNumber, target.name.number);
 }
 
-// Whoever begins to count its frames anew knows no names: it is told all of them, before it gives any.
+// An aircraft that restarts its frame count knows no names, so all names are sent to it before it gives
+// any.
 void TargetTable::NoteLife(const Uav::Detections &frame)
 {
     constexpr std::uint32_t late = 20;
@@ -136,7 +137,7 @@ void TargetTable::NoteLife(const Uav::Detections &frame)
         known->second = frame.frame;
 }
 
-// Written so that a NaN is refused as well.
+// The comparisons are written so that a NaN is refused as well.
 std::optional<TargetTable::Told> TargetTable::Read(const Uav::Target &message, const Uav::Targets &told)
 {
     const bool names = Common::MakesSense(message.name) &&
@@ -157,7 +158,8 @@ std::optional<TargetTable::Told> TargetTable::Read(const Uav::Target &message, c
     return Told{&message, at, std::max(0.1, static_cast<double>(message.sigma_major_m))};
 }
 
-// The other aircraft has seen side by side what was taken for one here, or might be.
+// Separates targets that the other aircraft has seen side by side, and that were taken for one here, or
+// might be.
 void TargetTable::TakeApart(const Uav::Target &told)
 {
     for (const Uav::TargetName &beside : told.beside)
@@ -179,8 +181,8 @@ void TargetTable::TakeApart(const Uav::Target &told)
     }
 }
 
-// The target that has any of these names; 0 if there is none. If several have, they are one, as the other
-// aircraft knows, unless this one sees them at different places.
+// The target that has any of these names; 0 if there is none. If several targets have one, they are merged,
+// as the other aircraft has done, unless this one sees them at different places.
 std::uint64_t TargetTable::FindByName(const Told &told)
 {
     const Uav::TargetName &name = told.Message->name;
@@ -207,7 +209,7 @@ std::uint64_t TargetTable::FindByName(const Told &told)
     return meant[0];
 }
 
-// Both see it now, but at different places.
+// True if both aircraft see it now, but at different places.
 bool TargetTable::IsElsewhere(const FollowedTarget &target, const Told &told) const
 {
     const double time = told.Message->seen_gps_time_s;
@@ -216,10 +218,10 @@ bool TargetTable::IsElsewhere(const FollowedTarget &target, const Told &told) co
            target.Filter.Distance2(told.Place, std::hypot(told.SigmaM, BiasM), time) > Gate;
 }
 
-// The other aircraft sees a target again that is not seen here under that name. If what this aircraft sees
-// there has no name yet, it is that one. If it has another name, both have known one target again as
-// different ones: the aircraft whose name comes first is right. Returns which target it is, 0 if it is this
-// aircraft that is right.
+// Called if the other aircraft sees a target again that is not seen here under that name. If this aircraft
+// sees an unnamed target there, it is that one. If that target has another name, the two aircraft have
+// recognized one target differently: the aircraft whose name comes first is right. Returns the target, 0 if
+// this aircraft is right.
 std::uint64_t TargetTable::Agree(std::uint64_t id, const Told &told, const Uav::Targets &all)
 {
     const double time = told.Message->seen_gps_time_s;
@@ -252,7 +254,7 @@ std::uint64_t TargetTable::Agree(std::uint64_t id, const Told &told, const Uav::
     return hereId;
 }
 
-// Returns whether the name, or the former name, is free now for what the other aircraft means by it.
+// Returns true if the name, or the former name, is free now for the other aircraft's target.
 bool TargetTable::GiveWay(std::uint64_t id, const Told &told, const std::string &toldBy)
 {
     if (toldBy > _aircraft)
@@ -271,13 +273,13 @@ bool TargetTable::GiveWay(std::uint64_t id, const Told &told, const std::string 
         return false;
     }
     mine.Name.reset();
-    mine.FirstS = mine.LastS;  // its new name is younger than the one that it gives up
+    mine.FirstS = mine.LastS;  // its new name is newer than the one that it gives up
     GiveName(mine);
     return true;
 }
 
-// A target of this table, that is not one of those, of which the other aircraft may speak under a name that
-// is not known here; 0 if there is none.
+// A target of this table that may be the other aircraft's one with an unknown name, and is not in `taken`;
+// 0 if there is none.
 std::uint64_t TargetTable::FindByPlace(const Told &told, const std::vector<std::uint64_t> &taken)
 {
     const double time = told.Message->seen_gps_time_s;
@@ -314,7 +316,7 @@ void TargetTable::Learn(FollowedTarget &target, const Told &told, double gpsTime
     for (const Uav::TargetName &name : message.formerly)
         if (!isAnothers(name))
             target.AddName(name);
-    // That the other one is behind is news to it.
+    // The other aircraft has an outdated name, so this one is news to it.
     target.HasNews |= target.Name != message.name;
     for (const std::string &seer : message.seen_by)
         target.AddSeer(seer);

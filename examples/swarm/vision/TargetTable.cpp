@@ -1,4 +1,4 @@
-// Detections become targets.
+// Makes targets from detections.
 #include "TargetTable.h"
 
 #include "Assignment.h"
@@ -15,8 +15,7 @@ namespace
 {
 constexpr double MaxSigmaM = 1000;
 constexpr double MaxDistanceM = 100000;
-// Of one frame. A target in view is missed now and then; something new, a false alarm included, is seen
-// seldom.
+// Costs within one frame: a target in view is missed now and then; a new target or a false alarm is rare.
 const double CostOfMissing = -2 * std::log(0.15);
 const double CostOfNew = -2 * std::log(1e-4);
 constexpr double CostOfMisfit = 1e6;
@@ -42,7 +41,7 @@ void TargetTable::Add(const Uav::Detections &frame)
     }
     NoteLife(frame);
     _newestS = std::max(_newestS, frame.pose.gps_time_s);
-    Forget();  // what is too old must not be taken for what is seen now
+    Forget();  // an old target must not be taken for a new detection
     std::vector<Sighting> sightings = SightingsOf(frame);
     Match(sightings, frame);
     for (Sighting &sighting : sightings)
@@ -64,7 +63,7 @@ void TargetTable::Add(const Uav::Detections &frame)
     Forget();
 }
 
-// Written so that a NaN is refused as well.
+// The comparisons are written so that a NaN is refused as well.
 bool TargetTable::Accept(const Uav::Detections &frame)
 {
     if (!(std::abs(frame.pose.latitude_deg) <= 90 && std::abs(frame.pose.longitude_deg) <= 180))
@@ -94,8 +93,8 @@ std::vector<TargetTable::Sighting> TargetTable::SightingsOf(const Uav::Detection
     return sightings;
 }
 
-// The likeliest way to explain the whole frame: each detection is one of a target or of something new, each
-// target is seen once or missed. Costs are -2 ln of likelihoods.
+// Finds the likeliest explanation of the whole frame: each detection is of a target or of something new,
+// each target is seen once or missed. Costs are -2 ln of likelihoods.
 void TargetTable::Match(std::vector<Sighting> &sightings, const Uav::Detections &frame)
 {
     const double time = frame.pose.gps_time_s;
@@ -209,7 +208,7 @@ void TargetTable::Report(double gpsTimeS, Uav::Targets &targets) const
 
 std::vector<Uav::TargetName> TargetTable::NamesBeside(const FollowedTarget &item, double gpsTimeS) const
 {
-    constexpr std::size_t most = 8;  // what the message takes
+    constexpr std::size_t most = 8;  // the bound of the message
     const TargetFilter::Place place = item.Filter.At(gpsTimeS).Position();
     std::vector<Uav::TargetName> names;
     for (const FollowedTarget &other : _items)

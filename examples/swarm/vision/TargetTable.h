@@ -15,65 +15,65 @@
 namespace Swarm
 {
 
-// Makes targets of detections: those of this aircraft's own camera and of others', in any order. And gives
-// each target one name in the whole fleet, together with the tables of the other aircraft.
+// Makes targets from the detections of all aircraft's cameras, in any order. Together with the tables of
+// the other aircraft it gives each target one name in the whole fleet.
 //
-// Of each frame the detections are given to the targets so that all together fit best, within the gate, and
-// each target takes one. What fits none begins a new target, which is tentative: it is reported only when it
-// has been seen NeededSightings times within ConfirmWithinS, so that a false alarm, which nothing agrees
-// with, is never reported. One that does not get there is forgotten.
+// In each frame the detections are assigned to the targets with the best total fit, within the gate, at
+// most one to each target. An unassigned detection begins a tentative target. A tentative target is
+// reported only after NeededSightings sightings within ConfirmWithinS, so that single false alarms are
+// never reported; otherwise it is forgotten.
 //
-// A new target may be one that was not seen for a while and has moved meanwhile: it is taken for that one if
-// its place is likelier so than for a target that was never seen. Two that go on fitting one place are one,
+// A new target may be one that was not seen for a while and has moved meanwhile. It is taken for that one
+// if that is likelier than a new target at its place. Two targets that keep fitting one place are merged,
 // unless one frame has shown both.
 //
-// Names. Every aircraft has a table, and hears of the detections of all as long as the radio lets it, so each
-// knows all targets, and none is in charge. The aircraft that saw a target first names it; the others wait
-// for the name for NameWaitS. They tell each other the names at once when one is new or two were merged, and
-// again and again. If a target has two names, because of two aircraft that did not hear each other, the older
-// one holds and the other one is kept as a former name, which tells whoever knew the target by it. An
-// aircraft that starts anew learns the names from the others. If two aircraft mean different targets by one
-// name, the one whose own name comes later gives way.
+// Names. Every aircraft has a table and gets the detections of all aircraft as far as the radio allows, so
+// each knows all targets, and there is no leader. The aircraft that saw a target first names it; the others
+// wait for the name for NameWaitS. They send each other names at once when one is new or two were merged,
+// and then periodically. If two aircraft did not hear each other and gave a target two names, the older one
+// holds, and the other is kept as a former name for those who know it. A restarted aircraft learns the
+// names from the others. If two aircraft mean different targets by one name, the one whose own name comes
+// later gives way.
 //
-// Times are GPS times. What the network brings may be anything: values that make no sense are dropped and
-// counted. Not thread-safe.
+// Times are GPS times. Implausible values from the network are dropped and counted. Not thread-safe.
 class TargetTable
 {
 public:
     // 99 % of a chi-square distribution with two degrees of freedom: -2 ln 0.01. With four: PairGate.
     static constexpr double Gate = 9.2103;
     static constexpr double PairGate = 13.277;
-    static constexpr double BiasM =
-        1.5;  // by which aircraft are wrong about their own position, north and east
-    static constexpr double DirectM = 6;      // one that is more uncertain takes no single detection
-    static constexpr double NewPerM2 = 5e-7;  // how likely it is to come upon a target that was never seen
+    static constexpr double BiasM = 1.5;      // error of an aircraft's own position, north and east
+    static constexpr double DirectM = 6;      // a target more uncertain than this is not assigned a single
+                                              // detection
+    static constexpr double NewPerM2 = 5e-7;  // density of targets that were never seen
     static constexpr double FirstSigmaM = 4;  // of the place where a target was seen first
     static constexpr std::size_t NeededSightings = 4;
     static constexpr double ConfirmWithinS = 3;
-    static constexpr double MergeAfterS = 2;  // that two fit one place
-    static constexpr int TwoInFrames = 3;     // so many frames that show both prove that they are two
+    static constexpr double MergeAfterS = 2;  // that two must fit one place
+    static constexpr int TwoInFrames = 3;     // frames that show both, to prove that they are two
     static constexpr int OneInFrames =
-        6;  // so many in a row that show one in the place of both, that one is elsewhere
+        6;  // frames in a row that show one in the place of both, to prove that one is elsewhere
     static constexpr double SeenNowS = 3;
     static constexpr double ForgetAfterS = 1200;
     static constexpr double MaxLatenessS = 5;      // frames older than this, against the newest, are dropped
     static constexpr std::size_t MaxTargets = 64;  // the bounds of the message Targets
     static constexpr std::size_t MaxTentative = 200;
     static constexpr double NameWaitS = 2;
-    static constexpr double TellAgainS = 5;       // of those that this aircraft has named
-    static constexpr double TellForOthersS = 12;  // of those of which nobody has told for so long
-    static constexpr double BesideM = 100;        // nearer than this, others are told that two are two
+    static constexpr double TellAgainS = 5;       // for targets that this aircraft has named
+    static constexpr double TellForOthersS = 12;  // for targets that no aircraft has sent for this long
+    static constexpr double BesideM = 100;        // pairs nearer than this are sent to the others as
+                                                  // different
     static constexpr double SwappedM =
-        15;  // farther than this from where another sees it, it is not the same
+        15;  // farther than this from another aircraft's place, it is not the same target
 
     explicit TargetTable(std::string aircraft) : _aircraft(std::move(aircraft)) {}
 
     void Add(const Uav::Detections &frame);
-    // What the table of another aircraft tells.
+    // Accepts targets from the table of another aircraft.
     void Hear(const Uav::Targets &told);
-    // The targets as they are at that time.
+    // Fills in the targets at that time.
     void Report(double gpsTimeS, Uav::Targets &targets) const;
-    // Those of which the other aircraft are to be told now; often none.
+    // Returns the targets to send to the other aircraft now; often none.
     Uav::Targets Tell(double gpsTimeS);
     std::uint64_t Dropped() const { return _dropped; }
 
@@ -90,16 +90,16 @@ private:
         TargetFilter Filter;
         double LastS;
     };
-    // What is known of two targets.
+    // Evidence about a pair of targets.
     struct Pair
     {
         int Frames = 0;  // that have shown both
         std::optional<double> FitSinceS{};
         double FitLastS = 0;
-        bool IsJudged = false;  // whether the one is the other, come back
+        bool IsJudged = false;  // already checked whether one is the other, come back
         // Frames in a row that showed one detection where both might have been.
         int Alone = 0;
-        int AloneFirst = 0;  // of which it was given to the first
+        int AloneFirst = 0;  // of these, assigned to the first
         std::optional<Moment> FirstBefore{};
         std::optional<Moment> SecondBefore{};
     };
@@ -154,7 +154,7 @@ private:
     std::optional<GeoPoint> _origin;  // of the metres; where the first frame was taken
     std::vector<FollowedTarget> _items;
     std::map<PairKey, Pair> _pairs;
-    std::map<std::string, std::uint32_t> _frames;  // the last number that each aircraft gave one
+    std::map<std::string, std::uint32_t> _frames;  // the last frame number of each aircraft
     std::uint64_t _lastId = 0;
     std::uint32_t _lastNumber = 0;
     double _newestS = 0;

@@ -16,7 +16,7 @@ namespace
 constexpr std::size_t MaxTargets = 1000;
 constexpr double RadPerDeg = std::numbers::pi / 180;
 
-// Reads one file; says where what is wrong.
+// Reads one file; errors have their position.
 class WorldReader
 {
 public:

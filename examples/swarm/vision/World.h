@@ -25,11 +25,11 @@ struct WorldTarget
     double HeadingRad = 0;  // from the start, clockwise from true north
     double LengthM = 0;     // of the way, above 0 if it walks
 
-    // A function of GPS time alone, so that all processes see it at one place.
+    // The place depends on GPS time alone, so that all processes see the target at the same place.
     GeoPoint At(double gpsTimeS) const;
 };
 
-// What simulated cameras look at.
+// The world that simulated cameras see.
 //
 // The file is YAML:
 //   ground_m: 430                 # height of the ground above mean sea level, -500 to 9000

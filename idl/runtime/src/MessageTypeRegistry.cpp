@@ -21,8 +21,8 @@ struct Types
     std::unordered_map<std::type_index, const MessageType *> ByClass;
 };
 
-// Made on first use, because types are added while static objects are initialised, and never destroyed,
-// because threads may still ask when they are destroyed.
+// Made on first use: types are added while static objects are initialised. Never destroyed: threads may
+// still use it when static objects are destroyed.
 Types &All()
 {
     static Types &types = *new Types;

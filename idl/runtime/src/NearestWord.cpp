@@ -37,7 +37,8 @@ std::size_t EditDistance(const std::string &a, const std::string &b)
 
 std::string NearestWordHint(const std::string &word, const std::vector<std::string> &candidates)
 {
-    // A word of megabytes in a file must not cost a quadratic time.
+    // Longer words are not compared: the distance takes quadratic time, and a file may hold words of
+    // megabytes.
     constexpr std::size_t longest = 200;
     const std::string *best = nullptr;
     std::size_t bestDistance = longest;

@@ -12,9 +12,9 @@
 namespace Rabit
 {
 
-// A message of a DynamicType: what it holds is its sample. Made by DynamicType::Create, or here. The messages
-// of all dynamic types have this one class; taking over the contents of a message of another type is refused,
-// and leaves this one as it was.
+// A message of a DynamicType; its contents are a sample. Made by DynamicType::Create, or by the
+// constructor. The messages of all dynamic types have this one class. Copying the contents of a message of
+// another type is refused, and leaves this one unchanged.
 class DynamicMessage final : public RabitMessage, public Idl::SelfDescribing
 {
 public:
@@ -25,11 +25,12 @@ public:
     const Rabit::MessageType &IdlType() const override { return *_type; }
     // The sample: plain XCDR1, little endian, with its encapsulation header. Valid until the message changes.
     const std::vector<std::uint8_t> &Sample() const;
-    // Takes over a sample of either byte order. False, and nothing changed, if it is not one of this type.
+    // Takes over a sample of either byte order. If it is not a sample of this type, returns false and
+    // changes nothing.
     bool SetSample(std::span<const std::uint8_t> sample);
     // The contents as JSON, see DynamicType; empty if it would be too large.
     std::string ToJson() const;
-    // Takes over JSON. Returns an empty text, or why it does not fit; then nothing changed.
+    // Takes over JSON. Returns an empty text; if it does not fit, returns the reason and changes nothing.
     std::string SetJson(std::string_view json);
 
     std::unique_ptr<RabitMessage> Clone() const override;
@@ -41,7 +42,7 @@ public:
 
 private:
     std::shared_ptr<const DynamicType> _type;
-    std::vector<std::uint8_t> _sample;  // empty: the default one of the type
+    std::vector<std::uint8_t> _sample;  // empty: the default sample of the type
 };
 
 }  // namespace Rabit

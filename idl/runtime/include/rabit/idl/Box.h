@@ -9,8 +9,8 @@
 namespace Rabit::Idl
 {
 
-// A value that is kept elsewhere, so that who holds it stays small; a new one, which has what Maker makes,
-// allocates nothing until it is written to. Copies are deep. Used by one thread at a time, as a value is.
+// A value on the heap, which keeps its owner small. A new Box has the value of Maker, and allocates nothing
+// until it is written to. Copies are deep. Used by one thread at a time, like a plain value.
 template <class T, class Maker = FreshValue<T>>
 class Box
 {
@@ -57,8 +57,7 @@ private:
     std::unique_ptr<T> _value;
 };
 
-// How a union keeps a member: by itself if it is small, so that a union takes little memory whichever of its
-// members are large.
+// A union keeps members up to this size in itself, and larger ones in a Box, so that a union stays small.
 inline constexpr std::size_t LargestKeptByItself = 32;
 template <class T, class Maker = FreshValue<T>>
 using Kept = std::conditional_t<(sizeof(T) <= LargestKeptByItself), T, Box<T, Maker>>;
@@ -76,7 +75,7 @@ Kept<T, Maker> FreshKept()
     }
 }
 
-// The member itself, however it is kept.
+// The member itself, kept in place or in a Box.
 template <class T>
 T &Held(T &kept)
 {

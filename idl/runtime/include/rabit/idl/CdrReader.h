@@ -13,16 +13,17 @@
 namespace Rabit::Idl
 {
 
-// Reads the body of a sample (what follows the encapsulation header) as plain XCDR1, OMG
-// DDS-XTypes 1.3, 7.4.1, of either byte order, from borrowed bytes. Alignment is relative to the begin of the
-// bytes. Everything is checked against the bytes that are left before it is read, and against a budget before
-// anything is allocated for it; what does not fit is a false, never an exception of Fast-CDR, which does the
-// decoding. Used by one thread at a time.
+// Reads the body of a sample (what follows the encapsulation header) as plain XCDR1, OMG DDS-XTypes 1.3,
+// 7.4.1, of either byte order, from borrowed bytes. Alignment is relative to the begin of the bytes. Each
+// value is checked against the bytes left before it is read, and against a budget before memory is
+// allocated for it. If it does not fit, the functions return false; Fast-CDR, which does the decoding,
+// never throws. Used by one thread at a time.
 class CdrReader
 {
 public:
-    // What decoding may allocate: so many bytes for each of the sample, and these besides. Values of types
-    // that are of any use stay far below; a sequence of small things that are large in memory may not.
+    // Decoding may allocate MaxGrowth bytes for each byte of the sample, plus Allowance bytes. Practical
+    // types stay far below; a sequence of elements that are small on the wire and large in memory may
+    // exceed it.
     static constexpr std::size_t MaxGrowth = 256;
     static constexpr std::size_t Allowance = 65536;
 
@@ -43,7 +44,7 @@ public:
     std::size_t Used() const { return _cdr.getSerializedDataLength(); }
     std::size_t Left() const { return _bytes.size() - Used(); }
 
-    // Takes count objects of so many bytes in memory off the budget; false if it is too small for that.
+    // Subtracts count objects of `size` bytes in memory from the budget; false if the budget is too small.
     bool Spend(std::size_t count, std::size_t size)
     {
         const std::uint64_t wanted = std::uint64_t{count} * size;  // a count has 32 bits
@@ -77,7 +78,7 @@ public:
         value = byte != 0;
         return true;
     }
-    // Reads count primitive values side by side. A count that the bytes cannot hold is a false.
+    // Reads count primitive values side by side. False if the bytes left are too few.
     template <class T>
     bool GetArray(T *values, std::size_t count)
     {
@@ -121,7 +122,7 @@ public:
         text = std::string_view(begin, length - 1);
         return _cdr.jump(length);
     }
-    // Reads so many bytes as a view of them.
+    // Reads `count` bytes as a view of them.
     bool GetBytes(std::size_t count, std::span<const std::uint8_t> &bytes)
     {
         if (count > Left())
@@ -131,7 +132,7 @@ public:
         bytes = _bytes.subspan(Used(), count);
         return count == 0 || _cdr.jump(count);
     }
-    // Passes by count primitive values side by side.
+    // Skips count primitive values side by side.
     bool Skip(std::size_t size, std::size_t count)
     {
         if (count == 0)
@@ -142,7 +143,7 @@ public:
     }
 
 private:
-    // Makes sure that size bytes are left after aligning, and passes by the alignment.
+    // Checks that size bytes are left after aligning, and skips the alignment gap.
     bool Align(std::size_t alignment, std::size_t size)
     {
         const std::size_t gap = (alignment - Used() % alignment) % alignment;

@@ -10,7 +10,7 @@ class CdrSizer
 {
 public:
     std::size_t Used() const { return _used; }
-    // count primitive values of size bytes each, side by side.
+    // Adds count primitive values of size bytes each, side by side.
     void Add(std::size_t size, std::size_t count = 1)
     {
         if (count != 0)
@@ -18,7 +18,7 @@ public:
             _used = (_used + size - 1) / size * size + size * count;
         }
     }
-    // A string of so many bytes, without its terminating zero.
+    // Adds a string of `length` bytes, not counting its terminating zero.
     void AddString(std::size_t length)
     {
         Add(4);

@@ -83,7 +83,7 @@ public:
     }
 
 private:
-    // Makes sure that size bytes fit after aligning, and writes the zeros for the alignment.
+    // Checks that size bytes fit after aligning, and writes zeros into the alignment gap.
     bool Reserve(std::size_t alignment, std::size_t size)
     {
         static constexpr std::uint8_t zeros[8] = {};

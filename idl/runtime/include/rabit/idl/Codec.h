@@ -1,6 +1,7 @@
 #pragma once
 
-// What generated headers need of the runtime: names only, so that including a message costs little.
+// The parts of the runtime that generated headers need: only declarations, so that including a message
+// costs little.
 
 #include <cstddef>
 
@@ -17,7 +18,7 @@ class CdrWriter;
 class KeyHasher;
 class TextWriter;
 
-// How values of one generated type become XCDR1 and back. Specialised by generated code for every struct,
+// Converts values of one generated type to XCDR1 and back. Specialised by generated code for every struct,
 // union, enum and bitmask, with these members:
 //   MinSize           bytes that every value takes at least
 //   Write, Read       false if the value cannot be expressed, or the bytes are not such a value

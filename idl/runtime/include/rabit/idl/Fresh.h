@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
-// Values of enums that start at their default where C++ by itself would make them 0, which may be no value of
-// them. A maker has the type Value and a static Make(); generated code names the makers.
+// Makes new enums start at their default: C++ would make them 0, which may not be one of their values. A
+// maker has the type Value and a static Make(); generated code names the makers.
 namespace Rabit::Idl
 {
 
@@ -26,7 +26,7 @@ struct FreshEnum
     static constexpr Value Make() { return Start; }
 };
 
-// Every element made by Element.
+// An array whose elements Element makes.
 template <class Element, std::size_t Length>
 struct FreshArray
 {
@@ -42,7 +42,7 @@ struct FreshArray
     }
 };
 
-// For a vector whose new elements Maker makes, also when it is resized.
+// Allocator for a vector whose new elements Maker makes, also when it is resized.
 template <class Maker>
 struct FreshAllocator : std::allocator<typename Maker::Value>
 {

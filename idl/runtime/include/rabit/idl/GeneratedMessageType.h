@@ -17,7 +17,7 @@ namespace Rabit::Idl
 // Bytes before the body of a sample: two that name the encoding, two of options.
 inline constexpr std::size_t EncapsulationSize = 4;
 
-// Body and padding of a sample of so many bytes, with the header.
+// Size of a sample with a body of `bodySize` bytes: header, body and padding.
 constexpr std::size_t SampleSize(std::size_t bodySize)
 {
     return EncapsulationSize + (bodySize + 3) / 4 * 4;
@@ -27,7 +27,7 @@ constexpr std::size_t SampleSize(std::size_t bodySize)
 bool OpenSample(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t> &body, bool &littleEndian);
 // Writes the encapsulation header of little-endian plain XCDR1 whose body is followed by padding bytes.
 void WriteEncapsulation(std::span<std::uint8_t> sample, std::size_t padding);
-// Bytes that may follow the body: what fills it up to a multiple of 4.
+// Bytes that may follow the body: padding to a multiple of 4.
 inline constexpr std::size_t MaxPadding = 3;
 
 // The MessageType of one generated message class, on top of its Codec. Generated code makes one object of
@@ -127,8 +127,8 @@ private:
         return static_cast<const Message &>(message);
     }
 
-    // Runs a codec over the body of a sample. The reader checks all lengths, so that Fast-CDR has no reason
-    // to throw; allocation may fail.
+    // Runs a codec over the body of a sample. The reader checks all lengths, so Fast-CDR does not throw,
+    // but allocation may.
     template <class Run>
     static bool Decode(std::span<const std::uint8_t> bytes, Run run)
     {
@@ -169,7 +169,7 @@ inline int SerializeTo(const MessageType &type, const RabitMessage &message, std
     {
         return 0;
     }
-    // An int counts the bytes, so that they always fit into one.
+    // maxBufSize is an int, so the result always fits into one.
     return static_cast<int>(type.Serialize(message, std::span(buffer, static_cast<std::size_t>(size))));
 }
 

@@ -71,7 +71,7 @@ public:
     }
 
 private:
-    // Boost gives MD5's bytes as four numbers, the first byte the highest; since 1.86 as they are.
+    // Boost gives MD5 as four numbers, the first byte the highest; since version 1.86 as bytes.
     template <class Digest>
     static constexpr bool IsDigestOfNumbers = std::is_same_v<Digest, unsigned int[4]>;
     template <class Digest>

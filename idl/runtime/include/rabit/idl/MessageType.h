@@ -13,15 +13,14 @@
 namespace Rabit
 {
 
-// What is known of one IDL type at run time: how to make its messages and how to turn them into bytes and
-// back.
+// Run-time description of one IDL type. Creates its messages, and converts them to bytes and back.
 //
-// The bytes are what a DDS sample of the type holds: a 4-byte encapsulation header (CDR, in the byte order
+// The bytes are those of a DDS sample of the type: a 4-byte encapsulation header (CDR, in the byte order
 // that it names; we write little endian), then plain XCDR1 (OMG DDS-XTypes 1.3, 7.4.1), with no header of
-// Rabit's own, filled up with zeros to a multiple of 4 bytes. The last two bits of the header give the number
-// of these zeros (XTypes 1.3, 7.6.3.1.2). Equal messages give equal bytes. One object exists for each
-// generated message class and lives as long as the process; DynamicType is what is made at run time. All are
-// immutable and may be used from any thread.
+// Rabit's own, filled up with zeros to a multiple of 4 bytes. The last two bits of the header give the
+// number of these zeros (XTypes 1.3, 7.6.3.1.2). Equal messages give equal bytes. One object exists for
+// each generated message class and lives as long as the process; DynamicType is for types made at run time.
+// All are immutable and may be used from any thread.
 class MessageType
 {
 public:
@@ -39,7 +38,7 @@ public:
     virtual std::shared_ptr<RabitMessage> CreateShared() const = 0;
     // The C++ class of its messages; messages of several types may share one (SelfDescribing).
     virtual std::type_index CppType() const = 0;
-    // Whether this is the type of that message (its dynamic type, not a base of it).
+    // True if this is the type of that message (its dynamic type, not a base of it).
     virtual bool IsTypeOf(const RabitMessage &message) const = 0;
 
     // Bytes that Serialize will write for this message, the header included. Throws std::invalid_argument if
@@ -51,14 +50,14 @@ public:
     virtual std::size_t Serialize(const RabitMessage &message, std::span<std::uint8_t> buffer) const = 0;
     // Reads a message from borrowed bytes of either byte order. Returns false if they are not a sample of
     // this type (truncated, more than 3 bytes too long, out of bounds, an unknown encoding, an impossible
-    // value); the message then has valid but unspecified contents. Never throws on account of the bytes,
-    // never reads past them, and never allocates more than 256 bytes for each of them and 64 KiB besides: a
-    // message that would take more is refused, which needs things that are small on the wire and large in
-    // memory, in great number (idl/README.md). The message's time stamp,
-    // its three ints and its global reference stay as they are. Throws as SerializedSize.
+    // value); the message then has valid but unspecified contents. No bytes make it throw or read past
+    // their end. It allocates at most 64 KiB plus 256 bytes for each of the bytes, and refuses a message
+    // that would take more: one with very many values that are small on the wire and large in memory
+    // (idl/README.md). The message's time stamp, its three ints and its global reference stay unchanged.
+    // Throws as SerializedSize.
     virtual bool Deserialize(std::span<const std::uint8_t> bytes, RabitMessage &message) const = 0;
 
-    // Whether the type, or a base of it, has @key members.
+    // True if the type, or a base of it, has @key members.
     virtual bool HasKey() const = 0;
     // The key hash of OMG DDSI-RTPS 2.3, 9.6.3.8, of a serialized sample. False if Deserialize would refuse
     // the bytes, or the type has no key. Stores nothing of the sample and allocates nothing.

@@ -15,12 +15,13 @@ class MessageType;
 class MessageTypeRegistry
 {
 public:
-    // Adds a type; it must live until the process ends. A second type of the same name and the same IDL is
-    // passed over (two libraries with one IDL file); a second one with other IDL throws std::logic_error.
+    // Adds a type; it must live until the process ends. A second type with the same name and IDL is ignored
+    // (two libraries with one IDL file); one with different IDL throws std::logic_error.
     static void Add(const MessageType &type);
     // The type of that IDL name, or null.
     static const MessageType *Find(const std::string &name);
-    // The type of a message (its dynamic type), or null if it has none. It lives at least as long as the message.
+    // The type of a message (its dynamic type), or null if it has none. It lives at least as long as the
+    // message.
     static const MessageType *Of(const RabitMessage &message);
     // All names, sorted.
     static std::vector<std::string> Names();

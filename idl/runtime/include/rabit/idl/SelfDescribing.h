@@ -8,7 +8,7 @@ class MessageType;
 namespace Rabit::Idl
 {
 
-// What a message class is that serves several IDL types, so that its C++ class does not tell the type:
+// Base of a message class that serves several IDL types. Its C++ class does not tell the type, so
 // MessageTypeRegistry::Of asks the message itself.
 class SelfDescribing
 {

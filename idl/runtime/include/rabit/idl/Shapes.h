@@ -66,7 +66,7 @@ struct Boolean
     static void Print(TextWriter &text, bool value) { text.Put(value); }
 };
 
-// A string of at most Bound bytes, 0: any number.
+// A string of at most Bound bytes; 0: no bound.
 template <std::size_t Bound>
 struct Text
 {
@@ -100,7 +100,7 @@ struct Text
     static void Print(TextWriter &text, const std::string &value) { text.Put(std::string_view(value)); }
 };
 
-// Whether values of a codec that lie side by side may be copied as one block.
+// True if adjacent values of a codec may be copied as one block.
 template <class Element>
 concept IsBlock = requires
 {
@@ -213,7 +213,7 @@ struct ValueOf<Codec<T>>
     using Type = T;
 };
 
-// What a new value allocates beside itself: texts of @default.
+// The bytes that a new value allocates: texts of @default.
 template <class Element>
 constexpr std::size_t FreshSizeOf()
 {
@@ -227,7 +227,7 @@ constexpr std::size_t FreshSizeOf()
     }
 }
 
-// Has a union hold that member, if it does not. False if the budget does not allow for it.
+// Makes a union hold that member, if it does not yet. False if the budget is too small.
 template <class Element, std::size_t Index, class Content>
 bool Select(CdrReader &reader, Content &content)
 {
@@ -242,7 +242,7 @@ bool Select(CdrReader &reader, Content &content)
     return true;
 }
 
-// A sequence of at most Bound elements, 0: any number.
+// A sequence of at most Bound elements; 0: no bound.
 template <class Element, std::size_t Bound, class Container = std::vector<typename ValueOf<Element>::Type>>
 struct List
 {
@@ -264,7 +264,7 @@ struct List
         }
         if constexpr (IsBlock<Element> && Element::MinSize == 1)
         {
-            // Not resized first, which would fill a new vector with zeros.
+            // Does not resize first, which would fill a new vector with zeros.
             std::span<const std::uint8_t> bytes;
             if (!reader.GetBytes(length, bytes))
             {

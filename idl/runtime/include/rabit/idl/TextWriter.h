@@ -16,7 +16,7 @@ namespace Rabit::Idl
 class TextWriter
 {
 public:
-    // Elements of an array or sequence that are shown; of the others only the number.
+    // The number of elements of an array or sequence that are shown; the others are only counted.
     static constexpr std::size_t ShownElements = 16;
 
     const std::string &Text() const { return _text; }
@@ -24,7 +24,7 @@ public:
     void Put(bool value) { _text += value ? "true" : "false"; }
     void Put(char value) { Quoted(std::string_view(&value, 1), '\''); }
     void Put(std::string_view value) { Quoted(value, '"'); }
-    // Integers in decimal; floating point with the fewest digits that give the same value back.
+    // Integers in decimal; floating point with the fewest digits that restore the value.
     template <class T,
               std::enable_if_t<
                   std::is_arithmetic_v<T> && !std::is_same_v<T, bool> && !std::is_same_v<T, char>, int> = 0>
@@ -34,18 +34,18 @@ public:
         const auto result = std::to_chars(digits, digits + sizeof digits, value);
         _text.append(digits, result.ptr);
     }
-    // Text as it is.
+    // Appends the text unchanged.
     void Raw(std::string_view text) { _text += text; }
 
 private:
-    // The quote and the backslash are escaped, and what could command a terminal: control characters (C0,
-    // DEL, C1) and bytes that are not UTF-8. All else is left as it is.
+    // Escapes the quote, the backslash, and all that could control a terminal: control characters (C0, DEL,
+    // C1) and bytes that are not UTF-8. All other characters stay unchanged.
     void Quoted(std::string_view text, char quote);
 
     std::string _text;
 };
 
-// A value of a generated type as a text, behind the prefix.
+// The prefix, then a value of a generated type as text.
 template <class T>
 std::string TextOf(std::string_view prefix, const T &value)
 {
