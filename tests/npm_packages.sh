@@ -1,6 +1,6 @@
 # For tests that need packages of npm; to be sourced.
 #
-# put_into WORK FILE...: copies what is not there yet, so that a test that runs beside this one finds each file whole.
+# put_into WORK FILE...: copies the files that are missing or differ. Tests that run beside this one see each file whole.
 put_into() {
     local work=$1 file name
     shift
@@ -10,9 +10,9 @@ put_into() {
     done
 }
 
-# fetch_npm_packages HERE PACKAGE WORK: has what HERE/package.json names in WORK, PACKAGE among it. Ends the test as skipped
-# (77) where there is no node, or no registry. Of tests that run beside each other one fetches. None does in a network of
-# its own: it fetches before it enters that.
+# fetch_npm_packages HERE PACKAGE WORK: installs the packages of HERE/package.json in WORK, PACKAGE among them. Ends the
+# test as skipped (77) if there is no node, or no registry. Of tests that run beside each other one fetches. A test fetches
+# before it enters a network of its own.
 fetch_npm_packages() {
     local here=$1 package=$2 work=$3
     if ! command -v node >/dev/null || ! command -v npm >/dev/null; then

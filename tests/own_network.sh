@@ -1,10 +1,10 @@
-# For tests that would get into each other's way on the loopback of one machine; to be sourced.
+# For tests that would disturb each other on the loopback of one machine; to be sourced.
 #
 # enter_own_network ARGUMENT...: starts this script again, with these arguments, in a network of its own, which vanishes with
-# it: a loopback and an Ethernet with an address and the way to everywhere, as a person's machine has. Where it may not
-# make one, it goes on in that of the machine. A script that needs what is outside gets it before.
-# Nothing of it changes later: an address of IPv6 would come a second or two after, and then a browser breaks off what it
-# loads.
+# it: a loopback and an Ethernet with an address and a default route, as a person's machine has. If the machine forbids
+# that, the script goes on in the machine's network. A script that needs the Internet uses it before this call.
+# Nothing of the network changes later: an IPv6 address would come a second or two after, and a browser then breaks off its
+# downloads.
 enter_own_network() {
     [ -z "${RABIT_TEST_IN_NAMESPACE:-}" ] || return 0
     export RABIT_TEST_IN_NAMESPACE=no

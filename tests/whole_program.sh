@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs all cases of a GoogleTest program, and shows of its output only what belongs to those that failed, or to the one that
-# ended it, and how many there were.
+# Runs all cases of a GoogleTest program. Of its output, shows only the parts of failed cases, or of the case that ended the
+# program, and the number of cases.
 #   whole_program.sh PROGRAM
 set -uo pipefail
 "$1" 2>&1 | awk '

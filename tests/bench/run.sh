@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the release preset's benchmarks and measures the gateway against DDS called by hand; README.md says how to read
-# the results. --quick: in two minutes, only to see that it works. Other arguments: see harness/run.py.
+# Builds the release preset's benchmarks and measures the gateway against DDS called by hand; README.md says how to
+# read the results. --quick: takes two minutes, only to see that it works. Other arguments: see harness/run.py.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 cd "$root"

@@ -11,7 +11,7 @@ import consumer
 import packages_test
 
 SKIPPED = 77
-# What a user of the packages has besides them.
+# The tools of a user beside the packages.
 TOOLS = "g++,cmake,ninja-build"
 
 
@@ -41,7 +41,7 @@ def main():
         print("ok: installed", *sorted(packages))
         inside(root, "cmake -S /project -B /build -G Ninja && cmake --build /build")
         inside(root, "rabit-ground --config /usr/share/rabit/ground.yaml --check")
-        # Without the machine's network.
+        # Runs without the machine's network.
         consumer.run("unshare", "--net", "--mount", "sh", "-ec",
                      'ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo; mount --bind /dev "$0/dev"; '
                      'mount --bind /proc "$0/proc"; exec chroot "$0" ctest --test-dir /build --output-on-failure --no-tests=error',

@@ -31,7 +31,7 @@ def main():
         build, prefix = folder / "build", folder / "prefix"
         consumer.run(cmake, "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                      "-DBUILD_SHARED_LIBS=ON", "-DRABIT_BUILD_TESTS=OFF", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
-        # So far there is nothing to install, as after a build of some programs.
+        # Nothing can be installed yet, as after a build of some programs.
         said = consumer.run(cmake, "--install", build, "--prefix", prefix, fails=True)
         if f"cmake --build {build} --target rabit_package" not in said:
             sys.exit(f"installing an incomplete build said: {said}")

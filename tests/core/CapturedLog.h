@@ -10,7 +10,7 @@
 namespace RabitTest
 {
 
-// Collects what the library logs while it lives, instead of stderr.
+// Collects the library's log lines while it lives, instead of stderr.
 class CapturedLog
 {
 public:

@@ -72,7 +72,7 @@ TEST_F(SystemClockTest, DoesNotGoBackFromReadingToReading)
     for (int i = 0; i < 200000; ++i)
     {
         const double now = Clock.GetCurrentGpsTimeInSeconds();
-        // What a measurement of the wall clock may take back: no more than its uncertainty.
+        // A new measurement of the wall clock may set the time back by at most its uncertainty.
         ASSERT_GT(now, last - 1e-3);
         ASSERT_NE(now, last);
         last = now;

@@ -1,5 +1,5 @@
-// A program as users of earlier versions wrote them: flat includes, boost::bind, C++17. Compiled as C++17 and
-// as C++20.
+// A program in the style of earlier versions: flat includes, boost::bind, C++17. Compiled as C++17 and as
+// C++20.
 #include "PublishSubscribeMessage.h"
 
 #include "RabitManager.h"

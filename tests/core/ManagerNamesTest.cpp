@@ -1,4 +1,4 @@
-// Who owns the names and handlers of a manager, and what becomes of them from run to run.
+// The owners of a manager's names and handlers, from run to run.
 #include "CapturedLog.h"
 #include "SteppedFixture.h"
 #include "TestManagers.h"
@@ -17,7 +17,8 @@ namespace
 using namespace Rabit;
 using namespace RabitTest;
 
-// A manager that runs twice; before the second run another one, which stays, has taken its message's name.
+// A manager that runs twice. Before the second run another manager, which stays, has taken its message's
+// name.
 struct SecondRun
 {
     RabitWorkspace Workspace;

@@ -1,4 +1,4 @@
-// Orders to shut down that come from threads that know nothing of where the manager is in its life.
+// Shutdown orders from threads that do not know whether the manager is starting, running or ending.
 #include "TestManagers.h"
 
 #include <rabit/RabitReactor.h>
@@ -17,7 +17,7 @@ namespace
 using namespace Rabit;
 using namespace RabitTest;
 
-// Has a thread call something again and again while it lives; remembers what the calls threw.
+// Lets a thread call a function again and again while it lives. Records the exceptions of the calls.
 class Repeating
 {
 public:

@@ -115,7 +115,7 @@ TEST(PublishSubscribe, TimeStampsFollowAWallClockThatIsSetBack)
     EXPECT_EQ(pair.Reader->GetTimeStamp(), 401.0);
 }
 
-// A message whose copying looks at where it is attached, as another thread may at any time.
+// A message that reads its own attachment while it is copied, as another thread may at any time.
 class WatchingMessage : public NumberMessage
 {
 public:
@@ -285,7 +285,7 @@ TEST(PublishSubscribe, HandlersMayPostAndFetchTheSameName)
     EXPECT_EQ(pair.Poster->Number, 2);
 }
 
-// Its copying can be held up, which happens under the global copy's lock, or made to fail.
+// A message whose copying the test can hold up, under the global copy's lock, or let fail.
 class TroublesomeMessage : public NumberMessage
 {
 public:

@@ -1,4 +1,5 @@
-// Several forwarders in one workspace: who gets a message. RabitWorkspaceTest has the rules for one.
+// Several forwarders in one workspace, and which of them gets a message. RabitWorkspaceTest has the rules
+// for one.
 #include "TestMessages.h"
 
 #include <rabit/QueueForwarder.h>
@@ -23,7 +24,7 @@ using RabitTest::NumberMessage;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// Handles "node/queue", knows some of the nodes, and delivers at once; "*" stands for all that it knows.
+// Handles "node/queue", knows some of the nodes, and delivers at once. "*" means all nodes that it knows.
 class Network : public QueueForwarder
 {
 public:

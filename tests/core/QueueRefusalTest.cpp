@@ -30,7 +30,7 @@ struct RefusalFixture : SteppedFixture
         Manager.AddManagerMessageQueue("Small", Small);
         Reactor.Start();
     }
-    // How many of these adds were taken.
+    // Tries 3000 adds. Returns how many were accepted.
     int Add3000()
     {
         int taken = 0;
@@ -97,7 +97,7 @@ TEST(QueueRefusal, IsLoggedForAQueueOfOneProducer)
     EXPECT_EQ(fixture.Log.Lines(), Lines{"queue \"Spsc\" is full: it refused a message, as 2 wait in it"});
 }
 
-// Who tries without telling anybody tries again when there is room, as a gateway does.
+// A caller that adds without events tries again when there is room, as a gateway does.
 TEST(QueueRefusal, OfAnAddWithoutEventsIsNotLogged)
 {
     RefusalFixture fixture;

@@ -13,7 +13,7 @@ namespace
 
 using namespace Rabit;
 
-// What both kinds of queue promise.
+// The promises of both kinds of queue.
 template <typename Queue>
 class AnyQueue : public testing::Test
 {
@@ -24,7 +24,7 @@ TYPED_TEST_SUITE(AnyQueue, QueueKinds);
 TYPED_TEST(AnyQueue, GivesMessagesBackInTheOrderInWhichTheyWereAdded)
 {
     TypeParam queue(100, "Queue");
-    // Several times around the store.
+    // Goes several times around the ring buffer.
     int next = 0;
     for (int added = 0; added < 500;)
     {

@@ -133,7 +133,8 @@ TEST(RabitEvent, HandlersComeAndGoWhileOtherThreadsFire)
     }
     for (int i = 0; i < 2000; ++i)
     {
-        // The handler owns what it uses, as one must that may still be running after its disconnection.
+        // The handler owns the objects that it uses, because it may still be running after its
+        // disconnection.
         const RabitScopedConnection scoped =
             event.Connect([count = std::make_shared<int>(0), &calls] { ++calls; });
     }

@@ -1,4 +1,4 @@
-// Handlers that a thread which must not be held up hands over to another one.
+// Handlers that a thread passes to another one, because it must not be held up.
 #include <rabit/RabitHandlerThread.h>
 
 #include <rabit/PublishSubscribeMessage.h>

@@ -95,7 +95,7 @@ TEST(ManagerFailure, OnAThreadPausesThoughTheManagerDoesNotSleep)
     };
     manager.Run();
     manager.Join();
-    // A pause cannot be too short, however slow the computer is.
+    // A slow computer cannot make the pause too short.
     EXPECT_GE(std::chrono::steady_clock::now() - start, 300ms);
 }
 

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 using Times = std::vector<std::chrono::nanoseconds>;
 
-// A manager that notes when its unit of work runs.
+// A manager that records the times of its units of work.
 struct PeriodFixture : SteppedFixture
 {
     ScriptedManager &Manager = Add("Manager");
@@ -57,7 +57,7 @@ TEST(ManagerPeriod, RunsOnceAPeriodHoweverOftenTheManagerIsWoken)
     EXPECT_EQ(fixture.Passes, (Times{0s, 1s, 2s, 3s, 4s, 5s, 6s, 7s, 8s, 9s}));
 }
 
-// One that is answered: each post of the sensor comes back to it as a message in its queue, at once.
+// Each post of the sensor is answered at once, by a message in its queue.
 TEST(ManagerPeriod, ASensorThatIsAnsweredPostsOnceAPeriod)
 {
     SteppedFixture fixture;
@@ -273,8 +273,8 @@ TEST(ManagerPeriod, BeginsAnewInAnotherRun)
     EXPECT_EQ(fixture.Manager.GetNumberOfMissedTurns(), 0U);
 }
 
-// On a thread. How fast it is decides nothing: however late its turns come, each moment that lies a period
-// after the last is a pass or counted as missed.
+// A manager on a thread. The thread's speed decides nothing: however late a turn comes, each moment that
+// lies a period after the last is a pass or is counted as missed.
 TEST(ManagerPeriod, OnAThreadEachTurnIsAPassOrMissedWhoeverWakesTheManager)
 {
     constexpr auto period = 5ms;

@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 using Rabit::RabitManagerTrace;
 using RabitTest::NumberMessage;
 
-// Writes down what it is told; decides what it is told to decide.
+// Records its calls, and answers with the values that the test sets.
 class NotedTrace : public RabitManagerTrace
 {
 public:
@@ -89,7 +89,7 @@ private:
 class RabitManagerTraceTest : public testing::Test
 {
 protected:
-    // What the trace was told of one unit of work, with its beginning and end.
+    // Returns the calls of the trace for one unit of work, with its beginning and end.
     std::vector<std::string> Do(std::function<void(DoingManager &)> work)
     {
         _workspace.SetManagerTracing([this](const std::string &name)

@@ -15,7 +15,7 @@ using namespace Rabit;
 using namespace RabitTest;
 using namespace std::chrono_literals;
 
-// A manager that nothing but events wakes, after its first pass.
+// A manager that only events wake, after its first pass.
 struct SleepingFixture : SteppedFixture
 {
     ScriptedManager &Manager = Add("Manager");
@@ -30,7 +30,7 @@ struct SleepingFixture : SteppedFixture
         Reactor.Start();
         RunFor(1s);
     }
-    // How many passes something causes.
+    // Returns the number of passes that `cause` leads to.
     template <typename Cause>
     int PassesCausedBy(Cause cause)
     {
@@ -162,7 +162,7 @@ TEST(ManagerWakeup, EventsDuringTheUnitOfWorkOfAThreadCauseExactlyOneMorePass)
     }
     posted = true;
     ASSERT_TRUE(Eventually([&] { return manager.Passes == 3; }));
-    // If there were yet another pass to come, it would run before this one.
+    // Another pass, if one was still to come, would run before this one.
     manager.WakeUpManagerEH();
     ASSERT_TRUE(Eventually([&] { return manager.Passes == 4; }));
     manager.ShutdownManager();

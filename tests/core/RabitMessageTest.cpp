@@ -47,7 +47,7 @@ TEST(RabitMessage, TheBaseCopyTakesTheStampAndTheThreeIntsButNotTheReference)
     EXPECT_EQ(to.GetGlobalPublishSubscribeMessageRef(), nullptr);
 }
 
-// A message whose contents may be assigned, registered under that name.
+// Returns a message whose contents may be assigned, registered under this name.
 std::shared_ptr<NumberMessage> Registered(RabitWorkspace &workspace, const std::string &name, int number)
 {
     auto message = std::make_shared<NumberMessage>();

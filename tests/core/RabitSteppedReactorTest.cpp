@@ -16,7 +16,7 @@ using namespace Rabit;
 using namespace RabitTest;
 using namespace std::chrono_literals;
 
-// What happened, with the times, of two managers of different delays that talk to each other.
+// Returns the events, with their times, of two managers with different delays that send to each other.
 std::string HistoryOfOneRun()
 {
     SteppedFixture fixture;
@@ -56,7 +56,8 @@ TEST(SteppedReactor, RepeatsItself)
     EXPECT_EQ(HistoryOfOneRun(), HistoryOfOneRun());
 }
 
-// A week in which one manager posts once a second and every tenth time sends to another, which wakes on that.
+// A week in which one manager posts once a second. Every tenth time it sends to another manager, which
+// wakes on that.
 struct Week
 {
     std::uint64_t Passes = 0;
@@ -110,8 +111,8 @@ TEST(SteppedReactor, RunsAWeekTwiceWithTheSameResult)
     const Week first;
     const Week second;
     EXPECT_EQ(first.Digest, second.Digest);
-    // One pass of the sensor for each second and one at the start, a tenth of that of the logger and its
-    // first.
+    // The sensor has a pass for each second and one at the start. The logger has a tenth of the former, and
+    // its first.
     EXPECT_EQ(first.Passes, 604801u + 60480u + 1u);
 }
 

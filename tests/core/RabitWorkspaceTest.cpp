@@ -317,7 +317,7 @@ TEST(RabitWorkspaceQueues, AreDeliveredToByNameAloneWithAReason)
     EXPECT_EQ(workspace.DeliverToQueue("Nobody", message), QueueAddResult::UnknownQueue);
 }
 
-// Takes what is addressed to "far/...".
+// Accepts messages addressed to "far/...".
 class FarForwarder : public QueueForwarder
 {
 public:
@@ -366,7 +366,7 @@ TEST(QueueForwarder, IsAskedForNothingElse)
 
 TEST(QueueForwarder, IsOutOfUseWhenItWasCleared)
 {
-    // Holds a call until it is told to go on.
+    // Holds a call until the test lets it go on.
     class Slow : public QueueForwarder
     {
     public:

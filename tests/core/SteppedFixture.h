@@ -31,7 +31,7 @@ struct SteppedFixture
 
     int RunFor(std::chrono::nanoseconds duration) { return Reactor.RunFor(*Clock, duration); }
 
-    // The status message of a manager as others see it.
+    // Returns the status message of a manager as others see it.
     std::unique_ptr<Rabit::ManagerStatusMessage> StatusOf(const std::string &name)
     {
         auto message = Workspace.GetMessage(name + ":ManagerStatusMessage");

@@ -17,14 +17,14 @@
 #include <utility>
 #include <vector>
 
-// Many threads at once. What these tests find, they find under ThreadSanitizer and AddressSanitizer.
+// Many threads at once. These tests find their errors under ThreadSanitizer and AddressSanitizer.
 namespace
 {
 
 using namespace Rabit;
 using namespace RabitTest;
 
-// A message that shows whether it was torn: its two numbers go together.
+// A message whose two numbers belong together, so that a torn copy shows.
 class PairMessage : public RabitMessage
 {
 public:
@@ -221,7 +221,7 @@ TEST(Stress, EightManagersRegisterPostFetchAndQueueAMillionTimes)
     {
         EXPECT_FALSE(manager->Torn) << manager->GetManagerName();
         sent += manager->Sent;
-        // What came after its Shutdown is still in its queue.
+        // Messages that came after the manager's Shutdown are still in its queue.
         received += manager->Received + manager->GetManagerMessageQueue()->NoMessagesInQueue();
     }
     EXPECT_GT(sent, 0);
@@ -301,7 +301,7 @@ TEST(Stress, SlowThrowingAndBlockingManagersDoNotHinderHealthyOnes)
     healthy->SetWakeupTimeDelayMSec(1);
     healthy->OnWork = [&]
     {
-        // All of it happens while the blocking manager is in its first unit of work.
+        // All of this happens while the blocking manager is in its first unit of work.
         if (healthy->Passes == 200)
         {
             healthy->ShutdownAllManagers(true);
@@ -363,7 +363,7 @@ TEST(Stress, CrossedHandlersThatPostToEachOtherDoNotDeadlock)
 
 TEST(Stress, ManagersThatWakeEachOtherMissNoWakeUp)
 {
-    // A ball goes back and forth: one missed wake-up and it lies still.
+    // A ball goes back and forth. One missed wake-up would stop it.
     constexpr int rounds = 5000;
     RabitWorkspace workspace;
     RabitReactor reactor(workspace);

@@ -1,4 +1,4 @@
-// A computer that is suspended: this program has the kernel's clocks as they are then.
+// A suspended computer: this program gives the kernel's clocks the values that they have then.
 #include <rabit/PublishSubscribeMessage.h>
 #include <rabit/RabitClock.h>
 
@@ -20,7 +20,7 @@ std::atomic<std::time_t> suspended{0};  // seconds in all
 
 }  // namespace
 
-// In place of the C library's. CLOCK_MONOTONIC stands still.
+// Replaces the C library's function. CLOCK_MONOTONIC stands still.
 extern "C" int clock_gettime(clockid_t clock, std::timespec *time) noexcept
 {
     const long result = syscall(SYS_clock_gettime, clock, time);

@@ -54,8 +54,8 @@ private:
     }
 };
 
-// Waits for something that another thread does. False only if it did not happen within a time so long that it
-// never will: how fast it happens decides nothing.
+// Waits for an event on another thread. Returns false only after a time so long that the event will never
+// come; a slow machine changes nothing.
 template <typename Condition>
 bool Eventually(Condition condition)
 {

@@ -54,7 +54,7 @@ public:
     }
 };
 
-// Copies by CopyBase, which may take the registration, too.
+// Copies by CopyBase, which may include the registration.
 class BaseCopyingMessage : public NumberMessage
 {
 public:

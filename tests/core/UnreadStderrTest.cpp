@@ -1,4 +1,4 @@
-// stderr as programs find it in the field: full, stopped, broken or closed. A test that hangs has failed.
+// stderr in the states of the field: full, stopped, broken or closed. A test that hangs has failed.
 
 #include <rabit/RabitLog.h>
 
@@ -26,7 +26,7 @@ void SetBlocking(int descriptor, bool blocking)
     fcntl(descriptor, F_SETFL, blocking ? flags & ~O_NONBLOCK : flags | O_NONBLOCK);
 }
 
-// All bytes that can be read now.
+// Returns all bytes that can be read now.
 std::string ReadAll(int descriptor)
 {
     SetBlocking(descriptor, false);
@@ -62,7 +62,7 @@ std::string LastLines(const std::string &text, std::size_t count)
     return text.substr(from);
 }
 
-// Puts something else in the place of stderr while it lives.
+// Replaces stderr while it lives.
 class UnreadStderr : public ::testing::Test
 {
 protected:
@@ -81,7 +81,7 @@ protected:
         }
     }
 
-    // Takes both descriptors.
+    // Takes ownership of both descriptors.
     void Use(int reader, int writer)
     {
         _reader = reader;
@@ -103,7 +103,7 @@ protected:
         ASSERT_GE(slave, 0);
         Use(master, slave);
     }
-    // Logs lines until several were dropped, whatever the descriptor holds.
+    // Logs lines until several were dropped, however many the descriptor holds.
     static void LogMuch()
     {
         for (int i = 0; i < 3000; ++i)

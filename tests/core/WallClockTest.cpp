@@ -1,4 +1,4 @@
-// Time stamps under a wall clock that is set, and in bursts: this program has clocks of its own.
+// Time stamps under a wall clock that is set, and in bursts. This program replaces the system's clocks.
 #include "CapturedLog.h"
 #include "TestMessages.h"
 
@@ -16,13 +16,13 @@
 namespace
 {
 
-// Nanoseconds. Each reading of a clock takes 10 ns, which is quicker than any computer's.
+// Nanoseconds. Each reading of a clock takes 10 ns, less than on any computer.
 std::int64_t uptime = 1000000000;
 std::int64_t wallAhead = 1800000000000000000;
 
 }  // namespace
 
-// In place of the C library's.
+// Replaces the C library's function.
 extern "C" int clock_gettime(clockid_t clock, std::timespec *time) noexcept
 {
     uptime += 10;
@@ -52,7 +52,7 @@ protected:
         Message.PostMessage();  // measures the wall clock
     }
     static void Pass(std::int64_t time) { uptime += time; }
-    // What a time stamp should be now.
+    // Returns the correct time stamp of now.
     static double WallTime()
     {
         return Clock().ConvertTimePointToGpsTimeInSeconds(std::chrono::system_clock::now());

@@ -128,7 +128,7 @@ TEST(Picture, ShowsTheSameGroundAtAPlaceWhereverTheAircraftIs)
 {
     const auto here = Camera::LookDown(PoseAt(80, 0), 430);
     auto pose = PoseAt(80, 0);
-    // Forward by 60 rows of the image.
+    // The aircraft moves forward by 60 rows of the image.
     const GeoPoint moved = here->At({0, 0.5});
     pose.latitude_deg = moved.LatitudeDeg;
     pose.longitude_deg = moved.LongitudeDeg;

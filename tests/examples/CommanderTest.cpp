@@ -45,7 +45,7 @@ public:
     }
 };
 
-// A commander whose aircraft uav1 is there.
+// A commander with the aircraft uav1 in its fleet.
 class Commander : public testing::Test
 {
 protected:
@@ -82,7 +82,7 @@ protected:
         _fleet->nodes = {status};
         _fleet->PostMessage();
     }
-    // Time goes by; the aircraft goes on publishing its pose.
+    // Lets time pass; the aircraft goes on publishing its pose.
     void Run(std::chrono::milliseconds duration)
     {
         for (auto done = 0ms; done < duration; done += 100ms)
@@ -254,7 +254,7 @@ TEST_F(Commander, SendsForHalfOfAShortRun)
     EXPECT_EQ(_gateway->Sent.size(), 2u);
 }
 
-// What a person wants of an aircraft, and what comes of it.
+// A commander that gets orders of a person, and their outcomes.
 class OrderedCommander : public Commander
 {
 protected:
@@ -390,7 +390,7 @@ TEST_F(Commander, TellsASearcherAgainWhenItHasRestarted)
     EXPECT_EQ(_gateway->All.size(), 2u);
 }
 
-// A searcher that a person has commanded.
+// A commander of a searcher that a person has given an order.
 class CommanderOfAnOrderedSearcher : public Commander
 {
 protected:

@@ -46,7 +46,7 @@ protected:
         _reactor.AddManager(std::move(view));
         _reactor.Start();
     }
-    // Shows the fleet with uav1 in that state; returns what was printed.
+    // Shows the fleet with uav1 in this state; returns the printed text.
     std::string Show(NodeState state)
     {
         Rabit::Gateway::NodeStatus status;

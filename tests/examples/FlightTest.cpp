@@ -189,7 +189,7 @@ TEST(Flight, OfATrackGoesBackToItWhenReleased)
 
 TEST(Flight, OfATrackNeverJumpsOnTheWayThereAndBack)
 {
-    // 10 m/s to the north, for ever as far as this test goes.
+    // 10 m/s to the north, without end for this test.
     const GeoPoint far = Moved(Home, {5000, 0, 0});
     Flight flight(TrackOf("0,49.2574,-123.2432,50,10,0,0,0,0,0\n500," + std::to_string(far.LatitudeDeg) +
                           ",-123.2432,50,10,0,0,0,0,0\n"));

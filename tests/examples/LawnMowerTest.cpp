@@ -28,7 +28,7 @@ Uav::SearchArea Area(float northM, float eastM, float laneM)
     return area;
 }
 
-// Flies straight at whatever it is told, 5 m at a time. Returns all places.
+// Flies straight at each point that the mower gives, 5 m at a time. Returns all places.
 std::vector<Offset> Fly(LawnMower &mower, Offset from, int steps)
 {
     std::vector<Offset> places;

@@ -11,7 +11,7 @@ namespace Swarm
 namespace
 {
 
-// Through the bytes of either version and back.
+// Encodes a message in either version, and decodes it again.
 template <typename Message>
 void ExpectComesBack(const Message &message)
 {

@@ -22,7 +22,7 @@ namespace
 
 using namespace std::chrono_literals;
 
-// A channel whose other end is the test.
+// A channel whose other end the test plays.
 class PlayedChannel : public ByteChannel
 {
 public:
@@ -76,7 +76,7 @@ protected:
                                      .DownCmps = 30}
             .Encode();
     }
-    // What was sent since the last call.
+    // Returns the messages sent since the last call.
     template <typename Message>
     std::vector<Message> Sent()
     {

@@ -31,7 +31,7 @@ Uav::Goto Command(std::uint32_t id)
     return command;
 }
 
-// What a gateway does with messages for other nodes.
+// Stands in for a gateway: accepts or refuses messages for other nodes.
 class FakeGateway : public Rabit::QueueForwarder
 {
 public:

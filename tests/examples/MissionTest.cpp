@@ -23,7 +23,7 @@ using Mode = Uav::MissionMode;
 const GeoPoint Field{47.4, 8.5, 510};
 constexpr double Gps = 1.4e9;
 
-// Notes what the mission does.
+// Records the mission's output.
 class Output : public Swarm::MissionOutput
 {
 public:
@@ -53,7 +53,7 @@ public:
         Validations.emplace_back(aircraft, validation);
         return true;
     }
-    // Of a command, in order.
+    // Returns the stages of a command, in order.
     std::vector<Stage> StagesOf(std::uint32_t id) const
     {
         std::vector<Stage> stages;
@@ -102,7 +102,7 @@ protected:
         pose.longitude_deg = place.LongitudeDeg;
         return pose;
     }
-    // Time passes; the autopilot flies the last course.
+    // Lets time pass; the autopilot flies the last course.
     void Pass(double seconds)
     {
         _now.NowS += seconds;
@@ -159,7 +159,7 @@ protected:
         _mission->Take(home);
         Pass(0.2);
     }
-    // What sensor fusion says: a target seen now by this aircraft's own camera.
+    // Reports a target as sensor fusion does: seen now by this aircraft's own camera.
     void See(double northM, const std::string &foundBy = "uav2", std::uint32_t number = 7)
     {
         const GeoPoint place = Swarm::Moved(Field, {northM, 0, 0});

@@ -6,7 +6,7 @@
 
 namespace
 {
-// What the check of a value says; empty if it takes it.
+// Returns the refusal of a value by the check; empty if the check accepts it.
 std::string Refusal(std::string value)
 {
     return Common::NumberWithin({0.1, 40})(value);

@@ -1,4 +1,4 @@
-// An aircraft whose PX4 speaks DDS, by the messages that the gateway makes of its topics.
+// An aircraft whose PX4 uses DDS, by the messages that the gateway makes of PX4's topics.
 #include "px4/Px4Vehicle.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ protected:
         answer->result = result;
         answer->PostMessage();
     }
-    // Ready, and on its way to a point.
+    // Makes the aircraft ready, and sends it to a point.
     void FlyTo()
     {
         PostStatus();

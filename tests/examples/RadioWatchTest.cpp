@@ -51,7 +51,7 @@ protected:
         Publication(message).replaced += replaced;
     }
     void Look() { _watch->Look(_fleet, _now); }
-    // Looks each second, after what happens in it.
+    // Calls `second`, then looks, once a second.
     template <typename Second>
     void Pass(int seconds, Second second)
     {

@@ -1,4 +1,5 @@
-// What decides in an aircraft, recorded while two aircraft find, validate and follow a target, and run again.
+// The deciding managers of an aircraft, recorded while two aircraft find, validate and follow a target, and
+// run again.
 #include "Swarm.h"
 
 #include <rabit/ManualClock.h>

@@ -22,7 +22,7 @@ TEST(Schedule, DoesNotAddUpLateness)
     Schedule schedule(100ms);
     schedule.Due(0ms);
     int beats = 0;
-    // Asked 7 ms after each deadline.
+    // Looks 7 ms after each deadline.
     for (auto now = 107ms; now < 10'000ms; now += 100ms)
         beats += schedule.Due(now) ? 1 : 0;
     EXPECT_EQ(beats, 99);

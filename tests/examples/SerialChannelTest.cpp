@@ -1,4 +1,4 @@
-// The serial port of a channel, on a pseudo terminal in place of the device.
+// The serial port of a channel, on a pseudo terminal instead of the device.
 #include "mavlink/ByteChannel.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,8 @@ namespace
 using testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
 
-// Every value, those that a terminal would take for orders (interrupt, end of line, stop) among them.
+// Returns every byte value, including those that a terminal treats as commands (interrupt, end of line,
+// stop).
 Bytes AllValues()
 {
     Bytes bytes(256);
@@ -48,7 +49,7 @@ protected:
     }
     void TearDown() override { close(_far); }
 
-    // Waits until the kernel has handed over so many bytes.
+    // Waits until the kernel has delivered this many bytes.
     template <typename Read>
     static Bytes Collect(std::size_t count, Read read)
     {

@@ -1,4 +1,4 @@
-// Two whole aircraft, and what the tests that fly them look at.
+// Two whole aircraft, and the helpers of the tests that fly them.
 #pragma once
 
 #include "Autopilot.h"
@@ -23,7 +23,7 @@ namespace SwarmTest
 
 inline const Swarm::GeoPoint Field{47.3977, 8.5456, 500};
 
-// One target that stands in the middle of the lane that uav1 begins with.
+// One target that stands in the middle of the first lane of uav1.
 inline Swarm::World WorldOfOneTarget()
 {
     Swarm::World world;
@@ -58,7 +58,7 @@ inline void AddFlyingManagers(Rabit::RabitSteppedReactor &reactor, Rabit::RabitW
         names, Swarm::HealthMonitor::Options{.EnduranceS = 2400.0}, workspace));
 }
 
-// Those of its second one.
+// The managers of the aircraft's second process.
 inline void AddSeeingManagers(Rabit::RabitSteppedReactor &reactor, Rabit::RabitWorkspace &workspace,
                               const Swarm::Names &names, std::uint64_t seed)
 {
@@ -66,7 +66,7 @@ inline void AddSeeingManagers(Rabit::RabitSteppedReactor &reactor, Rabit::RabitW
     reactor.AddManager(std::make_unique<Swarm::SensorFusion>(names, workspace));
 }
 
-// The newest contents of a message; as made if there is no such name.
+// Returns the newest contents of a message; a default one if the name is not registered.
 template <typename Message>
 Message Latest(Rabit::RabitWorkspace &workspace, const std::string &name)
 {

@@ -41,7 +41,7 @@ protected:
         Run(2s);
     }
     void Run(std::chrono::nanoseconds duration) { _reactor.RunFor(*_clock, duration); }
-    // Whether the mission of that aircraft came to that mode within the time.
+    // True if the mission of this aircraft came to this mode within the time.
     bool ComesTo(const std::string &aircraft, Uav::MissionMode mode, std::chrono::seconds limit)
     {
         for (auto t = 0ms; t < limit; t += 100ms)

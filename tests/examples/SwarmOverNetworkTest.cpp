@@ -102,7 +102,7 @@ protected:
                 _ground->Workspace.AddMessageToQueue(std::string(aircraft) + "/MissionControl", search));
         }
     }
-    // What uav1 or uav2 said of its command, in order.
+    // Returns the stages that uav1 or uav2 reported of its command, in order.
     std::vector<Uav::CommandStage> StagesOf(std::uint32_t id, std::vector<Uav::CommandAck> &all)
     {
         std::shared_ptr<Rabit::RabitMessage> message;

@@ -118,8 +118,8 @@ TEST_F(Table, KeepsTwoTargetsApart)
     EXPECT_NEAR(std::abs(PlaceOf(targets[0]).EastM - PlaceOf(targets[1]).EastM), 25, 6);
 }
 
-// Over many targets the normalized error is that of the filter's covariance: its mean over N independent
-// targets lies within three standard deviations (2 / sqrt N) of 2.
+// The filter's covariance fits its errors: over N independent targets, the mean normalized error lies
+// within three standard deviations (2 / sqrt N) of 2.
 TEST_F(Table, IsAsUncertainAsItIsWrong)
 {
     constexpr int targets = 400;
@@ -195,7 +195,7 @@ TEST_F(Table, NeverGivesANumberAgain)
     EXPECT_EQ(At(1403)[0].name.number, 2u);
 }
 
-// What uav2 tells of a target there.
+// Returns a report of uav2 with a target at this place.
 Uav::Targets ToldBy2(double time, double northM, double sinceS, std::uint32_t number)
 {
     const GeoPoint point = Moved(Field, {northM, 0, 0});

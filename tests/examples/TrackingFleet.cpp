@@ -28,7 +28,8 @@ Swarm::WorldTarget Walker(const Swarm::Offset &from, double speedMps, double hea
     return target;
 }
 
-// Where lanes lead that far from their beginning, and the heading there. After the last lane the first again.
+// Returns the place and heading after `wayM` metres along the lanes. After the last lane the first begins
+// again.
 std::pair<Swarm::Offset, double> OnLanes(double wayM)
 {
     const auto lanes = static_cast<int>(AreaNorthM / LaneM);
@@ -87,7 +88,7 @@ Swarm::World TrackingFleet::RandomWorld(std::uint64_t seed)
         const double heading = uniform(0, 2 * std::numbers::pi);
         world.Targets.push_back(Walker(starts[i], i % 2 == 0 ? 0 : speed, heading, uniform(20, 60)));
     }
-    // Both are in the middle at one time, again and again.
+    // The two targets are in the middle at the same time, again and again.
     const double heading = uniform(0, 2 * std::numbers::pi);
     for (const double turn : {0.0, uniform(0.6, 2.5)})
     {
@@ -174,7 +175,7 @@ void TrackingFleet::TakeFrame(int aircraft)
         alarm.sigma_m = static_cast<float>(Swarm::Camera::SigmaPerHeight * HeightM);
         frame->items.push_back(alarm);
     }
-    // What it takes for its own position is wrong, and so is all that it sees.
+    // The aircraft's own position has an error, which shifts all its detections.
     for (Uav::Detection &detection : frame->items)
     {
         const Swarm::GeoPoint wrong =
@@ -188,7 +189,7 @@ void TrackingFleet::TakeFrame(int aircraft)
                 Send(aircraft, to, frame);
 }
 
-// To itself at once and always.
+// An aircraft gets its own messages at once, and always.
 void TrackingFleet::Send(int from, int to, const std::shared_ptr<const Rabit::RabitMessage> &message)
 {
     const double delay = std::exponential_distribution<double>(1 / _scene.MeanDelayS)(_random);

@@ -1,5 +1,5 @@
-// Three aircraft whose cameras look at a world of which everything is known, and their tables of targets: no
-// managers, no network, no clock but the one that the test counts.
+// Three aircraft whose cameras look at a fully known world, and their tables of targets: no managers, no
+// network, and no clock but the test's count of time.
 #pragma once
 
 #include "Geo.h"
@@ -21,7 +21,7 @@ namespace SwarmTest
 
 inline const Swarm::GeoPoint Middle{47.3977, 8.5456, 430};
 
-// What goes wrong, and what there is to see.
+// The faults of a flight.
 struct TrackingScene
 {
     double FalseAlarmsPerFrame = 0.05;  // on top of the camera's own
@@ -46,17 +46,17 @@ public:
 
     TrackingFleet(std::uint64_t seed, Swarm::World world, const TrackingScene &scene = TrackingScene());
 
-    // Six targets that stand or walk anywhere, and two whose ways cross.
+    // Returns six targets that stand or walk anywhere, and two whose ways cross.
     static Swarm::World RandomWorld(std::uint64_t seed);
 
-    // Lets half a second pass: a frame of each camera, and what arrives meanwhile.
+    // Lets half a second pass: a frame of each camera, and the messages that arrive meanwhile.
     void Step();
     double TimeS() const { return _timeS; }  // since the start
     const Swarm::World &World() const { return _world; }
     bool IsAway(int aircraft) const;
-    // What the aircraft would publish now.
+    // Returns the report that the aircraft would publish now.
     Uav::Targets ReportOf(int aircraft) const;
-    // How many frames of the last `seconds` showed that target to the camera of any aircraft.
+    // Returns how many frames of the last `seconds` showed this target to the camera of any aircraft.
     int TimesSeen(std::size_t target, double seconds) const;
 
     static std::string NameOf(int aircraft) { return "uav" + std::to_string(aircraft + 1); }
@@ -87,7 +87,7 @@ private:
     std::vector<Plane> _planes;
     double _timeS = 0;
     std::uint64_t _sent = 0;
-    // By time of arrival; the number keeps those of one moment in order.
+    // Messages by time of arrival; the number keeps those of one moment in order.
     std::map<std::pair<double, std::uint64_t>, std::pair<int, std::shared_ptr<const Rabit::RabitMessage>>>
         _underWay;
     std::vector<std::vector<double>> _seenS;  // of each target

@@ -1,4 +1,4 @@
-// Counts what a fleet says of its targets against the truth.
+// Compares a fleet's reports of its targets with the truth.
 #pragma once
 
 #include "FleetTargets.h"
@@ -15,11 +15,12 @@ namespace SwarmTest
 
 // Sums over samples. Not thread-safe.
 //
-// A listed target that was seen within FreshS is compared with where the true ones are: pairs nearer than
-// MatchM, the nearest first, each once.
+// A listed target that was seen within FreshS is compared with the true places: pairs nearer than MatchM, the
+// nearest first, each once.
 //
-// The list has names too many when there are fewer true targets than names, for each of which it was ever
-// taken: as many as remain when each name is given a target of its own with which it was matched at some
+// The list has names too many if the names outnumber the true targets with which they were ever matched. Each
+// name is given a true target of its own from among these; the names that get none are too many. A name that
+// moves from one target to another is not one too many: that is an identity switch.
 // time. A name that goes from one target to another is not one too many; that is an identity switch.
 class TrackingScore
 {
@@ -33,7 +34,7 @@ public:
 
     double Precision() const { return Share(_matched, _fresh); }
     double Recall() const { return Share(_recalled, _visible); }
-    // Of the time that targets have names, how much of it they have one too many.
+    // Share of the time for which targets have names in which they have one too many.
     double Duplicates() const { return _named > 0 ? _doubled / _named : 0; }
     // How often a target was matched with another name than before, for each target and hour.
     double SwitchesPerHour() const { return _targetHours > 0 ? _switches / _targetHours : 0; }

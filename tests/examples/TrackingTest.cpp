@@ -1,4 +1,4 @@
-// What a fleet says of its targets, counted against the truth.
+// A fleet's reports of its targets, counted against the truth.
 #include "FleetTargets.h"
 #include "TrackingFleet.h"
 #include "TrackingScore.h"
@@ -16,15 +16,15 @@ namespace
 using SwarmTest::TrackingFleet;
 using SwarmTest::TrackingScore;
 
-// Without optimization Eigen takes a hundred times as long: there only memory and undefined behaviour are
-// looked at, on few flights, of which figures mean nothing.
+// Without optimization Eigen takes a hundred times as long. Such builds check memory and undefined
+// behaviour only, on few flights whose figures mean nothing.
 #ifdef NDEBUG
 constexpr std::uint64_t Flights = 50;
 #else
 constexpr std::uint64_t Flights = 1;
 #endif
 
-// As a ground station lists it that hears all of them.
+// Returns the list of a ground station that hears all aircraft.
 std::vector<Ground::ListedTarget> ListOf(const TrackingFleet &fleet)
 {
     std::array<Uav::Targets, TrackingFleet::Aircraft> targets;
@@ -50,7 +50,7 @@ TrackingScore Fly(std::uint64_t seed, const Swarm::World &world, double seconds)
     return score;
 }
 
-// For whoever changes the filter.
+// Prints the figures, to help when the filter is changed.
 void Print(const char *what, const TrackingScore &score)
 {
     std::cout << what << ": one name too many for " << 100 * score.Duplicates()
@@ -97,8 +97,8 @@ TEST(Tracking, NamesTargetsThatAreFarApartOnceEach)
     EXPECT_LE(all.SwitchesPerHour(), 2);
 }
 
-// Eight targets on ten hectares, five of which walk, and of those two across each other's way: who of them is
-// who after half a minute out of sight cannot always be told.
+// Eight targets on ten hectares. Five of them walk, two of these across each other's way. After half a
+// minute out of sight, these two cannot always be told apart.
 TEST(Tracking, SeesThroughACrowd)
 {
     TrackingScore all;

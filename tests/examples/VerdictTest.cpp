@@ -37,7 +37,7 @@ AircraftResult Good(const CommandLog &log)
     return {"uav1", RowState::Up, 100, 95, log.Of("uav1"), {}};
 }
 
-// One command, sent and acknowledged.
+// A log with one command, sent and acknowledged.
 CommandLog Answered()
 {
     CommandLog log;

@@ -30,7 +30,7 @@ start_demo() {
     demo_pid=$!
 }
 
-# wait_for FILE PATTERN: until a line of the file matches. The limit only keeps a broken test from hanging.
+# wait_for FILE PATTERN: waits until a line of the file matches. The limit only keeps a broken test from hanging.
 wait_for() {
     local tries
     for ((tries = 0; tries < 3000; tries++)); do
@@ -46,7 +46,7 @@ end_demo() {
     demo_pid=
 }
 
-# The process ids that the demo said it started.
+# Prints the process ids that the demo reported.
 started() {
     grep -o '([0-9]*)' "$work/err" | tr -d '()'
 }

@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-# `name`: and the block below it.
+# `name`: and the block of text below it.
 QUOTED = re.compile(r"^`(?P<name>[\w.]+)`:?\n\n```\w*\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
 SECTION = "## The first program\n"
 

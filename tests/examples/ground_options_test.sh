@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Options of ground that are no use: what is wrong, exit code 2, nothing started.
+# Invalid options of ground: the reason is printed, the exit code is 2, and nothing is started.
 #   ground_options_test.sh GROUND
 set -uo pipefail
 ground=$1
@@ -64,7 +64,7 @@ refused_setting '.*10\.0\.0\.1:port' 'peers: ["10.0.0.1:port"]'
 refused_setting '.*/nowhere/vendor\.xml' 'backend_config: /nowhere/vendor.xml'
 refused_setting '.*wlan 0' 'interfaces: ["wlan 0"]'
 
-# What is not there yet may come: it is said, and no error.
+# An absent interface may come later: it is reported, but is no error.
 printf 'node: ground\ninterfaces: [notyet0]\n' >"$work/net.yaml"
 timeout 60 "$ground" --config "$work/net.yaml" --check >"$work/out" 2>"$work/err" || fail "an absent interface is refused"
 grep -q "^$work/net.yaml:2: .*notyet0.*(it is waited for)$" "$work/err" || fail "nothing is said of an absent interface"

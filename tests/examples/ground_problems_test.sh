@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A ground station whose configuration does not fit the fleet says so by name, in its log and on its terminal; a real
-# aircraft and a real ground station on loopback.
+# A ground station whose configuration does not fit the fleet names the problems in its log and on its terminal. Uses a
+# real aircraft and a real ground station on loopback.
 #   ground_problems_test.sh FOLDER_OF_PROGRAMS TRANSPORT
 set -uo pipefail
 bin=$1
@@ -18,7 +18,7 @@ fail() {
     exit 1
 }
 
-# wait_for FILE TEXT: until a line of the file has it. The limit only keeps a broken test from hanging.
+# wait_for FILE TEXT: waits until a line of the file has it. The limit only keeps a broken test from hanging.
 wait_for() {
     local tries
     for ((tries = 0; tries < 600; tries++)); do
@@ -59,7 +59,7 @@ YAML
 common=(--domain "$domain" --transport "$transport")
 "$bin/uav" --config "$work/uav.yaml" "${common[@]}" >"$work/uav.out" 2>"$work/uav.err" &
 pids+=($!)
-# It is told to search, and its queue does not take that.
+# The station sends a search command that the aircraft's queue does not accept.
 ground=("$bin/ground" --config "$work/ground.yaml" "${common[@]}" --expect uav1 --search uav1 --command-period 1)
 "${ground[@]}" >"$work/ground.out" 2>"$work/ground.err" &
 pids+=($!)
@@ -72,13 +72,13 @@ wait_for "$work/ground.err" 'gateway: send uav1/MissionControl: '
 wait_for "$work/uav.err" 'gateway: send ground/Commands: '
 wait_for "$work/ground.out" ' 5 problems: '
 
-# What is wrong is said once, and shown on.
+# Each problem is logged once, and shown as long as it lasts.
 lines=$(wc -l <"$work/ground.out")
 for ((tries = 0; tries < 600 && $(wc -l <"$work/ground.out") < lines + 20; tries++)); do sleep 0.1; done
 tail -n 4 "$work/ground.out" | grep -q ' 5 problems: ' || fail "the problems are not shown any more"
 [ "$(grep -c 'subscribe Pse' "$work/ground.err")" -eq 1 ] || fail "it was said more than once"
 
-# On a terminal the log stands above the table, and what is wrong now below it.
+# On a terminal the log stands above the table, and the present problems below it.
 script -qefc "${ground[*]} --node ground2 --seconds 6" /dev/null >"$work/terminal.out" 2>"$work/terminal.err" </dev/null
 grep -qF '5 problems:' "$work/terminal.out" || fail "the terminal shows no problems"
 grep -qF '  subscribe Pse, uav1: uav1 does not publish' "$work/terminal.out" || fail "the terminal names no problem"

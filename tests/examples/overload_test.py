@@ -19,12 +19,12 @@ SKIPPED = 77
 # Only keeps a broken test from hanging.
 LIMIT_S = 240
 AIRCRAFT = 20
-# They need 0.8 of a processor.
+# The aircraft need 0.8 of a processor.
 SHARE_PERCENT = 4
 LOAD_S = 20
 # From the end of the load to the first table in which all are UP; 1 s is usual.
 RECOVERY_S = 20
-# Poses come ten times a second. What is UP may wait to be shown, but no longer than until it would be STALE.
+# Poses come ten times a second. The display of an UP aircraft may be late, but by less than the time until STALE.
 OLDEST_UP_S = 2.0
 ROW = re.compile(r"\s*[\d.]+ s\s+(uav\d+)\s+(\w+)(?:\s+pose \(age ([\d.]+) s\))?")
 
@@ -93,7 +93,7 @@ def fly(demo, programs, transport, group):
         wait_for_states(ground, all_up, 0)
         begin = time.monotonic()
         group.limit(SHARE_PERCENT)
-        # That the load is one.
+        # Shows that the load is one.
         wait_for_states(ground, lambda states: "STALE" in states.values() or "LOST" in states.values(), begin)
         time.sleep(max(0, LOAD_S - (time.monotonic() - begin)))
         group.limit(None)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The options of uav about its floor: what is wrong is refused in one line, and to have none is said.
+# The options of uav about its floor: a wrong value is refused in one line, and a missing floor is reported.
 #   uav_options_test.sh UAV
 set -uo pipefail
 uav=$1
@@ -35,7 +35,7 @@ refused 'nowhere.yaml' --world nowhere.yaml
 uav --floor 460 --ground-height 430 --clearance 20
 [ "$status" -eq 0 ] || fail "good options are refused"
 
-# A started aircraft says that it has none.
+# An aircraft without a floor reports that when it starts.
 "$uav" --config "$root/examples/swarm/uav.yaml" --domain 98 >"$work/out" 2>"$work/err" &
 pid=$!
 for ((tries = 0; tries < 600; tries++)); do

@@ -1,5 +1,5 @@
-// A node that says what comes of the foreign topics of its configuration, and posts what it writes to them.
-// Usage: foreign_node CONFIG, until SIGTERM
+// A node that prints the messages and states of its configuration's foreign topics, and posts to these
+// topics. Usage: foreign_node CONFIG, until SIGTERM
 //   message LOCAL VALUE AGE    queue LOCAL VALUE    foreign TOPIC STATE [REASON]
 #include <rabit/RabitManager.h>
 #include <rabit/RabitMessageQueue.h>

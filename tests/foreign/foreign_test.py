@@ -35,7 +35,7 @@ foreign:
   - {{subscribe: rt/other, type: std_msgs::msg::String, as: Other, names: ros2}}
   - {{subscribe: rt/fmu/out/vehicle_status, type: std_msgs::msg::String, as: Status, names: ros2}}
 """
-# As rmw and PX4's agent have them.
+# The names and QoS of rmw and of PX4's agent.
 TOPICS = ["write:rt/chatter:string:reliable:volatile",
           "write:rt/latched:string:reliable:transient_local",
           "write:rt/fmu/out/setpoint:setpoint:best_effort:transient_local",
@@ -44,7 +44,7 @@ TOPICS = ["write:rt/chatter:string:reliable:volatile",
           "write:rt/loud:string:best_effort:volatile",
           "write:rt/other:setpoint:reliable:volatile",
           "write:rt/fmu/out/vehicle_status_v1:string:best_effort:transient_local"]
-# What a node says of those that do not come.
+# The node's reasons for the topics that do not come.
 REASONS = ["foreign rt/loud LOST a program that writes `rt/loud` is best effort, this node asks for reliable",
            "foreign rt/other LOST a program writes `rt/other` as `px4_msgs::msg::dds_::TrajectorySetpoint_`, this node "
            "reads it as `std_msgs::msg::dds_::String_`",
@@ -120,7 +120,7 @@ class Row:
         gone, _ = self.wait(node, "foreign rt/chatter LOST no program writes .*", again)
         self.all_flow(node, self.start_plain(), gone)
 
-        # The node comes while the programs are there.
+        # The node starts while the programs run.
         assert node.terminate() == 0, node.lines[-5:]
         self.nothing_is_dropped(node)
         other = self.start_plain()

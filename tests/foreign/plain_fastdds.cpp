@@ -161,7 +161,7 @@ void Read(Endpoint &endpoint)
 void Run(int argc, char **argv)
 {
     dds::DomainParticipantQos qos;
-    // The other side of a test on one machine may be in the same namespace and not in the same process.
+    // The other program of a test may share the network namespace without sharing the process.
     qos.transport().use_builtin_transports = true;
     dds::DomainParticipant *participant = dds::DomainParticipantFactory::get_instance()->create_participant(
         static_cast<dds::DomainId_t>(std::atoi(argv[1])), qos);

@@ -24,7 +24,7 @@ def goto(altitude_m, latitude_deg=47.399):
 
 def fly(uav, transport, px4, rabit, domain, folder):
     """One flight, and its end."""
-    # With what the autopilot says of itself, which stays within the aircraft as a rule.
+    # Publishes the autopilot's flight mode too, which usually stays within the aircraft.
     config = folder / f"{domain}.yaml"
     config.write_text((harness.ROOT / "examples/swarm/uav.yaml").read_text().replace(
         "publish:\n", "publish:\n  - {message: FlightMode, type: Uav::FlightMode}\n"))

@@ -56,13 +56,13 @@ def main():
                                   "write:rt/silent:string:reliable:volatile"], environment)
         for process in nodes:
             process.wait_for(re.compile(r"message Silent \d+ .*").fullmatch, LIMIT_S)
-            # What was read goes on to the next, and comes out of it.
+            # Each sample that a node reads goes on to the next node, and comes out there.
         listener.wait_for(lambda _: len(numbers(listener, "rt/chatter")) > 60, LIMIT_S)
         listener.wait_for(lambda _: any(numbers(listener, "rt/chatter").count(n) == 4
                                         for n in set(numbers(listener, "rt/chatter"))), LIMIT_S)
         assert writer.terminate() == 0
         last = len(numbers(listener, "rt/chatter"))
-        # It ends with the writer: what goes round would go on.
+        # The samples end with the writer: a sample that went round would go on.
         quiet = 0
         end = time.monotonic() + LIMIT_S
         while quiet < 20 and time.monotonic() < end:

@@ -41,7 +41,7 @@ def complaints(capture):
     return [f"{count} times: {text}" for text, count in found.items()]
 
 
-# RTPS 2.1, of no vendor, a DATA that says to be longer than it is.
+# RTPS 2.1, of no vendor, with a DATA that claims to be longer than it is.
 BROKEN = b"RTPS\x02\x01\x00\x00" + bytes(12) + b"\x15\x05\x40\x00" + bytes(8)
 
 

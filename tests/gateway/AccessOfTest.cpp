@@ -35,7 +35,7 @@ std::string Words(const std::string &topic, std::vector<std::string> partitions)
     return text + "]";
 }
 
-// Remembers what is opened on the simulated network.
+// Records the endpoints that are opened on the simulated network.
 class NotingSession final : public TransportSession
 {
 public:

@@ -1,4 +1,4 @@
-// What a gateway puts on the air, and in which order: whole nodes on the simulated network.
+// The traffic that a gateway sends, and its order: whole nodes on the simulated network.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ protected:
         return config;
     }
 
-    // Has the aircraft post so often for so long, and calls `each` after each step.
+    // Lets the aircraft post with these periods for `duration`, and calls `each` after each step.
     void Fly(
         Duration duration, Duration posePeriod, Duration statePeriod,
         const std::function<void(Duration)> &each = [](Duration) {})
@@ -74,12 +74,12 @@ protected:
     std::shared_ptr<Uav::MissionState> state;
 };
 
-// What went in steps, as the transport counts it.
+// The bytes sent in each step, as the transport counts them.
 class Spending
 {
 public:
     void Add(std::uint64_t total) { _totals.push_back(total); }
-    // In whichever second.
+    // Returns the most bytes of any second, wherever it begins.
     std::uint64_t MostInASecond() const
     {
         constexpr std::size_t second = 1s / Step;
@@ -119,12 +119,12 @@ TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetHoweverMuchIsOffered)
             }
         });
     EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * Budget);
-    // Nothing is kept free for what DDS has to say but when it says it, twice in that time.
+    // The budget keeps room for DDS's announcements only when they go, twice in that time.
     EXPECT_GE(spending.PerSecond(), 0.85 * Budget);
     EXPECT_EQ(ground.StateOf("uav1"), "UP");
 }
 
-// What is sent to a node goes to the session of its earlier life, too, until the lease of that has run out.
+// Samples to a node also go to the session of its earlier incarnation until the lease of that runs out.
 TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenANodeHasCrashedAndCameBack)
 {
     AddAircraft(WithBudget(AircraftConfig("uav1"), 1500));
@@ -148,7 +148,7 @@ TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenANodeHasCrashedAndCameBac
     EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * 1500);
 }
 
-// Each of them lacks the others' announcements, and all beats have much to say.
+// Each node lacks the others' announcements, and all beats have much to carry.
 TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenBeatsHaveMuchToSay)
 {
     GatewayConfig config = WithBudget(AircraftConfig("uav1"), 1500);
@@ -230,8 +230,8 @@ TEST_F(AirTrafficTest, CommandsDoNotWaitForTelemetry)
             }
         });
     ASSERT_EQ(waits.size(), 60u);
-    // The first waits until the two have said hello, each later one for a datagram of 70 ms, its
-    // acknowledgement and a beat, and for what DDS says.
+    // The first report waits until the two nodes have exchanged hellos. Each later one waits for a datagram
+    // of 70 ms, its acknowledgement, a beat, and DDS's own traffic.
     EXPECT_LE(*std::max_element(waits.begin(), waits.end()), 400ms);
     std::nth_element(waits.begin(), waits.begin() + 30, waits.end());
     EXPECT_LE(waits[30], 80ms);
@@ -250,7 +250,7 @@ TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
     ASSERT_EQ(publications.size(), 2u);
     const Gateway::AirStatus air = aircraft->Fleet().air;
     EXPECT_GT(publications[0].bytes_per_s, 0.35 * Budget);
-    // Of bytes, in the long run: a pose takes 148 on the air and a state 164.
+    // The long-run share is of bytes: a pose takes 148 on the air and a state 164.
     const double written =
         static_cast<double>(publications[0].written) / static_cast<double>(publications[1].written);
     EXPECT_NEAR(written * 148 / 164, 3.0, 0.2);
@@ -359,7 +359,7 @@ TEST_F(AirTrafficTest, APictureGoesThroughASmallBudgetBesidePosesWithinThreeMinu
     EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * 1500);
 }
 
-// A standstill of a computer looks like a radio that is full, but it passes at once.
+// A computer that stands still looks like a full radio, but the standstill passes at once.
 TEST_F(AirTrafficTest, WhatAStandstillHasTaughtIsForgottenSoonAfter)
 {
     AddAircraft(AircraftConfig("uav1"));
@@ -405,7 +405,7 @@ protected:
         fleet.Network.SetMedium("*", {.BytesPerSecond = bytesPerSecond});
     }
 
-    // Flies, and returns the largest age of a pose as it came.
+    // Flies, and returns the largest age of a pose on arrival.
     Duration OldestIn(Duration duration)
     {
         Duration oldest = 0s;
@@ -469,12 +469,12 @@ TEST_F(ThinAirTest, WhereTheAirCarriesLittleBeatsTakeLittleOfIt)
     EXPECT_LE(presence / 60, 200.0);
 }
 
-// Three aircraft come where the air is full. When which datagram goes decides how it seems to one rate, so it
-// is many.
+// Three aircraft join on a full channel. The order of the datagrams decides how the channel looks at one
+// rate, so many rates are tried.
 class NewcomersInThinAir final : public ThinAirTest
 {
 public:
-    // For how many seconds in a row it seems to carry next to nothing, at most.
+    // Returns the largest number of seconds in a row in which the capacity estimate is next to nothing.
     int LongestIn(std::uint64_t bytesPerSecond)
     {
         SetRate(bytesPerSecond);
@@ -531,7 +531,7 @@ TEST_F(ThinAirTest, BeatsAreSaidAsPromisedHoweverMuchOfDdsGoesBeside)
             });
         fleet.Kill(name);
     }
-    // Three and a half times as long as the beats promise.
+    // 3.5 s is three and a half times as long as the beats promise.
     EXPECT_LE(longest, 3.5);
 }
 

@@ -62,7 +62,7 @@ protected:
         }
     }
 
-    // What it announced at its beginning has been said long ago.
+    // Begins, and says everything that the node announces at its beginning.
     void BeginLongAgo(std::size_t offers, std::size_t states)
     {
         Begin(offers, states);

@@ -91,7 +91,7 @@ TEST(BeatExtensions, OfStrainsThatMakeNoSenseTheOthersAreTaken)
     EXPECT_THAT(BeatExtensions::StrainsIn(beat), ElementsAre(clamped, Slow));
 }
 
-// Gateways that know nothing of extensions judge beats by these rules, and look for their own tag in `wants`.
+// Gateways that know no extensions judge beats by these rules, and look for their own tag in `wants`.
 TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
 {
     Gateway::Beat beat = BeatAt(std::chrono::seconds(1));

@@ -12,7 +12,7 @@ namespace
 using namespace std::chrono_literals;
 using Ns = std::chrono::nanoseconds;
 
-// When beats are sent in a time, by a node that sends each one when it is due.
+// Returns the times of the beats in [from, to) of a node that sends each one when it is due.
 std::vector<Ns> BeatsOf(BeatPace &pace, Ns from, Ns to)
 {
     std::vector<Ns> beats;
@@ -52,7 +52,7 @@ TEST(BeatPace, ThoseWhoComeOneAfterAnotherAreNotEachMetWithQuickBeats)
             beats.push_back(beat);
         }
     }
-    // Eight of them come with the periods, and three for each of the first two, fewer for the next.
+    // Eight beats come with the periods, three for each of the first two, and fewer for the next.
     EXPECT_LE(beats.size(), 8u + 3u + 3u + 2u + 1u);
     EXPECT_EQ(beats.at(1) - beats.at(0), BeatPace::ShortestGap);
     EXPECT_GE(beats.back() - beats.at(beats.size() - 2), 400ms);
@@ -91,8 +91,8 @@ TEST(BeatPace, WhoAsksWithoutEndHasItsBeatsAtMostOnceAPeriod)
         now = next;
         pace.Sent(now);
     }
-    // Each is half as long again as the one before, up to 300 ms for the first twelve, and then to the
-    // period.
+    // Each gap is half as long again as the one before. It grows up to 300 ms for the first twelve, and
+    // then to the period.
     EXPECT_EQ(std::vector<Ns>(gaps.begin(), gaps.begin() + 5),
               (std::vector<Ns>{50ms, 75ms, 112'500us, 168'750us, 253'125us}));
     EXPECT_EQ(std::vector<Ns>(gaps.begin() + 5, gaps.end()),

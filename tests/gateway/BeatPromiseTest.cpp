@@ -28,7 +28,7 @@ public:
     {
     }
 
-    // Forgets what was heard but for the newest beat.
+    // Forgets all beats but the newest.
     void Begin()
     {
         _beats = 0;
@@ -36,7 +36,7 @@ public:
         _longest = 0s;
     }
     std::size_t Beats() const { return _beats; }
-    // How much later than promised a beat came at most; negative: how much earlier at least.
+    // Returns how much later than promised the latest beat came; negative if all came earlier.
     Duration LatestAgainstPromise() const { return _latest; }
     Duration LongestPause() const { return _longest; }
 
@@ -82,7 +82,7 @@ class BeatPromiseTest : public ::testing::TestWithParam<int>
 
 INSTANTIATE_TEST_SUITE_P(Peers, BeatPromiseTest, ::testing::Values(20, 50));
 
-// When an announcement of DDS is due, a budget keeps room for it from one moment to the next, once in 30 s.
+// When a DDS announcement is due, once in 30 s, the budget begins at that moment to keep room for it.
 constexpr Duration Slack = 100ms;
 
 // A ground station that acknowledges the reports of all aircraft, and answers them with commands.
@@ -125,7 +125,7 @@ TEST_P(BeatPromiseTest, IsKeptBesideAcknowledgementsForAll)
     EXPECT_LE(Seconds(ear.LatestAgainstPromise()), Seconds(Slack));
 }
 
-// A State of four seconds of the budget. Beats and commands go between its datagrams.
+// A State that takes four seconds of the budget. Beats and commands go between its datagrams.
 TEST(BeatPromiseBesideALargeState, IsKeptAndCommandsDoNotWait)
 {
     SimulatedFleet fleet;
@@ -182,9 +182,9 @@ TEST(BeatPromiseBesideALargeState, IsKeptAndCommandsDoNotWait)
     EXPECT_EQ(came, 30);
     EXPECT_LE(Seconds(longestWait), 0.5);
     ASSERT_EQ(arrived.size(), 3u);
-    // Three datagrams fit into a second beside beats and commands, and it takes 15.
+    // The State takes 15 datagrams, of which three fit into a second beside beats and commands.
     EXPECT_LE(Seconds(*std::max_element(arrived.begin(), arrived.end())), 7.5);
-    // Each went once: nobody asked for what was under way.
+    // Each datagram went once: no node requested one that was still under way.
     EXPECT_LE(fleet.Network.Sent("uav1").Bytes - before, 3 * 22'000u + 30 * 600u);
 }
 

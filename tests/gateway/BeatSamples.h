@@ -12,8 +12,7 @@
 namespace Rabit
 {
 
-// A beat of a node whose source clock shows that, and which says that its next one is due half a second
-// later.
+// Returns a beat of a node whose source clock shows `source`. Its next beat is due half a second later.
 inline Gateway::Beat BeatAt(std::chrono::nanoseconds source)
 {
     Gateway::Beat beat;
@@ -23,7 +22,7 @@ inline Gateway::Beat BeatAt(std::chrono::nanoseconds source)
     return beat;
 }
 
-// Has the beat mean that announcement, and carry it whole.
+// Makes the beat refer to this announcement and carry all of it.
 inline void Announce(Gateway::Beat &beat, const Gateway::Announcement &announcement)
 {
     const std::vector<std::uint8_t> bytes = Announcements::Encode(announcement);

@@ -12,7 +12,7 @@ namespace Rabit
 namespace
 {
 
-// Finds what it is told to find.
+// A transport whose check returns what the test sets.
 class FindingTransport : public Transport
 {
 public:

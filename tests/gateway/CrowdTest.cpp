@@ -1,4 +1,4 @@
-// A node that has heard more names than it remembers.
+// A node that hears of more names than it remembers.
 #include <gmock/gmock.h>
 #include <rabit/gateway/links/LinkCheck.h>
 #include <rabit/gateway/links/LinkFrameCodec.h>

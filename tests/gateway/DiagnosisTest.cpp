@@ -13,7 +13,7 @@ namespace
 using namespace std::chrono_literals;
 using Ns = std::chrono::nanoseconds;
 
-// A beat of second 1 with that announcement, or with none.
+// A beat of second 1 with this announcement, or with none.
 HeardBeat BeatOf(const std::string &node, const Gateway::Announcement *offers)
 {
     HeardBeat heard;
@@ -67,7 +67,7 @@ protected:
     // uav1 is live from second 1 on.
     void Hear(bool withOffers = true) { peers.OnBeat(BeatOf("uav1", withOffers ? &offers : nullptr)); }
 
-    // "node: reason" of the only problem, or how many there are.
+    // Returns "node: reason" of the only problem, or else the number of problems.
     std::string Problem(Ns now) const
     {
         const auto problems = Diagnosis::OfSubscription(wanted, peers, now, now);

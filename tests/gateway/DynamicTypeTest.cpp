@@ -1,5 +1,5 @@
-// Messages of types that this program was not built with, which it was told of as IDL texts: whole nodes on
-// the simulated network.
+// Messages of types that this program was not built with, given as IDL texts: whole nodes on the simulated
+// network.
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/dynamic/DynamicType.h>
 
@@ -86,7 +86,7 @@ TEST_F(DynamicTypeTest, IsSentToAQueue)
     EXPECT_EQ(taken->ToJson(), R"({"number":3,"words":"come home"})");
 }
 
-// A program with generated code and one without meet on the same bytes.
+// A program with generated code and one without exchange the same bytes.
 TEST_F(DynamicTypeTest, OfTheTextOfAGeneratedTypeReadsItsMessages)
 {
     SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));

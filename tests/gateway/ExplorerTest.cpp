@@ -1,5 +1,4 @@
-// What a program learns of a fleet whose messages it was not built with: whole nodes on the simulated
-// network.
+// A program explores a fleet whose messages it was not built with: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 #include <rabit/gateway/FleetExplorer.h>
 #include <rabit/idl/MessageTypeRegistry.h>
@@ -35,7 +34,7 @@ class ExplorerTest : public ::testing::Test
 protected:
     ExplorerTest() : uav(fleet.Add(AircraftConfig("uav1"))) { fleet.RunFor(3s); }
 
-    // A tool, and its explorer.
+    // Adds a tool and returns its explorer.
     FleetExplorer &AddTool(const std::function<void(GatewayConfig &)> &change = {})
     {
         GatewayConfig config;
@@ -168,7 +167,8 @@ TEST_F(ExplorerTest, TellsOfLinksThatDoNotGetOnFromBothEnds)
                           Field(&Strain::Percent, ::testing::Ge(99u)), Field(&Strain::Messages, 1u))));
     EXPECT_THAT(explorer.Nodes()[1].Strains,
                 ElementsAre(AllOf(Field(&Strain::What, Kind::HeldBack), Field(&Strain::Other, "ground"))));
-    // It takes what has come and is well again; what was refused is told for a while.
+    // The manager takes the waiting messages, so its queue has room again. The refused ones are reported
+    // for a while.
     std::shared_ptr<RabitMessage> message;
     fleet.RunUntil(
         [&]
@@ -269,7 +269,7 @@ TEST_F(ExplorerTest, AnAnswerKeepsToTheBudgetOfTheRadio)
         120s));
 }
 
-// A node that answers what it is asked for, and what it is not, with what it likes.
+// A node that answers requests, and sends answers without a request, with any contents.
 TEST_F(ExplorerTest, WhatStrangersAnswerIsCheckedAndBounded)
 {
     FleetExplorer &explorer = AddTool();

@@ -41,7 +41,7 @@ protected:
         return "no error";
     }
 
-    // Of an entry in line 3.
+    // Returns the error of an entry in line 3, without file and line.
     std::string Refusal(const std::string &entry) const
     {
         const std::string error = ErrorOf("foreign:\n  - {" + entry + "}\n");

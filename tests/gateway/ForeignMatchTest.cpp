@@ -1,4 +1,4 @@
-// Which programs' writers and readers a foreign topic matches, and what is said of the others.
+// Which programs' writers and readers a foreign topic matches, and the reasons given for the others.
 #include "foreign/ForeignMatch.h"
 
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 
 #include "wire/MessageEncoder.h"
 
-// A network with whatever programs the test says, and one reader or writer of ours.
+// A network with the programs that the test names, and one reader or writer of ours.
 namespace Rabit::Foreign
 {
 
@@ -25,7 +25,7 @@ struct Network
     std::vector<std::vector<std::uint8_t>> Written;
     int Disposals = 0;
 
-    // A sample of a program, or of a node if one is named.
+    // Delivers a sample of a program, or of a node if `node` is not empty.
     void Deliver(const MessageType &type, const RabitMessage &message, std::uint64_t sequence,
                  std::uint8_t writer = 1, std::int64_t sourceTime = 0, const std::string &node = "")
     {
@@ -48,7 +48,7 @@ struct Network
         Handler(bytes, info);
         LastKey = info.Key;
     }
-    // That instance of the last sample is no more.
+    // Disposes the instance of the last sample.
     void End()
     {
         SampleInfo info;

@@ -1,4 +1,4 @@
-// Foreign topics of whole nodes on the simulated network, where there are no programs but nodes.
+// Foreign topics of whole nodes on the simulated network, where all programs are nodes.
 #include <gmock/gmock.h>
 
 #include "SimulatedFleet.h"

@@ -1,4 +1,4 @@
-// What is written to a topic of programs that are no nodes.
+// The samples that a gateway writes to a topic of programs that are no nodes.
 #include "foreign/ForeignPublisher.h"
 
 #include <gtest/gtest.h>

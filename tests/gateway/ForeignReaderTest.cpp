@@ -1,4 +1,4 @@
-// What becomes of the samples of programs that are no nodes.
+// How a gateway handles samples of programs that are no nodes.
 #include "foreign/ForeignReader.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ protected:
         clock->Advance(time);
         Reader().Service(Now());
     }
-    // State and reason.
+    // Returns the topic's state and the reason for it.
     std::string Judgement()
     {
         Reader().Service(Now());
@@ -105,7 +105,7 @@ protected:
     std::unique_ptr<ForeignReader> reader;
 };
 
-// Runs until the test lets it return.
+// A handler that runs until the test lets it return.
 struct Held
 {
     void operator()()

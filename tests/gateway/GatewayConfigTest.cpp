@@ -38,7 +38,7 @@ protected:
         return LoadGatewayConfig(file, node);
     }
 
-    // The error without the folder.
+    // Returns the error without the folder.
     std::string ErrorOf(const std::string &yaml, const std::string &node = "") const
     {
         try
@@ -280,7 +280,7 @@ struct BadConfig
     const char *Error;
 };
 
-// The texts are part of the interface: a person reads them on a field, without the documentation.
+// The texts are part of the interface: people read them in the field, without the documentation.
 const BadConfig BadConfigs[] = {
     {"UnknownKey", "node: a\ndomian: 3\n",
      "node.yaml:2: unknown key `domian` in the configuration; did you mean `domain`?"},

@@ -15,8 +15,8 @@
 namespace Rabit
 {
 
-// A node of the simulated network whose beats are written by hand. Only its writer is there unless a handler
-// for the beats of others is given.
+// A node of the simulated network whose beats the test writes. It has only a writer, unless a handler for
+// the others' beats is given.
 class HandNode
 {
 public:
@@ -40,9 +40,9 @@ public:
 
     TransportSession &Session() { return *_session; }
     std::uint32_t Tag() const { return _tag; }
-    // Whether the other nodes hear what is written.
+    // True if the other nodes hear what this one writes.
     bool IsHeard() const { return _writer->MatchedReaders() > 0; }
-    // One of now, to be changed and written.
+    // Returns a beat of this moment, to be changed and written.
     Gateway::Beat Beat() const { return BeatAt(_network.Now() + std::chrono::seconds(1)); }
     void Write(const Gateway::Beat &beat) { Write(static_cast<const RabitMessage &>(beat)); }
     void Write(const RabitMessage &message)

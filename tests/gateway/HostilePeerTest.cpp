@@ -1,4 +1,5 @@
-// What a node costs its peers that lies, asks without end, or is many: whole nodes on the simulated network.
+// The cost to its peers of a node that lies, that requests without end, or of many nodes: whole nodes on
+// the simulated network.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ GatewayConfig Node(const std::string &name)
     return config;
 }
 
-// As long an announcement as there may be.
+// Returns a configuration whose announcement has the largest size allowed.
 GatewayConfig LongConfig(const std::string &name)
 {
     GatewayConfig config = Node(name);
@@ -54,7 +55,7 @@ protected:
         bytesHeard = 0;
     }
 
-    // The beats of uav1.
+    // Handles the beats of uav1.
     void Hear(SampleBytes bytes, const SampleInfo &info)
     {
         if (info.Node == "uav1")
@@ -260,7 +261,7 @@ TEST(ThinPresence, ANodeThatRestartsUnchangedIsNotAskedForItsAnnouncement)
     EXPECT_EQ(wants, 0u);
 }
 
-// What an idle fleet may say: of N nodes 300 N + 20 N (N - 1) bytes a second, DDS's own included.
+// The limit of an idle fleet of N nodes: 300 N + 20 N (N - 1) bytes a second, DDS's own included.
 TEST(ThinPresence, AnIdleFleetOfTenSaysLittle)
 {
     SimulatedFleet fleet;

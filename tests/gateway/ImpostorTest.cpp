@@ -1,4 +1,4 @@
-// Samples of the gateways' topics that are not what they seem: whole nodes on the simulated network.
+// Forged samples of the gateways' topics: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 #include <rabit/gateway/links/LinkCheck.h>
 #include <rabit/gateway/links/LinkFrameCodec.h>
@@ -56,7 +56,7 @@ TEST_F(ImpostorTest, ANodeWhoseGatewayIsOfAnotherVersionIsNamed)
     EXPECT_THAT(uav.Problems(), testing::Not(HasSubstr("uav9")));
 }
 
-// Frames of the links name no sender: it is who DDS says wrote them.
+// Frames of the links name no sender: the sender is the node that DDS reports as the writer.
 class StrangeLinkTest : public ::testing::Test
 {
 protected:
@@ -70,8 +70,7 @@ protected:
         const auto session = SimulatedTransport(fleet.Network).Open(settings, [](const PeerEvent &) {});
         TopicQos qos;
         qos.Reliability = Reliability::BestEffort;
-        const auto writer =
-            session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {});
+        const auto writer = session->CreateWriter({"rabit/Link", "Rabit::Gateway::LinkSample", {}}, qos, {});
         fleet.RunFor(1s);
         Gateway::LinkSample sample;
         sample.frame = frame;

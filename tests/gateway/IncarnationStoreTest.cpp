@@ -30,12 +30,12 @@ protected:
     }
     ~IncarnationStoreFile() override { std::filesystem::remove_all(_directory); }
 
-    // A start of the process, at this reading of the wall clock.
+    // Starts the process at this reading of the wall clock, in seconds.
     IncarnationStore Start(std::int64_t seconds) const
     {
         return IncarnationStore(_directory, "uav1", [seconds] { return Nanoseconds(seconds); });
     }
-    // The incarnation of a whole life.
+    // Starts the process, saves, and returns its incarnation.
     std::uint64_t Live(std::int64_t seconds) const
     {
         IncarnationStore store = Start(seconds);

@@ -106,7 +106,7 @@ TEST(UnwantedSenders, ThereIsRoomForSomeAtATime)
     EXPECT_EQ(senders.Problems(1s + UnwantedSenders::Memory).size(), 1u);
 }
 
-// All messages are large.
+// A fixture in which all messages are large.
 class LargeMessagesTest : public IncomingQueuesTest
 {
 protected:

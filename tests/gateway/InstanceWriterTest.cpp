@@ -1,4 +1,4 @@
-// A message whose key changes: what is written and what is disposed, in which order, on a network that does
+// A message whose key changes: the samples and disposals written, and their order, on a network that does
 // not take everything.
 #include "mirrors/InstanceWriter.h"
 

@@ -17,7 +17,7 @@ using GatewayTest::Contact;
 using testing::ElementsAre;
 using testing::Pair;
 
-// A program that reads the topic and is no node. The instances as it sees them: alive or not.
+// A program that reads the topic and is no node. Keeps the instances as it sees them: alive or not.
 class PlainReader
 {
 public:

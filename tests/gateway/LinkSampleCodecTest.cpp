@@ -1,4 +1,4 @@
-// A frame of the links as a sample: the bytes of the generated class, and what it refuses is refused.
+// A link frame as a sample: it has the bytes of the generated class, and damaged bytes are refused.
 #include <gtest/gtest.h>
 #include <rabit/gateway/links/LinkFrameCodec.h>
 
@@ -13,7 +13,7 @@ namespace Rabit
 namespace
 {
 
-// A hello and data with so many bytes, so that all lengths modulo 4 occur.
+// Returns a hello with data. Payloads of all lengths modulo 4 are tried.
 LinkFrame FrameWith(const std::vector<std::uint8_t> &payload)
 {
     LinkFrame frame;

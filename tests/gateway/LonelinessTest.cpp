@@ -31,7 +31,7 @@ protected:
         counters.DiscoveryBytes = 1000;
     }
 
-    // Of a node that listens since second 100. Empty: none.
+    // Returns the problem of a node that listens since second 100; empty if it has none.
     std::string ReasonAt(std::chrono::nanoseconds now) const
     {
         const auto problem = Loneliness::Look(config, peers, counters, 100s, now);
@@ -97,7 +97,7 @@ TEST(LonelyNode, IsToldOnceHoweverLongItLastsAndOnceWhenSomebodyComes)
     fleet.RunFor(9s);
     EXPECT_THAT(log.Lines(), IsEmpty());
     fleet.RunFor(2h);
-    // The simulated network counts what goes to somebody.
+    // The simulated network counts only bytes that go to another node.
     EXPECT_THAT(log.Lines(), ElementsAre(HasSubstr("nobody heard in domain 0 on all interfaces for 10 s; "
                                                    "nothing goes out; peers: none")));
     config.Node = "uav2";

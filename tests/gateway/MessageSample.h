@@ -7,7 +7,7 @@
 namespace Rabit
 {
 
-// Hands a message to a transport by hand. The message must outlive it.
+// Encodes a message for a transport. The message must outlive it.
 class MessageSample final : public SampleEncoder
 {
 public:

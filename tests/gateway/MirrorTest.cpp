@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 class MirrorTest : public ::testing::Test
 {
 protected:
-    // Both sides up and matched.
+    // Runs until both sides are up and matched.
     void Settle() { fleet.RunFor(3s); }
 
     SimulatedFleet fleet;
@@ -212,7 +212,7 @@ TEST_F(MirrorTest, ARepeatedStateIsPostedOnce)
     state->PostMessage();
     fleet.RunFor(20s);
     EXPECT_EQ(ground.Workspace.FindGlobalMessage("uav1/MissionState")->GetNumberOfPosts(), 1u);
-    // A second post with the same contents is a new one.
+    // A second post with the same contents is new.
     state->PostMessage();
     fleet.RunFor(20s);
     EXPECT_EQ(ground.Workspace.FindGlobalMessage("uav1/MissionState")->GetNumberOfPosts(), 2u);
@@ -262,7 +262,7 @@ TEST_F(MirrorTest, MaxRateSkipsValuesButNotTheLastOne)
 
 TEST_F(MirrorTest, AMirroredMessageIsNotMirroredAgain)
 {
-    // Both want and publish Pose: a loop if mirrored messages went out again.
+    // Both nodes want and publish Pose: there would be a loop if mirrored messages went out again.
     GatewayConfig first = AircraftConfig("uav1");
     first.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose"});
     GatewayConfig second = AircraftConfig("uav2");
@@ -320,7 +320,7 @@ TEST_F(MirrorTest, APartitionIsShownAndHeals)
     EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "LOST"; }, 5s));
     fleet.RunFor(30s);
     fleet.Network.ClearFaults();
-    // The transport has given them up, too, and announces itself once in 10 s.
+    // The transport has given the peer up, too, and announces itself once in 10 s.
     EXPECT_TRUE(fleet.RunUntil([&] { return ground.StateOf("uav1") == "UP"; }, 15s));
     fleet.RunFor(3s);
     pose->PostMessage();
@@ -348,7 +348,7 @@ TEST_F(MirrorTest, TwoNodesOfOneNameAreReportedByBothAndByOthers)
     EXPECT_THAT(second.Problems(), HasSubstr("node uav1: another live node has the name of this one"));
     EXPECT_THAT(ground.Problems(), HasSubstr("node uav1: two live nodes have this name"));
 
-    // All of this test are in one process.
+    // All nodes of this test are in one process.
     const std::string place = Whereabouts::OfThisProcess();
     EXPECT_THAT(place, HasSubstr(", process " + std::to_string(::getpid())));
     const std::string both = "this one is on " + place + ", the other on " + place;
@@ -423,7 +423,7 @@ TEST_F(MirrorTest, ALocalMessageOfAnotherTypeIsReportedNotOverwritten)
         HasSubstr("subscribe Pose: the local message `uav1/Pose` is of another type than `Uav::Pose`"));
 }
 
-// A node that announces and publishes poses by hand.
+// A node whose announcements and poses are written by the test.
 class RogueNode
 {
 public:

@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 constexpr std::time_t Day = 24 * 60 * 60;
 
-// A backend that is never asked to join anything.
+// A backend that the tests never ask to open a session.
 class NamedTransport : public Transport
 {
 public:

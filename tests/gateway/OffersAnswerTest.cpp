@@ -17,7 +17,7 @@ class OffersAnswerTest : public ::testing::Test
 protected:
     static constexpr std::size_t Part = 100;
 
-    // Begins, and has said it once, long ago.
+    // Begins, and sends the announcement once, long ago.
     void Begin(std::size_t size)
     {
         answer.Begin(size);
@@ -27,7 +27,7 @@ protected:
         }
     }
 
-    // Lets time pass to the next part, which is said.
+    // Lets time pass to the next part, sends it, and returns the time.
     Ns Say()
     {
         const Ns due = answer.Due().value();

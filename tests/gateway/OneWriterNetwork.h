@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-// A network for one writer, which takes what the test says.
+// A network for one writer. The test sets the result of each write.
 namespace Rabit::OneWriter
 {
 

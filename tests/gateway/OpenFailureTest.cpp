@@ -14,7 +14,7 @@ namespace Rabit
 namespace
 {
 
-// Shared by the sessions and endpoints of one backend.
+// State that the sessions and endpoints of one backend share.
 struct Endpoints
 {
     int Alive = 0;

@@ -10,7 +10,7 @@ namespace
 using namespace std::chrono_literals;
 using Ns = std::chrono::nanoseconds;
 
-// A node whose source clock was 1000 s ahead, and stood still for 60 s when it showed 1020 s.
+// A node whose source clock was 1000 s ahead and stood still for 60 s when it showed 1020 s.
 const OriginTable::Origin AfterAStandstill{
     .Incarnation = 1,
     .Source = {.ToLocal = -940s, .StoodStill = 60s, .StoodStillUntil = 1020s},

@@ -111,7 +111,7 @@ TEST(PeerClock, AStandstillOfOurClockThatIsLongerThanTheRoundTripIsSeenAtTheNext
     PeerClock clock;
     clock.OnBeat({1001s, 0s}, 1s + 10ms);
     clock.OnRoundTrip(20ms, 1s + 10ms);
-    // Five seconds of the peer's that were none here.
+    // For the peer five seconds pass in which no time passes here.
     clock.OnBeat({1007s, 0s}, 2s + 10ms);
     EXPECT_EQ(clock.ToLocal(1007s), Ns(2s)) << "half of the round trip, while there is no other";
     clock.OnBeat({1008s, 0s}, 3s + 10ms);
@@ -132,7 +132,8 @@ class PeerClockAfterAStandstill : public ::testing::Test
 protected:
     static PeerClock::Reading ReadingAt(Ns monotonic) { return {.Source = 1000s + monotonic, .Wall = 0s}; }
 
-    // A beat, and how long it and the one of ours that it echoes were on their way.
+    // Receives a beat that was sent at `peerSent`. `roundTrip` is that of the beat and of our beat that it
+    // echoes.
     void Beat(Ns peerSent, Ns arrival, Ns roundTrip)
     {
         clock.OnBeat(ReadingAt(peerSent), arrival);
@@ -170,7 +171,7 @@ TEST_F(PeerClockAfterAStandstill, NoBeatWithoutARoundTripCorrectsTheEstimate)
 
 TEST_F(PeerClockAfterAStandstill, AnEchoOfABeatFromBeforeItProvesNothing)
 {
-    // The peer does not know that it held the echo for as long.
+    // The peer does not know that it held the echo for 60 s.
     Beat(20s, 20s + StoodStill + 10ms, StoodStill + 20ms);
     EXPECT_EQ(clock.SentAt(1000s + 20s), Ns(20s));
 }

@@ -37,7 +37,7 @@ HeardBeat BeatOf(const std::string &node, std::uint64_t incarnation, Ns sent)
     return BeatOf(node, incarnation, sent, sent);
 }
 
-// An echo, in a beat, of the beat that this node sent then.
+// Adds an echo of the beat that this node sent at `sent`.
 void Echo(HeardBeat &heard, Ns sent, std::uint64_t incarnation = 7)
 {
     Gateway::BeatEcho echo;
@@ -115,8 +115,8 @@ TEST_F(PeerTableTest, ABeatThatWasHeldUpOnTheWayDoesNotMakeItsNodeLookLive)
 class EchoTest : public PeerTableTest
 {
 protected:
-    // Hears a beat of a peer whose clocks stood still for `behind` in all, which echoes one that this node
-    // sent so long before it came.
+    // Hears a beat of a peer whose clocks stood still for `behind` in all. The beat echoes one that this
+    // node sent `roundTrip` before the arrival.
     PeerTable::Change HearEchoing(Ns sent, Ns behind, Ns arrival, Ns roundTrip)
     {
         table.NoteSent((arrival - roundTrip).count(), arrival - roundTrip);
@@ -434,7 +434,7 @@ TEST_F(PeerTableTest, EchoesTakeTurnsWhenThereAreMoreNodesThanRoom)
     EXPECT_EQ(namesOf(table.NextEchoes(1s, 2, 2)), "ab");
     EXPECT_EQ(namesOf(table.NextEchoes(1500ms, 2, 2)), "c");
     EXPECT_EQ(namesOf(table.NextEchoes(4999ms, 2, 8)), "");
-    // Those that are due again.
+    // All three are heard again, and their echoes are due again.
     for (const char *node : {"a", "b", "c"})
     {
         Hear(node, 1, 5s);
@@ -457,7 +457,8 @@ TEST_F(PeerTableTest, WhoBeatsSeldomEchoesWithEachEighthBeat)
     EXPECT_EQ(table.EchoesDue(21s, 2), 1u);
 }
 
-// All peers' beats come 10 s earlier than before by this node's clock, and theirs say that its beats are old.
+// All peers' beats come 10 s earlier than before by this node's clock, and report that this node's beats
+// are old.
 TEST_F(PeerTableTest, AllPeersAreEchoedAtOnceWhenThisNodesClockStoodStill)
 {
     const auto nameOf = [](int i) { return std::string("n").append(std::to_string(i)); };
@@ -517,7 +518,7 @@ protected:
         return announcement;
     }
 
-    // Hears a beat that means those offers, with all of them or without.
+    // Hears a beat that refers to this announcement, and carries it if `withThem`.
     PeerTable::Change HearOffering(const Gateway::Announcement &offers, bool withThem, Ns at,
                                    std::uint64_t incarnation = 5)
     {

@@ -1,4 +1,4 @@
-// What the table of peers keeps of tools.
+// How the table of peers treats tools.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -28,7 +28,7 @@ std::vector<std::uint8_t> Encoded(const Message &message)
     return bytes;
 }
 
-// Announces queues `q0`, `q1` ... with as many types each.
+// Returns an announcement that accepts queues `q0`, `q1` ... with `types` types each.
 Gateway::Announcement Accepting(std::size_t queues, std::size_t types, const std::string &typeName = "T")
 {
     Gateway::Announcement announcement;
@@ -171,7 +171,7 @@ TEST_F(PresenceInboxTest, ABeatOfAnotherFormatIsNoted)
     beat.format = BeatFormat::Present + 1;
     std::vector<std::uint8_t> bytes = Encoded(beat);
     EXPECT_TRUE(Add(bytes, "uav7"));
-    // The first gateways' beats: the name of the node, and more than beats of today may be.
+    // A beat of the first format: the name of the node, and more bytes than a beat of today may have.
     bytes = {0, 1, 0, 0, 5, 0, 0, 0, 'u', 'a', 'v', '8', 0};
     bytes.resize(PresenceInbox::LargestBeat + 1, 1);
     EXPECT_TRUE(Add(bytes, "uav8"));
@@ -244,7 +244,8 @@ TEST(Announcements, TheLargestThatANodeMayMakeIsTaken)
     }
 }
 
-// By the number of offers, of types in all, of queues and types, of bytes, and of bytes of a type's name.
+// The announcements exceed the number of entries, of types in all, of queues and types, of bytes, and of
+// bytes of a type's name.
 TEST(Announcements, WhatExceedsTheBoundsIsNotTaken)
 {
     for (const auto &announcement : {Publishing(Announcements::MostOffers + 1), Accepting(33, 32),

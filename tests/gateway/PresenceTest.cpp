@@ -1,4 +1,4 @@
-// When a gateway tells the others that it is there.
+// When a gateway sends beats and announcements.
 #include <gmock/gmock.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
@@ -23,7 +23,7 @@ namespace
 
 using namespace std::chrono_literals;
 
-// Hears one topic of all nodes, and when what came from whom.
+// Hears one topic of all nodes. Records the sender and the time of each sample.
 class Listener
 {
 public:
@@ -41,7 +41,7 @@ public:
                                          [this](SampleBytes, const SampleInfo &info)
                                          { _heard.emplace_back(info.Node, _network.Now()); });
     }
-    // Samples that came in [from, to), of one node or of all.
+    // Returns the number of samples that came in [from, to), of one node or of all.
     std::ptrdiff_t Count(std::chrono::nanoseconds from, std::chrono::nanoseconds to,
                          const std::string &node = "") const
     {
@@ -139,7 +139,8 @@ TEST_F(CrashLoopTest, DoesNotMakeTheOthersShout)
     const auto start = fleet.Network.Now();
     CrashEachSecond(30);
     const auto end = fleet.Network.Now();
-    // In 30 s: a beat each half second and two answers of seven beats each 5 s; no State, for nobody asks.
+    // In 30 s: a beat each half second and two answers of seven beats each 5 s. No node requests a State,
+    // so none is sent.
     for (int i = 0; i < Fleet; ++i)
     {
         EXPECT_LE(beats.Count(start, end, NameOf(i)), 60 + 7 * 2 * 6) << NameOf(i);
@@ -176,8 +177,8 @@ TEST_F(CrashLoopTest, DoesNotKeepANewcomerWaiting)
         return true;
     };
     EXPECT_TRUE(fleet.RunUntil(hearsAll, 1s));
-    // Until it has asked for ten announcements and then for ten States, in beats that follow each other less
-    // and less quickly, and its readers are known to all.
+    // The newcomer requests ten announcements and then ten States, in beats at growing intervals. Its
+    // readers must also become known to all.
     EXPECT_TRUE(fleet.RunUntil(hasAll, 2500ms));
 }
 
@@ -218,7 +219,7 @@ TEST(Presence, AStateIsNotRepeatedMoreOftenThanItsRateAllows)
     }
 }
 
-// A node that has been there for a while, and one that asks and listens by hand.
+// A node that has been there for a while, and one by hand that requests and listens.
 class AnnouncementTest : public ::testing::Test
 {
 protected:
@@ -298,8 +299,8 @@ TEST_F(AnnouncementTest, IsNotSaidOftenHoweverOftenItIsAskedFor)
     EXPECT_LE(beats, 20 + 10 + OffersAnswer::QuickAnswers);
 }
 
-// The others believe its beats only once one echoes theirs, since beats that were held up on the way look
-// alike.
+// The other nodes accept the node's beats only once one of these echoes theirs: beats that were held up on
+// the way look alike.
 TEST(PresenceAfterAStandstill, ANodeOfAHundredIsUpForAllWithinSomeBeats)
 {
     for (const double budget : {0.0, 5000.0})

@@ -36,7 +36,7 @@ class ProblemLogTest : public testing::Test
 protected:
     using Problems = std::vector<Gateway::Problem>;
 
-    // The lines of looks every 500 ms for that long, with the same problems at each.
+    // Looks every 500 ms for `duration`, with the same problems each time. Returns the lines.
     std::vector<std::string> For(std::chrono::milliseconds duration, const Problems &present)
     {
         std::vector<std::string> lines;
@@ -50,7 +50,7 @@ protected:
         return lines;
     }
 
-    // Comes for four seconds, goes for four seconds.
+    // The problems are there for four seconds, then gone for four seconds.
     std::vector<std::string> ComeAndGo(const Problems &present)
     {
         std::vector<std::string> lines = For(4s, present);
@@ -199,7 +199,7 @@ TEST_F(ProblemLogTest, TellsAProblemThatKeepsComingBackSeldom)
             lines.push_back(line);
         }
     }
-    // Three at once and one a minute, each with its end.
+    // Three problems at once and one a minute, each with a line for its end.
     EXPECT_LE(lines.size(), 2u * (3 + 60));
     EXPECT_GE(lines.size(), 2u * 50);
     EXPECT_EQ(lines[0], MisspeltLine);

@@ -1,4 +1,4 @@
-// What the log of a process says about data that do not come: whole nodes on the simulated network.
+// The log lines of a process about data that do not come: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 
 #include <string>
@@ -21,7 +21,7 @@ using ::testing::UnorderedElementsAre;
 class ProblemsInLog : public ::testing::Test
 {
 protected:
-    // An aircraft as it should be.
+    // Adds an aircraft without a problem.
     void AddAircraft(const std::string &name)
     {
         SimulatedNode &uav = fleet.Add(AircraftConfig(name));
@@ -68,7 +68,7 @@ TEST_F(ProblemsInLog, EachIsToldByNameWithinFiveSeconds)
     ground.Workspace.AddManagerMessageQueue("Ground", std::make_shared<RabitMessageQueue<int>>(10, "Ground"));
     ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Pose>());
     fleet.RunFor(5s);
-    // The two transports see by themselves that they differ in the type of a topic.
+    // Both transports report by themselves that they differ in the type of a topic.
     const auto gateways = [this]
     {
         std::vector<std::string> lines = log.Lines();

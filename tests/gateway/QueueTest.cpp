@@ -34,7 +34,8 @@ protected:
         return ground.Workspace.AddMessageToQueue(address, message);
     }
 
-    // Takes all that is in a manager's queue: the ids of Gotos, the target numbers of reports as negatives.
+    // Takes all messages from a manager's queue. Returns the ids of Gotos, and the target numbers of
+    // reports as negatives.
     static std::vector<int> Take(RabitManager &manager)
     {
         std::vector<int> ids;
@@ -86,7 +87,8 @@ TEST_F(QueueTest, MessagesOfAllTypesArriveInOrder)
 
 TEST_F(QueueTest, OnAPathThatLosesNothingNothingIsSentTwice)
 {
-    // One way only, so that nothing else makes the receiving gateway run when an acknowledgement is due.
+    // Messages go one way only, so that nothing else makes the receiving gateway run when an
+    // acknowledgement is due.
     for (std::uint32_t i = 1; i <= 2000; ++i)
     {
         EXPECT_TRUE(SendGoto(i));
@@ -111,8 +113,8 @@ TEST_F(QueueTest, AQueueThatIsExactlyFullIsFilledAgainAsSoonAsThereIsRoom)
     {
         EXPECT_TRUE(SendGoto(i, "uav2/Small"));
     }
-    // A manager that takes all that is there every 5 ms: four at a time, if they come as soon as there is
-    // room. Left to the resend timer they come every 20 ms at best.
+    // The manager takes all waiting messages every 5 ms: four at a time if they come as soon as there is
+    // room. The resend timer alone would bring them every 20 ms at best.
     int taken = 0;
     for (int turn = 0; turn < 40; ++turn)
     {
@@ -317,7 +319,7 @@ TEST_F(QueueTest, WithASecondLiveNodeOfItsNameNoneOfTheTwoGetsAMessageTwiceOrOut
     all.insert(all.end(), twins.begin(), twins.end());
     std::sort(all.begin(), all.end());
     EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
-    // What it says of the outcomes is true as well.
+    // The reported outcomes are true as well.
     EXPECT_LE(ground.LinkTo("uav1", "MissionControl").delivered, all.size());
 }
 

@@ -72,7 +72,7 @@ private:
     std::thread _thread;
 };
 
-// A program that reads the topic and is no node: the instances as it sees them, alive or not.
+// A program that reads the topic and is no node. Keeps the instances as it sees them: alive or not.
 class PlainReader
 {
 public:
@@ -91,7 +91,7 @@ public:
                                          [this](SampleBytes, const SampleInfo &info) { Take(info); });
     }
 
-    // Waits until exactly that instance is alive; returns all that were ever heard of.
+    // Waits until this instance alone is alive. Returns all instances that were ever heard of.
     std::map<int, bool> Until(int alive)
     {
         std::unique_lock lock(_mutex);
@@ -140,14 +140,15 @@ TEST_P(RealKeysTest, AReaderIsToldThatTheFormerInstanceIsGoneAndALateOneHearsOfT
         early.Until(number);
     }
     EXPECT_THAT(early.Until(3), ElementsAre(Pair(1, false), Pair(2, false), Pair(3, true)));
-    // A reader that comes before the early one has acknowledged may hear of the one before: then another one.
+    // A reader that comes before the early one has acknowledged may hear of the previous instance. Then
+    // another reader is tried.
     const auto end = std::chrono::steady_clock::now() + Limit;
     std::map<int, bool> heard;
     for (int number = 3; heard.size() != 2 && std::chrono::steady_clock::now() < end; ++number)
     {
         PlainReader late(GetParam().second, std::string("late").append(std::to_string(number)));
         late.Until(number);
-        // What is said of a former one comes before what follows.
+        // Samples of a former instance come before the next post's.
         node.Post(static_cast<std::uint32_t>(number + 1));
         heard = late.Until(number + 1);
     }

@@ -85,7 +85,7 @@ private:
     bool _done = false;
 };
 
-// Takes all messages that are there, and then lets the queue become full again.
+// Takes all waiting messages, and then lets the queue become full again.
 class BulkSink final : public RabitManager
 {
 public:

@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 // Only keeps a broken build from hanging.
 constexpr auto Limit = 60s;
 
-// A sample of so many bytes.
+// A sample of this many bytes.
 class Filled final : public SampleEncoder
 {
 public:

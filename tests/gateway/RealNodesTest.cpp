@@ -1,4 +1,5 @@
-// Two nodes with all their threads over a real backend, on loopback: what the simulation cannot show.
+// Two nodes with all their threads over a real backend, on loopback: effects that the simulation cannot
+// show.
 #include <gtest/gtest.h>
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
@@ -53,8 +54,8 @@ private:
     std::condition_variable _changed;
 };
 
-// Sends numbered Gotos to the other node's manager of the same kind, posts a Pose with each, and checks that
-// what comes from there is complete and in order.
+// Sends numbered Gotos to the other node's manager of the same kind and posts a Pose with each. Checks that
+// the other manager's are complete and in order.
 class TrafficManager : public RabitManager
 {
 public:
@@ -190,7 +191,7 @@ TEST_P(RealNodesTest, QueuesAreCompleteAndInOrderAndTheLastPostArrivesUnderLoadB
     }
 }
 
-// A manager may go at any time, also while its queue is told of a message on the transport's thread.
+// A manager may end at any time, even while the transport's thread tells its queue of a message.
 TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
 {
     using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
@@ -208,7 +209,7 @@ TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
             {
                 return;
             }
-            // Until the workspace and the gateway's thread have let go of it.
+            // Waits until the workspace and the gateway's thread have released the queue.
             const long others = watched.use_count() - 2;
             first.Workspace.AddManagerMessageQueue("Passing", next);
             const auto end = std::chrono::steady_clock::now() + Limit;

@@ -1,4 +1,4 @@
-// States that are said once, over each pair of real backends, on loopback.
+// States that are sent once, over each pair of real backends, on loopback.
 #include <gtest/gtest.h>
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
@@ -35,7 +35,7 @@ std::string NameOf(std::size_t state)
     return std::string("S").append(std::to_string(state));
 }
 
-// A node with a thread, which can be looked into whenever its gateway says something.
+// A node with a thread, whose contents the test may read whenever its gateway reports.
 class Node
 {
 public:
@@ -81,7 +81,7 @@ public:
         }
     }
 
-    // Waits until it shows that value of all States of the other one.
+    // Waits until the node shows this value of all States of the origin.
     bool Shows(const std::string &origin, std::uint32_t value)
     {
         return _looker->Wait(
@@ -100,7 +100,7 @@ public:
             });
     }
 
-    // Samples of States written, as the gateway says that many times from now.
+    // Returns the samples of States written, by the gateway's report after this many from now.
     std::uint64_t WrittenAfter(int reports)
     {
         std::uint64_t written = 0;
@@ -126,7 +126,7 @@ public:
     }
 
 private:
-    // Looks every few milliseconds whether what is waited for is so.
+    // Checks every few milliseconds whether the awaited condition holds.
     class Looker : public RabitManager
     {
     public:
@@ -166,7 +166,7 @@ private:
     std::thread _thread;
 };
 
-// The backends of the publisher and of those who want its States.
+// The backends of the publisher and of the nodes that want its States.
 class RealStatesTest : public ::testing::TestWithParam<std::pair<std::string, std::string>>
 {
 };
@@ -183,7 +183,7 @@ TEST_P(RealStatesTest, ALateJoinerAndOneThatComesBackHaveAllStatesAndThenNothing
     }
     Node ground(GetParam().second, "ground", false);
     EXPECT_TRUE(ground.Shows("uav1", 2));
-    // What was asked for before is answered by then.
+    // By then, all earlier requests are answered.
     const std::uint64_t written = uav.WrittenAfter(4);
     EXPECT_EQ(uav.WrittenAfter(4), written) << "what came is known by its version, as rounded on the way";
     EXPECT_TRUE(ground.Shows("uav1", 2));

@@ -1,4 +1,4 @@
-// What a sender learns of one queue message: whole nodes on the simulated network.
+// The receipts of single queue messages, as a sender sees them: whole nodes on the simulated network.
 #include <rabit/RabitQueueReceipt.h>
 
 #include <gmock/gmock.h>
@@ -269,7 +269,7 @@ TEST(GatewayLives, ALifeThatIsTakenBecauseOthersKnowAHigherOneIsStored)
     fleet.Kill("uav1");
     std::filesystem::remove_all(directory);
     fleet.RunFor(5s);
-    // It comes back without its file, and with a clock that is a year behind.
+    // The node comes back without its file, and with a clock that is a year behind.
     fleet.Add(config, 1.4e9 - 365.0 * 86400);
     fleet.RunFor(20s);
     std::uint64_t stored = 0;

@@ -43,7 +43,7 @@ TEST(RepeatPace, WhoAsksBeforeTheLastOneCouldComeIsNotAnswered)
     EXPECT_EQ(pace.Due(), 1s + RepeatPace::ShortestGap);
 }
 
-// Of one value that is asked for all the time.
+// Returns the gaps between the writes of one value that is requested all the time.
 std::vector<Ns> Gaps(RepeatPace &pace, Ns written, std::size_t count)
 {
     std::vector<Ns> gaps;

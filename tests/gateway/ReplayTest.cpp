@@ -1,4 +1,4 @@
-// A node that plays again what was recorded, among others: whole nodes on the simulated network.
+// A node that replays a recording, among others: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 
 #include <algorithm>

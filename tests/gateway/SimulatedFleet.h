@@ -36,7 +36,7 @@ public:
 class SimulatedNode
 {
 public:
-    // What is added to the reactor before the gateway, and may complete its configuration.
+    // Adds managers to the reactor before the gateway, and may complete the gateway's configuration.
     using AddFirst = std::function<void(SimulatedNode &node, GatewayConfig &config)>;
 
     // The monotonic clock is ahead of the network's by `monotonic`; the wall clock shows `gps` at the start.
@@ -67,7 +67,7 @@ public:
         return added;
     }
 
-    // A local copy of a message, registered under that name.
+    // Registers a local copy of a message under this name, and returns it.
     template <typename Message>
     std::shared_ptr<Message> Register(const std::string &name)
     {
@@ -76,7 +76,7 @@ public:
         return message;
     }
 
-    // The newest contents of Gateway/Fleet.
+    // Returns the newest contents of Gateway/Fleet.
     Gateway::Fleet Fleet()
     {
         Gateway::Fleet fleet;
@@ -84,7 +84,7 @@ public:
         return fleet;
     }
 
-    // `UP`, `STALE` or `LOST`; empty if that node is not listed.
+    // Returns `UP`, `STALE` or `LOST`; empty if the node is not listed.
     std::string StateOf(const std::string &node)
     {
         for (const Gateway::NodeStatus &status : Fleet().nodes)
@@ -99,7 +99,7 @@ public:
         return "";
     }
 
-    // The counters of the link to that queue; zeros if there are none.
+    // Returns the counters of the link to this queue; zeros if there are none.
     Gateway::LinkStatus LinkTo(const std::string &node, const std::string &queue)
     {
         for (const Gateway::LinkStatus &link : Fleet().links)
@@ -112,7 +112,7 @@ public:
         return {};
     }
 
-    // "subject: reason" of every problem, one to a line.
+    // Returns "subject: reason" of every problem, one to a line.
     std::string Problems()
     {
         std::string text;
@@ -130,7 +130,7 @@ public:
     GatewayManager *Manager = nullptr;
 };
 
-// Nodes in one process, on a simulated network, under one time: the seed decides all that happens.
+// Nodes in one process, on a simulated network, under one time. The seed decides everything that happens.
 class SimulatedFleet
 {
 public:
@@ -161,8 +161,8 @@ public:
     // Ends a node in an orderly way.
     void Stop(const std::string &node) { _nodes.erase(node); }
 
-    // A node stands still for so long while the others run on, as a virtual machine that is paused: its
-    // monotonic clock does not advance, and what comes meanwhile waits for it.
+    // Stops a node for `duration` while the others run on, like a virtual machine that is paused. Its
+    // monotonic clock does not advance, and incoming samples wait.
     void StandStill(const std::string &node, std::chrono::nanoseconds duration)
     {
         auto still = std::move(_nodes.at(node));
@@ -213,7 +213,7 @@ private:
 
     void Advance(std::chrono::nanoseconds time)
     {
-        // The nodes' clocks first: handlers that the network calls read them.
+        // Advances the nodes' clocks first: handlers that the network calls read them.
         for (const auto &[name, node] : _nodes)
         {
             node->Clock->AdvanceTo(time + node->Ahead);

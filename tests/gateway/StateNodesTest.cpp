@@ -1,4 +1,4 @@
-// States are said once and repaired by those who lack them: whole nodes on the simulated network.
+// States are sent once and repaired on request: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace
 using namespace std::chrono_literals;
 using std::chrono::nanoseconds;
 
-// Nodes of which each publishes some States `S0`, `S1` ... and wants those of all others.
+// Nodes that each publish some States `S0`, `S1` ... and want those of all others.
 class StateNodesTest : public ::testing::Test
 {
 protected:
@@ -60,7 +60,7 @@ protected:
         }
     }
 
-    // What that node shows of a State of another one; 0: nothing.
+    // Returns the value that the node shows of another node's State; 0: none.
     static std::uint32_t Shown(const Member &member, const std::string &origin, std::size_t state)
     {
         Uav::MissionState shown;
@@ -68,7 +68,7 @@ protected:
         return shown.commands;
     }
 
-    // Whether that node shows the value of all States of the other one.
+    // True if the node shows `value` for all States of the other one.
     static bool Shows(const Member &member, const std::string &origin, std::size_t states,
                       std::uint32_t value)
     {
@@ -82,7 +82,7 @@ protected:
         return true;
     }
 
-    // Samples that a node has written of all its States, once it has said so.
+    // Waits for the node's report. Returns the number of samples that it has written of all its States.
     std::uint64_t Written(const Member &member)
     {
         fleet.RunFor(1100ms);
@@ -94,7 +94,7 @@ protected:
         return sum;
     }
 
-    // How long it takes until that holds; the longest time if it never does.
+    // Returns how long it takes until the condition holds; the longest time if it does not.
     template <typename Holds>
     nanoseconds Until(Holds holds, nanoseconds limit)
     {
@@ -292,7 +292,7 @@ TEST_F(StateNodesTest, WhatWasPostedDuringAnOutageIsThereSoonAfterIt)
     EXPECT_LE(Until([&] { return Shows(ground, "uav1", 2, 8); }, 20s), 2s);
 }
 
-// A fleet that is there already does not pay for each other for one who comes.
+// In a fleet that is there already, a newcomer costs the nodes nothing for each other.
 TEST_F(StateNodesTest, ANewcomerIsToldByThoseWhomItAsksAndByNobodyElse)
 {
     Member asked = Join("uav1", 1);

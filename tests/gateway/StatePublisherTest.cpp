@@ -1,4 +1,4 @@
-// When a State is written, under which version, and when again.
+// When a State is written, under which version, and when it is repeated.
 #include <gtest/gtest.h>
 #include <rabit/ManualClock.h>
 #include <rabit/RabitWorkspace.h>
@@ -30,7 +30,7 @@ protected:
         publisher.SetAttached();
     }
 
-    // Runs for so long, asking in each step if so told. Returns the writes meanwhile.
+    // Runs for `duration`, with a request in each step if `ask`. Returns the writes meanwhile.
     int Run(std::chrono::nanoseconds duration, std::chrono::nanoseconds step = 10ms, bool ask = false)
     {
         const int before = network.Writes;
@@ -168,7 +168,7 @@ TEST_F(StatePublisherTest, WhileTheNetworkDoesNotTakeANewValueTheFormerVersionIs
     EXPECT_NE(publisher.Version(), version);
 }
 
-// A limit decides when each of its datagrams goes.
+// A rate limit decides when each of its datagrams goes.
 TEST_F(StatePublisherTest, ALargeStateIsToldWithItsLastDatagramAndNothingOvertakesIt)
 {
     network.Parts = 3;

@@ -1,4 +1,4 @@
-// Which States are asked for, and when.
+// Which States a node requests, and when.
 #include "mirrors/StateRepair.h"
 
 #include <gmock/gmock.h>
@@ -20,25 +20,25 @@ using namespace std::chrono_literals;
 using Ns = std::chrono::nanoseconds;
 using testing::ElementsAre;
 
-// Source time of the clocks of the other nodes when this node's shows 0.
+// Source time of the other nodes' clocks when this node's clock shows 0.
 constexpr std::int64_t Epoch = 1'700'000'000'000'000'000;
-// After which versions come again.
+// The time after which versions repeat.
 constexpr Ns Round{StateVersion::Step << 32};
 
 class StateRepairTest : public testing::Test
 {
 protected:
-    // Source time of a State that is posted then.
+    // Source time of a State that is posted at `when`.
     static std::int64_t At(Ns when) { return StateVersion::Quantised(Epoch + when.count()); }
 
-    // The node has two States that are wanted, and one between them that is not.
+    // Announces two States that this node wants, and one between them that it does not.
     void Announce(const std::string &node, std::uint64_t incarnation = 1)
     {
         repair.SetWanted(node, incarnation,
                          {{.State = 0, .Subscription = 10}, {.State = 2, .Subscription = 12}});
     }
 
-    // A beat tells when the States of the node were posted; negative: never.
+    // A beat states when the States of the node were posted; negative: never.
     void Tell(const std::string &node, const std::vector<Ns> &posted, Ns now, std::uint64_t incarnation = 1,
               Ns roundTrip = 0ns, std::size_t others = 0)
     {
@@ -61,7 +61,7 @@ protected:
         taken[{node, incarnation, subscription}] = At(posted);
     }
 
-    // "node:places" of all that changes now, with a `!` if the beat is to come soon.
+    // Returns "node:places" of all requests that change now, with a `!` if the beat is to come soon.
     std::vector<std::string> Take(Ns now)
     {
         std::vector<std::string> asks;
@@ -82,7 +82,7 @@ protected:
         return asks;
     }
 
-    // One that is heard and has all.
+    // The node is heard, and this node has all its States.
     void Settled(const std::string &node)
     {
         Announce(node);
@@ -158,18 +158,19 @@ TEST_F(StateRepairTest, ASampleThatIsNewerThanTheBeatIsNoLack)
     EXPECT_FALSE(repair.Due());
 }
 
-// A version says nothing of the order. What is told is older than now; so what fits it and is the latest is
-// no newer than what was taken in, or it is lacking.
+// A version alone does not tell the order. A stated version is older than now: its latest fitting time is
+// no newer than the accepted sample, or the sample is lacking.
 TEST_F(StateRepairTest, VersionsThatCameAgainAreToldApart)
 {
     Settled("uav1");
-    // For longer than half a round nothing is posted; a version of a number that is ahead by less is later.
+    // Nothing is posted for longer than half a round, so a version whose number is ahead by less than half
+    // is later.
     const Ns later = 1s + Round / 2 + 60s;
     Tell("uav1", {later, 1s, 1s}, later + 1s);
     EXPECT_THAT(Take(later + 2s), ElementsAre("uav1: 0 !"));
     Have("uav1", 10, later);
     EXPECT_THAT(Take(later + 3s), ElementsAre("uav1:"));
-    // For longer than a round nothing is posted at all.
+    // Nothing at all is posted for longer than a round.
     Tell("uav1", {later, 1s, 1s}, later + Round + 1s);
     EXPECT_FALSE(repair.Due());
 }
@@ -242,7 +243,7 @@ TEST_F(StateRepairTest, NodesAskAtRandomIfManyMayLackTheSame)
     Tell("uav1", {3s, 1s, 1s}, 3s, 1, 0ns, 4);
     EXPECT_EQ(repair.Due(), 3s + StateRepair::AskAfter + 7ms);
     Settled("uav2");
-    // The most of a range of 100 ms, and less than that of a longer one.
+    // This value gives the largest delay for a range of 100 ms; for a longer range it would give less.
     random = 2 * static_cast<std::uint64_t>(Ns(StateRepair::LongestSpread).count()) + 1;
     Tell("uav2", {3s, 1s, 1s}, 3s, 1, 0ns, 100'000);
     EXPECT_THAT(Take(3s + StateRepair::AskAfter + StateRepair::LongestSpread - 1ns),

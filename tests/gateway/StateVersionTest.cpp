@@ -14,7 +14,7 @@ namespace
 using namespace std::chrono_literals;
 
 constexpr std::int64_t Now = 1'700'000'000'123'456'789;
-// After which versions come again.
+// The time after which versions repeat.
 constexpr std::int64_t Round = Step << 32;
 
 TEST(StateVersion, WhatABackendRoundsDoesNotChangeTheVersion)

@@ -39,7 +39,7 @@ protected:
         fleet.RunFor(5s);
     }
 
-    // So that both have something of each other to tell of.
+    // Both nodes post, so that each has something to send to the other.
     void PostState()
     {
         uav.Workspace.AddPublishSubscribeMessage("Pose", pose);

@@ -1,4 +1,4 @@
-// What a publisher does with a network that takes nothing.
+// A publisher on a network that takes nothing.
 #include "mirrors/TopicPublisher.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 using OneWriter::Network;
 using OneWriter::Session;
 
-// While there is no network a write ends at once: without a gap the gateway's thread would do nothing else.
+// Without a network a write ends at once: without a gap the gateway's thread would do nothing but write.
 TEST(TopicPublisher, WhatTheNetworkDoesNotTakeIsTriedAgainAfterAGap)
 {
     Network network;

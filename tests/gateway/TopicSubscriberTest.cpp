@@ -1,4 +1,4 @@
-// What a subscriber posts, and what it does when it hears that an instance is no more.
+// Which samples a subscriber posts, and how it handles the end of an instance.
 #include "mirrors/TopicSubscriber.h"
 
 #include <gtest/gtest.h>
@@ -88,7 +88,7 @@ protected:
 
     Gateway::TopicStatus Counters() const { return subscriber.Status().at(0); }
 
-    // The number that is shown if it was posted anew, else -1.
+    // Returns the shown number if it was posted since the last call, else -1.
     int Posted() { return mirrored->FetchMessage() ? static_cast<int>(mirrored->number) : -1; }
 
     SampleInfo InfoOf(std::uint32_t number, std::int64_t time)
@@ -126,7 +126,7 @@ TEST_F(TopicSubscriberTest, TheEndOfAFormerInstanceIsNotTakenForTheEndOfTheValue
     EXPECT_EQ(Posted(), 3);
 }
 
-// The new sample was lost on its way, or is overtaken.
+// The new sample was lost on its way, or was overtaken.
 TEST_F(TopicSubscriberTest, TheEndOfAnInstanceBeforeItsSuccessorLeavesTheValueUntilThatIsThere)
 {
     Hear(1, 1'000'000'000);
@@ -138,7 +138,7 @@ TEST_F(TopicSubscriberTest, TheEndOfAnInstanceBeforeItsSuccessorLeavesTheValueUn
     EXPECT_EQ(Posted(), 2);
 }
 
-// The transport's thread must go on: beats of other nodes come on it.
+// The transport's thread must go on: it brings the beats of other nodes.
 TEST_F(TopicSubscriberTest, ASlowHandlerHoldsUpNeitherTheTransportNorWhatComesNext)
 {
     RabitHandlerThread handlers;
@@ -288,7 +288,7 @@ TEST_F(TopicSubscriberTest, TheMessageOfAForgottenNodeStaysForWhoeverRegisteredI
     EXPECT_EQ(Posted(), 2);
 }
 
-// To ask for it again would bring the same.
+// A repeated request would bring the same sample.
 TEST_F(TopicSubscriberTest, WhatCannotBeUsedIsTakenInNevertheless)
 {
     HearBytes({0, 1, 0, 0, 1, 2, 3}, 1'000'000'000);
@@ -306,8 +306,8 @@ TEST_F(TopicSubscriberTest, WhatCannotBeUsedIsTakenInNevertheless)
     EXPECT_EQ(subscriber.TakenIn("uav2", 5), 3'000'000'000);
 }
 
-// Partitions alone do not keep it out: with keys, one vendor heeds those of its own permissions, not those of
-// others'.
+// Partitions alone do not keep such a node out: with keys, one vendor checks the partitions of its own
+// permissions, but not those of others.
 TEST_F(TopicSubscriberTest, WhoIsNotAmongThoseThatTheRuleNamesIsNotHeardThroughAPartitionOfTheirs)
 {
     SubscribeRule asks = rule;

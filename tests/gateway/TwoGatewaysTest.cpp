@@ -100,7 +100,8 @@ protected:
         return ground.Workspace.AddMessageToQueue(address, std::make_shared<Uav::Goto>(), receipt);
     }
 
-    // How many messages the mission control of the n-th aircraft has got since it was asked last.
+    // Returns the number of messages that the mission control of the n-th aircraft has got since the last
+    // call.
     int Got(std::size_t aircraft)
     {
         int count = 0;

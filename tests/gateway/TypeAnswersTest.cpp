@@ -17,7 +17,7 @@ using Ns = std::chrono::nanoseconds;
 class TypeAnswersTest : public ::testing::Test
 {
 protected:
-    // Sends all that is due until that time; returns how many bytes went to the node.
+    // Sends all answers that are due until `end`. Returns the number of bytes that went to the node.
     std::size_t SendUntil(Ns end, const std::string &node = "tool")
     {
         std::size_t bytes = 0;

@@ -26,7 +26,7 @@ import shutil
 import subprocess
 import sys
 
-# What of a unit's command line says how it is to be read. -O is not among it: nothing is compiled.
+# The options of a unit's command line that decide how it is read. -O is not among them: nothing is compiled.
 KEPT = ("-I", "-isystem", "-D", "-std", "-W")
 TOGETHER = 60  # units in one reading at most
 ENOUGH_FAILURES = 10

@@ -87,7 +87,7 @@ class WhatIsRemembered(unittest.TestCase):
         self.write("A.cpp", '#include "A.h"\n')
         self.write("B.cpp", '#include "A.h"\nint B() { return A(); }\n')
         self.set_options("-Wall -Wextra")
-        # Counts in how many units it was asked for their syntax.
+        # A clang that counts the units whose syntax it checks.
         self.clang = self.folder / "clang"
         self.clang.write_text(f'#!/bin/sh\ncase "$*" in *-fsyntax-only*) echo >>{self.folder}/readings;; esac\n'
                               f'exec {CLANG} "$@"\n')
@@ -95,7 +95,7 @@ class WhatIsRemembered(unittest.TestCase):
 
     def write(self, name, text):
         (self.folder / name).write_text(text)
-        # ccache does not trust what is as new as the reading itself.
+        # ccache does not trust a file that is as new as its own reading of it.
         os.utime(self.folder / name, (1, 1))
 
     def set_options(self, options):

@@ -12,8 +12,8 @@ import sys
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 SOURCES = {".h", ".hpp", ".c", ".cpp", ".cc"}
 
-# The rooms of the gateway, from the bottom up, and the rooms that each may look into. Who drives the protocol in
-# gateway/links is among them: "links" stands for its public headers.
+# The rooms of the gateway, from the bottom up, and the rooms that each may include. "links" stands for the public
+# headers of gateway/links; the list includes the rooms that drive its protocol.
 ROOMS = {
     "air": [],
     "keys": [],
@@ -32,7 +32,7 @@ ROOMS = {
                 "queues", "foreign", "report"],
 }
 
-# What a header's path says about where it belongs. The first pattern that fits holds.
+# The owner of a header, by its path. The first pattern that fits holds.
 OWNERS = [
     (r"recording/mcap/", "room mcap"),
     (r"recording/merge/", "room merge"),
@@ -71,8 +71,8 @@ OWNERS = [
     (r"sys/socket\.h|netinet/|arpa/|netdb\.h", "network"),
 ]
 
-# Which of those owners the files below a folder may include. The longest folder that fits holds; a header that
-# belongs to nobody (the standard library, Boost, the file's own folder) may be included by everybody.
+# The owners that the files below a folder may include. The longest folder that fits holds. A header without an owner
+# (the standard library, Boost, the file's own folder) may be included everywhere.
 ALLOWED = {
     "core": {"core"},
     "idl/runtime": {"core", "idl", "Fast-CDR"},
@@ -96,10 +96,10 @@ ALLOWED = {
        | ({"yaml-cpp"} if room == "configuration" else set())
        | ({"OpenSSL", "tinyxml2"} if room == "keys" else set())
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
-    # Files alone: no network, no messages.
+    # Only files: no network, no messages.
     "gateway/recording/mcap": {"room mcap", "zstd"},
     "gateway/recording/merge": {"room mcap", "room merge"},
-    # What is played when: files and names alone.
+    # The order of a replay: only files and names.
     "gateway/recording/replay": {"room names", "room mcap", "room replay"},
     # Runs managers again: files, messages and core, no network.
     "gateway/recording/rerun": {"core", "idl", "idl dynamic", "recording", "room mcap", "room rerun"},
@@ -109,14 +109,14 @@ ALLOWED = {
                      "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room manager", "room mcap",
                      "room recording", "room merge", "room replay"},
     "gateway/node": {"core", "factory", "gateway", "node", "recording", "CLI11"},
-    # Measured against each other: nodes, which name no vendor, and plain programs of each vendor, which are there to
-    # show what a user gets who does without Rabit, and so include nothing of it.
+    # Programs that are measured against each other. Nodes name no vendor. The plain programs of each vendor show what
+    # a user gets without Rabit, and so include nothing of it.
     "tests/bench": {"core", "idl", "idl dynamic", "transport", "factory", "simulated backend", "gateway", "gateway messages",
                     "user messages", "recording", "room recording", "room mcap", "CLI11"},
     "tests/bench/raw": {"CLI11"},
     "tests/bench/raw/fastdds": {"Fast DDS", "Fast-CDR"},
     "tests/bench/raw/cyclonedds": {"Cyclone DDS"},
-    # Carries frames, whosever they are.
+    # Carries any program's frames.
     "tests/integration/radio": {"CLI11", "network"},
     "examples": {"core", "idl", "factory", "gateway", "node", "recording", "gateway messages", "user messages", "CLI11",
                  "network", "yaml-cpp"},

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# clang for ccache, which remembers only what succeeds and leaves an object: `-c FILE -o OBJECT` reads FILE by its syntax
-# alone, and leaves in OBJECT "read" and what clang said. Fails if clang itself does. RABIT_CLANG says which clang.
+# Runs clang for ccache, which remembers only successes that leave an object. `-c FILE -o OBJECT` checks the syntax of
+# FILE and leaves in OBJECT "read" and clang's messages. Fails if clang itself does. RABIT_CLANG says which clang.
 set -uo pipefail
 words=()
 object=

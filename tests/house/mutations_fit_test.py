@@ -8,7 +8,7 @@ import importlib.util
 import pathlib
 import sys
 
-# The directories whose lists name the file alone, and where such files are.
+# The directories whose lists name only the file, and the folders of such files.
 SIMULATIONS = {"tests/simulation/links": ["gateway/links"], "tests/simulation/fleet": ["gateway"]}
 
 

@@ -1,4 +1,4 @@
-// Counts what encoding and decoding allocate. A program of its own, because it replaces operator new.
+// Counts the allocations of encoding and decoding. A program of its own, because it replaces operator new.
 #include "SampleTest.h"
 
 #include "growth.idl.h"
@@ -94,7 +94,7 @@ TEST_EACH_SAMPLE(Allocation, KeyHashAllocatesNothing)
     EXPECT_EQ(hashed, type->HasKey());
 }
 
-// A length that promises much more than the bytes hold must not be believed: every 4 bytes of the sample in
+// A length that promises much more than the bytes hold must not be trusted: every 4 bytes of the sample in
 // turn become a huge number.
 TEST_EACH_SAMPLE(Allocation, LengthsFromTheWireAreNotBelieved)
 {
@@ -118,7 +118,8 @@ TEST_EACH_SAMPLE(Allocation, LengthsFromTheWireAreNotBelieved)
     }
 }
 
-// What decoding may allocate for a sample, whatever its type and contents: MessageType.h.
+// Returns the most bytes that decoding may allocate for a sample, whatever its type and contents
+// (MessageType.h).
 std::size_t MostFor(std::size_t sampleSize)
 {
     return 256 * sampleSize + 65536;

@@ -1,5 +1,5 @@
-// What the generated classes offer beside the data. This file is compiled with the macros that GNU C++ has
-// unless it is asked for standard C++ alone.
+// The functions of generated classes beside the data. This file is compiled with the macros that GNU C++
+// defines unless standard C++ alone is requested.
 #define linux 1
 #define unix 1
 

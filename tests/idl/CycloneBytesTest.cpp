@@ -5,7 +5,8 @@ extern "C"
 {
 #include "CycloneValues.h"
 }
-// Cyclone DDS copies a string constant without its backslashes, and clang minds even though nobody uses the macro.
+// Cyclone DDS copies a string constant without its backslashes, and clang warns although the macro is
+// unused.
 #ifdef __clang__
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wreserved-user-defined-literal"
@@ -123,7 +124,7 @@ TEST(CycloneBytes, BigEndianBytesOfCycloneDecode)
     }
 }
 
-// The specification goes by the largest key of the type, Cyclone DDS by the key at hand unless told
+// The specification decides by the largest key of the type, Cyclone DDS by the key at hand unless told
 // otherwise.
 bool KeyMayBeLong(const std::string &type)
 {
@@ -155,7 +156,8 @@ TEST(CycloneBytes, KeyHashesAreThoseOfCyclone)
     EXPECT_EQ(compared, 11);
 }
 
-// What we accept is a sample for Cyclone DDS, too, and the same one: we are not laxer.
+// Cyclone DDS accepts each garbled sample that we accept, and decodes it to the same value: we are not
+// laxer.
 TEST(CycloneBytes, CycloneAcceptsGarbledBytesThatWeAccept)
 {
     int accepted = 0;

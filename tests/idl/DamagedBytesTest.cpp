@@ -57,7 +57,7 @@ TEST_EACH_SAMPLE(DamagedBytes, UnknownEncodingIsRefused)
     }
 }
 
-// Whatever arrives is either refused or a value that encodes again; Scan and Read agree on which.
+// Any bytes are either refused or a value that encodes again; Scan and Read agree on which.
 TEST_EACH_SAMPLE(DamagedBytes, GarbledBytesAreRefusedOrAreAValue)
 {
     const Rabit::MessageType *type = Rabit::MessageTypeRegistry::Of(message);

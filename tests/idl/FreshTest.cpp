@@ -1,4 +1,4 @@
-// A message that was just made, cleared or grown can be sent: every enum in it has a value.
+// A message that was just made, cleared or grown can be sent: every enum in it has a valid value.
 #include "Samples.h"
 
 #include "fresh.idl.h"

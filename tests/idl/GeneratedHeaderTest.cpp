@@ -1,4 +1,4 @@
-// The text of a generated header, where it is for people.
+// The comments of a generated header, which are for people.
 #include "RunIdlc.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Values that C++ can hold and IDL cannot, and bytes that no value has.
+// Values that C++ can hold and IDL cannot, and bytes that no value encodes to.
 #include "Samples.h"
 
 #include "constructs.idl.h"

@@ -1,4 +1,4 @@
-// Each file in refused/ breaks one rule; beside it is, word for word, what the generator says.
+// Each file in refused/ breaks one rule. The file beside it has the generator's message, word for word.
 #include "RunIdlc.h"
 
 #include <gtest/gtest.h>

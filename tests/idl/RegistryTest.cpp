@@ -25,7 +25,7 @@ public:
 
 TEST(Registry, HoldsTheTypesOfAllLinkedIdlFiles)
 {
-    // No code in this program mentions some of them.
+    // Some of these types are not mentioned by any code in this program.
     EXPECT_THAT(MessageTypeRegistry::Names(),
                 IsSupersetOf({"Basics::Stamp", "Constructs::Ground", "Global", "Keys::BaseKey",
                               "Uav::CommandAck", "Uav::TargetReport"}));

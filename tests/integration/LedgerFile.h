@@ -21,8 +21,8 @@ inline std::int64_t Now()
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-// Appends to the ledger file, each line with one write(2): several of these may write to one file. One
-// thread.
+// Appends to the ledger file, each line with one write(2), so that several objects may write to one file.
+// One thread.
 class LedgerFile
 {
 public:

@@ -7,8 +7,8 @@
 namespace TestNode
 {
 
-// The octet at that place of the padding of message `id`. Octets differ between messages and between places,
-// so that an assembly of parts of two messages, or in a wrong order, shows.
+// Returns the octet at `place` of the padding of message `id`. Octets differ between messages and places,
+// so that parts of two messages, or parts in a wrong order, show.
 inline std::uint8_t PaddingAt(std::uint64_t id, std::size_t place)
 {
     return static_cast<std::uint8_t>(id * 131 + place * 7 + (place >> 10));

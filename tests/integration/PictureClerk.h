@@ -35,7 +35,7 @@ class PictureClerk : public Rabit::RabitManager
 public:
     explicit PictureClerk(const PictureOptions &options);
 
-    // What a gateway needs so that pictures come and go.
+    // Adds the entries that pictures need to the configuration of a gateway.
     static void Configure(Rabit::GatewayConfig &config);
 
     void ExecuteUnitOfWork() override;

@@ -27,15 +27,15 @@ struct StateOptions
     std::size_t Size = 0;       // octets of padding in each
 };
 
-// Publishes States, which it posts in turn for a while and then leaves as they are, and follows those of the
-// other nodes. Of each it writes `state_posted message= number=`, `state from= message= number= age_s=`, and
-// when it changes `state_samples message= written=`.
+// Publishes States, which it posts in turn for a while and then leaves unchanged, and follows those of the
+// other nodes. For each it writes `state_posted message= number=`, `state from= message= number= age_s=`,
+// and on a change `state_samples message= written=`.
 class StateClerk : public Rabit::RabitManager
 {
 public:
     explicit StateClerk(const StateOptions &options);
 
-    // What a gateway needs so that the States come and go.
+    // Adds the entries that the States need to the configuration of a gateway.
     static void Configure(const StateOptions &options, Rabit::GatewayConfig &config);
 
     void ExecuteUnitOfWork() override;

@@ -1,4 +1,4 @@
-// Somebody else's keys, for tests of who is believed.
+// Keys of another node, for tests of which sender is accepted.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -9,9 +9,9 @@
 namespace TestNode
 {
 
-// A backend whose sessions have the keys in that folder, whatever the node calls itself: the gateway above is
-// not asked whether they fit. Writers are put where the keys allow it: into the partition of their owner in
-// place of the node's own. Opening throws Rabit::TransportError if the folder is none of keys.
+// Returns a backend whose sessions use the keys in `folder`, whatever the node calls itself: the gateway
+// does not check whether they fit. Writers go where the keys allow: into the partition of the keys' owner
+// instead of the node's own. Opening throws Rabit::TransportError if the folder has no keys.
 std::shared_ptr<Rabit::Transport> WithStolenKeys(std::shared_ptr<Rabit::Transport> backend,
                                                  const std::string &folder);
 

@@ -1,4 +1,4 @@
-// What the nodes share that run as processes of their own in tests.
+// The code that test nodes in processes of their own share.
 #pragma once
 
 #include <rabit/RabitManager.h>
@@ -17,11 +17,11 @@ class App;
 namespace TestNode
 {
 
-// The options that say who the node is and on which network.
+// Adds the options for the node's name and its network.
 void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config);
 
-// Runs the managers and a gateway until SIGINT or SIGTERM, over the backend that the configuration names or
-// what is made of it. Throws Rabit::ConfigError.
+// Runs the managers and a gateway until SIGINT or SIGTERM, over the backend that the configuration names,
+// or the one that `wrap` makes of it. Throws Rabit::ConfigError.
 void Run(
     const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers,
     const std::function<std::shared_ptr<Rabit::Transport>(std::shared_ptr<Rabit::Transport>)> &wrap = {});

@@ -41,7 +41,7 @@ class DockerField:
         self._faulty = set()
 
     def __enter__(self):
-        # The nodes run as a user of their own and write here.
+        # The nodes run as another user and write here.
         self.folder = tempfile.mkdtemp(prefix=self._engine.mark + "-")
         pathlib.Path(self.folder).chmod(0o777)
         self._engine.environment.update(

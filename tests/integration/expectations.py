@@ -5,8 +5,8 @@ import collections
 
 import judge
 
-# What passes between a cut and the last beat before it, and between an event and its line in the ledger, on a machine
-# that does other things as well.
+# Time between a cut and the last beat before it, and between an event and its line in the ledger, on a machine that
+# runs other programs as well.
 SLACK_S = 1.5
 STALE_S = 1.5
 LOST_S = 3.5
@@ -118,7 +118,7 @@ def ticks(run, wanted):
     wrong = []
     for node, percent in wanted.items():
         arrives = 1 - percent / 100
-        # Between two of them the later fault of the two holds.
+        # Between two nodes that are not in `wanted`, the later fault of the two holds.
         others = [other for other in run.lives if other not in wanted and run.events(other, "tick")]
         for reader, origin in [(other, node) for other in others] + [(node, other) for other in others]:
             share, span = run.share_of_ticks(reader, origin)
@@ -293,7 +293,8 @@ def starved_at_most(run, wanted):
             last.setdefault(event["from"], []).append(event.time)
         for origin, taken in last.items():
             accepted = sorted(e.time for life in run.lives[origin] for e in life.of("accepted") if e["to"] == receiver)
-            # The note taken at taken[i] waited from its acceptance on, and in vain since the one before was taken.
+            # The note taken at taken[i] waited from its acceptance on, and without a turn since the one before was
+            # taken.
             longest = max((now - max(before, since) for before, now, since in zip(taken, taken[1:], accepted[1:])),
                           default=0) * 1e-9
             if longest > wanted:

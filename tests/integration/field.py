@@ -161,7 +161,7 @@ class Field:
         return self._prefix + name
 
     def _make_space(self, name):
-        # Entered before it is made, so that it is removed also if a signal comes in between.
+        # Listed before the namespace is made, so that it is removed even if a signal comes in between.
         self._made.append(self.space(name))
         try:
             run("ip", "netns", "add", self.space(name))
@@ -197,7 +197,7 @@ class Field:
         if self._multicast:
             run(*inside, "route", "add", "224.0.0.0/4", "dev", "eth0")
 
-    # Dropped where it arrives: a drop on the way out would be told to the sender's socket.
+    # Dropped on arrival: the kernel would report a drop on the way out to the sender's socket.
     def _write_rules(self, node):
         rules = [] if self._multicast else ["ip daddr 224.0.0.0/4 drop"]
         for (origin, destination), percent in self._drops.items():

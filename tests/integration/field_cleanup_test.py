@@ -13,7 +13,7 @@ import field
 import radio_field
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Scenario -> its processes, with the radio where there is one; and its namespaces, with the bridge's where there is one.
+# Scenario -> the number of its processes, with the radio if there is one; and of its namespaces, with the bridge's.
 RUNS = {"expiry": (2, 3), "radio": (4, 3)}
 
 

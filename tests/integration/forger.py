@@ -14,7 +14,7 @@ import sys
 
 import stranger
 
-# The writers of what endpoints are, and their readers (RTPS 2.3, 9.3.1.3).
+# The writers that announce endpoints, and their readers (RTPS 2.3, 9.3.1.3).
 DISCOVERY = tuple(bytes.fromhex(entity) for entity in ("000003c2", "000004c2", "000003c7", "000004c7"))
 HEADER = 20
 MOST_KEPT = 40

@@ -14,10 +14,11 @@ import growth
 
 FOR_NODE, FOR_PAIR, WITH_BUDGET = 300, 20, 100  # bytes a second
 ETHERNET = 14  # the header, which is not IP's
-# Whoever is slow is so for a while: the law holds for what goes on for ever, so one of several windows will do.
+# A slow machine is slow for a while. The law is for steady traffic, so one of several windows must keep it.
 WINDOW_S = 20
 WINDOWS = 5
-# Nor is nothing said: beats come twice a second, with a budget each 5 s, and a machine that is busy sends some late.
+# The nodes must send something: beats come twice a second, with a budget each 5 s, and a busy machine sends some
+# late.
 FEWEST, FEWEST_WITH_BUDGET = WINDOW_S, WINDOW_S // 10
 SKIPPED = 77
 

@@ -12,10 +12,10 @@ import collections
 import re
 import sys
 
-# Between the queue that a note was put into and the line in the ledger lies the receiver's thread.
+# The receiver's thread takes a note from its queue up to this much before the line is in the ledger.
 PICK_UP_S = 1.0
 
-# A node from which nothing comes for so long is silent to its peers (LinkSettings::SilentAfter).
+# A node is silent to its peers when nothing comes from it for this long (LinkSettings::SilentAfter).
 SILENT_AFTER_S = 10.0
 
 NOTES = "Notes"
@@ -193,7 +193,7 @@ def _judge_row(sender, to, receiver, followed):
         if 0 < expire_s < age_s - PICK_UP_S:
             wrong.append(f"{name}: note {number} came late, {age_s:.1f} s after it was sent, expiry {expire_s} s")
 
-    # One that was stopped in order and started again has also left what was on its way to it.
+    # A life that was stopped in order and started again has also lost the notes that were on their way to it.
     killed = [life for life in receiver if life.killed or life is not receiver[-1]]
     may_expire = any(float(event["expire_s"]) > 0 for event in intents.values())
     runs = _missing_runs(accepted, arrived)

@@ -1,5 +1,5 @@
-// A node that writes down everything that it does and sees, one line per event, for judge.py. README.md lists
-// the lines. Each line is one write(2), so a kill loses at most the line being written.
+// A node that writes a line for each event that it causes or sees, for judge.py. README.md lists the lines.
+// Each line is one write(2), so a kill loses at most the line being written.
 #include "LedgerFile.h"
 #include "Padding.h"
 #include "PictureClerk.h"
@@ -117,7 +117,7 @@ private:
         std::int64_t Start = 0;
         std::uint64_t Sent = 0;  // accepted
         std::uint64_t LastId = 0;
-        // Of accepted notes whose outcome is not in the ledger yet, with their ids.
+        // The receipts of accepted notes whose outcome is not in the ledger yet, with their ids.
         std::deque<std::pair<std::uint64_t, std::shared_ptr<Rabit::RabitQueueReceipt>>> Receipts;
     };
 
@@ -137,11 +137,11 @@ private:
         }
     }
 
-    // The intent is written first: whatever arrives has one, and a life that was killed between the two lines
-    // leaves one message of which nothing can be said.
+    // Writes the intent first, so that each arriving note has one. If the process is killed between the two
+    // lines, the fate of this one note is unknown.
     bool SendOne(const std::string &to, Row &row);
 
-    // A link settles its messages from the front, so that only the first ones need be asked.
+    // A link settles its messages from the front, so only the first receipts need a look.
     void FollowReceipts()
     {
         for (auto &[to, row] : _rows)
@@ -216,7 +216,7 @@ private:
             std::ostringstream line;
             line << "peer node=" << status.node << " state=" << name << " heard_s=" << status.last_heard_s;
             _ledger.Line(line.str());
-            // A first message before the other node is known is refused, which is right but no use here.
+            // A message to a node that is not known yet is refused, which is right but of no use here.
             if (status.state == Rabit::Gateway::NodeState::UP)
                 _ready.insert(status.node);
             if (_options.Ticks && !_ticks.count(status.node))

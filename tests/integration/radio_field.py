@@ -11,7 +11,7 @@ import harness
 
 LIMIT_S = 60  # only keeps a broken test from hanging
 
-# What a medium may say, and what holds where it does not.
+# The settings of a medium, and their defaults.
 MEDIUM = {
     "kbit": 0,  # of the whole medium; 0 is unlimited
     "queue": 16000,  # bytes for each node

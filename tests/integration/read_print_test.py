@@ -95,7 +95,7 @@ class ReadPrint(unittest.TestCase):
             self.assert_shut_down_cleanly(session)
             printed = session.seen_with("posted: ")
             self.assertEqual(printed[-1], posts[-1])
-            # The wake-up by the first message of the queue may have caused one pass more, somewhere in between.
+            # The wake-up by the first message of the queue may have caused one more pass in between.
             self.assertLessEqual(len(printed), 2)
 
     def test_each_post_is_printed_at_once_when_posts_wake_the_printing_manager(self):
@@ -146,7 +146,7 @@ class ReadPrint(unittest.TestCase):
             self.assert_shut_down_cleanly(session)
 
     def test_lines_of_both_managers_stay_whole_when_both_speak_at_once(self):
-        # Both say that they shut down at the same moment, so one time of twenty would do to see a line torn.
+        # Both managers report their shutdown at the same moment, so twenty rounds would show a torn line.
         for _ in range(200):
             output = subprocess.run([PROGRAM, "--period", "3600"], input="quit\n", stdout=subprocess.PIPE, text=True,
                                     timeout=PATIENCE_SEC, check=True).stdout

@@ -305,7 +305,7 @@ def run_in(ground, scenario, options):
     seconds = time.monotonic() - began
     bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
     air = ground.counters() if "medium" in scenario else None
-    # Before the stop, which the others see as LOST.
+    # Judged before the stop, which the other nodes see as LOST.
     wrong += expectations.states(expectations.Run(fleet.ledgers(), faults.done), scenario.get("states", {}))
     ended = time.monotonic()
     wrong += fleet.stop()

@@ -11,7 +11,8 @@ import sys
 import time
 
 MULTICAST = "239.255.0.1"
-# Of domain 0 (OMG DDSI-RTPS 2.3, 9.6.1): the multicast ports, and the unicast ones of the first participants.
+# The ports of domain 0 (OMG DDSI-RTPS 2.3, 9.6.1): the multicast ports, and the unicast ones of the first
+# participants.
 MULTICAST_PORTS = (7400, 7401)
 UNICAST_PORTS = tuple(range(7410, 7416))
 IP_UDP = 0x11
@@ -42,7 +43,7 @@ def mutated(chance, payload):
     for _ in range(chance.randint(1, 4)):
         if len(data) < 24:
             break
-        # The header of 20 bytes is left sound more often than not, so that what is behind it is looked at.
+        # The header of 20 bytes mostly stays sound, so that the receiver reads the bytes behind it.
         at = chance.randrange(0 if chance.random() < 0.1 else 20, len(data))
         what = chance.randrange(6)
         if what == 0:
@@ -82,7 +83,7 @@ def main():
     for _ in range(int(count)):
         overhear(listener, heard)
         if heard and chance.random() < 0.7:
-            # Answers go where the datagram went; sometimes to somebody else.
+            # Answers go to the source of a datagram, and sometimes to another address.
             address, port, payload = chance.choice(heard)
             payload = mutated(chance, payload)
             if chance.random() < 0.2:

@@ -14,7 +14,7 @@ def case(name, file, find, replace, tests):
 
 
 MUTATIONS = [
-    # What a sample costs
+    # The cost of a sample
     unit("copies cost nothing", "AirCost.cpp", "return readers.Destinations * (IpAndUdp + whole);",
          "return IpAndUdp + whole;", "AirCost.EachDestinationCostsACopy"),
     unit("a reader's name costs nothing", "AirCost.cpp", "(directed ? InfoDestination : 0)", "0",
@@ -97,7 +97,7 @@ MUTATIONS = [
     unit("who has sent stays ready", "AirSchedule.cpp",
          "StopWaiting(stream); _promised = _promised == &stream ? nullptr : _promised; if (bytes == 0)",
          "_promised = _promised == &stream ? nullptr : _promised; if (bytes == 0)", "AirScheduleTest.WhoHasSent*"),
-    # What was sent, and what peers say
+    # The bytes sent, and the reports of peers
     unit("a burst is spread over the pause behind it", "SentHistory.cpp",
          "std::min(mark.At + Step, Nth(low).At)", "Nth(low).At", "SentHistory.WhatWasSentInABurst*"),
     unit("one report is agreement", "DelayReports.cpp", "peers > 3 ? 1 : peers > 1 ? 2 : 3", "1",
@@ -112,7 +112,7 @@ MUTATIONS = [
          "entry.Said.back().CameAt - first->CameAt >= LongEnough &&", "", "DelayReportsTest.OneIsBelieved*"),
     unit("what is old counts", "DelayReports.cpp", "return now - entry.Said.back().CameAt <= Fresh;", "return true;",
          "DelayReportsTest.WhatIsOld*"),
-    # What the air carries
+    # The estimate of the capacity
     unit("a delay is no congestion", "CapacityEstimate.cpp", "_agreed = _reports.Agree(Target, now);",
          "_agreed = false;", "CapacityEstimateTest.FindsWhat*"),
     unit("any delay is congestion", "CapacityEstimate.cpp", "_agreed = _reports.Agree(Target, now);",

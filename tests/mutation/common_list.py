@@ -77,7 +77,7 @@ MUTATIONS = [
     choice("more than the backend takes", "choice.Usable.size() > most;", "false;"),
     choice("what is down has no carrier", "if (!found->Up)", "if (false)"),
     choice("what is missing is not told", "choice.Problems.push_back(WhyNot(name, host));", ""),
-    # Whose address another host has too
+    # Addresses that another host has too
     duplicates("each address that a peer has too", "isItsToo && IsElsewhere(peer, usable) &&", "isItsToo &&"),
     duplicates("a process of this host is elsewhere", "std::none_of(usable.begin(), usable.end(), isOurs) &&", ""),
     duplicates("a peer behind a router is elsewhere", "&& std::any_of(usable.begin(), usable.end(), isNear)", ""),
@@ -89,7 +89,7 @@ MUTATIONS = [
                "[&](const HostNetwork &network) { return network.IsSame(found); });", "return true;"),
     # Users and changes
     gate("a change does not turn users away", "_gate._changing = true;", ""),
-    # Of the others one would wait for ever for the change to be seen.
+    # The other tests of UseGate would wait for ever to see the change.
     gate("a change does not wait for users", "_gate._event.wait(lock, [this] { return _gate._users == 0; });", "",
          "AChangeAndItsUsersNeverOverlap"),
     gate("a change never ends", "_gate._changing = false;", ""),

@@ -54,7 +54,7 @@ MUTATIONS = [
     repair("who is lost is asked", "Settle(found->second, entry);", ""),
     repair("who is forgotten is due", "_due.erase({*found->second.Due, node});", ""),
     repair("there is no end of nodes", "|| _nodes.size() >= MostNodes", ""),
-    # What is said
+    # Requests in beats
     repair("what came is asked for still", "entry.Asked = false;", ""),
     repair("that it came is not said", "node.Changed |= entry.Asked;", ""),
     repair("it is said again and again", "node.Changed = false;", ""),
@@ -87,7 +87,7 @@ MUTATIONS = [
     publisher("times are as they are", "StateVersion::Quantised(posted)", "posted"),
     publisher("what is asked for comes more often than the rule allows", "std::max(*repeat, mayWriteAt)", "*repeat"),
     publisher("what was never written is repeated", "if (_version != StateVersion::None && _isWhole)", "if (_isWhole)"),
-    # What is taken in
+    # Accepted samples
     subscriber("a State may be telemetry", "(_rule.Qos == QosProfile::State && offer != _rule.Qos)", "false"),
     subscriber("a State that comes again is posted", "offer == QosProfile::State && IsRepetition(source, info)", "false"),
     subscriber("telemetry of one moment is one", "offer == QosProfile::State && IsRepetition(source, info)",

@@ -28,7 +28,7 @@ from mirrors_list import MUTATIONS as MIRRORS  # noqa: E402
 from transport_list import MUTATIONS as TRANSPORT  # noqa: E402
 
 MUTATIONS = [*AIR, *MIRRORS, *TRANSPORT, *COMMON]
-# Only keeps a mutant that hangs from hanging the run; to hang is to be noticed.
+# Only keeps a hanging mutant from hanging the run. A mutant that hangs counts as noticed.
 LIMIT_S = 120
 
 
@@ -56,7 +56,7 @@ class Commands:
 
     def linking(self, program):
         line = next(line for line in reversed(self.of(program)) if re.search(rf" -o bin/{re.escape(program)}\b", line))
-        # What surrounds it is there for other kinds of targets.
+        # The commands around the link command are for other kinds of targets.
         line = re.sub(r"^: && ", "", re.sub(r" && .*$", "", re.sub(r"^: && ", "", line)))
         return shlex.split(line)
 
@@ -86,7 +86,7 @@ class Run:
         for flag in ("-MF", "-MT"):
             if flag in words:
                 words[words.index(flag) + 1] = str(target) + ".d"
-        # The changed file finds its neighbours where the original has them, unless they are changed too.
+        # The changed file finds its neighbours where the original finds them, unless they are changed too.
         words[words.index("-c"):words.index("-c")] = ["-iquote", str(changed.parent), f"-I{source.parent}", "-Wno-error"]
         self.execute(words)
 
@@ -97,7 +97,7 @@ class Run:
         source = self.source / change.file
         changed = work / source.name
         changed.write_text(mutation.apply(source.read_text(), change))
-        # As others name it: by itself, or with its folder.
+        # The file under both names by which others include it: alone, and with its folder.
         (work / source.parent.name).mkdir(exist_ok=True)
         (work / source.parent.name / source.name).write_text(changed.read_text())
         link = self.commands.linking(program)

@@ -103,7 +103,7 @@ MUTATIONS = [
           "payload[1] <= 1 && IsGuidOf(sender, payload.subspan(4))", "payload[1] <= 1"),
     guard("short liveliness", "DiscoveryCheck.cpp", "payload.size() >= SmallestSize &&",
           "payload.size() >= 16 &&"),
-    # What peers have said before
+    # Earlier announcements and numbers of peers
     guard("a peer may be sent elsewhere", "KnownPeers.cpp",
           "if (now - known.Heard < Forgotten && (!repeated || since < 2 * known.Period))", "if (false)"),
     guard("a peer never moves", "KnownPeers.cpp",
@@ -164,7 +164,7 @@ MUTATIONS = [
     guard("the pace is how far, not how often", "KnownPeers.cpp", "++numbers.Steps;",
           "numbers.Steps += number - numbers.Highest;"),
     guard("a gap may be anywhere", "KnownPeers.cpp", "&& number <= found->second.Highest + LargestStep", ""),
-    # Who may speak in a participant's name
+    # The addresses that may speak in a participant's name
     guard("anybody may say who is where", "PeerVoice.cpp", "_heardThere = true;", ""),
     guard("who repeated an announcement keeps its voice", "PeerVoice.cpp", "_heardThere = true; _others.clear();",
           "_heardThere = true;"),

@@ -15,8 +15,7 @@ enum class Carriage
     Queue       // each and every message
 };
 
-// What is common to the command lines of all programs that are measured, so that a driver can put one in the
-// place of another.
+// The options that all measured programs share, so that a driver can replace one program by another.
 struct BenchOptions
 {
     // ping, pong: round trips. source, sink: as fast as it goes in one direction. announce, join: how long it
@@ -26,22 +25,21 @@ struct BenchOptions
     int Domain = 0;
     // Serialized bytes of a message, without the encapsulation header.
     std::size_t Payload = 100;
-    // Messages before those that are measured, and those.
+    // Number of messages before the measured ones, and of measured ones.
     std::uint64_t WarmUp = 1000;
     std::uint64_t Count = 10000;
     // Nanoseconds between two messages of a paced source; 0: as fast as it goes.
     std::int64_t Period = 0;
     // CLOCK_MONOTONIC when the process was started, in nanoseconds.
     std::int64_t SpawnedAt = 0;
-    // Of a fleet: which one this is, from 1, and how many there are.
+    // In a fleet: the number of this member, from 1, and the number of members.
     std::size_t Member = 1;
     std::size_t Members = 2;
     // A plain program only: answer in the vendor's listener itself, without a thread of the application.
     bool InListener = false;
-    // A plain program only: leave the writing to a thread of its own, so that who sends never waits for the
-    // network.
+    // A plain program only: write on a separate thread, so that the sender never waits for the network.
     bool WriterThread = false;
-    // A node only: which backend.
+    // A node only: the backend.
     std::string Transport = "fastdds";
     // The address of the network interface, and the largest datagram that DDS may make of a message.
     std::string Interface = "127.0.0.1";
@@ -51,7 +49,7 @@ struct BenchOptions
     std::size_t Padding() const;
 };
 
-// What Bench::Sample has beside its padding.
+// Serialized bytes of Bench::Sample apart from its padding.
 inline constexpr std::size_t SampleOverhead = 20;
 
 // Parses the command line; ends the process on --help and on errors.

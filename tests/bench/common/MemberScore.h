@@ -10,18 +10,18 @@
 namespace Rabit::Bench
 {
 
-// What a member of a fleet has heard and used. Prints a line of JSON, at once, when every other member was
-// heard for the first time, and one more for each SIGUSR1, so that who measures can take the difference of
-// two. Members are numbered from 1. One thread at a time; one score in a process.
+// Measures what a member of a fleet has heard and used. Prints a line of JSON as soon as every other member
+// was heard for the first time, and one more for each SIGUSR1; the difference of two lines is the
+// measurement. Members are numbered from 1. One thread at a time; one score in a process.
 class MemberScore
 {
 public:
     // Listens to SIGUSR1 from here on.
     explicit MemberScore(const BenchOptions &options);
     void Sent() { ++_sent; }
-    // A sample of that member has come. Numbers outside the fleet are counted as strangers.
+    // Counts a sample of this member. Numbers outside the fleet are counted as strangers.
     void Heard(std::size_t member);
-    // To be called often: prints if a signal has come since the last call.
+    // Prints a line if a signal has come since the last call. Call it often.
     void ReportIfAsked();
 
 private:

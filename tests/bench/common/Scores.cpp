@@ -21,7 +21,7 @@ double Seconds(std::int64_t nanoseconds)
     return static_cast<double>(nanoseconds) * 1e-9;
 }
 
-// In one piece: two managers of one process may be done at the same time.
+// Prints the line in one piece: two managers of one process may be done at the same time.
 void PrintLine(const std::string &line)
 {
     const std::string text = line + '\n';

@@ -9,16 +9,16 @@
 namespace Rabit::Bench
 {
 
-// What one side of a run has measured. Each prints one line of JSON when it is complete, at once, so that the
-// process may then be ended by a signal. A time or count is for one message; with round trips, which are two
-// messages, half a round trip is what one message took. One thread at a time.
+// The scores of the sides of a run. Each prints one line of JSON as soon as it is complete, so that a
+// signal may then end the process. Times and counts are for one message; of a round trip, which is two
+// messages, half counts. One thread at a time.
 
-// Who sends the pings.
+// The score of the side that sends the pings.
 class PingScore
 {
 public:
     explicit PingScore(const BenchOptions &options);
-    // The answer to the message of that number has come after so long, or (negative) never.
+    // The answer to message `number` has come after `roundTrip`, or (negative) never.
     void Add(std::uint64_t number, std::int64_t roundTrip);
     bool IsComplete() const { return _complete; }
 
@@ -32,8 +32,8 @@ private:
     bool _complete = false;
 };
 
-// Who receives: what it has used between the first and the last message that count, how fast they came, and
-// whether each came once and in order.
+// The score of the receiver: its resource use and the rate between the first and the last counted message,
+// and whether each message came once and in order.
 class ReceiverScore
 {
 public:
@@ -54,14 +54,14 @@ private:
     bool _complete = false;
 };
 
-// Who sends as fast as it goes.
+// The score of the side that sends as fast as it can.
 class SourceScore
 {
 public:
     explicit SourceScore(const BenchOptions &options) : _options(options) {}
-    // The message of that number is about to be sent.
+    // Message `number` is about to be sent.
     void Sending(std::uint64_t number);
-    // All were acknowledged.
+    // All messages were acknowledged.
     void Complete();
 
 private:

@@ -12,7 +12,7 @@ std::int64_t Now();
 // Calls of malloc and its relatives in this process so far, by all its threads and libraries.
 std::uint64_t AllocationsSoFar();
 
-// What this process has used so far.
+// The resources that this process has used so far.
 struct Usage
 {
     std::int64_t Processor = 0;  // user and system time of all threads, ns

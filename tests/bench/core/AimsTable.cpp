@@ -15,13 +15,14 @@ struct Row
     const char *Unit;
 };
 
-// Real time where threads or sleep are measured, processor time elsewhere: it leaves out other programs.
+// True if threads or sleep are measured: these are judged by real time. Processor time, used elsewhere,
+// leaves out other programs.
 bool IsRealTime(const std::string &name)
 {
     return name.find("/real_time") != std::string::npos || name.find("/manual_time") != std::string::npos;
 }
 
-// The name without what the library adds.
+// Returns the name without the suffixes that the library adds.
 std::string BaseName(const std::string &name)
 {
     std::string base = name;

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-// Reports to the console as usual and remembers the best result of each benchmark: the repetition that other
-// programs disturbed least. Then compares them with the aims.
+// Reports to the console as usual and remembers the best result of each benchmark: the repetition that
+// other programs disturbed least. Then compares these results with the aims.
 class AimsTable : public benchmark::ConsoleReporter
 {
 public:
     void ReportRuns(const std::vector<Run> &runs) override;
-    // Prints the aims and what was measured as a Markdown table. Returns whether all aims are met.
+    // Prints the aims and the measured values as a Markdown table. Returns whether all aims are met.
     bool Print() const;
 
 private:

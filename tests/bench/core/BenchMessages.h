@@ -9,7 +9,7 @@
 #include <typeinfo>
 #include <vector>
 
-// A small message, as a pose of an aircraft is; copied as the messages that are generated from IDL are.
+// A small message, like the pose of an aircraft; copied like messages generated from IDL.
 class PoseMessage : public Rabit::RabitMessage
 {
 public:
@@ -47,7 +47,7 @@ public:
             value = static_cast<double>(count);
         }
     }
-    // Whether all values are of one SetAll.
+    // True if all values come from one SetAll.
     bool IsWhole() const
     {
         for (const double value : Position)
@@ -68,7 +68,7 @@ public:
     }
 };
 
-// A large message, as an image is.
+// A large message, like an image.
 class ImageMessage : public Rabit::RabitMessage
 {
 public:

@@ -31,8 +31,8 @@ void AddAndGet(benchmark::State &state)
 BENCHMARK(AddAndGet<RabitMessageQueue<Message>>)->Name("Queue/AddGetOneThread");
 BENCHMARK(AddAndGet<RabitNonBlockingSPSCQueue<Message>>)->Name("SpscQueue/AddGetOneThread");
 
-// One thread adds, another gets; time for each message that went through. Each has its own messages, so that
-// what is measured is the queue and not two threads at one reference count.
+// One thread adds and another gets. The time is for each message that went through. The pointers have no
+// shared reference count, so that only the queue is measured.
 template <typename Queue>
 void ThroughTwoThreads(benchmark::State &state)
 {

@@ -1,4 +1,4 @@
-// What the computer itself costs, measured in the same run: what the aims are multiples of.
+// The costs of the computer itself, measured in the same run. The aims are multiples of these.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

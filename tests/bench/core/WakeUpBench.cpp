@@ -22,7 +22,7 @@ namespace
 using namespace Rabit;
 using Clock = std::chrono::steady_clock;
 
-// When the woken thread was there, in nanoseconds of the steady clock; 0: not yet.
+// The time at which the woken thread ran, in nanoseconds of the steady clock; 0: not yet.
 class Arrival
 {
 public:

@@ -76,7 +76,7 @@ public:
     int MatchedReaders() const override { return 1; }
 
 private:
-    // Null: to all.
+    // `to` is null: to all.
     WriteResult Send(const std::string *to, const SampleEncoder &sample, std::int64_t sourceTime)
     {
         _buffer.resize(sample.EncodedSize());

@@ -10,16 +10,17 @@
 namespace Rabit::Bench
 {
 
-// A network that costs nothing: a write hands the bytes over to the readers at once, on the writer's thread,
-// and allocates nothing once its buffers are warm. So what is counted is the gateway's own. One thread, no
-// faults; topics match by name and partition, QoS does not matter, and nothing is kept for late readers.
+// A network without a cost of its own: a write passes the bytes to the readers at once, on the writer's
+// thread. It allocates nothing once its buffers are warm, so only the gateway's work is counted. One
+// thread, no faults; topics match by name and partition, QoS does not matter, and nothing is kept for late
+// readers.
 class Wire
 {
 public:
     struct Reader;
     struct Session;
 
-    // Of all sessions so far. What is written once arrives at each reader that matches.
+    // Sums over all sessions so far. One write arrives at each reader that matches.
     struct Traffic
     {
         std::uint64_t Writes = 0;

@@ -17,7 +17,7 @@ LIMITS = pathlib.Path(__file__).resolve().parent / "limits.json"
 MESSAGES = 3000
 SCENARIOS = ["codec", "state", "telemetry", "queue", "packed-queue"]
 INSTRUCTIONS_MARGIN = 1.05
-# Of work that comes once a second, which falls into the measured time or not.
+# Some work comes once a second and may or may not fall into the measured time.
 ALLOCATIONS_MARGIN = 0.05
 
 

@@ -1,8 +1,8 @@
-// What the gateways of a fleet say to each other when nobody has anything to say: whole nodes in one process,
-// over a wire that counts, under a clock that moves when it is told to. Everybody subscribes to the `Note` of
-// `ground` alone.
+// The traffic between the gateways of an idle fleet: whole nodes in one process, over a wire that counts,
+// under a clock that the program advances. All subscribe to the `Note` of `ground` alone.
 //
-// Usage: bench_fleet NODES. Prints, for one node and second, what it writes and what arrives at it.
+// Usage: bench_fleet NODES. Prints, for one node and second, the samples and bytes that it writes and that
+// arrive.
 #include "WiredTransport.h"
 
 #include <rabit/ManualClock.h>

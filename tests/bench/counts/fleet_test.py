@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 SIZES = [2, 5, 10, 20, 40, 100]
-# Two beats a second: announcements are said once.
+# Two beats a second; announcements are sent once.
 MOST_WRITES_PER_S = 2.05
 # A beat echoes up to two others; names here have up to six letters.
 MOST_BYTES_PER_S = 300

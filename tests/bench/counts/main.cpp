@@ -1,7 +1,7 @@
-// Sends messages from one node to another within this process, over a wire that costs nothing, under a clock
-// that moves when it is told to, on one thread: so that instructions and allocations are the same in every
-// run. Prints the allocations of one message; under `valgrind --tool=callgrind --toggle-collect=Measured` its
-// instructions are counted.
+// Sends messages from one node to another within this process, on one thread, over a wire without cost, under
+// a clock that the program advances: instructions and allocations are the same in every run. Prints the
+// allocations of one message. Under `valgrind --tool=callgrind --toggle-collect=Measured` its instructions
+// are counted.
 //
 // Usage: bench_counts SCENARIO MESSAGES
 #include "../common/Usage.h"
@@ -38,7 +38,7 @@ constexpr std::size_t Padding = 80;  // a message of 100 bytes
 constexpr int WarmUp = 2000;
 constexpr auto Step = 50us;
 
-// Takes what comes, as any manager does.
+// Takes all that comes, as any manager does.
 class Taker final : public RabitManager
 {
 public:
@@ -128,7 +128,7 @@ public:
         Advance(Step);
     }
 
-    // Several at once, which may share a datagram.
+    // Adds several at once, which may share a datagram.
     void AddToQueue(int count)
     {
         for (int i = 0; i < count; ++i)
@@ -161,7 +161,7 @@ private:
     std::shared_ptr<Sample> _note = std::make_shared<Sample>();
 };
 
-// What any two programs must do: encode and decode.
+// The work of any two programs: encode and decode.
 class Codec
 {
 public:
@@ -223,7 +223,7 @@ Scenario Find(const std::string &name)
 }  // namespace
 }  // namespace Rabit::Bench
 
-// Named for callgrind.
+// A function with a plain name, for callgrind.
 extern "C" [[gnu::noinline]] void Measured(const Rabit::Bench::Scenario &scenario, int messages)
 {
     for (int i = 0; i < messages; i += scenario.AtOnce)
@@ -253,6 +253,6 @@ int main(int argc, char **argv)
     std::cout << "{\"messages\": " << count
               << ", \"allocations\": " << static_cast<double>(allocations) / static_cast<double>(messages)
               << "}" << std::endl;
-    // What was accepted last may still be on its way.
+    // The messages accepted last may still be on their way.
     return count + 128 >= static_cast<std::uint64_t>(messages) ? 0 : 1;
 }

@@ -48,7 +48,7 @@ class Contestants:
                 both = processes.start(self.argv(contestant, transport, roles[0], options))
                 results = [result(both), result(both, 1)]
                 both.exit_code(LIMIT_S)
-                # Who receives is complete before the answer is there.
+                # The receiver is complete before the sender has the last answer.
                 return {"client": results[1], "server": results[0]} if "p50_ns" in results[1] else \
                        {"client": results[0], "server": results[1]}
             server = processes.start(self.argv(contestant, transport, roles[1], options))

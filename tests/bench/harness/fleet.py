@@ -8,9 +8,9 @@ import time
 
 from contestants import LIMIT_S, harness, loopback_bytes, result
 
-# A fleet has settled when within one second each has heard this share of what it should.
+# A fleet has settled when, within one second, each member has heard this share of its expected samples.
 SETTLED = 0.8
-# A machine that is too small for the fleet never gets there; the share that arrived is then in the results.
+# A machine that is too small for the fleet never gets that far; the results then have the share that arrived.
 SETTLING_S = 10
 
 
@@ -88,7 +88,7 @@ class Fleet:
     def _next_report(member, lines):
         index = sum(text.startswith("{") for _, text in member.lines[:lines])
         report = result(member, index)
-        # Who was asked before may hear the last of the others only then.
+        # A member may hear the last of the others only after it was asked: the next report then is the answer.
         return report if "at_ns" in report else result(member, index + 1)
 
     def _who_misses_whom(self):

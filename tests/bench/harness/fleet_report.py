@@ -7,10 +7,10 @@ from law import Law
 
 NAMES = {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS"}
 WHO = {RAW_WORKER: "raw", NODE: "Rabit"}
-# Where less than this share of the samples arrived, the machine did not do the work whose cost is asked for.
+# If less than this share of the samples arrived, the machine did not do the work whose cost is asked for.
 LEAST_ARRIVED = 0.9
 
-# What, name of the value, factor, digits.
+# Title, name of the value, factor, digits.
 COSTS = [("processor, % of a core", "processor", 100, 2), ("bytes a second", "bytes_per_s", 1, 0),
          ("memory of its own, MiB", "own_mib", 1, 1)]
 

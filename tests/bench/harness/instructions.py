@@ -8,7 +8,7 @@ import shutil
 from contestants import harness, result
 
 FEW, MORE = 200, 1200
-# Only keeps a broken run from hanging: under callgrind all takes fifty times as long.
+# Only keeps a broken run from hanging: callgrind makes everything fifty times as slow.
 LIMIT_S = 120
 END_S = 60
 

@@ -44,11 +44,11 @@ class Law:
         (self.fixed, self.each), _ = fit(points, 1)
         self.furthest = max(abs(self(x) / y - 1) for x, y in points)
         (_, _, square), interval = fit(points, 2)
-        # At the largest x, as a share of what was measured there.
+        # The square term at the largest x, as a share of the value measured there.
         x, y = max(points)
         self.square_share = square * x * x / y
         self.square_interval = None if interval is None else interval * x * x / y
-        # Unknown where there are too few points to tell.
+        # None where there are too few points to tell.
         self.wants_square = None if interval is None else square > interval
 
     def __call__(self, x):

@@ -9,11 +9,11 @@ SIZES = {"100 B": 100, "1 kB": 1000, "64 kB": 65536, "1 MB": 1_000_000}
 ROUND_TRIPS = {"100 B": 10000, "1 kB": 5000, "64 kB": 2000, "1 MB": 300}
 IN_ONE_DIRECTION = {"100 B": 200_000, "64 kB": 3000, "1 MB": 200}
 FLEETS = [2, 5, 10, 20, 40]
-# Of as many a short run takes the first transport alone.
+# Sizes of the fleets of a short run, which takes the first transport alone.
 QUICK_FLEETS = [2, 5]
 
 
-# Measured, written and compared each by itself.
+# The parts, each measured, written and compared by itself.
 PAIRS = "pairs"
 PARTS = (PAIRS, "fleet", "instructions")
 

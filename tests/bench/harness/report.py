@@ -61,7 +61,7 @@ def rows(header, lines):
     return text + "".join("| " + " | ".join(line) + " |\n" for line in lines) + "\n"
 
 
-# What, what it means to a user, key of the case, name of the value, at most or at least, how much.
+# Title, meaning to a user, key of the case, name of the value, at most or at least, factor.
 AIMS = [
     ("latency of a mirrored message, state, 100 B, p50",
      "how much later a value is with a manager elsewhere than if it had been sent by hand",
@@ -222,7 +222,7 @@ def pairs(table, transports):
     return text + "## Start and idle\n\n" + start_and_idle(table, transports)
 
 
-# Of each part: its title, what its file says, and the table in README.md.
+# For each part: its title, the content of its file, and the table in README.md.
 PARTS = {
     plan.PAIRS: ("Pairs of processes", pairs, aims),
     "fleet": ("Fleets of processes", lambda table, _: fleet_report.costs_and_laws(table, rows),

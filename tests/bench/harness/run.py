@@ -19,7 +19,8 @@ import plan
 import report
 from contestants import LOCAL
 
-# How long what goes on by itself is watched, and how often each measure is repeated; else as often as all.
+# How long idle programs are watched, and how often each measure is repeated; measures not listed: as often as the run
+# says.
 WATCHED_S = 10
 QUICK_WATCHED_S = 2
 REPETITIONS = {"idle alone": 1, "idle pair": 1, "fleet": 1, "instructions": 3}

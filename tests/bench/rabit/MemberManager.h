@@ -16,7 +16,7 @@
 namespace Rabit::Bench
 {
 
-// The message that each member of a fleet posts, and its node's name.
+// The message that each member of a fleet posts, and the name of its node.
 inline constexpr const char *MemberMessage = "Member";
 std::string MemberNode(std::size_t member);
 

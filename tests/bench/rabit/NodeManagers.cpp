@@ -10,13 +10,14 @@ namespace Rabit::Bench
 namespace
 {
 
-// An answer that has not come by then never will. As long as the two look for each other they ask more often.
+// An answer that has not come by then never will. While the two nodes look for each other they ask more
+// often.
 constexpr std::int64_t Patience = 1'000'000'000;
 constexpr int PatienceAtFirstMSec = 50;
 constexpr int WorkPeriodMSec = 500;
 constexpr int QueueRoom = 1000;
 
-// Of the outbox of a link as it is by default, four fifths.
+// Four fifths of the default outbox of a link.
 constexpr std::uint64_t MostMessagesUnderWay = 800;
 constexpr std::uint64_t MostBytesUnderWay = 12u << 20;
 

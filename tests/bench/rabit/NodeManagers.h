@@ -17,10 +17,10 @@ namespace Rabit::Bench
 
 using ::Bench::Sample;
 
-// The managers that a user would write: each is woken by what comes in and answers in its unit of work. They
-// know names alone; whether a name is local or another node's is for who makes them to say.
+// The managers that a user would write: each is woken by incoming messages and answers in its unit of work.
+// They know names alone; the code that makes them decides whether a name is local or another node's.
 
-// What a pair of managers calls its messages or queues.
+// The names of the messages or queues of a pair of managers.
 struct Names
 {
     std::string In;
@@ -34,12 +34,12 @@ public:
     SampleManager(const std::string &name, const BenchOptions &options, const Names &names);
 
 protected:
-    // The next sample that came in; null if there is none. Valid until the next call.
+    // Returns the next sample that came in, or null if there is none. Valid until the next call.
     const Sample *Take();
-    // False: the queue refused it.
+    // Returns false if the queue refused the sample.
     bool Send(std::uint64_t number, std::int64_t sentAt,
               std::shared_ptr<RabitQueueReceipt> receipt = nullptr);
-    // Sends back what Take gave last.
+    // Sends back the sample that Take returned last.
     void SendBack();
 
     const BenchOptions Options;
@@ -77,7 +77,7 @@ private:
     ReceiverScore _score;
 };
 
-// Fills a queue as fast as it is emptied: it knows by receipts how much is on its way.
+// Fills a queue as fast as it is emptied: receipts tell how much is on its way.
 class SourceManager final : public SampleManager
 {
 public:
@@ -123,7 +123,7 @@ private:
     ReceiverScore _score;
 };
 
-// Tells when the first message came.
+// Reports when the first message came.
 class JoinManager final : public SampleManager
 {
 public:

@@ -17,8 +17,8 @@ namespace
 
 using namespace Rabit::Bench;
 
-// The node that asks is `ping`, the other one `pong`; so are their messages. Their queues are `Asked` and
-// `Told`.
+// The node that asks is `ping`, the other one `pong`. Their messages have the same names; their queues are
+// `Asked` and `Told`.
 bool Asks(const std::string &role)
 {
     return role == "ping" || role == "source" || role == "join";

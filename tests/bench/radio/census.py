@@ -133,7 +133,7 @@ class Capture(threading.Thread):
                     continue
 
     def _open(self):
-        # Of this thread alone.
+        # Changes the namespace of this thread alone.
         space = os.open(f"/run/netns/{self._space}", os.O_RDONLY)
         try:
             if ctypes.CDLL(None, use_errno=True).setns(space, self.NETWORK_NAMESPACE) != 0:

@@ -23,11 +23,11 @@ DOMAIN = 0
 BACKENDS = ("fastdds", "cyclonedds")
 EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
 LIMIT_S = 60  # of waiting for a fleet to come together
-# Of a pose, beside its padding: headers from IP to CDR, and its number.
+# Bytes of a pose beside its padding: headers from IP to CDR, and its number.
 OVERHEAD = 88 + 12
-# The largest datagram takes so long, at its budget.
+# The time that the largest datagram takes at its budget.
 LARGEST_AT_A_BUDGET_S = 0.25
-# A datagram that fits a frame, as the gateway's default is.
+# A datagram that fits a frame: the gateway's default.
 DATAGRAM = 1400
 
 

@@ -16,7 +16,7 @@ class Row:
     medium: dict
     measure: str
     options: dict
-    # figure -> (comparison, limit), of Rabit; a plain program is there to compare.
+    # figure -> (comparison, limit), for Rabit; a plain program has no limits.
     limits: dict = field(default_factory=dict)
     plain: bool = False
     long: bool = False

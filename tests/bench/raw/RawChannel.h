@@ -11,7 +11,7 @@
 namespace Rabit::Bench
 {
 
-// Bench::Sample as a plain program has it.
+// Bench::Sample in a plain program.
 struct RawSample
 {
     std::uint64_t Number = 0;
@@ -19,19 +19,20 @@ struct RawSample
     std::span<const std::uint8_t> Padding;
 };
 
-// One writer and one reader of a plain DDS program that knows nothing of Rabit, as the vendor's manual has it
-// written. QoS, datagrams, lease and heartbeats are set to what Rabit's backend of that vendor sets.
+// One writer and one reader of a plain DDS program that knows nothing of Rabit, written as the vendor's
+// manual shows. QoS, datagrams, lease and heartbeats have the values that Rabit's backend of that vendor
+// sets.
 class RawChannel
 {
 public:
     virtual ~RawChannel() = default;
-    // Writes one sample. False: it was not taken in time, and may be written again.
+    // Writes one sample. Returns false if the vendor did not take it in time; it may be written again.
     virtual bool Write(const RawSample &sample) = 0;
-    // Takes everything that has come and hands it over; the padding is valid during the call.
+    // Takes all samples that have come and passes them to `handler`. The padding is valid during the call.
     virtual void Take(const std::function<void(const RawSample &)> &handler) = 0;
-    // Whether both ends have met the other program's.
+    // True if both ends have met the other program's.
     virtual bool IsMatched() const = 0;
-    // Returns when all that was written was acknowledged.
+    // Returns when all written samples are acknowledged.
     virtual void WaitForAcknowledgements() = 0;
 };
 

@@ -18,7 +18,7 @@
 namespace Rabit::Bench
 {
 
-// What the listener tells the application's thread.
+// Wakes the application's thread from the listener.
 class Bell
 {
 public:
@@ -30,7 +30,7 @@ public:
         }
         _changed.notify_one();
     }
-    // Whether it was rung since the last call.
+    // Waits for at most `limit`. Returns true if it was rung since the last call.
     bool Wait(std::chrono::nanoseconds limit)
     {
         std::unique_lock lock(_mutex);
@@ -45,7 +45,7 @@ private:
     bool _rung = false;
 };
 
-// Writes what it was given last on a thread of its own.
+// Writes the sample that it was given last, on a thread of its own.
 class WriterThread
 {
 public:
@@ -147,7 +147,7 @@ public:
         }
     }
 
-    // As WriteSurely, by the thread that is there for it if there is one.
+    // Like WriteSurely, on the writer's thread if the program has one.
     void Send(const RawSample &sample)
     {
         if (_writer)

@@ -18,7 +18,8 @@ namespace
 
 using namespace std::chrono_literals;
 
-// An answer that has not come by then never will. As long as the two look for each other they ask more often.
+// An answer that has not come by then never will. While the two programs look for each other they ask more
+// often.
 constexpr auto Patience = 1s;
 constexpr auto PatienceAtFirst = 50ms;
 
@@ -193,7 +194,7 @@ private:
     ReceiverScore _score;
 };
 
-// Writes for ever, for those who join later.
+// Writes for ever, for programs that join later.
 class Announce final : public Program
 {
 public:
@@ -242,7 +243,7 @@ private:
     bool _seen = false;
 };
 
-// One of a fleet whose members all write and read one topic, each at a fixed rate.
+// A member of a fleet whose members all write and read one topic, each at a fixed rate.
 class Member final : public Program
 {
 public:
@@ -268,13 +269,13 @@ public:
     }
 
 private:
-    // The upper half of a number says who wrote it.
+    // The upper half of a number is the member that wrote it.
     static constexpr int MemberShift = 32;
 
     void Handle(const RawSample &sample) override
     {
         const auto member = static_cast<std::size_t>(sample.Number >> MemberShift);
-        // Some vendors give back what was written oneself.
+        // Some vendors deliver a program's own samples to it.
         if (member != Options.Member)
         {
             _score.Heard(member);

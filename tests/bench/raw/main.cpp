@@ -1,4 +1,4 @@
-// What a user would write who calls DDS by hand, for one vendor: the roles of the benchmarks.
+// A program of a user who calls DDS by hand, for one vendor: the roles of the benchmarks.
 #include "RawRoles.h"
 
 #include <exception>

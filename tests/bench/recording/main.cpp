@@ -1,5 +1,5 @@
-// What a recording costs: processor time of a process that records, of one that writes the same bytes
-// plainly, and of one that only makes them. All take turns, and each makes the bytes at the same pace.
+// The cost of a recording: processor time of a process that records, of one that writes the same bytes
+// plainly, and of one that only makes them. All take turns, and each makes the bytes at the same rate.
 //   bench_recording [--folder F] [--seconds S] [--rounds N] [--rate MESSAGES] [--picture-rate PICTURES]
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -58,7 +58,7 @@ std::uint64_t Now()
     return static_cast<std::uint64_t>(std::chrono::nanoseconds(Clock::now().time_since_epoch()).count());
 }
 
-// Where the bytes go.
+// The destination of the bytes.
 class Sink
 {
 public:
@@ -75,8 +75,8 @@ public:
     void Picture(Bytes) override {}
 };
 
-// A thread that takes what there is ten times a second, writes it as it is, and has it brought to the disk as
-// often as the recorder does.
+// A thread that takes the pending bytes ten times a second and writes them unchanged. It syncs them to the
+// disk as often as the recorder does.
 class PlainSink final : public Sink
 {
 public:
@@ -185,7 +185,7 @@ private:
     std::uint64_t _lost = 0;
 };
 
-// Numbers as an aircraft has them: some of the bytes change from one message to the next.
+// Numbers like an aircraft's: some of the bytes change from one message to the next.
 Bytes MakeMessage(std::uint64_t number)
 {
     std::array<double, MessageBytes / sizeof(double)> values{};
@@ -198,7 +198,7 @@ Bytes MakeMessage(std::uint64_t number)
     return bytes;
 }
 
-// The share of one processor.
+// Returns the share of one processor that `sink` takes.
 double Measure(Sink &sink, const Options &options, const std::vector<Bytes> &pictures)
 {
     const double before = ProcessorSeconds();

@@ -1,5 +1,5 @@
-// What it costs to turn a sample of Uav::Pose into JSON without generated code, beside what somebody who has
-// the generated code would write by hand, which gives the same text.
+// The cost of turning a sample of Uav::Pose into JSON without generated code, beside generated code with
+// the members written by hand. Both give the same text.
 #include <rabit/dynamic/DynamicType.h>
 
 #include <benchmark/benchmark.h>

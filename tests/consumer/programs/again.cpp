@@ -1,4 +1,4 @@
-// A manager that is recorded, and run again: as it was, and otherwise.
+// A manager that is recorded, and run again: unchanged, and changed.
 #include <rabit/ManualClock.h>
 #include <rabit/RabitSteppedReactor.h>
 #include <rabit/recording/ManagerRerun.h>

@@ -1,6 +1,6 @@
-// node NAME OTHER TRANSPORT DOMAIN: sends readings to the other node, and says when it has all of the other's
-// and knows that its own arrived. Ends on SIGTERM, because the other node may still wait for
-// acknowledgements.
+// node NAME OTHER TRANSPORT DOMAIN: sends readings to the other node. Prints a line when it has all of the
+// other's readings and knows that its own arrived. Ends on SIGTERM, because the other node may still wait
+// for acknowledgements.
 #include <rabit/RabitManager.h>
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
@@ -20,7 +20,7 @@ namespace
 {
 
 constexpr std::uint32_t Readings = 200;
-// Of a package of ROS 2.
+// A message of a package of ROS 2.
 static_assert(wind_msgs::msg::Wind_Constants::CALM == 0);
 
 class Exchange : public Rabit::RabitManager

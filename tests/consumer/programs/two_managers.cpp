@@ -6,7 +6,7 @@
 #include <iostream>
 #include <string_view>
 
-// CMake was told the version of the headers.
+// CMake knows the version of the headers.
 static_assert(std::string_view(RABIT_VERSION_STRING) == PACKAGE_VERSION);
 
 class Count : public Rabit::RabitMessage

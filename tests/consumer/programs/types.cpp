@@ -1,4 +1,4 @@
-// A program that learns of a type at run time.
+// A program that is given a type at run time.
 #include <rabit/dynamic/DynamicType.h>
 
 #include <iostream>

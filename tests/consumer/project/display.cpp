@@ -29,7 +29,8 @@ public:
     }
 
 private:
-    // The station is known by now, since it was heard; if the queue refuses yet, the next measurement tries again.
+    // The station was heard, so it is known by now. If the queue still refuses, the next measurement tries
+    // again.
     void Calibrate()
     {
         if (!_calibrated)
@@ -48,6 +49,7 @@ private:
 
 int main(int argc, char **argv)
 {
-    return Rabit::RunNode(argc, argv, "display.yaml", [](Rabit::RabitReactor &reactor)
+    return Rabit::RunNode(argc, argv, "display.yaml",
+                          [](Rabit::RabitReactor &reactor)
                           { reactor.AddManager(std::make_unique<Display>()); });
 }

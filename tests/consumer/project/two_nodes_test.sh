@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# two_nodes_test.sh STATION DISPLAY: the display shows what the station measures, and its order changes that. Both end
-# well when they are told to.
+# two_nodes_test.sh STATION DISPLAY: the display shows the station's measurements, and its order changes them. Both
+# end with exit code 0 when they are told to.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 "$1" --config station.yaml &

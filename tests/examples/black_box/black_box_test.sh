@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Runs examples/black_box.sh as a user does, on the loopback of a network of its own, and looks at what it leaves with
-# programs of others.
+# Runs examples/black_box.sh as a user does, on the loopback of a network of its own, and reads its files with other
+# people's programs.
 #   black_box_test.sh FOLDER_OF_PROGRAMS TRANSPORT WORK_DIRECTORY_OF_STOCK_READERS WORK_DIRECTORY_OF_BROWSERS
-# Where npm, its registry or chromium is missing, what needs them is left out, and says so.
+# Without npm, its registry or chromium, the checks that need them are left out, with a message.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../../.." && pwd)
@@ -14,7 +14,7 @@ browser=$4
 . "$root/tests/npm_packages.sh"
 . "$root/tests/own_network.sh"
 
-# Whether there is what these need.
+# Succeed if the programs that these readers need are available.
 stock_reader() {
     (fetch_npm_packages "$root/tests/gateway/recording/stock" @mcap/core "$stock")
 }
@@ -49,7 +49,7 @@ for ((tries = 0; tries < 1800; tries++)); do
 done
 grep -q '^The replay is at http://127.0.0.1:[0-9]*/$' "$work/out" || fail "no replay within three minutes"
 
-# Seven nodes, killed hard, whose files are whole again.
+# Seven nodes were killed hard, and their files are whole again.
 [ "$(grep -c '_recovered.mcap: [0-9]* messages$' "$work/out")" -ge 7 ] || fail "seven recordings were to be recovered"
 grep -Eq '^flight.mcap: [0-9]+ messages by the clock of .*, wrong by [0-9.]+ ms at most$' "$work/out" || fail "nothing was merged"
 grep -Eq '^ground +uav1/Pose +[0-9]+ ' "$work/out" || fail "it does not tell what ground knew of uav1"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Our MAVLink against node-mavlink, which npm fetches into the work directory.
+# Tests our MAVLink against node-mavlink, which npm fetches into the work directory.
 #   mavlink_interop_test.sh MAVLINK_PEER WORK_DIRECTORY
 # Exit status 77 (skipped) where there is no node, or no registry.
 set -euo pipefail

@@ -1,6 +1,6 @@
-// Speaks our MAVLink with another implementation, through text.
+// Exchanges our MAVLink with another implementation, as text.
 //
-//   mavlink_peer < hexadecimal   prints what it finds in the bytes, a line for each frame
+//   mavlink_peer < hexadecimal   prints the frames in the bytes, a line for each
 //   mavlink_peer --send          prints one frame of each type and version, in hexadecimal
 #include <mavlink/MavlinkFrame.h>
 #include <mavlink/MavlinkMessages.h>

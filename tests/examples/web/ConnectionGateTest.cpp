@@ -18,7 +18,7 @@ class ConnectionGateTest : public testing::Test
 protected:
     ConnectionGate _gate{{.Most = 8, .MostIdle = 3, .MostOfOne = 5, .ForKnown = 2}};
 
-    // One that has opened its page.
+    // Returns a connection that has opened its page.
     Id OpenPage(const ConnectionGate::Address &from)
     {
         const Id id = _gate.Arrive(from).Taken.value_or(0);

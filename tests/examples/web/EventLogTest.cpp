@@ -44,7 +44,7 @@ protected:
         step.reason = reason;
         _commands.items[0].steps.push_back(step);
     }
-    // The events since the last call.
+    // Returns the events since the last call.
     std::vector<std::string> New()
     {
         _log.Look(_data);

@@ -108,7 +108,7 @@ TEST_F(HttpAnswer, RefusesAnUpgradeOfAnotherOriginNameOrTarget)
     EXPECT_EQ(Ground::RefusalOfUpgrade(request, _guard), "");
     request.target("/other");
     EXPECT_THAT(Ground::RefusalOfUpgrade(request, _guard), HasSubstr("no such WebSocket"));
-    // As a site would look that has its own name point here.
+    // A request from a site that lets its own name point to this machine.
     request = Request(http::verb::get, "/live");
     request.set(http::field::host, "evil.example");
     request.set(http::field::origin, "http://evil.example");

@@ -47,7 +47,7 @@ bool Becomes(const std::function<bool()> &condition)
     return true;
 }
 
-// A connection without TLS that says what it likes.
+// A connection without TLS that sends any bytes.
 class RawClient
 {
 public:
@@ -76,13 +76,13 @@ private:
     tcp::socket _socket{_io};
 };
 
-// One that speaks TLS, and believes every certificate.
+// A client that speaks TLS, and accepts every certificate.
 class TlsClient
 {
 public:
     explicit TlsClient(const tcp::endpoint &server, const char *from = "127.0.0.1") : _raw(server, from) {}
-    // All that comes until the server closes; nothing if it does not speak TLS. Whether it said that this was
-    // all.
+    // Returns all that comes until the server closes; nothing if the server does not speak TLS. WasWhole
+    // then tells whether the server ended the TLS session in order.
     std::string Ask(const std::string &request)
     {
         std::string text;
@@ -104,7 +104,7 @@ private:
     bool _wasWhole = false;
 };
 
-// What a client says first.
+// Returns the first TLS message of a client.
 std::string ClientHello()
 {
     using ContextPtr = std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)>;

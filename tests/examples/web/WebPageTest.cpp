@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 using Queue = Rabit::RabitMessageQueue<std::shared_ptr<Rabit::RabitMessage>>;
 using Rabit::Gateway::NodeState;
 
-// The manager under a clock that the test moves, behind a real server.
+// The manager under a clock that the test advances, behind a real server.
 class WebPage : public testing::Test
 {
 protected:
@@ -68,7 +68,7 @@ protected:
         }
         _fleet->PostMessage();
     }
-    // What the page is told one period later.
+    // Returns the snapshot that the page gets one period later.
     Json Shown()
     {
         _reactor.RunFor(*_clock, Ground::WebPage::Period);
@@ -218,7 +218,7 @@ TEST_F(WebPage, KnowsTheAgeOfAPictureByTheClockOfItsAircraft)
     Json shown = Shown()["aircraft"][0]["picture"];
     EXPECT_EQ(shown["number"], 9);
     EXPECT_NEAR(shown["age_s"].get<double>(), 3.1, 0.001);
-    // A clock that was set back makes no picture young again.
+    // A clock that is set back does not make a picture young again.
     _pose->gps_time_s = 100;
     _pose->PostMessage();
     shown = Shown()["aircraft"][0]["picture"];

@@ -34,7 +34,7 @@ std::shared_ptr<const std::string> Text(std::string text)
     return std::make_shared<const std::string>(std::move(text));
 }
 
-// Until it holds, or for so long that it never will.
+// Waits until the condition holds, or for so long that it never will.
 bool Becomes(const std::function<bool()> &condition)
 {
     const auto end = std::chrono::steady_clock::now() + PageClient::Patience;
@@ -47,18 +47,18 @@ bool Becomes(const std::function<bool()> &condition)
     return true;
 }
 
-// A plain connection that says what it likes.
+// A plain connection that sends any bytes.
 class RawClient
 {
 public:
     explicit RawClient(const tcp::endpoint &server) { _socket.connect(server); }
-    // May find the connection closed.
+    // The server may have closed the connection already.
     void Send(const std::string &text)
     {
         boost::system::error_code ignored;
         boost::asio::write(_socket, boost::asio::buffer(text), ignored);
     }
-    // All that comes until the server closes.
+    // Returns all that comes until the server closes.
     std::string Rest()
     {
         std::string text;
@@ -131,7 +131,7 @@ TEST_F(WebServerTest, RefusesWhatIsNoRequest)
 TEST_F(WebServerTest, EndsAConnectionWhoseRequestIsTooLarge)
 {
     Start();
-    // The answer may be lost, for the connection is closed while more comes.
+    // The answer may be lost, because the connection is closed while more bytes come.
     EXPECT_THAT(Answer("GET /" + std::string(100'000, 'x') + " HTTP/1.1\r\n\r\n"),
                 testing::Not(HasSubstr(" 200 ")));
     EXPECT_THAT(Answer("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(9000, 'x')),

@@ -1,12 +1,12 @@
 // The real web page over a scripted fleet, for the tests in a browser:
 //   web_fixture AIRCRAFT [hostile] [PORT]
-// Prints the page's address, then each order that it gets. Lines on the standard input say what happens to
-// the fleet: `stale NODE`, `lost NODE`, `up NODE`, `beatless NODE` (it is STALE, but its poses arrive),
-// `progress STEP [REASON]` (the last command comes to that step, a number of Ground::CommandProgress),
-// `decline NODE REASON` (the search area), `orders NODE` (it is back without), `problems COUNT` (there are so
-// many now), `radio held` (it has a budget, and two in five posts of Pose and some messages for uav2 are held
-// back), `radio free` (not limited), `replay NODE` (it plays a recording), `silence` (nothing is posted any
-// more); it ends at their end. The ground is at 430 m, and each aircraft has a floor of 460 m.
+// Prints the page's address, then each order that it gets. Lines on the standard input change the fleet:
+// `stale NODE`, `lost NODE`, `up NODE`, `beatless NODE` (it is STALE, but its poses arrive), `progress STEP
+// [REASON]` (the last command comes to this step, a number of Ground::CommandProgress), `decline NODE REASON`
+// (the search area), `orders NODE` (it is back without), `problems COUNT` (the number of problems now),
+// `radio held` (it has a budget, and two in five posts of Pose and some messages for uav2 are held back),
+// `radio free` (not limited), `replay NODE` (it plays a recording), `silence` (nothing is posted any more).
+// The program ends when the lines end. The ground is at 430 m, and each aircraft has a floor of 460 m.
 #include "WebPage.h"
 #include "WebServer.h"
 
@@ -48,7 +48,7 @@ const std::vector<std::uint8_t> SmallJpeg = {
     0x00, 0x00, 0x00, 0x00, 0x02, 0x13, 0x14, 0x51, 0x61, 0xFF, 0xDA, 0x00, 0x08, 0x01, 0x01, 0x00,
     0x00, 0x3F, 0x00, 0x92, 0x0E, 0x08, 0x38, 0x6F, 0x34, 0x8A, 0x0D, 0x22, 0x8F, 0xFF, 0xD9};
 
-// What a page must show as text, whoever sends it.
+// Markup that a page must show as text, wherever it comes from.
 constexpr const char *Markup = "<img src=x onerror=\"window.pwned=1\"><script>window.pwned=1</script>";
 
 // Lines of the standard input, read by a thread of its own.
@@ -88,7 +88,7 @@ struct FlyingAircraft
     std::shared_ptr<Uav::CameraView> Camera = std::make_shared<Uav::CameraView>();
 };
 
-// Posts what the gateway would, and stands in for the Commander.
+// Posts the messages of a gateway, and stands in for the Commander.
 class ScriptedFleet : public Rabit::RabitManager
 {
 public:

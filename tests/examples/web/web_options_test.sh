@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The option --web of ground, when it cannot be had: one line, exit code 2, nothing started.
+# The option --web of ground with an unusable argument: one line is printed, the exit code is 2, nothing is started.
 #   web_options_test.sh GROUND WEB_FIXTURE
 set -uo pipefail
 ground=$1
@@ -42,7 +42,7 @@ done
 port=$(grep -o '[0-9]*/$' <<<"$url" | tr -d /)
 refused "$port" "cannot be served at $url: Address already in use"
 
-# Beyond this machine: by TLS and with a token, the same at each start where they are kept.
+# Beyond this machine the page needs TLS and a token, the same at each start where they are kept.
 serve() { # serve OPTION...: it ends without having heard an aircraft
     timeout 60 "$ground" --config "$root/examples/ground_station/ground.yaml" --seconds 1 "$@" >"$work/out" 2>"$work/err"
     [ $? -eq 1 ] || fail "$*: it does not run"

@@ -16,7 +16,7 @@ using Duration = AirBudget::Duration;
 
 constexpr std::size_t Largest = 1428;
 
-// Sends as soon as it may, datagrams whose sizes `size(i)` gives, and remembers.
+// Sends datagrams of the sizes `size(i)` as soon as the budget allows, and records them.
 struct Traffic
 {
     std::deque<std::pair<Duration, std::size_t>> Sent;
@@ -52,7 +52,7 @@ struct Traffic
         return total;
     }
 
-    // In any second that ends with a datagram.
+    // Returns the most bytes of any second that ends with a datagram.
     std::size_t MostInASecond() const
     {
         std::size_t most = 0;
@@ -132,7 +132,7 @@ TEST(AirBudget, ADatagramLargerThanASecondsBudgetGoesWhenNothingWentForASecond)
     EXPECT_GE(budget.WhenFits(1400, 1s), 2s);
     EXPECT_LE(budget.WhenFits(1400, 1s), 2100ms);
     budget.Sent(1400, 3s);
-    // And has its time: 1400 bytes take 2.8 s.
+    // The datagram takes its time: 1400 bytes take 2.8 s.
     EXPECT_GE(budget.WhenFits(100, 3s), 5800ms);
 }
 
@@ -304,7 +304,8 @@ TEST(AirBudget, DatagramsOfASmallBudgetMayTakeLongerThanTheyWouldAsSmallOnes)
 
 TEST(AirBudget, WithAPaceDatagramsGrowMoreSlowlyThanTheRate)
 {
-    // A radio that gives turns gives more to larger datagrams: those who have more must not get more by it.
+    // A radio that gives turns carries more for larger datagrams. A node with a higher rate must not get
+    // more of it by that.
     AirBudget budget(Largest);
     budget.SetPace(1000, 0ns);
     EXPECT_EQ(budget.LargestDatagram(), 400u);

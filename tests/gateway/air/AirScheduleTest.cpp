@@ -15,7 +15,7 @@ namespace
 using namespace std::chrono_literals;
 using Duration = AirSchedule::Duration;
 
-// Streams that always have a datagram, and what each has sent.
+// Streams that always have a datagram, and the bytes that each has sent.
 class AirScheduleTest : public ::testing::Test
 {
 protected:
@@ -27,7 +27,7 @@ protected:
         return id;
     }
 
-    // Without a limit: so many datagrams.
+    // Sends this many datagrams, without a limit.
     void SendMany(int datagrams)
     {
         for (int i = 0; i < datagrams; ++i)
@@ -44,7 +44,7 @@ protected:
         Schedule.Ready(id, _bytes.at(id.Index));
     }
 
-    // With a limit: from one time to another.
+    // Sends from one time to another, with a limit.
     void SendUntil(Duration from, Duration to)
     {
         for (Duration now = from; now < to; now = std::max(Schedule.NextDue(now), now + 1ns))
@@ -450,14 +450,14 @@ TEST_F(AirScheduleTest, WithTenTimesTheBudgetOfferedACommandWaitsForOneDatagramA
     }
     std::sort(waits.begin(), waits.end());
     ASSERT_GT(waits.size(), 800u);
-    // A beat under way, and what the largest datagram takes.
+    // A command waits for a beat under way and for the largest datagram.
     const auto datagram =
         std::chrono::duration<double>(static_cast<double>(Schedule.Budget().LargestDatagram()) / Rate);
     EXPECT_LE(waits[waits.size() * 99 / 100], 2 * datagram);
     EXPECT_LE(waits[waits.size() / 2], datagram);
 }
 
-// A beat of 150 bytes that is promised every 600 ms of a budget of 5000 B/s.
+// A beat of 150 bytes, promised every 600 ms, on a budget of 5000 B/s.
 class PromiseTest : public AirScheduleTest
 {
 protected:
@@ -479,7 +479,7 @@ protected:
         Schedule.Promise(Beat, 150, now + Period);
     }
 
-    // Sends what the schedule chooses, the beat when it is due at the latest.
+    // Sends the streams that the schedule chooses. A beat goes at the latest when it is due.
     void Run(Duration from, Duration to)
     {
         SentAt = from - Period;
@@ -522,7 +522,7 @@ TEST_F(PromiseTest, IsKeptBesideAnyNumberOfAcknowledgements)
         }
         Run(peers * 100s, peers * 100s + 100s);
         EXPECT_LE(Longest, Period) << peers;
-        // One goes early by the time of another datagram.
+        // A beat goes early by at most the time of another datagram.
         EXPECT_GE(Shortest, Period - 300ms) << peers;
         EXPECT_LE(Beats, 300) << peers;
         Beats = 0;

@@ -21,8 +21,8 @@ double Seconds(Duration time)
     return std::chrono::duration<double>(time).count();
 }
 
-// A node that offers so much, in front of a buffer of 16 kB that carries so much; two peers report twice a
-// second.
+// A node that offers `Offered` bytes a second, in front of a buffer of 16 kB that carries `Carries`. Two
+// peers report twice a second.
 class CapacityEstimateTest : public ::testing::Test
 {
 protected:
@@ -45,7 +45,8 @@ protected:
             Backlog = std::min(Backlog + static_cast<double>(bytes), 16384.0);
             Carried += std::min(Backlog, Carries * 0.01);
             Backlog = std::max(Backlog - Carries * 0.01, 0.0);
-            // The delay of what arrives now: how long ago was it sent, when that much was in front of it.
+            // The delay of a datagram that arrives now: the time since it was sent, with the backlog of
+            // then in front of it.
             _delay = Backlog > 0.0 ? std::min(_delay + 10ms, Duration(std::llround(Backlog / Carries * 1e9)))
                                    : 0ns;
             for (CapacityEstimate::Peer peer = 0; peer < 2; ++peer)
@@ -116,8 +117,8 @@ TEST_F(CapacityEstimateTest, WhatRisesIsLimitedToWhatWasCarried)
     EXPECT_LE(highest, 1.6 * Carries);
 }
 
-// 100 bytes each two seconds, then ten datagrams at once, in front of 10 kB a second; both peers tell of
-// each.
+// 100 bytes each two seconds, then ten datagrams at once, on a channel of 10 kB a second. Both peers report
+// each one.
 TEST_F(CapacityEstimateTest, ABurstOfWhoWasNearlySilentTellsWhatWasCarriedOfTheBurst)
 {
     Duration free = 0ns;
@@ -155,7 +156,7 @@ TEST_F(CapacityEstimateTest, ABurstOfWhoWasNearlySilentTellsWhatWasCarriedOfTheB
     EXPECT_TRUE(!rate || *rate >= 0.6 * Carries) << *rate;
 }
 
-// A queue before a pause and one after it are two.
+// A queue before a pause and one after it are two queues.
 TEST_F(CapacityEstimateTest, APauseBetweenTwoQueuesSaysNothingOfWhatIsCarried)
 {
     Offered = 10.5e3;
@@ -392,8 +393,8 @@ TEST_F(CapacityEstimateTest, TheQueueIsWhatWasSentSinceAReportAndNotCarried)
     EXPECT_NEAR(Seconds(Estimate.Queue(40060ms)), before - 0.06 + 1000 / carried, 0.04);
 }
 
-// A message of 13 kB goes at once, over a radio of 30 kB/s. The peer reports of four datagrams of it. How
-// much of the burst went between two of them is not known, and it is not nothing.
+// A message of 13 kB goes at once, over a radio of 30 kB/s, and the peer reports four of its datagrams.
+// Between two of them an unknown part of the burst went, and that part is not nothing.
 TEST_F(CapacityEstimateTest, BetweenTwoDatagramsOfOneBurstNothingIsMeasured)
 {
     for (Duration now = 0s; now < 8s; now += 100ms)

@@ -10,19 +10,19 @@ namespace
 using namespace std::chrono_literals;
 using Duration = DelayMeter::Duration;
 
-// The sender's clock is this much ahead of ours, and a datagram that nothing delays takes a millisecond.
+// The sender's clock is 1000 s ahead of ours, and an undelayed datagram takes a millisecond.
 constexpr Duration Ahead = 1000s;
 constexpr Duration Way = 1ms;
 
 class DelayMeterTest : public ::testing::Test
 {
 protected:
-    // A datagram that comes so much later than it could.
+    // Hears a datagram that comes `late` later than it could.
     bool Hear(const char *node, Duration sent, Duration late, std::uint64_t incarnation = 1)
     {
         return meter.Heard(node, incarnation, sent + Ahead, sent + Way + late);
     }
-    // How late the newest one of uav1 is said to be; -1: there is nothing to tell.
+    // Returns the reported delay of the newest datagram of uav1; -1: there is nothing to report.
     Duration Told(Duration now)
     {
         const auto &reports = meter.Take(1, now);

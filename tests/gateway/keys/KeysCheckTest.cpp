@@ -18,7 +18,7 @@ class KeysCheckTest : public KeysFolder
 protected:
     KeysCheckTest() { Add("uav1"); }
     NodeKeys Node() const { return NodeKeys(FolderOf("uav1")); }
-    // Of permissions that a person has changed and signed.
+    // Returns the findings on permissions that a person has changed and signed.
     std::vector<std::string> TooMuchAfter(const std::string &old, const std::string &now)
     {
         Rewrite(NodeFiles(FolderOf("uav1")).Permissions, old, now);

@@ -52,7 +52,7 @@ protected:
         FleetKeys(Place()).Add(RequestFor(node, transport), {.Now = now, .Days = days});
     }
 
-    // What a document that is there says, signed anew after a change.
+    // Replaces `old` by `now` in an existing document, and signs it anew.
     void Rewrite(const std::string &file, const std::string &old, const std::string &now,
                  const std::string &authority = "permissions") const
     {
@@ -69,7 +69,7 @@ protected:
         WriteFile(file, SignDocument(text, *signer, *key));
     }
 
-    // What it throws for that folder; empty if it does not.
+    // Returns the error that NodeKeys throws for this folder; empty if it throws none.
     static std::string WhyNoKeys(const std::string &folder)
     {
         return WhyNot([&] { const NodeKeys keys(folder); });

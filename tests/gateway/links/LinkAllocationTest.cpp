@@ -15,7 +15,7 @@ namespace
 
 using namespace std::chrono_literals;
 
-// A node that hands what it sends straight to the other one.
+// A node that passes its frames straight to the other one.
 class Wired : public LinkOutput, public LocalQueues, public IncarnationSource
 {
 public:
@@ -28,7 +28,7 @@ public:
     }
     void Send(const LinkFrame &frame) override
     {
-        // As through the codec, but in memory that is used again.
+        // Encodes and decodes like the real path, but in reused memory.
         _bytes.resize(std::max(_bytes.size(), LinkFrameCodec::EncodedSize(frame)));
         const std::span<std::uint8_t> bytes = std::span(_bytes).first(LinkFrameCodec::EncodedSize(frame));
         LinkFrameCodec::Encode(frame, bytes);

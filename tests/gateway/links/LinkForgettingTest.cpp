@@ -1,5 +1,4 @@
-// What a node forgets of others, and that nothing promised is broken by it. Node `a` is under test, `b` is
-// played.
+// A node forgets others without breaking a promise. Node `a` is under test, `b` is played.
 #include <gmock/gmock.h>
 
 #include "NodeUnderTest.h"
@@ -74,7 +73,7 @@ TEST(LinkForgetting, what_was_delivered_before_is_not_delivered_again_when_the_s
     ASSERT_THAT(a.TakeDelivered(), SizeIs(1));
     a.Pass(60s);
     ASSERT_TRUE(a.Node->Forget("b"));
-    // The acknowledgement was lost: it sends the message again, and with a fresh token.
+    // The acknowledgement was lost: the peer retransmits the message, with a fresh token.
     a.Hear(b.Data(1, {"m"}, a.Now));
     a.Pass(5ms);
     EXPECT_THAT(a.TakeDelivered(), IsEmpty());

@@ -1,4 +1,4 @@
-// Frames as bytes: what was put in comes out, and no bytes do harm.
+// Frames as bytes: equal after encoding and decoding, and safe with any bytes.
 #include <gtest/gtest.h>
 #include <rabit/gateway/links/LinkFrameCodec.h>
 #include <rabit/gateway/links/LinkTime.h>
@@ -33,7 +33,7 @@ LinkItem ItemOf(std::uint64_t sequence, std::uint8_t flags)
     return item;
 }
 
-// Everything that a frame can have.
+// Returns a frame with everything that a frame can have.
 StoredFrame FullFrame()
 {
     static const std::vector<std::uint8_t> payload(300, 7);
@@ -193,7 +193,8 @@ TEST(LinkFrameCodec, refuses_another_version)
     EXPECT_FALSE(LinkFrameCodec::Decode(bytes, decoded));
 }
 
-// What decodes can be encoded again and means the same; nothing reads beyond the end (the sanitizers see it).
+// Bytes that decode can be encoded again and mean the same. Nothing reads beyond the end (the sanitizers
+// see it).
 TEST(LinkFrameCodec, damaged_bytes_do_no_harm)
 {
     const std::vector<std::uint8_t> good = Encoded(FullFrame().View());

@@ -1,4 +1,4 @@
-// How much may be under way: the rules of PathControl, one by one.
+// How many bytes may be under way: the rules of PathControl, one by one.
 #include <gtest/gtest.h>
 
 #include "PathControl.h"
@@ -15,7 +15,7 @@ class PathTest : public ::testing::Test
 protected:
     static constexpr std::size_t One = 1421;  // a datagram, as on the air
 
-    // Fills the window, and has all of it acknowledged after that round trip.
+    // Fills the window, and acknowledges all of it after `roundTrip`.
     void Round(LinkTime roundTrip)
     {
         const LinkTime sentAt = now;

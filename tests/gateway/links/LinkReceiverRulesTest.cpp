@@ -25,7 +25,7 @@ protected:
         }
         return texts;
     }
-    // The acknowledgement sent now, which must be the only one.
+    // Returns the acknowledgement sent now, which must be the only one.
     LinkAck Acknowledgement()
     {
         a.Pass(0ms);
@@ -37,7 +37,7 @@ protected:
     {
         return b.Data(first, texts, a.Now);
     }
-    // A session in which message 1 was delivered and acknowledged.
+    // Opens a session in which message 1 was delivered and acknowledged.
     void OpenSession()
     {
         a.Hear(Data(1, {"1"}));

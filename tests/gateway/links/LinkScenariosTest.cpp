@@ -1,4 +1,4 @@
-// Several nodes on a network without faults of its own: what no random run shows.
+// Several nodes on a network without faults of its own: cases that no random run shows.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace
 using testing::Each;
 using testing::SizeIs;
 
-// Carries everything between nodes in a fixed time; those that nobody answers for are dead peers.
+// Carries everything between nodes in a fixed time. A name without a node is a dead peer.
 class Network
 {
 public:
@@ -97,7 +97,7 @@ public:
 
     LinkTime Now{1s};
     LinkTime Delay{5ms};
-    // Whether a datagram gets lost.
+    // True if a datagram is lost.
     std::function<bool()> Loses = [] { return false; };
 
 private:
@@ -126,8 +126,8 @@ private:
     std::uint64_t _clocks = 0;
 };
 
-// Sends to a live peer, and before each message fills the outboxes to some dead ones. Returns when what
-// arrived.
+// Sends to a live peer, and before each message fills the outboxes to some dead ones. Returns the
+// deliveries with their times.
 std::vector<std::pair<LinkTime, std::string>> DeliveriesBeside(int deadPeers)
 {
     Network network;

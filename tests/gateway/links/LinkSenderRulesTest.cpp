@@ -22,7 +22,7 @@ std::string Numbered(int i)
     return text;
 }
 
-// One of these fills a datagram.
+// Returns a message that fills a datagram.
 std::string Large(int i)
 {
     return Numbered(i) + std::string(1250, '.');
@@ -31,7 +31,7 @@ std::string Large(int i)
 class LinkSenderRules : public testing::Test
 {
 protected:
-    // Both have heard of each other, and the first message has brought the credit.
+    // Both nodes have heard of each other, and the first message has brought the credit.
     void Contact(std::uint32_t credit = 100)
     {
         a.Hear(b.Hello());
@@ -324,7 +324,7 @@ TEST_F(LinkSenderRules, S2_what_goes_along_once_more_leaves_room_for_what_is_new
     sender.Pass(0ms);
     sender.Now += 20ms;
     echo(b.Ack(1));
-    // Of three datagrams two are lost, and then sent again.
+    // Two of three datagrams are lost, and then retransmitted.
     for (int i = 2; i <= 4; ++i)
     {
         sender.Enqueue(std::string(150, '0'));

@@ -1,4 +1,4 @@
-// Links share these at a receiver: room in a queue, memory, and datagrams.
+// Resources that links share at a receiver: room in a queue, memory, and datagrams.
 #include "NodeUnderTest.h"
 
 #include <rabit/gateway/links/LinkFrameCodec.h>
@@ -25,7 +25,7 @@ protected:
         frame.Source = source;
         return frame;
     }
-    // On the link of that number, into a queue of its own.
+    // Puts the frame on link `link`, into a queue of its own.
     StoredFrame On(std::uint32_t link, StoredFrame frame)
     {
         frame.Queue = "q" + std::to_string(link);
@@ -195,7 +195,7 @@ TEST_F(LinkSharing, of_memory_lets_a_message_grow_in_place_of_one_that_has_long_
     EXPECT_EQ(node.TakeAcks().back().Fields.Acks.front().Refused[0] & 0b110U, 0b100U);
 }
 
-// Queues that nobody accepts
+// Queues that the node does not accept
 
 TEST_F(LinkSharing, refuses_what_is_for_queues_that_are_not_accepted_without_remembering_them)
 {

@@ -1,4 +1,5 @@
-// What the links reach on thin and lossy media, in virtual time: exact, and the same each time.
+// The throughput and delay of links on thin and lossy media, in virtual time: exact, and the same each
+// time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ double Seconds(LinkTime time)
     return std::chrono::duration<double>(time).count();
 }
 
-// Keeps the link filled for that long.
+// Keeps the link filled for `time`.
 void Feed(ThinMedium &medium, LinkTime time)
 {
     for (const LinkTime end = medium.Now + time; medium.Now < end;)
@@ -41,7 +42,7 @@ void FeedSmall(ThinMedium &medium, LinkTime time)
     }
 }
 
-// Until three pictures have arrived.
+// Returns the time until three pictures have arrived.
 LinkTime TimeOfThreePictures(ThinMedium &medium)
 {
     medium.BitsPerSecond = 250e3;
@@ -68,7 +69,7 @@ TEST(ThinMedium, three_pictures_at_250_kbit_take_what_the_medium_takes)
     EXPECT_LE(medium.LongestWait, 300ms);
 }
 
-// What the protocol itself adds: the pictures alone take 19.2 s.
+// Measures the overhead of the protocol alone: the pictures take 19.2 s.
 TEST(ThinMedium, three_pictures_whose_headers_cost_nothing_take_21_seconds_at_most)
 {
     ThinMedium medium(0);
@@ -140,8 +141,8 @@ TEST(ThinMedium, a_satellites_round_trip_leaves_most_of_the_medium_usable)
     }
 }
 
-// What limits the link is how many messages may be under way, not the window; sent in bursts, as the window
-// allowed, they would overflow the buffer and leave it empty in between.
+// The number of messages that may be under way limits the link, not the window. Sent in bursts, as the
+// window allows, they would overflow the buffer and then leave it empty.
 TEST(ThinMedium, small_messages_on_a_far_and_wide_medium_are_spread_over_the_round_trip)
 {
     ThinMedium medium;
@@ -219,8 +220,8 @@ TEST(ThinMedium, a_command_waits_for_no_picture_on_another_link)
     EXPECT_LE(medium.B.Percentile("commands", 0.99), 250ms);
 }
 
-// Bytes that a node puts on the air within nine seconds for one that nobody hears any more: it sends messages
-// of that size, so many a second.
+// Returns the bytes that a node sends within nine seconds to a peer that is gone, with `perSecond` messages
+// of `size` bytes a second.
 std::size_t BytesInVain(std::size_t size, int perSecond)
 {
     ThinMedium medium;
@@ -236,12 +237,12 @@ std::size_t BytesInVain(std::size_t size, int perSecond)
     return medium.BytesSent - before;
 }
 
-// Others need the air.
+// Other nodes need the channel.
 constexpr std::size_t Datagram = 1312 + ThinMedium::Overhead;
 constexpr std::size_t MostInVain = 9 * 2 * Datagram;
 
-// Four are under way before an answer is missed. A medium that has become slow looks like one that carries
-// nothing.
+// Four datagrams are under way before an answer is missed. A medium that has become slow looks like one
+// that carries nothing.
 TEST(ThinMedium, a_large_message_to_who_is_gone_takes_two_datagrams_in_vain_and_small_questions)
 {
     EXPECT_LE(BytesInVain(100'000, 1), 12 * Datagram);
@@ -276,7 +277,7 @@ TEST(ThinMedium, nothing_that_expired_in_an_outage_is_sent_after_it)
     EXPECT_LE(medium.B.Percentile("q", 1), 2s);
 }
 
-// In place of Run: one datagram at a time, as a scheduler asks for them.
+// Instead of Run: one datagram at a time, as a scheduler requests them.
 TEST(ThinMedium, streams_give_one_datagram_at_a_time_and_acknowledgements_first)
 {
     ThinMedium medium;
@@ -308,7 +309,8 @@ TEST(ThinMedium, streams_give_one_datagram_at_a_time_and_acknowledgements_first)
     EXPECT_FALSE(medium.A.Node->SendOne("nobody", "q", 1500, medium.Now));
 }
 
-// What a link that is known or new says of its next datagram, and what that takes. Of so many messages.
+// Returns the size that a known or a new link states for its next datagram, and the bytes sent, for
+// `messages` messages.
 std::pair<std::size_t, std::size_t> SaidAndSent(const char *knownLink, int messages)
 {
     ThinMedium medium;
@@ -326,7 +328,7 @@ std::pair<std::size_t, std::size_t> SaidAndSent(const char *knownLink, int messa
     return {said, medium.BytesSent - before};
 }
 
-// A schedule keeps so much of a budget free.
+// A schedule keeps the stated size free in a budget.
 TEST(ThinMedium, a_stream_says_how_large_its_next_datagram_is_with_all_that_goes_into_it)
 {
     for (const int messages : {1, 2, 3, 5, 8, 100})
@@ -339,7 +341,7 @@ TEST(ThinMedium, a_stream_says_how_large_its_next_datagram_is_with_all_that_goes
     }
 }
 
-// The schedule allows smaller datagrams now than when the part was cut.
+// The schedule now allows only smaller datagrams than when the part was cut.
 TEST(ThinMedium, a_stream_says_that_a_large_part_goes_again_as_it_was_cut)
 {
     ThinMedium medium;

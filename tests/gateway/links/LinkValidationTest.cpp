@@ -1,4 +1,4 @@
-// What is malformed is dropped and counted, and changes nothing else.
+// A malformed frame is dropped and counted, and changes nothing else.
 #include "NodeUnderTest.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ namespace
 
 constexpr std::uint64_t NoHigherExists = std::numeric_limits<std::uint64_t>::max();
 
-// A node in the middle of everything: a session from "b", and messages on their way to it.
+// A node in the midst of traffic: a session from "b", and messages on their way to it.
 class MalformedInput : public testing::Test
 {
 protected:

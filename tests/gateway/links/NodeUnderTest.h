@@ -1,4 +1,4 @@
-// One LinkNode with hosts that record what it does, for tests that play its peers by hand.
+// One LinkNode with hosts that record its calls, for tests that play its peers by hand.
 #pragma once
 
 #include "StoredMessages.h"
@@ -45,13 +45,13 @@ public:
         Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
     }
 
-    // Time passes, and Run is called once at the end.
+    // Lets time pass, and calls Run once at the end.
     void Pass(LinkTime time)
     {
         Now += time;
         Node->Run(Now);
     }
-    // Time passes, and Run is called whenever something is due, as a driver does.
+    // Lets time pass, and calls Run whenever something is due, as a driver does.
     void Live(LinkTime time)
     {
         const LinkTime end = Now + time;
@@ -103,7 +103,7 @@ public:
         return found;
     }
 
-    // All that was sent / delivered / reported since the last call.
+    // Return all that was sent / delivered / reported since the last call.
     std::vector<StoredFrame> TakeDatas() { return std::exchange(_datas, {}); }
     std::vector<StoredFrame> TakeAcks() { return std::exchange(_acks, {}); }
     std::vector<StoredFrame> TakeHellos() { return std::exchange(_hellos, {}); }
@@ -112,18 +112,18 @@ public:
 
     LinkTime Now{100s};
     std::unique_ptr<LinkNode> Node;
-    // How the local queues answer, and how much room they say there is.
+    // The answer of the local queues, and the room that they report.
     LocalQueueResult Answer = LocalQueueResult::Ok;
     std::size_t RoomLeft = 1000;
-    // Messages that the local queues take before they are full; counts down.
+    // Number of messages that the local queues take before they are full; counts down.
     std::size_t Places = 1'000'000;
-    // Queues whose names begin so, and this type, are not accepted.
+    // Queues whose names begin with NoQueue, and the type NoType, are not accepted.
     static constexpr std::string_view NoQueue = "none";
     static constexpr std::string_view NoType = "NoType";
     // Incarnation and number of each message that was offered to a local queue.
     std::vector<std::pair<std::uint64_t, std::uint64_t>> Offered;
 
-    // One with data and acknowledgements is among both.
+    // A frame with data and acknowledgements is counted among both.
     void Send(const LinkFrame &frame) override
     {
         if (frame.HasData)
@@ -177,18 +177,18 @@ private:
     std::vector<std::pair<std::uint64_t, LinkOutcome>> _outcomes;
 };
 
-// Node "b", played by hand: makes the frames that it would send to node "a".
+// Node "b", played by hand: makes frames for node "a".
 struct PlayedPeer
 {
     static constexpr std::uint32_t Clock = 2002;
-    // What a calls its own clock.
+    // The number by which node "a" names its own clock.
     static constexpr std::uint32_t ClockOfA = static_cast<std::uint32_t>(NodeUnderTest::MyClock);
 
     std::uint64_t Life = 7ULL << 32;
     std::uint64_t KnownLife = NodeUnderTest::FirstLife;
     std::int64_t Time = 1'000'000'000;  // its clock; rises by a microsecond with each frame
 
-    // One that asks nothing and echoes nothing.
+    // Returns a hello without a question and without an echo.
     StoredFrame Hello()
     {
         StoredFrame frame;
@@ -201,7 +201,8 @@ struct PlayedPeer
         frame.Fields.Time = Time += 1000;
         return frame;
     }
-    // All parts up to `cumulative` were delivered, except those in `skipped` and `refused` (by number).
+    // Acknowledges all parts up to `cumulative` as delivered, except those in `skipped` and `refused` (by
+    // number).
     StoredFrame Ack(std::uint64_t cumulative, std::uint32_t credit = 100,
                     const std::vector<std::uint64_t> &skipped = {},
                     const std::vector<std::uint64_t> &refused = {})
@@ -227,7 +228,7 @@ struct PlayedPeer
         ack.Credit = credit;
         return frame;
     }
-    // The same, and these are here beyond a gap.
+    // The same, with the parts in `held` received beyond a gap.
     StoredFrame AckWith(std::uint64_t cumulative, const std::vector<std::uint64_t> &held)
     {
         StoredFrame frame = Ack(cumulative);
@@ -238,8 +239,8 @@ struct PlayedPeer
         }
         return frame;
     }
-    // Small messages for queue "q" of node "a", numbered from `first`. The echo says that the token of now
-    // was received at this moment.
+    // Returns small messages for queue "q" of node "a", numbered from `first`. The echo states that the
+    // current token was received at `now`.
     StoredFrame Data(std::uint64_t first, const std::vector<std::string> &texts, LinkTime now)
     {
         StoredFrame frame = Hello();
@@ -258,7 +259,7 @@ struct PlayedPeer
         }
         return frame;
     }
-    // One message in so many parts of these texts.
+    // Returns one message in parts with these texts.
     StoredFrame Parts(std::uint64_t first, const std::vector<std::string> &texts, LinkTime now)
     {
         StoredFrame frame = Data(first, texts, now);

@@ -1,4 +1,4 @@
-// Link frames that own what they hold, for tests that keep them.
+// Link frames that own their contents, for tests that keep them.
 #pragma once
 
 #include <rabit/gateway/links/LinkMessages.h>

@@ -1,5 +1,5 @@
-// Two nodes and a medium in virtual time: of some bits per second, shared by both directions, with a bounded
-// queue in front of it at each node, a delay, and loss. All is exact and the same each time.
+// Two nodes and a medium in virtual time. Both directions share its rate, in bits per second. Each node has
+// a bounded queue in front of it; the medium has a delay, and loss. All is exact and the same each time.
 #pragma once
 
 #include <rabit/gateway/links/LinkFrameCodec.h>
@@ -21,7 +21,8 @@ namespace Rabit::Test
 class ThinMedium
 {
 public:
-    // A node whose queue takes everything. The payload of a message begins with when it was enqueued.
+    // A node whose queue takes everything. The payload of a message begins with the time at which it was
+    // enqueued.
     struct Member final : LinkOutput, LocalQueues, IncarnationSource
     {
         Member(ThinMedium &medium, std::string name, std::size_t index) : Medium(medium), Index(index)
@@ -55,7 +56,7 @@ public:
         std::size_t Room(std::string_view) const override { return 1000; }
         std::uint64_t Above(std::uint64_t floor) override { return floor + (1ULL << 32); }
 
-        // Returns whether it was accepted.
+        // Returns true if the outbox accepted the message.
         bool Enqueue(std::string_view to, std::string_view queue, std::size_t bytes)
         {
             LinkBytes payload(std::max(bytes, sizeof(LinkTime::rep)));
@@ -92,14 +93,15 @@ public:
     {
     }
 
-    // Until then, or until nothing is to be done any more.
+    // Runs for `time`, with no step beyond its end.
     void Live(LinkTime time)
     {
         for (const LinkTime end = Now + time; Step(end);)
         {
         }
     }
-    // Whether something happened before `end`; if not, it is `end` now.
+    // Does the next event before `end` and returns true. Without one, sets the time to `end` and returns
+    // false.
     bool Step(LinkTime end)
     {
         LinkTime next = std::min(_freeAt, _arrivals.empty() ? LinkNever : _arrivals.begin()->first.first);

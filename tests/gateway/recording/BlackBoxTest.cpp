@@ -16,7 +16,7 @@ constexpr std::uint64_t Second = 1000000000;
 class BlackBoxTest : public testing::Test
 {
 protected:
-    // One item a second, up to that one; returns which were given out for writing.
+    // Passes one item a second, up to `second`. Returns the items that were given out for writing.
     std::vector<std::uint64_t> PassUntil(std::uint64_t second)
     {
         std::vector<std::uint64_t> written;

@@ -9,7 +9,8 @@ namespace
 
 constexpr Moment Ms = 1000000;
 
-// Told once a second from `from` to `to`, with round trips that differ a little, as those of beats do.
+// Adds a measurement once a second from `from` to `to`, with round trips that differ a little, like those
+// of beats.
 void Tell(ClockPair &pair, int from, int to, Moment offset, Moment halfRoundTrip, double drift = 0.0)
 {
     for (int second = from; second < to; ++second)
@@ -133,7 +134,7 @@ TEST(ClockPair, ReadsOnEitherSideOfAStepByWhatWasToldThere)
 
 TEST(ClockPair, ForgetsWhatALaterReadingOfTheOtherClockContradicts)
 {
-    // The other clock stood still for 20 s from second 100 on, which was noticed at its end.
+    // The other clock stood still for 20 s from second 100 on, which was noticed when it went on.
     ClockPair pair;
     Tell(pair, 0, 120, 0, Ms);
     Tell(pair, 120, 300, -20 * OneSecond, Ms);

@@ -1,4 +1,4 @@
-// A disk in memory, with so much room, that knows what would outlast a loss of power.
+// A disk in memory with limited room. It knows which bytes would outlast a loss of power.
 #pragma once
 
 #include <algorithm>
@@ -54,7 +54,7 @@ public:
         return used >= Capacity ? 0 : Capacity - used;
     }
 
-    // A file that is there, which need not be in memory.
+    // Adds a file of this size that need not be in memory.
     void Put(const std::string &name, std::uint64_t bytes)
     {
         Files[name] = std::make_shared<Content>();
@@ -113,7 +113,7 @@ private:
     std::map<std::string, std::uint64_t> _extra;
 };
 
-// The log times of all messages in a file.
+// Returns the log times of all messages in a file.
 inline std::vector<std::uint64_t> LogTimesOf(MemoryFile file)
 {
     const Rabit::Mcap::Contents contents = Rabit::Mcap::ReadContents(file);
@@ -126,7 +126,7 @@ inline std::vector<std::uint64_t> LogTimesOf(MemoryFile file)
     return times;
 }
 
-// What a file says of itself under that name, the last time that it does.
+// Returns the last metadata of this name in a file.
 inline Rabit::Mcap::TextMap MetadataOf(MemoryFile file, const std::string &name)
 {
     return Rabit::Mcap::MetadataOf(Rabit::Mcap::ReadContents(file), name);

@@ -15,7 +15,8 @@ using Time = SyntheticFleet::Time;
 constexpr Time Ms = 1000000;
 constexpr Time Minute = 60 * OneSecond;
 
-// ground from 0 to 3 minutes; uav1 in two lives, with a pause of 20 s between them, minutes beside it.
+// ground from minute 0 to 3; uav1 in two incarnations, with a pause of 20 s between them, minutes beside
+// it.
 class KnowledgeOfAFlight : public testing::Test
 {
 protected:

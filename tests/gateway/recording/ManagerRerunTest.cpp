@@ -30,7 +30,7 @@ namespace
 
 using namespace std::chrono_literals;
 
-// Follows poses, takes points to fly to, tells how far it got.
+// Follows poses, takes points to fly to, reports how far it got.
 class Guide : public RabitManager
 {
 public:
@@ -205,7 +205,7 @@ TEST_F(ManagerRerunTest, NoticesAnExceptionThatWasNotThrownThen)
 
 TEST_F(ManagerRerunTest, BringsAMessageThatChangesWithinAUnitOfWork)
 {
-    // Another manager posts in between: what each of two copies sees.
+    // Another manager posts in between. Each of two copies may see a different value.
     const auto second = std::make_shared<Uav::Pose>();
     const auto besides = [second](Guide &guide)
     {

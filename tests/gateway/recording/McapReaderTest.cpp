@@ -1,4 +1,4 @@
-// Reading what was truncated, damaged, or made by somebody who means harm.
+// Reading files that are truncated, damaged, or made with bad intent.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -33,7 +33,7 @@ std::size_t MessagesOf(MemoryFile &file, const Contents &contents)
     return count;
 }
 
-// Of what stands in the first bytes at least.
+// Returns the number of messages that the first `bytes` bytes contain at least.
 std::size_t WrittenBefore(const SmallRecording &recording, std::size_t bytes)
 {
     std::size_t messages = 0;
@@ -44,7 +44,7 @@ std::size_t WrittenBefore(const SmallRecording &recording, std::size_t bytes)
     return messages;
 }
 
-// So that damage is not found by them.
+// Removes the checksums, so that they do not reveal the damage.
 void WithoutChecksums(MemoryFile &file)
 {
     constexpr std::size_t beforeCrcOfChunk = RecordHead + 24;
@@ -59,7 +59,8 @@ void WithoutChecksums(MemoryFile &file)
     ASSERT_TRUE(ReadContents(file).IsIndexed);
 }
 
-// Every 7th: the pictures make the file large. The stock reader is tried with each offset of a smaller one.
+// Every 7th offset: the pictures make the file large. The stock reader is tried with each offset of a
+// smaller one.
 TEST(McapReader, ReadsATruncatedFileUpToTheLastWholeRecord)
 {
     const SmallRecording recording;
@@ -149,7 +150,7 @@ TEST(McapReader, RecoversMessagesOutsideOfChunks)
     EXPECT_EQ(result.LostMessages, 1U);
 }
 
-// A few bytes that say that they are a gigabyte.
+// A few bytes that claim to be a gigabyte.
 TEST(McapReader, RefusesAChunkThatIsTooLarge)
 {
     MemoryFile file(Bytes(Magic.begin(), Magic.end()));
@@ -162,8 +163,8 @@ TEST(McapReader, RefusesAChunkThatIsTooLarge)
     EXPECT_NE(contents.Problems[0].find("larger than 256 MiB"), std::string::npos);
 }
 
-// Bytes of a file changed, cut and put elsewhere: whatever comes of it, reading comes to an end, and what is
-// read lies within the file.
+// Bytes of a file are changed, cut and moved. In each case reading must end, and must return only bytes
+// within the file.
 TEST(McapReader, SurvivesDamagedBytes)
 {
     SmallRecording plain(false);
@@ -176,7 +177,7 @@ TEST(McapReader, SurvivesDamagedBytes)
         Bytes &bytes = file.Content;
         for (unsigned change = 1 + random() % 4; change > 0; --change)
         {
-            // The beginning, the summary and heads of records are where it hurts.
+            // Damage to the beginning, the summary and the heads of records does the most harm.
             const std::size_t near = random() % 3;
             const std::size_t at =
                 near == 0   ? random() % std::min<std::size_t>(bytes.size(), 600)

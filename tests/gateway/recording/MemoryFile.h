@@ -1,4 +1,4 @@
-// A file in memory, for what writes and reads recordings.
+// A file in memory, for writers and readers of recordings.
 #pragma once
 
 #include <algorithm>

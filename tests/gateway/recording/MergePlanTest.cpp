@@ -26,7 +26,7 @@ Time Uniform(std::mt19937 &random, Time from, Time to)
     return std::uniform_int_distribution<Time>(from, to)(random);
 }
 
-// Back and forth the same, with some jitter.
+// The same delays in both directions, with some jitter.
 SyntheticFleet::Network Delays(Time least, Time most)
 {
     return [least, most](std::size_t, std::size_t, Time, std::mt19937 &random)
@@ -64,7 +64,7 @@ struct Errors
     Time WorstBound = 0;
 };
 
-// Of all messages that the node posted, against the clock of the other one.
+// Returns the errors of all messages that the node posted, against the clock of the other one.
 Errors ErrorsOf(const SyntheticFleet &fleet, const Plans &plans, std::size_t life, std::size_t timeLine)
 {
     Errors errors;
@@ -222,7 +222,7 @@ TEST(MergePlan, TakesAsTimeLineTheNodeThatHasRelationsWithMost)
 
 TEST(MergePlan, IsTheMoreUncertainTheLongerNothingWasHeard)
 {
-    // Out of reach for ten minutes, with clocks that drift apart by 60 ms a minute of them.
+    // The nodes do not hear each other for ten minutes, and their clocks drift apart by 50 us a second.
     const SyntheticFleet fleet({Node("ground", 20 * Minute), Node("uav1", 20 * Minute, Minute, 50e-6)},
                                [](std::size_t, std::size_t, Time at, std::mt19937 &random) {
                                    return at > 5 * Minute && at < 15 * Minute
@@ -255,7 +255,7 @@ TEST(MergePlan, StaysWithinTheBoundWhenAClockStoodStill)
     {
         const Plans plans(fleet, {reference});
         const bool isGround = std::string(reference) == "ground";
-        // What happens in the pause of the clock that is the time line has no time on it.
+        // An event in the pause of the time line's clock has no time on it.
         const Errors errors = ErrorsOf(fleet, plans, isGround ? 1 : 0, isGround ? 0 : 1);
         EXPECT_EQ(errors.Beyond, 0U) << reference << ": wrong by " << errors.Worst;
         EXPECT_LT(*plans.Plan.Lives[isGround ? 1 : 0].Map.MedianBound(), 8 * Ms);

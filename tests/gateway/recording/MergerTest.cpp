@@ -128,7 +128,7 @@ TEST(Merger, PutsBothTimesOfAMessageOnTheTimeLine)
         ASSERT_NEAR(static_cast<double>(message.LogTime), expected, static_cast<double>(bound));
         ASSERT_NEAR(static_cast<double>(message.PublishTime), expected, static_cast<double>(bound));
     }
-    // A post came after it was posted.
+    // A mirrored post came after it was posted.
     for (const Read &message : merged.Of("uav2/Recorder/knew/uav1/Pose"))
     {
         const auto expected = static_cast<double>(fleet.LogAt(0, SyntheticFleet::PostedOf(message.Data)));
@@ -142,7 +142,7 @@ TEST(Merger, WritesInTheOrderOfTheTimeLine)
     const SyntheticFleet fleet(
         {Node("uav1", Minute), Node("uav2", Minute, 5 * Minute), Node("uav3", Minute, -Minute)}, Quick);
     const MergedFile merged(fleet, fleet.Paths());
-    // In the file itself, not by its index.
+    // Checks the order in the file itself, not in its index.
     std::uint64_t last = 0;
     for (const Mcap::ChunkIndex &chunk : merged.Contents.Chunks)
     {

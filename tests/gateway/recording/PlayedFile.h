@@ -1,4 +1,4 @@
-// A recording as a node writes it, in memory, for what is played of it.
+// A recording in memory, as a node writes it, for tests of replay.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,7 @@ public:
     }
     void FinishChunk() { _writer.FinishChunks(); }
 
-    // Ends the file.
+    // Ends the file and returns its contents.
     const Rabit::Mcap::Contents &Contents()
     {
         if (!_contents)

@@ -1,4 +1,4 @@
-// Whole nodes on the simulated network, and what is recorded of them.
+// Recordings of whole nodes on the simulated network.
 #include <rabit/RabitLog.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
@@ -77,7 +77,7 @@ protected:
                          });
     }
 
-    // By topic. Ends the node.
+    // Ends the node and returns its recording by topic.
     std::map<std::string, Recorded> RecordingOf(const std::string &node)
     {
         Fleet.Stop(node);
@@ -273,7 +273,7 @@ TEST_F(RecorderManagerTest, SaysInTheFleetThatNothingIsRecorded)
     SimulatedNode &uav1 = AddRecorded(Watching("uav1"));
     Disks.at("uav1")->CreateFails = "/recordings/x: Permission denied";
     uav1.Register<Uav::Pose>("Pose")->PostMessage();
-    // The recorder has a thread of its own, which is not under simulated time.
+    // The recorder's own thread is not under simulated time.
     for (int turn = 0; turn < 3000 && uav1.Problems().find("record uav1/Pose: ") == std::string::npos; ++turn)
     {
         Fleet.RunFor(1s);
@@ -325,7 +325,7 @@ TEST_F(RecorderManagerTest, WritesABlackBoxWhenACommandIsRefused)
     EXPECT_GE(NumbersOf(topics.at("uav1/Pose")).front(), 20U) << "what is older is let go of";
     EXPECT_EQ(topics.at("uav1/Recorder/Events").JsonAt(0).at("event"),
               "refused: a message for uav9/MissionControl");
-    // Whenever it was posted.
+    // The State is in the recording, however long ago it was posted.
     Uav::MissionState read;
     ASSERT_TRUE(MessageTypeRegistry::Find("Uav::MissionState")
                     ->Deserialize(topics.at("uav1/MissionState").Samples.at(0), read));

@@ -24,7 +24,7 @@ RecordingSettings SettingsOf(const std::string &folder)
     return settings;
 }
 
-// Whoever has something to record goes on while the disk does not.
+// The threads that record go on while the disk does not.
 TEST(Recorder, WaitsForTheDiskAlone)
 {
     auto disk = std::make_unique<FakeDisk>();

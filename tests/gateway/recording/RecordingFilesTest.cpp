@@ -38,7 +38,7 @@ protected:
         return *_files;
     }
 
-    // One message now, and what is due.
+    // Records one message now, and does the work that is due.
     void Record(std::uint32_t stream = 0, std::size_t bytes = 100)
     {
         _batch.Items.push_back({stream, 0, _now, _now - 5, Mcap::Bytes(bytes, 7)});
@@ -79,7 +79,7 @@ TEST_F(RecordingFilesTest, WritesWhatItTakesIntoAFileWithNumberAndDate)
     EXPECT_EQ(Files().Status().Messages, 1U);
 }
 
-// As it would be found after a loss of power at any moment.
+// Reads the file as it would be after a loss of power at any moment.
 TEST_F(RecordingFilesTest, HasAllButTheLastSecondOnTheDisk)
 {
     for (int turn = 0; turn < 100; ++turn)
@@ -126,9 +126,11 @@ TEST_F(RecordingFilesTest, BeginsAFileWhenOneIsLongEnoughAndRepeatsTheStates)
     // The state and the message, both recorded now.
     EXPECT_THAT(LogTimesOf(_disk.Open(_disk.Names()[1])), ElementsAre(_now, _now));
     EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[1]), "rabit.file").at("number"), "2");
-    // Both say that they belong together.
-    EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[0]), "rabit.file").at("recording") + ".mcap", _disk.Names()[0]);
-    EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[1]), "rabit.file").at("recording") + ".mcap", _disk.Names()[0]);
+    // Both files name the recording that they belong to.
+    EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[0]), "rabit.file").at("recording") + ".mcap",
+              _disk.Names()[0]);
+    EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[1]), "rabit.file").at("recording") + ".mcap",
+              _disk.Names()[0]);
 }
 
 TEST_F(RecordingFilesTest, GoesOnBehindTheLastNumberThatIsThere)

@@ -34,7 +34,7 @@ protected:
         }
         return PlanReplay(contents, settings);
     }
-    // NODE/MESSAGE<RECORDER, NODE>PEER/QUEUE, NODE!
+    // Returns NODE/MESSAGE<RECORDER, NODE>PEER/QUEUE, or NODE! for each stream.
     static std::vector<std::string> NamesOf(const ReplayPlan &plan)
     {
         std::vector<std::string> names;

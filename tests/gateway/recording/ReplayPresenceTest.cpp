@@ -9,7 +9,7 @@ namespace
 
 constexpr Time Second = 1'000'000'000;
 
-// uav1 recorded itself, and what it knew of the others; ground likewise.
+// uav1 recorded itself and its knowledge of the others; ground likewise.
 class ReplayPresenceTest : public ::testing::Test
 {
 protected:

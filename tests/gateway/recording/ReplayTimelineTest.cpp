@@ -22,7 +22,7 @@ constexpr Time Start = 5'000'000 * Ms;
 class ListedItems final : public ReplaySource
 {
 public:
-    // Milliseconds behind Start. What it holds is the number of the item.
+    // Adds an item, `at` in milliseconds after Start. Its byte is the number of the item.
     void Add(Time at, std::size_t stream = 0, Time age = 0)
     {
         Items.push_back({stream,
@@ -74,7 +74,7 @@ protected:
         settings.To = settings.To == 0 ? source.Items.back().LogTime : settings.To;
         return ReplayTimeline(source, settings, now);
     }
-    // The numbers of what is due.
+    // Returns the numbers of the items that are due.
     std::vector<int> Due(ReplayTimeline &timeline)
     {
         std::vector<int> numbers;

@@ -10,8 +10,7 @@
 
 struct SmallRecording
 {
-    // How much of the file there was, and how many of the messages were in it, each time that the chunks
-    // were finished.
+    // The size of the file and the number of messages in it, each time that the chunks were finished.
     struct Mark
     {
         std::size_t Bytes = 0;

@@ -10,7 +10,7 @@ namespace
 {
 
 constexpr SyntheticFleet::Time Second = 1000000000;
-// Who is not heard for so long is not answered any more.
+// A peer that was not heard for this long is not echoed any more.
 constexpr SyntheticFleet::Time Lost = 4 * Second;
 // A node's monotonic clock and its source clock begin anywhere.
 constexpr SyntheticFleet::Time Epoch = 1700000000 * Second;
@@ -119,7 +119,7 @@ void SyntheticFleet::Beat(std::size_t from, Time at)
         {
             continue;
         }
-        // What the other one sent last, and for how long it has been here.
+        // The last beat of the other node, and the time since it arrived here.
         std::optional<std::pair<Time, Time>> echo;
         if (const Heard &heard = _nodes[from].Peers[to]; heard.HasBeat && now - heard.Arrival < Lost)
         {

@@ -1,5 +1,5 @@
-// Nodes with clocks of their own that beat to each other over a network with delays, and the recordings that
-// they make of it: with the filter that the gateway has (PeerClock), in the form that the recorder writes.
+// Nodes with clocks of their own that send beats to each other over a network with delays, and the
+// recordings that they make. They use the gateway's clock filter (PeerClock), and the recorder's format.
 // Time is true time, in nanoseconds since the beginning.
 #pragma once
 
@@ -40,15 +40,15 @@ public:
         Time SplitEvery = 0;  // 0: one file
         std::optional<Standstill> Stands;
     };
-    // How long something is on its way that is sent at that time; empty: it is lost. The nodes by index.
+    // Returns the delay of a message that is sent at `at`; empty: it is lost. The nodes are given by index.
     using Network =
         std::function<std::optional<Time>(std::size_t from, std::size_t to, Time at, std::mt19937 &random)>;
 
     SyntheticFleet(std::vector<Spec> specs, Network network, unsigned seed = 1);
 
-    // What the log clock of a node shows at a true time.
+    // Returns the log clock of a node at a true time.
     Time LogAt(std::size_t node, Time at) const;
-    // Opens <name>_<n>.mcap and so on.
+    // Opens the files <name>_<n>.mcap.
     Rabit::Merge::OpenFile Opener() const;
     std::vector<std::string> Paths() const;
 
@@ -91,7 +91,7 @@ private:
 
     Time MonotonicAt(std::size_t node, Time at) const;
     Time ToLog(std::size_t node, Time monotonic) const;
-    // When it does what is due: then, or when its clock goes on.
+    // Returns when the node does what is due at `at`: then, or when its clock goes on after a standstill.
     Time Awake(std::size_t node, Time at) const;
     bool Lives(std::size_t node, Time at) const;
     void Schedule(Time at, std::function<void()> action);

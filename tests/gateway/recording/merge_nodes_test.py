@@ -83,7 +83,7 @@ def check_merge(rabit, folder):
     about = json.loads(done.stdout)
     recordings = {(one["node"], one["life"]): one for one in about["recordings"]}
     assert set(recordings) == {("sensor", 1), ("sensor", 2), ("display", 1), ("display2", 1)}, about
-    # All are on this machine.
+    # All nodes are on this machine.
     assert about["worst_uncertainty_s"] < 0.05, about
     first, second = recordings["sensor", 1], recordings["sensor", 2]
     assert first["end_ns"] < second["begin_ns"] and first["incarnation"] != second["incarnation"], about
@@ -97,8 +97,8 @@ def check_merge(rabit, folder):
 def check_info(rabit, merged):
     done = run(rabit, "info", "--json", merged)
     about = json.loads(done.stdout)
-    # Of posts of two threads at the same time the recorder sees one, and counts the other: on a busy machine managers'
-    # states may be among them, and info says so.
+    # If two threads post at the same time, the recorder sees one post and counts the other. On a busy machine these
+    # may be managers' states, and info reports them.
     assert all(topic.endswith("/Recorder/Managers") for topic in about["lost"]), done
     assert done.returncode == (1 if about["lost"] else 0) and about["ended"], done
     topics = [row["topic"] for row in about["topics"]]
@@ -113,7 +113,7 @@ def check_knew(rabit, merged, recordings, about):
     rows = lines_of(run(rabit, "knew", "--json", merged))
     assert {(row["knower"], row["node"], row["message"]) for row in rows} >= {
         ("display", "sensor", "Reading"), ("display2", "sensor", "Reading")}, rows
-    # In the middle of the second life of the sensor.
+    # The middle of the second incarnation of the sensor.
     second = recordings["sensor", 2]
     moment = f"{((second['begin_ns'] + second['end_ns']) / 2 - about['begin_ns']) / 1e9:.6f}"
     known = lines_of(run(rabit, "knew", "--json", merged, "display", "sensor/Reading", "--at", moment))
@@ -121,7 +121,7 @@ def check_knew(rabit, merged, recordings, about):
     assert len(known) == len(own) == 1, (known, own)
     assert known[0]["incarnation"] == own[0]["incarnation"] == second["incarnation"], (known, own)
     assert 0 < known[0]["age_s"] < 5 and known[0]["uncertainty_s"] < 0.05, known
-    # It is what the sensor posted, then.
+    # The known value is the one that the sensor posted then.
     assert own[0]["value"]["number"] - known[0]["value"]["number"] in (0, 1), (known, own)
     if own[0]["value"]["number"] == known[0]["value"]["number"]:
         assert abs(known[0]["age_s"] - own[0]["age_s"]) < known[0]["uncertainty_s"] + 0.05, (known, own)

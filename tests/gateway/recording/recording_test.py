@@ -58,7 +58,7 @@ def main():
                 sent = run(rabit, "send", *network, "--wait", "60", "sensor/Sensor", "TwoNodes::Calibration",
                            '{"offset_celsius": 1}')
                 assert sent.stdout == "delivered\n", sent
-                # Both have something of it on the disk.
+                # Waits until both recordings have some readings on the disk.
                 end = time.monotonic() + LIMIT
                 while True:
                     files = [*folder.glob("inside/*.mcap"), *folder.glob("outside/*.mcap")]

@@ -1,4 +1,4 @@
-// By the rules of gateway/RADIO.md.
+// The plan follows the rules of gateway/RADIO.md.
 #include "AirPlan.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Publishes Pose of type P; wants it of everybody; accepts the queue Q.
+// Publishes Pose of type P, subscribes to it of all nodes, and accepts the queue Q.
 GatewayConfig NodeOf(const std::string &name)
 {
     GatewayConfig config;

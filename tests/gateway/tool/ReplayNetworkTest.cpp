@@ -16,7 +16,7 @@ class ReplayNetworkTest : public ::testing::Test
 protected:
     ReplayNetworkTest()
     {
-        // As if from a file of the fleet that flies.
+        // Settings as in a file of the fleet that flies.
         config.Domain = 7;
         config.Interfaces = {"wlan0"};
         config.Peers = {"10.0.0.2"};

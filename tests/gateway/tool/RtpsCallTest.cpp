@@ -15,7 +15,7 @@ namespace
 
 const ParticipantId Id{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
 
-// With parameters before those that are there.
+// Returns a call with more parameters before its own.
 std::vector<std::uint8_t> CallWith(const std::vector<std::uint8_t> &parameters)
 {
     const std::vector<std::uint8_t> plain = MakeCall(Id, {10, 0, 0, 2}, 7411);

@@ -50,7 +50,7 @@ class Setup:
                 self._until(lambda: self._count(folder / "outside", "sensor/Reading") >= 2)
             finally:
                 node.send_signal(signal.SIGTERM)
-        # Until it has recorded for some seconds that the node is not there any more.
+        # Waits until the recording shows for some seconds that the node is gone.
         known = self._count(folder / "outside", "/Gateway/Fleet")
         self._until(lambda: self._count(folder / "outside", "/Gateway/Fleet") >= known + 5)
         outside.send_signal(signal.SIGINT)

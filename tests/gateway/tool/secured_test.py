@@ -55,7 +55,7 @@ def a_tool_with_keys_sees_and_sends(fleet):
         return done.returncode == 0 and rows == {"uav1": "UP", "uav2": "UP"}
     harness.until(both)
     for node in ("uav1", "uav2"):
-        # On a busy machine a handshake may take longer than one waits, as for a person who tries again.
+        # On a busy machine a handshake may take longer than --wait, so the command is repeated, as a person would.
         def echoed(node=node):
             done = fleet.run("echo", f"{node}/Pose", "--keys", keys, "--once", "--json", "--wait", "10")
             return done.returncode == 0 and "latitude_deg" in json.loads(done.stdout)["value"]

@@ -1,4 +1,4 @@
-// Messages of a type that no code was generated for, as messages of Rabit.
+// Messages of a type without generated code, as messages of Rabit.
 #include <rabit/PublishSubscribeMessage.h>
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/dynamic/DynamicType.h>
@@ -138,7 +138,7 @@ TEST(DynamicMessage, TellsTheRegistryItsType)
     EXPECT_EQ(DynamicType::Register(report), report.get());
     EXPECT_EQ(DynamicType::Register(other), other.get());
     EXPECT_EQ(MessageTypeRegistry::Find("Late::Other"), other.get());
-    // All have one C++ class.
+    // All such messages have one C++ class.
     EXPECT_EQ(MessageTypeRegistry::Of(*report->Create()), report.get());
     EXPECT_EQ(MessageTypeRegistry::Of(*other->Create()), other.get());
 }

@@ -1,5 +1,5 @@
-// Texts that no generator wrote: each is refused with its reason, quickly, and none reaches the parser that
-// could harm it.
+// Texts that no generator wrote: each is refused with its reason, quickly, and none reaches the parser,
+// which it could harm.
 #include <rabit/dynamic/DynamicType.h>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace Rabit
 namespace
 {
 
-// `S7`. Appended, not added: g++ 12 warns wrongly of what is added to a literal.
+// Returns `S7`. Appends rather than adds: g++ 12 warns wrongly when a string is added to a literal.
 std::string Numbered(const char *prefix, int number)
 {
     std::string text = prefix;
@@ -52,7 +52,7 @@ TEST(HostileText, WithoutTheMessageIsRefused)
     EXPECT_EQ(WhyNot("enum S { A };"), "the text defines no message 'S'");
 }
 
-// The parser takes any name for the annotation's, and goes down where they differ in case.
+// The parser takes any name for the annotation's, and crashes if the two differ in case.
 TEST(HostileText, WithAnAnnotationBehindANameThatIsTheSameButForItsCaseIsRefused)
 {
     const char *const reason = "line 1: annotation '@key' behind a name that differs from it in case alone";
@@ -67,7 +67,8 @@ TEST(HostileText, WithAnAnnotationBehindANameThatIsTheSameButForItsCaseIsRefused
     EXPECT_EQ(WhyNot("struct S { octet key; @key octet a; octet Id; };"), "");
 }
 
-// The parser looks a name up where it means something else first, and misses that it is there twice.
+// The parser looks up a name where it means something else first, and does not see that the name is there
+// twice.
 TEST(HostileText, WithANameTwiceInOnePlaceIsRefused)
 {
     EXPECT_EQ(
@@ -81,7 +82,7 @@ TEST(HostileText, ThatTheParserRefusesIsToldInItsWords)
     EXPECT_EQ(WhyNot("struct S { string a; };\nenum E { A, A };").substr(0, 7), "line 2:");
 }
 
-// The parser writes what it refuses to the standard error output, where a text of a stranger has no business.
+// The parser writes refused text to the standard error output, where a stranger's text must not appear.
 TEST(HostileText, IsNotRepeatedOnTheErrorOutput)
 {
     testing::internal::CaptureStderr();
@@ -149,8 +150,8 @@ TEST(HostileText, DeeperThanALimitIsRefused)
     EXPECT_EQ(WhyNot(chain, "S99"), "types are nested more than 64 deep");
 }
 
-// Each struct holds the one before it several times: sizes and work that follow every path would double with
-// each.
+// Each struct holds the one before it several times. Sizes and work that follow every path would double
+// with each struct.
 TEST(HostileText, ThatDoublesWithEachLineIsRefusedAtOnce)
 {
     for (const char *const key : {"", "@key "})
@@ -166,7 +167,7 @@ TEST(HostileText, ThatDoublesWithEachLineIsRefusedAtOnce)
     }
 }
 
-// What idlc 0.10.2 crashes on.
+// idlc 0.10.2 crashes on these texts.
 TEST(HostileText, WithAnAnnotationBehindATypeOfItsNameIsRefused)
 {
     EXPECT_EQ(WhyNot("module M { union Value switch (long) { case 1: long a; }; enum E { @value(1) A }; };"),

@@ -1,4 +1,4 @@
-// JSON as a person expects it, and what is said of JSON that does not fit.
+// JSON as a person expects it, and the reasons for which other JSON is refused.
 #include <rabit/dynamic/DynamicType.h>
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ const DynamicType &All()
     return *type;
 }
 
-// The value of one member after it was given as that JSON.
+// Returns the member's value as JSON, after it was decoded from `json`.
 std::string Through(const std::string &member, const std::string &json)
 {
     const EncodedSample encoded = All().FromJson("{\"" + member + "\":" + json + "}");
@@ -190,7 +190,7 @@ TEST(Json, ThatIsNoneIsToldWhere)
     EXPECT_EQ(All().FromJson(std::string(1000000, '[')).Sample, std::nullopt);
 }
 
-// What a person sees of hostile JSON.
+// The reason that a person sees must not contain the hostile text.
 TEST(Json, ThatIsHostileIsNotRepeatedToATerminal)
 {
     for (const char *json : {R"({"\u001b[2J": 1})", R"({"kind": "\u001b[2J\u009b"})", "{\"a\": \x1b}",

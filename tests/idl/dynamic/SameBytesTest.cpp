@@ -1,4 +1,4 @@
-// A type made at run time encodes and decodes as the code that was generated from the same IDL.
+// A type made at run time encodes and decodes like the code generated from the same IDL.
 #include "CorpusTest.h"
 #include "RandomSample.h"
 

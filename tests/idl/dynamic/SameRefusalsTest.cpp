@@ -14,7 +14,7 @@ Bytes Exactly(const Bytes &bytes, std::size_t size)
     return copy;
 }
 
-// All ways to read a sample agree on whether it is one, and on what it is.
+// Expects that all ways to read a sample agree on whether it is valid, and on its value.
 void ExpectAlike(const Rabit::MessageType &generated, const Rabit::DynamicType &dynamic, const Bytes &sample)
 {
     const auto message = generated.Create();
@@ -74,7 +74,7 @@ TEST_EACH_TYPE(SameRefusals, OfOtherEncodings)
     }
 }
 
-// Bounds, enumerators, booleans, bits, terminators, discriminators: whatever a changed byte meets.
+// A changed byte may meet bounds, enumerators, booleans, bits, terminators or discriminators.
 TEST_EACH_TYPE(SameRefusals, OfGarbledSamples)
 {
     static constexpr std::uint8_t nasty[] = {0x00, 0x01, 0x02, 0x7f, 0x80, 0xff};

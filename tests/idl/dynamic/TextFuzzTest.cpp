@@ -1,6 +1,6 @@
-// Texts of strangers: whatever comes is a type that works, or is refused with a reason. Under
-// AddressSanitizer this also tells of leaks and writes of the C parser that our own memory could see.
-// RABIT_FUZZ_ROUNDS gives the number of texts, RABIT_FUZZ_SEED the first seed.
+// Texts of strangers: each text is a type that works, or is refused with a reason. AddressSanitizer also
+// finds the C parser's leaks, and its writes into memory of ours. RABIT_FUZZ_ROUNDS gives the number of
+// texts, RABIT_FUZZ_SEED the first seed.
 #include "CorpusTest.h"
 #include "RandomSample.h"
 #include "TextMutator.h"
@@ -26,7 +26,7 @@ unsigned FromEnvironment(const char *name, unsigned otherwise)
     return value == nullptr ? otherwise : static_cast<unsigned>(std::strtoul(value, nullptr, 10));
 }
 
-// A name that the text may define: one of the corpus, so that most fit.
+// Returns a name that the text may define: one of the corpus, so that most fit.
 std::string NameIn(const std::string &text, const std::vector<std::string> &names, std::mt19937 &random)
 {
     const std::size_t first = random() % names.size();
@@ -99,7 +99,7 @@ TEST(TextFuzz, EveryTextIsATypeThatWorksOrIsRefusedWithAReason)
         ASSERT_EQ(parsed.Reason, "");
         ASSERT_NO_FATAL_FAILURE(UseType(*parsed.Type, random)) << "round " << round << "\n" << text;
     }
-    // Else the texts are so damaged that nothing behind the parser was tried.
+    // With fewer, the texts are too damaged to try anything behind the parser.
     EXPECT_GT(types, rounds / 20);
     RecordProperty("types", static_cast<int>(types));
 }

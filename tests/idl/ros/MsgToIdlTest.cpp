@@ -1,4 +1,4 @@
-// `.msg` files to IDL, and what is refused.
+// `.msg` files to IDL, and the files that are refused.
 #include <gtest/gtest.h>
 
 #include "ros/MsgReader.h"
@@ -14,7 +14,7 @@ std::string IdlOf(const std::string &msg)
     return refusals.Empty() ? RabitIdl::MsgToIdl(file) : "refused: " + refusals.First();
 }
 
-// What stands in the struct.
+// Returns the contents of the struct.
 std::string Members(const std::string &msg)
 {
     const std::string idl = IdlOf(msg);

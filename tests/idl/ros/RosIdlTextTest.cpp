@@ -41,7 +41,7 @@ TEST(RosIdlText, LeavesOutVerbatimAndKeepsTheLines)
         "\n\n\nlong a;\n");
 }
 
-// IDL knows its keywords in whatever case.
+// IDL keywords are keywords in upper and lower case.
 TEST(RosIdlText, EscapesNamesThatAreKeywordsInAnotherCase)
 {
     EXPECT_EQ(RosIdlText("struct Char {\n  const uint8 INT8 = 1;\n  a::msg::Object o;\n};\n"),

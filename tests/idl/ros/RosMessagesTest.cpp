@@ -1,4 +1,4 @@
-// What becomes of message packages of ROS 2.
+// The messages that are made of ROS 2's message packages.
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
@@ -82,7 +82,7 @@ TEST(RosMessages, HaveArraysSequencesAndBounds)
     EXPECT_FALSE(type->Serialize(message, bytes));
 }
 
-// The bytes that every program of ROS 2 sends for it.
+// The bytes that every ROS 2 program sends for this message.
 TEST(RosMessages, AreOnTheWireAsOfRos)
 {
     std_msgs::msg::Header header;

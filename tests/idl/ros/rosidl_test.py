@@ -11,7 +11,7 @@ import tempfile
 
 SKIPPED = 77
 PYTHON = "/usr/bin/python3"  # whose packages are Debian's
-# In a process of its own: it writes to standard output what it does, and breaks if that is redirected within Python.
+# Runs in a process of its own: it prints its steps to standard output, and breaks if Python redirects that.
 ADAPT = """
 import pathlib, sys
 from rosidl_adapter.msg import convert_msg_to_idl

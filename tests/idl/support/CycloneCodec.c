@@ -13,7 +13,7 @@ enum
     Xcdr1 = 1
 };
 
-// Alone on the loopback interface: nothing of this is meant for other processes.
+// Only on the loopback interface: other processes must get nothing of this.
 static const char *const Config =
     "<Domain><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"
     "<AllowMulticast>false</AllowMulticast></General></Domain>";

@@ -128,8 +128,8 @@ static Keys_WideBoundedTextKey WideBoundedTextKey(void)
         return (CycloneValue){.type = &c_type##_desc, &value}; \
     }
 
-// Cyclone DDS copies a type of numbers alone as a block, with what lies between them: zeros in a static
-// object.
+// Cyclone DDS copies a type that contains only numbers as a block, including the bytes between them: zeros
+// in a static object.
 #define RETURN_PLAIN(text, c_type, ...)                        \
     if (strcmp(name, text) == 0)                               \
     {                                                          \

@@ -24,7 +24,7 @@ using Words = std::vector<std::string_view>;
 constexpr double MostMilliseconds = 3'600'000;
 constexpr double MostBytes = 1e9;
 
-// What is wrong with a command, in words.
+// Tells in words why a command was refused.
 class Refused : public std::runtime_error
 {
     using std::runtime_error::runtime_error;
@@ -219,7 +219,7 @@ private:
         Change(senders, hearers, [&](LinkSettings &link) { link.Deaf = deaf; });
     }
 
-    // Of those that the rest of the words names: none, or FROM TO.
+    // Applies `change` to the links that the rest of the words names: none means all, else FROM TO.
     void EachLink(const std::function<void(LinkSettings &)> &change)
     {
         const bool all = _at == _words.size();

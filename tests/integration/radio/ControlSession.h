@@ -11,7 +11,7 @@
 namespace Rabit::Radio
 {
 
-// Lines that come in, each answered by a line, one after the other. Lives until its input ends, a line is too
+// Reads lines, and answers each with a line, one after the other. Lives until its input ends, a line is too
 // long or an answer cannot be written.
 class ControlSession : public std::enable_shared_from_this<ControlSession>
 {

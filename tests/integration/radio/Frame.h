@@ -19,14 +19,14 @@ using FramePointer = std::shared_ptr<const Frame>;
 
 constexpr std::size_t EthernetHeader = 14;
 
-// Broadcast too. False of a frame that is too short for a header.
+// True for multicast and broadcast. False for a frame that is too short for a header.
 bool IsMulticast(const Frame &frame);
-// Zeros of a frame that is too short for a header.
+// Returns zeros for a frame that is too short for a header.
 MacAddress DestinationOf(const Frame &frame);
-// What of it is IP, headers included; 0 of ARP and the like.
+// Returns the bytes of the IP packet in the frame, headers included; 0 for ARP and the like.
 std::size_t IpBytes(const Frame &frame);
 
-// What a frame is, for a diagnosis by eye.
+// The kind of a frame, for a diagnosis by eye.
 struct Kind
 {
     bool Multicast = false;

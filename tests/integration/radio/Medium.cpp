@@ -178,8 +178,8 @@ void Medium::Reset(Time now)
     _countedSince = now;
 }
 
-// All that leaves the air until then, each frame starting when the one before it has ended, however late the
-// caller is.
+// Completes all frames that leave the air until `now`. Each frame starts when the one before it has ended,
+// however late the caller is.
 Time Medium::Run(Time now)
 {
     _now = std::max(_now, now);
@@ -290,7 +290,8 @@ Time Medium::EndOf(Time since, std::int64_t left) const
     return _rate ? since + Time((std::max<std::int64_t>(left, 0) + *_rate - 1) / *_rate) : since;
 }
 
-// From 0 to below 1; the same on every machine, which the distributions of the standard do not promise.
+// Returns a number from 0 to below 1. It is the same on every machine, which the distributions of the
+// standard do not promise.
 double Medium::Random()
 {
     return static_cast<double>(_random() >> 11) * 0x1p-53;

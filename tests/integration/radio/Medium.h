@@ -25,7 +25,7 @@ struct MediumSettings
     std::uint64_t Seed = 1;                     // of losses, duplicates and jitter
 };
 
-// One way between two nodes.
+// One direction between two nodes.
 struct LinkSettings
 {
     double Loss = 0;  // share of the frames, 0 to 1, independent for each receiver and each frame
@@ -43,19 +43,19 @@ struct Arrival
     FramePointer What;
 };
 
-// A shared half-duplex radio channel. Each node has a bounded queue; one frame at a time is on the air, for
-// (bytes + overhead) * 8 / rate, and the nodes that have something to send take turns, a frame each. A
-// multicast or broadcast frame is on the air once and reaches all others; a unicast frame is on the air once
-// and reaches the node with its address, or nobody. What is on the air is then lost or not at each receiver,
-// and comes to it after the link's delay, in order unless reordering is switched on.
+// A shared half-duplex radio channel. Each node has a bounded queue. One frame at a time is on the air, for
+// (bytes + overhead) * 8 / rate. The nodes that have something to send take turns, a frame each. A multicast
+// or broadcast frame is on the air once and reaches all others; a unicast frame is on the air once and
+// reaches at most the node with its address. Each receiver then loses the frame or not. If not, the frame
+// arrives after the link's delay, in order unless reordering is switched on.
 //
-// Left out of what real radios do: collisions and back-off (turns are perfect), acknowledgements and
-// repetitions of unicast frames by the radio, a lower rate for multicast, rates that differ between links,
-// hidden nodes, interference, bursts of loss, and the back-pressure by which a full driver's queue blocks a
-// socket. An outage is silence at the receivers: senders do not notice it and go on using the air.
+// Properties of real radios that are left out: collisions and back-off (turns are perfect), acknowledgements
+// and repetitions of unicast frames by the radio, a lower rate for multicast, rates that differ between
+// links, hidden nodes, interference, bursts of loss, and the back-pressure by which a full driver's queue
+// blocks a socket. An outage is silence at the receivers: senders do not notice it and go on using the air.
 //
-// Pure: no clock, thread or socket. Times are given by the caller and do not go back; one that does counts as
-// the last one. Not for several threads at once.
+// Pure: no clock, thread or socket. The caller gives the times. A time before the last one counts as the last
+// one. One thread at a time.
 class Medium
 {
 public:
@@ -64,8 +64,8 @@ public:
 
     static constexpr std::int64_t MostBitsPerSecond = 10'000'000'000;
 
-    // Nodes are numbered from 0 in this order. Throws std::invalid_argument on a name or address that is
-    // there.
+    // Nodes are numbered from 0 in this order. Throws std::invalid_argument if the name or the address
+    // exists already.
     std::size_t Add(const std::string &name, const MacAddress &address);
     std::size_t Count() const { return _nodes.size(); }
     const std::string &NameOf(std::size_t node) const { return _nodes.at(node).Name; }
@@ -73,21 +73,22 @@ public:
 
     // A node gives a frame to its queue.
     void Offer(Time now, std::size_t node, FramePointer frame);
-    // Appends all that has come to nodes until now, in the order of its coming.
+    // Appends all frames that have come to nodes until `now`, in the order of their arrival.
     void Advance(Time now, std::vector<Arrival> &arrived);
-    // When Advance has something to do, if nothing is offered until then.
+    // Returns when Advance has something to do next, if nothing is offered until then.
     std::optional<Time> NextEvent() const;
-    // Called with each frame at the end of its time on the air, whoever hears it. Must not call the medium.
+    // `tap` is called with each frame at the end of its time on the air, heard or not. It must not call the
+    // medium.
     void SetTap(std::function<void(Time, const Frame &)> tap) { _tap = std::move(tap); }
 
-    // Changes while it runs. A frame on the air goes on at the new rate.
+    // Changes the rate while the medium runs. A frame on the air goes on at the new rate.
     void SetRate(Time now, std::optional<std::int64_t> bitsPerSecond);
     void SetQueue(std::size_t node, std::size_t bytes) { _nodes.at(node).Queue.SetLimit(bytes); }
     void SetOverhead(std::size_t bytes) { _overhead = bytes; }
     void SetReordering(bool on) { _reordering = on; }
-    // A frame of which any part is on the air during an outage is heard by nobody.
+    // A frame of which any part is on the air during an outage reaches no node.
     void SetOutage(Time now, bool on);
-    // Holds for frames that leave the air after now.
+    // Applies to frames that leave the air after `now`.
     void SetLink(Time now, std::size_t from, std::size_t to, const LinkSettings &settings);
     const LinkSettings &LinkOf(std::size_t from, std::size_t to) const;
 
@@ -95,12 +96,12 @@ public:
     bool IsOut() const { return _out; }
     const NodeCounters &CountersOf(std::size_t node) const { return _nodes.at(node).Counters; }
     std::size_t QueuedBytes(std::size_t node) const { return _nodes.at(node).Queue.Bytes(); }
-    // How long the first frame that waits has waited.
+    // Returns how long the first waiting frame has waited.
     Time QueueAge(Time now, std::size_t node) const;
-    // Time for which something was on the air since the beginning or the last Reset.
+    // Returns the time for which a frame was on the air since the beginning or the last Reset.
     Time Busy(Time now) const;
     Time CountedSince() const { return _countedSince; }
-    // All counters from zero. What waits and what is on the air stays.
+    // Sets all counters to zero. Frames that wait or are on the air stay.
     void Reset(Time now);
 
 private:

@@ -147,7 +147,7 @@ TEST_F(MediumTest, AFullQueueDropsWhatComesLast)
     Make(2, 8'000, 2'000);
     for (int k = 0; k < 4; ++k)
     {
-        // The first is on the air, two wait, and the fourth does not fit.
+        // The first frame is on the air, two wait, and the fourth does not fit.
         medium->Offer(0ms, 0, Unicast(1, 1000 - static_cast<std::size_t>(k)));
     }
     EXPECT_EQ(medium->CountersOf(0).Dropped.Frames, 1u);

@@ -12,7 +12,7 @@
 namespace Rabit::Radio
 {
 
-// Since the medium's beginning, whenever that is: the medium has no clock of its own.
+// Time since the medium's beginning: the medium has no clock of its own.
 using Time = std::chrono::nanoseconds;
 
 struct Count
@@ -42,8 +42,8 @@ private:
     std::uint64_t _most = 0;
 };
 
-// What one node has sent and heard. Bytes are whole frames and, of what was on the air, the overhead of the
-// medium; those named Ip are IP packets with their headers, as budgets count.
+// Counters of the frames that one node has sent and heard. Bytes are whole frames; on the air, the medium's
+// overhead is included. Members named Ip count IP packets with their headers, as budgets do.
 struct NodeCounters
 {
     Count Offered;             // what the node gave to its queue
@@ -58,7 +58,7 @@ struct NodeCounters
     Time LongestWait{0};       // in the queue, of what was sent
     SecondWindow AirSecond;
     SecondWindow IpSecond;
-    // Of what was on the air. No more than MostKinds; the rest is under a Kind of zeros.
+    // Counts by kind of the frames on the air. At most MostKinds kinds; the rest is under a Kind of zeros.
     std::map<Kind, Count> Kinds;
 
     static constexpr std::size_t MostKinds = 256;

@@ -13,10 +13,10 @@ namespace Rabit::Radio
 class PcapFile
 {
 public:
-    // Overwrites what is there. Throws std::runtime_error if that does not work. `beginning` is what time 0
-    // of the frames is, since 1970.
+    // Overwrites an existing file. Throws std::runtime_error if the file cannot be written. `beginning` is
+    // time 0 of the frames, as a time since 1970.
     PcapFile(const std::string &path, Time beginning);
-    // False: no longer written, for instance on a full disk.
+    // Returns false if the file is no longer written, for instance on a full disk.
     bool Write(Time at, const Frame &frame);
 
 private:

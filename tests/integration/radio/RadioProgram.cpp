@@ -24,11 +24,11 @@ namespace
 {
 
 constexpr std::size_t LargestFrame = 65'536;
-// So many frames of one node are read before the others get their turn.
+// Number of frames of one node that are read before the others get their turn.
 constexpr int Batch = 32;
 
-// Before all others on this machine, or its processors' queues are measured in place of the air's. False: not
-// allowed.
+// Makes this process run before all others on the machine; otherwise the processors' queues would be
+// measured instead of the air's. Returns false if that is not allowed.
 bool BecomeRealtime()
 {
     prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0);
@@ -78,7 +78,7 @@ RadioProgram::RadioProgram(const RadioOptions &options) : _medium(options.Medium
     for (const auto &[name, space] : options.Nodes)
     {
         const auto number = _devices.size() + 1;
-        // Locally administered.
+        // A locally administered address.
         const MacAddress address{
             2, 0x52, 0x62, 0, static_cast<std::uint8_t>(number >> 8), static_cast<std::uint8_t>(number)};
         _medium.Add(name, address);
@@ -175,7 +175,7 @@ void RadioProgram::ReadAll(std::size_t node)
                 Wait(node);
                 return;
             }
-            // Its namespace is gone, and so is the node.
+            // The node's namespace is gone, and so is the node.
             std::cerr << "radio: " << _medium.NameOf(node)
                       << " is off the air: " << std::generic_category().message(reason) << '\n';
             return;

@@ -32,16 +32,15 @@ struct RadioOptions
 // Carries frames between TAP devices over a medium, by the clock. One thread. Ends by SIGINT, SIGTERM or,
 // without Control, at the end of the standard input.
 //
-// On the standard output comes first {"ready": true, "addresses": {name: MAC}, "realtime": bool}, then the
-// answers to what comes from the standard input. Beside the commands of Console there is
+// The standard output begins with {"ready": true, "addresses": {name: MAC}, "realtime": bool}. The answers to
+// the lines of the standard input follow. Beside the commands of Console there is
 //
-//   lateness   {frames, mean_us, most_us, unwritten}: how much later than they should frames were given to
-//   their
-//              receivers, and how many a device would not take; since the last time that it was asked
+//   lateness   {frames, mean_us, most_us, unwritten}: how much later than due frames were given to their
+//              receivers, and how many a device did not take; since the last call
 class RadioProgram
 {
 public:
-    // Throws what TapDevice and PcapFile throw.
+    // Throws the exceptions of TapDevice and PcapFile.
     explicit RadioProgram(const RadioOptions &options);
     void Run();
 
@@ -55,7 +54,7 @@ private:
     void Converse(Stream in, Stream out, bool endsAll);
     void Wait(std::size_t node);
     void ReadAll(std::size_t node);
-    // Gives out what has come, and sets the timer for what comes next.
+    // Gives out all frames that have arrived, and sets the timer for the next ones.
     void Carry();
     void GiveOut(const Arrival &arrival);
     std::string Answer(const std::string &line);

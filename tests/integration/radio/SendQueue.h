@@ -9,8 +9,8 @@
 namespace Rabit::Radio
 {
 
-// The buffer of one node's radio: first in, first out; what does not fit is dropped (drop-tail). An empty
-// queue takes one frame of any size.
+// The buffer of one node's radio: first in, first out. A frame that does not fit is dropped (drop-tail). An
+// empty queue takes one frame of any size.
 class SendQueue
 {
 public:
@@ -22,7 +22,7 @@ public:
 
     explicit SendQueue(std::size_t limit) : _limit(limit) {}
 
-    // False: dropped.
+    // Returns false if the frame was dropped.
     bool Push(Time now, FramePointer frame)
     {
         if (!_frames.empty() && _bytes + frame->size() > _limit)
@@ -34,7 +34,7 @@ public:
         return true;
     }
 
-    // Not of an empty one.
+    // The queue must not be empty.
     Waiting Pop()
     {
         Waiting first = std::move(_frames.front());
@@ -45,9 +45,9 @@ public:
 
     bool IsEmpty() const { return _frames.empty(); }
     std::size_t Bytes() const { return _bytes; }
-    // How long the first one has waited.
+    // Returns how long the first frame has waited.
     Time Age(Time now) const { return _frames.empty() ? Time{0} : now - _frames.front().Since; }
-    // Less than what waits: that stays.
+    // Frames that wait stay, even if they exceed the new limit.
     void SetLimit(std::size_t bytes) { _limit = bytes; }
 
 private:

@@ -23,7 +23,8 @@ namespace Rabit::Radio
 namespace
 {
 
-// What the kernel holds for the program while that is not scheduled: a second at 10,000 frames a second.
+// Number of frames that the kernel holds while the program is not scheduled: a second at 10,000 frames a
+// second.
 constexpr int FramesInKernel = 10'000;
 
 int Checked(int result, const std::string &what)
@@ -96,7 +97,7 @@ TapDevice::TapDevice(const std::string &space, const std::string &device, const 
 {
     const std::string path = space.find('/') == std::string::npos ? "/run/netns/" + space : space;
     std::exception_ptr failure;
-    // A namespace is a thread's, and this thread goes when it has opened the device there.
+    // A namespace belongs to a thread. This thread ends when it has opened the device there.
     std::thread inside(
         [&]
         {

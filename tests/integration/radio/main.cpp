@@ -1,5 +1,5 @@
-// A shared radio channel between network namespaces: each node has a TAP device there. Medium.h says what it
-// does and what it leaves out, Console.h what it can be told.
+// A shared radio channel between network namespaces: each node has a TAP device there. Medium.h describes
+// the channel and its limits, Console.h the commands.
 #include "RadioProgram.h"
 
 #include <CLI/CLI.hpp>

@@ -9,7 +9,7 @@ namespace
 
 using namespace std::chrono_literals;
 
-// One of the scenarios that seeds run, over some seeds.
+// Expects that the scenario holds over some seeds.
 void HoldsFor(AirScenario scenario, int seeds)
 {
     for (int seed = 1; seed <= seeds; ++seed)

@@ -9,8 +9,8 @@
 namespace Rabit::Sim
 {
 
-// A shared half-duplex radio: each node has a queue, first in first out, that drops what does not fit; one
-// packet at a time is on the air, and the nodes that have something take turns. A packet that has begun keeps
+// A shared half-duplex radio. Each node has a first-in-first-out queue that drops packets that do not fit.
+// One packet at a time is on the air, and the nodes with a packet take turns. A packet that has begun keeps
 // the rate at which it began.
 class AirMedium
 {
@@ -20,13 +20,13 @@ public:
     AirMedium(std::size_t nodes, double bitsPerSecond) : _queues(nodes), _bitsPerSecond(bitsPerSecond) {}
 
     void SetRate(double bitsPerSecond) { _bitsPerSecond = bitsPerSecond; }
-    // False: dropped.
+    // Returns false if the queue dropped the packet.
     bool Offer(AirPacket packet, Time now);
-    // When the packet that is on the air has come; empty: none is.
+    // Returns when the packet on the air arrives; empty if there is none.
     std::optional<Time> NextArrival() const;
-    // It has. The next one begins.
+    // Ends the packet on the air and returns it. The next one begins.
     AirPacket Arrive(Time now);
-    // How long the packet on the air has waited.
+    // Returns how long the packet on the air waited in its queue.
     Time Waited() const { return _began - _air->SentAt; }
 
 private:

@@ -189,7 +189,7 @@ void AirNode::Hear(const AirPacket &packet, Time now)
     }
     if (!packet.Reports.empty() && packet.Reports[_number])
     {
-        // What a node can know of it: how long it was held there, and how late the beat itself is.
+        // The node knows how long the report was held there, and how late the beat itself is.
         const AirPacket::Report &report = *packet.Reports[_number];
         const Time held = packet.SentAt - report.ArrivedAt;
         _estimate.Reported(static_cast<CapacityEstimate::Peer>(packet.From), report.Late,

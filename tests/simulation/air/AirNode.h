@@ -13,13 +13,13 @@
 namespace Rabit::Sim
 {
 
-// A node that beats, sends commands, two telemetry messages at 10 Hz, and bulk, by its schedule.
+// A node that sends beats, commands, two telemetry messages at 10 Hz, and bulk, by its schedule.
 class AirNode
 {
 public:
     AirNode(std::size_t number, const AirScenario &scenario);
 
-    // When Run wants to be called.
+    // Returns when Run is to be called next.
     Time Due() const { return _due; }
     void Run(Time now, AirMedium &medium);
     void Hear(const AirPacket &packet, Time now);
@@ -28,7 +28,7 @@ public:
     std::optional<double> Rate(Time now) const { return _estimate.Rate(now); }
 
 private:
-    // When a stream of packets has the next one.
+    // The time at which a stream of packets has the next one.
     struct Source
     {
         StreamId Stream;

@@ -13,7 +13,7 @@ using Time = std::chrono::nanoseconds;
 // One IP packet on the simulated air.
 struct AirPacket
 {
-    // What a beat says of the newest packet of a node that came and was not reported before.
+    // A beat's report of the newest packet that came from a node and was not reported yet.
     struct Report
     {
         Time Late{0};

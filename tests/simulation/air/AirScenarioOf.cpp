@@ -99,7 +99,7 @@ std::string JudgeSteady(const AirScenario &scenario, const AirResult &result)
     {
         return "one packet in twenty waits for " + Milliseconds(wait);
     }
-    // Who acknowledges sends small packets, and a radio gives turns and not bytes.
+    // A node that acknowledges sends small packets, and a radio gives turns, not bytes.
     const auto end = result.BytesOf.end() - (scenario.Acknowledged ? 1 : 0);
     const auto [least, most] = std::minmax_element(result.BytesOf.begin(), end);
     if (*most > 2 * *least)
@@ -123,7 +123,7 @@ std::string JudgeDeaf(const AirScenario &scenario, const AirResult &result)
     const double share =
         static_cast<double>(others) * 8.0 * static_cast<double>(scenario.Nodes) /
         (scenario.BitsPerSecond * std::chrono::duration<double>(scenario.Ends - scenario.Settled).count());
-    // Its packets are longer, and a radio gives turns and not bytes.
+    // The deaf node's packets are longer, and a radio gives turns, not bytes.
     return share < 0.33 ? "one node hears nothing, and another has " + std::to_string(share) + " of its share"
                         : "";
 }

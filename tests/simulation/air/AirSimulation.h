@@ -12,7 +12,7 @@
 namespace Rabit::Sim
 {
 
-// What happened on the air in one second.
+// The traffic on the air in one second.
 struct AirSecond
 {
     double Use = 0.0;     // of what the radio could carry
@@ -24,7 +24,7 @@ struct AirSecond
 
 struct AirResult
 {
-    // From Settled on.
+    // Measured from Settled on.
     double Use = 0.0;
     std::vector<std::uint64_t> BytesOf;  // by node
     std::vector<Time> Waits;             // in a node's queue, ascending
@@ -42,7 +42,7 @@ struct AirResult
 
 AirResult RunAir(const AirScenario &scenario, std::ostream *trace = nullptr);
 
-// What a seed runs, and what broke a promise of the schedule or the estimate; empty: nothing.
+// The scenario of a seed, and the broken promise of the schedule or the estimate; empty if none was broken.
 AirScenario ScenarioOf(std::uint64_t seed);
 std::string Judge(const AirScenario &scenario, const AirResult &result);
 

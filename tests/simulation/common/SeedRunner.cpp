@@ -37,7 +37,7 @@ struct Arguments
     bool RequireCoverage = false;
 };
 
-// The commit that the sources are at now; for the report of a failure alone.
+// Returns the commit of the sources, for the report of a failure alone.
 std::string Commit()
 {
     const std::string command =
@@ -120,7 +120,7 @@ public:
         }
     }
 
-    // Returns false if something that the simulation is meant to try never happened.
+    // Prints the totals. Returns false if something that the simulation is meant to try never happened.
     bool Print() const
     {
         bool complete = !_figures.empty();

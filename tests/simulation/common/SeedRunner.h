@@ -9,7 +9,7 @@
 namespace Rabit::Sim
 {
 
-// Something counted in a run: to see that a simulation tries what it is meant to try.
+// A count of one kind of event in a run, to see that a simulation tries what it is meant to try.
 struct Figure
 {
     enum class Kind
@@ -39,8 +39,8 @@ using SeedFunction = std::function<SeedResult(std::uint64_t seed, std::ostream *
 //   program --seeds 20000 [--first 1] [--jobs 2] [--require-coverage]
 //   program --seed 4711 [--trace]
 //
-// Prints what happened in total. On a violation: the seed, the commit and the last events, and exit status 1;
-// the same if a figure stays 0 where coverage is required. What cannot be understood: exit status 2.
+// Prints the totals. On a violation, prints the seed, the commit and the last events; the exit status is 1.
+// The status is also 1 if a figure stays 0 and coverage is required. It is 2 if an argument is wrong.
 int RunSeeds(const char *program, int argc, char **argv, const SeedFunction &run);
 
 }  // namespace Rabit::Sim

@@ -22,15 +22,15 @@ public:
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
         return z ^ (z >> 31);
     }
-    // 0 to 1, 1 excluded.
+    // Returns a number from 0 to 1, 1 excluded.
     double Unit() { return static_cast<double>(Next() >> 11) * 0x1.0p-53; }
     bool Chance(double probability) { return Unit() < probability; }
-    // low to high, both included.
+    // Returns a number from low to high, both included.
     std::int64_t Between(std::int64_t low, std::int64_t high)
     {
         return low + static_cast<std::int64_t>(Next() % static_cast<std::uint64_t>(high - low + 1));
     }
-    // low to high, each order of magnitude equally likely. low > 0.
+    // Returns a number from low to high, each order of magnitude equally likely. low > 0.
     std::int64_t LogBetween(std::int64_t low, std::int64_t high)
     {
         const double ratio = static_cast<double>(high) / static_cast<double>(low);
@@ -45,7 +45,7 @@ public:
     {
         return std::chrono::nanoseconds(LogBetween(low.count(), high.count()));
     }
-    // One of `count` positions.
+    // Returns one of `count` positions.
     std::size_t Index(std::size_t count)
     {
         return static_cast<std::size_t>(Between(0, static_cast<std::int64_t>(count) - 1));

@@ -12,30 +12,31 @@ namespace
 
 using namespace std::chrono_literals;
 
-// The gateway has found its pace so long after the medium has changed its rate, and after what had been sent
-// until then has gone: that is a queue of each node at the most, and nobody can take it back.
+// Time in which a gateway adapts to a new rate of the medium. It begins when the datagrams sent until then
+// have gone: a full queue of each node at most, which no node can take back.
 constexpr Time Adapts = 5s;
-// It finds out once its queue holds so much, as when all send.
+// A node notices a slower medium once its queue holds this much, as when all nodes send.
 constexpr Time Flood = 500ms;
-// DDS says what it has to say of a newcomer in this time, and it is so many bytes in all, which go before
-// tracks.
+// Time and bytes of the discovery of a newcomer by DDS. Discovery goes before tracks.
 constexpr Time Discovers = 20s;
 constexpr std::uint64_t Discovery = 20'000;
-// A node whose rate is limited sees so long after it that it is over (air/DiscoveryBurst).
+// A node with a limited rate notices the end of discovery this much later (air/DiscoveryBurst).
 constexpr Time DiscoveryIsOver = 2s;
-// Of the time in which the radios of the plans are to have all UP; in the simulation it takes a third.
+// All must be UP within this part of the time that the plans' radios allow; in the simulation it takes a
+// third.
 constexpr int PartOfWait = 2;
-// How old a track may be that comes, when the newest is looked at, at least.
+// Least age that a track may have on arrival, for the check of the newest track.
 constexpr Time OnTheWay = 1s;
-// What may be lost in a row of what is said once, and when the medium carries less than in the plan.
+// Number of unrepeated samples that may be lost in a row; the second is for a medium that carries less than
+// in the plan.
 constexpr int InARow = 5;
 constexpr int InARowWhenItDoesNotFit = 6;
-// What part of the medium tracks are to have at the least: a quarter, as the plans have it. When the medium
-// carries less than in the plan, or the node has a large note to send, notes take all that their class may
-// have: telemetry has 3 parts of 43, and a quarter of all goes to presence first (gateway/RADIO.md).
+// Least share of the medium for tracks: a quarter, as the plans have it. If the medium carries less than in
+// the plan, or the node has a large note to send, notes take all that their class may have. Telemetry then
+// has 3 parts of 43, and a quarter of all goes to presence first (gateway/RADIO.md).
 constexpr double ShareOfTracks = 1.0 / 4;
 constexpr double ShareWhenItDoesNotFit = 3.0 / 43 * 3 / 4;
-// All that is said for each byte that was to be said, and for each start and each other node.
+// Most bytes sent for each byte of work, and for each start and each other node.
 constexpr double MostForWork = 1.5;
 constexpr std::uint64_t MostForStart = 9'000;
 
@@ -44,13 +45,13 @@ std::string Seconds(Time time)
     return std::to_string(static_cast<double>(time.count()) / 1e9) + " s";
 }
 
-// An outage that lasts longer than a lease of DDS: everybody finds everybody anew, by announcements that come
-// so often. With a budget leases are longer than the outages of the plans.
+// After an outage longer than a lease of DDS, all nodes find each other anew, by announcements at this
+// interval. With a budget, leases are longer than the outages of the plans.
 constexpr Time Lease = 30s;
 constexpr Time Announces = 10s;
 
-// Bytes a second of a whole fleet that has nothing to say. With a budget, beats have a twentieth of it, and
-// DDS some 25 bytes for each node: 100 for each with a budget of 1500.
+// Most bytes a second of a whole idle fleet. With a budget, beats have a twentieth of it, and DDS some 25
+// bytes for each node: 100 for each with a budget of 1500.
 std::uint64_t IdleLaw(std::uint64_t nodes, const std::optional<std::uint64_t> &budget)
 {
     const std::uint64_t most = 300 * nodes + 20 * nodes * (nodes - 1);
@@ -144,8 +145,7 @@ Time AirOracle::WhenAdapted() const
     return _world.Now + Adapts + TimeOf(SimulatedMedium().QueueBytes * _senders.size());
 }
 
-// That the medium carries less shows in what waits for it, and in nothing else: who sends little may learn of
-// it late.
+// A slower medium shows only in the bytes that wait for it. A node that sends little may learn of it late.
 void AirOracle::LookForFlood(Sender &sender, const SimulatedSent &sent) const
 {
     if (sender.MayFlood && TimeOf(sent.WaitingBytes * _senders.size()) > Flood)
@@ -155,7 +155,7 @@ void AirOracle::LookForFlood(Sender &sender, const SimulatedSent &sent) const
     }
 }
 
-// On the medium as it is.
+// Returns the time that these bytes take on the medium at its present rate.
 Time AirOracle::TimeOf(std::uint64_t bytes) const
 {
     return Time(static_cast<Time::rep>(bytes * 1'000'000'000 / _rate));
@@ -193,7 +193,8 @@ void AirOracle::OnStep()
     }
 }
 
-// In no second more than the budget and a twentieth; of DDS itself, when nobody has come or gone.
+// No second may have more than the budget and a twentieth. DDS's own bytes count when no node has come or
+// gone.
 void AirOracle::CheckBudget(std::size_t node)
 {
     Sender &sender = _senders[node];
@@ -303,7 +304,7 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
     const std::optional<Time> &large = _senders[node].LargeAt;
     const bool fits = _rate >= _plan->BytesPerSecond && !(large && _world.Now - *large <= besideCommands);
     const Time most = fits ? allowed(ShareOfTracks, InARow) : besideCommands;
-    // What was before is not promised.
+    // The promise holds from `since` on.
     if (age > most && _world.Now - since > most)
     {
         _world.Fail(20, "the newest track that " + _world.NameOf(observer) + " has of " +
@@ -312,7 +313,7 @@ void AirOracle::OnNewestTrack(std::size_t observer, std::size_t node, Time age)
     }
 }
 
-// In the second that is over, for a trace.
+// Writes the bytes of the last second to the trace.
 void AirOracle::SayWhatIsSent()
 {
     std::string line = "sent (DDS's own):";

@@ -14,8 +14,8 @@
 namespace Rabit::Sim
 {
 
-// Knows what the medium carries where the plan has a thin one, hears what is on it, and says if the fleet
-// does not hold together over it, shows old tracks, or says too much. Of other plans it checks nothing.
+// Knows the rate of the medium if the plan has a thin one, and hears the traffic on it. Fails if the fleet
+// does not hold together over it, shows old tracks, or sends too much. For other plans it checks nothing.
 class AirOracle
 {
 public:
@@ -27,39 +27,39 @@ public:
     void OnOutageEnd();
     void OnRate(std::uint64_t bytesPerSecond);
 
-    // After each step of the simulation: what is on the air.
+    // Checks the traffic on the air after each step of the simulation.
     void OnStep();
-    // What the gateway of a life shows now.
+    // The gateway of a life shows this fleet now.
     void OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet);
-    // A track of that age (true time) has come.
+    // A track of this age (true time) has come.
     void OnTrack(std::size_t observerLife, std::size_t node, Time age);
-    // A large note of that node waits or is on its way.
+    // A large note of this node waits or is on its way.
     void OnLargeNotes(std::size_t node) { _senders[node].LargeAt = _world.Now; }
-    // Of the newest track that an observer has of a node that is live, now and then.
+    // The newest track that an observer has of a live node has this age. Called now and then.
     void OnNewestTrack(std::size_t observer, std::size_t node, Time age);
-    // What was to be said so far, in bytes on the air if it were said once.
+    // Adds work: the bytes on the air of a message if it were sent once.
     void OnWork(std::uint64_t bytes) { _work += bytes; }
-    // Nothing is posted or sent any more: what is said from here to the second call is said by idle nodes.
+    // From here to EndIdle nothing is posted or sent: all traffic is that of idle nodes.
     void BeginIdle();
     void EndIdle();
 
     std::uint64_t LongestTrackAge() const { return static_cast<std::uint64_t>(_longestAge.count()); }
-    // Percent of what would do, at most.
+    // The most bytes sent, in percent of the bytes allowed.
     std::uint64_t MostSaid() const { return _mostSaid; }
     std::uint64_t LongestUntilUp() const { return static_cast<std::uint64_t>(_longestUntilUp.count()); }
 
 private:
-    // What an observer has to show of a node.
+    // The state of a node that an observer must show.
     struct Pair
     {
         Time Since{0};  // they can hear each other from here on
         bool WasUp = false;
         bool Counts = false;  // both are there, and nothing is in the way
-        // Lives: the last that was shown, and the one that has ended. Its goodbye may still be under way.
+        // Lives: the one shown last, and the one that has ended. Its goodbye may still be under way.
         std::uint64_t Shown = 0;
         std::uint64_t Ended = 0;
     };
-    // What a node has sent in the last second.
+    // The bytes that a node has sent in the last second.
     struct Sender
     {
         bool Alive = false;
@@ -72,7 +72,7 @@ private:
     };
 
     Pair &PairOf(std::size_t observer, std::size_t node) { return _pairs[observer * _senders.size() + node]; }
-    // The node can hear, or cannot, from then on.
+    // From `since` on the node can hear, or cannot.
     void Restart(std::size_t node, Time since);
     void CheckBudget(std::size_t node);
     Time TimeOf(std::uint64_t bytes) const;

@@ -20,7 +20,7 @@
 namespace Rabit::Sim
 {
 
-// What a Crew reports to.
+// The oracles that a Crew reports to.
 struct Oracles
 {
     NoteOracle &Notes;
@@ -55,7 +55,7 @@ public:
     void FallSilent() { _silent = true; }
     // Tells the oracle what is in the queue: at the end of the process.
     void EmptyQueue();
-    // What its gateway knows, as of the last fetch.
+    // The state of the fleet, as of the last fetch.
     const Gateway::Fleet &Fleet() const { return *_fleet; }
 
 private:

@@ -92,7 +92,7 @@ void AddFault(FleetPlan &plan, SimRandom &random)
     }
     else if (kind < 0.92)
     {
-        // Down to where it may be taken for a delay, up to an hour and more.
+        // From steps that look like a delay up to more than an hour.
         const std::int64_t seconds = random.LogBetween(1, 5000) * (random.Chance(0.5) ? 1 : -1);
         plan.Faults.push_back({.At = at, .Kind = FaultKind::ClockStep, .A = a, .Amount = seconds});
     }
@@ -111,7 +111,7 @@ FleetPlan::FleetPlan(std::uint64_t seed)
     seed >= FirstThinSeed ? DrawThin(random) : DrawWide(random);
 }
 
-// Bad networks and much that happens on them, but all that is sent has room.
+// Bad networks with many faults, but with room for all that is sent.
 void FleetPlan::DrawWide(SimRandom &random)
 {
     IncarnationsMayFall = random.Chance(0.5);
@@ -123,7 +123,8 @@ void FleetPlan::DrawWide(SimRandom &random)
     for (std::size_t i = 0; i < count; ++i)
     {
         Machines.push_back(DrawMachine(random, i, i > 1));
-        // Without a file the wall clock alone numbers the lives: it may fall where the clock steps.
+        // Without a file only the wall clock numbers the lives, and the numbers may fall if the clock
+        // steps.
         Machines.back().KeepsCounter = Machines.back().KeepsCounter || !IncarnationsMayFall;
     }
     for (std::size_t i = 0; i < count; ++i)

@@ -79,7 +79,7 @@ struct ModePost
     std::size_t Node = 0;
 };
 
-// A medium that all share and that carries the fleet, and what must hold on it.
+// A shared medium that carries the fleet's traffic, and the promises that must hold on it.
 struct ThinPlan
 {
     std::uint64_t BytesPerSecond = 0;     // when nothing is wrong
@@ -89,7 +89,7 @@ struct ThinPlan
     Time SlowPoseAge{0};                  // the same while the medium carries less than that
 };
 
-// Everything about a run of the fleet that is decided beforehand. The same seed always gives the same plan.
+// Everything about a run of the fleet that is decided in advance. The same seed always gives the same plan.
 struct FleetPlan
 {
     std::vector<MachinePlan> Machines;
@@ -102,7 +102,7 @@ struct FleetPlan
     // Whether a life may begin with a lower incarnation than the one before: storage is lost or there is
     // none, and the wall clocks step.
     bool IncarnationsMayFall = false;
-    // Of all nodes: the usual one, or one that most cuts outlast.
+    // The lease of all nodes: the default, or one longer than most cuts.
     std::chrono::milliseconds Lease{};
     std::optional<ThinPlan> Thin;
 

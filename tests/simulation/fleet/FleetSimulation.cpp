@@ -20,12 +20,12 @@ namespace
 
 using namespace std::chrono_literals;
 
-// Everybody must know everybody, have the latest of everybody, and all that was accepted must have its
-// outcome this long after the faults have stopped.
+// This long after the faults have stopped, all nodes must know each other and have the latest values, and
+// all accepted notes must have an outcome.
 constexpr Time DrainTime = 60s;
 constexpr std::uint64_t MostSteps = 5'000'000;
 
-// Something of the plan that happens at a moment.
+// A planned event and its time.
 struct PlannedEvent
 {
     enum class Kind
@@ -47,7 +47,7 @@ public:
     SeedResult Run();
 
 private:
-    // The reading that the monotonic clock of the process of that life has now.
+    // Returns the present reading of the monotonic clock of this life's process.
     Time ClockOf(std::size_t life) const { return _clocks[life].At(_world.Now); }
     void MakeAgenda();
     Time NextStep() const;
@@ -60,7 +60,7 @@ private:
     void BeIdle();
     void OnBurst(const Burst &burst);
     void OnCalm();
-    // Empty if all is as it should be when the faults are over, else what is not.
+    // Returns what is missing when the faults are over; empty if nothing is.
     std::string WhatIsMissing();
     std::string MissingBetween(std::size_t observer, std::size_t node);
     std::vector<Figure> Figures() const;
@@ -167,7 +167,7 @@ void FleetSimulation::StepTo(Time time)
 {
     ++_steps;
     _world.Now = std::max(_world.Now, time);
-    // The nodes' clocks first: handlers that the network calls read them.
+    // Advances the nodes' clocks first: handlers that the network calls read them.
     for (const auto &node : _nodes)
     {
         node->FollowTime();
@@ -349,7 +349,7 @@ std::string FleetSimulation::WhatIsMissing()
     return undrained == 0 ? "" : std::to_string(undrained) + " notes have no outcome";
 }
 
-// At what managers see now.
+// Reports the values that managers see now to the oracle.
 void FleetSimulation::Look()
 {
     for (std::size_t i = 0; i < _nodes.size(); ++i)
@@ -378,7 +378,7 @@ void FleetSimulation::RunUntil(Time end)
     }
 }
 
-// Nobody has anything to say.
+// Runs the fleet idle: no node has anything to send.
 void FleetSimulation::BeIdle()
 {
     for (const auto &node : _nodes)
@@ -387,8 +387,8 @@ void FleetSimulation::BeIdle()
     }
     RunUntil(_world.Now + 10s);
     _air.BeginIdle();
-    // Twelve of DDS's announcements, four with a budget: that one more may fall into it, since it began just
-    // before one, must not decide.
+    // Long enough for twelve of DDS's announcements, four with a budget: one more, if the time begins just
+    // before one, must not decide the result.
     RunUntil(_world.Now + 120s);
     if (_world.Failure.empty())
     {

@@ -18,7 +18,7 @@ struct Life
     Time EndedAt{0};  // true time
 };
 
-// What everything in a run shares: the true time, who lives, and the first violation.
+// The shared state of a run: the true time, the live processes, and the first violation.
 struct FleetWorld
 {
     const FleetPlan &Plan;
@@ -26,7 +26,7 @@ struct FleetWorld
     Time Now{0};
     std::vector<Life> Lives;
     std::string Failure{};
-    // When somebody came or went the last time, an outage ended, or a medium changed its rate.
+    // The last time that a node came or went, an outage ended, or a medium changed its rate.
     Time DisturbedAt{0};
 
     // The numbers are those of the list in tests/simulation/README.md.

@@ -14,19 +14,18 @@
 namespace Rabit::Sim
 {
 
-// Knows what was posted where and when, and says if what another node sees of it goes back, was never posted,
-// or looks younger than it is.
+// Knows all posted values. Fails if a mirrored value goes back, was never posted, or looks younger than it
+// is.
 class MirrorOracle
 {
 public:
-    // What an age may be wrong by: half the round trip, for nobody can tell the delays of the two directions
+    // Largest error of an age: half the round trip, as the delays of the two directions cannot be told
     // apart.
     static constexpr Time AgeTolerance = std::chrono::milliseconds(1300);
-    // Over a thin medium the paths are short, and without a budget of the smallest, with which round trips
-    // are measured seldom, it is no more than the wait for the medium. Until so long after somebody came or
-    // the medium changed, a quarter of what a full queue of each node takes in addition: all beats may have
-    // waited in queues for some seconds then, and a gateway forgets the quickest of before after 15 to 30
-    // seconds.
+    // The same over a thin medium with short paths: at most the wait for the medium. (Not with the smallest
+    // budget, with which round trips are measured seldom.) For `Settles` after a node came or the medium
+    // changed, a quarter of the time of all full queues is added. All beats may have waited in queues for
+    // some seconds then, and a gateway forgets the quickest earlier one after 15 to 30 seconds.
     static constexpr Time ThinAgeTolerance = std::chrono::milliseconds(300);
     static constexpr Time Settles = std::chrono::seconds(45);
 
@@ -40,12 +39,12 @@ public:
 
     // A life posts its next value; returns its number.
     std::uint64_t OnPosted(Topic topic, std::size_t life);
-    // A life fetched something new that it takes for a value of `node`.
+    // A life fetched something new, attributed to `node`.
     void OnFetched(Topic topic, std::size_t observerLife, std::size_t node, std::uint64_t life,
                    std::uint64_t number, double ageSeconds);
-    // Whether that life has the newest value of a node's present life (or it has posted none).
+    // True if the observer has the newest value of this life (or the life has posted none).
     bool IsUpToDate(Topic topic, std::size_t observerLife, std::size_t life) const;
-    // How old the value is that it has; the longest time if none of that life.
+    // Returns the age of the observer's value of this life; the longest time if it has none.
     Time AgeOf(Topic topic, std::size_t observerLife, std::size_t life) const;
 
     std::uint64_t Fetched(Topic topic) const { return _fetched[static_cast<std::size_t>(topic)]; }

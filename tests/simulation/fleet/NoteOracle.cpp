@@ -14,10 +14,10 @@ namespace Rabit::Sim
 namespace
 {
 
-// A clock that runs 500 ppm too fast reaches the end of a silence so much earlier.
+// A clock that runs 500 ppm too fast sees the end of a silence this much earlier.
 constexpr Time DriftTolerance = std::chrono::milliseconds(10);
 
-// A note of more bytes goes in several parts, in any case.
+// A larger note always goes in several parts.
 constexpr std::uint32_t LargeFrom = 4000;
 
 std::uint8_t FillerByte(std::uint64_t number, std::size_t position)
@@ -75,7 +75,8 @@ Note NoteOracle::Make(std::size_t life, std::size_t destination, SimRandom &rand
     return note;
 }
 
-// Whether it puts as much on the air as a note of several parts does: a note to all goes to each by itself.
+// True if the note takes as many bytes on the air as a note of several parts. A note to all goes to each
+// node separately.
 bool NoteOracle::IsLarge(const Record &record) const
 {
     const std::size_t receivers = record.Destination == Burst::ToAll ? _world.Plan.Machines.size() - 1 : 1;
@@ -100,7 +101,7 @@ void NoteOracle::OnSent(std::uint64_t note, bool accepted, Time localNow)
     const QueueOutcome outcome = record.Receipt->Outcome();
     if (record.Destination == Burst::ToAll)
     {
-        // True only if no node refused; some may have accepted in any case.
+        // True only if no node refused; even otherwise some may have accepted.
         _counts.SentToAll += 1;
         for (std::size_t i = 0; i < _world.Plan.Machines.size(); ++i)
         {
@@ -166,7 +167,7 @@ void NoteOracle::OnOutcome(std::uint64_t note)
     CheckOutcome(record, note);
 }
 
-// What can be said at once. That a delivered note did arrive is checked when the queue it is in was emptied.
+// Checks what can be known now. That a delivered note did arrive is checked when its queue was emptied.
 void NoteOracle::CheckOutcome(const Record &record, std::uint64_t note)
 {
     const std::size_t source = _world.Lives[record.Life].Node;

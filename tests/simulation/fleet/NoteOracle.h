@@ -21,8 +21,7 @@
 namespace Rabit::Sim
 {
 
-// Knows what was promised of queue messages, hears what managers see of them, and says what broke the
-// promise.
+// Knows the promises about queue messages and hears what managers see of them. Fails on a broken promise.
 class NoteOracle
 {
 public:
@@ -42,11 +41,11 @@ public:
         std::uint64_t LargeDelivered = 0;  // of several parts each
     };
 
-    // `clockOf`: the reading that the monotonic clock of the process of a life has now.
+    // `clockOf` returns the present reading of the monotonic clock of a life's process.
     NoteOracle(FleetWorld &world, const SimulatedNetwork &network,
                std::function<Time(std::size_t life)> clockOf);
 
-    // A life begins or ends: what is on its way to or from the node may be in doubt.
+    // A life begins or ends: messages on their way to or from the node may be in doubt.
     void OnEpoch(std::size_t node)
     {
         ++_epochs[node];
@@ -56,25 +55,26 @@ public:
     // Fills in the next note of a life, and its receipt.
     Note Make(std::size_t life, std::size_t destination, SimRandom &random);
     std::shared_ptr<RabitQueueReceipt> MakeReceipt(std::uint64_t note);
-    // What AddMessageToQueue said. `localNow`: the sender's monotonic clock.
+    // AddMessageToQueue returned `accepted`. `localNow`: the sender's monotonic clock.
     void OnSent(std::uint64_t note, bool accepted, Time localNow);
     // A note was put into the queue of a life; `arrivedAt` is true time and `sourceNow` the reading that the
     // sender's monotonic clock had then.
     void OnArrived(std::size_t life, const Note &note, bool redelivered, Time sourceNow);
-    // What the gateway of a life counts.
+    // Checks the counters of the gateway of a life.
     void OnFleet(std::size_t life, const Gateway::Fleet &fleet);
-    // The life ended in an orderly way: all that it sent has an outcome.
+    // The life ended in an orderly way: all its notes have an outcome.
     void OnLeft(std::size_t life);
 
-    // The sender's life and node of a note.
+    // Returns the life that sent the note.
     std::size_t SourceLife(std::uint64_t note) const { return _records[note].Life; }
     std::size_t Notes() const { return _records.size(); }
-    // Accepted notes of lives that go on, to nodes of which `alive` is true, without an outcome.
+    // Number of accepted notes without an outcome, from lives that go on to nodes for which `alive` is
+    // true.
     std::size_t Undrained(const std::vector<bool> &alive) const;
-    // Whether a large note of the node, of several parts, is accepted and without an outcome.
+    // True if a large note of the node, of several parts, is accepted and without an outcome.
     bool HasLargePending(std::size_t node) const { return _largePending[node] > 0; }
     Time LastOutcomeAt() const { return _lastOutcomeAt; }
-    // What nobody can hear any more was said to be delivered: call at the end of the run.
+    // Fails if a receipt counts more deliveries than arrivals. Call it at the end of the run.
     void CheckDelivered();
 
     const Counts &Total() const { return _counts; }
@@ -100,7 +100,7 @@ private:
         std::size_t Pending = 0;
         bool WasKnown = false;  // to this life
         bool ExactlyKnown = true;
-        // The sender has had an answer from the destination in this epoch of it.
+        // The epoch of the destination from which the sender has had an answer.
         std::uint32_t KnownEpoch = 0;
     };
     struct Stream
@@ -118,16 +118,16 @@ private:
         return _world.Plan.Machines[source].Send[destination];
     }
     std::uint32_t EpochOf(std::size_t a, std::size_t b) const { return _epochs[a] + _epochs[b]; }
-    // Whether an end restarted after the sender knew of the other end's life and sent the note. A note that
-    // was sent to a life of which the sender had not heard yet may be in doubt as well.
+    // True if an end restarted after the sender knew of the other end's life and sent the note. A note to a
+    // life of which the sender had not heard yet may be in doubt as well.
     bool MayBeInDoubt(const Record &record, std::size_t destination) const
     {
         const std::size_t source = _world.Lives[record.Life].Node;
         return record.EpochsThen[source] + record.KnownThen[destination] != EpochOf(source, destination);
     }
 
-    // Whether the note's time is over and nothing of the links has come from the destination for so long that
-    // the sender gives it up.
+    // True if the note has expired and the links have heard nothing from the destination for so long that
+    // the sender gives up.
     bool IsGivenUp(const Record &record) const;
 
     FleetWorld &_world;

@@ -11,22 +11,22 @@
 namespace Rabit::Sim
 {
 
-// What the network does between each two nodes now: the weather, and cuts, of which there may be several at
+// The state of the network between each two nodes: the weather, and cuts, of which there may be several at
 // once.
 class Paths
 {
 public:
-    // With the weather of the plan's start.
+    // Begins with the weather of the plan's start.
     Paths(const FleetWorld &world, SimulatedNetwork &network, PresenceOracle &presence);
 
     void SetWeather(std::size_t from, std::size_t to, const SimulatedFaults &weather);
     void Cut(std::size_t from, std::size_t to);
     void EndCut(std::size_t from, std::size_t to);
-    // The same between all.
+    // Cuts the paths between all nodes.
     void CutAll();
     void EndCutOfAll();
 
-    // How many there were.
+    // Number of cuts so far.
     std::uint64_t Cuts() const { return _cuts; }
 
 private:

@@ -12,16 +12,16 @@ namespace
 
 using namespace std::chrono_literals;
 
-// What a gateway promises: after so many beats that did not come a node is no longer UP, and after so many it
-// is LOST.
+// The gateway's promise: after StaleAfter missing beats a node is no longer UP, and after LostAfter it is
+// LOST.
 constexpr int StaleAfter = 3;
 constexpr int LostAfter = 7;
 
-// What a beat takes at most with a small budget.
+// Largest size of a beat with a small budget, in bytes.
 constexpr double LargestBeat = 400;
 
-// The longest that a node lets pass between two beats: a second where datagrams come late, which may be the
-// weather's fault, or with a budget what a twentieth of it allows, if that is longer.
+// Longest pause between two beats. It is a second where datagrams come late, which may be the weather's
+// fault. With a budget it is the pause that a twentieth of the budget allows, if that is longer.
 Time LongestPause(const FleetPlan &plan)
 {
     if (!plan.Thin || !plan.Thin->Budget)

@@ -13,11 +13,11 @@
 namespace Rabit::Sim
 {
 
-// Knows which node could be heard where, and says if a gateway shows one as live that has long been silent.
+// Knows which node could be heard where. Fails if a gateway shows a node as live that has long been silent.
 class PresenceOracle
 {
 public:
-    // How much later than it should a state may change: the delays of both directions, which nobody can tell
+    // How much later than promised a state may change: the delays of both directions, which cannot be told
     // apart, and the sampling of the state.
     static constexpr Time Tolerance = std::chrono::milliseconds(500);
 
@@ -28,9 +28,9 @@ public:
     void OnStarted(std::size_t node);
     void OnEnded(std::size_t node);
 
-    // What the gateway of a life shows now.
+    // The gateway of a life shows this fleet now.
     void OnFleet(std::size_t observerLife, const Gateway::Fleet &fleet);
-    // Whether it shows that node as UP.
+    // True if the fleet shows the node as UP.
     static bool IsUp(const Gateway::Fleet &fleet, const std::string &node);
 
     std::uint64_t Stale() const { return _stale; }
@@ -42,7 +42,7 @@ private:
         int Cuts = 0;
         Time CutAt{0};
     };
-    // For a trace.
+    // Writes the shown state to the trace.
     void SayWhatIsShown(std::size_t observer, std::size_t node, Gateway::NodeState state);
 
     struct Machine
@@ -55,8 +55,8 @@ private:
     std::vector<Path> _paths;
     std::vector<Machine> _machines;
     std::map<std::pair<std::size_t, std::size_t>, Gateway::NodeState> _shown;  // by observer and node
-    // By observing life, node and incarnation. The first beat that ever comes of a life may be late: nothing
-    // tells it from a new one.
+    // By observing life, node and incarnation. The first beat that comes of a life may be late: it looks
+    // like a new one.
     std::map<std::tuple<std::size_t, std::size_t, std::uint64_t>, Time> _firstShown;
     std::uint64_t _stale = 0;
     std::uint64_t _lost = 0;

@@ -10,7 +10,7 @@
 namespace Rabit::Sim
 {
 
-// Removed with all that is in it.
+// A directory that is removed with its contents.
 class ScratchDirectory
 {
 public:

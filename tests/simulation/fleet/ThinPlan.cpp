@@ -1,4 +1,4 @@
-// Plans over a thin medium that carries what the fleet says.
+// Plans over a thin medium that has room for the fleet's traffic.
 #include <algorithm>
 
 #include "FleetPlan.h"
@@ -11,12 +11,12 @@ namespace
 
 using namespace std::chrono_literals;
 
-// Bytes of a note with its acknowledgement, on the average; without those that are large.
+// Mean bytes of a note with its acknowledgement, without the large notes.
 constexpr double NoteOnAir = 400;
-// A large note takes a node's whole share of the medium for so long at most.
+// Longest time for which a large note takes a node's whole share of the medium.
 constexpr std::int64_t LargeNoteSeconds = 4;
 
-// A kind of radio: what it carries, and what must hold with so many nodes on it.
+// A kind of radio: its rate, and the promises that hold with this many nodes on it.
 struct Radio
 {
     std::uint64_t BytesPerSecond;
@@ -95,7 +95,7 @@ void FleetPlan::DrawThin(SimRandom &random)
             Machines[i].Send.push_back(DrawThinRule(random, Machines[j].Name));
         }
     }
-    // What happens, one after the other, with time in between to come together.
+    // The faults come one after the other, with time in between for the nodes to meet again.
     Time at = radio.UpWithin + random.Between(1s, 20s);
     if (random.Chance(0.4))
     {

@@ -5,7 +5,7 @@
 
 int main(int argc, char **argv)
 {
-    // Refusals and peers that go are what this is about.
+    // The runs are full of refusals and lost peers, so the log is off.
     Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Off);
     return Rabit::Sim::RunSeeds("fleet_simulation", argc, argv, Rabit::Sim::RunFleetSeed);
 }

@@ -46,7 +46,7 @@ MUTATIONS = [
     Mutation("any echo is believed", "PeerTable.cpp", "_sent.Find(own->beat);", "std::optional(Duration(0));", PARTS),
     Mutation("what is not as its digest says is taken", "OffersCollector.cpp",
              "if (Announcements::DigestOf(_parts.Bytes()) != digest)", "if (false)", PARTS),
-    # What goes on the air
+    # The traffic on the air
     Mutation("beats wait for all others", "AirTraffic.cpp",
              "_beat(_schedule.AddStream(TrafficClass::Presence, AirSchedule::LargestWeight))",
              "_beat(_schedule.AddStream(TrafficClass::Bulk))", THIN),

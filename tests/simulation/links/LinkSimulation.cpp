@@ -20,15 +20,15 @@ namespace
 
 using namespace std::chrono_literals;
 
-// All that is accepted must have its outcome this long after the faults have stopped (invariant 11).
+// All accepted messages must have an outcome this long after the faults have stopped (invariant 11).
 constexpr LinkTime DrainTime = 60s;
 constexpr LinkTime LongestStraggle = 90s;
 constexpr LinkTime LongestPreparation = 50ms;
-// What a part costs beside its payload when it goes alone: two datagrams' headers, the frame's and the
-// acknowledgement's. And the frame's head alone, at most.
+// Overhead in bytes of a part that goes alone: the headers of two datagrams, the frame's head and the
+// acknowledgement's. BytesOfAHead is the frame's head alone, at most.
 constexpr double BytesOfAPart = 350;
 constexpr std::size_t BytesOfAHead = 100;
-// A run has some thousands of events; one with more than this has a node that asks to be run without end.
+// A run has some thousands of events. With more than this, a node asks to be run without end.
 constexpr std::uint64_t MostEvents = 1'000'000;
 
 enum class EventKind
@@ -86,7 +86,7 @@ private:
     }
     void CheckBytes();
     void Put(Packet packet, LinkTime at);
-    // Runs the node if something is due, and sees to it that it is woken when something will be.
+    // Runs the node if something is due, and schedules its next wake-up.
     void Pump(std::size_t node);
     bool IsDrained();
     std::string Lead() const;
@@ -233,9 +233,9 @@ SimResult Simulation::Run()
     return {_oracle.Failure(), _statistics};
 }
 
-// Invariant 15. Each byte accepted is sent so often as the worst loss of the run asks for, in both
-// directions, and once more for what nodes forget in crashes; acknowledgements and headers are counted with
-// each message; and a link that hears nothing asks now and then.
+// Invariant 15. Each accepted byte is sent as often as the run's worst loss requires, in both directions,
+// and once more for what nodes forget in crashes. Acknowledgements and headers are counted with each
+// message. A link that hears nothing asks now and then.
 void Simulation::CheckBytes()
 {
     double worst = 0;
@@ -395,8 +395,8 @@ void Simulation::StartNode(std::size_t node, bool storageLost)
     Pump(node);
 }
 
-// The faults stop: whole paths, all nodes up, queues that are emptied. Datagrams sent before still straggle
-// in.
+// The faults stop: paths are whole, all nodes are up, and queues are emptied. Datagrams sent earlier may
+// still come.
 void Simulation::OnCalm()
 {
     _calm = true;
@@ -407,7 +407,7 @@ void Simulation::OnCalm()
     }
     if (_rate > 0)
     {
-        // Three times, and all with their headers and acknowledgements.
+        // Three times the pending bytes, all with their headers and acknowledgements.
         const std::size_t bytes = _oracle.PendingBytes() + 400 * _oracle.PendingCount();
         _drainOnAir = LinkTime(static_cast<std::int64_t>(3 * 8 * bytes) * 1'000'000'000 / _rate);
     }
@@ -554,7 +554,7 @@ void Simulation::OnDatagram(std::size_t slot)
     {
         *_trace << Lead() << "came " << Describe(packet) << '\n';
     }
-    // A short frame tells nothing of its sender's life to who does not know that already.
+    // A short frame tells its sender's life only to a node that knows it already.
     if (node.Receive(packet) && _nodes[packet.From]->IsAlive() &&
         _nodes[packet.From]->Links().IncarnationTo(_plan.Nodes[packet.To].Name) == packet.SenderLife)
     {
@@ -576,7 +576,7 @@ void Simulation::OnDatagram(std::size_t slot)
 void Simulation::Pump(std::size_t index)
 {
     SimNode &node = *_nodes[index];
-    // A driver with a delay runs at its own times; one without runs at once.
+    // A driver with a delay runs at its own times; a driver without one runs at once.
     const LinkTime delay = _calm ? LinkTime(0) : _plan.Nodes[index].DriverDelay;
     if (node.Links().NextDue() <= node.LocalNow() && (delay == LinkTime(0) || _wakeAt[index] == LinkNever))
     {
@@ -588,7 +588,7 @@ void Simulation::Pump(std::size_t index)
     {
         return;
     }
-    // A clock that runs slow is not there yet after this: then it is asked again a moment later.
+    // A slow clock is not there yet after this wait: then the node is asked again a moment later.
     const LinkTime wait = std::max<LinkTime>(due - node.LocalNow(), 1us);
     const LinkTime at =
         _world.Now + wait + LinkTime(delay == LinkTime(0) ? 0 : _random.Between(0, delay.count()));

@@ -9,7 +9,7 @@
 namespace Rabit::Sim
 {
 
-// What happened in a run: to see that the simulation tries what it is meant to try.
+// Counts of events in a run, to see that the simulation tries what it is meant to try.
 struct SimStatistics
 {
     std::uint64_t Events = 0;

@@ -220,7 +220,7 @@ void Oracle::OnDelivered(const Record &constRecord, bool redelivered, LinkTime s
         {
             Fail(1, name + " was redelivered although nobody restarted");
         }
-        // When a sender has lost its storage, messages of its stream before that may still come between.
+        // If a sender has lost its storage, earlier messages of its stream may still come in between.
         if (!_scenario.IncarnationsMayFall)
         {
             if (state.FlaggedEpoch == EpochOf(record.Link) && number < state.NextFlagged)

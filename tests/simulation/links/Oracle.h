@@ -31,8 +31,8 @@ struct Record
     LinkOutcome Outcome = LinkOutcome::Delivered;
 };
 
-// Knows what was promised, hears of everything that happens, and says what broke the promise. The numbers in
-// its messages are those of the list in tests/simulation/README.md.
+// Knows the promises and hears of every event. Fails on a broken promise; the numbers are those of the list
+// in tests/simulation/README.md.
 class Oracle
 {
 public:
@@ -40,12 +40,12 @@ public:
 
     // A node's process starts. Returns the name of this life.
     std::size_t StartLife(std::size_t node);
-    // The node is in a new incarnation, by a crash or because it had to take one: messages that are on their
-    // way to or from it may be in doubt.
+    // The node takes a new incarnation, after a crash or because it had to: messages that are on their way
+    // to or from it may be in doubt.
     void NewEpoch(std::size_t node);
     void EndLife(std::size_t node) { _lifeOf[node] = NoLife; }
-    // The node has forgotten the other one: between the two it is as if it were in a new incarnation, and it
-    // does not know that of the other.
+    // The node has forgotten the peer: for this pair it is as if the node were in a new incarnation and did
+    // not know the peer's.
     void Forgets(std::size_t node, std::size_t peer);
     // A node has taken a frame of the present incarnation of another one.
     void Knows(std::size_t node, std::size_t peer, LinkTime nodeNow)
@@ -54,22 +54,22 @@ public:
         _heardAt[node][peer] = nodeNow;
     }
 
-    // The payload and type of the next message of a link.
+    // Returns the payload of the next message of a link.
     std::vector<std::uint8_t> MakePayload(SimRandom &random) const;
-    // What a call of Enqueue did. The outcomes reported during the call come first.
+    // Enqueue was called with this result. The outcomes reported during the call come first.
     void OnEnqueue(std::size_t link, std::string_view type, std::span<const std::uint8_t> payload,
                    LinkRefusal refusal, std::uint64_t id, LinkTime senderNow);
     // A message comes out of a link. Returns its record, or null after a violation.
     Record *Find(std::size_t receiver, std::string_view source, std::string_view queue, std::string_view type,
                  std::span<const std::uint8_t> payload);
-    // It was put into the queue. `senderNow`: the time by the clock of the process that sent it.
+    // The message was put into the queue. `senderNow`: the time by the clock of the process that sent it.
     void OnDelivered(const Record &record, bool redelivered, LinkTime senderNow);
     void OnOutcome(std::size_t node, std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome, LinkTime senderNow);
-    // The counters of one link of a live node, after an event.
+    // Checks the counters of one link of a live node, after an event.
     void CheckSender(std::size_t node, std::string_view destination, std::string_view queue,
                      const LinkSenderCounters &counters);
-    // Messages of live nodes to live nodes without an outcome.
+    // Number of messages without an outcome, from live nodes to live nodes.
     std::size_t Undrained(const std::vector<bool> &alive) const;
 
     void Fail(int invariant, const std::string &what);
@@ -86,9 +86,9 @@ public:
     std::uint64_t Refused() const { return _refused; }
     std::uint64_t AcceptedBytes() const { return _acceptedBytes; }
     std::uint64_t DeliveredBytes() const { return _deliveredBytes; }
-    // Messages larger than a datagram.
+    // Number of delivered messages larger than a datagram.
     std::uint64_t LargeDelivered() const { return _largeDelivered; }
-    // Without an outcome, of live processes.
+    // Sums over messages of live processes without an outcome.
     std::size_t PendingBytes() const;
     std::size_t PendingCount() const;
 
@@ -112,7 +112,7 @@ private:
 
     std::size_t FindLink(std::size_t source, std::size_t destination, std::string_view queue) const;
     std::size_t FindNode(std::string_view name) const;
-    // Rises with each life in which the node is to that peer.
+    // Rises with each incarnation that the node has for this peer.
     std::uint32_t EpochTo(std::size_t node, std::size_t peer) const
     {
         return _nodeEpoch[node] + _pairEpoch[node][peer];

@@ -23,7 +23,7 @@ struct Packet
 // Makes the frame malformed in one of the ways that the receiver must notice.
 void Spoil(LinkFrame &frame, SimRandom &random);
 
-// For traces, in one line.
+// Returns a line for traces.
 std::string Describe(const Packet &packet);
 
 }  // namespace Rabit::Sim

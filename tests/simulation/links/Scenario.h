@@ -21,15 +21,15 @@ struct Weather
     LinkTime Jitter{0};  // the delay varies by up to this much, which reorders
 };
 
-// What all nodes share, one frame at a time; in front of it each node has a queue that drops what does not
-// fit.
+// The medium that all nodes share, one frame at a time. Each node has a queue in front of it that drops
+// frames that do not fit.
 struct Medium
 {
     std::int64_t BitsPerSecond = 0;  // 0: no limit
     std::size_t QueueBytes = 0;      // of each node, as on the air
 };
 
-// How a node comes by its incarnations.
+// How a node gets its incarnations.
 enum class IncarnationMode
 {
     Counter,         // a counter in a file
@@ -96,7 +96,7 @@ struct Burst
     int Count = 1;
 };
 
-// Everything about a run that is decided beforehand. The same seed always gives the same scenario.
+// Everything about a run that is decided in advance. The same seed always gives the same scenario.
 struct Scenario
 {
     std::vector<ScenarioNode> Nodes;
@@ -109,9 +109,9 @@ struct Scenario
     LinkTime CalmAt{0};          // the faults stop here
     LinkSettings Settings;
     double MalformedPart = 0;  // part of the datagrams that are followed by a malformed copy
-    // Whether a life of a node may begin with a lower incarnation than the one before: its storage may be
-    // lost, or it has none and the wall clock steps. Only then may nodes be surprised by what peers remember
-    // of them.
+    // True if a life of a node may begin with a lower incarnation than the one before: its storage may be
+    // lost, or it has none and the wall clock steps. Only then may a peer remember a higher incarnation of
+    // the node.
     bool IncarnationsMayFall = false;
     bool WaitForStragglers = false;  // go on until the last datagram has come
 

@@ -142,7 +142,7 @@ bool SimNode::Consume(std::size_t queue)
     if (length > 0)
     {
         --length;
-        // As a driver does: room is told of once, after there was none.
+        // Like a driver, reports room once after there was none.
         if (_toldFull[queue] && (_calm || !_world.Random.Chance(plan.PopEventLoss)))
         {
             _toldFull[queue] = false;
@@ -190,7 +190,7 @@ bool SimNode::Accepts(std::string_view /*source*/, std::string_view /*queue*/)
     return true;
 }
 
-// The oracle wants to see each message that is refused.
+// The oracle needs to see each refused message.
 bool SimNode::AcceptsType(std::string_view /*queue*/, std::string_view /*type*/) const
 {
     return true;

@@ -17,7 +17,7 @@
 namespace Rabit::Sim
 {
 
-// What a node needs of the world around it.
+// The world around a node, as the node uses it.
 struct SimWorld
 {
     const Scenario &Plan;
@@ -50,15 +50,15 @@ public:
     void Enqueue(std::size_t link);
     // Forgets another node, if nothing waits for it. Returns whether there was something to forget.
     bool Forget(std::size_t node);
-    // Returns whether it could make sense of it.
+    // Returns true if the node could decode the packet.
     bool Receive(const Packet &packet);
-    // Receives it once more, malformed.
+    // Receives the packet once more, malformed.
     void ReceiveSpoiled(const Packet &packet);
-    // A message is taken out of a queue, and local producers may put one in. Returns whether there are more.
+    // Takes a message out of a queue; local producers may put one in. Returns whether there are more.
     bool Consume(std::size_t queue);
-    // As a driver does when it has decoded a large message.
+    // Finishes a preparation, as a driver does when it has decoded a large message.
     void FinishPreparation(std::size_t index);
-    // From now on no pop event is lost, the room is told rightly, and there are no local producers.
+    // From now on no pop event is lost, the reported room is right, and there are no local producers.
     void SetCalm() { _calm = true; }
 
     // Checks what can be checked of this node alone, after an event.

@@ -39,7 +39,7 @@ class Build:
             "direct": [*sorted(tests.glob("Link*Test.cpp")), tests.parent / "AllocationCount.cpp"],
         }
         work.mkdir(parents=True, exist_ok=True)
-        # What rabit_tell_paths of tests/CMakeLists.txt makes.
+        # Stands in for the file that rabit_tell_paths of tests/CMakeLists.txt makes.
         paths = work / "paths.cpp"
         paths.write_text("namespace Paths\n{\nextern const char *const SourceFolder;\n"
                          f'const char *const SourceFolder = "{source}";\n}}\n')

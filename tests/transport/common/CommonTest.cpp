@@ -1,4 +1,4 @@
-// What the backends share.
+// Tests of the parts that all backends share.
 #include <gmock/gmock.h>
 
 #include <atomic>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-// A datagram of participant 0x52..., as those look with which two of them exchange keys.
+// A datagram of participant 0x52..., like those with which two participants exchange keys.
 struct KeyExchangeMessage
 {
     using Bytes = std::vector<std::uint8_t>;
@@ -22,13 +22,13 @@ struct KeyExchangeMessage
         return *this;
     }
     KeyExchangeMessage &To(std::uint8_t participant) { return Add(0x0e, Bytes(12, participant)); }
-    // A message of a handshake, with a sample of that number.
+    // A handshake message in a sample of this number.
     KeyExchangeMessage &Handshake(const std::string &step, std::uint8_t number, std::uint8_t addressee,
                                   std::size_t size = 100)
     {
         return Add(0x15, Joined(HeadOf(16, number), ContentOf(step, addressee, size)));
     }
-    // A fragment of one; the content is in the first.
+    // A fragment of a handshake message. The first fragment has the content.
     KeyExchangeMessage &Fragment(const std::string &step, std::uint8_t number, std::uint8_t addressee,
                                  std::uint8_t fragment)
     {
@@ -36,7 +36,7 @@ struct KeyExchangeMessage
         head.insert(head.end(), {fragment, 0, 0, 0, 1, 0, 100, 0, 0, 1, 0, 0});
         return Add(0x16, Joined(head, fragment == 1 ? ContentOf(step, addressee, 100) : Bytes(100, 1)));
     }
-    // Something encrypted by that key, or in that session if the key is 0.
+    // Submessages encrypted with this key, or in this session if the key is 0.
     KeyExchangeMessage &Encrypted(std::uint8_t key, std::uint8_t session, std::uint8_t size)
     {
         Bytes head(20, 0);
@@ -60,7 +60,7 @@ private:
         one.insert(one.end(), other.begin(), other.end());
         return one;
     }
-    // Up to the number.
+    // The beginning of the body, up to and including the sample's number.
     static Bytes HeadOf(std::uint8_t toInlineQos, std::uint8_t number)
     {
         return {0, 0, toInlineQos, 0, 0, 2, 1, 0xc4, 0, 2, 1, 0xc3, 0, 0, 0, 0, number, 0, 0, 0};

@@ -1,4 +1,4 @@
-// When what two participants exchange until they can read each other goes.
+// When `KeyExchangeOutbox` sends the messages that two participants need to exchange their keys.
 #include "common/KeyExchangeOutbox.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ protected:
         prefix.fill(peer);
         return prefix;
     }
-    // To a peer, by a route that tells what it was.
+    // Puts a datagram for `peer` into the outbox. `route` identifies the datagram in `Take`.
     bool Put(std::uint8_t peer, Step what, std::uint64_t route, Milliseconds at, std::size_t size = Large,
              std::uint32_t source = 1)
     {
@@ -51,7 +51,7 @@ protected:
         }
         return routes;
     }
-    // When the next one goes.
+    // Returns the time at which the next datagrams go, and takes them.
     Milliseconds Next()
     {
         while (const auto due = Outbox.Due())

@@ -1,4 +1,4 @@
-// What is seen of a datagram with which two participants exchange keys.
+// `ReadKeyExchange` on the datagrams with which two participants exchange keys.
 #include "common/KeyExchange.h"
 
 #include <gtest/gtest.h>
@@ -113,7 +113,7 @@ TEST(KeyExchangeTest, WhateverIsCutOffOrAlteredIsReadWithinItsBounds)
         .Acknowledge(3);
     for (std::size_t size = 0; size <= message.Datagram.size(); ++size)
     {
-        // A copy of that size, so that a tool sees what is read behind it.
+        // A copy of this size, so that AddressSanitizer sees a read beyond it.
         Message::Bytes cut(message.Datagram.begin(),
                            message.Datagram.begin() + static_cast<std::ptrdiff_t>(size));
         ReadKeyExchange(cut);

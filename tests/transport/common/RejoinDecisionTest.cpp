@@ -26,7 +26,7 @@ class RejoinDecisionTest : public testing::Test
 protected:
     using Networks = std::vector<HostNetwork>;
 
-    // What the host has from now on; all that run are to be used, loopback only if there is no other.
+    // Sets the host's networks. All running ones are usable; loopback only if there is no other.
     void Host(Networks networks)
     {
         _host = std::move(networks);
@@ -47,8 +47,8 @@ protected:
     void Peers(std::vector<PeerPlace> peers) { _peers = std::move(peers); }
 
     RejoinDecision::Verdict Look() { return _decision.Look(_now, {_host, _usable, _peers, _peersResolved}); }
-    // Looks when it was told to; joins when it is told to. How long until it joined; nothing if it never
-    // does.
+    // Looks at the times that the decision asks for, and joins when it says so. Returns the time until the
+    // join, or nothing if there is none.
     std::optional<milliseconds> JoinsAfter()
     {
         const auto start = _now;
@@ -70,7 +70,7 @@ protected:
         ADD_FAILURE() << "it looks without end";
         return std::nullopt;
     }
-    // A session that was opened with what the host has, long ago.
+    // Joins with the host's networks, then lets an hour pass.
     void JoinedLongAgo()
     {
         Look();
@@ -300,7 +300,7 @@ TEST_F(RejoinDecisionTest, AnInterfaceThatComesAndGoesIsJoinedLaterAndLater)
         EXPECT_EQ(JoinsAfter(), std::nullopt);
         settle *= 2;
     }
-    // Another one is not made to wait for it.
+    // The unsteady interface does not make another one wait.
     Host({Wired, Radio});
     EXPECT_EQ(JoinsAfter(), _times.Settle);
 }

@@ -25,7 +25,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// What the backend was told to do, and is to do.
+// The calls that the backend got, and the answers that it is to give.
 struct Script
 {
     std::vector<TransportSettings> Opened;
@@ -195,7 +195,7 @@ protected:
                                                                     : std::optional(found->second);
                                    }});
     }
-    // Looks as often as it is told to, for at most a minute of the test's time.
+    // Looks as often as the session asks for, for at most a minute of the test's time.
     void Follow(RejoiningSession &session)
     {
         constexpr int MostLooks = 1000;
@@ -369,7 +369,8 @@ TEST_F(RejoiningSessionTest, NobodyWaitsInWriteWhileTheNetworkIsJoined)
     const auto writer = session->CreateWriter(_pose, {}, {});
     const auto reader = session->CreateReader(_pose, {}, {}, {});
     std::vector<WriteResult> results;
-    // On a thread of its own, as the gateway's; it could not end before the network is joined if it waited.
+    // Writes on a thread of its own, as the gateway does. If Write waited, the thread could not end before
+    // the network is joined.
     _script.InOpen = [&]
     {
         std::jthread(

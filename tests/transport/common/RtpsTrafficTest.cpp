@@ -11,7 +11,8 @@ namespace
 
 using Bytes = std::vector<std::uint8_t>;
 
-// With a submessage of that kind and a body of that size, in which the writer ends at that byte.
+// Appends a submessage of this kind with a body of `size` bytes. The last byte of its writer id is
+// `entity`, at index `last` of the body.
 Bytes Append(Bytes message, std::uint8_t kind, std::uint8_t size, std::size_t last = 0,
              std::uint8_t entity = 0, bool littleEndian = true)
 {
@@ -65,7 +66,7 @@ TEST(RtpsTraffic, WhatIsCutOffIsOfNoTopic)
     }
 }
 
-// A DATA of the writer of participants, with data or with a key alone.
+// Appends a DATA of the writer of participants, with data or with a key alone.
 Bytes AppendParticipant(Bytes message, bool withData = true)
 {
     const std::size_t at = message.size();

@@ -31,7 +31,7 @@ protected:
         settings.Log = std::move(log);
         return Net().Backend().Open(settings, std::move(onPeer));
     }
-    // One that forgets peers after three seconds of silence.
+    // Opens a session that forgets peers after three seconds of silence.
     SessionPtr OpenForgetful(const std::string &node, PeerHandler onPeer)
     {
         TransportSettings settings = Net().SettingsFor(node, 1);
@@ -41,22 +41,22 @@ protected:
     TransportHarness &Net() { return *_harness; }
     bool Until(const std::function<bool()> &condition) { return Net().Until(condition); }
 
-    // Until both sides know of the match, so that nothing written from now on is missed.
+    // Waits until both sides know of the match, so that nothing written later is missed.
     bool Matched(const WriterPtr &writer, const ReaderPtr &reader)
     {
         return Until([&] { return writer->MatchedReaders() == 1 && reader->MatchedWriters() == 1; });
     }
 
-    // That a sample with a body of that many bytes comes across whole.
+    // Expects that a sample with a body of `size` bytes arrives whole.
     void ExpectArrivalOf(std::size_t size);
-    // That writing to two readers elsewhere takes so many datagrams each time, of the size that they must
-    // have.
+    // Expects that each write to two remote readers takes `destinations` datagrams, no larger than they
+    // need to be.
     void ExpectCostOfWriting(bool multicast, int destinations);
-    // That a sample written to one node reaches its reader alone, in one datagram.
+    // Expects that a sample written to one node reaches its reader alone, in one datagram.
     void ExpectThatOneNodeCanBeWrittenTo(bool multicast);
-    // That of a large sample one datagram goes at a time.
+    // Expects that a held large sample goes out one datagram at a time.
     void ExpectThatALargeSampleCanBeHeld(bool multicast);
-    // That best-effort readers of a reliable writer cost it its samples and nothing else.
+    // Expects that best-effort readers of a reliable writer cost it its samples and nothing else.
     void ExpectNothingButSamplesForBestEffortReaders(bool multicast, int destinations);
     SessionPtr OpenWith(const std::string &node, bool multicast, std::uint64_t incarnation = 1);
     bool LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,

@@ -1,4 +1,4 @@
-// What arrives, in which order, and with what information.
+// Which samples arrive, in which order, and with which information.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -323,7 +323,7 @@ TEST_P(Conformance, AVolatileWriterLetsGoOfWhatAllItsReadersHave)
         ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, megabyte), 1), WriteResult::Ok);
         ASSERT_TRUE(Until([&] { return received > before; }));
     };
-    // What a backend needs to send such samples at all, it keeps.
+    // Lets the backend allocate the memory that it needs to send such samples at all.
     for (int i = 0; i < 5; ++i)
     {
         write();

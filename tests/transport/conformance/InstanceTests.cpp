@@ -1,4 +1,4 @@
-// The life of an instance of a keyed topic: that it is disposed, what is left of it, and that it comes back.
+// The life of an instance of a keyed topic: it is disposed, its memory is freed, and it comes back.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -12,9 +12,9 @@ namespace Rabit::Conformance
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// Whether late readers hear of these keys alone, as soon as all readers before them have acknowledged: the
-// last disposal may still be on its way to one of them, and then the next late reader shows it. Writes
-// `present`.
+// True if late readers get these keys alone, once all earlier readers have acknowledged. The last disposal
+// may still be on its way to one of those: then the next late reader is tried. Writes `present` for each
+// attempt.
 bool Conformance::LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,
                                         TransportWriter &writer, std::uint32_t present)
 {
@@ -190,12 +190,12 @@ TEST_P(Conformance, ManyKeysTakeNoMoreMemoryThanTheirSamples)
     EXPECT_LT(MemoryInMegabytes(), before + MostKept);
 }
 
-// What a publisher does whose value has another key each time.
+// As a publisher does whose value has another key each time.
 TEST_P(Conformance, ManyKeysWrittenAndDisposedLeaveOne)
 {
     constexpr std::uint32_t KeysInARound = 5'000;
     constexpr std::uint32_t Rounds = 10;
-    // Cyclone DDS's table of instances keeps 200 bytes of each; with the samples it would be 30 MB.
+    // Cyclone DDS's table keeps 200 bytes of each instance; with the samples it would be 30 MB.
     constexpr double MostKept = 15;
     const auto writing = Open("uav1");
     const auto reading = Open("ground");

@@ -53,7 +53,7 @@ void NetworkFixture::ExpectRefusal(const TransportSettings &settings, const std:
 
 std::string NetworkFixture::TemporaryFile(const std::string &text)
 {
-    // Fast DDS reads a file of one name once in the life of a process.
+    // Fast DDS reads a file of one name only once in a process, so each file has another name.
     static int number = 0;
     _file = testing::TempDir() + "rabit-transport-" + std::to_string(getpid()) + "-" +
             std::to_string(++number) + ".xml";

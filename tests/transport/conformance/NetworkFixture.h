@@ -1,5 +1,5 @@
-// What the tests of backends with a real network share, those of the suite NetworkSettings and those of one
-// backend.
+// The fixture of tests of backends with a real network: of the suite NetworkSettings, and of one backend's
+// own tests.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -24,13 +24,13 @@ protected:
     Transport &Backend() { return _harness->Backend(); }
     TransportSettings Settings(const std::string &node) { return _harness->SettingsFor(node, 1); }
 
-    // That a sample crosses between two sessions with these settings.
+    // Expects that a sample crosses between two sessions with these settings.
     void ExpectDelivery(const TransportSettings &one, const TransportSettings &other);
-    // That a session with these settings is refused in one line, which says that, because of that member of
-    // TransportSettings.
+    // Expects that a session with these settings is refused in one line that contains `text`, and that the
+    // refusal names the member `setting` of TransportSettings.
     void ExpectRefusal(const TransportSettings &settings, const std::string &text,
                        const std::string &setting);
-    // A configuration file with that text. One for each test.
+    // Writes a configuration file with this text, one for each test, and returns its path.
     std::string TemporaryFile(const std::string &text);
 
 private:

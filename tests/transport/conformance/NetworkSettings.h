@@ -1,5 +1,5 @@
-// The base of the suite NetworkSettings: what the settings mean that only a real network has, the same for
-// every backend that has one.
+// The base of the suite NetworkSettings: the meaning of the settings that only a real network has, the same
+// for every backend that has one.
 //
 // A backend joins by an own test program that links rabit_transport_network_settings and says
 //   INSTANTIATE_TEST_SUITE_P(Its, NetworkSettings, testing::Values(HarnessMaker{"its name", &Make}));

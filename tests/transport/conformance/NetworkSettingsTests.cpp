@@ -20,8 +20,8 @@ namespace
 
 using Kind = PeerEvent::Kind;
 
-// Sends datagrams to the ports of that domain on this host that are no RTPS message at all, or only begin
-// like one.
+// Sends datagrams to the ports of this domain on this host. They are no RTPS messages, or only begin like
+// one.
 void SendNoise(int domain)
 {
     constexpr std::string_view beginnings[] = {"", "RTPS", "RTPS\2\1"};
@@ -174,7 +174,7 @@ TEST_P(NetworkSettings, APeerListedOnOneSideIsEnough)
     ExpectDelivery(one, other);
 }
 
-// More have come and gone than a peer without a port is looked for.
+// More sessions have come and gone than ports are tried for a peer without a port.
 TEST_P(NetworkSettings, ASessionThatIsClosedLeavesItsPortToTheNext)
 {
     auto one = Settings("uav1");

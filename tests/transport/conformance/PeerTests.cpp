@@ -88,7 +88,7 @@ TEST_P(Conformance, AKilledNodeThatReturnsIsHeardAgain)
     const auto first = Net().StartRemote("uav9", 98);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
     first->Kill();
-    // It may be back before its first life is missed.
+    // The node may be back before its first incarnation is missed.
     const auto second = Net().StartRemote("uav9", 99);
     ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Appeared, "uav9", 99) == 1; }));
     ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Lost, "uav9", 98) == 1; }));
@@ -151,8 +151,8 @@ std::size_t HeapInUse()
 
 }  // namespace
 
-// Files and threads are counted; that no memory is left is what the address sanitizer's build finds out, here
-// only that it does not pile up.
+// Files and threads are counted. Of memory, this test shows only that it does not pile up; the build with
+// AddressSanitizer finds what is leaked.
 TEST_P(Conformance, AHundredOpenAndCloseCyclesLeakNothing)
 {
     const auto ground = Open("ground");
@@ -164,7 +164,7 @@ TEST_P(Conformance, AHundredOpenAndCloseCyclesLeakNothing)
             uav->CreateReader(KeyedTopic(), State(), {}, [](SampleBytes, const SampleInfo &) {});
         EXPECT_EQ(WriteOnceTaken(*writer, MakeSample(0, "x"), 1), WriteResult::Ok);
     };
-    // What is made once and kept.
+    // The first cycles make the things that are made once and kept.
     for (std::uint64_t life = 1; life <= 5; ++life)
     {
         cycle(life);

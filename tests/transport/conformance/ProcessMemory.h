@@ -9,14 +9,14 @@
 namespace Rabit::Conformance
 {
 
-// The sanitizers keep what is freed for a while, or take several bytes for each one that is used.
+// The sanitizers keep freed memory for a while, or take several bytes for each byte in use.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool MemoryIsNotGivenBack = true;
 #else
 constexpr bool MemoryIsNotGivenBack = false;
 #endif
 
-// What is resident, without what the allocator keeps for later.
+// Returns the resident memory of this process, in MiB, after the allocator gave back its free memory.
 inline double MemoryInMegabytes()
 {
     ::malloc_trim(0);

@@ -25,15 +25,15 @@ private:
 
 RawSample MakeSample(std::uint32_t key, const std::string &text);
 
-// Write and Dispose, again and again while the network does not take the sample in time, which a busy
-// machine may cause.
+// Repeat Write or Dispose while the network does not take the sample in time, which a busy machine may
+// cause.
 WriteResult WriteOnceTaken(TransportWriter &writer, const SampleEncoder &sample, std::int64_t sourceTime);
 WriteResult DisposeOnceTaken(TransportWriter &writer, const SampleEncoder &sample, std::int64_t sourceTime);
 
-// Of what MakeSample made.
+// Returns the text of a sample that MakeSample made.
 std::string TextOf(SampleBytes bytes);
 
-// The hash of that key.
+// Returns the hash of this key.
 KeyHash HashOf(std::uint32_t key);
 
 // A topic without a key.

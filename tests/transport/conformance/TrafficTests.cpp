@@ -1,4 +1,4 @@
-// What writing costs on the air, and that it is counted.
+// The datagrams and bytes that writing costs, and that they are counted.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -17,7 +17,7 @@ constexpr std::uint64_t Samples = 50;
 constexpr std::size_t Body = 1000;
 // IPv4, UDP, RTPS header, INFO_TS, DATA, encapsulation.
 constexpr std::uint64_t Least = 20 + 8 + 20 + 12 + 24 + 4;
-// INFO_DST, and what a vendor may say beside a sample.
+// INFO_DST, and the submessages that a vendor may add to a sample.
 constexpr std::uint64_t Most = Least + 16 + 40;
 
 }  // namespace
@@ -209,7 +209,7 @@ void Conformance::ExpectThatALargeSampleCanBeHeld(bool multicast)
     EXPECT_EQ(writer->HeldBytes(), 0u);
     EXPECT_TRUE(Until([&] { return here.Count() == 2 && there.Count() == 2; }));
 
-    // The next sample does not overtake what is held.
+    // The next sample does not overtake the held one.
     ASSERT_EQ(writeHeld(MakeSample(0, large)), WriteResult::Ok);
     EXPECT_GT(writer->HeldBytes(), 0u);
     ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "next"), 2), WriteResult::Ok);
@@ -394,7 +394,8 @@ TEST_P(Conformance, OneWriterWritesToManyNodesEachAloneWhileOneOfThemGoesAndRetu
     }
 }
 
-// The first is what a killed node leaves behind until its lease runs out, or a live node of the same name.
+// The first session is the remains of a killed node until its lease runs out, or a live node of the same
+// name.
 TEST_P(Conformance, WhatIsWrittenToANodeGoesToItsNewestSessionAndToThoseHeardSinceThatAppeared)
 {
     const auto writing = OpenWith("ground", false);
@@ -407,7 +408,7 @@ TEST_P(Conformance, WhatIsWrittenToANodeGoesToItsNewestSessionAndToThoseHeardSin
     const auto voice = first->CreateWriter(TextTopic("Voice"), Telemetry(), {});
     ASSERT_TRUE(Matched(writer, firstReader));
     ASSERT_TRUE(Matched(voice, hearing));
-    // Its number is lower: a clock was set back between the two.
+    // The second incarnation has the lower number, as if a clock was set back between the two.
     const auto second = OpenWith("uav1", false, 11);
     SampleRecorder atSecond;
     const auto secondReader = second->CreateReader(TextTopic(), Telemetry(), {}, atSecond.Handler());

@@ -1,4 +1,4 @@
-// What the conformance suite needs to know of a backend.
+// A backend, as the conformance suite uses it.
 #pragma once
 
 #include <rabit/transport/Transport.h>
@@ -12,7 +12,7 @@
 namespace Rabit::Conformance
 {
 
-// A node outside of the test's process, or what stands for it. It has written one sample with key 7 and text
+// A node outside of the test's process, or its stand-in. It has written one sample with key 7 and text
 // "remote" on the topic KeyedText, with the state QoS.
 class RemoteNode
 {
@@ -31,8 +31,8 @@ public:
     virtual Transport &Backend() = 0;
     // Settings for a node in this test's network.
     virtual TransportSettings SettingsFor(const std::string &node, std::uint64_t incarnation) = 0;
-    // Lets time pass until the condition holds. False if it does not hold after a time in which anything that
-    // should happen must have happened; never decides by being slow.
+    // Lets time pass until the condition holds. Returns false if it does not hold after a time in which
+    // everything that should happen has happened, however slow the machine is.
     virtual bool Until(const std::function<bool()> &condition) = 0;
     // Lets enough time pass for most things that should not happen to happen.
     virtual void Settle() = 0;

@@ -1,4 +1,4 @@
-// What is taken out of announcements.
+// Which endpoints `LeaveOutIdleEndpoints` removes from announcements.
 #include "AnnouncedEndpoints.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// When a participant is announced beside its period.
+// When a participant is announced beside its regular period.
 #include "AnnouncementRounds.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using Rabit::Cyclone::AnnouncementRounds;
 class AnnouncementRoundsTest : public testing::Test
 {
 protected:
-    // Lives until then; the times at which it announces, in ms from the start.
+    // Runs the rounds up to `until`. Returns the times of the announcements, in ms from the start.
     std::vector<int> Live(std::chrono::milliseconds until, bool unheard)
     {
         std::vector<int> announced;
@@ -87,7 +87,7 @@ TEST_F(AnnouncementRoundsTest, ThoseWhoComeOneAfterAnotherAreAnsweredTogether)
               (std::vector{60100, 60300, 60500, 60900, 61300, 61700, 62100, 62500, 62900, 63300, 63700}));
 }
 
-// The first of a series alone is late by what lies between announcements.
+// Only the first answer of a series is late, by the spacing between announcements.
 TEST_F(AnnouncementRoundsTest, WhoComesLastOfSeveralIsAnsweredAtTheUsualDistances)
 {
     Live(1min, false);

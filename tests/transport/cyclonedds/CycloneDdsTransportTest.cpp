@@ -1,4 +1,4 @@
-// What the Cyclone DDS backend makes of the settings that only a real network has.
+// The Cyclone DDS backend and the settings that only a real network has.
 #include <rabit/cyclonedds/CycloneDdsTransport.h>
 
 #include <memory>
@@ -45,7 +45,7 @@ TEST_F(CycloneDdsTransportTest, ARefusedSessionLeavesTheDomainFree)
     ExpectDelivery(Settings("uav1"), Settings("ground"));
 }
 
-// A file that forbids all discovery by multicast shows by what it does not let happen that it is applied.
+// A file that forbids all multicast discovery shows that it is applied: the others do not find the session.
 TEST_F(CycloneDdsTransportTest, AConfigurationFileIsLaidOverTheSettings)
 {
     auto deaf = Settings("uav1");
@@ -103,8 +103,8 @@ TEST_F(CycloneDdsTransportTest, TwentySessionsOfOneHostFindEachOther)
     }
 }
 
-// The other side takes the topic for one without a key, and sends no key hash with a body too short to have
-// one.
+// The writing side takes the topic for one without a key. It sends no key hash, and a body too short to
+// have a key.
 TEST_F(CycloneDdsTransportTest, ASampleWithoutAReadableKeyIsCountedWhereItArrives)
 {
     TopicDescription keyed = KeyedTopic();

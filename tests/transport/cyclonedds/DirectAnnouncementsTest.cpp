@@ -1,4 +1,4 @@
-// To whom alone a participant is announced.
+// The addresses to which a participant is announced by unicast.
 #include "DirectAnnouncements.h"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@ constexpr RabitCycloneRoute Route{nullptr, {10, 0, 0, 1}, 7410};
 constexpr HandshakeEnds::TimePoint Start{std::chrono::seconds(100)};
 constexpr auto Later = Start + std::chrono::seconds(1);
 
-// From `from` to `to`, each of them twelve times that byte.
+// A message from `from` to `to`. Each GUID prefix is twelve times the byte given.
 std::vector<std::uint8_t> Message(std::uint8_t from, std::uint8_t to, const std::string &text)
 {
     std::vector<std::uint8_t> bytes{'R', 'T', 'P', 'S', 2, 1, 1, 16};

@@ -67,7 +67,7 @@ Bytes Header(std::uint8_t sender)
     return {'R', 'T', 'P', 'S', 2, 1, 1, 16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, sender};
 }
 
-// What the datagram with it says afterwards.
+// Returns the datagram with this acknowledgement after translation.
 Bytes Rewritten(AcknowledgementTranslator &translator, const Acknowledgement &said)
 {
     Bytes datagram = Header(said.Sender);
@@ -76,7 +76,7 @@ Bytes Rewritten(AcknowledgementTranslator &translator, const Acknowledgement &sa
     return datagram;
 }
 
-// The count that it has afterwards: the last bytes of its datagram.
+// Returns the count after translation: the last bytes of the datagram.
 std::uint32_t CountAfter(AcknowledgementTranslator &translator, const Acknowledgement &said)
 {
     const Bytes datagram = Rewritten(translator, said);
@@ -110,7 +110,7 @@ TEST(AcknowledgementTranslator, RepeatsAndStragglersAreNoNews)
     EXPECT_LE(CountAfter(translator, {.Base = 2, .Count = 1}), newest);
 }
 
-// Whoever sends the highest count once would silence the honest ones behind it for good.
+// Untranslated, one forged acknowledgement with the highest count would silence all honest ones after it.
 TEST(AcknowledgementTranslator, AForgedCountDoesNotSilenceTheHonestOnes)
 {
     AcknowledgementTranslator translator;
@@ -135,7 +135,7 @@ TEST(AcknowledgementTranslator, CountsGoOnFromWhereAReaderBeganAnew)
     EXPECT_GT(CountAfter(translator, {.Bits = 7, .Count = 1}), begun);
 }
 
-// Cyclone DDS puts what the participants of a process have to say into one datagram.
+// Cyclone DDS puts messages of several participants of a process into one datagram.
 TEST(AcknowledgementTranslator, WhoIsSpokenForIsToldFromWhoSends)
 {
     AcknowledgementTranslator translator;

@@ -1,4 +1,4 @@
-// When the announcements of our own participant go.
+// When the announcements of this node's own participant go.
 #include "AnnouncementPace.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ protected:
     {
         return Pace.MayGo(destination, Content, Heard, Start + at);
     }
-    // Sends whenever it is due, up to then; the times at which it went, those asked for in between included.
+    // Sends whenever an announcement is due, until `end`. Returns the times of all, those that `Pace`
+    // requested included.
     std::vector<std::chrono::milliseconds> RunTo(std::chrono::milliseconds end)
     {
         std::vector<std::chrono::milliseconds> sent;
@@ -40,7 +41,7 @@ protected:
         return due ? std::optional(std::chrono::duration_cast<std::chrono::milliseconds>(*due - Start))
                    : std::nullopt;
     }
-    // All that it says by itself is said.
+    // Lets `Pace` finish all announcements that it makes by itself.
     void Settle()
     {
         Send(-60s);

@@ -1,4 +1,4 @@
-// What the Fast DDS backend makes of the settings that only a real network has.
+// The Fast DDS backend and the settings that only a real network has.
 #include <rabit/fastdds/FastDdsTransport.h>
 
 #include <memory>
@@ -51,7 +51,7 @@ TEST_F(FastDdsTransportTest, AProfilesFileIsTheBaseOfTheSettings)
     PeerRecorder peers;
     auto settingsOfPeer = Settings("ground");
     const auto ground = Backend().Open(settingsOfPeer, peers.Handler());
-    // The transports are the file's: an interface that does not exist is not looked at.
+    // The file sets the transports, so an interface that does not exist does not matter.
     settings.Interfaces = {"radio99"};
     const auto uav = Backend().Open(settings, {});
     EXPECT_TRUE(Net().Until([&] { return peers.Count(Kind::Appeared, "uav1", 1) == 1; }));

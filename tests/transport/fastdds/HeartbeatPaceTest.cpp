@@ -1,4 +1,4 @@
-// How often a heartbeat that says nothing new goes out.
+// How often a heartbeat without news goes out.
 #include "HeartbeatPace.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ constexpr std::uint64_t Elsewhere = 2;
 class HeartbeatPaceTest : public testing::Test
 {
 protected:
-    // Says it as often as the vendor does; the times at which it goes.
+    // Offers the heartbeat as often as the vendor does. Returns the times at which it goes, in ms from the
+    // start.
     std::vector<int> Say(int from, int to, int step, const LoneHeartbeat &heartbeat,
                          std::uint64_t destination = Group)
     {

@@ -1,4 +1,4 @@
-// Which samples are kept of each instance, and that it takes no search to know.
+// Which samples `KeepLast` keeps of each instance, and that it finds them without a search.
 #include "KeepLast.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace
 {
 
-// A key that counts how often it is looked at.
+// A key that counts how often it is compared or hashed.
 struct Counted
 {
     int Number = 0;
@@ -31,7 +31,7 @@ struct HashOf
 
 using Kept = Rabit::FastDds::KeepLast<Counted, HashOf>;
 
-// As a history does it.
+// Adds a sample as a history does. Returns the number of the sample that it pushed out.
 std::optional<std::uint64_t> Write(Kept &kept, int instance, std::uint64_t number)
 {
     const auto out = kept.PushedOut({instance});
@@ -104,7 +104,7 @@ TEST(KeepLast, AllThatIsDroppedFromTheNewestOnLeavesNothing)
     EXPECT_EQ(kept.PushedOut({1}), std::nullopt);
 }
 
-// A stream that goes on for ever, with a deep history.
+// An endless stream with a deep history.
 TEST(KeepLast, TheOrderHoldsOverManySamples)
 {
     Kept kept(100);

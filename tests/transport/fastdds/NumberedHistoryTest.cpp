@@ -1,5 +1,4 @@
-// That samples which wait for earlier ones of their writer are found by number, whatever their timestamps
-// say.
+// Samples that wait for earlier ones of their writer are found by number, whatever their timestamps are.
 #include "NumberedHistory.h"
 
 #include <fastdds/rtps/attributes/HistoryAttributes.h>
@@ -17,7 +16,7 @@ class NumberedHistoryTest : public testing::Test, private Rabit::FastDds::Number
 {
 protected:
     NumberedHistoryTest() : NumberedHistory(rtps::HistoryAttributes{}) { mp_mutex = &_mutex; }
-    // The samples are this test's, not the vendor's pool's.
+    // The samples belong to this test, not to the vendor's pool.
     ~NumberedHistoryTest() override { m_changes.clear(); }
 
     void Receive(rtps::octet writer, std::uint32_t number, std::uint32_t timestamp)
@@ -29,7 +28,7 @@ protected:
         ASSERT_TRUE(received_change(&change, 0));
     }
 
-    // Looked for as the vendor does when all before it have come.
+    // Looks for the sample as the vendor does once all before it have come.
     bool IsFound(rtps::octet writer, std::uint32_t number)
     {
         rtps::CacheChange_t *found = nullptr;

@@ -1,4 +1,4 @@
-// What a datagram of our own is.
+// `ReadOutgoing` on datagrams that this node sends.
 #include "OutgoingMessage.h"
 
 #include <gtest/gtest.h>

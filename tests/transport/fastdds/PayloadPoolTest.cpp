@@ -1,4 +1,4 @@
-// How much memory samples take that arrive.
+// How much memory received samples take.
 #include "PayloadPool.h"
 
 #include <gtest/gtest.h>

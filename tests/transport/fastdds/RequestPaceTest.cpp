@@ -1,4 +1,4 @@
-// How often a reader asks a writer that does not answer.
+// How often a reader sends its request to a writer that does not answer.
 #include "RequestPace.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ using Rabit::FastDds::RequestPace;
 class RequestPaceTest : public testing::Test
 {
 protected:
-    // Asks as often as the vendor does; the times at which it goes.
+    // Requests as often as the vendor does. Returns the times at which the request goes, in ms from the
+    // start.
     std::vector<int> Ask(int from, int to, int step, const FirstRequest &request)
     {
         std::vector<int> sent;

@@ -16,7 +16,7 @@ constexpr std::uint8_t DataFrag = 0x16;
 constexpr std::uint8_t InfoSource = 0x0c;
 constexpr std::uint8_t LittleEndian = 0x01;
 constexpr std::uint8_t InlineQos = 0x02;
-// Bits of an entity that belongs to the protocol.
+// Bits of an entity id that belongs to the protocol.
 constexpr std::uint8_t Builtin = 0xc0;
 
 std::size_t NumberAt(std::span<const std::uint8_t> bytes, std::size_t at, bool littleEndian)
@@ -29,7 +29,7 @@ std::size_t NumberAt(std::span<const std::uint8_t> bytes, std::size_t at, bool l
                         : bytes[at + 1] | std::size_t{bytes[at]} << 8;
 }
 
-// What is left behind the inline parameters.
+// Returns the bytes behind the inline parameters.
 std::span<const std::uint8_t> BehindParameters(std::span<const std::uint8_t> list, bool littleEndian)
 {
     constexpr std::size_t Sentinel = 1;
@@ -46,13 +46,13 @@ std::span<const std::uint8_t> BehindParameters(std::span<const std::uint8_t> lis
     return list.subspan(std::min(at, list.size()));
 }
 
-// A DATA or DATA_FRAG, whose header is not in it any more.
+// Returns the content of a DATA or DATA_FRAG. `body` does not contain the submessage's header.
 std::span<const std::uint8_t> ContentOf(std::span<const std::uint8_t> body, std::uint8_t kind,
                                         std::uint8_t flags)
 {
     const bool littleEndian = (flags & LittleEndian) != 0;
-    // Where the parameters begin is counted from behind the field that says it; a fragment's own numbers come
-    // first.
+    // The parameters begin 20 bytes into the body. In a DATA_FRAG, 12 bytes of fragment numbers come before
+    // them.
     const std::size_t toParameters = kind == Data ? 20 : 32;
     if (body.size() < toParameters)
     {
@@ -76,7 +76,7 @@ std::vector<KnownContent::Sample> KnownContent::SamplesOf(const Datagram &datagr
         const std::uint8_t flags = all[at + 1];
         const std::size_t length = NumberAt(all, at + 2, (flags & LittleEndian) != 0);
         at += SubmessageHeaderSize;
-        // The last one may say 0 and mean the rest.
+        // The last submessage may have the length 0: it extends to the end of the datagram.
         const std::size_t left = all.size() - at;
         const std::size_t size =
             length == 0 && (kind == Data || kind == DataFrag) ? left : std::min(length, left);

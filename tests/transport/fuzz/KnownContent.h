@@ -1,4 +1,4 @@
-// What each writer has said, to tell damage of the protocol from forged content.
+// The content that each writer has sent, to tell damage of the protocol from forged content.
 #pragma once
 
 #include <array>
@@ -11,14 +11,15 @@
 
 #include "Mutator.h"
 
-// The content of a sample under the right number cannot be told from what its writer says: that is a matter
-// for signatures. Copies that pass here do no more than repeat what a writer has said, under whatever number
-// and to whomever; all of it a receiver has to withstand by itself.
+// Only a signature tells forged content under the right number from the writer's own. A copy that passes
+// here at most repeats the writer's content, under any number and to any receiver. A receiver must
+// withstand all such copies by itself.
 class KnownContent
 {
 public:
     void Learn(const std::vector<Datagram> &datagrams);
-    // Whether all samples in it that are not of discovery have a content that their writer was heard with.
+    // True if each sample in the datagram, apart from discovery, has a content that its writer was heard
+    // with.
     bool Covers(const Datagram &datagram) const;
 
 private:

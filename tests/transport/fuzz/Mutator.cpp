@@ -13,7 +13,7 @@ constexpr std::size_t PrefixSize = 12;
 constexpr std::size_t SubmessageHeaderSize = 4;
 constexpr std::uint8_t Data = 0x15;
 constexpr std::uint8_t DataFrag = 0x16;
-// A datagram's limit.
+// Upper bound of a datagram's size, in bytes.
 constexpr std::size_t Largest = 65000;
 
 constexpr std::array<std::uint8_t, 22> Kinds = {0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0d, 0x0e,
@@ -182,7 +182,7 @@ void Mutator::DamageNumbers(Datagram &datagram, const Part &part)
 {
     const std::size_t body = part.Begin + SubmessageHeaderSize;
     const bool sample = datagram[part.Begin] == Data || datagram[part.Begin] == DataFrag;
-    // The entities come first, or behind 4 bytes, then the numbers.
+    // The entity ids come first, in samples after 4 bytes. The numbers follow.
     const std::size_t entities = body + (sample ? 4 : 0);
     const std::size_t numbers = entities + 8;
     if (numbers + 8 > part.End)
@@ -201,7 +201,7 @@ void Mutator::DamageNumbers(Datagram &datagram, const Part &part)
             break;
         default:
         {
-            // A little more or less than it was.
+            // The value plus or minus a power of two.
             std::uint32_t value = 0;
             for (std::size_t i = 0; i < 4; ++i)
             {
@@ -240,14 +240,14 @@ void Mutator::DamageParameters(Datagram &datagram, const Part &part)
             Put(datagram, at + 2, 2, littleEndian, OneIn(2) ? 4 * Below(64) : Number());
             break;
         case 2:
-            // The count or size of what is a list or a string.
+            // The count of a list, or the size of a string.
             Put(datagram, at + 4, 4, littleEndian, Number());
             break;
         case 3:
             Put(datagram, at + 4 + 4 * Below(6), 4, littleEndian, Number());
             break;
         default:
-            // The encapsulation.
+            // The encapsulation header.
             datagram[part.Begin + ToPayload + Below(4)] = static_cast<std::uint8_t>(Below(12));
             break;
     }
@@ -266,8 +266,8 @@ void Mutator::DamageIdentity(Datagram &datagram)
         prefix[Below(PrefixSize)] = static_cast<std::uint8_t>(OneIn(4) ? 0 : _random());
     }
     const Datagram old(datagram.begin() + PrefixOffset, datagram.begin() + HeaderSize);
-    // In the header alone, inside alone, or everywhere: a stranger who is at one with himself. Few of these,
-    // as each is a new participant for the nodes.
+    // The prefix changes in the header alone, inside alone, or everywhere. Everywhere is rare: it makes a
+    // consistent stranger, a new participant for the nodes.
     const std::size_t where = OneIn(50) ? 2 : Below(2);
     for (auto at = datagram.begin();;)
     {

@@ -15,13 +15,13 @@ class Mutator
 public:
     explicit Mutator(std::uint64_t seed) : _random(seed) {}
 
-    // What is damaged; at least one datagram, each with an RTPS header.
+    // Sets the datagrams to damage: at least one, each with an RTPS header.
     void Learn(const std::vector<Datagram> &datagrams);
-    // One of them, damaged in one to four ways.
+    // Returns one of the datagrams, damaged in one to four ways.
     Datagram Next();
 
 private:
-    // Where the parts of a datagram begin, as far as they can be told.
+    // Where a submessage begins and ends, as far as its lengths tell.
     struct Part
     {
         std::size_t Begin = 0;  // of the submessage's header

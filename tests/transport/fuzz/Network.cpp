@@ -77,7 +77,7 @@ void Sniffer::Read(int milliseconds)
         socklen_t size = sizeof from;
         const ssize_t got =
             ::recvfrom(_socket, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr *>(&from), &size);
-        // On loopback each is seen twice.
+        // On loopback the socket sees each datagram twice.
         if (got > 0 && from.sll_pkttype != PACKET_OUTGOING)
         {
             Keep({buffer.data(), static_cast<std::size_t>(got)});

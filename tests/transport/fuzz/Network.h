@@ -1,4 +1,4 @@
-// The loopback of a network namespace, seen from outside of the nodes that talk on it.
+// The loopback of a network namespace, seen from outside the nodes that talk on it.
 #pragma once
 
 #include <netinet/in.h>
@@ -11,7 +11,7 @@
 
 #include "Mutator.h"
 
-// Reads every UDP datagram on loopback. Throws std::system_error where that is not allowed.
+// Reads every UDP datagram on loopback. Throws std::system_error if the process may not do so.
 class Sniffer
 {
 public:
@@ -20,12 +20,12 @@ public:
     Sniffer(const Sniffer &) = delete;
     Sniffer &operator=(const Sniffer &) = delete;
 
-    // Reads what came, waiting for at most this long for the first. Keeps RTPS alone, and of datagrams that
-    // are alike in their submessages and size a few.
+    // Reads the datagrams that came; waits at most this long for the first. Keeps RTPS alone, and only a
+    // few datagrams with the same submessages and size.
     void Read(int milliseconds);
 
     const std::vector<Datagram> &Kept() const { return _kept; }
-    // Where RTPS went to.
+    // Returns the addresses and ports that RTPS was sent to.
     std::vector<sockaddr_in> Destinations() const;
 
 private:
@@ -37,7 +37,7 @@ private:
     std::map<std::pair<std::uint32_t, std::uint16_t>, std::uint64_t> _destinations;
 };
 
-// Sends datagrams in bursts, as fast as those who receive them read.
+// Sends datagrams in bursts, as fast as the receivers read them.
 class Sender
 {
 public:
@@ -49,7 +49,7 @@ public:
     void Send(const std::vector<Datagram> &datagrams, const std::vector<sockaddr_in> &destinations);
     // Waits until no socket of these ports has more than this many bytes unread. Others may never be read.
     static void WaitForReaders(const std::vector<sockaddr_in> &destinations, std::size_t bytes);
-    // Datagrams that sockets of this namespace lost so far because they were full.
+    // Returns the number of datagrams that sockets of this namespace have lost because they were full.
     static std::uint64_t Dropped();
 
 private:

@@ -30,7 +30,7 @@ from interop_keys import make_keys  # noqa: E402
 LIMIT_S = 120
 SLOWEST_PER_S = 500
 RATE = 50
-# Twice what a node of these tests needs in peace is less than a quarter of it.
+# More than eight times what a node of these tests needs without damaged datagrams.
 MEMORY_MB = 256
 SKIPPED = 77
 

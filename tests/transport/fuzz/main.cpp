@@ -1,11 +1,11 @@
-// Records the RTPS traffic of nodes on loopback, then sends damaged copies of it to all the ports that it
-// went to, for fuzz_test.py:
+// Records the RTPS traffic of nodes on loopback. Then sends damaged copies of it to all ports that the
+// traffic went to, for fuzz_test.py:
 //   recording           all traffic from here on is recorded
-//   recorded N ports P  after a line came on standard input: so many datagrams are known, of so many ports
+//   recorded N ports P  after a line on standard input: N datagrams are known, of P ports
 //   sent N of M         now and then
-//   done N dropped D left out L    all are sent; so many were lost because a socket was full; so many more
-//                       were not sent, because they forge content
-// Run it in a network namespace of its own: it knows no addresses but those that it hears of.
+//   done N dropped D left out L    all N are sent; D were lost because a socket was full; L more were not
+//                       sent, because they forge content
+// Run it in a network namespace of its own: it knows only the addresses that it hears of.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdint>
@@ -22,7 +22,8 @@ namespace
 {
 
 constexpr std::size_t Burst = 64;
-// What a reader may be behind: less than its buffer, so that what is sent is what arrives.
+// Largest number of unread bytes of a reader. It is less than the reader's buffer, so that no datagram is
+// lost.
 constexpr std::size_t MostUnread = 60000;
 
 struct Options

@@ -1,4 +1,4 @@
-// Who announces itself and has not heard us is answered again.
+// A peer that announces itself and has not heard us is answered again.
 #include "guard/AnnouncementReplies.h"
 
 #include <gtest/gtest.h>

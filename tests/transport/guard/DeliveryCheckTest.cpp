@@ -1,4 +1,4 @@
-// Whether a submessage that carries a sample, or manages its delivery, is sound in itself.
+// Whether a submessage that carries a sample, or manages its delivery, is consistent in itself.
 #include "guard/DeliveryCheck.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(DeliveryCheck, EveryTruncationIsUnsound)
     for (const auto &[kind, body] : whole)
     {
         ASSERT_TRUE(IsSound(kind, body, 5 & (kind == Data ? 5 : 1))) << int{kind};
-        // One of no bytes at all would say that it extends to the end of the message.
+        // Begins at 1: a submessage of length 0 extends to the end of the message.
         for (std::size_t size = 1; size < body.size(); ++size)
         {
             EXPECT_FALSE(IsSound(kind, Bytes(body.begin(), body.begin() + static_cast<std::ptrdiff_t>(size)),
@@ -92,7 +92,7 @@ TEST(DeliveryCheck, FragmentsThatDoNotFitTheirSampleAreUnsound)
     EXPECT_FALSE(IsSound(DataFrag, FragmentBody(1, 1, 1000, 0xffffffff, 1000)));
 }
 
-// The vendor copies as many bytes as the last fragment must have, however many came.
+// The vendor copies as many bytes as the last fragment must have, however many arrived.
 TEST(DeliveryCheck, FragmentsWithFewerBytesThanTheyPromiseAreUnsound)
 {
     EXPECT_FALSE(IsSound(DataFrag, FragmentBody(3, 1, 1000, 2500, 499)));
@@ -152,7 +152,7 @@ TEST(DeliveryCheck, EntitiesOfTheWrongKindAreUnsound)
 {
     EXPECT_FALSE(IsSound(Heartbeat, HeartbeatBody(1, 1, 1, UserReader)));
     EXPECT_FALSE(IsSound(Data, DataBody(1, Bytes(8), UserWriter, UserWriter), 5));
-    // The topics of discovery have readers and writers of their own.
+    // Each topic of discovery has a reader and a writer of its own.
     EXPECT_FALSE(IsSound(Data, DataBody(1, Bytes(8), UserWriter, 0x000003c7), 5));
     EXPECT_FALSE(IsSound(Data, DataBody(1, Bytes(8), 0x000003c2, UserReader), 5));
     EXPECT_FALSE(IsSound(Data, DataBody(1, Bytes(8), 0x000003c2, 0x000004c7), 5));

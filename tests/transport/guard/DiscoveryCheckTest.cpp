@@ -1,4 +1,4 @@
-// What participants and endpoints may say of themselves.
+// Which announcements of participants and endpoints are sound.
 #include "guard/DiscoveryCheck.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ bool IsSound(EntityId topic, Bytes payload)
     return CheckDiscovery(topic, Sender, payload, false).has_value();
 }
 
-// A writer's announcement with one parameter more.
+// A writer's announcement with one more parameter.
 bool IsSoundWith(std::uint16_t id, const Bytes &value)
 {
     Bytes payload = WriterData();
@@ -42,8 +42,7 @@ TEST(DiscoveryCheck, SoundAnnouncementsPass)
     EXPECT_TRUE(IsSound(SubscriptionsWriter, WriterData(UserReader)));
 }
 
-// The vendor enters such a participant under the name in the data, and fails an assertion when its lease is
-// over.
+// The vendor enters such a participant under the name in the data. When its lease ends, an assertion fails.
 TEST(DiscoveryCheck, AParticipantSpeaksOfItselfAlone)
 {
     EXPECT_FALSE(IsSound(ParticipantWriter, ParticipantData(Other)));
@@ -120,7 +119,7 @@ TEST(DiscoveryCheck, ListsHaveAsManyEntriesAsTheySay)
     EXPECT_FALSE(IsSoundWith(0x0029, Join({U32(0xffffffff), Text("uav1")})));
 }
 
-// The vendor appends as many representations as there are said to be, whether they are there or not.
+// The vendor appends as many representations as the count says, present or not.
 TEST(DiscoveryCheck, RepresentationsAreAsManyAsTheySay)
 {
     EXPECT_TRUE(IsSoundWith(0x0073, Join({U32(1), U16(0), U16(0)})));

@@ -1,4 +1,5 @@
-// What somebody says of discovery in another one's name, from another address, before its owner does.
+// Forged discovery data in another participant's name, from another address, before the owner sends its
+// own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +26,8 @@ protected:
         std::search(forged.begin(), forged.end(), name.begin(), name.end())[3] = 'f';
         return forged;
     }
-    // Stopped from elsewhere at first, believed when it is repeated (there are such hosts), and passed from
-    // home.
+    // Expects that the datagram is stopped from elsewhere at first and accepted when it is repeated (there
+    // are such hosts). From home, `firstFromHome` passes at once.
     void ExpectItsOwnAlone(const Bytes &datagram, const Bytes &firstFromHome)
     {
         Guard.From = Elsewhere;
@@ -55,7 +56,7 @@ TEST_F(ElsewhereTest, AnEndpointIsBelievedWhenItIsRepeated)
     ExpectItsOwnAlone(WriterMessage(UserWriter, 2), WriterMessage());
 }
 
-// A known announcement under the number of the next, which would be passed over as a repeat then.
+// A known announcement under the number of the next one, which would then be ignored as a repeat.
 TEST_F(ElsewhereTest, ANumberIsNotTakenByWhatIsKnown)
 {
     EXPECT_TRUE(Guard.Passes(WriterMessage()));

@@ -1,4 +1,4 @@
-// A guard, and what it hands on.
+// A guard, and the messages that it delivers.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@ public:
     {
     }
 
-    // Whether the guard found nothing to count; what it handed on is in Handed.
+    // True if the guard found nothing to count. `Handed` has the messages that it delivered.
     bool Admit(Bytes datagram)
     {
         Handed.clear();
@@ -28,9 +28,9 @@ public:
                             [this](std::span<std::uint8_t> admitted)
                             { Handed.emplace_back(admitted.begin(), admitted.end()); });
     }
-    // That the datagram gets through as it is.
+    // True if the datagram gets through unchanged.
     bool Passes(const Bytes &datagram) { return Admit(datagram) && Handed == std::vector<Bytes>{datagram}; }
-    // That nothing of it does, and that this is counted.
+    // True if nothing of the datagram gets through and the guard counts it.
     bool Stops(const Bytes &datagram) { return !Admit(datagram) && Handed.empty(); }
 
     void Sending(const Bytes &datagram) { _guard.Sending(datagram); }

@@ -1,4 +1,4 @@
-// Several messages in one, for a vendor that takes one at a time.
+// Joins several messages into one, for a vendor that takes one at a time.
 #include "guard/JoinMessages.h"
 
 #include <gtest/gtest.h>
@@ -13,11 +13,11 @@ using Rabit::Rtps::JoinMessages;
 
 const Bytes FromSender = Message(Data, DataBody(1));
 const Bytes FromOther = Join({Header(Other), Submessage(Data, DataBody(7))});
-// Says who says the rest, to all, at no time.
+// Names the sender of the submessages that follow, for all receivers, without a timestamp.
 const Bytes Divider =
     Join({Source(Other), Submessage(InfoDestination, Bytes(12)), Submessage(InfoTimestamp, {}, 3)});
 
-// What is in a buffer of that size, with that message in its beginning, after the others were put before it.
+// Returns a buffer of `size` bytes that began with `last`, after JoinMessages put `first` before it.
 Bytes Joined(const std::vector<Bytes> &first, const Bytes &last, std::size_t size = 1000)
 {
     Bytes buffer(last);

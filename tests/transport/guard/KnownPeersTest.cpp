@@ -1,4 +1,4 @@
-// What a peer can say, given what it has said before.
+// Which announcements and numbers of a peer are accepted, given its earlier ones.
 #include "guard/KnownPeers.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST_F(KnownPeersTest, APeerDoesNotMoveElsewhereWhileItIsHeard)
     EXPECT_FALSE(Peers.Announced(Sender, 1, Now + 121s));
 }
 
-// A laptop in another WiFi: what else it says is heard all the time.
+// A laptop that moves to another WiFi: its other traffic is heard all the time.
 TEST_F(KnownPeersTest, APeerThatMovesIsBelievedWhenItsFormerPlaceIsHeardNoMore)
 {
     for (int i = 0; i < 3; ++i)
@@ -156,7 +156,7 @@ TEST_F(KnownPeersTest, APeerThatIsSaidToBeHereAndThereDoesNotMove)
     }
 }
 
-// An announcement that was refused was not received: its writer sends it again until it is.
+// A refused announcement counts as not received, so its writer retransmits it until it is accepted.
 TEST_F(KnownPeersTest, AnEndpointThatChangesIsBelievedWithItsThirdAnnouncementInARow)
 {
     for (const EntityId endpoint : {0x00000203u, UserReader})
@@ -209,7 +209,8 @@ TEST_F(KnownPeersTest, TheFirstNumberOfAWriterMayBeAnyUpToWhereTheVendorCanWalk)
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 3, Now));
 }
 
-// It may have written for months. One that was forged would hold a thread of the vendor's for hours.
+// The writer may have written for months. A forged number of this size would hold a thread of the vendor
+// for hours.
 TEST_F(KnownPeersTest, AGreaterFirstNumberIsBelievedWhenEightInARowAgree)
 {
     constexpr std::int64_t Large = std::int64_t{1} << 36;
@@ -225,12 +226,12 @@ TEST_F(KnownPeersTest, NumbersDoNotJump)
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 26, Now));
     EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 43, Now));
-    // What was refused moves nothing.
+    // A refused number does not count as an advance.
     EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 43, Now));
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 42, Now));
 }
 
-// A node writes the samples of its links to one other node each, all by one best-effort writer.
+// A node writes the samples of all its links by one best-effort writer, each to one other node.
 TEST_F(KnownPeersTest, ABestEffortWriterMayHaveWrittenMostOfItsSamplesToOthers)
 {
     constexpr EntityId Writer = 0x00000303u;
@@ -240,8 +241,8 @@ TEST_F(KnownPeersTest, ABestEffortWriterMayHaveWrittenMostOfItsSamplesToOthers)
     EXPECT_FALSE(Peers.Reaches(Sender, Writer, std::int64_t{1} << 36, Now + 100ms));
 }
 
-// What comes by multicast goes on while all samples are lost, so the peer is not silent. Two beats a second
-// are not refused until eight of them agree.
+// Multicast still arrives while all samples are lost, so the peer is not silent. Two beats a second are
+// accepted at once, without eight of them that agree.
 TEST_F(KnownPeersTest, AWriterThatWasNotHeardForAWhileGoesOnWhereItIs)
 {
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
@@ -253,8 +254,8 @@ TEST_F(KnownPeersTest, AWriterThatWasNotHeardForAWhileGoesOnWhereItIs)
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10 + 16 + 5000, Now + 5s));
 }
 
-// Two beats a second: the time since the last one is not the time for a thousand samples. One that was forged
-// would have the honest ones passed over for as long as it takes them to get there.
+// At two beats a second, the time since the last one does not allow for a thousand samples. After a forged
+// number, the honest ones would be ignored until they reach it.
 TEST_F(KnownPeersTest, AWriterThatIsHeardDoesNotJump)
 {
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
@@ -312,7 +313,7 @@ TEST_F(KnownPeersTest, AFastWriterMayBeFartherTheLongerNothingWasHeardOfIt)
         ASSERT_TRUE(Peers.Reaches(Sender, UserWriter, 1 + i, Now));
         Now += 1ms;
     }
-    // A thousand a second, and twice as far is believed.
+    // The writer made 1000 samples a second; twice that distance is accepted.
     Now += 499ms;
     EXPECT_FALSE(Peers.Reaches(Sender, UserWriter, 2001 + 1017, Now));
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 2001 + 1016, Now));
@@ -340,7 +341,7 @@ TEST_F(KnownPeersTest, AFastWriterIsWhereItsPaceHasTakenItWhileItWasNotHeard)
     }
 }
 
-// It began as the network went, so that nobody knows its pace.
+// The writer became fast as the network went, so its rate is unknown.
 TEST_F(KnownPeersTest, AWriterThatBecameFastWhileItWasNotHeardIsBelievedWithItsEighth)
 {
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 10, Now));
@@ -477,7 +478,7 @@ TEST_F(KnownPeersTest, StrangersPushNobodyOutWhoIsHeard)
     EXPECT_EQ(Peers.Size(), 1024u);
     EXPECT_TRUE(Peers.Hears(Sender, Now));
     EXPECT_FALSE(Peers.Announced(Stranger(6000), 1, Now + 59s));
-    // Those who fell silent make room; the others remain.
+    // Peers that fell silent make room; the others remain.
     EXPECT_TRUE(Peers.Hears(Sender, Now + 61s));
     EXPECT_TRUE(Peers.Announced(Stranger(6000), 1, Now + 61s));
     EXPECT_TRUE(Peers.Hears(Sender, Now + 61s));

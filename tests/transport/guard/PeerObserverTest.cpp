@@ -1,4 +1,4 @@
-// The guard tells its observer of participants, and leaves those with cards to it.
+// The guard reports participants to its observer, and leaves those with cards to it.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -35,7 +35,7 @@ class PeerObserverTest : public testing::Test
 protected:
     PeerObserverTest() { Guard.SetObserver(Seen); }
 
-    // How many messages the vendor is given.
+    // Returns the number of messages that the vendor is given.
     std::size_t Admit(Bytes datagram, RtpsGuard::Origin origin = RtpsGuard::Origin::Network)
     {
         std::size_t handed = 0;

@@ -1,4 +1,4 @@
-// Who may speak in a participant's name, by the address.
+// From which addresses data in a participant's name is accepted.
 #include "guard/PeerVoice.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST_F(PeerVoiceTest, AnAddressThatIsNotKnownIsAsGoodAsAny)
     EXPECT_TRUE(Believes(UnknownHost));
 }
 
-// As behind an address translation, or on the far network of a host with several.
+// For example behind an address translation, or on the far network of a host with several.
 TEST_F(PeerVoiceTest, WhoIsOnlyHeardFromAnAddressThatItDoesNotNameSpeaksFromThere)
 {
     Place.Announced(std::vector{Home}, Elsewhere, true);
@@ -111,7 +111,7 @@ TEST_F(PeerVoiceTest, WhoRepeatedAnAnnouncementFirstLosesItsVoiceWhenTheOwnerIsH
     EXPECT_FALSE(Believes(Elsewhere));
 }
 
-// Multicast on one machine comes from there, and the rest from what was announced.
+// On one machine, multicast comes from loopback and everything else from the announced address.
 TEST_F(PeerVoiceTest, TheOwnHostIsBelievedWhateverWasAnnounced)
 {
     EXPECT_TRUE(Believes({127, 0, 0, 1}));
@@ -125,7 +125,8 @@ TEST_F(PeerVoiceTest, WhoMovesSpeaksFromItsNewPlaceAlone)
     EXPECT_FALSE(Believes(Home));
 }
 
-// A participant with more endpoints than are remembered. What is believed it does not say again.
+// A participant with more endpoints than are remembered. It does not repeat an announcement that was
+// accepted.
 TEST_F(PeerVoiceTest, WhoHasMuchToSayFromElsewhereIsBelievedInTheEnd)
 {
     constexpr std::uint64_t Odd = 0x9e3779b97f4a7c15u;  // spreads them, as a digest does

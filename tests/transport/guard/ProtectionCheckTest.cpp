@@ -1,4 +1,4 @@
-// What DDS Security puts around submessages: whether it is whole.
+// Whether the submessages that DDS Security puts around others are complete.
 #include "guard/ProtectionCheck.h"
 
 #include <gtest/gtest.h>
@@ -71,8 +71,8 @@ TEST(ProtectionCheck, AWholeMessageIsProtectedBehindTheHeaderAlone)
     EXPECT_TRUE(IsWhole(Join({Prefix(MessagePrefix), Sealed(40, 40), Tag(MessagePostfix)}), true));
 }
 
-// The vendor walks on from lengths that do not fit, adds them up, and read a gigabyte from a datagram of a
-// few hundred bytes: a segmentation fault, before any signature was looked at.
+// The vendor adds up lengths that do not fit. It read a gigabyte from a datagram of a few hundred bytes: a
+// segmentation fault, before any signature was checked.
 TEST(ProtectionCheck, LengthsBeyondTheDatagramAreUnsound)
 {
     Bytes long1 = Submessage(Data, DataBody(1), 5);
@@ -108,7 +108,7 @@ TEST(ProtectionCheck, WithoutATagOrWithTheOtherOneItIsUnsound)
     EXPECT_TRUE(IsUnsound(Join({Prefix(MessagePrefix), Tag(MessagePostfix)}), true));
 }
 
-// The assertion at RTPSStatisticsMessages.hpp:128, which the vendor looks for wherever they are.
+// The vendor looks for statistics everywhere, and its assertion at RTPSStatisticsMessages.hpp:128 fails.
 TEST(ProtectionCheck, StatisticsWithinAreUnsound)
 {
     const Bytes statistics = Submessage(Statistics, Bytes(56));

@@ -30,7 +30,7 @@ constexpr std::uint8_t Statistics = 0x80;
 constexpr EntityId UserWriter = 0x00000103;
 constexpr EntityId UserReader = 0x00000104;
 inline constexpr GuidPrefix Sender = {1, 15, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-// Where ParticipantData says that it is.
+// The address that ParticipantData announces.
 inline constexpr Rabit::Rtps::HostAddress SenderHost = {127, 0, 0, 1};
 inline constexpr GuidPrefix Other = {1, 15, 3, 4, 5, 6, 7, 8, 9, 10, 11, 99};
 
@@ -39,19 +39,19 @@ Bytes U16(std::uint16_t value);
 Bytes U32(std::uint32_t value);
 Bytes Entity(EntityId entity);
 Bytes Sequence(std::int64_t number);
-// The bits of a set, all clear.
+// The bits of a number set, all clear.
 Bytes Bits(std::uint32_t count);
 Bytes Guid(const GuidPrefix &prefix, EntityId entity);
 
 Bytes Header(const GuidPrefix &sender = Sender);
-// Little-endian, as everything here.
+// Little-endian, like everything here.
 Bytes Submessage(std::uint8_t kind, const Bytes &body, std::uint8_t flags = 1);
-// Says who says what follows.
+// INFO_SRC: names the sender of the submessages that follow.
 Bytes Source(const GuidPrefix &sender);
 // A message of one submessage.
 Bytes Message(std::uint8_t kind, const Bytes &body, std::uint8_t flags = 1);
 
-// Bodies.
+// Bodies of submessages.
 Bytes Ids(EntityId reader = 0, EntityId writer = UserWriter);
 Bytes DataBody(std::int64_t sequence, const Bytes &rest = {0, 1, 0, 0, 7, 0, 0, 0},
                EntityId writer = UserWriter, EntityId reader = 0);
@@ -62,14 +62,14 @@ Bytes GapBody(std::int64_t start, std::int64_t base, std::uint32_t bits = 0, Ent
 Bytes AckNackBody(std::int64_t base, std::uint32_t bits, std::uint32_t count);
 Bytes NackFragBody(std::int64_t sequence, std::uint32_t base, std::uint32_t bits, std::uint32_t count);
 
-// Parameters of discovery, and lists of them that end.
+// Parameters of discovery, and lists of them with the sentinel at the end.
 Bytes Parameter(std::uint16_t id, const Bytes &value);
 Bytes Text(const char *text);
 Bytes List(std::initializer_list<Bytes> parameters);
-// What a participant and a writer say of themselves.
+// The announcements of a participant and of a writer.
 Bytes ParticipantData(const GuidPrefix &of = Sender, std::uint32_t port = 7410);
 Bytes WriterData(EntityId writer = UserWriter, const GuidPrefix &of = Sender);
-// Messages with those.
+// Messages with these announcements.
 Bytes ParticipantMessage(const GuidPrefix &sender = Sender, std::uint32_t port = 7410);
 Bytes WriterMessage(EntityId writer = UserWriter, std::int64_t sequence = 1,
                     const GuidPrefix &sender = Sender);

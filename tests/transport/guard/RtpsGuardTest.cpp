@@ -1,4 +1,4 @@
-// What of a datagram gets through to the vendor's parser.
+// Which parts of a datagram get through to the vendor's parser.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using Rabit::Rtps::RtpsGuard;
 using RtpsBytes::Gate;
 
-// With the sender, and a writer of his, announced and at number 10.
+// A guard that knows the sender and one of its writers, announced and at number 10.
 class RtpsGuardTest : public testing::Test
 {
 protected:
@@ -36,14 +36,14 @@ TEST_F(RtpsGuardTest, WhoAnnouncesItselfAgainBeforeItHasSaidAnythingToUsIsAnswer
     EXPECT_TRUE(Guard.Passes(ParticipantMessage()));
     EXPECT_TRUE(Guard.TakeReplyDue());
     EXPECT_FALSE(Guard.TakeReplyDue());
-    // To somebody else.
+    // The peer sends to another participant.
     Guard.Now += 1s;
     const GuidPrefix third = {1, 15, 9};
     Guard.Admit(Join({Header(), Submessage(InfoDestination, Bytes(third.begin(), third.end())),
                       Submessage(Data, DataBody(11), 5)}));
     EXPECT_TRUE(Guard.Passes(ParticipantMessage()));
     EXPECT_TRUE(Guard.TakeReplyDue());
-    // To us.
+    // The peer sends to us.
     Guard.Now += 1s;
     Guard.Admit(Join({Header(), Submessage(InfoDestination, Bytes(Other.begin(), Other.end())),
                       Submessage(Data, DataBody(12), 5)}));
@@ -93,7 +93,7 @@ TEST_F(RtpsGuardTest, OtherProtocolsAreStopped)
     EXPECT_TRUE(Guard.Stops(Join({Header(GuidPrefix{}), Submessage(Data, DataBody(11), 5)})));
 }
 
-// As it was sent: 52 bytes that had the vendor take 2.3 GB in 8 seconds.
+// The original datagram: 52 bytes that made the vendor take 2.3 GB in 8 seconds.
 TEST_F(RtpsGuardTest, AGapOfBillionsFromAKnownWriterIsStopped)
 {
     const Bytes gap = Message(Gap, GapBody(12, std::int64_t{1} << 32));
@@ -106,7 +106,7 @@ TEST_F(RtpsGuardTest, AGapFarBeyondWhatTheWriterWroteIsStopped)
     EXPECT_TRUE(Guard.Passes(Message(Gap, GapBody(11, 13))));
     EXPECT_TRUE(Guard.Stops(Message(Gap, GapBody(11, 300))));
     EXPECT_TRUE(Guard.Stops(Message(Gap, GapBody(11, 20, 256))));
-    // Time does not move a writer.
+    // Time alone does not advance a writer.
     Guard.Now += 1h;
     EXPECT_TRUE(Guard.Stops(Message(Gap, GapBody(11, 300))));
 }
@@ -151,14 +151,14 @@ TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsIsStopped)
     EXPECT_TRUE(Guard.Stops(goodbye(Guid(Other, 0x000001c1))));
 }
 
-// Cyclone DDS puts what the participants of a process have to say into one datagram.
+// Cyclone DDS puts messages of several participants of a process into one datagram.
 TEST_F(RtpsGuardTest, OneDatagramMaySpeakForSeveralParticipants)
 {
     const Bytes data = Submessage(Data, DataBody(11), 5);
     EXPECT_TRUE(Guard.Passes(ParticipantMessage(Other)));
     EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 1, Other)));
     EXPECT_TRUE(Guard.Passes(Join({Header(Other), data, Source(Sender), data})));
-    // Each at its own numbers: the sender was at 10, the other one is at 11 now.
+    // Each participant has its own numbers: the sender was at 10, the other one is at 11 now.
     const Bytes ahead = Submessage(Data, DataBody(27), 5);
     EXPECT_TRUE(Guard.Stops(Join({Header(Sender), Source(Other), Submessage(Data, DataBody(28), 5)})));
     EXPECT_TRUE(Guard.Passes(Join({Header(Sender), Source(Other), ahead})));
@@ -225,7 +225,7 @@ TEST_F(RtpsGuardTest, APeerThatIsHeardCannotBeSentElsewhere)
     EXPECT_TRUE(Guard.Stops(ParticipantMessage(Sender, 9999)));
 }
 
-// The vendor passes over announcements of a participant under a number that it has seen.
+// The vendor ignores a participant's announcement under a number that it has seen.
 TEST_F(RtpsGuardTest, APeerThatWasForgedFirstIsNewsWhenItIsBelieved)
 {
     const auto honest = [](std::int64_t number)
@@ -245,7 +245,7 @@ TEST_F(RtpsGuardTest, APeerThatWasForgedFirstIsNewsWhenItIsBelieved)
         EXPECT_TRUE(Guard.Admit(honest(1)));
         EXPECT_EQ(Guard.Handed, std::vector<Bytes>{honest(2)});
     }
-    // And so are its later ones, with the goodbye.
+    // The participant's later announcements get higher numbers too, and so does its goodbye.
     EXPECT_TRUE(Guard.Admit(honest(2)));
     EXPECT_EQ(Guard.Handed, std::vector<Bytes>{honest(3)});
     const auto goodbye = [](std::int64_t number)
@@ -262,8 +262,8 @@ TEST_F(RtpsGuardTest, APeerThatWasForgedFirstIsNewsWhenItIsBelieved)
     EXPECT_EQ(Guard.Handed, std::vector<Bytes>{goodbye(4)});
 }
 
-// The next number of the topic of writers, and a writer that has moved to another topic: its readers here
-// would lose it for good.
+// The announcement has the next number of the topic of writers, and moves a writer to another topic. The
+// writer's readers here would lose it for good.
 TEST_F(RtpsGuardTest, AnEndpointThatIsKnownCannotBeChangedByOneAnnouncement)
 {
     Bytes changed = WriterMessage(UserWriter, 2);
@@ -271,7 +271,7 @@ TEST_F(RtpsGuardTest, AnEndpointThatIsKnownCannotBeChangedByOneAnnouncement)
     std::search(changed.begin(), changed.end(), name.begin(), name.end())[3] = 'f';
     EXPECT_TRUE(Guard.Stops(changed));
     EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 2)));
-    // Its owner sends it until it gets through.
+    // The writer's owner retransmits the announcement until it gets through.
     EXPECT_TRUE(Guard.Stops(changed));
     EXPECT_TRUE(Guard.Stops(changed));
     EXPECT_TRUE(Guard.Passes(changed));
@@ -289,7 +289,7 @@ TEST_F(RtpsGuardTest, AWriterThatJumpsIsStoppedAndOneThatGoesOnIsNot)
     EXPECT_TRUE(Guard.Passes(Message(Data, DataBody(10'000), 5)));
 }
 
-// Whoever sends the highest count once would silence the honest ones behind it for good.
+// Unchanged, one forged heartbeat with the highest count would silence all honest ones after it.
 TEST_F(RtpsGuardTest, AForgedCountDoesNotSilenceTheHonestHeartbeats)
 {
     const auto countOf = [this](std::uint8_t kind, const Bytes &body)
@@ -304,7 +304,7 @@ TEST_F(RtpsGuardTest, AForgedCountDoesNotSilenceTheHonestHeartbeats)
     EXPECT_EQ(countOf(Heartbeat, HeartbeatBody(1, 10, 2)), first + 2);
 }
 
-// The vendor would read past the end of the sample.
+// For such a request, the vendor would read past the end of the sample.
 TEST_F(RtpsGuardTest, FragmentsThatAreNotThereCannotBeAskedFor)
 {
     EXPECT_TRUE(Guard.Stops(Message(NackFrag, NackFragBody(1, 1, 1, 1))));
@@ -322,7 +322,7 @@ TEST(RtpsGuard, WhoIsNotToldOfWhatIsSentLetsRequestsForFragmentsPass)
     EXPECT_TRUE(gate.Passes(Message(NackFrag, NackFragBody(1, 1, 1, 1))));
 }
 
-// What is stopped takes nothing with it that came in the same datagram.
+// A stopped submessage does not stop the others of its datagram.
 TEST_F(RtpsGuardTest, WhatIsRefusedIsBlankedAndTheRestGetsThrough)
 {
     const Bytes data = Submessage(Data, DataBody(11), 5);
@@ -402,7 +402,7 @@ TEST(RtpsGuardModes, WhereSharedMemoryIsInUseOnlyTheStructureIsChecked)
     EXPECT_TRUE(guard.Handed.empty());
 }
 
-// A token of DDS Security with a name alone.
+// A token of DDS Security with nothing but a name.
 Bytes EmptyToken()
 {
     return Join({Text("DDS:Auth:PKI-DH:1.0"), U32(0), U32(0)});

@@ -1,4 +1,4 @@
-// Numbers of writers that repeat nothing, one of which was forged.
+// The numbers of a best-effort writer, one of which was forged.
 #include "guard/SampleNumbers.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr std::uint64_t Second = std::uint64_t{1} << 32;
 class SampleNumbersTest : public testing::Test
 {
 protected:
-    // A second later each.
+    // A sample one second after the last one.
     std::int64_t Later(std::int64_t number)
     {
         Stamp += Second;
@@ -28,7 +28,7 @@ protected:
         return At(number, Stamp);
     }
     std::int64_t At(std::int64_t number, std::uint64_t stamp) { return Numbers.Of(number, stamp, Now); }
-    // 1 to `last`, then one that was forged: what the last sample said, under another number.
+    // Gives 1 to `last`, then a forged number: the last sample again, under the number `forged`.
     void Forge(std::int64_t last, std::int64_t forged)
     {
         for (std::int64_t number = 1; number <= last; ++number)
@@ -163,7 +163,7 @@ TEST_F(SampleNumbersTest, SamplesThatAreWrittenTogetherCountOnce)
     EXPECT_EQ(At(16, Stamp), 28);
 }
 
-// In the midst of it.
+// The clock is set while the writer is below the forged number.
 TEST_F(SampleNumbersTest, AWriterWhoseClockIsSetForwardIsFollowed)
 {
     Forge(10, 26);
@@ -208,7 +208,7 @@ TEST_F(SampleNumbersTest, OldSamplesOnceMoreRightAfterAClockWasSetStayBelow)
     }
 }
 
-// An hour between two samples is none to doubt.
+// A timestamp that is an hour later is no reason for doubt if the hour has passed.
 TEST_F(SampleNumbersTest, OldSamplesOfASlowWriterStayBelow)
 {
     std::vector<std::uint64_t> stamps;
@@ -226,7 +226,7 @@ TEST_F(SampleNumbersTest, OldSamplesOfASlowWriterStayBelow)
     }
 }
 
-// Whatever comes: what is handed on as new was not handed on as new before.
+// For any input, no sample is delivered as new a second time.
 TEST_F(SampleNumbersTest, NothingIsHandedOnAsNewTwice)
 {
     std::mt19937 chance(1);
@@ -259,7 +259,7 @@ TEST_F(SampleNumbersTest, NothingIsHandedOnAsNewTwice)
             {
                 give(number + 1 + static_cast<std::int64_t>(chance() % 16), Stamp, false);
             }
-            // The last ones come once more, in their order.
+            // The last samples come once more, in their order.
             const std::size_t again = chance() % 5;
             for (std::size_t i = written.size() - std::min(again, written.size()); i < written.size(); ++i)
             {

@@ -1,4 +1,4 @@
-// Which fragments a peer may ask for.
+// Which fragments a peer may request.
 #include "guard/SentFragments.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A writer, one of whose numbers was forged a little ahead of the true ones.
+// A writer with one forged number, a little ahead of the true ones.
 #include <gtest/gtest.h>
 
 #include "guard/Gate.h"
@@ -28,7 +28,7 @@ protected:
         return Join({Header(), Submessage(InfoTimestamp, Join({U32(1'700'000'000 + second), U32(0)})),
                      Submessage(Data, DataBody(number), HasData)});
     }
-    // The third honest sample behind a forged one.
+    // True if the third honest sample after a forged one is delivered as `expected`.
     bool GivesTheThird(const Bytes &expected)
     {
         EXPECT_TRUE(Guard.Passes(Sample(10, 10)));
@@ -48,7 +48,7 @@ TEST_F(SilencedWriterTest, OfBestEffortIsHeardAgain)
     EXPECT_TRUE(GivesTheThird(Sample(27, 13)));
 }
 
-// A reader asks for what is missing, by the writer's numbers.
+// A reader requests missing samples by the writer's numbers.
 TEST_F(SilencedWriterTest, OfReliableKeepsItsNumbers)
 {
     Announce(2);
@@ -68,8 +68,8 @@ TEST_F(SilencedWriterTest, ATimeThatIsTakenBackIsOfNoSample)
     }
 }
 
-// What is forged of its number makes a writer no faster than it is: the next may be as far ahead of the true
-// ones, and no farther.
+// Forged numbers do not raise a writer's rate: the next number may be as far ahead of the true ones, and no
+// farther.
 TEST_F(SilencedWriterTest, IsHeldToItsOwnNumbersAgain)
 {
     Announce(1);

@@ -1,4 +1,4 @@
-// What participants show each other before they are authenticated: whether it is as long as it says.
+// Whether the tokens that participants show before they are authenticated are as long as they say.
 #include "guard/TokenCheck.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(TokenCheck, AMessageOfAHandshakeHasTokens)
     EXPECT_TRUE(IsGenericMessage(unfilled));
 }
 
-// The vendor made room for four billion of them: the process ended.
+// The vendor reserved memory for four billion of them, which ended the process.
 TEST(TokenCheck, CountsOfWhatIsNotThereAreRefused)
 {
     EXPECT_FALSE(Holds(Token(0xffffffff)));

@@ -1,20 +1,21 @@
-// A node that exchanges every kind of traffic with one other node and prints a line for each thing that it
+// A node that exchanges every kind of traffic with one other node. It prints a line for each thing that it
 // sees, for interop_test.py, outage_test.py, suspension_test.py and ../fuzz:
 //   ready life=L                          this process is up
 //   peer STATE                            UP, STALE or LOST
-//   mirror life=L                         the first counter of a life of the other node
+//   mirror life=L                         the first counter of an incarnation of the other node
 //   ten counters                          came since the last such line
 //   resumed life=L after_s=S              counters come again, after more than a second without
-//   frame life=L                          the 4 MB frame of that life is whole; `frame life=L garbled` if not
-//   orders life=L round=R count=N skipped=S    the last order of a round came; so many came, so many did not
+//   frame life=L                          the 4 MB frame of this incarnation is whole; `frame life=L garbled`
+//   if not orders life=L round=R count=N skipped=S    the last order of a round came: N came, S did not
 //   hundred orders round=R                came since the last such line
 //   order skipped round=R ...             never
 //   order not in order ...                never
 //   settled round=R delivered=D in_doubt=I     all orders of a round have their outcome
 //   in doubt round=R                      never; the first of a round
 //   lost round=R outcome=...              never: another outcome
-//   stopped round=R sent=N delivered=D in_doubt=I    after SIGUSR1, which says that enough was sent: all of
-//                       this round have their outcome
+//   stopped round=R sent=N delivered=D in_doubt=I    after SIGUSR1, which ends the sending: all orders of
+//   this
+//                       round have their outcome
 // Ends on SIGTERM with exit code 0.
 #include <rabit/RabitManager.h>
 #include <rabit/gateway/GatewayManager.h>
@@ -177,8 +178,8 @@ private:
             }
             if (order->life != _orderLife && _orderLife != 0)
             {
-                // The other node is back. What is sent before its links are heard of again may be in doubt,
-                // so this is the moment from which everything must arrive.
+                // The other node is back. Orders sent before its links are heard of again may be in doubt.
+                // From this moment on everything must arrive.
                 BeginRound();
             }
             if (order->life != _orderLife || order->round != _orderRound)

@@ -265,9 +265,9 @@ class Case:
             gone = [when for when, text in node.lines if text in ("peer LOST", "peer STALE") and when >= start]
             if not gone and any(text == "peer UP" for _, text in node.lines):
                 continue  # nobody noticed
-            # Not from `back` on: a slow machine may see them together before the last command has returned.
+            # Not from `back` on: on a slow machine the nodes may meet before the last command has returned.
             since = gone[-1] if gone else start
-            # Counters that were away for less than a second are not said to be resumed: they go on.
+            # Counters that were away for less than a second are not reported as resumed: they go on.
             for line in (r"peer UP", r"(mirror|resumed) life=\d+.*|ten counters"):
                 since, _ = node.wait_for(re.compile(line).fullmatch, LIMIT_S, since)
                 self.recovered = max(self.recovered, since - back)

@@ -55,7 +55,7 @@ class Case:
         for node in nodes:
             node.wait_for(re.compile("peer LOST").fullmatch, LIMIT_S, before)
         time.sleep(2)  # longer than any lease
-        # A slow machine may see the nodes together before the last command has returned.
+        # On a slow machine the nodes may meet before the last command has returned.
         back = time.monotonic()
         self.give_back(ends)
         for node in nodes:

@@ -69,7 +69,7 @@ class Case:
 
     def __init__(self, node, transports, event, seconds):
         self.node, self.transports, self.event, self.seconds = node, transports, event, seconds
-        # Some are sent only when it is over, however slow this machine is.
+        # Enough that some are sent only after the event, however slow this machine is.
         self.count = int(RATE * (seconds + 8))
         self.failure = None
         self.recovered = 0.0

@@ -1,4 +1,4 @@
-// When a node says and asks for what, by its card messages.
+// When a node sends cards, and when it requests them.
 #include "rtps/CardExchange.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ protected:
         Exchange.SetOwn(Bytes(100, 1), Now);
         Run(25s);
     }
-    // Returns the messages of that time.
+    // Runs for `time`. Returns the messages that were sent.
     std::vector<CardExchange::Outgoing> Run(std::chrono::milliseconds time)
     {
         std::vector<CardExchange::Outgoing> all;
@@ -49,7 +49,7 @@ protected:
         }
         return all;
     }
-    // Those of them that have a part of the card.
+    // Returns the messages that have a part of the card.
     static std::vector<CardExchange::Outgoing> Parts(std::vector<CardExchange::Outgoing> messages)
     {
         std::erase_if(messages,
@@ -73,14 +73,14 @@ protected:
         }
         return asked;
     }
-    // A message of that node which was so long under way.
+    // Receives a message that was `late` on its way.
     void Receive(CardMessage message, std::chrono::milliseconds late = 0ms)
     {
         message.SentAt = QueueingDelay::Stamp(Now - late);
         Exchange.Received(message, Now);
     }
 
-    // A part that answers a request of this node after so long; it completes nothing.
+    // Receives a part that answers a request which this node sent `took` ago. It completes no card.
     void Answer(const GuidPrefix &from, std::chrono::milliseconds took)
     {
         Receive({.From = from,

@@ -1,4 +1,4 @@
-// The datagrams of cards, and packed cards: the same after writing and reading, and nothing of damaged bytes.
+// Card messages and packed cards: equal after writing and reading; damaged bytes are refused.
 #include "rtps/CardMessage.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,8 @@ TEST(CardMessage, IsTheSameAfterWritingAndReading)
     EXPECT_TRUE(std::equal(read->Bytes.begin(), read->Bytes.end(), Part.begin(), Part.end()));
 }
 
-// The sockets of Fast DDS take one byte for the beginning of statistics, and write into what follows it.
+// The sockets of Fast DDS take one certain byte for the beginning of statistics, and write into the bytes
+// after it.
 TEST(CardMessage, NeverEndsLikeStatistics)
 {
     for (std::size_t size = 1; size <= 300; ++size)
@@ -119,7 +120,7 @@ TEST(PackedCard, OfZerosWithoutEndIsRefused)
     EXPECT_TRUE(PackCard(Bytes(LargestUnpackedCard + 1)).empty());
     Bytes packed = PackCard(Bytes(LargestUnpackedCard));
     ASSERT_TRUE(UnpackCard(packed).has_value());
-    // Says of itself that it is larger.
+    // The packed card now states a larger size.
     packed[5 + 2] = 0x7f;
     EXPECT_FALSE(UnpackCard(packed).has_value());
 }

@@ -31,7 +31,7 @@ public:
         Add(Rabit::Rtps::PublicationsWriter, entity, RtpsBytes::WriterData(entity, _name));
     }
     void Announce() { _send(RtpsBytes::ParticipantMessage(_name)); }
-    // Sends a heartbeat to each peer that has not acknowledged all. To be called once a second.
+    // Sends a heartbeat to each peer that has not acknowledged everything. Call it once a second.
     void Tick()
     {
         for (auto &[peer, known] : _peers)
@@ -39,7 +39,7 @@ public:
             Beat(peer, known);
         }
     }
-    // A message that came, or that was given to it.
+    // Receives a message from the network, or one that Meeting delivers.
     void Receive(std::span<const std::uint8_t> message)
     {
         const Prefix from = Rabit::Rtps::SenderOf(message);
@@ -71,7 +71,7 @@ public:
     }
     bool Knows(const Prefix &peer) const { return _peers.contains(peer); }
     bool KnowsAny() const { return !_peers.empty(); }
-    // The endpoints of that peer.
+    // Returns the known endpoints of this peer.
     std::set<EntityId> EndpointsOf(const Prefix &peer) const
     {
         std::set<EntityId> endpoints;

@@ -102,7 +102,7 @@ public:
             Step();
         }
     }
-    // Whether it holds within that time.
+    // Runs until the condition holds, or `limit` has passed. Returns whether it holds.
     template <typename Holds>
     bool Until(const Holds &holds, std::chrono::milliseconds limit = 20s)
     {
@@ -399,7 +399,7 @@ TEST(Meeting, ANodeThatJoinsAFullChannelSaysLittle)
     two.Dds->Announce();
     ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(8); }));
     air.Run(20s);
-    // Two seconds of other traffic wait in each queue, and as much comes as goes.
+    // In each queue, two seconds of other traffic always wait.
     const Bytes sample = RtpsBytes::Join({RtpsBytes::Header(one.Self), Bytes(472, 0x80)});
     const auto fill = [&]
     {

@@ -10,7 +10,7 @@ using Rabit::Rtps::QueueingDelay;
 
 constexpr QueueingDelay::TimePoint Start{1h};
 
-// A datagram that was sent at that time, by a clock that shows something else, and took so long.
+// Receives a datagram that was sent at `sent` and took `took`. The sender's clock has an offset.
 void Arrive(QueueingDelay &delay, QueueingDelay::Duration sent, QueueingDelay::Duration took)
 {
     delay.Heard(QueueingDelay::Stamp(Start + sent) + 4'000'000'000u, Start + sent + took);

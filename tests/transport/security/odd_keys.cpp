@@ -1,9 +1,9 @@
 // Makes keys as the program `rabit` would not, for strangers_test.py:
 //   odd_keys init <folder> <fleet>
 //   odd_keys add <folder> <node> <transport> <domain> <begins in days> <days> [<name> [<topic>]]
-//                                     for the topic State, in the partition of that name instead of its own;
-//                                     it may write that topic instead
-//   odd_keys revoke <folder> <node>                      whose folder stays
+//                                     for the topic State, in the partition of this name instead of its own;
+//                                     the node may write <topic> instead
+//   odd_keys revoke <folder> <node>                      the node's folder stays
 //   odd_keys sign_with_identity <folder> <node>          its permissions, by the wrong authority
 #include <ctime>
 #include <exception>

@@ -1,14 +1,14 @@
-// A session in a process of its own, with whatever keys it is given: what of them is wrong is left to the
-// vendors to find. For the tests of this folder:
+// A session in a process of its own, with whatever keys it is given: the vendors must find the faults in
+// these. For the tests of this folder:
 //   secured_peer <transport> <node> <domain> <folder> <level> [<interface> [<lease in seconds> [words]]]
-// The folder is `-` for none. Writes and reads the topic State, in the partition of its node and of all; with
-// `words` it is one of strings as ROS 2 has them, for programs of the vendors' own. Prints a line for each
-// thing that it sees:
+// The folder is `-` for none. Writes and reads the topic State, in the partition of its node and of all. With
+// `words`, State is a topic of strings as in ROS 2, for the vendors' own programs. Prints a line for each
+// event:
 //   open                     the session, its writer and its reader are there
 //   failed <why>             they are not
 //   appeared <node>          and `gone <node>`
-//   heard <node> <count>     the first sample of that node, and the tenth, the twentieth ...
-//   said <node> <text>       a sample of that node does not have its name as text; the first ten
+//   heard <node> <count>     the first sample of this node, and the tenth, the twentieth ...
+//   said <node> <text>       a sample of this node does not have its name as text; the first ten
 //   log <line>
 // Ends with its standard input.
 #include <rabit/transport/TransportFactory.h>
@@ -99,7 +99,7 @@ Rabit::TransportSettings SettingsFrom(char **argv, const Options &options)
     return settings;
 }
 
-// Behind the encapsulation is a string in the one, and a key before it in the other.
+// After the encapsulation comes a string, with a key before it unless the topic is one of `words`.
 std::string TextIn(Rabit::SampleBytes bytes, bool words)
 {
     const std::vector<std::uint8_t> key(4);

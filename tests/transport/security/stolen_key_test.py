@@ -167,7 +167,7 @@ def says_it_is_ground(case):
     uav1, ground = exchange(case)
     thief = case.thief("ground", *NOTES)
     thief.wait_for("peer node=uav1 state=UP .*")
-    # Nobody answers the thief. It hears what is answered to a newcomer.
+    # No node answers the thief, but it hears the answers to a newcomer.
     case.node("uav3")
     thief.wait_for("accepted to=uav1 .*", 20)
     uav1.wait_for("malformed count=.*", 4)

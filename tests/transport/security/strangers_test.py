@@ -58,7 +58,7 @@ class Case:
         _, how = stranger.wait_for(re.compile("(open)|(failed .*)").fullmatch, LIMIT_S)
         running = {name: processes.start([self.peer, transport, name, self.domain, self.fleet / name, "encrypt"])
                    for name, transport in members.items()}
-        # The stranger has all the time that the members need to hear each other twenty times.
+        # The stranger gets all the time that the members need to hear each other twenty times.
         for name, process in running.items():
             for other in members.keys() - {name}:
                 process.wait_for(re.compile(f"heard {other} 20").fullmatch, LIMIT_S)

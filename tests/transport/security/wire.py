@@ -97,7 +97,7 @@ class Wire(field.Field):
         for node in self.nodes:
             self._make_space(node)
             near = f"w{self._number}{node[:8]}"
-            # Frames of more than a datagram's size: none comes in pieces.
+            # The MTU is larger than any datagram, so that none is fragmented.
             field.run("ip", "link", "add", near, "mtu", "9000", "type", "veth", "peer", "name", "eth0", "mtu", "9000",
                       "netns", self.space(node))
             field.run("ip", "link", "set", near, "up")
@@ -132,7 +132,7 @@ class Wire(field.Field):
         ip = ETHERNET + 4 * (frame[ETHERNET] & 15)
         if frame[12:14] != b"\x08\x00" or frame[ETHERNET + 9] != UDP or not is_rtps(frame[ip + 8:]):
             return [frame]
-        # Padding of short frames is no part of the datagram.
+        # Excludes the padding of short frames.
         size = struct.unpack_from("!H", frame, ip + 4)[0]
         frames = []
         for datagram in self.change(node, frame[ip + 8:ip + size]):

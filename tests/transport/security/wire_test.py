@@ -104,7 +104,7 @@ class Case:
         self._change = function
 
     def nothing_heard(self, node, since, why):
-        # Cyclone DDS tells of participants before it knows who they are.
+        # Cyclone DDS reports participants before it has authenticated them.
         signs = ("heard", "said") + (("appeared",) if self.transports[node] == "fastdds" else ())
         lines = [text for when, text in self.running[node].lines if when >= since and text.startswith(signs)]
         if lines:
@@ -240,7 +240,7 @@ def kept_apart(case, level, why):
     case.note_lines()
     case.change(None)
     case.stop()
-    # Fast DDS does not try again with whom it has not let in.
+    # Fast DDS does not retry with a peer that it has refused.
     case.start(level)
     case.both_hear()
     case.stop()

@@ -12,7 +12,7 @@
 namespace Rabit::Conformance
 {
 
-// A simulated network whose time this harness moves on.
+// A simulated network, whose time this harness advances.
 class SimulatedHarness final : public TransportHarness
 {
 public:
@@ -21,7 +21,7 @@ public:
     Transport &Backend() override { return _backend; }
     SimulatedNetwork &Network() { return _network; }
     TransportSettings SettingsFor(const std::string &node, std::uint64_t incarnation) override;
-    // Moves on by a millisecond at a time, at most 60 simulated seconds.
+    // Advances by one millisecond at a time, at most 60 simulated seconds.
     bool Until(const std::function<bool()> &condition) override;
     void Settle() override { Pass(std::chrono::seconds(2)); }
     void Pass(std::chrono::nanoseconds time) { _network.AdvanceTo(_network.Now() + time); }

@@ -1,4 +1,4 @@
-// Media that nodes of the simulated network share: rate, queues, turns, what takes the air.
+// Media that nodes of the simulated network share: rate, queues, turns, and the bytes that are sent.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::SizeIs;
 
-// A sample that takes so many bytes of the air.
+// A sample that takes `bytes` bytes on the air, headers included.
 RawSample SampleOnAir(std::size_t bytes)
 {
     constexpr std::size_t Headers =
@@ -40,7 +40,7 @@ SimulatedFaults AtOnce()
 }
 
 // Writers of telemetry at uav1 and uav2, readers of both at ground and tower, all matched and quiet. The
-// lease is so long that nobody says anything by itself.
+// lease is so long that no node sends anything by itself.
 class SimulatedMediumTest : public testing::Test
 {
 protected:
@@ -65,7 +65,7 @@ protected:
         settings.AnnouncementPeriod = 1h;
         return Net.Backend().Open(settings, {});
     }
-    // Tells when, in milliseconds after the start, and from whom, samples came.
+    // Logs the arrival of each sample: its sender, and the time in milliseconds after the start.
     SampleHandler Log(std::vector<std::string> &log)
     {
         return [this, &log](SampleBytes, const SampleInfo &info)
@@ -408,7 +408,7 @@ TEST(SimulatedMedium, NodesFindEachOtherOverAThinOne)
     EXPECT_TRUE(net.Until([&] { return std::all_of(writers.begin(), writers.end(), isMatched); }));
 }
 
-// Runs a small fleet over a medium that is too thin for it, and tells all that was handed over, and when.
+// Runs a small fleet over a medium that is too thin for it. Returns all deliveries with their times.
 std::string TraceOf(std::uint64_t seed, std::chrono::nanoseconds step)
 {
     std::ostringstream trace;

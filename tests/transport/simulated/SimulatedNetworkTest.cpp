@@ -1,4 +1,4 @@
-// What the simulated network does beyond what every backend does: faults, time, determinism.
+// Properties that only the simulated network has: faults, time, determinism.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -397,7 +397,7 @@ TEST_F(SimulatedNetworkTest, AReliableSampleCostsFewEvents)
     EXPECT_LT(Net.Network().Traffic().Events - before, 1300u);
 }
 
-// Runs a small fleet over a bad network and tells everything that was handed over, with the time of it.
+// Runs a small fleet over a bad network. Returns all deliveries with their times.
 std::string TraceOf(std::uint64_t seed, std::chrono::nanoseconds step)
 {
     std::ostringstream trace;

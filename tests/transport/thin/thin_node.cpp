@@ -1,9 +1,8 @@
-// What a node of a fleet opens, without a gateway, for thin_test.py: what is on the air is the backend's own.
-// It tells the backend how late the others' beats come, as a gateway does with what the others say of its
-// own. Prints
+// The endpoints of a fleet's node, without a gateway, for thin_test.py: all traffic on the air is the
+// backend's own. Prints
 //   matched after_s=S    all endpoints have matched those of all others
-//   heard after_s=S      a beat of each other one came
-// S from its start. Runs until it is killed.
+//   heard after_s=S      a beat of each other node came
+// S counts from the start of the program. Runs until it is killed.
 #include <rabit/transport/TransportFactory.h>
 
 #include <CLI/CLI.hpp>
@@ -43,7 +42,7 @@ std::int64_t Now()
     return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
 }
 
-// Who was heard. Thread-safe.
+// The nodes that were heard. Thread-safe.
 class Heard
 {
 public:
@@ -102,7 +101,7 @@ public:
     }
 
 private:
-    // States as well are read without repair: gateways have their own.
+    // States too are read with best effort: gateways have a repair of their own.
     void Add(const std::string &topic, const Rabit::TopicQos &qos)
     {
         _writers.push_back(_session->CreateWriter(TextTopic(topic), qos, {}));
@@ -110,11 +109,7 @@ private:
                                                   [this](Rabit::SampleBytes, const Rabit::SampleInfo &info)
                                                   { Came(info); }));
     }
-    // All nodes are on one machine, and have one clock.
-    void Came(const Rabit::SampleInfo &info)
-    {
-        _heard.Add(info.Node);
-    }
+    void Came(const Rabit::SampleInfo &info) { _heard.Add(info.Node); }
     bool IsMatched() const
     {
         for (const auto &writer : _writers)

@@ -56,9 +56,9 @@ def late(ground, program, transport, period_s, limit_s):
     return f"{seconds:.1f} s", seconds <= limit_s
 
 
-# What, nodes, medium, runs, how, limits. Where one lost datagram more decides about seconds, the median of several runs
-# is held to the limits. Measured when this was written, with Fast DDS and Cyclone DDS: 114 and 97 kB; 1.5 and
-# 1 s; 17 and 14 to 18 s; 1 to 13 s.
+# Columns: name, nodes, medium, runs, test, limits. Where one more lost datagram decides about seconds, the median of
+# several runs is held to the limits. Measured with Fast DDS and Cyclone DDS: 114 and 97 kB; 1.5 and 1 s; 17 and 14 to
+# 18 s; 1 to 13 s.
 CASES = [
     ("ten at once, wide", 10, {"kbit": 100_000}, 1, at_once, {"limit_s": LIMIT_S, "limit_kb": 200}),
     ("five at once, 250 kbit/s", 5, {"kbit": 250}, 1, at_once, {"limit_s": 10, "limit_kb": 0}),

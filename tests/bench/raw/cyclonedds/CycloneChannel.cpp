@@ -149,7 +149,7 @@ private:
         return qos;
     }
 
-    // Where several write the same topic, one sample of each has room.
+    // If several programs write the same topic, there is room for one sample of each.
     static void SetReaderDepth(const BenchOptions &options, dds_qos_t *qos)
     {
         if (options.Role == "member")

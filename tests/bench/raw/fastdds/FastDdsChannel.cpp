@@ -1,4 +1,4 @@
-// A plain Fast DDS program on the vendor's DDS layer, with a listener, as its manual has it written.
+// A plain Fast DDS program on the vendor's DDS layer, with a listener, written as its manual shows.
 #include "../RawChannel.h"
 
 #include "SampleType.h"
@@ -60,7 +60,7 @@ dds::DomainParticipantQos ParticipantQos(const BenchOptions &options)
     return qos;
 }
 
-// What writer and reader have in common.
+// The QoS that writer and reader share.
 template <typename Qos>
 void Apply(Carriage how, Qos &qos)
 {
@@ -94,7 +94,7 @@ dds::DataReaderQos ReaderQos(const BenchOptions &options)
     Apply(options.How, qos);
     if (options.Role == "member")
     {
-        // Where several write the same topic, one sample of each has room.
+        // If several programs write the same topic, there is room for one sample of each.
         qos.history().depth = static_cast<std::int32_t>(options.Members);
     }
     auto &times = qos.reliable_reader_qos().times;
@@ -111,9 +111,9 @@ public:
         : _onData(std::move(onData)), _type(new SampleType(options.Payload))
     {
         auto *factory = dds::DomainParticipantFactory::get_instance();
-        _participant =
-            Check(factory->create_participant(static_cast<std::uint32_t>(options.Domain), ParticipantQos(options)),
-                  "participant");
+        _participant = Check(
+            factory->create_participant(static_cast<std::uint32_t>(options.Domain), ParticipantQos(options)),
+            "participant");
         _type.register_type(_participant);
         const auto topic = [this](const std::string &name) {
             return Check(_participant->create_topic(name, _type.get_type_name(), dds::TOPIC_QOS_DEFAULT),

@@ -11,7 +11,7 @@
 namespace Rabit::Bench
 {
 
-// A sample as it is taken.
+// A sample as the reader takes it.
 struct TakenSample
 {
     std::uint64_t Number = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Our recordings, read by the packages that Foxglove reads them with, which npm fetches into the work directory.
+# Reads our recordings with the packages that Foxglove uses. npm fetches these into the work directory.
 #   stock_reader_test.sh CASE STOCK_SAMPLES WORK_DIRECTORY
 # Exit status 77 (skipped) where there is no node, or no registry.
 set -euo pipefail

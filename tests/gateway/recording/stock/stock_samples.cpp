@@ -1,6 +1,6 @@
-// Writes recordings for the test with the stock reader, with what is in them:
+// Writes recordings for the test with the stock reader, and files that list their contents:
 //   stock_samples FOLDER
-// small.mcap and small.json: how many messages there must be at least in the first so many bytes.
+// small.mcap and small.json: the least number of messages in the first N bytes, for several N.
 // corpus.mcap and corpus.jsonl: samples of every type; each line is the value of a message, as JSON.
 #include <rabit/dynamic/DynamicType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
@@ -41,7 +41,7 @@ void WriteSmall(const std::string &folder)
     const Bytes data = {0, 1, 0, 0, 4, 0, 0, 0, 'b', 'a', 't', 0};
     for (std::uint64_t chunk = 0; chunk < 6; ++chunk)
     {
-        // A channel that comes later, too.
+        // Some channels come later.
         if (chunk % 2 == 0)
         {
             channels.push_back(*writer.AddChannel(schema, "uav" + std::to_string(chunk) + "/Health", "cdr"));

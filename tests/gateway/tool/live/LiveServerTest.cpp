@@ -35,7 +35,7 @@ LiveServer::Settings Anywhere()
     return settings;
 }
 
-// What a viewer does. What it waits for never comes only if a test is broken: then ctest ends it.
+// A viewer. If a test is broken it waits for ever, and ctest ends it.
 class Viewer
 {
 public:
@@ -43,7 +43,7 @@ public:
                     const std::string &origin = "")
         : _stream(_io)
     {
-        // Small, so that a viewer that does not read is one soon.
+        // A small receive buffer, so that a viewer that does not read soon stalls.
         beast::get_lowest_layer(_stream).open(asio::ip::tcp::v4());
         beast::get_lowest_layer(_stream).set_option(asio::socket_base::receive_buffer_size(4096));
         beast::get_lowest_layer(_stream).connect(server.Endpoint());
@@ -86,7 +86,7 @@ public:
         return _stream.got_text() ? Frame{json::parse(all), ""}
                                   : Frame{std::nullopt, all.substr(LiveProtocol::MessageDataHeader)};
     }
-    // The next text of that operation.
+    // Returns the next text of this operation.
     json Text(const std::string &op)
     {
         for (;;)
@@ -98,7 +98,7 @@ public:
             }
         }
     }
-    // The bytes of the next value.
+    // Returns the bytes of the next value.
     std::string Value()
     {
         for (;;)
@@ -197,7 +197,7 @@ TEST(LiveServer, SaysWhatIsNotPossible)
     EXPECT_THAT(std::string(viewer.Text("status")["message"]), HasSubstr("nothing can be sent"));
 }
 
-// The first reads nothing, and the second everything.
+// The first viewer reads nothing, and the second everything.
 TEST(LiveServer, AViewerThatStallsIsToldWhatItMissedAndDelaysNobody)
 {
     constexpr std::size_t size = 100'000;
@@ -219,7 +219,7 @@ TEST(LiveServer, AViewerThatStallsIsToldWhatItMissedAndDelaysNobody)
         server.Show(picture, 2, Bytes(text + std::string(size - text.size(), ' ')));
         EXPECT_EQ(std::stoi(quick.Value()), i);
     }
-    // It is told, and shown the newest.
+    // The stalled viewer is told what it missed, and is shown the newest value.
     bool told = false;
     int shown = 0;
     while (!told || shown < count - 1)

@@ -87,7 +87,7 @@ def a_node_that_vanishes_meanwhile_is_waited_for_and_what_is_sent_to_it_is_not_d
         send.wait_for(lambda text: '"outcome":"delivered"' in text, LIMIT)
         gone.kill()
         send.tell("{}")
-        # Whether it got there before the end came nobody can know.
+        # The sender cannot know whether the message arrived before the node ended.
         send.wait_for(lambda text: '"outcome":"expired"' in text or '"outcome":"in doubt"' in text, LIMIT)
         os.kill(send.pid, signal.SIGINT)
         assert send.exit_code(LIMIT) == 1

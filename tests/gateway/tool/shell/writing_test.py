@@ -58,7 +58,7 @@ def what_a_fleet_puts_on_the_air_is_checked_against_its_budgets(rabit):
 
 
 COMPLETION = harness.ROOT / "gateway/tool/completion"
-# Each reads the project's file, and then does what it does when one types the words and presses the tabulator.
+# Each shell reads the project's file, then completes as if the words were typed and the tabulator pressed.
 SHELLS = {
     "bash": ["bash", "-c", """
         . /usr/share/bash-completion/bash_completion; . "$0/rabit.bash"
@@ -100,7 +100,7 @@ def shells_complete_what_the_fleet_has(rabit):
         harness.until(queues)
 
         def types():
-            # bash completes what stands behind the last colon.
+            # bash completes the text after the last colon.
             return {offer.removeprefix("Uav::") for offer in offers("type", "Uav::Po")} == {"Pose"}
         harness.until(types)
 

@@ -56,7 +56,7 @@ def main():
         assert place["frame_id"] == "uav1" and abs(place["timestamp"]["sec"] - time.time()) < LIMIT_S, place
         assert wait_value(viewer, "uav1/MissionState/Log")[2]["name"] == "uav1"
 
-        # A State was posted before, and is there at once.
+        # A State was posted earlier, and is there at once.
         late = processes.start(["node", program, url, "uav1/Health"])
         wait_value(late, "uav1/Health")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# rabit foxglove, seen with the package that viewers see it with, which npm fetches into the work directory.
+# Shows rabit foxglove to the package that viewers use. npm fetches it into the work directory.
 #   viewer_test.sh RABIT UAV TRANSPORT WORK_DIRECTORY
 # Exit status 77 (skipped) where there is no node, or no registry.
 set -euo pipefail

@@ -1,4 +1,4 @@
-// Tests that look at every generated type in turn, and at the type that is made of its IDL text at run time.
+// Tests that run for every generated type, and for the type that is made of its IDL text at run time.
 #pragma once
 
 #include "dynamic/ReadType.h"
@@ -39,7 +39,7 @@
 
 using Bytes = std::vector<std::uint8_t>;
 
-// The bytes of a message, by its type.
+// Returns the bytes of a message, by its type.
 inline Bytes SampleOf(const Rabit::MessageType &type, const Rabit::RabitMessage &message)
 {
     Bytes bytes(type.SerializedSize(message));
@@ -47,7 +47,7 @@ inline Bytes SampleOf(const Rabit::MessageType &type, const Rabit::RabitMessage 
     return bytes;
 }
 
-// Fewer for types with pages of octets, which take long.
+// Returns fewer rounds for types with pages of octets, which take long.
 inline int RoundsFor(const Rabit::DynamicType &type, int rounds)
 {
     const bool isLarge =
@@ -55,7 +55,7 @@ inline int RoundsFor(const Rabit::DynamicType &type, int rounds)
     return isLarge ? rounds / 20 : rounds;
 }
 
-// What the room knows of the type.
+// Returns the shapes that ReadType makes of the type's IDL text.
 inline std::unique_ptr<const Rabit::Dynamic::Shapes> ShapesOf(const Rabit::MessageType &type)
 {
     std::string reason;
@@ -67,7 +67,7 @@ inline std::unique_ptr<const Rabit::Dynamic::Shapes> ShapesOf(const Rabit::Messa
     return shapes;
 }
 
-// The bytes that generated code makes of a sample, or none if it refuses it.
+// Returns the bytes that generated code makes of a sample, or none if it refuses the sample.
 inline Bytes ByGeneratedCode(const Rabit::MessageType &generated, const Bytes &sample)
 {
     const auto message = generated.Create();

@@ -137,7 +137,7 @@ private:
         }
         const unsigned size = shape.Discriminator->Size;
         Put(label, size);
-        // As it is read: cut to its size, with a sign if the type has one.
+        // The label as it is read: cut to its size, with a sign if the type has one.
         std::int64_t read = static_cast<std::int64_t>(label);
         if (size < 8)
         {

@@ -1,4 +1,4 @@
-// Samples of any type, made by its shape: every value that the type allows may come.
+// Random samples of any type, made by its shape: every value that the type allows is possible.
 #pragma once
 
 #include "dynamic/Shape.h"
@@ -7,6 +7,6 @@
 #include <random>
 #include <vector>
 
-// A valid sample in one of the byte orders.
+// Returns a valid sample in one of the byte orders.
 std::vector<std::uint8_t> RandomSample(const Rabit::Dynamic::Shape &root, bool littleEndian,
                                        std::mt19937 &random);

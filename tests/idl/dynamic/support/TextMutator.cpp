@@ -129,7 +129,7 @@ const char *const Words[] = {"struct",
                              "\"",
                              "'"};
 
-// Where words and signs begin and end: pairs.
+// Returns pairs of the begin and end of words and signs.
 std::vector<std::pair<std::size_t, std::size_t>> WordsOf(const std::string &text)
 {
     const auto isName = [](char letter)
@@ -194,8 +194,8 @@ std::string TextMutator::Next()
     return text;
 }
 
-// A word for one of its kind, so that the grammar holds: what names and values mean is then all that may be
-// wrong.
+// Replaces a word by one of its kind. The grammar still holds, so only the meaning of names and values may
+// be wrong.
 void TextMutator::ChangeAlike(std::string &text)
 {
     static const std::vector<std::string> types{"boolean",   "char",  "octet", "int8",   "uint8",
@@ -237,7 +237,7 @@ void TextMutator::ChangeAlike(std::string &text)
     }
 }
 
-// A line with one member or one value twice, gone or elsewhere.
+// Doubles, removes or moves a line with one member or one value.
 void TextMutator::ChangeStatement(std::string &text)
 {
     std::vector<std::pair<std::size_t, std::size_t>> statements;

@@ -1,4 +1,4 @@
-// Damaged IDL texts: what chance, and an ill will that knows the language, make of good ones.
+// Damaged IDL texts, made of good ones by chance and by changes that abuse the language.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 class TextMutator
 {
 public:
-    // texts: good ones; there must be some.
+    // `texts`: good texts, at least one.
     TextMutator(std::vector<std::string> texts, unsigned seed);
-    // One of the texts, changed in a few places: bytes, words, lines, definitions of others.
+    // Returns one of the texts, changed in a few places: bytes, words, lines, definitions of others.
     std::string Next();
 
 private:
