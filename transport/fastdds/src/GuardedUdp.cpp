@@ -174,7 +174,7 @@ public:
                 _descriptor.Chosen().AnnounceAt(*due);
             }
         }
-        // What is held now finds its way when its turn comes.
+        // A datagram that is held now chooses its way when it is sent.
         if (message.HasSamples && HeldDatagrams::OfThisThread() == nullptr)
         {
             ChooseGroupWhereAddressesLack(socket, message.IsOfSamplesToOne, now);
