@@ -298,8 +298,8 @@ private:
                rtps::IPLocator::isMulticast(destination) != (socket == 0);
     }
 
-    // Samples for hosts with unknown hardware addresses go to the group instead. `toOne`: all destinations are
-    // addresses of one participant, and one that works is enough.
+    // Samples for hosts with unknown hardware addresses go to the group instead. `toOne`: all destinations
+    // are addresses of one participant, and one that works is enough.
     void ChooseGroupWhereAddressesLack(std::uint32_t socket, bool toOne, TimePoint now)
     {
         const auto isAwaited = [this, now](const rtps::Locator_t &destination)
