@@ -148,7 +148,10 @@ class Field:
         text = ("table arp field {\n chain arriving {\n"
                 f"  type filter hook input priority 0; policy {policy};\n }}\n}}\n")
         for node in self.nodes:
-            run_in(self.space(node), "nft", "-f", "-", text=text)
+            try:
+                run_in(self.space(node), "nft", "-f", "-", text=text)
+            except subprocess.CalledProcessError as error:
+                raise Unsupported(f"nftables does not filter ARP here: {error.stdout}") from error
             run("ip", "-n", self.space(node), "neighbour", "flush", "all")
 
     def traffic(self, node):

@@ -33,7 +33,7 @@ KILLED = ["uav2", "uav3", "uav4"]  # in turn
 DOWN_S = [0, 2, 6]  # in turn; the last one is long enough to be LOST
 KILL_AT_S = 20  # of each minute
 
-MEETING_S = 5  # before the loss begins: under it Fast DDS takes up to 9 s to match the first endpoints
+MEETING_S = 5  # before the loss begins
 LOSS = 20  # percent
 RATE = 20  # commands a second, each way
 STATES = 2  # of each node, each posted once a second

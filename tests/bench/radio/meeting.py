@@ -141,16 +141,15 @@ def restart(fleet, members, tries):
     for _ in range(tries):
         fleet.ground.forget_neighbours()
         follower.read().ticks.clear()
-        began = time.monotonic()
         fleet.start_ledger(late, "--ticks")
         ways = [way for other in others for way in ((late, other), (other, late))]
 
         def met():
-            read = follower.read()
-            firsts = read.first_ticks(read.begins[late][-1] if read.begins[late] else began * 1e9)
+            begin = max(follower.read().begins[late], default=float("inf"))
+            firsts = follower.first_ticks(begin)
             if not all(way in firsts for way in ways):
                 return None
-            return (max(firsts[way] for way in ways) - read.begins[late][-1]) * 1e-9
+            return (max(firsts[way] for way in ways) - begin) * 1e-9
         times.append(wait(met))
         fleet.ground.kill(late)
     return spread(times)

@@ -212,6 +212,23 @@ TEST(DiscoveryCheck, TheDigestIsOfWhereAParticipantIsHeard)
     EXPECT_NE(digest(ParticipantData(Sender, 7410)), digest(ParticipantData(Sender, 7412)));
 }
 
+TEST(DiscoveryCheck, AParticipantListensToAGroupIfItAnnouncesOneForSamples)
+{
+    constexpr std::uint16_t MetatrafficMulticastLocator = 0x0033;
+    constexpr std::uint16_t DefaultMulticastLocator = 0x0048;
+    const auto listens = [](std::uint16_t locator)
+    {
+        Bytes payload = ParticipantData();
+        payload.resize(payload.size() - 4);
+        payload = Join({payload,
+                        Parameter(locator, Join({U32(1), U32(7401), Bytes(12), {239, 255, 0, 1}})),
+                        {1, 0, 0, 0}});
+        return CheckDiscovery(ParticipantWriter, Sender, payload, false)->ListensToGroup;
+    };
+    EXPECT_TRUE(listens(DefaultMulticastLocator));
+    EXPECT_FALSE(listens(MetatrafficMulticastLocator));
+}
+
 TEST(DiscoveryCheck, LivelinessIsTheSendersOwn)
 {
     const Bytes own = Join({{0, 1, 0, 0}, Bytes(Sender.begin(), Sender.end()), {0, 0, 0, 1}, U32(0)});
