@@ -28,8 +28,8 @@ constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 constexpr double BeatShareOfPace = 0.125;
 // No setting asks for rare beats here, and a pace may come from bad weather alone.
 constexpr Duration SlowestBeatOfPace = std::chrono::seconds(1);
-// Share of a budget that discovery may take, so that beats get through while nodes find each other.
-constexpr double DiscoveryShare = 0.5;
+// Share of a budget that the exchange of keys may take, so that beats get through meanwhile.
+constexpr double KeyShare = 0.5;
 constexpr double SmallestBeat = 100.0;  // on the air
 // Without a budget peers measure the delay by the beats, so a node that sends much beats more often: once in
 // BytesForABeat times the bytes of a beat, but no sooner than ShortestBeatGap after the last one.
@@ -56,18 +56,21 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
       _unscheduled(TransportSettingsOf(config, 0).AnnouncementPeriod),
       _beat(_schedule.AddStream(TrafficClass::Presence, AirSchedule::LargestWeight)),
       _typeTexts(_schedule.AddStream(TrafficClass::Bulk)),
+      _cards(_schedule.AddStream(TrafficClass::Command)),
       _linkStreams(config.Send, links, _schedule,
                    [&presence](std::string_view node) { return presence.SessionsOf(node); }),
       _report(config, _cost)
 {
 }
 
-void AirTraffic::Open(TransportSession &session)
+void AirTraffic::Open(TransportSession &session, std::function<void()> wakeUp)
 {
     _session = &session;
-    if (_config.Radio.Budget)
+    _turns = session.Discovery();
+    if (_turns != nullptr)
     {
-        session.SetDiscoveryRate(DiscoveryShare * *_config.Radio.Budget);
+        _turns->Schedule(std::move(wakeUp));
+        _turns->SetKeyRate(KeyShare * _config.Radio.Budget.value_or(0.0));
     }
     for (const TopicPublisher &publisher : _publishers)
     {
@@ -186,6 +189,10 @@ void AirTraffic::SetLimit(Duration now)
 Duration AirTraffic::ServeUnlimited(Duration now)
 {
     _servedAt = now;
+    while (_turns != nullptr && _turns->IsDue() && _turns->NextBytes() > 0)
+    {
+        _turns->SendNext();
+    }
     Duration beatDue = _presence.BeatDue();
     if (now >= beatDue || IsBeatWorth(now))
     {
@@ -265,6 +272,12 @@ void AirTraffic::LookAtTypes(Duration now)
     }
 }
 
+void AirTraffic::LookAtCards()
+{
+    const std::size_t bytes = _turns != nullptr && _turns->IsDue() ? _turns->NextBytes() : 0;
+    bytes > 0 ? _schedule.Ready(_cards, bytes) : _schedule.NotReady(_cards);
+}
+
 Duration AirTraffic::ServeLimited()
 {
     const Duration linksDue = _links.Advance();
@@ -275,6 +288,7 @@ Duration AirTraffic::ServeLimited()
         LookAt(i, now);
     }
     LookAtTypes(now);
+    LookAtCards();
     _linkStreams.Look(_schedule.Budget().LargestDatagram(), now);
     while (const auto chosen = _schedule.Next(now))
     {
@@ -311,6 +325,10 @@ void AirTraffic::Send(StreamId id, Duration now)
     {
         _types.SendOne(_cost.BodyWithin(most, true), now);
     }
+    else if (id == _cards)
+    {
+        _turns->SendNext();
+    }
     else if (!_linkStreams.Send(id, most, now, sent))
     {
         publisher = static_cast<std::size_t>(
@@ -335,6 +353,10 @@ void AirTraffic::Send(StreamId id, Duration now)
     else if (id == _typeTexts)
     {
         LookAtTypes(now);
+    }
+    else if (id == _cards)
+    {
+        LookAtCards();
     }
     else if (sent)
     {

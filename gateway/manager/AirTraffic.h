@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <vector>
 
 #include "air/AirCost.h"
@@ -30,12 +31,13 @@ namespace Rabit
 //
 // - The limit is the lower one of `radio: budget` and the capacity estimated from the peers' reports of late
 //   datagrams (CapacityEstimate).
-// - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); the texts of
-//   types that are asked for (class bulk); each link; each
-//   published message. A datagram is made when its turn has come, from the newest data.
+// - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); the exchange of
+//   cards (class command), since nothing reaches a node before; the texts of types that are asked for (class
+//   bulk); each link; each published message. A datagram is made when its turn has come, from the newest
+//   data.
 // - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
 //   for, too, and a part of a budget is kept free for it when it is due.
-// - With a budget the exchange of cards may take half of it (TransportSession::SetDiscoveryRate).
+// - With a budget the exchange of keys may take half of it (DiscoveryTurns::SetKeyRate).
 // - Where the estimate is the only limit, a due beat does not wait.
 // - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, they take
 //   an eighth of the capacity estimate, within 500 ms and a second. Without an estimate, beats become more
@@ -51,8 +53,9 @@ public:
     AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
                std::deque<TopicPublisher> &publishers, TypeExchange &types);
 
-    // Call once all publishers exist. The session is kept until Close.
-    void Open(TransportSession &session);
+    // Call once all publishers exist. The session is kept until Close. `wakeUp`: called, on any thread, when
+    // Serve is to be called before the time that it returned.
+    void Open(TransportSession &session, std::function<void()> wakeUp);
     void Close() { _session = nullptr; }
 
     // Sends the due datagrams that may be sent now. Returns when to call again at the latest.
@@ -82,6 +85,7 @@ private:
     void LookAtBeat(Duration now);
     void LookAt(std::size_t publisher, Duration now);
     void LookAtTypes(Duration now);
+    void LookAtCards();
     void Send(StreamId id, Duration now);
     Duration Now() const { return _clock.Monotonic(); }
 
@@ -93,6 +97,7 @@ private:
     TypeExchange &_types;
     const AirCost _cost;
     TransportSession *_session = nullptr;
+    DiscoveryTurns *_turns = nullptr;  // of the session
 
     AirSchedule _schedule;
     CapacityEstimate _estimate;
@@ -100,6 +105,7 @@ private:
     UnscheduledShare _unscheduled;
     StreamId _beat;
     StreamId _typeTexts;
+    StreamId _cards;
     std::vector<StreamId> _publisherStreams;
     LinkStreams _linkStreams;
     AirReport _report;

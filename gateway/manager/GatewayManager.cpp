@@ -261,7 +261,7 @@ private:
             Attach(_publishers.back());
         }
         _foreign.Open(*_session, _manager, _openedAt);
-        _air.Open(*_session);
+        _air.Open(*_session, _manager.WakeUpHandler());
         _states.Open(_publishers);
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
         if (!_forwards)

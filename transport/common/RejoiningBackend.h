@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "common/DiscoveryRate.h"
 #include "common/PeerPlace.h"
 
 namespace Rabit
@@ -26,10 +25,10 @@ class RejoiningBackend
 public:
     virtual ~RejoiningBackend() = default;
     // Joins the network. In `settings`, Interfaces are addresses of this host, and empty only if
-    // FindsNetworks(); Peers are `address` or `address:port`. Discovery keeps to `rate`. Throws
+    // FindsNetworks(); Peers are `address` or `address:port`. Discovery waits for `turns`. Throws
     // TransportError.
     virtual std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                                 std::shared_ptr<DiscoveryRate> rate) = 0;
+                                                 std::shared_ptr<DiscoveryTurns> turns) = 0;
     // Throws TransportError if TransportSettings::BackendConfig cannot be read, or if the vendor refuses it,
     // as far as that can be told without joining the network.
     virtual void CheckConfig(const TransportSettings &settings) const = 0;

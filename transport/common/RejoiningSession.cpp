@@ -297,7 +297,7 @@ void RejoiningSession::OnPeer(const PeerEvent &event)
 void RejoiningSession::Open(const Current &current)
 {
     _shared->Inner = _backend->Open(
-        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _rate);
+        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _turns);
     _openedPeers = current.Settings.Peers;
     try
     {
@@ -365,8 +365,10 @@ void RejoiningSession::CloseAll()
     {
         for (int i = 0; i < count && _onPeer; ++i)
         {
-            _peerGate.Run([this, &identity = peer]
-                          { _onPeer({PeerEvent::Kind::Lost, identity.first, identity.second}); });
+            _peerGate.Run(
+                [this, &identity = peer] {
+                    _onPeer({PeerEvent::Kind::Lost, identity.first, identity.second});
+                });
         }
     }
 }

@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "common/AddressWatch.h"
-#include "common/DiscoveryRate.h"
 #include "common/DuplicateAddresses.h"
 #include "common/HandlerGate.h"
 #include "common/HostNetworks.h"
@@ -62,7 +61,7 @@ public:
     std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override;
     std::vector<std::string> RemoteTopics() const override;
     std::vector<SettingsProblem> NetworkProblems() const override;
-    void SetDiscoveryRate(double bytesPerSecond) override { *_rate = bytesPerSecond; }
+    DiscoveryTurns *Discovery() override { return _turns.get(); }
 
     // Starts a thread of the session that calls Look() whenever the kernel reports a change.
     void Watch();
@@ -94,7 +93,7 @@ private:
     const std::shared_ptr<RejoiningBackend> _backend;
     const Host _host;
     const std::shared_ptr<RejoiningShared> _shared;
-    const std::shared_ptr<DiscoveryRate> _rate = std::make_shared<DiscoveryRate>(0.0);
+    const std::shared_ptr<DiscoveryTurns> _turns = std::make_shared<DiscoveryTurns>();
     HandlerGate _peerGate;
     TransportCounters _before;  // of the backend's sessions before this one; guarded by Structure
     mutable std::mutex _mutex;

@@ -1,20 +1,13 @@
 #include "rtps/CardExchange.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 
 #include "rtps/PackedCard.h"
 
 namespace Rabit::Rtps
 {
-
-void CardExchange::SetRate(double bytesPerSecond)
-{
-    const bool isSet = bytesPerSecond > 0.0;
-    _rate = isSet ? std::min(bytesPerSecond, UsualRate) : UsualRate;
-    _burst = isSet ? std::min(_rate, UsualBurst) : UsualBurst;
-    _left = std::min(_left, _burst);
-}
 
 void CardExchange::SetOwn(std::vector<std::uint8_t> packed, TimePoint now)
 {
@@ -277,36 +270,66 @@ void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by
         }
         part.Asked = now;
         part.By = part.IsWanted && part.By != by ? std::nullopt : by;
-        part.Answers = part.IsWanted ? part.Answers : request;
-        part.IsWanted = true;
+        if (!std::exchange(part.IsWanted, true))
+        {
+            part.Answers = request;
+            part.NotBefore = std::max(part.NotBefore, now);
+        }
     }
+}
+
+namespace
+{
+
+std::optional<CardExchange::TimePoint> Earliest(
+    std::initializer_list<std::optional<CardExchange::TimePoint>> times)
+{
+    std::optional<CardExchange::TimePoint> earliest;
+    for (const auto &time : times)
+    {
+        earliest = time && (!earliest || *time < *earliest) ? time : earliest;
+    }
+    return earliest;
+}
+
+bool IsBy(const std::optional<CardExchange::TimePoint> &time, CardExchange::TimePoint now)
+{
+    return time && *time <= now;
+}
+
+}  // namespace
+
+std::optional<CardExchange::TimePoint> CardExchange::RequestDue() const
+{
+    std::optional<TimePoint> due;
+    for (const auto &[name, peer] : _peers)
+    {
+        due = Earliest({due, peer.Request.Due()});
+    }
+    return due;
+}
+
+std::optional<CardExchange::TimePoint> CardExchange::PartDue() const
+{
+    std::optional<TimePoint> due;
+    for (const OwnPart &part : _parts)
+    {
+        due = part.IsWanted ? Earliest({due, part.NotBefore}) : due;
+    }
+    return due;
 }
 
 std::optional<CardExchange::TimePoint> CardExchange::NextDue() const
 {
-    std::optional<TimePoint> due;
-    const auto consider = [&due](const std::optional<TimePoint> &time)
-    { due = time ? std::min(due.value_or(*time), *time) : due; };
-    for (const auto &[name, peer] : _peers)
-    {
-        consider(peer.Request.Due());
-    }
-    for (const OwnPart &part : _parts)
-    {
-        consider(part.IsWanted ? std::optional(part.NotBefore) : std::nullopt);
-    }
-    consider(_summary.Due());
-    consider(_greeting.Due());
-    consider(_nextPeriod);
-    return due;
+    return Earliest({RequestDue(), PartDue(), _summary.Due(), _greeting.Due(), _nextPeriod});
 }
 
 void CardExchange::Fill(TimePoint now)
 {
     if (now > _filledAt)
     {
-        const double filled = _left + _rate * std::chrono::duration<double>(now - _filledAt).count();
-        _left = std::min(filled, _burst);
+        const double filled = _left + Rate * std::chrono::duration<double>(now - _filledAt).count();
+        _left = std::min(filled, Burst);
         _filledAt = now;
     }
 }
@@ -315,8 +338,7 @@ CardExchange::TimePoint CardExchange::Free() const
 {
     return _left > 0.0
                ? TimePoint{}
-               : _filledAt +
-                     std::chrono::ceil<Duration>(std::chrono::duration<double>((1.0 - _left) / _rate));
+               : _filledAt + std::chrono::ceil<Duration>(std::chrono::duration<double>((1.0 - _left) / Rate));
 }
 
 std::optional<CardExchange::TimePoint> CardExchange::Due() const
@@ -361,42 +383,77 @@ bool CardExchange::IsCrowd() const
     return static_cast<std::size_t>(asked) >= Several;
 }
 
-void CardExchange::Go(Outgoing outgoing, std::vector<Outgoing> &taken)
+std::optional<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
 {
-    _left -= static_cast<double>(outgoing.Bytes.size() + IpAndUdp);
-    taken.push_back(std::move(outgoing));
-}
-
-std::vector<CardExchange::Outgoing> CardExchange::TakeDue(TimePoint now)
-{
-    std::vector<Outgoing> taken;
     Fill(now);
     if (_left <= 0.0 || _self == GuidPrefix{})
     {
-        return taken;
+        return std::nullopt;
     }
-    TakeRequests(now, taken);
-    TakeParts(now, taken);
-    const bool isPeriod = _nextPeriod && *_nextPeriod <= now;
-    if (_summary.IsDue(now) || _greeting.IsDue(now) || isPeriod)
+    std::optional<Outgoing> taken;
+    const bool isSummaryDue = IsSummaryDue(now);
+    if (IsPartNext(now))
     {
-        for (Backoff *const series : {&_summary, &_greeting})
+        taken = TakePart(now);
+    }
+    else if (IsBy(RequestDue(), now))
+    {
+        taken = TakeRequests(now);
+    }
+    else if (isSummaryDue)
+    {
+        taken = Outgoing{
+            .To = std::nullopt,
+            .Bytes = WriteCardMessage({.From = _self, .Summary = _own, .SentAt = QueueingDelay::Stamp(now)})};
+    }
+    if (taken)
+    {
+        if (isSummaryDue && !taken->To)  // each message has the summary
         {
-            if (series->IsDue(now))
-            {
-                series->Done(now, Delay(now));
-            }
+            SentSummary(now);
         }
-        _nextPeriod = now + _settings.Period;
-        if (taken.empty())  // each message has the summary
-        {
-            Go({.To = std::nullopt,
-                .Bytes =
-                    WriteCardMessage({.From = _self, .Summary = _own, .SentAt = QueueingDelay::Stamp(now)})},
-               taken);
-        }
+        _left -= static_cast<double>(taken->Bytes.size() + IpAndUdp);
     }
     return taken;
+}
+
+// True if a part is due, and has been for longer than any request. Where the holder allows little, there is
+// always a request that is due, and parts would never go.
+bool CardExchange::IsPartNext(TimePoint now) const
+{
+    const auto part = PartDue();
+    return IsBy(part, now) && *part <= RequestDue().value_or(now);
+}
+
+std::size_t CardExchange::DueBytes(TimePoint now) const
+{
+    if (!IsBy(Due(), now))
+    {
+        return 0;
+    }
+    const bool isPart = IsPartNext(now);
+    const auto requests = std::count_if(_peers.begin(), _peers.end(),
+                                        [now](const auto &peer) { return peer.second.Request.IsDue(now); });
+    return IpAndUdp +
+           CardMessageSize(isPart ? 0 : std::min(static_cast<std::size_t>(requests), MostCardRequests),
+                           isPart ? std::min(CardPartSize, _packed.size()) : 0);
+}
+
+bool CardExchange::IsSummaryDue(TimePoint now) const
+{
+    return _summary.IsDue(now) || _greeting.IsDue(now) || (_nextPeriod && *_nextPeriod <= now);
+}
+
+void CardExchange::SentSummary(TimePoint now)
+{
+    for (Backoff *const series : {&_summary, &_greeting})
+    {
+        if (series->IsDue(now))
+        {
+            series->Done(now, Delay(now));
+        }
+    }
+    _nextPeriod = now + _settings.Period;
 }
 
 // Peers whose requests have been due for longest. Empty if none is due; those due soon are included.
@@ -420,7 +477,7 @@ std::vector<std::pair<GuidPrefix, CardExchange::Peer *>> CardExchange::ToBeAsked
     return peers;
 }
 
-void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
+CardExchange::Outgoing CardExchange::TakeRequests(TimePoint now)
 {
     CardMessage message{.From = _self, .Summary = _own, .SentAt = QueueingDelay::Stamp(now)};
     const Duration answered = DelaysOfAnAnswer * Delay(now);
@@ -441,43 +498,37 @@ void CardExchange::TakeRequests(TimePoint now, std::vector<Outgoing> &taken)
             peer.Request.Stop();
         }
     }
-    if (!message.Requests.empty())
-    {
-        const bool isForOne = message.Requests.size() == 1;
-        Go({.To = isForOne ? Only(message.Requests.front().Of) : std::nullopt,
-            .Bytes = WriteCardMessage(message)},
-           taken);
-    }
+    const bool isForOne = message.Requests.size() == 1;
+    return {.To = isForOne ? Only(message.Requests.front().Of) : std::nullopt,
+            .Bytes = WriteCardMessage(message)};
 }
 
-void CardExchange::TakeParts(TimePoint now, std::vector<Outgoing> &taken)
+// Takes the part that has been due for longest.
+CardExchange::Outgoing CardExchange::TakePart(TimePoint now)
 {
-    for (std::size_t number = 0; number < _parts.size() && _left > 0.0; ++number)
-    {
-        OwnPart &part = _parts[number];
-        if (!part.IsWanted || part.NotBefore > now)
-        {
-            continue;
-        }
-        CardMessage message{.From = _self,
-                            .Summary = _own,
-                            .SentAt = QueueingDelay::Stamp(now),
-                            .HasPart = true,
-                            .Part = number,
-                            .Answers = part.Answers};
-        message.Answers.SentAt += message.SentAt;
-        message.Bytes = std::span(_packed).subspan(
-            number * CardPartSize, std::min(CardPartSize, _packed.size() - number * CardPartSize));
-        part.IsWanted = false;
-        part.SentAt = now;
-        part.SentTo = part.By ? Only(*part.By) : std::nullopt;
-        part.Answers = {};
-        part.NotBefore = now + part.Gap;
-        const double factor = part.By ? GapFactor : CrowdFactor;
-        part.Gap =
-            std::min<Duration>(std::chrono::duration_cast<Duration>(part.Gap * factor), LongestAnswerGap);
-        Go({.To = part.SentTo, .Bytes = WriteCardMessage(message)}, taken);
-    }
+    const auto longest =
+        std::min_element(_parts.begin(), _parts.end(),
+                         [](const OwnPart &a, const OwnPart &b)
+                         { return a.IsWanted != b.IsWanted ? a.IsWanted : a.NotBefore < b.NotBefore; });
+    const auto number = static_cast<std::size_t>(longest - _parts.begin());
+    OwnPart &part = *longest;
+    CardMessage message{.From = _self,
+                        .Summary = _own,
+                        .SentAt = QueueingDelay::Stamp(now),
+                        .HasPart = true,
+                        .Part = number,
+                        .Answers = part.Answers};
+    message.Answers.SentAt += message.SentAt;
+    message.Bytes = std::span(_packed).subspan(
+        number * CardPartSize, std::min(CardPartSize, _packed.size() - number * CardPartSize));
+    part.IsWanted = false;
+    part.SentAt = now;
+    part.SentTo = part.By ? Only(*part.By) : std::nullopt;
+    part.Answers = {};
+    part.NotBefore = now + part.Gap;
+    const double factor = part.By ? GapFactor : CrowdFactor;
+    part.Gap = std::min<Duration>(std::chrono::duration_cast<Duration>(part.Gap * factor), LongestAnswerGap);
+    return {.To = part.SentTo, .Bytes = WriteCardMessage(message)};
 }
 
 }  // namespace Rabit::Rtps

@@ -30,7 +30,7 @@ namespace Rabit::Rtps
 // - Each message says when it was sent, and each answer when the request was. While messages are late, the
 //   channel is full: requests and answers wait in queues, and neither is repeated before the one before can
 //   have come.
-// - All of it keeps to a rate.
+// - All of it keeps to a rate, whatever its holder allows.
 //
 // A pure state machine, not thread-safe.
 class CardExchange
@@ -75,8 +75,8 @@ public:
     static constexpr std::chrono::seconds Quiet{5};
     static constexpr std::size_t MostPeers = 1024;
     // Bytes per second, with the headers of IP and UDP, and the largest burst in bytes.
-    static constexpr double UsualRate = 20000.0;
-    static constexpr double UsualBurst = 6000.0;
+    static constexpr double Rate = 20000.0;
+    static constexpr double Burst = 6000.0;
     static constexpr std::size_t IpAndUdp = 28;
 
     struct Settings
@@ -90,8 +90,6 @@ public:
     explicit CardExchange(const Settings &settings) : _settings(settings) {}
 
     void SetSelf(const GuidPrefix &self) { _self = self; }
-    // Limits the bytes per second; 0: the usual rate.
-    void SetRate(double bytesPerSecond);
     // Sets the own card, packed (PackedCard.h).
     void SetOwn(std::vector<std::uint8_t> packed, TimePoint now);
 
@@ -116,7 +114,11 @@ public:
         std::optional<GuidPrefix> To;  // empty: all
         std::vector<std::uint8_t> Bytes;
     };
-    std::vector<Outgoing> TakeDue(TimePoint now);
+    // Takes one message that is due; empty: none is.
+    std::optional<Outgoing> TakeDue(TimePoint now);
+    // About how many bytes the next message that is due takes, with the headers of IP and UDP; 0: none is
+    // due.
+    std::size_t DueBytes(TimePoint now) const;
     std::size_t Size() const { return _peers.size(); }
 
 private:
@@ -140,7 +142,7 @@ private:
     {
         bool IsWanted = false;
         std::optional<GuidPrefix> By;  // the only node that requests it; empty: several do, or none
-        TimePoint NotBefore{};
+        TimePoint NotBefore{};         // if it is wanted, its turn counts from here
         std::optional<TimePoint> SentAt{};
         std::optional<GuidPrefix> SentTo;  // empty: to all
         AnsweredRequest Answers{};         // its SentAt counts from the request's arrival
@@ -159,15 +161,19 @@ private:
     void Want(std::uint64_t parts, const std::optional<GuidPrefix> &by, const AnsweredRequest &request,
               TimePoint askedAt, TimePoint now);
     std::optional<GuidPrefix> Only(const GuidPrefix &peer) const;
+    std::optional<TimePoint> RequestDue() const;
+    std::optional<TimePoint> PartDue() const;
     std::optional<TimePoint> NextDue() const;
     void Fill(TimePoint now);
     TimePoint Free() const;
     Duration Delay(TimePoint now) const;
     bool IsCrowd() const;  // several have not answered yet
     std::vector<std::pair<GuidPrefix, Peer *>> ToBeAsked(TimePoint now);
-    void Go(Outgoing outgoing, std::vector<Outgoing> &taken);
-    void TakeRequests(TimePoint now, std::vector<Outgoing> &taken);
-    void TakeParts(TimePoint now, std::vector<Outgoing> &taken);
+    bool IsPartNext(TimePoint now) const;
+    Outgoing TakeRequests(TimePoint now);
+    Outgoing TakePart(TimePoint now);
+    bool IsSummaryDue(TimePoint now) const;
+    void SentSummary(TimePoint now);
 
     const Settings _settings;
     GuidPrefix _self{};
@@ -179,9 +185,7 @@ private:
     std::optional<TimePoint> _nextPeriod;
     std::map<GuidPrefix, Peer> _peers;
     std::deque<TimePoint> _unknown;  // when participants that may have no card were asked first
-    double _rate = UsualRate;
-    double _burst = UsualBurst;
-    double _left = UsualBurst;
+    double _left = Burst;
     TimePoint _filledAt{};
 };
 

@@ -148,4 +148,10 @@ std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
     return bytes;
 }
 
+std::size_t CardMessageSize(std::size_t requests, std::size_t part)
+{
+    return RtpsHeaderSize + SubmessageHeaderSize + RequestsAt + requests * RequestSize +
+           (part > 0 ? AnswersSize + part : 0);
+}
+
 }  // namespace Rabit::Rtps

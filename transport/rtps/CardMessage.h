@@ -80,5 +80,7 @@ bool IsCardMessage(std::span<const std::uint8_t> datagram);
 // Empty if the bytes are not a sound message. `Bytes` refers to the datagram.
 std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagram);
 std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message);
+// Bytes of a message with so many requests and, if `part` is not 0, a part of that size, without padding.
+std::size_t CardMessageSize(std::size_t requests, std::size_t part);
 
 }  // namespace Rabit::Rtps

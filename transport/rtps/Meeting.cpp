@@ -177,32 +177,27 @@ void Meeting::Remember(std::deque<GuidPrefix> &peers, const GuidPrefix &peer)
     }
 }
 
-std::optional<Meeting::TimePoint> Meeting::Due() const
+std::optional<Meeting::TimePoint> Meeting::LocalDue() const
 {
-    std::optional<TimePoint> due;
-    for (const std::optional<TimePoint> &time : {_packAt, _exchange.Due(), _replay.Due()})
-    {
-        due = time ? std::min(due.value_or(*time), *time) : due;
-    }
-    return due;
+    const auto replay = _replay.Due();
+    return _packAt && replay ? std::min(_packAt, replay) : _packAt ? _packAt : replay;
 }
 
-Meeting::Work Meeting::TakeDue(TimePoint now)
+std::vector<Meeting::Local> Meeting::TakeLocal(TimePoint now)
 {
-    Work work;
     if (_packAt && *_packAt <= now)
     {
         _packAt.reset();
         _exchange.SetOwn(PackCard(_own.Message()), now);
     }
+    std::vector<Local> taken;
     for (CardReplay::Message &message : _replay.TakeDue(now, _own))
     {
         const auto place = _places.find(message.From);
-        work.ToImplementation.push_back({.From = place == _places.end() ? UnknownHost : place->second.From,
-                                         .Bytes = std::move(message.Bytes)});
+        taken.push_back({.From = place == _places.end() ? UnknownHost : place->second.From,
+                         .Bytes = std::move(message.Bytes)});
     }
-    work.ToNetwork = _exchange.TakeDue(now);
-    return work;
+    return taken;
 }
 
 std::vector<GuidPrefix> Meeting::Endable() const

@@ -76,20 +76,18 @@ public:
     // name from the network must then be ignored.
     bool IsReplayed(const GuidPrefix &peer) const { return _replay.Has(peer); }
 
-    void SetRate(double bytesPerSecond) { _exchange.SetRate(bytesPerSecond); }
-
-    std::optional<TimePoint> Due() const;
-    struct Work
+    // For the own implementation.
+    struct Local
     {
-        std::vector<CardExchange::Outgoing> ToNetwork;
-        struct Local
-        {
-            HostAddress From{};
-            std::vector<std::uint8_t> Bytes;
-        };
-        std::vector<Local> ToImplementation;
+        HostAddress From{};
+        std::vector<std::uint8_t> Bytes;
     };
-    Work TakeDue(TimePoint now);
+    std::optional<TimePoint> LocalDue() const;
+    std::vector<Local> TakeLocal(TimePoint now);
+    // For the network, one message at a time (CardExchange).
+    std::optional<TimePoint> NetworkDue() const { return _exchange.Due(); }
+    std::size_t NetworkBytes(TimePoint now) const { return _exchange.DueBytes(now); }
+    std::optional<CardExchange::Outgoing> TakeForNetwork(TimePoint now) { return _exchange.TakeDue(now); }
     // Participants to be ended once they are silent for EndAfter(): former sessions of nodes that have
     // another one, and all if there are more than MostSilent.
     std::vector<GuidPrefix> Endable() const;

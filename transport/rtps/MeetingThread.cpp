@@ -8,14 +8,20 @@
 namespace Rabit::Rtps
 {
 
-void MeetingThread::Start(Calls calls)
+void MeetingThread::Start(Calls calls, std::shared_ptr<DiscoveryTurns> turns)
 {
     _calls = std::move(calls);
+    _turns = std::move(turns);
     _thread = std::thread([this] { Run(); });
+    _turns->SetExchange(this);
 }
 
 void MeetingThread::Stop()
 {
+    if (_turns != nullptr)
+    {
+        _turns->SetExchange(nullptr);
+    }
     {
         const std::lock_guard lock(_mutex);
         _stop = true;
@@ -36,7 +42,7 @@ auto MeetingThread::With(const Work &work)
         MeetingThread &Self;
         ~Waker()
         {
-            const auto due = Self._meeting.Due();
+            const auto due = Self.Due();
             if (Self._waits && due && (!Self._waitsUntil || *due < *Self._waitsUntil))
             {
                 Self._changed.notify_one();
@@ -48,14 +54,9 @@ auto MeetingThread::With(const Work &work)
     return work(Clock::now());
 }
 
-bool MeetingThread::Sending(std::span<const std::uint8_t> datagram, double rate)
+bool MeetingThread::Sending(std::span<const std::uint8_t> datagram)
 {
-    return With(
-        [&](auto now)
-        {
-            _meeting.SetRate(rate);
-            return _meeting.Sending(datagram, now);
-        });
+    return With([&](auto now) { return _meeting.Sending(datagram, now); });
 }
 
 bool MeetingThread::Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt)
@@ -95,6 +96,44 @@ bool MeetingThread::IsReplayed(const GuidPrefix &peer) const
     return _meeting.IsReplayed(peer);
 }
 
+std::size_t MeetingThread::NextBytes()
+{
+    const std::lock_guard lock(_mutex);
+    const std::size_t bytes = _meeting.NetworkBytes(Clock::now());
+    if (bytes == 0)
+    {
+        _changed.notify_one();  // to wait for the next one
+    }
+    return bytes;
+}
+
+void MeetingThread::SendNext()
+{
+    std::optional<CardExchange::Outgoing> outgoing;
+    {
+        const std::lock_guard lock(_mutex);
+        outgoing = _meeting.TakeForNetwork(Clock::now());
+    }
+    if (outgoing)
+    {
+        _calls.Send(outgoing->To, outgoing->Bytes);
+    }
+}
+
+void MeetingThread::Scheduled()
+{
+    const std::lock_guard lock(_mutex);
+    _takesTurns = true;
+}
+
+// When the thread has work. Requires _mutex. What waits for its turn is none.
+std::optional<MeetingThread::Clock::time_point> MeetingThread::Due() const
+{
+    const auto local = _meeting.LocalDue();
+    const auto network = _takesTurns && _turns->IsDue() ? std::nullopt : _meeting.NetworkDue();
+    return local && network ? std::min(local, network) : local ? local : network;
+}
+
 void MeetingThread::Run()
 {
     auto lookAt = Clock::now();
@@ -111,7 +150,7 @@ void MeetingThread::Run()
             lock.lock();
             continue;
         }
-        _waitsUntil = _meeting.Due();
+        _waitsUntil = Due();
         if (anyEndable)
         {
             _waitsUntil = std::min(_waitsUntil.value_or(lookAt), lookAt);
@@ -123,15 +162,17 @@ void MeetingThread::Run()
             _waits = false;
             continue;
         }
-        Meeting::Work work = _meeting.TakeDue(now);
+        std::vector<Meeting::Local> messages = _meeting.TakeLocal(now);
+        const bool isForNetwork = _meeting.NetworkDue().value_or(Clock::time_point::max()) <= now;
+        const bool takesTurns = _takesTurns;
         lock.unlock();
-        for (Meeting::Work::Local &local : work.ToImplementation)
+        for (Meeting::Local &local : messages)
         {
             _calls.Deliver(local.From, local.Bytes);
         }
-        for (const CardExchange::Outgoing &outgoing : work.ToNetwork)
+        if (isForNetwork)
         {
-            _calls.Send(outgoing.To, outgoing.Bytes);
+            takesTurns ? _turns->Due() : SendNext();
         }
         lock.lock();
     }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <rabit/transport/DiscoveryTurns.h>
+
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -13,13 +16,14 @@
 namespace Rabit::Rtps
 {
 
-// Runs a Meeting on a thread of its own, which does due work. Thread-safe.
-class MeetingThread final : public PeerObserver
+// Runs a Meeting on a thread of its own, which does due work. What goes to the network waits for its turn
+// (DiscoveryTurns.h) where the session's holder gives turns. Thread-safe.
+class MeetingThread final : public PeerObserver, private DiscoveryTurns::Exchange
 {
 public:
     using Clock = std::chrono::steady_clock;
 
-    // Called on that thread, without a lock.
+    // Called on that thread, or in a turn on the holder's; without a lock of this object.
     struct Calls
     {
         // Sends to one participant, or to all if `to` is empty.
@@ -33,13 +37,12 @@ public:
     explicit MeetingThread(const Meeting::Settings &settings) : _meeting(settings) {}
     ~MeetingThread() override { Stop(); }
 
-    void Start(Calls calls);
+    void Start(Calls calls, std::shared_ptr<DiscoveryTurns> turns);
     // When this returns, no call is in progress and none will be made. A call must not stop the thread.
     void Stop();
 
-    // Forwarded to Meeting. Any thread; no call is made inside. `rate`: bytes per second that the exchange
-    // may take; 0: unlimited.
-    bool Sending(std::span<const std::uint8_t> datagram, double rate);
+    // Forwarded to Meeting. Any thread; no call is made inside.
+    bool Sending(std::span<const std::uint8_t> datagram);
     bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt);
     // The implementation has lost the participant.
     void Lost(const GuidPrefix &peer);
@@ -54,8 +57,14 @@ public:
 private:
     static constexpr std::chrono::seconds LookForSilent{1};
 
+    // DiscoveryTurns::Exchange
+    std::size_t NextBytes() override;
+    void SendNext() override;
+    void Scheduled() override;
+
     template <typename Work>
     auto With(const Work &work);
+    std::optional<Clock::time_point> Due() const;
     void Run();
     void EndSilent();
 
@@ -64,8 +73,10 @@ private:
     Meeting _meeting;                              // guarded by _mutex
     std::optional<Clock::time_point> _waitsUntil;  // guarded by _mutex
     bool _waits = false;                           // guarded by _mutex
+    bool _takesTurns = false;                      // guarded by _mutex
     bool _stop = false;                            // guarded by _mutex
     Calls _calls;
+    std::shared_ptr<DiscoveryTurns> _turns;
     std::thread _thread;
 };
 

@@ -133,7 +133,7 @@ class ScriptedBackend final : public RejoiningBackend
 public:
     explicit ScriptedBackend(Script &script) : _script(script) {}
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryRate> /*rate*/) override
+                                         std::shared_ptr<DiscoveryTurns> /*turns*/) override
     {
         EXPECT_FALSE(_script.IsOpen);
         if (_script.InOpen)

@@ -1,6 +1,7 @@
 // The datagrams and bytes that writing costs, and that they are counted.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -73,31 +74,59 @@ TEST_P(Conformance, WhatGoesToAllByMulticastCostsOnceAndIsCounted)
     ExpectCostOfWriting(true, 1);
 }
 
-TEST_P(Conformance, WithLittleToSayForDiscoverySessionsFindAllOfEachOther)
+TEST_P(Conformance, SessionsWhoseDiscoveryTakesTurnsFindAllOfEachOtherByThem)
 {
-    constexpr double Rate = 1000.0;
-    constexpr int Endpoints = 10;
+    constexpr std::size_t Endpoints = 10;
     const auto writing = Open("uav1");
     const auto reading = Open("ground");
-    writing->SetDiscoveryRate(Rate);
-    reading->SetDiscoveryRate(Rate);
+    std::atomic<int> due{0};
+    for (const auto *session : {&writing, &reading})
+    {
+        ASSERT_NE((*session)->Discovery(), nullptr);
+        (*session)->Discovery()->Schedule([&due] { ++due; });
+    }
     std::vector<std::unique_ptr<TransportWriter>> writers;
     std::vector<std::unique_ptr<TransportReader>> readers;
     SampleRecorder recorder;
-    for (int i = 0; i < Endpoints; ++i)
+    for (std::size_t i = 0; i < Endpoints; ++i)
     {
         const auto topic = TextTopic("Text" + std::to_string(i));
         writers.push_back(writing->CreateWriter(topic, Telemetry(), {}));
         readers.push_back(reading->CreateReader(topic, Telemetry(), {}, recorder.Handler()));
     }
+    EXPECT_TRUE(Until([&] { return writing->Discovery()->IsDue() && reading->Discovery()->IsDue(); }));
+    EXPECT_GE(due, 2);
+    EXPECT_EQ(writers.front()->MatchedReaders(), 0u) << "found without a turn";
     EXPECT_TRUE(Until(
         [&]
         {
+            for (const auto *session : {&writing, &reading})
+            {
+                DiscoveryTurns &turns = *(*session)->Discovery();
+                if (turns.IsDue() && turns.NextBytes() > 0)
+                {
+                    turns.SendNext();
+                }
+            }
             return std::all_of(writers.begin(), writers.end(),
                                [](const auto &writer) { return writer->MatchedReaders() == 1; }) &&
                    std::all_of(readers.begin(), readers.end(),
                                [](const auto &reader) { return reader->MatchedWriters() == 1; });
         }));
+}
+
+TEST_P(Conformance, ATurnOfDiscoveryTakesAboutTheBytesThatItSaid)
+{
+    const auto writing = Open("uav1");
+    DiscoveryTurns &turns = *writing->Discovery();
+    turns.Schedule([] {});
+    const auto writer = writing->CreateWriter(TextTopic(), Telemetry(), {});
+    ASSERT_TRUE(Until([&] { return turns.IsDue() && turns.NextBytes() > 0; }));
+    const std::size_t said = turns.NextBytes();
+    const std::uint64_t before = writing->Counters().DiscoveryBytes;
+    turns.SendNext();
+    const std::uint64_t sent = writing->Counters().DiscoveryBytes - before;
+    EXPECT_GE(sent, said / 2);
 }
 
 void Conformance::ExpectThatOneNodeCanBeWrittenTo(bool multicast)

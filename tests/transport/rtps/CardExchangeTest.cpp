@@ -42,9 +42,9 @@ protected:
         std::vector<CardExchange::Outgoing> all;
         for (const auto end = Now + time; Now < end; Now += 1ms)
         {
-            for (CardExchange::Outgoing &outgoing : Exchange.TakeDue(Now))
+            while (auto outgoing = Exchange.TakeDue(Now))
             {
-                all.push_back(std::move(outgoing));
+                all.push_back(std::move(*outgoing));
             }
         }
         return all;
@@ -293,8 +293,8 @@ TEST_F(Exchanging, ANewcomerWhoseCardIsCompleteHearsOfANodeThatWasSilent)
         {.From = Name(2), .Summary = SummaryOf(card), .HasPart = true, .Part = 0, .Bytes = card}, Now));
     ASSERT_LE(Exchange.Due(), Now + CardExchange::FirstSummary);
     const auto greeting = Exchange.TakeDue(Now + CardExchange::FirstSummary);
-    ASSERT_EQ(greeting.size(), 1u);
-    EXPECT_FALSE(greeting[0].To.has_value());
+    ASSERT_TRUE(greeting);
+    EXPECT_FALSE(greeting->To.has_value());
 }
 
 }  // namespace

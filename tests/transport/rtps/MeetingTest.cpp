@@ -190,20 +190,23 @@ private:
             {
                 Send(*node, RtpsBytes::Header(node->Self));
             }
-            while (node->Meet && node->Meet->Due() && *node->Meet->Due() <= Now)
+            while (node->Meet && IsDue(node->Meet->LocalDue()))
             {
-                auto work = node->Meet->TakeDue(Now);
-                for (const auto &local : work.ToImplementation)
+                for (const auto &local : node->Meet->TakeLocal(Now))
                 {
                     node->Dds->Receive(local.Bytes);
                 }
-                for (const auto &outgoing : work.ToNetwork)
+            }
+            while (node->Meet && IsDue(node->Meet->NetworkDue()))
+            {
+                if (const auto outgoing = node->Meet->TakeForNetwork(Now))
                 {
-                    Send(*node, outgoing.Bytes);
+                    Send(*node, outgoing->Bytes);
                 }
             }
         }
     }
+    bool IsDue(const std::optional<TimePoint> &time) const { return time && *time <= Now; }
     static void Arrive(Node &node, const Bytes &datagram, const HostAddress &from, TimePoint now)
     {
         if (!node.Meet)

@@ -25,8 +25,9 @@ using namespace Cyclone;
 class CycloneSession final : public BackendSession
 {
 public:
-    CycloneSession(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate)
-        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer), std::move(rate)))
+    CycloneSession(const TransportSettings &settings, PeerHandler onPeer,
+                   std::shared_ptr<DiscoveryTurns> turns)
+        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer), std::move(turns)))
     {
     }
     ~CycloneSession() override { _core->Close(); }
@@ -60,9 +61,9 @@ class CycloneBackend final : public RejoiningBackend
 {
 public:
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryRate> rate) override
+                                         std::shared_ptr<DiscoveryTurns> turns) override
     {
-        return std::make_unique<CycloneSession>(settings, std::move(onPeer), std::move(rate));
+        return std::make_unique<CycloneSession>(settings, std::move(onPeer), std::move(turns));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {
@@ -95,7 +96,7 @@ private:
         settings.Interfaces = {network->Address};
         settings.Peers.clear();
         const VendorDomain domain(settings, std::make_shared<SessionLog>(settings),
-                                  std::make_shared<DiscoveryRate>(0.0));
+                                  std::make_shared<DiscoveryTurns>());
     }
 };
 

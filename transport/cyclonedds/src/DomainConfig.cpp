@@ -148,10 +148,7 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         << "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
         << "<Watermarks><WhcHigh>128MB</WhcHigh></Watermarks></Internal>"
         // The vendor fills a receive buffer from end to end and then takes another, of a megabyte by default.
-        // Small objects on the heap keep each freed buffer from being reused whole, so small buffers keep the
-        // process small. A chunk holds the largest datagram.
-        << "<Sizing><ReceiveBufferSize>96KiB</ReceiveBufferSize>"
-        << "<ReceiveBufferChunkSize>72KiB</ReceiveBufferChunkSize></Sizing></Domain>";
+        << "<Sizing><ReceiveBufferSize>256KiB</ReceiveBufferSize></Sizing></Domain>";
     if (!settings.BackendConfig.empty())
     {
         xml << "," << Read(settings.BackendConfig);

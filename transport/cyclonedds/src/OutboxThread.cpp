@@ -6,8 +6,8 @@
 namespace Rabit::Cyclone
 {
 
-OutboxThread::OutboxThread(std::shared_ptr<DiscoveryRate> rate, Send send)
-    : _rate(std::move(rate)), _send(std::move(send)), _thread([this] { Run(); })
+OutboxThread::OutboxThread(std::shared_ptr<DiscoveryTurns> turns, Send send)
+    : _turns(std::move(turns)), _send(std::move(send)), _thread([this] { Run(); })
 {
 }
 
@@ -39,7 +39,7 @@ bool OutboxThread::PutExchange(std::span<const std::uint8_t> datagram, const Key
             return false;
         }
         _self = what.From;
-        _exchanges.SetRate(*_rate);
+        _exchanges.SetRate(_turns->KeyRate());
         if (!_exchanges.Put(datagram, what, NumberOf(route), Clock::now()))
         {
             return false;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/transport/DiscoveryTurns.h>
+
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "VendorTraffic.h"
-#include "common/DiscoveryRate.h"
 #include "common/KeyExchangeOutbox.h"
 
 namespace Rabit::Cyclone
@@ -23,7 +24,7 @@ public:
     // Called on the thread. `route` is one that was passed to PutExchange.
     using Send = std::function<void(const RabitCycloneRoute &route, std::span<const std::uint8_t> datagram)>;
 
-    OutboxThread(std::shared_ptr<DiscoveryRate> rate, Send send);
+    OutboxThread(std::shared_ptr<DiscoveryTurns> turns, Send send);
     ~OutboxThread();
     OutboxThread(const OutboxThread &) = delete;
     OutboxThread &operator=(const OutboxThread &) = delete;
@@ -47,7 +48,7 @@ private:
     void SendExchanges(std::unique_lock<std::mutex> &lock);
     void Run();
 
-    const std::shared_ptr<DiscoveryRate> _rate;
+    const std::shared_ptr<DiscoveryTurns> _turns;
     const Send _send;
     std::mutex _mutex;
     std::condition_variable _changed;

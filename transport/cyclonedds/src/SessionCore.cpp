@@ -147,13 +147,13 @@ RemoteEndpoint Described(const dds_builtintopic_endpoint_t &announced, const Wri
 }  // namespace
 
 SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<DiscoveryRate> rate)
+                         std::shared_ptr<DiscoveryTurns> turns)
     : _log(std::make_shared<SessionLog>(Checked(settings))),
       _topics(_log),
       _peerGate(_log, "peer events"),
       _onPeer(std::move(onPeer)),
       _proof(settings, _log),
-      _domain(settings, _log, std::move(rate)),
+      _domain(settings, _log, std::move(turns)),
       _announcements(AnswerGap(settings), _domain.HasCard()),
       _participant(MakeParticipant(settings, _domain.Id(), _domain.HasCard()))
 {

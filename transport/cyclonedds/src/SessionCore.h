@@ -15,7 +15,6 @@
 #include "Guid.h"
 #include "VendorDomain.h"
 #include "Worker.h"
-#include "common/DiscoveryRate.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -34,7 +33,7 @@ class SessionCore
 {
 public:
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryTurns> turns);
     // Leaves the network.
     ~SessionCore();
     SessionCore(const SessionCore &) = delete;

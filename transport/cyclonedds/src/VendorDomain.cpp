@@ -1,5 +1,7 @@
 #include "VendorDomain.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -66,6 +68,16 @@ private:
 bool IsOfSamplesSent(std::span<const std::uint8_t> head)
 {
     return SendingSamples::Now() || IsOfSamples(head);
+}
+
+// Keeps the vendor's receive buffers out of the heap. Each of them would leave a hole there that small
+// objects break up, and the process would grow with each peer that starts. glibc maps large blocks as pages
+// of their own only until one of them is freed, then it moves the bound up; a bound that is set stays
+// (mallopt(3)).
+void KeepLargeBlocksOffTheHeap()
+{
+    constexpr int largest = 128 * 1024;  // glibc's bound at the start
+    ::mallopt(M_MMAP_THRESHOLD, largest);
 }
 
 bool IsGroup(const DirectAnnouncements::Address &address)
@@ -200,7 +212,7 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     {
         LeaveOutIdleEndpoints({datagram, size});
     }
-    if (domain._meets && domain._meeting.Sending({datagram, size}, *domain._rate))
+    if (domain._meets && domain._meeting.Sending({datagram, size}))
     {
         domain.NoteRoute({datagram, size}, *route);
         return false;
@@ -351,7 +363,7 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
 }
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                           std::shared_ptr<DiscoveryRate> rate)
+                           std::shared_ptr<DiscoveryTurns> turns)
     : _log(log),
       _multicast(IsMulticastForData(settings)),
       _secured(settings.Security.has_value()),
@@ -361,8 +373,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                 .IsMulticast = _multicast}),
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
-      _rate(rate),
-      _outbox(std::move(rate), [this](const auto &route, auto datagram)
+      _turns(turns),
+      _outbox(std::move(turns), [this](const auto &route, auto datagram)
               { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); })
 {
     _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
@@ -370,6 +382,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     {
         _guard.SetObserver(_meeting);
     }
+    KeepLargeBlocksOffTheHeap();
     const std::string config = MakeDomainConfig(settings);
     _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
     if (settings.Security && _id != static_cast<dds_domainid_t>(settings.Domain))
@@ -422,7 +435,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     {
         _meeting.Start({.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
                         .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
-                        .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
+                        .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }},
+                       _turns);
     }
     if (_watch == nullptr)
     {

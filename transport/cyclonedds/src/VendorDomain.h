@@ -14,7 +14,6 @@
 #include "Entity.h"
 #include "HandshakeEnds.h"
 #include "OutboxThread.h"
-#include "common/DiscoveryRate.h"
 #include "common/HardwareAddresses.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsGuard.h"
@@ -30,7 +29,7 @@ public:
     // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards and
     // of keys stays within `rate`.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                 std::shared_ptr<DiscoveryRate> rate);
+                 std::shared_ptr<DiscoveryTurns> turns);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
@@ -93,7 +92,7 @@ private:
     HandshakeEnds _handshakes;
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;
-    const std::shared_ptr<DiscoveryRate> _rate;
+    const std::shared_ptr<DiscoveryTurns> _turns;
     OutboxThread _outbox;
     Entity _entity;
 };

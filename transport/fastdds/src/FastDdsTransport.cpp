@@ -20,8 +20,9 @@ namespace
 class FastDdsSession final : public BackendSession
 {
 public:
-    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate)
-        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(rate)))
+    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer,
+                   std::shared_ptr<DiscoveryTurns> turns)
+        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(turns)))
     {
     }
     ~FastDdsSession() override { _core->Close(); }
@@ -58,9 +59,9 @@ class FastDdsBackend final : public RejoiningBackend
 {
 public:
     std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryRate> rate) override
+                                         std::shared_ptr<DiscoveryTurns> turns) override
     {
-        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(rate));
+        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(turns));
     }
     void CheckConfig(const TransportSettings &settings) const override
     {

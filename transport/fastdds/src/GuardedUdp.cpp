@@ -89,7 +89,8 @@ public:
             meeting->Start(
                 {.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
                  .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
-                 .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
+                 .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }},
+                _descriptor.Chosen().Turns);
         }
     }
     ~GuardedUdp() override
@@ -132,8 +133,7 @@ public:
             WriteWithoutProperties(datagram, _shortened);
             datagram = _shortened;
         }
-        if (Meeting() != nullptr && !message.HasSamples &&
-            Meeting()->Sending(datagram, *_descriptor.Chosen().Rate))
+        if (Meeting() != nullptr && !message.HasSamples && Meeting()->Sending(datagram))
         {
             NoteRoute(sender, datagram, *begin, *end);
             return true;
@@ -389,7 +389,7 @@ private:
     {
         const auto now = std::chrono::steady_clock::now();
         const std::uint32_t socket = NumberOf(sender);
-        _exchanges.SetRate(*_descriptor.Chosen().Rate);
+        _exchanges.SetRate(_descriptor.Chosen().Turns->KeyRate());
         _self = what.From;
         for (; begin != end; ++begin)
         {

@@ -20,7 +20,6 @@
 #include <optional>
 
 #include "DeferredCall.h"
-#include "common/DiscoveryRate.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
 
@@ -65,7 +64,7 @@ public:
         std::optional<eprosima::fastrtps::rtps::Locator_t> SampleGroup;
         // Peers are listed; they may not hear the group.
         bool HasPeers = false;
-        std::shared_ptr<DiscoveryRate> Rate;
+        std::shared_ptr<DiscoveryTurns> Turns;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

@@ -161,7 +161,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.IsInGroup = std::move(calls.IsInGroup);
     guarded.SendOwedAt = std::move(calls.SendOwedAt);
     guarded.Owed = std::move(calls.Owed);
-    guarded.Rate = std::move(calls.Rate);
+    guarded.Turns = std::move(calls.Turns);
     guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? std::move(calls.Meeting) : nullptr;
     guarded.HasPeers = !settings.Peers.empty();
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;

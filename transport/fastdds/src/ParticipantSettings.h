@@ -10,7 +10,6 @@
 #include <string>
 
 #include "DeferredCall.h"
-#include "common/DiscoveryRate.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsMessage.h"
 #include "rtps/MeetingThread.h"
@@ -30,7 +29,7 @@ struct NetworkCalls
     // Has Owed run at that time.
     std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
     std::shared_ptr<DeferredCall> Owed;
-    std::shared_ptr<DiscoveryRate> Rate;
+    std::shared_ptr<DiscoveryTurns> Turns;
     std::shared_ptr<Rtps::MeetingThread> Meeting;
 };
 

@@ -78,7 +78,7 @@ RemoteEndpoint Described(const Proxy &proxy, const std::string &node)
 }  // namespace
 
 SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<DiscoveryRate> rate)
+                         std::shared_ptr<DiscoveryTurns> turns)
     : _log(std::make_shared<SessionLog>(settings)),
       _topics(_log),
       _peerGate(_log, "peer events"),
@@ -98,7 +98,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
          .IsInGroup = [this](const auto &prefix) { return IsInGroup(ToVendorPrefix(prefix)); },
          .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
          .Owed = _owed,
-         .Rate = std::move(rate),
+         .Turns = std::move(turns),
          .Meeting = _meeting});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();

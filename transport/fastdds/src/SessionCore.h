@@ -17,7 +17,6 @@
 #include "DeferredCall.h"
 #include "ParticipantNumber.h"
 #include "ParticipantTimer.h"
-#include "common/DiscoveryRate.h"
 #include "common/HandlerGate.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
@@ -38,7 +37,7 @@ public:
     using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
     // Joins the network. Throws TransportError.
-    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryRate> rate);
+    SessionCore(const TransportSettings &settings, PeerHandler onPeer, std::shared_ptr<DiscoveryTurns> turns);
     // Leaves the network.
     ~SessionCore() override;
     SessionCore(const SessionCore &) = delete;

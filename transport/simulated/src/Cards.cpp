@@ -31,25 +31,66 @@ void NetworkCore::AwaitCards(ParticipantState &me)
 void NetworkCore::ServeCards(const ParticipantPtr &me)
 {
     me->CardsAt.reset();
-    for (Rtps::CardExchange::Outgoing &outgoing : me->Cards.TakeDue(CardTime()))
+    if (me->TakesTurns)
     {
-        Datagram datagram;
-        datagram.What = Datagram::Kind::Card;
-        datagram.Card = std::make_shared<const std::vector<std::uint8_t>>(std::move(outgoing.Bytes));
-        datagram.Endpoints = me->Endpoints;
-        datagram.Sender = me;
-        Letters letters;
-        for (const auto &[id, other] : _participants)
-        {
-            const bool isFor = outgoing.To ? id == ParticipantOf(*outgoing.To) : other != me;
-            if (isFor && other->Settings.Domain == me->Settings.Domain)
-            {
-                letters.push_back({id, datagram, _timings.DiscoveryDelay});
-            }
-        }
-        SendTogether(*me, std::move(letters), !outgoing.To && me->Settings.Multicast);
+        _calls.emplace_back([me] { me->Turns.Due(); });
+        return;
+    }
+    while (SendCard(me))
+    {
     }
     AwaitCards(*me);
+}
+
+bool NetworkCore::SendCard(const ParticipantPtr &me)
+{
+    auto outgoing = me->Cards.TakeDue(CardTime());
+    if (!outgoing)
+    {
+        return false;
+    }
+    Datagram datagram;
+    datagram.What = Datagram::Kind::Card;
+    datagram.Card = std::make_shared<const std::vector<std::uint8_t>>(std::move(outgoing->Bytes));
+    datagram.Endpoints = me->Endpoints;
+    datagram.Sender = me;
+    Letters letters;
+    for (const auto &[id, other] : _participants)
+    {
+        const bool isFor = outgoing->To ? id == ParticipantOf(*outgoing->To) : other != me;
+        if (isFor && other->Settings.Domain == me->Settings.Domain)
+        {
+            letters.push_back({id, datagram, _timings.DiscoveryDelay});
+        }
+    }
+    SendTogether(*me, std::move(letters), !outgoing->To && me->Settings.Multicast);
+    return true;
+}
+
+std::size_t NetworkCore::NextCardBytes(ParticipantState &participant)
+{
+    const std::lock_guard lock(_mutex);
+    const std::size_t bytes = participant.Cards.DueBytes(CardTime());
+    if (bytes == 0)
+    {
+        AwaitCards(participant);
+    }
+    return bytes;
+}
+
+void NetworkCore::SendNextCard(const ParticipantPtr &participant)
+{
+    const std::lock_guard lock(_mutex);
+    if (!participant->Gone)
+    {
+        SendCard(participant);
+    }
+}
+
+void NetworkCore::TakeTurns(ParticipantState &participant)
+{
+    const std::lock_guard lock(_mutex);
+    participant.TakesTurns = true;
 }
 
 void NetworkCore::HearCard(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)
@@ -76,12 +117,6 @@ void NetworkCore::HearUnknown(ParticipantState &me, ParticipantId from, const Da
         me.Cards.Heard(PrefixOf(from), CardTime());
         AwaitCards(me);
     }
-}
-
-void NetworkCore::SetCardRate(ParticipantState &participant, double bytesPerSecond)
-{
-    const std::lock_guard lock(_mutex);
-    participant.Cards.SetRate(bytesPerSecond);
 }
 
 }  // namespace Rabit::Simulated

@@ -67,7 +67,10 @@ public:
     std::size_t BytesOfPart(const ParticipantState &participant, const WriterState &writer,
                             const Sample &sample) const;
     int MatchedReaders(const WriterState &writer) const;
-    void SetCardRate(ParticipantState &participant, double bytesPerSecond);
+    // DiscoveryTurns::Exchange of that participant.
+    std::size_t NextCardBytes(ParticipantState &participant);
+    void SendNextCard(const ParticipantPtr &participant);
+    void TakeTurns(ParticipantState &participant);
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
     std::optional<Time> LastArrival(const std::string &from, const std::string &to,
@@ -139,6 +142,8 @@ private:
     Rtps::CardExchange::TimePoint CardTime() const;
     void AwaitCards(ParticipantState &me);
     void ServeCards(const ParticipantPtr &me);
+    // Sends one message of the exchange of cards. Returns false if none is due.
+    bool SendCard(const ParticipantPtr &me);
     void HearCard(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
     void HearUnknown(ParticipantState &me, ParticipantId from, const Datagram &datagram);
 

@@ -9,7 +9,7 @@
 namespace Rabit::Simulated
 {
 
-class SimulatedSession final : public TransportSession
+class SimulatedSession final : public TransportSession, private DiscoveryTurns::Exchange
 {
 public:
     SimulatedSession(std::shared_ptr<NetworkCore> core, const TransportSettings &settings,
@@ -22,10 +22,7 @@ public:
                                                   const std::vector<std::string> &partitions,
                                                   SampleHandler handler) override;
     TransportCounters Counters() const override;
-    void SetDiscoveryRate(double bytesPerSecond) override
-    {
-        _core->SetCardRate(*_participant, bytesPerSecond);
-    }
+    DiscoveryTurns *Discovery() override { return &_participant->Turns; }
     std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
     {
         return _participant->Topics.RemoteOn(topic);
@@ -33,6 +30,10 @@ public:
     std::vector<std::string> RemoteTopics() const override { return _participant->Topics.RemoteTopics(); }
 
 private:
+    std::size_t NextBytes() override { return _core->NextCardBytes(*_participant); }
+    void SendNext() override { _core->SendNextCard(_participant); }
+    void Scheduled() override { _core->TakeTurns(*_participant); }
+
     const std::shared_ptr<NetworkCore> _core;
     const ParticipantPtr _participant;
 };

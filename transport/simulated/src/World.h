@@ -151,6 +151,7 @@ struct ReaderState
     std::map<EndpointId, WriterProxy> Writers;
 
     // Not guarded by the network's mutex.
+    DiscoveryTurns Turns;
     const SampleHandler Handler;
     HandlerGate Gate;
     InstanceTable Instances;  // under the gate
@@ -195,10 +196,12 @@ struct ParticipantState
     int Announced = 0;  // times
 
     Rtps::CardExchange Cards;
+    bool TakesTurns = false;                          // cards go by Turns
     std::optional<std::chrono::nanoseconds> CardsAt;  // when the card timer is due
     std::uint64_t CardTimer = 0;                      // number of the timer that is valid
 
     // Not guarded by the network's mutex.
+    DiscoveryTurns Turns;
     const std::shared_ptr<SessionLog> Log;
     TopicRegistry Topics;
     const PeerHandler OnPeer;

@@ -39,7 +39,9 @@
 //   operation are return values. Nothing that arrives from the network throws or ends the process.
 #pragma once
 
+#include <rabit/transport/DiscoveryTurns.h>
 #include <array>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -399,10 +401,9 @@ public:
     // could not be joined. None is Impossible, and none is logged: the holder of the session reports them.
     // Empty if all is well.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
-    // Limits the nodes' exchange of cards to this many bytes per second, as counted by TransportCounters; 0,
-    // the initial value: unlimited. Announcements of participants are not held back. Any thread; does not
-    // wait.
-    virtual void SetDiscoveryRate(double /*bytesPerSecond*/) {}
+    // Lets the holder decide when discovery sends. Null: this session does not wait for turns. Lives as long
+    // as the session. Any thread.
+    virtual DiscoveryTurns *Discovery() { return nullptr; }
 };
 
 // A backend.

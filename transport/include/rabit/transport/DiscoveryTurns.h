@@ -1,0 +1,112 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <utility>
+
+namespace Rabit
+{
+
+// Lets the holder of a session decide when the session's exchange of cards sends: the exchange waits for its
+// turn, as everything else that the holder sends. Until Schedule is called, the exchange sends by itself.
+//
+//     DiscoveryTurns *turns = session.Discovery();
+//     turns->Schedule([] { wake the sending thread });
+//     ... on the sending thread:
+//     while (turns->IsDue() && turns->NextBytes() > 0) { turns->SendNext(); }
+//
+// Announcements of participants, and the endpoint discovery of peers without cards, take no turns. A rate
+// limits the exchange of keys, which takes no turns either.
+//
+// Thread-safe.
+class DiscoveryTurns
+{
+public:
+    // An exchange of a session. Its functions are called one at a time, on the thread that calls NextBytes
+    // and SendNext.
+    class Exchange
+    {
+    public:
+        // About how many bytes the next datagram takes, with the headers of IP and UDP, for each destination;
+        // 0: none is due.
+        virtual std::size_t NextBytes() = 0;
+        // Sends one datagram, if one is due.
+        virtual void SendNext() = 0;
+        // From now on, SendNext alone sends.
+        virtual void Scheduled() = 0;
+
+    protected:
+        ~Exchange() = default;
+    };
+
+    // The holder's side.
+
+    // From now on, the exchange sends in SendNext alone. `onDue` is called, on any thread and without locks,
+    // each time that IsDue becomes true. It must not call this object. Call once, before threads share it.
+    void Schedule(std::function<void()> onDue)
+    {
+        const std::lock_guard lock(_mutex);
+        _onDue = std::move(onDue);
+        _isScheduled = true;
+        if (_exchange != nullptr)
+        {
+            _exchange->Scheduled();
+        }
+    }
+    // True if NextBytes may be more than 0. Costs one load.
+    bool IsDue() const { return _isDue; }
+    // Exchange::NextBytes. 0 makes IsDue false until the next call of `onDue`.
+    std::size_t NextBytes()
+    {
+        const std::lock_guard lock(_mutex);
+        _isDue = false;
+        const std::size_t bytes = _exchange != nullptr ? _exchange->NextBytes() : 0;
+        _isDue = _isDue || bytes > 0;
+        return bytes;
+    }
+    void SendNext()
+    {
+        const std::lock_guard lock(_mutex);
+        if (_exchange != nullptr)
+        {
+            _exchange->SendNext();
+        }
+    }
+    // Limits the exchange of keys to this many bytes per second; 0, the initial value: unlimited.
+    void SetKeyRate(double bytesPerSecond) { _keyRate = bytesPerSecond; }
+
+    // The session's side.
+
+    // The exchange that takes turns; null: none any more. When this returns, no call of an earlier one is in
+    // progress.
+    void SetExchange(Exchange *exchange)
+    {
+        const std::lock_guard lock(_mutex);
+        _exchange = exchange;
+        if (_exchange != nullptr && _isScheduled)
+        {
+            _exchange->Scheduled();
+        }
+    }
+    // A datagram is due. Call without locks that the exchange's functions take.
+    void Due()
+    {
+        if (!_isDue.exchange(true))
+        {
+            _onDue();
+        }
+    }
+    double KeyRate() const { return _keyRate; }
+
+private:
+    std::mutex _mutex;
+    Exchange *_exchange = nullptr;  // guarded by _mutex, which is held while its functions run
+    bool _isScheduled = false;      // guarded by _mutex
+    std::function<void()> _onDue;   // set before Exchange::Scheduled is called, and not changed afterwards
+    std::atomic<bool> _isDue{false};
+    std::atomic<double> _keyRate{0.0};
+};
+
+}  // namespace Rabit
