@@ -77,7 +77,9 @@ void AirTraffic::Open(TransportSession &session, std::function<void()> wakeUp)
         _publisherStreams.push_back(
             _schedule.AddStream(ImportanceOf(publisher.Rule()), publisher.Rule().Weight));
     }
-    SetLimit(Now());
+    // What is counted from now on was sent from now on.
+    _watchedAt = Now();
+    SetLimit(_watchedAt);
 }
 
 Duration AirTraffic::Serve(Duration now)

@@ -124,6 +124,17 @@ TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetHoweverMuchIsOffered)
     EXPECT_EQ(ground.StateOf("uav1"), "UP");
 }
 
+TEST_F(AirTrafficTest, RoomForAnAnnouncementOfDdsIsNotKeptBeforeItIsDue)
+{
+    constexpr double budget = 1500;
+    fleet.Add(GroundConfig()).AddIdleManager("Commands");
+    AddAircraft(WithBudget(AircraftConfig("uav1"), budget));
+    Fly(3s, 5ms, 1s);  // the nodes meet, and DDS announces them; the next announcement is due after 30 s
+    Spending spending;
+    Fly(10s, 5ms, 1s, [&](Duration) { spending.Add(Bytes("uav1")); });
+    EXPECT_GE(spending.PerSecond(), 0.8 * budget);
+}
+
 // Samples to a node also go to the session of its earlier incarnation until the lease of that runs out.
 TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenANodeHasCrashedAndCameBack)
 {
