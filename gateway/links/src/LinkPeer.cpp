@@ -175,12 +175,18 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
 
 void LinkPeer::Measure(const LinkFrame &frame, LinkTime now)
 {
-    const LinkTime roundTrip = now - LinkTime(frame.Echo.Time) - LinkTime(frame.Echo.HeldFor);
+    const LinkTime sentAt(frame.Echo.Time);
+    if (frame.Echo.Clock == _context.Clock && sentAt >= _askedSince && sentAt <= _askedAt)
+    {
+        _path.Answered(now - sentAt);
+        _askedSince = LinkNever;
+    }
+    const LinkTime roundTrip = now - sentAt - LinkTime(frame.Echo.HeldFor);
     // An echo that was held for long tells more about the two clocks than about the path.
-    if (frame.Echo.Clock == _context.Clock && frame.Echo.Time <= now.count() && roundTrip >= LinkTime(0) &&
+    if (frame.Echo.Clock == _context.Clock && sentAt <= now && roundTrip >= LinkTime(0) &&
         frame.Echo.HeldFor <= LinkTime(std::chrono::seconds(1)).count())
     {
-        _path.Measured(roundTrip, LinkTime(frame.Echo.Time), now);
+        _path.Measured(roundTrip, sentAt, now);
     }
 }
 

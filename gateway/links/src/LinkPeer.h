@@ -131,7 +131,10 @@ private:
     LinkTime _heardAt;      // when a frame of its present incarnation came last; at first, when this object
                             // was made
     LinkTime _unansweredSince = LinkNever;  // since when a sent frame waits for an answer
-    bool _silent = false;                   // for SilentAfter
+    // The first and the newest frame that wait for an answer, as precise as their echoes.
+    LinkTime _askedSince = LinkNever;
+    LinkTime _askedAt{0};
+    bool _silent = false;  // for SilentAfter
     LinkTime _helloAt = LinkNever;
     LinkTime _helloGap;  // least time to the next hello; doubles until a frame of both present incarnations
                          // comes

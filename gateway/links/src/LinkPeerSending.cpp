@@ -240,9 +240,11 @@ void LinkPeer::AcksSent(const LinkFrame &frame)
 
 void LinkPeer::Send(const LinkFrame &frame, bool asks, LinkTime now)
 {
-    if (asks && _unansweredSince == LinkNever)
+    if (asks)
     {
-        _unansweredSince = now;
+        _unansweredSince = std::min(_unansweredSince, now);
+        _askedAt = LinkTime(now.count() / 1000 * 1000);
+        _askedSince = std::min(_askedSince, _askedAt);
     }
     _context.Output.Send(frame);
 }

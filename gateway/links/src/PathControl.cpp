@@ -291,7 +291,10 @@ LinkTime PathControl::ReorderingTime() const
 LinkTime PathControl::ProbeTimeout(int doublings) const
 {
     const LinkTime known = std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay(), LongestProbe);
-    const LinkTime plain = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
+    // The round trip is that of the path alone. A peer with a budget may send its answers much later.
+    const LinkTime answer = std::min(_answers.Smoothed() + 4 * _answers.Variation(), _settings.MaxResend);
+    const LinkTime least = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
+    const LinkTime plain = std::max(least, answer);
     const LinkTime longest = std::max(plain, _settings.MaxResend);
     const int shift = doublings < ProbesInVain ? std::min(doublings, FirstDoublings)
                                                : std::min(FirstDoublings + 1 + doublings - ProbesInVain, 10);

@@ -35,6 +35,9 @@ public:
     void Forget(std::size_t bytes) { _inFlight -= bytes; }
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
+    // A frame that asks for an answer was answered after that time, however long the peer held the answer
+    // back.
+    void Answered(LinkTime time) { _answers.Measured(time); }
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
 
@@ -79,6 +82,7 @@ private:
 
     const LinkSettings &_settings;
     RoundTrip _times;
+    RoundTrip _answers;
     std::size_t _inFlight = 0;
     std::size_t _window;
     bool _slowStart = true;

@@ -187,6 +187,16 @@ TEST_F(PathTest, the_probe_timer_follows_the_round_trip_within_its_bounds)
     EXPECT_EQ(slow.ProbeTimeout(), 3s) << "one straggler is no reason to fall silent";
 }
 
+TEST_F(PathTest, the_probe_timer_waits_for_answers_that_the_peer_holds_back_up_to_the_limit_of_its_backoff)
+{
+    path.Answered(200ms);
+    EXPECT_EQ(path.ProbeTimeout(), 200ms + 4 * 100ms) << "without a round trip, too";
+    path.Measured(10ms, now, now);
+    EXPECT_EQ(path.ProbeTimeout(), 600ms);
+    path.Answered(20s);
+    EXPECT_EQ(path.ProbeTimeout(), settings.MaxResend);
+}
+
 TEST_F(PathTest, asks_for_an_acknowledgement_in_time_and_not_for_each_datagram)
 {
     for (int i = 0; i < 3; ++i)

@@ -284,6 +284,37 @@ TEST_F(LinkSenderRules, S2_what_was_overtaken_is_lost_after_the_time_for_reorder
     EXPECT_THAT(SentTexts(), IsEmpty()) << "nothing sent after it is known to have arrived";
 }
 
+TEST_F(LinkSenderRules, S2_what_a_peer_is_used_to_answer_late_is_not_sent_again_meanwhile)
+{
+    constexpr LinkTime held = 300ms;
+    Contact();
+    // The path takes next to nothing, and the peer has little budget.
+    const auto answer = [&](std::uint64_t cumulative, LinkTime sentAt)
+    {
+        a.Live(held);
+        StoredFrame ack = b.Ack(cumulative);
+        ack.Fields.Echo = {PlayedPeer::ClockOfA, sentAt.count(), held.count()};
+        a.Hear(ack);
+    };
+    a.Enqueue("2");
+    a.Pass(0ms);
+    const LinkTime first = a.Now;
+    a.Live(0ms);
+    const std::size_t before = a.TakeDatas().size();
+    ASSERT_EQ(before, 1U);
+    answer(2, first);
+    a.TakeDatas();
+    for (std::uint64_t number = 3; number < 6; ++number)
+    {
+        a.Live(1s);
+        a.Enqueue(Numbered(static_cast<int>(number)));
+        a.Pass(0ms);
+        const LinkTime sentAt = a.Now;
+        answer(number, sentAt);
+        EXPECT_THAT(SentTexts(), SizeIs(1)) << number;
+    }
+}
+
 TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_parts_unacknowledged)
 {
     LinkSettings settings;
