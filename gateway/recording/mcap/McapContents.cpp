@@ -17,6 +17,12 @@ namespace
 
 constexpr std::size_t FooterSize = RecordHead + 20;
 
+// Bytes that the entries take in memory besides their texts.
+std::size_t OverheadOf(const TextMap &values)
+{
+    return values.size() * 2 * sizeof(std::string);
+}
+
 std::string At(std::uint64_t offset)
 {
     return " at byte " + std::to_string(offset);
@@ -97,8 +103,7 @@ private:
                               });
                 break;
             case Opcode::Metadata:
-                good = TakeIf(ReadMetadata(record.Content), [this](Metadata &&metadata)
-                              { _contents.MetadataRecords.push_back(std::move(metadata)); });
+                good = TakeMetadata(record.Content);
                 break;
             case Opcode::DataEnd:
                 _inSummary = true;
@@ -131,6 +136,12 @@ private:
         }
         auto channel = ReadChannel(content);
         return channel && _contents.AddDefinition(std::move(*channel));
+    }
+
+    bool TakeMetadata(ByteView content)
+    {
+        auto metadata = ReadMetadata(content);
+        return metadata && _contents.AddMetadata(std::move(*metadata), content.size());
     }
 
     bool TakeMessage(ByteView content)
@@ -306,11 +317,10 @@ bool TakeSummary(ByteSource &source, ByteView summary, Contents &contents)
                 auto metadata = inner && inner->Code == static_cast<std::uint8_t>(Opcode::Metadata)
                                     ? ReadMetadata(inner->Content)
                                     : std::nullopt;
-                if (!metadata)
+                if (!metadata || !contents.AddMetadata(std::move(*metadata), bytes->size()))
                 {
                     return false;
                 }
-                contents.MetadataRecords.push_back(std::move(*metadata));
                 break;
             }
             case Opcode::Statistics:
@@ -342,6 +352,16 @@ void Contents::AddProblem(std::string problem)
     }
 }
 
+bool Contents::AddMetadata(Metadata metadata, std::size_t recordBytes)
+{
+    if (!HasRoomFor(recordBytes + OverheadOf(metadata.Values)))
+    {
+        return false;
+    }
+    MetadataRecords.push_back(std::move(metadata));
+    return true;
+}
+
 bool Contents::HasRoomFor(std::size_t bytes)
 {
     _definitionBytes += std::min(bytes, MostDefinitionBytes);
@@ -369,10 +389,10 @@ bool Contents::AddDefinition(Channel channel)
     {
         return true;
     }
-    std::size_t bytes = channel.Topic.size();
+    std::size_t bytes = channel.Topic.size() + OverheadOf(channel.Metadata);
     for (const auto &[key, value] : channel.Metadata)
     {
-        bytes += key.size() + value.size() + 2 * sizeof(std::string);
+        bytes += key.size() + value.size();
     }
     if (!HasRoomFor(bytes))
     {

@@ -31,9 +31,12 @@ struct Contents
     void AddProblem(std::string problem);
     bool AddDefinition(Schema schema);
     bool AddDefinition(Channel channel);
+    // `recordBytes` is the size of its record in the file.
+    bool AddMetadata(Metadata metadata, std::size_t recordBytes);
 
 private:
-    // Bound of schemas and channels, with the metadata of channels, together; more are refused.
+    // Bound of schemas, channels and metadata together; more are refused. A summary may name one record any
+    // number of times, so the size of the file is no bound.
     static constexpr std::size_t MostDefinitionBytes = 64U << 20;
     bool HasRoomFor(std::size_t bytes);
     std::size_t _definitionBytes = 0;

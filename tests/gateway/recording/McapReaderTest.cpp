@@ -163,6 +163,31 @@ TEST(McapReader, RefusesAChunkThatIsTooLarge)
     EXPECT_NE(contents.Problems[0].find("larger than 256 MiB"), std::string::npos);
 }
 
+// A summary of a few kilobytes that would take a gigabyte.
+TEST(McapReader, RefusesASummaryThatNamesOneLargeRecordAgainAndAgain)
+{
+    MemoryFile file(Bytes(Magic.begin(), Magic.end()));
+    Append(file.Content, Header{"", "another"});
+    MetadataIndex index{file.Content.size(), 0, "large"};
+    Append(file.Content, Metadata{"large", {{"key", std::string(std::size_t{1} << 20, 'x')}}});
+    index.Length = file.Content.size() - index.Offset;
+    AppendDataEnd(file.Content);
+    Footer footer;
+    footer.SummaryStart = file.Content.size();
+    Bytes summary;
+    for (int i = 0; i < 1000; ++i)
+    {
+        Append(summary, index);
+    }
+    Append(summary, Statistics{});
+    file.Content.insert(file.Content.end(), summary.begin(), summary.end());
+    AppendFooter(file.Content, footer, summary);
+    file.Content.insert(file.Content.end(), Magic.begin(), Magic.end());
+    const Contents contents = ReadContents(file);
+    EXPECT_FALSE(contents.IsIndexed);
+    EXPECT_EQ(contents.MetadataRecords.size(), 1U);
+}
+
 // Bytes of a file are changed, cut and moved. In each case reading must end, and must return only bytes
 // within the file.
 TEST(McapReader, SurvivesDamagedBytes)
