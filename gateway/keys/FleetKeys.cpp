@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char *AuthorityFolder = "authority";
 constexpr const char *IssuedFolder = "issued";
 constexpr const char *RevokedFile = "revoked.pem";
+constexpr const char *OldEnding = ".old";
 constexpr std::time_t Day = 24 * 60 * 60;
 constexpr std::size_t LongestName = 64;  // limit of X.509
 
@@ -129,6 +130,7 @@ FleetKeys::FleetKeys(const std::string &folder) : _folder(folder), _lock(LockOf(
         const CertificatePtr identity = Authority("identity");
         _fleet = FleetOf(*identity);
         _validity = ValidityOf(*identity);
+        FinishRenewals();
     }
     catch (...)
     {
@@ -140,6 +142,38 @@ FleetKeys::FleetKeys(const std::string &folder) : _folder(folder), _lock(LockOf(
 FleetKeys::~FleetKeys()
 {
     ::close(_lock);
+}
+
+std::string FleetKeys::OldOf(const std::string &node) const
+{
+    return _folder + "/." + node + OldEnding;
+}
+
+// Renew moves a folder to `.NODE.old` before the new one takes its place, and then removes it.
+void FleetKeys::FinishRenewals() const
+{
+    std::vector<std::string> left;
+    for (const auto &entry : fs::directory_iterator(_folder))
+    {
+        const std::string name = entry.path().stem().string();
+        const std::string node = name.starts_with('.') ? name.substr(1) : "";
+        if (entry.path().extension() == OldEnding && IsFolderName(node) && node != AuthorityFolder)
+        {
+            left.push_back(node);
+        }
+    }
+    for (const std::string &node : left)
+    {
+        if (!fs::exists(FolderOf(node)))
+        {
+            MoveTo(OldOf(node), FolderOf(node));
+        }
+        else
+        {
+            std::error_code ignored;
+            fs::remove_all(OldOf(node), ignored);
+        }
+    }
 }
 
 CertificatePtr FleetKeys::Authority(const char *name) const
@@ -298,7 +332,7 @@ void FleetKeys::Renew(const Request &request, const Period &period) const
         throw KeysError("there is no folder " + folder + "; `rabit keys add` makes one");
     }
     const std::string made = _folder + "/." + request.Node + ".new";
-    const std::string old = _folder + "/." + request.Node + ".old";
+    const std::string old = OldOf(request.Node);
     Make(made, request, period);
     std::error_code ignored;
     fs::remove_all(old, ignored);

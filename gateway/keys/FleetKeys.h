@@ -12,7 +12,7 @@ namespace Rabit::Keys
 
 // The folder of a fleet: its two authorities in `authority`, and a folder for each node, ready to be copied
 // to that node. Holds a lock: at most one FleetKeys changes a folder at a time; the constructor throws for a
-// second one.
+// second one. The constructor finishes a renewal that was cut short: the node's old keys stay.
 class FleetKeys
 {
 public:
@@ -64,6 +64,9 @@ private:
     // The files of the certificates that were made for a node.
     std::vector<std::string> Issued(const std::string &node) const;
     unsigned NextNumber(const Request &request) const;
+    // The place of a node's folder while a new one replaces it.
+    std::string OldOf(const std::string &node) const;
+    void FinishRenewals() const;
     void Make(const std::string &folder, const Request &request, const Period &period) const;
     std::size_t RevokeFiles(const std::vector<std::string> &files, std::time_t now) const;
 

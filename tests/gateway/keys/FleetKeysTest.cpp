@@ -126,6 +126,30 @@ TEST_F(FleetKeysTest, RenewingGivesAnotherKeyAndAnotherSubject)
     EXPECT_GT(NodeKeys(FolderOf("uav1")).Subject().Number, number);
 }
 
+// Renewing renames the node's folder, and then the new one.
+TEST_F(FleetKeysTest, ARenewalThatWasCutShortLeavesTheOldKeys)
+{
+    Add("uav1");
+    const std::string key = ReadSecret(NodeFiles(FolderOf("uav1")).PrivateKey);
+    fs::rename(FolderOf("uav1"), Place() + "/.uav1.old");
+    const FleetKeys fleet(Place());
+    EXPECT_THAT(fleet.Nodes(), ElementsAre("uav1"));
+    EXPECT_EQ(ReadSecret(NodeFiles(FolderOf("uav1")).PrivateKey), key);
+    fleet.Renew(fleet.RequestOf("uav1"), {.Now = TestNow, .Days = 10});
+    EXPECT_NE(ReadSecret(NodeFiles(FolderOf("uav1")).PrivateKey), key);
+    EXPECT_FALSE(fs::exists(Place() + "/.uav1.old"));
+}
+
+TEST_F(FleetKeysTest, ARenewalThatWasCutShortAtItsEndLeavesTheNewKeysAlone)
+{
+    Add("uav1");
+    const std::string key = ReadSecret(NodeFiles(FolderOf("uav1")).PrivateKey);
+    fs::create_directory(Place() + "/.uav1.old");
+    const FleetKeys fleet(Place());
+    EXPECT_EQ(ReadSecret(NodeFiles(FolderOf("uav1")).PrivateKey), key);
+    EXPECT_FALSE(fs::exists(Place() + "/.uav1.old"));
+}
+
 TEST_F(FleetKeysTest, RenewingKeepsWhatTheNodeMay)
 {
     Add("uav1", "cyclonedds");
