@@ -226,12 +226,7 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
 {
     if (!IsWriter(endpoint))
     {
-        auto &readers = _peers.at(peer).Readers;
-        if (readers.size() >= MostReaders && readers.count(endpoint) == 0)
-        {
-            return true;
-        }
-        return Agrees(readers.try_emplace(endpoint, Word{digest}).first->second, digest);
+        return ReaderAnnounced(_peers.at(peer), endpoint, digest);
     }
     auto &writers = _peers.at(peer).Writers;
     const auto known = writers.find(endpoint);
@@ -258,6 +253,21 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
     added.Endpoint = Word{digest};
     added.IsBestEffort = isBestEffort;
     return true;
+}
+
+bool KnownPeers::ReaderAnnounced(Peer &peer, EntityId reader, std::uint64_t digest)
+{
+    auto &readers = peer.Readers;
+    if (readers.size() >= MostReaders && readers.count(reader) == 0)
+    {
+        readers.erase(std::min_element(readers.begin(), readers.end(),
+                                       [](const auto &a, const auto &b)
+                                       { return a.second.Turn < b.second.Turn; }));
+    }
+    Reader &announced = readers.try_emplace(reader, Reader{Word{digest}}).first->second;
+    const bool agrees = Agrees(announced.Endpoint, digest);
+    announced.Turn = agrees ? ++peer.Turn : announced.Turn;
+    return agrees;
 }
 
 bool KnownPeers::HasWriter(const GuidPrefix &peer, EntityId writer) const

@@ -19,8 +19,8 @@ namespace Rabit::Rtps
 // that never existed, and ignore all samples below that number. So a jump is believed only if the writer's
 // rate explains it, or the time for which it was not heard, or if several numbers in a row agree on it.
 // Bounded: a full table of peers takes no new one until one in it was silent for a minute. A table that has
-// doubled forgets all peers that were silent for five minutes. A full table of writers forgets one. Not
-// thread-safe.
+// doubled forgets all peers that were silent for five minutes. A full table of writers or readers
+// forgets one. Not thread-safe.
 class KnownPeers
 {
 public:
@@ -55,7 +55,8 @@ public:
     // The peer, which must be known, announced a writer or a reader; `digest` is the hash of the
     // announcement. Returns false if it contradicts the known one. An endpoint that changes its QoS repeats
     // the announcement until it is received: the third identical one in a row is believed. If there are too
-    // many writers, the one that was silent for longest is forgotten.
+    // many writers, the one that was silent for longest is forgotten; if there are too many readers, the one
+    // whose announcement was accepted longest ago.
     bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest,
                            bool isBestEffort = false);
     bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
@@ -105,6 +106,11 @@ private:
         bool IsBestEffort = false;
         SampleNumbers Samples;
     };
+    struct Reader
+    {
+        Word Endpoint;
+        std::uint64_t Turn = 0;  // of its last accepted announcement; rises with each of this peer
+    };
     struct Peer
     {
         Word Place;
@@ -118,8 +124,10 @@ private:
         std::int64_t Theirs = 0;  // the highest number of its announcements
         std::int64_t Ours = 0;
         std::map<EntityId, Numbers> Writers;
-        std::map<EntityId, Word> Readers;
+        std::map<EntityId, Reader> Readers;
+        std::uint64_t Turn = 0;  // of its readers' announcements
     };
+    static bool ReaderAnnounced(Peer &peer, EntityId reader, std::uint64_t digest);
 
     bool MakeRoom(TimePoint now);
     void ForgetSilent(TimePoint now);

@@ -404,6 +404,21 @@ TEST_F(KnownPeersTest, AWriterThatWasNotAnnouncedReachesNothing)
     EXPECT_TRUE(Peers.HasWriter(Sender, Rabit::Rtps::PublicationsWriter));
 }
 
+TEST_F(KnownPeersTest, OfTooManyReadersTheOneThatWasAnnouncedLongestAgoIsForgotten)
+{
+    const auto readerOf = [](EntityId number) { return number << 8 | 4u; };
+    for (EntityId number = 1; number <= 5000; ++number)
+    {
+        EXPECT_TRUE(Peers.EndpointAnnounced(Sender, readerOf(number), 7));
+        EXPECT_TRUE(Peers.EndpointAnnounced(Sender, readerOf(1), 7));
+    }
+    for (const EntityId known : {1u, 1000u, 5000u})
+    {
+        EXPECT_FALSE(Peers.EndpointAnnounced(Sender, readerOf(known), 8)) << known;
+    }
+    EXPECT_TRUE(Peers.EndpointAnnounced(Sender, readerOf(2), 8)) << "forgotten";
+}
+
 TEST_F(KnownPeersTest, NobodyKnowsOfSamplesFarAhead)
 {
     EXPECT_TRUE(Peers.Reaches(Sender, UserWriter, 1000, Now));
