@@ -20,9 +20,9 @@
 namespace Swarm
 {
 
-// An aircraft whose PX4 speaks DDS, through its agent (uXRCE-DDS). It uses only local messages, which the
-// gateway's section `foreign` joins to PX4's topics (uav_px4.yaml): reads Px4/Status, Px4/Position,
-// Px4/LocalPosition, Px4/Attitude and Px4/Ack, posts Px4/Command.
+// An aircraft whose PX4 speaks DDS, through its agent (uXRCE-DDS). It uses only local messages: it reads
+// Px4/Status, Px4/Position, Px4/LocalPosition, Px4/Attitude and Px4/Ack, and posts Px4/Command. The gateway
+// joins them to PX4's topics; AddPx4Topics (Px4Topics.h) configures that.
 //
 // Update returns each position once, with the preceding velocity and attitude. A point to fly to is sent as
 // the command DO_REPOSITION, after which PX4 holds there in its hold mode. The command is repeated each
