@@ -63,7 +63,7 @@ RecordingStream Outcomes(const std::string &node)
 RecordingStream Events(const std::string &node)
 {
     return Make(node, "Events", "rabit.Event", R"({"type":"object","properties":{
-"event":{"type":"string","description":"for what the black box was written"}}})");
+"event":{"type":"string","description":"the event that started the black box, such as a post or a refused message"}}})");
 }
 
 }  // namespace Rabit::JsonStreams

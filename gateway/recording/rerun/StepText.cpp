@@ -258,7 +258,7 @@ const char *StepSchema()
 "events":{"type":"array","description":"what it read and did","items":{"type":"object","properties":{
 "what":{"type":"string","description":"monotonic, gps_time, fetched, posted, taken, added, refused or listed"},
 "name":{"type":"string"},"type":{"type":"string"},
-"number":{"type":"string","description":"the how manieth post of that message"},
+"number":{"type":"string","description":"the number of this post among all posts of that message"},
 "monotonic_ns":{"type":"string"},"gps_time_s":{"type":"number"},"redelivered":{"type":"boolean"},
 "sample":{"type":"string","description":"CDR in hexadecimal digits; empty: the post that was fetched before"},
 "names":{"type":"array","items":{"type":"object","properties":{
