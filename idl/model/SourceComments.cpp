@@ -44,14 +44,14 @@ SourceComments::SourceComments(const std::string &path)
 void SourceComments::Read(const std::string &text)
 {
     _lines.emplace_back();
+    std::size_t begin = 0;  // of the line
     for (std::size_t at = 0; at < text.size();)
     {
         Line &line = _lines.back();
         if (text[at] == '\n')
         {
-            _lines.emplace_back();
-            _lines.back().HasComment = _inBlock;
-            ++at;
+            BeginLine();
+            begin = ++at;
         }
         else if (_inBlock)
         {
@@ -62,14 +62,14 @@ void SourceComments::Read(const std::string &text)
         else if (text.compare(at, 2, "//") == 0)
         {
             const std::size_t end = std::min(text.find('\n', at), text.size());
+            BeginComment(at - begin);
             line.Comment += text.substr(at, end - at);
-            line.HasComment = true;
             at = end;
         }
         else if (text.compare(at, 2, "/*") == 0)
         {
+            BeginComment(at - begin);
             _inBlock = true;
-            line.HasComment = true;
             at += 2;
         }
         else
@@ -77,6 +77,33 @@ void SourceComments::Read(const std::string &text)
             at = ReadCode(text, at);
         }
     }
+}
+
+void SourceComments::BeginLine()
+{
+    _lines.emplace_back();
+    Line &line = _lines.back();
+    line.HasComment = _inBlock;
+    line.Continues = _inBlock && FollowsCode();
+    line.Column = _inBlock ? _lines[_lines.size() - 2].Column : 0;
+}
+
+void SourceComments::BeginComment(std::size_t column)
+{
+    Line &line = _lines.back();
+    if (line.HasComment)
+    {
+        return;
+    }
+    line.HasComment = true;
+    line.Column = column;
+    line.Continues = IsBlank(line.Code) && FollowsCode() && _lines[_lines.size() - 2].Column == column;
+}
+
+bool SourceComments::FollowsCode() const
+{
+    const Line *above = At(_lines.size() - 1);
+    return above != nullptr && above->HasComment && (above->Continues || !IsBlank(above->Code));
 }
 
 // Skips one letter, or a whole string or character literal, which contains no comment.
@@ -98,11 +125,16 @@ std::size_t SourceComments::ReadCode(const std::string &text, std::size_t at)
 
 std::vector<std::string> SourceComments::About(std::uint32_t line) const
 {
+    // The preprocessor moves the code before a block comment into the last line of the block.
+    while (At(line) != nullptr && At(line)->Continues && IsBlank(At(line)->Code))
+    {
+        --line;
+    }
     std::vector<std::string> about;
     for (std::size_t above = std::size_t{line} - 1; At(above) != nullptr; --above)
     {
         const Line &candidate = *At(above);
-        if (IsBlank(candidate.Code) && candidate.HasComment)
+        if (IsBlank(candidate.Code) && candidate.HasComment && !candidate.Continues)
         {
             about.insert(about.begin(), Cleaned(candidate.Comment));
         }
@@ -112,9 +144,13 @@ std::vector<std::string> SourceComments::About(std::uint32_t line) const
         }
     }
     const Line *own = At(line);
-    if (own != nullptr && own->HasComment && !IsBlank(own->Code))
+    if (own != nullptr && own->HasComment && !own->Continues && !IsBlank(own->Code))
     {
         about.push_back(Cleaned(own->Comment));
+        for (std::size_t below = std::size_t{line} + 1; At(below) != nullptr && At(below)->Continues; ++below)
+        {
+            about.push_back(Cleaned(At(below)->Comment));
+        }
     }
     const auto isEmpty = [](const std::string &text) { return text.empty(); };
     about.erase(about.begin(), std::find_if_not(about.begin(), about.end(), isEmpty));

@@ -16,8 +16,9 @@ public:
     explicit SourceComments(const std::string &path);
 
     // The comment on the declaration in that line, counted from 1: first the comment lines right above it,
-    // with lines of annotations allowed in between, then the comment behind it. Without comment markers,
-    // and fit to follow `//` in C++.
+    // with lines of annotations allowed in between, then the comment behind it. A comment behind code
+    // continues in the lines below it that begin a comment in the same column, or end its block. Without
+    // comment markers, and fit to follow `//` in C++.
     std::vector<std::string> About(std::uint32_t line) const;
 
 private:
@@ -26,8 +27,14 @@ private:
         std::string Code;
         std::string Comment;
         bool HasComment = false;
+        std::size_t Column = 0;  // where the comment begins
+        bool Continues = false;  // the comment continues one behind the code of a line above
     };
     void Read(const std::string &text);
+    void BeginLine();
+    void BeginComment(std::size_t column);
+    // True if a comment of the last line would continue one behind code.
+    bool FollowsCode() const;
     std::size_t ReadCode(const std::string &text, std::size_t at);
     const Line *At(std::size_t line) const
     {

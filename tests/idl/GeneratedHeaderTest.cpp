@@ -39,6 +39,15 @@ TEST_F(GeneratedHeader, SaysOfMembersWhatTheIdlSaysAndTheirUnit)
     EXPECT_TRUE(Has("    // Many words.\n    // Selected by 1"));
 }
 
+TEST_F(GeneratedHeader, KeepsTheLinesOfACommentBehindAMemberTogether)
+{
+    EXPECT_TRUE(Has("    // as painted on it,\n    // in capitals\n    ::std::string name;\n"));
+    EXPECT_TRUE(Has("name_bound = 8;\n    ::std::vector<::std::int32_t> history;\n"));
+    EXPECT_TRUE(Has("    // glued\n    // on\n    ::Conveniences::Tag tag;\n"));
+    EXPECT_TRUE(
+        Has("    // in front\n    ::std::string label;\n    // In letters.\n    ::std::int32_t label_bound"));
+}
+
 TEST_F(GeneratedHeader, SaysOfEnumeratorsAndBitsWhatTheIdlSays)
 {
     EXPECT_TRUE(
