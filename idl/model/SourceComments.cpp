@@ -33,6 +33,13 @@ bool IsBlank(const std::string &text)
     return text.find_first_not_of(" \t\r") == std::string::npos;
 }
 
+// True for a line of annotations alone: no declaration begins or ends there.
+bool IsAnnotation(const std::string &code)
+{
+    const std::string text = Trimmed(code, " \t\r");
+    return !text.empty() && text.front() == '@' && std::string(";,{").find(text.back()) == std::string::npos;
+}
+
 }  // namespace
 
 SourceComments::SourceComments(const std::string &path)
@@ -138,7 +145,7 @@ std::vector<std::string> SourceComments::About(std::uint32_t line) const
         {
             about.insert(about.begin(), Cleaned(candidate.Comment));
         }
-        else if (!about.empty() || Trimmed(candidate.Code, " \t").substr(0, 1) != "@")
+        else if (!about.empty() || !IsAnnotation(candidate.Code))
         {
             break;
         }

@@ -39,6 +39,11 @@ TEST_F(GeneratedHeader, SaysOfMembersWhatTheIdlSaysAndTheirUnit)
     EXPECT_TRUE(Has("    // Many words.\n    // Selected by 1"));
 }
 
+TEST_F(GeneratedHeader, TakesNoCommentOfAnAnnotatedMemberForTheNextMember)
+{
+    EXPECT_TRUE(Has("    double speed = 0.0;\n    // of turns\n"));
+}
+
 TEST_F(GeneratedHeader, KeepsTheLinesOfACommentBehindAMemberTogether)
 {
     EXPECT_TRUE(Has("    // as painted on it,\n    // in capitals\n    ::std::string name;\n"));
