@@ -128,19 +128,24 @@ void CheckTransports(const Fleet &fleet, std::vector<Finding> &findings)
     }
 }
 
-// Reports nodes without multicast, if no file of the fleet names `peers`.
+// Reports nodes without multicast, if other nodes are in their domain, and no file of the domain names
+// `peers`.
 void CheckPeers(const Fleet &fleet, std::vector<Finding> &findings)
 {
-    const bool somebodyNames =
-        std::any_of(fleet.begin(), fleet.end(), [](const GatewayConfig &one) { return !one.Peers.empty(); });
     for (const GatewayConfig &config : fleet)
     {
-        if (!config.Multicast && !somebodyNames && fleet.size() > 1)
+        const auto isInDomain = [&config](const GatewayConfig &one) { return one.Domain == config.Domain; };
+        const bool isAlone = std::count_if(fleet.begin(), fleet.end(), isInDomain) == 1;
+        const bool hasPeers = std::any_of(fleet.begin(), fleet.end(),
+                                          [&isInDomain](const GatewayConfig &one)
+                                          { return isInDomain(one) && !one.Peers.empty(); });
+        if (!config.Multicast && !isAlone && !hasPeers)
         {
             Add(findings, {config.File,
                            LineIn(config, "multicast"),
                            {config.Node},
-                           "without multicast nobody is found: no file names `peers`"});
+                           "without multicast this node finds no other: no file of domain " +
+                               std::to_string(config.Domain) + " names `peers`"});
         }
     }
 }

@@ -129,15 +129,30 @@ TEST(FleetCheck, TransportsThatDifferAreWorthKnowingAndNoProblem)
               "each other");
 }
 
-TEST(FleetCheck, WithoutMulticastSomebodyMustNameAPeer)
+TEST(FleetCheck, WithoutMulticastANodeOfTheDomainMustNameAPeer)
 {
+    const char *const problem =
+        "uav1.yaml:4: without multicast this node finds no other: no file of domain 0 names `peers`";
     GatewayConfig deaf = NodeOf("uav1");
     deaf.Multicast = false;
     GatewayConfig other = NodeOf("uav2");
-    EXPECT_THAT(LinesOf({deaf, other}),
-                ElementsAre("uav1.yaml:4: without multicast nobody is found: no file names `peers`"));
+    EXPECT_THAT(LinesOf({deaf, other}), ElementsAre(problem));
+    GatewayConfig elsewhere = NodeOf("uav2");
+    elsewhere.Domain = 8;
+    elsewhere.Name = "Radio";
+    elsewhere.Peers = {"10.0.0.1"};
+    EXPECT_THAT(LinesOf({deaf, other, elsewhere}), ElementsAre(problem));
     other.Peers = {"10.0.0.1"};
-    EXPECT_THAT(LinesOf({deaf, other}), IsEmpty());
+    EXPECT_THAT(LinesOf({deaf, other, elsewhere}), IsEmpty());
+}
+
+TEST(FleetCheck, OfANodeAloneInItsDomainItIsNotToldThatNoPeerIsNamed)
+{
+    GatewayConfig radio = NodeOf("uav1");
+    radio.Domain = 8;
+    radio.Name = "Radio";
+    radio.Multicast = false;
+    EXPECT_THAT(LinesOf({NodeOf("uav1"), NodeOf("uav2"), radio}), IsEmpty());
 }
 
 TEST(FleetCheck, WhatNobodyPublishesIsToldWithTheNearestName)
