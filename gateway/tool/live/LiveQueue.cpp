@@ -25,48 +25,54 @@ bool LiveQueue::AddText(std::string text)
 
 void LiveQueue::AddValue(std::uint32_t subscription, std::shared_ptr<const LiveValue> value)
 {
-    const std::size_t size = SizeOf(*value);
-    const std::uint32_t number = value->Channel;
-    for (auto same = _values.find(number); same != _values.end() && _bytes + size > _most;
-         same = _values.find(number))
+    MakeRoom(subscription, SizeOf(*value));
+    if (!HasRoomFor(SizeOf(*value)))
     {
-        static_cast<void>(TakeFirstOf(same));
-        ++_dropped[number];
-    }
-    if (_bytes + size > _most)
-    {
-        ++_dropped[number];
+        ++_dropped[value->Channel];
         return;
     }
-    _bytes += size;
-    _values[number].push_back({++_turn, {subscription, std::move(value)}});
+    Append(subscription, std::move(value));
 }
 
-LiveQueue::Value LiveQueue::TakeFirstOf(std::map<std::uint32_t, std::deque<Waiting>>::iterator channel)
+void LiveQueue::AddState(std::uint32_t subscription, std::shared_ptr<const LiveValue> value)
 {
-    Value first = std::move(channel->second.front().What);
-    _bytes -= SizeOf(*first.What);
-    channel->second.pop_front();
-    if (channel->second.empty())
+    MakeRoom(subscription, SizeOf(*value));
+    Append(subscription, std::move(value));
+}
+
+void LiveQueue::MakeRoom(std::uint32_t subscription, std::size_t size)
+{
+    for (auto same = _values.find(subscription); same != _values.end() && !HasRoomFor(size);
+         same = _values.find(subscription))
     {
-        _values.erase(channel);
+        ++_dropped[TakeFirstOf(same).What->Channel];
+    }
+}
+
+void LiveQueue::Append(std::uint32_t subscription, std::shared_ptr<const LiveValue> value)
+{
+    _bytes += SizeOf(*value);
+    _values[subscription].push_back({++_turn, {subscription, std::move(value)}});
+}
+
+LiveQueue::Value LiveQueue::TakeFirstOf(std::map<std::uint32_t, std::deque<Waiting>>::iterator subscription)
+{
+    Value first = std::move(subscription->second.front().What);
+    _bytes -= SizeOf(*first.What);
+    subscription->second.pop_front();
+    if (subscription->second.empty())
+    {
+        _values.erase(subscription);
     }
     return first;
 }
 
 void LiveQueue::Remove(std::uint32_t subscription)
 {
-    for (auto &[number, waiting] : _values)
+    for (auto same = _values.find(subscription); same != _values.end(); same = _values.find(subscription))
     {
-        std::erase_if(waiting,
-                      [&](const Waiting &one)
-                      {
-                          const bool isOf = one.What.Subscription == subscription;
-                          _bytes -= isOf ? SizeOf(*one.What.What) : 0;
-                          return isOf;
-                      });
+        static_cast<void>(TakeFirstOf(same));
     }
-    std::erase_if(_values, [](const auto &channel) { return channel.second.empty(); });
 }
 
 std::optional<std::string> LiveQueue::TakeText()

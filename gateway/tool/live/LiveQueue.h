@@ -21,9 +21,10 @@ struct LiveValue
 };
 
 // Texts and values that wait for one viewer. Texts go first. Values take a limited number of bytes. If a new
-// value has no room, the oldest values of its channel are dropped, so that a slow viewer sees fewer values of
-// busy channels; if that is not enough, the new value is dropped too. Drops are counted by channel. Not
-// thread-safe.
+// value has no room, the oldest values of its subscription are dropped, so that a slow viewer sees fewer
+// values of busy channels. If that is not enough, the new value is dropped too, unless it is of a State: the
+// viewer would show the former value until the next change. So of each subscription to a State one value may
+// exceed the limit; the server holds that value anyway. Drops are counted by channel. Not thread-safe.
 class LiveQueue
 {
 public:
@@ -34,6 +35,7 @@ public:
     // Returns false if MostTexts wait already: the viewer does not read them.
     bool AddText(std::string text);
     void AddValue(std::uint32_t subscription, std::shared_ptr<const LiveValue> value);
+    void AddState(std::uint32_t subscription, std::shared_ptr<const LiveValue> value);
     // Drops the values that wait for that subscription.
     void Remove(std::uint32_t subscription);
 
@@ -58,11 +60,15 @@ private:
         Value What;
     };
     static std::size_t SizeOf(const LiveValue &value);
-    Value TakeFirstOf(std::map<std::uint32_t, std::deque<Waiting>>::iterator channel);
+    bool HasRoomFor(std::size_t size) const { return _bytes + size <= _most; }
+    // Drops the oldest values of the subscription until there is room, or none is left.
+    void MakeRoom(std::uint32_t subscription, std::size_t size);
+    void Append(std::uint32_t subscription, std::shared_ptr<const LiveValue> value);
+    Value TakeFirstOf(std::map<std::uint32_t, std::deque<Waiting>>::iterator subscription);
 
     const std::size_t _most;
     std::deque<std::string> _texts;
-    std::map<std::uint32_t, std::deque<Waiting>> _values;  // by channel; none is empty
+    std::map<std::uint32_t, std::deque<Waiting>> _values;  // by subscription; none is empty
     std::uint64_t _turn = 0;
     std::size_t _bytes = 0;  // of the values
     std::map<std::uint32_t, std::uint64_t> _dropped;

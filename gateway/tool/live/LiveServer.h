@@ -19,7 +19,7 @@ namespace Rabit::Tool
 //
 // - A viewer gets the values of its subscriptions; of a channel of States the last value at once.
 // - The values that wait for a slow viewer are bounded. Once a second it is told how many it missed, by
-//   topic. It delays no other viewer.
+//   topic. It delays no other viewer. It misses no State's newest value.
 // - A channel stays for as long as the server: a node that comes back goes on in the same panels.
 // - Pages of other sites than viewers' are refused: a browser would let any page look at loopback.
 //

@@ -158,9 +158,10 @@ void LiveSession::Show(const std::shared_ptr<const LiveValue> &value)
     {
         return;
     }
+    const bool isState = _context.Channels.at(value->Channel).IsState;
     for (const std::uint32_t subscription : found->second)
     {
-        _queue.AddValue(subscription, value);
+        isState ? _queue.AddState(subscription, value) : _queue.AddValue(subscription, value);
     }
     WriteNext();
 }
@@ -216,7 +217,7 @@ void LiveSession::OnRequest(const LiveProtocol::Request &request)
         _subscribed[channel].push_back(id);
         if (offered->second.Last)
         {
-            _queue.AddValue(id, offered->second.Last);
+            _queue.AddState(id, offered->second.Last);
         }
     }
     WriteNext();

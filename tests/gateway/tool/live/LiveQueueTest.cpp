@@ -68,6 +68,34 @@ TEST(LiveQueue, AChannelTakesNoRoomFromAnother)
     EXPECT_THAT(TakeAll(queue), ElementsAre(100, 4, 5));
 }
 
+TEST(LiveQueue, KeepsTheNewestValueOfAStateWhileOtherChannelsFillTheQueue)
+{
+    LiveQueue queue(3 * Size);
+    for (std::uint64_t number = 1; number <= 3; ++number)
+    {
+        queue.AddValue(1, Value(7, number));
+    }
+    queue.AddState(2, Value(8, 100));
+    queue.AddState(3, Value(8, 100));
+    queue.AddState(2, Value(8, 101));
+    queue.AddState(3, Value(8, 101));
+    queue.AddState(4, Value(9, 200, 10 * Size));
+    EXPECT_THAT(queue.TakeDropped(), ElementsAre(Pair(8, 2)));
+    EXPECT_THAT(TakeAll(queue), ElementsAre(1, 2, 3, 101, 101, 200));
+    EXPECT_EQ(queue.Bytes(), 0u);
+}
+
+TEST(LiveQueue, KeepsOlderValuesOfAStateWhileThereIsRoom)
+{
+    LiveQueue queue(3 * Size);
+    for (std::uint64_t number = 1; number <= 5; ++number)
+    {
+        queue.AddState(1, Value(7, number));
+    }
+    EXPECT_THAT(queue.TakeDropped(), ElementsAre(Pair(7, 2)));
+    EXPECT_THAT(TakeAll(queue), ElementsAre(3, 4, 5));
+}
+
 TEST(LiveQueue, WhatIsLargerThanAllIsDropped)
 {
     LiveQueue queue(3 * Size);
