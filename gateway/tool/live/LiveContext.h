@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -30,6 +31,7 @@ struct LiveContext
     std::string SessionId;  // of this run of the server
     std::map<std::uint32_t, Offered> Channels;
     std::set<LiveSession *> Sessions;  // those with a viewer
+    std::size_t Seats = 0;             // taken, by viewers and by those whose handshake is under way
     std::atomic<std::uint64_t> Viewers{0};
     std::atomic<std::uint64_t> Shown{0};
     std::atomic<std::uint64_t> Dropped{0};

@@ -47,6 +47,7 @@ LiveSession::LiveSession(boost::asio::ip::tcp::socket socket, LiveContext &conte
 LiveSession::~LiveSession()
 {
     _context.Viewers -= _context.Sessions.erase(this);
+    _context.Seats -= _hasSeat ? 1 : 0;
 }
 
 void LiveSession::Begin()
@@ -86,7 +87,7 @@ std::string LiveSession::WhyNot() const
     {
         return "Pages of " + SafeText(std::string(origin)) + " may not look (--origin).";
     }
-    return _context.Sessions.size() >= _context.Settings.MostViewers ? "There are too many viewers." : "";
+    return _context.Seats >= _context.Settings.MostViewers ? "There are too many viewers." : "";
 }
 
 void LiveSession::Refuse(const std::string &why)
@@ -103,6 +104,8 @@ void LiveSession::Refuse(const std::string &why)
 
 void LiveSession::Accept()
 {
+    _hasSeat = true;
+    ++_context.Seats;
     beast::get_lowest_layer(_stream).expires_never();  // the WebSocket has its own timeouts
     beast::error_code ignored;
     beast::get_lowest_layer(_stream).socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);

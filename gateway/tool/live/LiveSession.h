@@ -61,6 +61,7 @@ private:
     std::map<std::uint32_t, std::uint64_t> _dropped;  // values that the viewer was told it missed, by channel
     std::string _text;                                // being written
     std::vector<std::uint8_t> _frame;                 // likewise
+    bool _hasSeat = false;
     bool _open = false;
     bool _writing = false;
 };

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -13,6 +15,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "FleetSession.h"
 
@@ -275,6 +278,60 @@ TEST(LiveServer, TakesSoManyViewersAndNoMore)
     EXPECT_FALSE(first.Error);
     first.Text("serverInfo");
     EXPECT_TRUE(Viewer(server).Error);
+}
+
+// The requests arrive together, so that handshakes overlap.
+TEST(LiveServer, TakesNoMoreViewersIfSeveralComeAtOnce)
+{
+    constexpr std::size_t count = 20;
+    LiveServer::Settings settings = Anywhere();
+    settings.MostViewers = 1;
+    LiveServer server(settings);
+    asio::io_context io;
+    std::vector<asio::ip::tcp::socket> sockets;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        sockets.emplace_back(io).connect(server.Endpoint());
+    }
+    // Connections are accepted in order: the last one is answered when all wait for their requests.
+    asio::write(sockets.back(), asio::buffer(std::string("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")));
+    std::string answer(12, ' ');
+    asio::read(sockets.back(), asio::buffer(answer));
+    ASSERT_EQ(answer, "HTTP/1.1 403");
+    sockets.pop_back();
+    for (asio::ip::tcp::socket &socket : sockets)
+    {
+        asio::write(socket,
+                    asio::buffer(std::string("GET / HTTP/1.1\r\n"
+                                             "Host: localhost\r\n"
+                                             "Upgrade: websocket\r\n"
+                                             "Connection: Upgrade\r\n"
+                                             "Sec-WebSocket-Version: 13\r\n"
+                                             "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                                             "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n\r\n")));
+    }
+    std::size_t taken = 0;
+    for (asio::ip::tcp::socket &socket : sockets)
+    {
+        asio::read(socket, asio::buffer(answer));
+        taken += answer == "HTTP/1.1 101" ? 1 : 0;
+    }
+    EXPECT_EQ(taken, 1u);
+}
+
+TEST(LiveServer, ASeatIsFreeAgainWhenItsViewerLeaves)
+{
+    LiveServer::Settings settings = Anywhere();
+    settings.MostViewers = 1;
+    LiveServer server(settings);
+    {
+        Viewer first(server);
+        EXPECT_FALSE(first.Error);
+    }
+    // The server has not read the end of the first connection yet.
+    while (Viewer(server).Error)
+    {
+    }
 }
 
 TEST(LiveServer, APortThatIsTakenIsOneLine)
