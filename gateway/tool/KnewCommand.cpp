@@ -16,6 +16,7 @@
 #include "Output.h"
 #include "SafeText.h"
 #include "Table.h"
+#include "TimeText.h"
 #include "names/NamePattern.h"
 #include "recording/FolderDisk.h"
 #include "recording/mcap/FileSource.h"
@@ -23,7 +24,6 @@
 #include "recording/merge/AgePlot.h"
 #include "recording/merge/ChannelChunks.h"
 #include "recording/merge/Knowledge.h"
-#include "recording/merge/TimeText.h"
 
 namespace Rabit::Tool
 {
@@ -179,19 +179,24 @@ bool Show(const Options &options, const Asked &asked, const KnownStream &stream,
         Formatted("%.4f s", SecondsOf(at - value.ReceivedAt)) + " before  " + decoder.Text(stream, value));
 }
 
+std::string UtcOf(Moment moment)
+{
+    return TimeText(Merge::ToFile(moment));
+}
+
 int ShowMoment(const Options &options, Asked &asked)
 {
-    const auto at = Merge::ParseMoment(options.At, asked.Begin());
-    if (!at)
+    const auto time = TimeOf(options.At, Merge::ToFile(asked.Begin()));
+    if (!time)
     {
         Output::Talk("--at " + options.At +
                      ": seconds since the beginning, or UTC as 2026-11-23T04:04:07.25Z");
         return Usage;
     }
-    if (*at < asked.Begin() || *at > asked.End())
+    const Moment at = Merge::FromFile(*time);
+    if (at < asked.Begin() || at > asked.End())
     {
-        Output::Talk(options.File + " is from " + Merge::DateOf(asked.Begin()) + " to " +
-                     Merge::DateOf(asked.End()));
+        Output::Talk(options.File + " is from " + UtcOf(asked.Begin()) + " to " + UtcOf(asked.End()));
         return ProblemFound;
     }
     Decoder decoder;
@@ -201,14 +206,14 @@ int ShowMoment(const Options &options, Asked &asked)
     for (const KnownStream *stream : asked.Streams)
     {
         const KnowerLife &knower = asked.LifeOf(*stream);
-        if (*at < knower.Begin || *at > knower.End)
+        if (at < knower.Begin || at > knower.End)
         {
             continue;
         }
         isAlive = true;
-        const auto value = ValueAt(asked.Source, asked.Contents, asked.Known, *stream, *at, problems);
+        const auto value = ValueAt(asked.Source, asked.Contents, asked.Known, *stream, at, problems);
         isKnown = isKnown || value;
-        if (value && !Show(options, asked, *stream, *value, *at, decoder))
+        if (value && !Show(options, asked, *stream, *value, at, decoder))
         {
             return Good;
         }
@@ -298,11 +303,10 @@ std::string SvgOf(const Options &options, const Asked &asked, const std::vector<
 {
     Merge::AgePlot plot;
     plot.Title = "Age of what nodes knew of each other";
-    plot.Note =
-        std::filesystem::path(options.File).filename().string() + ", from " + Merge::DateOf(asked.Begin()) +
-        (asked.Known.WorstBound
-             ? Formatted(", times are wrong by %.2f ms at most", 1e3 * SecondsOf(*asked.Known.WorstBound))
-             : "");
+    plot.Note = std::filesystem::path(options.File).filename().string() + ", from " + UtcOf(asked.Begin()) +
+                (asked.Known.WorstBound ? Formatted(", times are wrong by %.2f ms at most",
+                                                    1e3 * SecondsOf(*asked.Known.WorstBound))
+                                        : "");
     plot.Begin = asked.Begin();
     plot.End = asked.End();
     // Lives of one node share a panel: they do not overlap.

@@ -19,8 +19,8 @@
 #include "Playing.h"
 #include "ReplayFleet.h"
 #include "ReplayNetwork.h"
+#include "TimeText.h"
 #include "names/NamePattern.h"
-#include "recording/replay/TimeText.h"
 
 namespace Rabit::Tool
 {
@@ -101,19 +101,19 @@ int SetTimes(const Options &options, const Replay::RecordedMessages &messages,
 {
     const Replay::Time first = messages.First();
     const Replay::Time last = messages.Last();
-    const auto from = options.From.empty() ? std::optional(first) : Replay::TimeOf(options.From, first);
-    const auto to = options.To.empty() ? std::optional(last) : Replay::TimeOf(options.To, first);
+    const auto from = options.From.empty() ? std::optional(first) : TimeOf(options.From, first);
+    const auto to = options.To.empty() ? std::optional(last) : TimeOf(options.To, first);
     if (!from || !to)
     {
         Output::Talk("`" + (from ? options.To : options.From) +
                      "` is no time; expected seconds from the beginning, as 12.5, or UTC, as " +
-                     Replay::TextOf(first));
+                     TimeText(first));
         return Usage;
     }
     if (*from > *to || *from > last || *to < first)
     {
-        Output::Talk("nothing was recorded then; the recording is from " + Replay::TextOf(first) + " to " +
-                     Replay::TextOf(last) + " UTC");
+        Output::Talk("nothing was recorded then; the recording is from " + TimeText(first) + " to " +
+                     TimeText(last));
         return Usage;
     }
     settings.From = std::max(*from, first);
