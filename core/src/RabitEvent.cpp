@@ -43,6 +43,18 @@ SlotList TakeSlots(EventState &event, Condition condition)
     return taken;
 }
 
+std::shared_ptr<EventState> EventSlot::Event() const
+{
+    const std::lock_guard<std::mutex> lock(_eventMutex);
+    return _event.lock();
+}
+
+void EventSlot::SetEvent(const std::shared_ptr<EventState> &event)
+{
+    const std::lock_guard<std::mutex> lock(_eventMutex);
+    _event = event;
+}
+
 template <typename Condition>
 void RemoveSlots(EventState &event, Condition condition)
 {
@@ -89,18 +101,20 @@ RabitQuickHandler::RabitQuickHandler(RabitHandler handler) : _handler(std::move(
 void RabitConnection::Disconnect()
 {
     const std::shared_ptr<Detail::EventSlot> slot = std::exchange(_slot, {}).lock();
-    const std::shared_ptr<Detail::EventState> event = std::exchange(_event, {}).lock();
-    if (!slot || !event || !slot->Connected.exchange(false))
+    if (!slot || !slot->Connected.exchange(false))
     {
         return;
     }
-    Detail::RemoveSlots(*event, [&](const Detail::EventSlot &other) { return &other == slot.get(); });
+    if (const std::shared_ptr<Detail::EventState> event = slot->Event())
+    {
+        Detail::RemoveSlots(*event, [&](const Detail::EventSlot &other) { return &other == slot.get(); });
+    }
 }
 
 bool RabitConnection::IsConnected() const
 {
     const std::shared_ptr<Detail::EventSlot> slot = _slot.lock();
-    return slot && slot->Connected.load() && !_event.expired();
+    return slot && slot->Connected.load() && slot->Event() != nullptr;
 }
 
 RabitScopedConnection::RabitScopedConnection(RabitScopedConnection &&other) noexcept
@@ -131,10 +145,9 @@ RabitConnection RabitEvent::Connect(RabitHandler handler, const void *owner)
     {
         throw std::invalid_argument("an empty handler cannot be connected to an event");
     }
-    const auto slot = std::make_shared<Detail::EventSlot>(std::move(handler), owner);
+    const auto slot = std::make_shared<Detail::EventSlot>(std::move(handler), owner, _state);
     Detail::AddSlots(*_state, {slot});
     RabitConnection connection;
-    connection._event = _state;
     connection._slot = slot;
     return connection;
 }
@@ -154,10 +167,17 @@ void RabitEvent::HandOverAllOf(const void *owner, RabitEvent &other)
 {
     const SlotList slots = Detail::TakeSlots(
         *_state, [&](const Detail::EventSlot &slot) { return owner != nullptr && slot.Owner == owner; });
-    if (!slots.empty())
+    if (slots.empty())
     {
-        Detail::AddSlots(*other._state, slots);
+        return;
     }
+    for (const auto &slot : slots)
+    {
+        slot->SetEvent(other._state);
+    }
+    Detail::AddSlots(*other._state, slots);
+    // A slot that was disconnected while it was in no list.
+    Detail::RemoveSlots(*other._state, [](const Detail::EventSlot &slot) { return !slot.Connected.load(); });
 }
 
 void RabitEvent::DisownAllOf(const void *owner)

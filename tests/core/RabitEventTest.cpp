@@ -43,6 +43,43 @@ TEST(RabitEvent, ADisconnectedHandlerIsNotCalledAndOthersAre)
     EXPECT_EQ(second, 1);
 }
 
+TEST(RabitEvent, AHandlerThatWasHandedOverIsDisconnectedFromTheOtherEvent)
+{
+    for (const bool ownEventIsGone : {false, true})
+    {
+        const int owner = 0;
+        const auto used = std::make_shared<int>(0);
+        auto event = std::make_unique<RabitEvent>();
+        RabitEvent other;
+        RabitConnection connection = event->Connect([used] { ++*used; }, &owner);
+        event->HandOverAllOf(&owner, other);
+        if (ownEventIsGone)
+        {
+            event.reset();
+        }
+        EXPECT_TRUE(connection.IsConnected());
+        other.Fire();
+        EXPECT_EQ(*used, 1);
+        connection.Disconnect();
+        EXPECT_FALSE(connection.IsConnected());
+        other.Fire();
+        EXPECT_EQ(*used, 1);
+        EXPECT_EQ(used.use_count(), 1) << "the handler is destroyed";
+    }
+}
+
+TEST(RabitEvent, AHandlerThatWasHandedOverIsGoneWithTheOtherEvent)
+{
+    const int owner = 0;
+    RabitEvent event;
+    auto other = std::make_unique<RabitEvent>();
+    RabitConnection connection = event.Connect([] {}, &owner);
+    event.HandOverAllOf(&owner, *other);
+    other.reset();
+    EXPECT_FALSE(connection.IsConnected());
+    connection.Disconnect();
+}
+
 TEST(RabitEvent, AHandlerThatThrowsIsLoggedAndTheOthersStillRun)
 {
     const CapturedLog log;

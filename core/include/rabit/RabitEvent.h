@@ -49,7 +49,6 @@ public:
 
 private:
     friend class RabitEvent;
-    std::weak_ptr<Detail::EventState> _event;
     std::weak_ptr<Detail::EventSlot> _slot;
 };
 
@@ -113,7 +112,7 @@ public:
     void DisconnectAll();
     void DisownAllOf(const void *owner);
     // Moves the handlers with that mark (not null) to the other event, behind its own handlers. Their
-    // RabitConnections still stop them while this event exists, but the slots then stay in the other event.
+    // RabitConnections are then connections to the other event.
     void HandOverAllOf(const void *owner, RabitEvent &other);
     // Tells all handlers. Takes no lock if there are none.
     void Fire() const;
@@ -129,15 +128,26 @@ namespace Detail
 
 struct EventSlot
 {
-    EventSlot(RabitHandler handler, const void *owner)
-        : Handler(std::move(handler)), IsQuick(Handler.target<RabitQuickHandler>() != nullptr), Owner(owner)
+    EventSlot(RabitHandler handler, const void *owner, const std::shared_ptr<EventState> &event)
+        : Handler(std::move(handler)),
+          IsQuick(Handler.target<RabitQuickHandler>() != nullptr),
+          Owner(owner),
+          _event(event)
     {
     }
+    // The event that has the slot in its list, or is to get it (HandOverAllOf); null if that event is gone.
+    std::shared_ptr<EventState> Event() const;
+    void SetEvent(const std::shared_ptr<EventState> &event);
+
     const RabitHandler Handler;
     const bool IsQuick;
     const void *Owner;  // guarded by the event's mutex
     std::atomic<bool> Connected{true};
     std::atomic<bool> Waits{false};  // handed over to a RabitHandlerThread, and not called yet
+
+private:
+    mutable std::mutex _eventMutex;
+    std::weak_ptr<EventState> _event;
 };
 
 // Logs what the handler throws.
