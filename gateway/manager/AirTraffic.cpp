@@ -56,28 +56,32 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
       _unscheduled(TransportSettingsOf(config, 0).AnnouncementPeriod),
       _beat(_schedule.AddStream(TrafficClass::Presence, AirSchedule::LargestWeight)),
       _typeTexts(_schedule.AddStream(TrafficClass::Bulk)),
-      _cards(_schedule.AddStream(TrafficClass::Command)),
+      _cards(_schedule.AddStream(TrafficClass::State, AirSchedule::LargestWeight)),
       _linkStreams(config.Send, links, _schedule,
                    [&presence](std::string_view node) { return presence.SessionsOf(node); }),
       _report(config, _cost)
 {
 }
 
-void AirTraffic::Open(TransportSession &session, std::function<void()> wakeUp)
+void AirTraffic::TakeTurns(TransportSession &session, std::function<void()> wakeUp)
 {
-    _session = &session;
     _turns = session.Discovery();
     if (_turns != nullptr)
     {
         _turns->Schedule(std::move(wakeUp));
         _turns->SetKeyRate(KeyShare * _config.Radio.Budget.value_or(0.0));
     }
+}
+
+void AirTraffic::Open(TransportSession &session)
+{
+    _session = &session;
     for (const TopicPublisher &publisher : _publishers)
     {
         _publisherStreams.push_back(
             _schedule.AddStream(ImportanceOf(publisher.Rule()), publisher.Rule().Weight));
     }
-    // What is counted from now on was sent from now on.
+    // What was sent while the session was opened counts as sent now.
     _watchedAt = Now();
     SetLimit(_watchedAt);
 }
@@ -276,8 +280,8 @@ void AirTraffic::LookAtTypes(Duration now)
 
 void AirTraffic::LookAtCards()
 {
-    const std::size_t bytes = _turns != nullptr && _turns->IsDue() ? _turns->NextBytes() : 0;
-    bytes > 0 ? _schedule.Ready(_cards, bytes) : _schedule.NotReady(_cards);
+    _cardBytes = _turns != nullptr && _turns->IsDue() ? _turns->NextBytes() : 0;
+    _cardBytes > 0 ? _schedule.Ready(_cards, _cardBytes) : _schedule.NotReady(_cards);
 }
 
 Duration AirTraffic::ServeLimited()
@@ -340,7 +344,10 @@ void AirTraffic::Send(StreamId id, Duration now)
     }
     const std::size_t bytes = TakeSent();
     _estimate.Sent(bytes, now);
-    _schedule.Sent(id, bytes, now);
+    // A card to listed peers goes to each of them: more bytes than it was given a turn for.
+    const std::size_t ofTurn = id == _cards ? std::min(bytes, _cardBytes) : bytes;
+    _schedule.Sent(id, ofTurn, now);
+    _schedule.Spent(bytes - ofTurn, now);
     if (publisher < _publishers.size())
     {
         LookAt(publisher, now);

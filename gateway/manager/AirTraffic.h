@@ -32,9 +32,8 @@ namespace Rabit
 // - The limit is the lower one of `radio: budget` and the capacity estimated from the peers' reports of late
 //   datagrams (CapacityEstimate).
 // - Streams are: the beats and, for each node, acknowledgements and hellos (class presence); the exchange of
-//   cards (class command), since nothing reaches a node before; the texts of types that are asked for (class
-//   bulk); each link; each published message. A datagram is made when its turn has come, from the newest
-//   data.
+//   cards (class state, before other states); the texts of types that are asked for (class bulk); each link;
+//   each published message. A datagram is made when its turn has come, from the newest data.
 // - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
 //   for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget the exchange of keys may take half of it (DiscoveryTurns::SetKeyRate).
@@ -53,9 +52,11 @@ public:
     AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
                std::deque<TopicPublisher> &publishers, TypeExchange &types);
 
-    // Call once all publishers exist. The session is kept until Close. `wakeUp`: called, on any thread, when
-    // Serve is to be called before the time that it returned.
-    void Open(TransportSession &session, std::function<void()> wakeUp);
+    // From now on the session's exchange of cards waits for Serve. Call as soon as the session is there.
+    // `wakeUp`: called, on any thread, when Serve is to be called before the time that it returned.
+    void TakeTurns(TransportSession &session, std::function<void()> wakeUp);
+    // Call once all publishers exist. The session is kept until Close.
+    void Open(TransportSession &session);
     void Close() { _session = nullptr; }
 
     // Sends the due datagrams that may be sent now. Returns when to call again at the latest.
@@ -98,6 +99,7 @@ private:
     const AirCost _cost;
     TransportSession *_session = nullptr;
     DiscoveryTurns *_turns = nullptr;  // of the session
+    std::size_t _cardBytes = 0;        // of the next datagram of cards, to one destination
 
     AirSchedule _schedule;
     CapacityEstimate _estimate;

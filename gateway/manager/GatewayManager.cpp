@@ -240,6 +240,7 @@ private:
         TransportSettings settings = TransportSettingsOf(_config, _incarnation);
         _keysEndAt = AddSecurity(_config, _transport->Name(), settings);
         _session = _transport->Open(settings, [this](const PeerEvent &event) { _presence.OnPeer(event); });
+        _air.TakeTurns(*_session, _manager.WakeUpHandler());
         _openedAt = Now();
         if (_config.Tool)
         {
@@ -261,7 +262,7 @@ private:
             Attach(_publishers.back());
         }
         _foreign.Open(*_session, _manager, _openedAt);
-        _air.Open(*_session, _manager.WakeUpHandler());
+        _air.Open(*_session);
         _states.Open(_publishers);
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
         if (!_forwards)

@@ -13,14 +13,14 @@ void MeetingThread::Start(Calls calls, std::shared_ptr<DiscoveryTurns> turns)
     _calls = std::move(calls);
     _turns = std::move(turns);
     _thread = std::thread([this] { Run(); });
-    _turns->SetExchange(this);
+    _turns->SetExchange(*this);
 }
 
 void MeetingThread::Stop()
 {
     if (_turns != nullptr)
     {
-        _turns->SetExchange(nullptr);
+        _turns->RemoveExchange(*this);
     }
     {
         const std::lock_guard lock(_mutex);

@@ -23,7 +23,7 @@ class MeetingThread final : public PeerObserver, private DiscoveryTurns::Exchang
 public:
     using Clock = std::chrono::steady_clock;
 
-    // Called on that thread, or in a turn on the holder's; without a lock of this object.
+    // Called without a lock of this object, on that thread; Send in a turn also on the holder's thread.
     struct Calls
     {
         // Sends to one participant, or to all if `to` is empty.

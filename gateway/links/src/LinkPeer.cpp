@@ -176,9 +176,11 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
 void LinkPeer::Measure(const LinkFrame &frame, LinkTime now)
 {
     const LinkTime sentAt(frame.Echo.Time);
-    if (frame.Echo.Clock == _context.Clock && sentAt >= _askedSince && sentAt <= _askedAt)
+    // What was sent after the question and does not ask itself, an acknowledgement for instance, may be
+    // echoed in its place.
+    if (frame.Echo.Clock == _context.Clock && sentAt >= _askedSince && sentAt <= now)
     {
-        _path.Answered(now - sentAt);
+        _path.Answered(now - std::min(sentAt, _askedAt));
         _askedSince = LinkNever;
     }
     const LinkTime roundTrip = now - sentAt - LinkTime(frame.Echo.HeldFor);

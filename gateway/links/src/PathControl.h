@@ -5,6 +5,7 @@
 #include <rabit/gateway/links/LinkOptions.h>
 #include <rabit/gateway/links/LinkTime.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -35,9 +36,10 @@ public:
     void Forget(std::size_t bytes) { _inFlight -= bytes; }
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
-    // A frame that asks for an answer was answered after that time, however long the peer held the answer
-    // back.
-    void Answered(LinkTime time) { _answers.Measured(time); }
+    // A frame that asks for an answer was answered after that time, which includes the time for which the
+    // peer held the answer back. Where several ask, the newest that was heard counts, so the time may be too
+    // short. Longer than MaxResend counts as MaxResend: an earlier question may have been lost.
+    void Answered(LinkTime time) { _answers.Measured(std::min(time, _settings.MaxResend)); }
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
 

@@ -195,6 +195,11 @@ TEST_F(PathTest, the_probe_timer_waits_for_answers_that_the_peer_holds_back_up_t
     EXPECT_EQ(path.ProbeTimeout(), 600ms);
     path.Answered(20s);
     EXPECT_EQ(path.ProbeTimeout(), settings.MaxResend);
+    for (int i = 0; i < 20; ++i)
+    {
+        path.Answered(10ms);
+    }
+    EXPECT_LT(path.ProbeTimeout(), 300ms) << "one late answer is soon forgotten";
 }
 
 TEST_F(PathTest, asks_for_an_acknowledgement_in_time_and_not_for_each_datagram)

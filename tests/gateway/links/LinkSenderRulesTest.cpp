@@ -315,6 +315,28 @@ TEST_F(LinkSenderRules, S2_what_a_peer_is_used_to_answer_late_is_not_sent_again_
     }
 }
 
+TEST_F(LinkSenderRules, S2_an_answer_that_echoes_a_later_frame_is_an_answer_and_no_reason_to_wait_for_long)
+{
+    Contact();
+    a.Enqueue("2");
+    a.Pass(0ms);
+    const LinkTime asked = a.Now;
+    // The peer echoes what came after the question, and much later another frame of it.
+    a.Live(10ms);
+    StoredFrame ack = b.Ack(2);
+    ack.Fields.Echo = {PlayedPeer::ClockOfA, (asked + 7ms).count(), LinkTime(3ms).count()};
+    a.Hear(ack);
+    a.Live(60s);
+    a.Enqueue("3");
+    a.Pass(0ms);
+    StoredFrame crossing = b.Hello();
+    crossing.Fields.Echo = {PlayedPeer::ClockOfA, (asked + 8ms).count(), LinkTime(60s).count()};
+    a.Hear(crossing);
+    a.TakeDatas();
+    a.Live(300ms);
+    EXPECT_THAT(SentTexts(), testing::Contains("3")) << "nobody answers: it is sent again in time";
+}
+
 TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_parts_unacknowledged)
 {
     LinkSettings settings;

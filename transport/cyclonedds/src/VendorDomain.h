@@ -26,8 +26,8 @@ namespace Rabit::Cyclone
 class VendorDomain
 {
 public:
-    // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards and
-    // of keys stays within `rate`.
+    // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards
+    // waits for `turns`.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
                  std::shared_ptr<DiscoveryTurns> turns);
     ~VendorDomain();
@@ -68,8 +68,9 @@ private:
     // Note the routes by which a card reaches one participant, or all.
     void NoteRoute(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route);
     void NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup);
-    // Both run on the meeting's thread.
+    // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram);
+    // Runs on the meeting's thread.
     void DeliverCard(const Rtps::HostAddress &from, std::span<std::uint8_t> datagram);
     // Puts messages from cards before a received datagram.
     std::size_t JoinDelivered(std::span<std::uint8_t> buffer, std::size_t size);

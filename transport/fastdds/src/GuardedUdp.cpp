@@ -251,7 +251,7 @@ private:
             }
         }
     }
-    // Runs on the meeting's thread.
+    // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)
     {
         constexpr std::chrono::milliseconds LongestWait{100};

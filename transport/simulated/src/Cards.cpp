@@ -70,7 +70,7 @@ bool NetworkCore::SendCard(const ParticipantPtr &me)
 std::size_t NetworkCore::NextCardBytes(ParticipantState &participant)
 {
     const std::lock_guard lock(_mutex);
-    const std::size_t bytes = participant.Cards.DueBytes(CardTime());
+    const std::size_t bytes = participant.Gone ? 0 : participant.Cards.DueBytes(CardTime());
     if (bytes == 0)
     {
         AwaitCards(participant);

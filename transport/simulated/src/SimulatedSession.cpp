@@ -192,12 +192,12 @@ SimulatedSession::SimulatedSession(std::shared_ptr<NetworkCore> core, const Tran
                                    PeerHandler onPeer)
     : _core(std::move(core)), _participant(_core->Join(settings, std::move(onPeer)))
 {
-    _participant->Turns.SetExchange(this);
+    _participant->Turns.SetExchange(*this);
 }
 
 SimulatedSession::~SimulatedSession()
 {
-    _participant->Turns.SetExchange(nullptr);
+    _participant->Turns.RemoveExchange(*this);
     _core->Leave(*_participant);
     _participant->PeerGate.Close();
 }

@@ -151,7 +151,6 @@ struct ReaderState
     std::map<EndpointId, WriterProxy> Writers;
 
     // Not guarded by the network's mutex.
-    DiscoveryTurns Turns;
     const SampleHandler Handler;
     HandlerGate Gate;
     InstanceTable Instances;  // under the gate

@@ -29,10 +29,10 @@ public:
     class Exchange
     {
     public:
-        // About how many bytes the next datagram takes, with the headers of IP and UDP, for each destination;
-        // 0: none is due.
+        // About how many bytes the next datagram takes, with the headers of IP and UDP; 0: none is due. It
+        // costs that for each destination: one where nodes hear a group, several where peers are listed.
         virtual std::size_t NextBytes() = 0;
-        // Sends one datagram, if one is due.
+        // Sends one datagram to its destinations, if one is due. May wait for a socket, 100 ms for each.
         virtual void SendNext() = 0;
         // From now on, SendNext alone sends.
         virtual void Scheduled() = 0;
@@ -63,7 +63,10 @@ public:
         const std::lock_guard lock(_mutex);
         _isDue = false;
         const std::size_t bytes = _exchange != nullptr ? _exchange->NextBytes() : 0;
-        _isDue = _isDue || bytes > 0;
+        if (bytes > 0)
+        {
+            _isDue = true;
+        }
         return bytes;
     }
     void SendNext()
@@ -79,16 +82,22 @@ public:
 
     // The session's side.
 
-    // The exchange that takes turns; null: none any more. When this returns, no call of an earlier one is in
-    // progress.
-    void SetExchange(Exchange *exchange)
+    // From now on `exchange` takes turns, in place of an earlier one. It is not called any more when this, or
+    // RemoveExchange, returns.
+    void SetExchange(Exchange &exchange)
     {
         const std::lock_guard lock(_mutex);
-        _exchange = exchange;
-        if (_exchange != nullptr && _isScheduled)
+        _exchange = &exchange;
+        if (_isScheduled)
         {
             _exchange->Scheduled();
         }
+    }
+    // Nothing happens if another one takes turns.
+    void RemoveExchange(const Exchange &exchange)
+    {
+        const std::lock_guard lock(_mutex);
+        _exchange = _exchange == &exchange ? nullptr : _exchange;
     }
     // A datagram is due. Call without locks that the exchange's functions take.
     void Due()
