@@ -81,7 +81,7 @@ void AirTraffic::Open(TransportSession &session)
         _publisherStreams.push_back(
             _schedule.AddStream(ImportanceOf(publisher.Rule()), publisher.Rule().Weight));
     }
-    // What was sent while the session was opened counts as sent now.
+    // Bytes that were sent while the session was opened count as sent now.
     _watchedAt = Now();
     SetLimit(_watchedAt);
 }

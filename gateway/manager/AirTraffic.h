@@ -52,8 +52,8 @@ public:
     AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
                std::deque<TopicPublisher> &publishers, TypeExchange &types);
 
-    // From now on the session's exchange of cards waits for Serve. Call as soon as the session is there.
-    // `wakeUp`: called, on any thread, when Serve is to be called before the time that it returned.
+    // From now on the session's exchange of cards waits for Serve. To be called as soon as the session
+    // exists. `wakeUp`: called, on any thread, when Serve is to be called before the time that it returned.
     void TakeTurns(TransportSession &session, std::function<void()> wakeUp);
     // Call once all publishers exist. The session is kept until Close.
     void Open(TransportSession &session);

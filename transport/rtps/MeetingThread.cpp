@@ -126,7 +126,7 @@ void MeetingThread::Scheduled()
     _takesTurns = true;
 }
 
-// When the thread has work. Requires _mutex. What waits for its turn is none.
+// When the thread has work. Requires _mutex. A message that waits for its turn is no work of the thread.
 std::optional<MeetingThread::Clock::time_point> MeetingThread::Due() const
 {
     const auto local = _meeting.LocalDue();

@@ -16,7 +16,7 @@
 namespace Rabit::Rtps
 {
 
-// Runs a Meeting on a thread of its own, which does due work. What goes to the network waits for its turn
+// Runs a Meeting on a thread of its own, which does due work. Messages to the network wait for their turn
 // (DiscoveryTurns.h) where the session's holder gives turns. Thread-safe.
 class MeetingThread final : public PeerObserver, private DiscoveryTurns::Exchange
 {

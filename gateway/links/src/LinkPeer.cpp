@@ -176,8 +176,8 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
 void LinkPeer::Measure(const LinkFrame &frame, LinkTime now)
 {
     const LinkTime sentAt(frame.Echo.Time);
-    // What was sent after the question and does not ask itself, an acknowledgement for instance, may be
-    // echoed in its place.
+    // The peer may echo a later frame that does not ask, such as an acknowledgement, in place of the
+    // question.
     if (frame.Echo.Clock == _context.Clock && sentAt >= _askedSince && sentAt <= now)
     {
         _path.Answered(now - std::min(sentAt, _askedAt));
