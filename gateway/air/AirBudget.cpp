@@ -39,12 +39,13 @@ void AirBudget::SetLimits(std::optional<double> budget, std::optional<double> pa
     if (wasLimited && !IsUnlimited() && _nextAt > now)
     {
         // The last datagram takes the time that it needs at the new rate. The hold-up by unscheduled
-        // datagrams stays within LongestHoldUp.
+        // datagrams, with its part that is over, stays within LongestHoldUp.
         const double ratio = before / Spacing();
-        const Duration held = std::min(_heldUp, _nextAt - now);
-        const Duration underWay = Scaled(_nextAt - now - held, ratio);
-        _heldUp = std::min(Scaled(held, ratio), LongestHoldUp);
-        _nextAt = now + underWay + _heldUp;
+        const Duration left = std::min(_heldUp, _nextAt - now);
+        const Duration over = _heldUp - left;
+        const Duration held = std::min(Scaled(left, ratio), LongestHoldUp - over);
+        _nextAt = now + Scaled(_nextAt - now - left, ratio) + held;
+        _heldUp = over + held;
     }
 }
 

@@ -259,6 +259,26 @@ TEST(AirBudget, WhatIsNeverOverAndNotScheduledLeavesAPaceSomethingEachSecond)
     EXPECT_GE(sent, 14);
 }
 
+TEST(AirBudget, WhatIsNeverOverLeavesAPaceSomethingThoughTheRateIsSetAgainAndAgain)
+{
+    AirBudget budget(Largest);
+    int sent = 0;
+    for (Duration now = 10s; now < 30s; now += 100ms)
+    {
+        budget.SetPace(now % 200ms == 0s ? 440 : 441, now);
+        if (now % 1s == 0s)
+        {
+            budget.Spent(441, now);
+        }
+        if (budget.MaySend(100, now))
+        {
+            budget.Sent(100, now);
+            ++sent;
+        }
+    }
+    EXPECT_GE(sent, 10);
+}
+
 TEST(AirBudget, APaceThatFallsFarHoldsUpNobodyForLong)
 {
     AirBudget budget(Largest);
