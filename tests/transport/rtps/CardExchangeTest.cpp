@@ -106,6 +106,48 @@ protected:
     ExchangingWithoutMulticast() : Exchanging(false) {}
 };
 
+// Where the holder gives few turns, some request is always due.
+TEST_F(Exchanging, APartGoesAfterTheRequestsThatWereDueBeforeIt)
+{
+    for (std::uint8_t number = 3; number < 8; ++number)
+    {
+        Exchange.Announced(Name(number), Now);
+    }
+    Now += 1s;  // without a turn
+    Receive({.From = Name(2), .Requests = {{.Of = Name(1), .Parts = 1}}});
+    Now += 1s;
+    const auto first = Exchange.TakeDue(Now);
+    ASSERT_TRUE(first);
+    EXPECT_FALSE(ReadCardMessage(first->Bytes)->HasPart);
+    Now += 1s;  // the requests are due again
+    const auto second = Exchange.TakeDue(Now);
+    ASSERT_TRUE(second);
+    EXPECT_TRUE(ReadCardMessage(second->Bytes)->HasPart);
+}
+
+TEST_F(Exchanging, SaysAboutHowManyBytesAreDue)
+{
+    EXPECT_EQ(Exchange.DueBytes(Now), 0u);
+    Receive({.From = Name(2), .Requests = {{.Of = Name(1), .Parts = 1}}});
+    Now += 100ms;
+    const std::size_t due = Exchange.DueBytes(Now);
+    const auto taken = Exchange.TakeDue(Now);
+    ASSERT_TRUE(taken);
+    EXPECT_GE(due, taken->Bytes.size());
+    EXPECT_LE(due, taken->Bytes.size() + 2 * CardExchange::IpAndUdp);
+}
+
+TEST_F(ExchangingWithoutMulticast, AMessageToOneNodeTakesNoSummaryFromTheOthers)
+{
+    const auto due = Exchange.Due();  // of the summary
+    ASSERT_TRUE(due);
+    Now = *due;
+    Receive({.From = Name(2), .Requests = {{.Of = Name(1), .Parts = 1}}});
+    const auto messages = Run(100ms);
+    ASSERT_TRUE(HasPart(messages));
+    EXPECT_TRUE(std::any_of(messages.begin(), messages.end(), [](const auto &one) { return !one.To; }));
+}
+
 TEST_F(Exchanging, APartThatWasLostIsSentAgainAlthoughQueuesWereFullThen)
 {
     const std::vector<CardRequest> forPart{{.Of = Name(1), .Parts = 1}};
