@@ -26,6 +26,8 @@ void *operator new(std::size_t size)
     throw std::bad_alloc();
 }
 
+// GCC takes the two operators for mismatched where it inlines one of them alone.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void operator delete(void *memory) noexcept
 {
     std::free(memory);
