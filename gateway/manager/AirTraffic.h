@@ -57,7 +57,11 @@ public:
     void TakeTurns(TransportSession &session, std::function<void()> wakeUp);
     // Call once all publishers exist. The session is kept until Close.
     void Open(TransportSession &session);
-    void Close() { _session = nullptr; }
+    void Close()
+    {
+        _session = nullptr;
+        _turns = nullptr;
+    }
 
     // Sends the due datagrams that may be sent now. Returns when to call again at the latest.
     Duration Serve(Duration now);

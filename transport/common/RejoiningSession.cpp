@@ -365,10 +365,8 @@ void RejoiningSession::CloseAll()
     {
         for (int i = 0; i < count && _onPeer; ++i)
         {
-            _peerGate.Run(
-                [this, &identity = peer] {
-                    _onPeer({PeerEvent::Kind::Lost, identity.first, identity.second});
-                });
+            _peerGate.Run([this, &identity = peer]
+                          { _onPeer({PeerEvent::Kind::Lost, identity.first, identity.second}); });
         }
     }
 }

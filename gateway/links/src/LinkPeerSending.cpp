@@ -243,7 +243,7 @@ void LinkPeer::Send(const LinkFrame &frame, bool asks, LinkTime now)
     if (asks)
     {
         _unansweredSince = std::min(_unansweredSince, now);
-        _askedAt = LinkTime(now.count() / 1000 * 1000);
+        _askedAt = AsEchoed(now);
         _askedSince = std::min(_askedSince, _askedAt);
     }
     _context.Output.Send(frame);

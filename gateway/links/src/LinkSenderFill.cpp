@@ -90,7 +90,7 @@ LinkSender::Filled LinkSender::Fill(LinkFrame &frame, std::size_t most, LinkTime
     data.Queue = _isKnown ? std::string_view() : std::string_view(_queue);
     data.Oldest = _outbox.FirstSequence();
     data.Items.clear();
-    Filling filling{.Frame = frame, .Most = most, .Now = now, .SentAt = LinkTime(now.count() / 1000 * 1000)};
+    Filling filling{.Frame = frame, .Most = most, .Now = now, .SentAt = AsEchoed(now)};
     filling.Head =
         LinkFrameCodec::HeaderSize(frame) + LinkFrameCodec::DataSize(data) + (frame.Acks.empty() ? 0 : 1);
     for (const LinkAck &ack : frame.Acks)

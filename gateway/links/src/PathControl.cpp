@@ -69,7 +69,7 @@ bool PathControl::TakeAsk(LinkTime now)
         return false;
     }
     _sinceAsked = 0;
-    _askedAt = LinkTime(now.count() / 1000 * 1000);  // as precise as its echo
+    _askedAt = AsEchoed(now);
     return true;
 }
 

@@ -2,8 +2,16 @@
 
 #include <rabit/gateway/links/LinkTime.h>
 
+#include <chrono>
+
 namespace Rabit
 {
+
+// The time of a frame as its echo tells it: in whole microseconds.
+constexpr LinkTime AsEchoed(LinkTime time)
+{
+    return std::chrono::floor<std::chrono::microseconds>(time);
+}
 
 // The smoothed round trip of a path and its variation, as RFC 6298 has them. Every frame carries the time of
 // the newest one that came the other way (RFC 7323), so each gives a measurement, even if data was sent
