@@ -1,9 +1,9 @@
 #include "rtps/CardExchange.h"
 
 #include <algorithm>
-#include <initializer_list>
 #include <utility>
 
+#include "rtps/Earliest.h"
 #include "rtps/PackedCard.h"
 
 namespace Rabit::Rtps
@@ -278,27 +278,6 @@ void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by
     }
 }
 
-namespace
-{
-
-std::optional<CardExchange::TimePoint> Earliest(
-    std::initializer_list<std::optional<CardExchange::TimePoint>> times)
-{
-    std::optional<CardExchange::TimePoint> earliest;
-    for (const auto &time : times)
-    {
-        earliest = time && (!earliest || *time < *earliest) ? time : earliest;
-    }
-    return earliest;
-}
-
-bool IsBy(const std::optional<CardExchange::TimePoint> &time, CardExchange::TimePoint now)
-{
-    return time && *time <= now;
-}
-
-}  // namespace
-
 std::optional<CardExchange::TimePoint> CardExchange::RequestDue() const
 {
     std::optional<TimePoint> due;
@@ -441,7 +420,7 @@ std::size_t CardExchange::DueBytes(TimePoint now) const
 
 bool CardExchange::IsSummaryDue(TimePoint now) const
 {
-    return _summary.IsDue(now) || _greeting.IsDue(now) || (_nextPeriod && *_nextPeriod <= now);
+    return IsBy(Earliest({_summary.Due(), _greeting.Due(), _nextPeriod}), now);
 }
 
 void CardExchange::SentSummary(TimePoint now)

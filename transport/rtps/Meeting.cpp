@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/RtpsTraffic.h"
+#include "rtps/Earliest.h"
 #include "rtps/PackedCard.h"
 
 namespace Rabit::Rtps
@@ -179,13 +180,12 @@ void Meeting::Remember(std::deque<GuidPrefix> &peers, const GuidPrefix &peer)
 
 std::optional<Meeting::TimePoint> Meeting::LocalDue() const
 {
-    const auto replay = _replay.Due();
-    return _packAt && replay ? std::min(_packAt, replay) : _packAt ? _packAt : replay;
+    return Earliest({_packAt, _replay.Due()});
 }
 
 std::vector<Meeting::Local> Meeting::TakeLocal(TimePoint now)
 {
-    if (_packAt && *_packAt <= now)
+    if (IsBy(_packAt, now))
     {
         _packAt.reset();
         _exchange.SetOwn(PackCard(_own.Message()), now);

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "rtps/Earliest.h"
+
 namespace Rabit::Rtps
 {
 
@@ -129,9 +131,8 @@ void MeetingThread::Scheduled()
 // When the thread has work. Requires _mutex. A message that waits for its turn is no work of the thread.
 std::optional<MeetingThread::Clock::time_point> MeetingThread::Due() const
 {
-    const auto local = _meeting.LocalDue();
-    const auto network = _takesTurns && _turns->IsDue() ? std::nullopt : _meeting.NetworkDue();
-    return local && network ? std::min(local, network) : local ? local : network;
+    const bool waitsForTurn = _takesTurns && _turns->IsDue();
+    return Earliest({_meeting.LocalDue(), waitsForTurn ? std::nullopt : _meeting.NetworkDue()});
 }
 
 void MeetingThread::Run()
@@ -163,7 +164,7 @@ void MeetingThread::Run()
             continue;
         }
         std::vector<Meeting::Local> messages = _meeting.TakeLocal(now);
-        const bool isForNetwork = _meeting.NetworkDue().value_or(Clock::time_point::max()) <= now;
+        const bool isForNetwork = IsBy(_meeting.NetworkDue(), now);
         const bool takesTurns = _takesTurns;
         lock.unlock();
         for (Meeting::Local &local : messages)
