@@ -10,20 +10,16 @@
 namespace Rabit::Rtps
 {
 
-void MeetingThread::Start(Calls calls, std::shared_ptr<DiscoveryTurns> turns)
+void MeetingThread::Start(Calls calls)
 {
     _calls = std::move(calls);
-    _turns = std::move(turns);
     _thread = std::thread([this] { Run(); });
     _turns->SetExchange(*this);
 }
 
 void MeetingThread::Stop()
 {
-    if (_turns != nullptr)
-    {
-        _turns->RemoveExchange(*this);
-    }
+    _turns->RemoveExchange(*this);
     {
         const std::lock_guard lock(_mutex);
         _stop = true;
@@ -122,16 +118,10 @@ void MeetingThread::SendNext()
     }
 }
 
-void MeetingThread::Scheduled()
-{
-    const std::lock_guard lock(_mutex);
-    _takesTurns = true;
-}
-
 // When the thread has work. Requires _mutex. A message that waits for its turn is no work of the thread.
 std::optional<MeetingThread::Clock::time_point> MeetingThread::Due() const
 {
-    const bool waitsForTurn = _takesTurns && _turns->IsDue();
+    const bool waitsForTurn = _turns->IsScheduled() && _turns->IsDue();
     return Earliest({_meeting.LocalDue(), waitsForTurn ? std::nullopt : _meeting.NetworkDue()});
 }
 
@@ -165,7 +155,6 @@ void MeetingThread::Run()
         }
         std::vector<Meeting::Local> messages = _meeting.TakeLocal(now);
         const bool isForNetwork = IsBy(_meeting.NetworkDue(), now);
-        const bool takesTurns = _takesTurns;
         lock.unlock();
         for (Meeting::Local &local : messages)
         {
@@ -173,7 +162,7 @@ void MeetingThread::Run()
         }
         if (isForNetwork)
         {
-            takesTurns ? _turns->Due() : SendNext();
+            _turns->IsScheduled() ? _turns->Due() : SendNext();
         }
         lock.lock();
     }

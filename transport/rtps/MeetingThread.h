@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <thread>
+#include <utility>
 
 #include "guard/PeerObserver.h"
 #include "rtps/Meeting.h"
@@ -34,10 +35,13 @@ public:
         std::function<std::optional<Clock::time_point>(const GuidPrefix &)> LastHeard;
     };
 
-    explicit MeetingThread(const Meeting::Settings &settings) : _meeting(settings) {}
+    MeetingThread(const Meeting::Settings &settings, std::shared_ptr<DiscoveryTurns> turns)
+        : _meeting(settings), _turns(std::move(turns))
+    {
+    }
     ~MeetingThread() override { Stop(); }
 
-    void Start(Calls calls, std::shared_ptr<DiscoveryTurns> turns);
+    void Start(Calls calls);
     // When this returns, no call is in progress and none will be made. A call must not stop the thread.
     void Stop();
 
@@ -60,7 +64,6 @@ private:
     // DiscoveryTurns::Exchange
     std::size_t NextBytes() override;
     void SendNext() override;
-    void Scheduled() override;
 
     template <typename Work>
     auto With(const Work &work);
@@ -73,10 +76,9 @@ private:
     Meeting _meeting;                              // guarded by _mutex
     std::optional<Clock::time_point> _waitsUntil;  // guarded by _mutex
     bool _waits = false;                           // guarded by _mutex
-    bool _takesTurns = false;                      // guarded by _mutex
     bool _stop = false;                            // guarded by _mutex
     Calls _calls;
-    std::shared_ptr<DiscoveryTurns> _turns;
+    const std::shared_ptr<DiscoveryTurns> _turns;
     std::thread _thread;
 };
 

@@ -370,10 +370,10 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _hasPeers(!settings.Peers.empty()),
       _meeting({.Period = settings.AnnouncementPeriod,
                 .Memory = _multicast ? settings.Memory : settings.Lease,
-                .IsMulticast = _multicast}),
+                .IsMulticast = _multicast},
+               turns),
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
-      _turns(turns),
       _outbox(std::move(turns), [this](const auto &route, auto datagram)
               { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); })
 {
@@ -435,8 +435,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     {
         _meeting.Start({.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
                         .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
-                        .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }},
-                       _turns);
+                        .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
     }
     if (_watch == nullptr)
     {

@@ -93,7 +93,6 @@ private:
     HandshakeEnds _handshakes;
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;
-    const std::shared_ptr<DiscoveryTurns> _turns;
     OutboxThread _outbox;
     Entity _entity;
 };

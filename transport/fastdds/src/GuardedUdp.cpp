@@ -89,8 +89,7 @@ public:
             meeting->Start(
                 {.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
                  .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
-                 .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }},
-                _descriptor.Chosen().Turns);
+                 .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
         }
     }
     ~GuardedUdp() override

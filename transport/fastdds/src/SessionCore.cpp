@@ -89,7 +89,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
       _meeting(std::make_shared<Rtps::MeetingThread>(
           Rtps::Meeting::Settings{.Period = settings.AnnouncementPeriod,
                                   .Memory = _multicast ? settings.Memory : settings.Lease,
-                                  .IsMulticast = _multicast}))
+                                  .IsMulticast = _multicast},
+          turns))
 {
     auto attributes = MakeParticipantAttributes(
         settings, _log,

@@ -31,7 +31,7 @@ void NetworkCore::AwaitCards(ParticipantState &me)
 void NetworkCore::ServeCards(const ParticipantPtr &me)
 {
     me->CardsAt.reset();
-    if (me->TakesTurns)
+    if (me->Turns.IsScheduled())
     {
         _calls.emplace_back([me] { me->Turns.Due(); });
         return;
@@ -85,12 +85,6 @@ void NetworkCore::SendNextCard(const ParticipantPtr &participant)
     {
         SendCard(participant);
     }
-}
-
-void NetworkCore::TakeTurns(ParticipantState &participant)
-{
-    const std::lock_guard lock(_mutex);
-    participant.TakesTurns = true;
 }
 
 void NetworkCore::HearCard(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)

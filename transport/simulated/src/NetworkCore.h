@@ -70,7 +70,6 @@ public:
     // DiscoveryTurns::Exchange of that participant.
     std::size_t NextCardBytes(ParticipantState &participant);
     void SendNextCard(const ParticipantPtr &participant);
-    void TakeTurns(ParticipantState &participant);
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
     std::optional<Time> LastArrival(const std::string &from, const std::string &to,

@@ -32,7 +32,6 @@ public:
 private:
     std::size_t NextBytes() override { return _core->NextCardBytes(*_participant); }
     void SendNext() override { _core->SendNextCard(_participant); }
-    void Scheduled() override { _core->TakeTurns(*_participant); }
 
     const std::shared_ptr<NetworkCore> _core;
     const ParticipantPtr _participant;

@@ -195,7 +195,6 @@ struct ParticipantState
     int Announced = 0;  // times
 
     Rtps::CardExchange Cards;
-    bool TakesTurns = false;                          // cards go by Turns
     std::optional<std::chrono::nanoseconds> CardsAt;  // when the card timer is due
     std::uint64_t CardTimer = 0;                      // number of the timer that is valid
 

@@ -34,8 +34,6 @@ public:
         virtual std::size_t NextBytes() = 0;
         // Sends one datagram to its destinations, if one is due. May wait for a socket, 100 ms for each.
         virtual void SendNext() = 0;
-        // From now on, SendNext alone sends.
-        virtual void Scheduled() = 0;
 
     protected:
         ~Exchange() = default;
@@ -44,16 +42,11 @@ public:
     // The holder's side.
 
     // From now on, the exchange sends in SendNext alone. `onDue` is called, on any thread and without locks,
-    // each time that IsDue becomes true. It must not call this object. Call once, before threads share it.
+    // each time that IsDue becomes true. It must not call this object. Call once.
     void Schedule(std::function<void()> onDue)
     {
-        const std::lock_guard lock(_mutex);
         _onDue = std::move(onDue);
         _isScheduled = true;
-        if (_exchange != nullptr)
-        {
-            _exchange->Scheduled();
-        }
     }
     // True if NextBytes may be more than 0. Costs one load.
     bool IsDue() const { return _isDue; }
@@ -88,10 +81,6 @@ public:
     {
         const std::lock_guard lock(_mutex);
         _exchange = &exchange;
-        if (_isScheduled)
-        {
-            _exchange->Scheduled();
-        }
     }
     // Nothing happens if another one takes turns.
     void RemoveExchange(const Exchange &exchange)
@@ -99,7 +88,9 @@ public:
         const std::lock_guard lock(_mutex);
         _exchange = _exchange == &exchange ? nullptr : _exchange;
     }
-    // A datagram is due. Call without locks that the exchange's functions take.
+    // True if the exchange sends in SendNext alone, and calls Due when a datagram is due.
+    bool IsScheduled() const { return _isScheduled; }
+    // A datagram is due. Call without locks that the exchange's functions take, and after IsScheduled.
     void Due()
     {
         if (!_isDue.exchange(true))
@@ -112,8 +103,8 @@ public:
 private:
     std::mutex _mutex;
     Exchange *_exchange = nullptr;  // guarded by _mutex, which is held while its functions run
-    bool _isScheduled = false;      // guarded by _mutex
-    std::function<void()> _onDue;   // set before Exchange::Scheduled is called, and not changed afterwards
+    std::function<void()> _onDue;   // set before _isScheduled, and not changed afterwards
+    std::atomic<bool> _isScheduled{false};
     std::atomic<bool> _isDue{false};
     std::atomic<double> _keyRate{0.0};
 };
