@@ -49,6 +49,12 @@ double Seconds(Duration time)
     return std::chrono::duration<double>(time).count();
 }
 
+// The rate that brings a queue to the goal.
+double EmptyingRate(double carried, Duration queue)
+{
+    return carried * (1.0 + Seconds(Goal - queue) / EmptyIn);
+}
+
 }  // namespace
 
 // Bytes a second that were carried between two reports' datagrams, as long as there was a queue. Empty if the
@@ -235,10 +241,10 @@ std::optional<double> CapacityEstimate::Rate(Duration now) const
 {
     if (!_limited)
     {
-        return std::nullopt;
+        const bool isUnknown = _heardLate > Target && !_reports.Latest(now);
+        return isUnknown ? std::optional(std::max(EmptyingRate(FirstRate, _heardLate), Floor)) : std::nullopt;
     }
-    const Duration queue = Queue(now);
-    const double rate = _carried * (1.0 + Seconds(Goal - queue) / EmptyIn);
+    const double rate = EmptyingRate(_carried, Queue(now));
     const double silence = std::max(Seconds(now - _reportedAt - SilentAfter), 0.0);
     return std::max(rate * std::max(1.0 - FallInSilence * silence, LeastInSilence), Floor);
 }

@@ -92,10 +92,6 @@ Duration AirTraffic::Serve(Duration now)
     {
         Watch(now);
     }
-    if (!IsLimited())
-    {
-        return ServeUnlimited(now);
-    }
     if (now - _limitSetAt >= LimitPeriod)
     {
         SetLimit(now);
@@ -182,6 +178,7 @@ void AirTraffic::SetBeatPeriod(std::optional<double> budget, std::optional<doubl
 void AirTraffic::SetLimit(Duration now)
 {
     _limitSetAt = now;
+    _estimate.HeardLate(_turns != nullptr ? _turns->QueueingDelay() : Duration(0));
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
     SetBeatPeriod(budget, carried);

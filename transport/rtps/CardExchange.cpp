@@ -326,8 +326,8 @@ std::optional<CardExchange::TimePoint> CardExchange::Due() const
     return due && _self != GuidPrefix{} ? std::optional(std::max(*due, Free())) : std::nullopt;
 }
 
-// Current queueing delay: the median of the other nodes' measurements (the lower of two), since one node may
-// lie. Measurements from answers alone count if there are any: the others may share the same delay.
+// The lower of two medians, since one node may lie. Measurements from answers alone count if there are any:
+// the others may share the same delay.
 CardExchange::Duration CardExchange::Delay(TimePoint now) const
 {
     std::vector<Duration> delays;

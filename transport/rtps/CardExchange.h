@@ -119,6 +119,8 @@ public:
     // About how many bytes the next message that is due takes, with the headers of IP and UDP; 0: none is
     // due.
     std::size_t DueBytes(TimePoint now) const;
+    // Current queueing delay of the other nodes' messages: their median; 0: none was heard lately.
+    Duration Delay(TimePoint now) const;
     std::size_t Size() const { return _peers.size(); }
 
 private:
@@ -166,7 +168,6 @@ private:
     std::optional<TimePoint> NextDue() const;
     void Fill(TimePoint now);
     TimePoint Free() const;
-    Duration Delay(TimePoint now) const;
     bool IsCrowd() const;  // several have not answered yet
     std::vector<std::pair<GuidPrefix, Peer *>> ToBeAsked(TimePoint now);
     bool IsPartNext(TimePoint now) const;

@@ -88,6 +88,8 @@ public:
     std::optional<TimePoint> NetworkDue() const { return _exchange.Due(); }
     std::size_t NetworkBytes(TimePoint now) const { return _exchange.DueBytes(now); }
     std::optional<CardExchange::Outgoing> TakeForNetwork(TimePoint now) { return _exchange.TakeDue(now); }
+    // CardExchange::Delay
+    CardExchange::Duration QueueingDelay(TimePoint now) const { return _exchange.Delay(now); }
     // Participants to be ended once they are silent for EndAfter(): former sessions of nodes that have
     // another one, and all if there are more than MostSilent.
     std::vector<GuidPrefix> Endable() const;

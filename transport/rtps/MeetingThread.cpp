@@ -118,6 +118,12 @@ void MeetingThread::SendNext()
     }
 }
 
+std::chrono::nanoseconds MeetingThread::QueueingDelay() const
+{
+    const std::lock_guard lock(_mutex);
+    return _meeting.QueueingDelay(Clock::now());
+}
+
 // When the thread has work. Requires _mutex. A message that waits for its turn is no work of the thread.
 std::optional<MeetingThread::Clock::time_point> MeetingThread::Due() const
 {

@@ -64,6 +64,7 @@ private:
     // DiscoveryTurns::Exchange
     std::size_t NextBytes() override;
     void SendNext() override;
+    std::chrono::nanoseconds QueueingDelay() const override;
 
     template <typename Work>
     auto With(const Work &work);

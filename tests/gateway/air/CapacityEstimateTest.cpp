@@ -419,5 +419,31 @@ TEST_F(CapacityEstimateTest, BetweenTwoDatagramsOfOneBurstNothingIsMeasured)
     EXPECT_GE(Estimate.Rate(9s).value_or(1e9), 10e3);
 }
 
+// Nodes that meet on a full radio: nobody has reported yet, but what others send comes late here.
+TEST_F(CapacityEstimateTest, WithoutReportsTheLatenessOfOthersLimitsTheNode)
+{
+    Estimate.HeardLate(150ms);
+    const double slightly = Estimate.Rate(1s).value_or(1e9);
+    EXPECT_LE(slightly, CapacityEstimate::FirstRate);
+    Estimate.HeardLate(400ms);
+    EXPECT_LT(Estimate.Rate(1s).value_or(1e9), slightly);
+    Estimate.HeardLate(10s);
+    EXPECT_EQ(Estimate.Rate(1s), CapacityEstimate::Floor);
+}
+
+TEST_F(CapacityEstimateTest, OthersThatComeInTimeDoNotLimitTheNode)
+{
+    Estimate.HeardLate(CapacityEstimate::Target);
+    EXPECT_FALSE(Estimate.Rate(1s));
+}
+
+TEST_F(CapacityEstimateTest, ReportsOfTheOwnDatagramsCountMoreThanTheLatenessOfOthers)
+{
+    Estimate.HeardLate(400ms);
+    Estimate.Reported(0, 5ms, 900ms, 1s);
+    EXPECT_FALSE(Estimate.Rate(1s));
+    EXPECT_TRUE(Estimate.Rate(1s + DelayReports::Fresh + 1ms));
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -87,6 +87,12 @@ void NetworkCore::SendNextCard(const ParticipantPtr &participant)
     }
 }
 
+Time NetworkCore::CardDelay(const ParticipantState &participant) const
+{
+    const std::lock_guard lock(_mutex);
+    return participant.Cards.Delay(CardTime());
+}
+
 void NetworkCore::HearCard(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram)
 {
     const auto message = Rtps::ReadCardMessage(*datagram.Card);

@@ -70,6 +70,7 @@ public:
     // DiscoveryTurns::Exchange of that participant.
     std::size_t NextCardBytes(ParticipantState &participant);
     void SendNextCard(const ParticipantPtr &participant);
+    Time CardDelay(const ParticipantState &participant) const;
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
     std::optional<Time> LastArrival(const std::string &from, const std::string &to,

@@ -32,6 +32,7 @@ public:
 private:
     std::size_t NextBytes() override { return _core->NextCardBytes(*_participant); }
     void SendNext() override { _core->SendNextCard(_participant); }
+    std::chrono::nanoseconds QueueingDelay() const override { return _core->CardDelay(*_participant); }
 
     const std::shared_ptr<NetworkCore> _core;
     const ParticipantPtr _participant;

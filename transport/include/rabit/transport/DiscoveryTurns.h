@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <mutex>
@@ -34,6 +35,9 @@ public:
         virtual std::size_t NextBytes() = 0;
         // Sends one datagram to its destinations, if one is due. May wait for a socket, 100 ms for each.
         virtual void SendNext() = 0;
+        // How long the other nodes' messages of this exchange have lately waited in queues: the median of
+        // the nodes; 0: not at all, or none was heard for some seconds.
+        virtual std::chrono::nanoseconds QueueingDelay() const = 0;
 
     protected:
         ~Exchange() = default;
@@ -69,6 +73,12 @@ public:
         {
             _exchange->SendNext();
         }
+    }
+    // Exchange::QueueingDelay
+    std::chrono::nanoseconds QueueingDelay()
+    {
+        const std::lock_guard lock(_mutex);
+        return _exchange != nullptr ? _exchange->QueueingDelay() : std::chrono::nanoseconds(0);
     }
     // Limits the exchange of keys to this many bytes per second; 0, the initial value: unlimited.
     void SetKeyRate(double bytesPerSecond) { _keyRate = bytesPerSecond; }
