@@ -25,8 +25,8 @@ public:
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
     // Longest time between the first QuickBeats beats that are brought forward: a question or its answer may
     // be lost.
-    static constexpr Duration QuickGap = std::chrono::milliseconds(300);
-    static constexpr int QuickBeats = 12;
+    static constexpr Duration QuickGap = std::chrono::milliseconds(150);
+    static constexpr int QuickBeats = 20;
     // After this time without a beat brought forward, the next one counts as the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
     // Each such time without a newcomer makes the beats for the next one twice as quick.

@@ -30,8 +30,8 @@ public:
     static constexpr Duration LongestGap = std::chrono::seconds(2);
     // The first questions follow each other more quickly: a question or its answer may be lost, and a radio
     // that loses datagrams is not full.
-    static constexpr Duration QuickGap = std::chrono::milliseconds(300);
-    static constexpr int QuickQuestions = 12;
+    static constexpr Duration QuickGap = std::chrono::milliseconds(150);
+    static constexpr int QuickQuestions = 20;
 
     // Limits the gap to `gap` for the first `questions` questions, in place of the two above: for a tool,
     // which looks and goes.

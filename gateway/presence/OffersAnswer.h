@@ -23,8 +23,8 @@ public:
     static constexpr Duration ShortestGap = std::chrono::milliseconds(50);
     static constexpr Duration LongestGap = std::chrono::seconds(2);
     // The first answers follow each other more quickly: an answer may be lost.
-    static constexpr Duration QuickGap = std::chrono::milliseconds(300);
-    static constexpr int QuickAnswers = 12;
+    static constexpr Duration QuickGap = std::chrono::milliseconds(100);
+    static constexpr int QuickAnswers = 20;
     // After this time without a question the gap is ShortestGap again.
     static constexpr Duration Quiet = std::chrono::seconds(5);
     // Time between two parts.

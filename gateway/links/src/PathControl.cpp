@@ -37,7 +37,7 @@ constexpr double Growth = 1.25;
 constexpr int StalledRounds = 2;
 // The probe timer first doubles this many times: where much is lost, waiting longer does not help. When there
 // is no path it goes on doubling.
-constexpr int FirstDoublings = 3;
+constexpr int FirstDoublings = 2;
 // A round trip that was once very long is no reason to wait for the next ones that long.
 constexpr LinkTime LongestProbe = 3s;
 

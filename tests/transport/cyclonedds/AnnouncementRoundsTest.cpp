@@ -17,11 +17,15 @@ protected:
     // Runs the rounds up to `until`. Returns the times of the announcements, in ms from the start.
     std::vector<int> Live(std::chrono::milliseconds until, bool unheard)
     {
+        return Live(Rounds, until, unheard);
+    }
+    std::vector<int> Live(AnnouncementRounds &rounds, std::chrono::milliseconds until, bool unheard) const
+    {
         std::vector<int> announced;
-        while (Rounds.Due() && *Rounds.Due() <= Start + until)
+        while (rounds.Due() && *rounds.Due() <= Start + until)
         {
-            const auto now = *Rounds.Due();
-            if (Rounds.Next(now, unheard))
+            const auto now = *rounds.Due();
+            if (rounds.Next(now, unheard))
             {
                 announced.push_back(static_cast<int>((now - Start) / 1ms));
             }
@@ -37,6 +41,12 @@ TEST_F(AnnouncementRoundsTest, AtFirstAFewAtDoublingDistances)
 {
     EXPECT_EQ(Live(1h, false), (std::vector{200, 600, 1400, 3000, 6200}));
     EXPECT_FALSE(Rounds.Due().has_value());
+}
+
+TEST_F(AnnouncementRoundsTest, WhereACardTellsOfTheNodeOnlyTwoFollowAndLater)
+{
+    AnnouncementRounds rounds(100ms, Start, true);
+    EXPECT_EQ(Live(rounds, 1h, false), (std::vector{2000, 6000}));
 }
 
 TEST_F(AnnouncementRoundsTest, ANewcomerIsAnsweredOnceIfAllShowThatTheyHeardUs)

@@ -55,6 +55,19 @@ protected:
     std::uint64_t Heard = 0;
 };
 
+TEST_F(AnnouncementPaceTest, WhereACardTellsOfTheNodeOnlyTwoFollowAndLater)
+{
+    AnnouncementPace pace(10s, true);
+    EXPECT_TRUE(pace.MayGo(1, Content, Heard, Start));
+    std::vector<std::chrono::milliseconds> sent;
+    while (const auto due = pace.Due())
+    {
+        EXPECT_TRUE(pace.MayGo(1, Content, Heard, *due));
+        sent.push_back(std::chrono::duration_cast<std::chrono::milliseconds>(*due - Start));
+    }
+    EXPECT_EQ(sent, (std::vector<std::chrono::milliseconds>{2s, 6s}));
+}
+
 TEST_F(AnnouncementPaceTest, ItAsksForTheFirstFewAtGrowingDistances)
 {
     EXPECT_TRUE(Send(0ms));

@@ -26,7 +26,8 @@ bool AnnouncementRounds::Series::Pass(TimePoint now)
 AnnouncementRounds::AnnouncementRounds(Duration answerGap, TimePoint now, bool hasCard)
     : _answerGap(answerGap), _last(now)
 {
-    _initial.Begin(now, InitialGap, hasCard ? InitialRoundsWithCard : InitialRounds);
+    hasCard ? _initial.Begin(now, InitialGapWithCard, InitialRoundsWithCard)
+            : _initial.Begin(now, InitialGap, InitialRounds);
 }
 
 void AnnouncementRounds::OnPeer(TimePoint now)

@@ -20,7 +20,9 @@ public:
     // After the first announcement: at 0.2, 0.6, 1.4, 3 and 6.2 s, unless a newcomer was just answered.
     static constexpr std::chrono::milliseconds InitialGap{200};
     static constexpr int InitialRounds = 5;
-    // The same where other nodes learn of this one by its card: only programs without a card need them.
+    // The same where other nodes learn of this one by its card: at 2 and 6 s. Only programs without a card
+    // need them, and a crowd that starts has other things to send.
+    static constexpr std::chrono::milliseconds InitialGapWithCard{2000};
     static constexpr int InitialRoundsWithCard = 2;
     // Limit of announcements for a newcomer; the last comes a minute or two after it.
     static constexpr int MostAnswers = 10;

@@ -7,6 +7,8 @@ namespace Rabit::FastDds
 
 AnnouncementPace::AnnouncementPace(std::chrono::milliseconds period, bool hasCard)
     : _longest(std::min<std::chrono::steady_clock::duration>(LongestGap, period / 2)),
+      _firstInitial(
+          std::min<std::chrono::steady_clock::duration>(hasCard ? InitialGapWithCard : FirstGap, period / 2)),
       _usual(period / 2),
       _initial(hasCard ? InitialRoundsWithCard : InitialRounds)
 {
@@ -17,8 +19,8 @@ void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoi
     const auto first = std::min<std::chrono::steady_clock::duration>(FirstGap, _longest);
     if (!_begun)
     {
-        _initialGap = first;
-        _nextInitial = now + first;
+        _initialGap = _firstInitial;
+        _nextInitial = now + _firstInitial;
     }
     else if (_initial > 0 && now >= _nextInitial)
     {

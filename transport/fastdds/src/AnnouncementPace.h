@@ -28,7 +28,9 @@ public:
     static constexpr std::chrono::milliseconds Rest{3200};
     // Rounds that it requests after the first one, at doubling intervals: 0.1, 0.2 ... 3.2 s.
     static constexpr int InitialRounds = 6;
-    // The same where other nodes learn of this one by its card: only programs without a card need them.
+    // The same where other nodes learn of this one by its card: at 2 and 6 s. Only programs without a card
+    // need them, and a crowd that starts has other things to send.
+    static constexpr std::chrono::milliseconds InitialGapWithCard{2000};
     static constexpr int InitialRoundsWithCard = 2;
     static constexpr std::size_t MostDestinations = 4096;
 
@@ -47,6 +49,7 @@ private:
     bool IsWanted(std::uint64_t heard, TimePoint now) const;
 
     const std::chrono::steady_clock::duration _longest;
+    const std::chrono::steady_clock::duration _firstInitial;
     const std::chrono::steady_clock::duration _usual;  // after this, an announcement is a periodic one
     std::set<Destination> _told;                       // in this round
     std::optional<TimePoint> _begun;                   // this round
