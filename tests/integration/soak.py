@@ -18,6 +18,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import threading
 import time
 
 import expectations
@@ -72,16 +73,42 @@ def arguments(node, left_s):
             str(PICTURE_PERIOD_S * 10**9)]
 
 
+class Yardstick(threading.Thread):
+    """Measures once a second how much processor time a fixed piece of work takes. Other programs on the machine make all
+    work slower, by their use of caches and of the other half of a core."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self._times = []
+        self.start()
+
+    def run(self):
+        work = [{"number": number, "text": str(number) * 8} for number in range(400)]
+        while True:
+            begin = time.thread_time()
+            json.loads(json.dumps(work))
+            self._times.append(time.thread_time() - begin)
+            time.sleep(1)
+
+    def take_ms(self):
+        """The mean since the last call."""
+        times, self._times = self._times, []
+        return round(1000 * sum(times) / len(times), 3) if times else None
+
+
 class Usage:
     """Memory and processor time of the processes that run."""
 
     def __init__(self, ground):
         self._field = ground
         self._before = {}  # pid -> (time, processor seconds)
+        self._yardstick = Yardstick()
 
     def sample(self):
-        """{node: {"rss_kb", "cpu_percent" since the last sample, or None of a process that was not there then}}"""
-        return {node: self._of(self._field.processes[node].pid) for node in NODES}
+        """{node: {"rss_kb", "cpu_percent" since the last sample, or None of a process that was not there then}}, and
+        "yardstick_ms"."""
+        return {**{node: self._of(self._field.processes[node].pid) for node in NODES},
+                "yardstick_ms": self._yardstick.take_ms()}
 
     def _of(self, pid):
         fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
@@ -238,15 +265,19 @@ def judge_memory(samples):
 
 
 def judge_processor(samples):
+    """The same work has to cost the same, measured by the yardstick."""
     if len(samples) < LEAST_MINUTES:
         return []
     wrong = []
     third = len(samples) // 3
     for node in LONG_LIVED:
-        shares = [sample[node]["cpu_percent"] for sample in samples]
-        second, last = sum(shares[third:2 * third]) / third, sum(shares[-third:]) / third
+        def cost(part):
+            return sum(sample[node]["cpu_percent"] for sample in part) / sum(sample["yardstick_ms"] for sample in part)
+
+        second, last = cost(samples[third:2 * third]), cost(samples[-third:])
         if abs(last - second) > PROCESSOR_GROWTH * second:
-            wrong.append(f"{node}: {last:.2f} % of a processor in the last third, {second:.2f} % in the second")
+            wrong.append(f"{node}: {last:.2f} % of a processor for each ms of the yardstick in the last third, "
+                         f"{second:.2f} % in the second")
     return wrong
 
 

@@ -24,9 +24,9 @@ def presence(lives, *faults):
     return soak.PresenceTruth(run, END_S).wrong()
 
 
-def samples(rss_kb, cpu_percent):
-    return [{node: {"rss_kb": rss, "cpu_percent": cpu} for node in soak.LONG_LIVED}
-            for rss, cpu in zip(rss_kb, cpu_percent)]
+def samples(rss_kb, cpu_percent, yardstick_ms=None):
+    return [{**{node: {"rss_kb": rss, "cpu_percent": cpu} for node in soak.LONG_LIVED}, "yardstick_ms": yardstick}
+            for rss, cpu, yardstick in zip(rss_kb, cpu_percent, yardstick_ms or [2] * len(rss_kb))]
 
 
 class PresenceTest(unittest.TestCase):
@@ -85,6 +85,13 @@ class CostTest(unittest.TestCase):
 
     def test_finds_processor_time_that_grows(self):
         self.assertEqual(len(soak.judge_processor(samples([100] * 60, [5] * 40 + [5.6] * 20))), len(soak.LONG_LIVED))
+
+    def test_accepts_processor_time_that_grows_with_that_of_all_work(self):
+        self.assertEqual(soak.judge_processor(samples([100] * 60, [5] * 40 + [6] * 20, [2] * 40 + [2.4] * 20)), [])
+
+    def test_finds_processor_time_that_grows_while_other_work_gets_quicker(self):
+        self.assertEqual(len(soak.judge_processor(samples([100] * 60, [5] * 60, [2.4] * 40 + [2] * 20))),
+                         len(soak.LONG_LIVED))
 
     def test_percentiles(self):
         self.assertEqual(soak.percentiles([k / 1000 for k in range(100)]),
