@@ -36,7 +36,7 @@ bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
     entry.Delay = delay;
     entry.Arrival = arrival;
     entry.IsNew = true;
-    return delay >= Large;
+    return delay >= Large && entry.Told < Large;
 }
 
 bool DelayNotes::IsDue(const Entry &entry, Duration now) const

@@ -14,7 +14,8 @@ namespace Rabit
 {
 
 // The queueing delay of each other node's newest datagram, against its quickest one, for this node's beats to
-// report to that node. A large delay is reported at once, a small one now and then.
+// report to that node. A delay that becomes large is reported at once, one that stays large with each beat, a
+// small one now and then.
 //
 // A pure state machine; `now` never goes back. Bounded.
 class DelayNotes
@@ -43,8 +44,8 @@ public:
     {
         _smallPeriod = std::clamp(SmallEachBeats * period, SmallPeriod, LongestSmallPeriod);
     }
-    // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns true if the sender
-    // should hear of the delay soon.
+    // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns true if the delay is
+    // large and the sender was told of a smaller one: it should hear of this one soon.
     bool Note(Tag node, Duration delay, Duration arrival);
     // The median delay of the nodes that were heard lately; 0 if none was. At most LongestQueue, so that a
     // clock that stood still holds nothing up for long.

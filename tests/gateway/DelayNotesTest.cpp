@@ -68,6 +68,19 @@ TEST(DelayNotes, ThatADelayCameOrWentIsToldAtOnce)
     EXPECT_EQ(notes.Take(2500ms, 8).size(), 0u);
 }
 
+TEST(DelayNotes, ADelayIsUrgentWhenItBecomesLargeAndNotWhileItStaysLarge)
+{
+    DelayNotes notes;
+    EXPECT_FALSE(notes.Note(7, 40ms, 1s));
+    EXPECT_TRUE(notes.Note(7, 400ms, 1500ms));
+    notes.Take(1500ms, 8);
+    EXPECT_FALSE(notes.Note(7, 500ms, 2s));
+    notes.Take(2s, 8);
+    notes.Note(7, 2ms, 2500ms);
+    notes.Take(2500ms, 8);
+    EXPECT_TRUE(notes.Note(7, 400ms, 3s));
+}
+
 TEST(DelayNotes, NodesTakeTurns)
 {
     DelayNotes notes;
