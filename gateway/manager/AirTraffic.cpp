@@ -178,7 +178,9 @@ void AirTraffic::SetBeatPeriod(std::optional<double> budget, std::optional<doubl
 void AirTraffic::SetLimit(Duration now)
 {
     _limitSetAt = now;
-    _estimate.HeardLate(_turns != nullptr ? _turns->QueueingDelay() : Duration(0));
+    const Duration heardLate = _turns != nullptr ? _turns->QueueingDelay() : Duration(0);
+    _estimate.HeardLate(heardLate);
+    _presence.HeardLate(heardLate);
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
     SetBeatPeriod(budget, carried);

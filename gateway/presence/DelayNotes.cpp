@@ -36,7 +36,7 @@ bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
     entry.Delay = delay;
     entry.Arrival = arrival;
     entry.IsNew = true;
-    return delay >= Large && entry.Told < Large;
+    return delay >= Large && (!_largeToldAt || arrival - *_largeToldAt >= Rest);
 }
 
 bool DelayNotes::IsDue(const Entry &entry, Duration now) const
@@ -55,13 +55,10 @@ DelayNotes::Duration DelayNotes::Delay(Duration now) const
             delays.push_back(entry.Delay);
         }
     }
-    if (delays.empty())
-    {
-        return Duration(0);
-    }
     const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
     std::nth_element(delays.begin(), middle, delays.end());
-    return std::min(*middle, LongestQueue);
+    const Duration delay = delays.empty() ? Duration(0) : *middle;
+    return std::min(std::max(delay, _heardLate), LongestQueue);
 }
 
 std::size_t DelayNotes::Due(Duration now, std::size_t most) const
@@ -96,6 +93,7 @@ std::vector<Gateway::DelayReport> DelayNotes::Take(Duration now, std::size_t mos
                   reports.push_back(report);
                   entry.IsNew = false;
                   entry.Told = entry.Delay;
+                  _largeToldAt = entry.Delay >= Large ? now : _largeToldAt;
                   entry.ToldAt = now;
                   return true;
               });

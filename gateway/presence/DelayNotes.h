@@ -14,8 +14,8 @@ namespace Rabit
 {
 
 // The queueing delay of each other node's newest datagram, against its quickest one, for this node's beats to
-// report to that node. A delay that becomes large is reported at once, one that stays large with each beat, a
-// small one now and then.
+// report to that node. A large delay is reported at once if no delay was large lately; after that with each
+// beat. A small one is reported now and then.
 //
 // A pure state machine; `now` never goes back. Bounded.
 class DelayNotes
@@ -33,6 +33,9 @@ public:
     static constexpr int SmallEachBeats = 4;
     // In a large fleet a few small delays are enough.
     static constexpr std::size_t MostSmall = 2;  // at once
+    // For so long after a large delay was reported, another one is not urgent: a channel that is full stays
+    // at the limit.
+    static constexpr Duration Rest = std::chrono::seconds(5);
     // An older delay is not reported.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
@@ -44,11 +47,14 @@ public:
     {
         _smallPeriod = std::clamp(SmallEachBeats * period, SmallPeriod, LongestSmallPeriod);
     }
-    // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns true if the delay is
-    // large and the sender was told of a smaller one: it should hear of this one soon.
+    // A datagram of that node came at `arrival`, by this node's monotonic clock. Returns true if the sender
+    // should hear of the delay soon.
     bool Note(Tag node, Duration delay, Duration arrival);
-    // The median delay of the nodes that were heard lately; 0 if none was. At most LongestQueue, so that a
-    // clock that stood still holds nothing up for long.
+    // Discovery's messages wait in queues for so long now. Before nodes have met, only these tell it.
+    void HeardLate(Duration delay) { _heardLate = delay; }
+    // How long datagrams wait in queues: the median delay of the nodes that were heard lately, or that of
+    // HeardLate if it is longer. At most LongestQueue, so that a clock that stood still holds nothing up for
+    // long.
     Duration Delay(Duration now) const;
     // Number of delays to report now, at most `most`.
     std::size_t Due(Duration now, std::size_t most) const;
@@ -68,6 +74,8 @@ private:
     bool IsDue(const Entry &entry, Duration now) const;
 
     Duration _smallPeriod = SmallPeriod;
+    std::optional<Duration> _largeToldAt;
+    Duration _heardLate{0};
     std::map<Tag, Entry> _notes;
     Tag _last = 0;
 };

@@ -146,6 +146,8 @@ public:
     // A datagram of that node, other than a beat, came by `delay` later than its quickest; the beats report
     // that.
     void NoteDelay(std::string_view node, Duration delay, Duration arrivedAt);
+    // DelayNotes::HeardLate
+    void HeardLate(Duration delay) { _contents.Delays().HeardLate(delay); }
 
     const PeerTable &Peers() const { return _peers; }
     // Number of samples of the gateways' topics that were malformed, or found the inbox full.

@@ -68,17 +68,26 @@ TEST(DelayNotes, ThatADelayCameOrWentIsToldAtOnce)
     EXPECT_EQ(notes.Take(2500ms, 8).size(), 0u);
 }
 
-TEST(DelayNotes, ADelayIsUrgentWhenItBecomesLargeAndNotWhileItStaysLarge)
+TEST(DelayNotes, ALargeDelayIsUrgentUnlessOneWasToldLately)
 {
     DelayNotes notes;
     EXPECT_FALSE(notes.Note(7, 40ms, 1s));
     EXPECT_TRUE(notes.Note(7, 400ms, 1500ms));
     notes.Take(1500ms, 8);
-    EXPECT_FALSE(notes.Note(7, 500ms, 2s));
-    notes.Take(2s, 8);
-    notes.Note(7, 2ms, 2500ms);
-    notes.Take(2500ms, 8);
-    EXPECT_TRUE(notes.Note(7, 400ms, 3s));
+    EXPECT_FALSE(notes.Note(8, 500ms, 2s));
+    EXPECT_FALSE(notes.Note(7, 500ms, 1499ms + DelayNotes::Rest));
+    EXPECT_TRUE(notes.Note(7, 500ms, 1500ms + DelayNotes::Rest));
+}
+
+TEST(DelayNotes, BeforeNodesHaveMetDiscoveryTellsOfQueues)
+{
+    DelayNotes notes;
+    notes.HeardLate(700ms);
+    EXPECT_EQ(notes.Delay(1s), 700ms);
+    notes.Note(7, 2ms, 1s);  // the first of a node counts as quick
+    EXPECT_EQ(notes.Delay(1s), 700ms);
+    notes.HeardLate(0ms);
+    EXPECT_EQ(notes.Delay(1s), 2ms);
 }
 
 TEST(DelayNotes, NodesTakeTurns)
