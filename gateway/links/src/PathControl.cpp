@@ -128,6 +128,11 @@ void PathControl::Lost(std::size_t bytes)
     _lossRate += (1 - _lossRate) * WeightOf(bytes);
 }
 
+void PathControl::Answered(LinkTime time)
+{
+    _answer = _answer == LinkTime(0) || time < _answer ? time : _answer + (time - _answer) / 8;
+}
+
 // Weight of `bytes` bytes in an average over some tens of datagrams.
 double PathControl::WeightOf(std::size_t bytes) const
 {
@@ -291,10 +296,9 @@ LinkTime PathControl::ReorderingTime() const
 LinkTime PathControl::ProbeTimeout(int doublings) const
 {
     const LinkTime known = std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay(), LongestProbe);
-    // The round trip is that of the path alone. A peer with a budget may send its answers much later.
-    const LinkTime answer = std::min(_answers.Smoothed() + 4 * _answers.Variation(), _settings.MaxResend);
     const LinkTime least = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
-    const LinkTime plain = std::max(least, answer);
+    // The round trip is that of the path alone. A peer with a budget may send its answers much later.
+    const LinkTime plain = std::max(least, std::min(2 * _answer, _settings.MaxResend));
     const LinkTime longest = std::max(plain, _settings.MaxResend);
     const int shift = doublings < ProbesInVain ? std::min(doublings, FirstDoublings)
                                                : std::min(FirstDoublings + 1 + doublings - ProbesInVain, 10);

@@ -37,9 +37,9 @@ public:
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
     // A frame that asks for an answer was answered after that time, which includes the time for which the
-    // peer held the answer back. Where several ask, the newest that was heard counts, so the time may be too
-    // short. Longer than MaxResend counts as MaxResend: an earlier question may have been lost.
-    void Answered(LinkTime time) { _answers.Measured(std::min(time, _settings.MaxResend)); }
+    // peer held the answer back. A longer time than usual may mean that an earlier answer was lost, so quick
+    // answers count more.
+    void Answered(LinkTime time);
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
 
@@ -84,7 +84,7 @@ private:
 
     const LinkSettings &_settings;
     RoundTrip _times;
-    RoundTrip _answers;
+    LinkTime _answer{0};  // 0: none came
     std::size_t _inFlight = 0;
     std::size_t _window;
     bool _slowStart = true;

@@ -190,16 +190,25 @@ TEST_F(PathTest, the_probe_timer_follows_the_round_trip_within_its_bounds)
 TEST_F(PathTest, the_probe_timer_waits_for_answers_that_the_peer_holds_back_up_to_the_limit_of_its_backoff)
 {
     path.Answered(200ms);
-    EXPECT_EQ(path.ProbeTimeout(), 200ms + 4 * 100ms) << "without a round trip, too";
+    EXPECT_EQ(path.ProbeTimeout(), 400ms) << "without a round trip, too";
     path.Measured(10ms, now, now);
-    EXPECT_EQ(path.ProbeTimeout(), 600ms);
-    path.Answered(20s);
-    EXPECT_EQ(path.ProbeTimeout(), settings.MaxResend);
-    for (int i = 0; i < 20; ++i)
+    EXPECT_EQ(path.ProbeTimeout(), 400ms);
+    for (int i = 0; i < 40; ++i)
     {
-        path.Answered(10ms);
+        path.Answered(20s);
     }
-    EXPECT_LT(path.ProbeTimeout(), 300ms) << "one late answer is soon forgotten";
+    EXPECT_EQ(path.ProbeTimeout(), settings.MaxResend);
+}
+
+TEST_F(PathTest, an_answer_that_came_late_since_an_earlier_one_was_lost_does_not_slow_the_probe_timer)
+{
+    path.Measured(10ms, now, now);
+    path.Answered(30ms);
+    const LinkTime usual = path.ProbeTimeout();
+    path.Answered(500ms);
+    EXPECT_LT(path.ProbeTimeout(), 4 * usual);
+    path.Answered(30ms);
+    EXPECT_EQ(path.ProbeTimeout(), usual);
 }
 
 TEST_F(PathTest, asks_for_an_acknowledgement_in_time_and_not_for_each_datagram)

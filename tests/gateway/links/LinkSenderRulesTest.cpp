@@ -123,7 +123,7 @@ TEST_F(LinkSenderRules, S2_sends_no_message_without_a_token_but_a_hello_that_ask
     a.Enqueue("1");
     a.Live(1400ms);
     EXPECT_THAT(a.TakeDatas(), IsEmpty());
-    EXPECT_THAT(a.TakeHellos(), SizeIs(6)) << "at 0, 40, 120, 280 and 600 ms, then every half second";
+    EXPECT_THAT(a.TakeHellos(), SizeIs(8)) << "at 0, 40, 120 and 280 ms, then every quarter of a second";
 }
 
 TEST_F(LinkSenderRules, S2_says_nothing_while_nothing_waits)
@@ -1134,7 +1134,7 @@ TEST_F(LinkSenderRules, S6_hellos_to_a_peer_that_does_not_make_sense_of_this_nod
         a.Hear(b.Hello());
         a.Live(10ms);
     }
-    EXPECT_THAT(a.TakeHellos(), SizeIs(testing::Le(25U))) << "twice a second, and some at the beginning";
+    EXPECT_THAT(a.TakeHellos(), SizeIs(testing::Le(45U))) << "four times a second, and some at the beginning";
     b.KnownLife += 1;
     a.Hear(b.Ack(1));
     b.KnownLife -= 1;

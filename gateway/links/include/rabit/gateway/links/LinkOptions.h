@@ -68,7 +68,7 @@ struct LinkSettings
     // although something was asked of it is silent: it gets no messages, and is asked at SilentHelloPeriod
     // while messages wait. Hellos to one peer do not follow each other faster than HelloGap. While nothing
     // waits, nothing is sent.
-    LinkTime HelloPeriod{std::chrono::milliseconds(500)};
+    LinkTime HelloPeriod{std::chrono::milliseconds(250)};
     LinkTime SilentAfter{std::chrono::seconds(10)};
     LinkTime SilentHelloPeriod{std::chrono::seconds(2)};
     LinkTime HelloGap{std::chrono::milliseconds(20)};
