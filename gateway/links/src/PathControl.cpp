@@ -128,9 +128,10 @@ void PathControl::Lost(std::size_t bytes)
     _lossRate += (1 - _lossRate) * WeightOf(bytes);
 }
 
-void PathControl::Answered(LinkTime time)
+// The time after which the peer answers; 0: not known yet.
+LinkTime PathControl::UsualAnswer() const
 {
-    _answer = _answer == LinkTime(0) || time < _answer ? time : _answer + (time - _answer) / 8;
+    return _answered < _answers.size() ? LinkTime(0) : *std::min_element(_answers.begin(), _answers.end());
 }
 
 // Weight of `bytes` bytes in an average over some tens of datagrams.
@@ -298,7 +299,7 @@ LinkTime PathControl::ProbeTimeout(int doublings) const
     const LinkTime known = std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay(), LongestProbe);
     const LinkTime least = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
     // The round trip is that of the path alone. A peer with a budget may send its answers much later.
-    const LinkTime plain = std::max(least, std::min(2 * _answer, _settings.MaxResend));
+    const LinkTime plain = std::max(least, std::min(2 * UsualAnswer(), _settings.MaxResend));
     const LinkTime longest = std::max(plain, _settings.MaxResend);
     const int shift = doublings < ProbesInVain ? std::min(doublings, FirstDoublings)
                                                : std::min(FirstDoublings + 1 + doublings - ProbesInVain, 10);

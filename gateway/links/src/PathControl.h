@@ -6,6 +6,7 @@
 #include <rabit/gateway/links/LinkTime.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -37,9 +38,9 @@ public:
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
     // A frame that asks for an answer was answered after that time, which includes the time for which the
-    // peer held the answer back. A longer time than usual may mean that an earlier answer was lost, so quick
-    // answers count more.
-    void Answered(LinkTime time);
+    // peer held the answer back. It is longer, too, if an earlier answer was lost: the shortest of the last
+    // few counts.
+    void Answered(LinkTime time) { _answers[_answered++ % _answers.size()] = time; }
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
 
@@ -75,6 +76,7 @@ private:
     std::size_t Datagram() const { return _settings.MaxDatagram + _settings.AirOverhead; }
     std::size_t FirstWindow() const { return 4 * Datagram(); }
     LinkTime Target() const;
+    LinkTime UsualAnswer() const;
     double WeightOf(std::size_t bytes) const;
     double Pace() const;  // bytes per second
     void LookForEndOfSlowStart(double rate);
@@ -84,7 +86,8 @@ private:
 
     const LinkSettings &_settings;
     RoundTrip _times;
-    LinkTime _answer{0};  // 0: none came
+    std::array<LinkTime, 4> _answers{};
+    std::size_t _answered = 0;
     std::size_t _inFlight = 0;
     std::size_t _window;
     bool _slowStart = true;
