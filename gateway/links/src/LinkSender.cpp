@@ -158,9 +158,10 @@ void LinkSender::OnProbeTimer()
     }
 }
 
+// Without any acknowledgement there is no credit either, but then something was lost.
 bool LinkSender::IsTurnedAway() const
 {
-    return _outbox.SentCount() > 0 && (_outbox.FirstMessage() >= _creditLimit || IsFirstHeld());
+    return _isKnown && _outbox.SentCount() > 0 && (_outbox.FirstMessage() >= _creditLimit || IsFirstHeld());
 }
 
 bool LinkSender::IsFirstHeld() const

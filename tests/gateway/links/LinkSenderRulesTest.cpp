@@ -175,6 +175,16 @@ TEST_F(LinkSenderRules, S2_sends_only_the_first_message_as_a_probe_while_there_i
     EXPECT_THAT(SentTexts(), ElementsAre("1"));
 }
 
+TEST_F(LinkSenderRules, S2_repeats_an_unanswered_first_message_as_any_lost_one_and_not_as_one_turned_away)
+{
+    StoredFrame hello = b.Hello();
+    hello.Fields.Echo = {PlayedPeer::ClockOfA, a.Now.count(), 0};
+    a.Hear(hello);
+    a.Enqueue("1");
+    a.Live(500ms);
+    EXPECT_GE(SentTexts().size(), 20U) << "each 20 ms: the timer of a quick path doubles twice";
+}
+
 TEST_F(LinkSenderRules, S2_sends_up_to_the_credit)
 {
     Contact(2);
@@ -296,22 +306,18 @@ TEST_F(LinkSenderRules, S2_what_a_peer_is_used_to_answer_late_is_not_sent_again_
         ack.Fields.Echo = {PlayedPeer::ClockOfA, sentAt.count(), held.count()};
         a.Hear(ack);
     };
-    a.Enqueue("2");
-    a.Pass(0ms);
-    const LinkTime first = a.Now;
-    a.Live(0ms);
-    const std::size_t before = a.TakeDatas().size();
-    ASSERT_EQ(before, 1U);
-    answer(2, first);
-    a.TakeDatas();
-    for (std::uint64_t number = 3; number < 6; ++number)
+    for (std::uint64_t number = 2; number < 10; ++number)
     {
         a.Live(1s);
         a.Enqueue(Numbered(static_cast<int>(number)));
         a.Pass(0ms);
         const LinkTime sentAt = a.Now;
         answer(number, sentAt);
-        EXPECT_THAT(SentTexts(), SizeIs(1)) << number;
+        const std::vector<std::string> sent = SentTexts();
+        if (number > 5)  // four answers show what is usual
+        {
+            EXPECT_THAT(sent, SizeIs(1)) << number;
+        }
     }
 }
 
