@@ -34,14 +34,14 @@ void Write(std::span<std::uint8_t> bytes, std::uint32_t value, bool littleEndian
 }
 
 // Submessages that Cyclone DDS sends unprotected even where all else is protected: its liveliness, and the
-// state of those builtin writers that it does not use then.
+// state of those builtin writers whose samples go by a protected counterpart (0xff...) then.
 bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
 {
     constexpr std::int64_t Most = 65536;  // one in some seconds: days
     const bool is = submessage.Kind == SubmessageKind::Heartbeat ||
                     submessage.Kind == SubmessageKind::AckNack ||
                     (submessage.Kind == SubmessageKind::Data && delivery.Writer == LivelinessWriter);
-    return is && IsBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
+    return is && IsKnownBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
 }
 
 // An honest sender repeats a discovery submessage unchanged until it is answered. Only the count changes and,

@@ -487,6 +487,20 @@ TEST(RtpsGuardModes, WhereAllIsProtectedAHeartbeatOfAnIdleBuiltinWriterIsNoForge
     EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(1, 0, 1))));
 }
 
+// 52 bytes that need no key: a reader that believes them waits for samples from 1000 on for good.
+TEST(RtpsGuardModes, WhereAllIsProtectedAPlainHeartbeatOfAProtectedBuiltinWriterIsStopped)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    for (const EntityId writer : {0xff0003c2, 0xff0004c2, 0xff0101c2, 0xff0200c2, 0xff0202c3})
+    {
+        EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(1000, 999, 1, writer))))
+            << std::hex << writer;
+        EXPECT_TRUE(guard.Stops(Message(
+            AckNack, Join({Ids((writer & 0xffffff00) | 0xc7, writer), Sequence(1000), Bits(0), U32(1)}))))
+            << std::hex << writer;
+    }
+}
+
 TEST(RtpsGuardModes, AHandshakeInFragmentsIsHandedOnWhole)
 {
     Gate guard(RtpsGuard::Mode::Protected);

@@ -267,8 +267,24 @@ def unwrapped_samples(case):
     case.stop()
 
 
+def unkeyed_heartbeat(datagram):
+    """A datagram in the name of the sender, without its keys: it has nothing for readers of discovery before 1000."""
+    writer = bytes.fromhex("ff0003c2")
+    body = bytes(4) + writer + struct.pack("<iIiII", 0, 1000, 0, 999, 1 << 20)
+    return bytes(datagram[:between.HEADER]) + struct.pack("<BBH", 0x07, 1, len(body)) + body
+
+
+def plain_heartbeats(case):
+    case.change(lambda node, datagram: [unkeyed_heartbeat(datagram), datagram])
+    for level in ("sign", "encrypt"):
+        case.start(level)
+        case.both_hear()
+        case.stop()
+
+
 CASES = [("altered", altered_samples), ("replayed", replay), ("another secret in the handshake", other_secret),
-         ("downgrade of the announcements", downgrade), ("signatures taken off", unwrapped_samples)]
+         ("downgrade of the announcements", downgrade), ("signatures taken off", unwrapped_samples),
+         ("heartbeats of discovery without keys", plain_heartbeats)]
 
 
 def main():
