@@ -186,18 +186,23 @@ bool IsLease(RtpsReader value)
            (seconds > 0 || (seconds == 0 && fraction >= TenthOfASecond));
 }
 
+// RTPS 2.3, 9.3.2: kinds of locators.
+constexpr std::uint32_t UdpV4 = 1;
+constexpr std::uint32_t UdpV6 = 2;
+
+// The vendor ignores kinds that it does not support. Their ports may be any number: TCP has two in it.
 bool IsLocator(RtpsReader value)
 {
     constexpr std::uint32_t LargestPort = 65535;
-    value.U32();  // kind: the vendor ignores those that it does not support
+    const std::uint32_t kind = value.U32();
     const std::uint32_t port = value.U32();
-    return value.IsGood() && value.Left() == 16 && port <= LargestPort;
+    const bool isPort = port >= 1 && port <= LargestPort;
+    return value.IsGood() && value.Left() == 16 && (isPort || (kind != UdpV4 && kind != UdpV6));
 }
 
 // The IPv4 host of a sound locator; empty for other kinds.
 std::optional<HostAddress> HostOf(RtpsReader locator)
 {
-    constexpr std::uint32_t UdpV4 = 1;
     if (locator.U32() != UdpV4)
     {
         return std::nullopt;
@@ -357,9 +362,32 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
     }
 }
 
-std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &sender,
-                                            std::span<std::uint8_t> list, bool littleEndian, bool secured)
+// What a list of parameters is: an announcement, or the key of something that ended.
+enum class Content
 {
+    Announcement,
+    Key
+};
+
+bool IsComplete(EntityId writer, const Found &found, Content content)
+{
+    const bool isDescribed = writer == ParticipantWriter ? found.Lease : found.Topic && found.Type;
+    return found.Subject != 0 && (content == Content::Key || isDescribed);
+}
+
+std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &sender,
+                                            std::span<std::uint8_t> payload, bool secured, Content content)
+{
+    constexpr std::size_t EncapsulationSize = 4;
+    constexpr std::uint8_t BigEndianList = 2;
+    constexpr std::uint8_t LittleEndianList = 3;
+    if (payload.size() < EncapsulationSize || payload[0] != 0 ||
+        (payload[1] != BigEndianList && payload[1] != LittleEndianList))
+    {
+        return std::nullopt;
+    }
+    const bool littleEndian = payload[1] == LittleEndianList;
+    const auto list = payload.subspan(EncapsulationSize);
     RtpsReader rest(list, littleEndian);
     Found found;
     for (int i = 0; i < MostParameters; ++i)
@@ -373,18 +401,16 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
         }
         if (id == Sentinel)
         {
-            const bool isParticipant = writer == ParticipantWriter;
-            const bool complete =
-                found.Subject != 0 && (isParticipant ? found.Lease : found.Topic && found.Type);
-            const bool hasCard = isParticipant && found.HasCard;
-            return complete ? std::optional(Announcement{
-                                  .Subject = found.Subject,
-                                  .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
-                                  .IsBestEffort = found.BestEffort,
-                                  .Hosts = std::move(found.Hosts),
-                                  .ListensToGroup = found.ListensToGroup,
-                                  .HasCard = hasCard})
-                            : std::nullopt;
+            const bool hasCard = writer == ParticipantWriter && found.HasCard;
+            return IsComplete(writer, found, content)
+                       ? std::optional(
+                             Announcement{.Subject = found.Subject,
+                                          .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
+                                          .IsBestEffort = found.BestEffort,
+                                          .Hosts = std::move(found.Hosts),
+                                          .ListensToGroup = found.ListensToGroup,
+                                          .HasCard = hasCard})
+                       : std::nullopt;
         }
         const auto value = rest.Bytes(length);
         bool wanted = true;
@@ -413,11 +439,13 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
     return std::nullopt;
 }
 
-// True if the payload asserts the liveliness of `sender` (8.4.13.5).
-bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payload)
+// True if the payload asserts the liveliness of `sender` (8.4.13.5), or is the key of such an assertion: the
+// participant and the kind.
+bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payload, Content content)
 {
-    constexpr std::size_t SmallestSize = 4 + 12 + 4 + 4;
-    return payload.size() >= SmallestSize && payload[0] == 0 && payload[1] <= 1 &&
+    constexpr std::size_t KeySize = 4 + 12 + 4;
+    const std::size_t smallestSize = content == Content::Key ? KeySize : KeySize + 4;
+    return payload.size() >= smallestSize && payload[0] == 0 && payload[1] <= 1 &&
            IsGuidOf(sender, payload.subspan(4));
 }
 
@@ -426,20 +454,19 @@ bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payl
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
                                            std::span<std::uint8_t> payload, bool secured)
 {
-    constexpr std::size_t EncapsulationSize = 4;
-    constexpr std::uint8_t BigEndianList = 2;
-    constexpr std::uint8_t LittleEndianList = 3;
     if (writer == LivelinessWriter)
     {
-        return IsLivelinessOf(sender, payload) ? std::optional(Announcement{}) : std::nullopt;
+        return IsLivelinessOf(sender, payload, Content::Announcement) ? std::optional(Announcement{})
+                                                                      : std::nullopt;
     }
-    if (payload.size() < EncapsulationSize || payload[0] != 0 ||
-        (payload[1] != BigEndianList && payload[1] != LittleEndianList))
-    {
-        return std::nullopt;
-    }
-    return CheckParameters(writer, sender, payload.subspan(EncapsulationSize), payload[1] == LittleEndianList,
-                           secured);
+    return CheckParameters(writer, sender, payload, secured, Content::Announcement);
+}
+
+bool CheckKey(EntityId writer, const GuidPrefix &sender, std::span<std::uint8_t> payload)
+{
+    return writer == LivelinessWriter
+               ? IsLivelinessOf(sender, payload, Content::Key)
+               : CheckParameters(writer, sender, payload, false, Content::Key).has_value();
 }
 
 EntityId EntityOf(std::span<const std::uint8_t> guid)

@@ -38,6 +38,10 @@ struct Announcement
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
                                            std::span<std::uint8_t> payload, bool secured);
 
+// Checks the payload of a sample that ends something: a key alone. Returns true if it is whole and names the
+// sender itself or one of its endpoints. Fast DDS takes a payload of up to 16 bytes for a key hash, and Cyclone
+// DDS reads 16 bytes of a key of liveliness, present or not. Unused parameters are blanked.
+bool CheckKey(EntityId writer, const GuidPrefix &sender, std::span<std::uint8_t> payload);
 // True if a key hash names the sender itself or one of its endpoints.
 bool IsKeyOf(EntityId writer, const GuidPrefix &sender, std::span<const std::uint8_t> keyHash);
 // The entity named by a key hash or another GUID of 16 bytes.

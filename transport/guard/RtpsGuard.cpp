@@ -19,11 +19,6 @@ bool IsSecure(SubmessageKind kind)
     return kind >= SubmessageKind::FirstSecure && kind <= SubmessageKind::LastSecure;
 }
 
-bool IsOfVendor(SubmessageKind kind)
-{
-    return kind >= SubmessageKind::Statistics;
-}
-
 void Write(std::span<std::uint8_t> bytes, std::uint32_t value, bool littleEndian)
 {
     for (std::size_t i = 0; i < bytes.size(); ++i)
@@ -42,6 +37,13 @@ bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
                     submessage.Kind == SubmessageKind::AckNack ||
                     (submessage.Kind == SubmessageKind::Data && delivery.Writer == LivelinessWriter);
     return is && IsKnownBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
+}
+
+// True if a sample that ends something ends the sender itself, or an endpoint of its own.
+bool EndsItsOwn(const Delivery &delivery, const GuidPrefix &sender)
+{
+    return (delivery.KeyHash.empty() || IsKeyOf(delivery.Writer, sender, delivery.KeyHash)) &&
+           (!delivery.HasKeyPayload || CheckKey(delivery.Writer, sender, delivery.Payload));
 }
 
 // An honest sender repeats a discovery submessage unchanged until it is answered. Only the count changes and,
@@ -228,10 +230,11 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
             return IsForOthers(passage) ? Verdict::Ignore : JudgeDelivery(submessage, *delivery, passage);
         }
         default:
-            // Includes submessages that redirect answers (INFO_REPLY), which neither vendor sends.
-            return IsOfVendor(submessage.Kind) && submessage.Kind != SubmessageKind::Statistics
-                       ? Verdict::Ignore
-                       : Verdict::Drop;
+            // Receivers skip unknown kinds (8.3.4.1). INFO_REPLY, which redirects answers, is one of them: no
+            // vendor here sends it.
+            return IsSecure(submessage.Kind) || submessage.Kind == SubmessageKind::Statistics
+                       ? Verdict::Drop
+                       : Verdict::Ignore;
     }
 }
 
@@ -296,10 +299,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return delivery.Alive && IsGenericMessage(delivery.Payload) ? Verdict::Pass : Verdict::Drop;
     }
-    // The vendor would take a short payload that is a key for the key hash.
-    constexpr std::size_t KeySize = 16;
-    if ((!delivery.KeyHash.empty() && !IsKeyOf(delivery.Writer, passage.Sender, delivery.KeyHash)) ||
-        (delivery.HasKeyPayload && delivery.Payload.size() <= KeySize))
+    if (!EndsItsOwn(delivery, passage.Sender))
     {
         return Verdict::Drop;
     }

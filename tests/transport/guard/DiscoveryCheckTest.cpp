@@ -149,6 +149,15 @@ TEST(DiscoveryCheck, APortIsAPort)
 {
     EXPECT_TRUE(IsSoundWith(0x002f, Join({U32(1), U32(65535), Bytes(16)})));
     EXPECT_FALSE(IsSoundWith(0x002f, Join({U32(1), U32(65536), Bytes(16)})));
+    EXPECT_FALSE(IsSoundWith(0x002f, Join({U32(2), U32(65536), Bytes(16)})));
+    EXPECT_FALSE(IsSoundWith(0x002f, Join({U32(1), U32(0), Bytes(16)})));
+}
+
+// TCP locators have two port numbers there: 4 is TCPv4.
+TEST(DiscoveryCheck, ALocatorOfAnotherKindHasNoPortOfUdp)
+{
+    EXPECT_TRUE(IsSoundWith(0x002f, Join({U32(4), U32(0x1c501c50), Bytes(16)})));
+    EXPECT_TRUE(IsSoundWith(0x002f, Join({U32(16), U32(0), Bytes(16)})));
 }
 
 TEST(DiscoveryCheck, ThereAreNotEndlesslyManyParametersOrLocators)

@@ -12,6 +12,10 @@ namespace
 
 using namespace RtpsBytes;
 using namespace std::chrono_literals;
+using Rabit::Rtps::LivelinessWriter;
+using Rabit::Rtps::ParticipantEntity;
+using Rabit::Rtps::ParticipantWriter;
+using Rabit::Rtps::PublicationsWriter;
 using Rabit::Rtps::RtpsGuard;
 using RtpsBytes::Gate;
 
@@ -151,6 +155,46 @@ TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsIsStopped)
     EXPECT_TRUE(Guard.Stops(goodbye(Guid(Other, 0x000001c1))));
 }
 
+// Key payloads: a list of parameters, as both vendors send them.
+TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsByTheKeyInThePayloadIsStopped)
+{
+    const auto goodbye = [](const Bytes &payload, EntityId writer)
+    {
+        return Message(
+            Data, DataBody(2, Join({Parameter(0x0071, {0, 0, 0, 3}), {1, 0, 0, 0}, payload}), writer), 0x0b);
+    };
+    const auto participant = [](const GuidPrefix &who)
+    { return List({Parameter(0x0050, Guid(who, ParticipantEntity))}); };
+    const auto endpoint = [](const GuidPrefix &who)
+    { return List({Parameter(0x005a, Guid(who, UserWriter))}); };
+    EXPECT_TRUE(Guard.Stops(goodbye(participant(Other), ParticipantWriter)));
+    EXPECT_TRUE(Guard.Stops(goodbye(endpoint(Other), PublicationsWriter)));
+    EXPECT_TRUE(Guard.Stops(goodbye(List({}), ParticipantWriter)));
+    EXPECT_TRUE(Guard.Passes(goodbye(endpoint(Sender), PublicationsWriter)));
+    EXPECT_TRUE(Guard.Passes(goodbye(participant(Sender), ParticipantWriter)));
+}
+
+// The vendor reads a whole key of 16 bytes behind the encapsulation, present or not.
+TEST_F(RtpsGuardTest, AKeyOfLivelinessIsWhole)
+{
+    const auto gone = [](const Bytes &payload)
+    {
+        return Message(
+            Data,
+            DataBody(2, Join({Parameter(0x0071, {0, 0, 0, 3}), {1, 0, 0, 0}, payload}), LivelinessWriter),
+            0x0b);
+    };
+    const Bytes key = Join({{0, 1, 0, 0}, Guid(Sender, 0)});
+    EXPECT_TRUE(Guard.Passes(gone(key)));
+    for (std::size_t size = 4; size < key.size(); ++size)
+    {
+        EXPECT_TRUE(Guard.Stops(gone(Bytes(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(size)))))
+            << size;
+    }
+    EXPECT_TRUE(Guard.Stops(gone(Join({{0, 3, 0, 0}, Guid(Sender, 0)}))));
+    EXPECT_TRUE(Guard.Stops(gone(Join({{0, 1, 0, 0}, Guid(Other, 0)}))));
+}
+
 // Cyclone DDS puts messages of several participants of a process into one datagram.
 TEST_F(RtpsGuardTest, OneDatagramMaySpeakForSeveralParticipants)
 {
@@ -187,11 +231,24 @@ TEST_F(RtpsGuardTest, WhoSpeaksForNobodyIsStopped)
     EXPECT_TRUE(Guard.Passes(Join({Header(), Source(Sender), data})));
 }
 
-TEST_F(RtpsGuardTest, WhoSpeaksOfOtherAddressesIsStopped)
+// Later versions of the protocol have them, and a receiver skips them (8.3.4.1): 0x00 is HEADER_EXTENSION of
+// RTPS 2.5.
+TEST_F(RtpsGuardTest, ASubmessageOfAnUnknownKindCostsNothingElse)
 {
-    EXPECT_TRUE(Guard.Stops(Join({Message(InfoReply, Bytes(28)), Submessage(Data, DataBody(11), 5)})));
-    EXPECT_TRUE(Guard.Stops(Message(SecurePrefix, Bytes(32))));
-    EXPECT_TRUE(Guard.Stops(Message(0x20, Bytes(32))));
+    for (const std::uint8_t kind : Bytes{0x00, 0x0d, 0x20, 0x36, 0x7f})
+    {
+        EXPECT_TRUE(Guard.Admit(Join({Message(kind, Bytes(32, 7)), Submessage(Data, DataBody(11), 5)})));
+        EXPECT_EQ(Guard.Handed,
+                  std::vector<Bytes>{Join({Message(0x01, Bytes(32, 7)), Submessage(Data, DataBody(11), 5)})})
+            << int{kind};
+    }
+}
+
+TEST_F(RtpsGuardTest, OtherAddressesForAnswersAreKeptFromTheVendor)
+{
+    const Bytes data = Submessage(Data, DataBody(11), 5);
+    EXPECT_TRUE(Guard.Admit(Join({Message(InfoReply, Bytes(28)), data})));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{Join({Message(0x01, Bytes(28)), data})});
 }
 
 TEST_F(RtpsGuardTest, WhatOtherVendorsAddIsBlanked)
