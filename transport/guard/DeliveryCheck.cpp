@@ -243,6 +243,23 @@ bool IsReader(EntityId entity)
     return kind == 0x04 || kind == 0x07;
 }
 
+bool IsDelivery(SubmessageKind kind)
+{
+    switch (kind)
+    {
+        case SubmessageKind::Data:
+        case SubmessageKind::DataFrag:
+        case SubmessageKind::Heartbeat:
+        case SubmessageKind::HeartbeatFrag:
+        case SubmessageKind::Gap:
+        case SubmessageKind::AckNack:
+        case SubmessageKind::NackFrag:
+            return true;
+        default:
+            return false;
+    }
+}
+
 std::optional<Delivery> CheckDelivery(const Submessage &submessage)
 {
     const RtpsReader body(submessage.Body(), submessage.LittleEndian);

@@ -53,9 +53,11 @@ struct Delivery
     bool HasKeyPayload = false;             // the payload is a key, not a sample
 };
 
-// For Data, DataFrag, Heartbeat, HeartbeatFrag, Gap, AckNack and NackFrag. Empty if the submessage is
-// unsound: a length that does not fit, an impossible number, a range that no honest writer sends, entities of
-// the wrong kind.
+// True for Data, DataFrag, Heartbeat, HeartbeatFrag, Gap, AckNack and NackFrag.
+bool IsDelivery(SubmessageKind kind);
+
+// For submessages of these kinds. Empty if the submessage is unsound: a length that does not fit, an
+// impossible number, a range that no honest writer sends, entities of the wrong kind.
 std::optional<Delivery> CheckDelivery(const Submessage &submessage);
 
 }  // namespace Rabit::Rtps

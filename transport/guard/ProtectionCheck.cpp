@@ -1,6 +1,6 @@
 #include "guard/ProtectionCheck.h"
 
-#include "guard/RtpsMessage.h"
+#include "guard/DeliveryCheck.h"
 #include "guard/RtpsReader.h"
 
 namespace Rabit::Rtps
@@ -50,6 +50,13 @@ bool IsContent(const Submessage &submessage)
     return KindOf(submessage) != 0 && !IsSecure(submessage) && submessage.Kind < SubmessageKind::Statistics;
 }
 
+// True for a submessage of a writer or a reader, and for the INFO_TS that Fast DDS signs by itself. An
+// INFO_SRC here would also be obeyed: the key of one writer would begin to speak for another participant.
+bool IsOfGroup(const Submessage &submessage)
+{
+    return IsDelivery(submessage.Kind) || submessage.Kind == SubmessageKind::InfoTimestamp;
+}
+
 // A common tag, and one for each receiver that has its own.
 bool IsPostfix(const Submessage &submessage)
 {
@@ -75,7 +82,7 @@ bool TakeContent(std::span<std::uint8_t> &rest)
     }
     const auto content = TakeSubmessage(rest);
     if (!content || rest.empty() ||
-        (KindOf(*content) == SecureBody ? !IsSealed(*content) : !IsContent(*content)))
+        (KindOf(*content) == SecureBody ? !IsSealed(*content) : !IsOfGroup(*content)))
     {
         return false;
     }
@@ -85,7 +92,7 @@ bool TakeContent(std::span<std::uint8_t> &rest)
 
 // Takes everything between the prefix of a message and its postfix, and the postfix. Only statistics may
 // follow.
-bool TakeMessage(std::span<std::uint8_t> &rest)
+bool TakeMessage(std::span<std::uint8_t> &rest, const std::function<bool(const Submessage &)> &mayContain)
 {
     for (bool first = true; !rest.empty(); first = false)
     {
@@ -98,7 +105,7 @@ bool TakeMessage(std::span<std::uint8_t> &rest)
         {
             case SecureBody:
             {
-                if (!first || !IsSealed(*submessage) || rest.empty())
+                if (!first || !IsSealed(*submessage) || rest.empty() || !mayContain(*submessage))
                 {
                     return false;
                 }
@@ -114,7 +121,7 @@ bool TakeMessage(std::span<std::uint8_t> &rest)
             case MessagePostfix:
                 return !first && IsPostfix(*submessage);
             default:
-                if (!IsContent(*submessage))
+                if (!IsContent(*submessage) || !mayContain(*submessage))
                 {
                     return false;
                 }
@@ -126,7 +133,8 @@ bool TakeMessage(std::span<std::uint8_t> &rest)
 
 }  // namespace
 
-std::optional<std::size_t> ProtectedSize(std::span<std::uint8_t> from, bool wholeMessage)
+std::optional<std::size_t> ProtectedSize(std::span<std::uint8_t> from, bool wholeMessage,
+                                         const std::function<bool(const Submessage &)> &mayContain)
 {
     auto rest = from;
     const auto prefix = TakeSubmessage(rest);
@@ -136,7 +144,7 @@ std::optional<std::size_t> ProtectedSize(std::span<std::uint8_t> from, bool whol
     }
     const bool sound = KindOf(*prefix) == SecurePrefix || !wholeMessage
                            ? KindOf(*prefix) == SecurePrefix && TakeContent(rest)
-                           : KindOf(*prefix) == MessagePrefix && TakeMessage(rest);
+                           : KindOf(*prefix) == MessagePrefix && TakeMessage(rest, mayContain);
     return sound ? std::optional(from.size() - rest.size()) : std::nullopt;
 }
 

@@ -39,11 +39,38 @@ bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
     return is && IsKnownBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
 }
 
+// Submessages that nodes with keys accept unprotected.
+bool IsHeardInPlain(const Submessage &submessage, const Delivery &delivery)
+{
+    return delivery.Writer == HandshakeWriter || delivery.Writer == ParticipantWriter ||
+           IsOfIdleWriter(submessage, delivery);
+}
+
 // True if a sample that ends something ends the sender itself, or an endpoint of its own.
 bool EndsItsOwn(const Delivery &delivery, const GuidPrefix &sender)
 {
     return (delivery.KeyHash.empty() || IsKeyOf(delivery.Writer, sender, delivery.KeyHash)) &&
            (!delivery.HasKeyPayload || CheckKey(delivery.Writer, sender, delivery.Payload));
+}
+
+// True if a submessage of a builtin writer is sound and of its sender, and no byte of it need be blanked.
+bool IsSoundUnchanged(const Submessage &submessage, Delivery delivery, const GuidPrefix &sender)
+{
+    if (submessage.Kind != SubmessageKind::Data)
+    {
+        return submessage.Kind != SubmessageKind::DataFrag;
+    }
+    const auto payload = delivery.Payload;
+    if (delivery.Writer == HandshakeWriter)
+    {
+        return delivery.Alive && IsGenericMessage(payload);
+    }
+    std::vector<std::uint8_t> copy(payload.begin(), payload.end());
+    delivery.Payload = copy;
+    return EndsItsOwn(delivery, sender) &&
+           (delivery.HasKeyPayload || copy.empty() ||
+            CheckDiscovery(delivery.Writer, sender, copy, true).has_value()) &&
+           std::equal(copy.begin(), copy.end(), payload.begin());
 }
 
 // An honest sender repeats a discovery submessage unchanged until it is answered. Only the count changes and,
@@ -141,7 +168,9 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
         }
         if (IsSecured() && IsSecure(submessage->Kind))
         {
-            const auto size = ProtectedSize(passage.Datagram.subspan(at), at == RtpsHeaderSize);
+            const auto size =
+                ProtectedSize(passage.Datagram.subspan(at), at == RtpsHeaderSize,
+                              [&](const Submessage &part) { return MayBeInProtected(part, passage); });
             if (!size)
             {
                 passage.Honest = false;
@@ -182,6 +211,17 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
 
 RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passage)
 {
+    if (IsDelivery(submessage.Kind))
+    {
+        const auto delivery = CheckDelivery(submessage);
+        if (!delivery)
+        {
+            return Verdict::Drop;
+        }
+        // Data for several participants at once is from builtin endpoints, whose entity ids are the same
+        // everywhere.
+        return IsForOthers(passage) ? Verdict::Ignore : JudgeDelivery(submessage, *delivery, passage);
+    }
     constexpr std::uint8_t Invalidate = 0x02;
     switch (submessage.Kind)
     {
@@ -212,23 +252,6 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
                 _replies.OnAddressed(passage.Sender);
             }
             return Verdict::Pass;
-        case SubmessageKind::Data:
-        case SubmessageKind::DataFrag:
-        case SubmessageKind::Heartbeat:
-        case SubmessageKind::HeartbeatFrag:
-        case SubmessageKind::Gap:
-        case SubmessageKind::AckNack:
-        case SubmessageKind::NackFrag:
-        {
-            const auto delivery = CheckDelivery(submessage);
-            if (!delivery)
-            {
-                return Verdict::Drop;
-            }
-            // Data for several participants at once is from builtin endpoints, whose entity ids are the same
-            // everywhere.
-            return IsForOthers(passage) ? Verdict::Ignore : JudgeDelivery(submessage, *delivery, passage);
-        }
         default:
             // Receivers skip unknown kinds (8.3.4.1). INFO_REPLY, which redirects answers, is one of them: no
             // vendor here sends it.
@@ -236,6 +259,26 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
                        ? Verdict::Drop
                        : Verdict::Ignore;
     }
+}
+
+bool RtpsGuard::MayBeInProtected(const Submessage &submessage, const Passage &passage) const
+{
+    if (submessage.Kind == SubmessageKind::InfoSource)
+    {
+        auto header = passage.Header;
+        return PutSource(submessage, header) && SenderOf(header) == passage.Sender;
+    }
+    if (_mode != Mode::Protected)
+    {
+        return true;
+    }
+    if (IsDelivery(submessage.Kind))
+    {
+        const auto delivery = CheckDelivery(submessage);
+        return delivery && IsHeardInPlain(submessage, *delivery) &&
+               IsSoundUnchanged(submessage, *delivery, passage.Sender);
+    }
+    return submessage.Kind != SubmessageKind::SecureBody;
 }
 
 bool RtpsGuard::IsForOthers(const Passage &passage) const
@@ -254,8 +297,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     }
     auto verdict = Verdict::Pass;
     const bool isHandshake = IsSecured() && delivery.Writer == HandshakeWriter;
-    if (_mode == Mode::Protected && !isHandshake && delivery.Writer != ParticipantWriter &&
-        !IsOfIdleWriter(submessage, delivery))
+    if (_mode == Mode::Protected && !IsHeardInPlain(submessage, delivery))
     {
         verdict = Verdict::Refuse;
     }

@@ -126,6 +126,8 @@ private:
     // Returns the remaining datagram; empty if nothing remains.
     std::span<std::uint8_t> Filter(Passage &passage);
     Verdict Judge(const Submessage &submessage, Passage &passage);
+    // True if a message that its sender has protected as a whole may contain the submessage unprotected.
+    bool MayBeInProtected(const Submessage &submessage, const Passage &passage) const;
     bool IsForOthers(const Passage &passage) const;
     // True if the observer handles this instead of the network.
     bool IsReplayed(const Delivery &delivery, const Passage &passage) const;

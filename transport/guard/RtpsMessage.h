@@ -36,6 +36,7 @@ enum class SubmessageKind : std::uint8_t
     DataFrag = 0x16,
     // DDS Security, 7.3.6.2: encrypted or signed submessages, and their prefixes and postfixes.
     FirstSecure = 0x30,
+    SecureBody = 0x30,
     LastSecure = 0x35,
     // Fast DDS's own, at the end of each message that it sends.
     Statistics = 0x80

@@ -39,12 +39,12 @@ Bytes Sealed(std::uint32_t said, std::size_t there)
 
 bool IsWhole(Bytes bytes, bool wholeMessage = false)
 {
-    return ProtectedSize(bytes, wholeMessage) == bytes.size();
+    return ProtectedSize(bytes, wholeMessage, [](const auto &) { return true; }) == bytes.size();
 }
 
 bool IsUnsound(Bytes bytes, bool wholeMessage = false)
 {
-    return !ProtectedSize(bytes, wholeMessage);
+    return !ProtectedSize(bytes, wholeMessage, [](const auto &) { return true; });
 }
 
 TEST(ProtectionCheck, AnEncryptedOrSignedSubmessageIsPrefixContentAndTag)
@@ -59,7 +59,7 @@ TEST(ProtectionCheck, WhatFollowsTheTagIsLeftToTheCaller)
     Bytes group = Join({Prefix(), Sealed(40, 40), Tag()});
     const std::size_t size = group.size();
     group = Join({group, Submessage(Data, DataBody(1), 5)});
-    EXPECT_EQ(ProtectedSize(group, false), size);
+    EXPECT_EQ(ProtectedSize(group, false, [](const auto &) { return true; }), size);
 }
 
 TEST(ProtectionCheck, AWholeMessageIsProtectedBehindTheHeaderAlone)
@@ -69,6 +69,37 @@ TEST(ProtectionCheck, AWholeMessageIsProtectedBehindTheHeaderAlone)
     EXPECT_TRUE(IsWhole(message, true));
     EXPECT_TRUE(IsUnsound(message, false));
     EXPECT_TRUE(IsWhole(Join({Prefix(MessagePrefix), Sealed(40, 40), Tag(MessagePostfix)}), true));
+}
+
+TEST(ProtectionCheck, TheCallerDecidesAboutWhatTheKeyOfTheMessageAloneProtects)
+{
+    const auto asked = [](Bytes bytes, std::uint8_t refused)
+    {
+        std::vector<std::uint8_t> kinds;
+        const bool sound = ProtectedSize(bytes, true,
+                                         [&](const Rabit::Rtps::Submessage &part)
+                                         {
+                                             kinds.push_back(part.Whole[0]);
+                                             return part.Whole[0] != refused;
+                                         })
+                               .has_value();
+        return std::pair(sound, kinds);
+    };
+    const Bytes plain = Join({Prefix(MessagePrefix), Source(Sender), Prefix(), Sealed(40, 40), Tag(),
+                              Submessage(Data, DataBody(1), 5), Tag(MessagePostfix)});
+    EXPECT_EQ(asked(plain, 0), std::pair(true, std::vector<std::uint8_t>{InfoSource, Data}));
+    EXPECT_EQ(asked(plain, Data), std::pair(false, std::vector<std::uint8_t>{InfoSource, Data}));
+    const Bytes encrypted = Join({Prefix(MessagePrefix), Sealed(40, 40), Tag(MessagePostfix)});
+    EXPECT_EQ(asked(encrypted, 0), std::pair(true, std::vector<std::uint8_t>{Body}));
+    EXPECT_EQ(asked(encrypted, Body), std::pair(false, std::vector<std::uint8_t>{Body}));
+}
+
+TEST(ProtectionCheck, AGroupHasOneSubmessageOfAWriterOrReaderOrItsTime)
+{
+    EXPECT_TRUE(IsWhole(Join({Prefix(), Submessage(InfoTimestamp, Bytes(8)), Tag()})));
+    EXPECT_TRUE(IsUnsound(Join({Prefix(), Source(Sender), Tag()})));
+    EXPECT_TRUE(
+        IsUnsound(Join({Prefix(MessagePrefix), Prefix(), Source(Sender), Tag(), Tag(MessagePostfix)}), true));
 }
 
 // The vendor adds up lengths that do not fit. It read a gigabyte from a datagram of a few hundred bytes: a

@@ -558,6 +558,81 @@ TEST(RtpsGuardModes, WhereAllIsProtectedAPlainHeartbeatOfAProtectedBuiltinWriter
     }
 }
 
+// A whole message under the signature of the participant in the header. Each member can make one, so its key
+// vouches for nobody else.
+class SignedMessage : public testing::Test
+{
+protected:
+    static Bytes Signed(std::initializer_list<Bytes> parts)
+    {
+        constexpr std::uint8_t prefix = 0x33;
+        constexpr std::uint8_t postfix = 0x34;
+        return Join({Header(), Submessage(prefix, Bytes(20)), Join(parts), Submessage(postfix, Bytes(20))});
+    }
+    static Bytes Goodbye(const GuidPrefix &who)
+    {
+        return Submessage(Data,
+                          DataBody(2,
+                                   Join({Parameter(0x0070, Guid(who, ParticipantEntity)),
+                                         Parameter(0x0071, {0, 0, 0, 3}),
+                                         {1, 0, 0, 0}}),
+                                   ParticipantWriter),
+                          3);
+    }
+
+    Gate Guard{RtpsGuard::Mode::Protected};
+};
+
+TEST_F(SignedMessage, SpeaksForItsSigner)
+{
+    EXPECT_TRUE(Guard.Passes(Signed({Source(Sender), Submessage(InfoTimestamp, Bytes(8)), Sealed()})));
+    EXPECT_TRUE(Guard.Stops(Signed({Source(Other), Sealed()})));
+    EXPECT_TRUE(Guard.Stops(Signed({Sealed(), Source(Other), Sealed()})));
+}
+
+TEST_F(SignedMessage, HasNoPlainSubmessagesOfProtectedWriters)
+{
+    for (const EntityId writer : {UserWriter, EntityId{0xff0003c2}})
+    {
+        EXPECT_TRUE(Guard.Stops(Signed({Submessage(Data, DataBody(1, Bytes(8), writer), 5)})));
+        EXPECT_TRUE(Guard.Stops(Signed({Submessage(Heartbeat, HeartbeatBody(1, 1, 1, writer))})));
+        EXPECT_TRUE(Guard.Stops(Signed({Submessage(Gap, GapBody(1, 2, 0, writer))})));
+    }
+    EXPECT_TRUE(Guard.Passes(Signed({Submessage(Heartbeat, HeartbeatBody(1, 0, 1, PublicationsWriter))})));
+}
+
+TEST_F(SignedMessage, AnnouncesAndEndsItsSignerAlone)
+{
+    const auto announced = [](const GuidPrefix &who)
+    { return Submessage(Data, DataBody(1, ParticipantData(who), ParticipantWriter), 5); };
+    EXPECT_TRUE(Guard.Passes(Signed({announced(Sender)})));
+    EXPECT_TRUE(Guard.Passes(Signed({Goodbye(Sender)})));
+    EXPECT_TRUE(Guard.Stops(Signed({announced(Other)})));
+    EXPECT_TRUE(Guard.Stops(Signed({Goodbye(Other)})));
+}
+
+// Its bytes are signed: nothing in it can be blanked.
+TEST_F(SignedMessage, WithAParameterThatTheVendorMustNotSeeIsStopped)
+{
+    const Bytes data = WithParameter(ParticipantData(), 0x0072, Bytes(64, 7));
+    EXPECT_TRUE(Guard.Stops(Signed({Submessage(Data, DataBody(1, data, ParticipantWriter), 5)})));
+}
+
+// The fleet's governance signs whole messages and encrypts groups in them.
+TEST_F(SignedMessage, IsNotEncryptedAsAWhole)
+{
+    const Bytes encrypted = Signed({Submessage(0x30, Join({{0, 0, 0, 8}, Bytes(8)}))});
+    EXPECT_TRUE(Guard.Stops(encrypted));
+    EXPECT_TRUE(Gate(RtpsGuard::Mode::Secured).Passes(encrypted));
+}
+
+TEST_F(SignedMessage, OfAGovernanceThatWeDoNotKnowMayHavePlainSubmessages)
+{
+    Gate guard(RtpsGuard::Mode::Secured);
+    EXPECT_TRUE(guard.Passes(Signed({Submessage(Data, DataBody(1), 5)})));
+    EXPECT_TRUE(guard.Stops(Signed({Source(Other), Submessage(Data, DataBody(1), 5)})));
+}
+
 TEST(RtpsGuardModes, AHandshakeInFragmentsIsHandedOnWhole)
 {
     Gate guard(RtpsGuard::Mode::Protected);
