@@ -1,5 +1,6 @@
 #include <rabit/RabitLog.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -67,6 +68,18 @@ std::vector<std::shared_ptr<const RabitLog::Sink>> ListenersNow()
     return listeners;
 }
 
+// C0 and DEL.
+bool IsControl(char c)
+{
+    return static_cast<unsigned char>(c) < ' ' || c == 0x7f;
+}
+
+std::string WithoutControls(std::string text)
+{
+    std::replace_if(text.begin(), text.end(), IsControl, '?');
+    return text;
+}
+
 void TellListeners(RabitLogLevel level, const std::string &text) noexcept
 {
     try
@@ -118,6 +131,17 @@ void RabitLog::Write(RabitLogLevel level, const std::string &text) noexcept
     LogState &state = State();
     if (level < state.Level.load() || level == RabitLogLevel::Off)
     {
+        return;
+    }
+    if (std::any_of(text.begin(), text.end(), IsControl))
+    {
+        try
+        {
+            Write(level, WithoutControls(text));
+        }
+        catch (...)  // out of memory for the text
+        {
+        }
         return;
     }
     TellListeners(level, text);

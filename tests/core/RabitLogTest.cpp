@@ -57,6 +57,18 @@ TEST(RabitLog, TellsListenersBesideTheSinkForAsLongAsTheyAreKept)
     EXPECT_EQ(log.Lines(), (std::vector<std::string>{"one", "two"}));
 }
 
+TEST(RabitLog, ALineHasNoControlCharacters)
+{
+    std::vector<std::string> heard;
+    const std::shared_ptr<void> listener =
+        RabitLog::Listen([&heard](RabitLogLevel, const std::string &text) { heard.push_back(text); });
+    const CapturedLog log;
+    RabitLog::Write(RabitLogLevel::Error, "H\xc3\xb6he of uav1\x1b[2J\n\x7f" + std::string(1, '\0') + "2");
+    const std::vector<std::string> expected{"H\xc3\xb6he of uav1?[2J???2"};
+    EXPECT_EQ(log.Lines(), expected);
+    EXPECT_EQ(heard, expected);
+}
+
 TEST(RabitLog, TheLevelIsAThreshold)
 {
     const CapturedLog log;

@@ -1,5 +1,7 @@
 #include "common/SessionLog.h"
 
+#include <algorithm>
+
 namespace Rabit
 {
 
@@ -13,12 +15,25 @@ void SessionLog::Line(const std::string &line) noexcept
     }
     try
     {
-        _sink("transport of " + _node + ": " + line);
+        _sink(Printable("transport of " + _node + ": " + line));
     }
     catch (...)  // a sink that fails leaves nowhere to log; the counters still tell
     {
         return;
     }
+}
+
+std::string SessionLog::Printable(std::string_view text)
+{
+    constexpr std::string_view Cut = "... (cut)";
+    std::string line(text.substr(0, LongestLine));
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    if (text.size() > LongestLine)
+    {
+        line.replace(LongestLine - Cut.size(), Cut.size(), Cut);
+    }
+    return line;
 }
 
 // Logs only the 1st, 2nd, 4th, 8th ... event, so that a fault at full data rate does not flood the log.

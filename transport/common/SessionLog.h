@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include <rabit/transport/Transport.h>
 
@@ -46,6 +47,12 @@ public:
 
     // Logs one line, without counting.
     void Line(const std::string &line) noexcept;
+
+    // Bytes of the longest line: four names of 256 bytes, the longest that the guard admits, and a sentence.
+    static constexpr std::size_t LongestLine = 2000;
+    // Returns `text` as one line that is safe on a terminal: peers choose their names, so each byte outside
+    // of printable ASCII becomes '?'. Text longer than LongestLine is cut. All lines of a log are so.
+    static std::string Printable(std::string_view text);
 
     TransportCounters Read() const;
 

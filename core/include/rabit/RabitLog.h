@@ -40,6 +40,8 @@ public:
     // Lines below this level are dropped. The default is Warning.
     static void SetLevel(RabitLogLevel level);
     static RabitLogLevel GetLevel();
+    // Logs one line. Control characters (0x00 to 0x1f, 0x7f) in it become '?': text from elsewhere must not
+    // begin another line, or steer a terminal.
     static void Write(RabitLogLevel level, const std::string &text) noexcept;
     // Writes a line to stderr as it is, whatever sink and level are set, for the last words of a program. It
     // never blocks either.

@@ -156,6 +156,27 @@ TEST(SessionLog, SurvivesASinkThatThrows)
     EXPECT_EQ(log.Read().WriteTimeouts, 1u);
 }
 
+// A neighbour chooses its names, and lines go to terminals and journals.
+TEST(SessionLog, WritesForeignNamesAsOneLineOfPrintableText)
+{
+    std::vector<std::string> lines;
+    SessionLog log(SettingsThatLogTo(lines));
+    log.InconsistentType("Pose", "Uav::Pose", "\x1b[2J\nrabit: error: \x9b\x7f\xff", "uav\r1");
+    ASSERT_THAT(lines, SizeIs(1));
+    EXPECT_THAT(lines[0],
+                HasSubstr("topic Pose has type Uav::Pose here, but ?[2J?rabit: error: ??? at uav?1"));
+}
+
+TEST(SessionLog, CutsALongLine)
+{
+    std::vector<std::string> lines;
+    SessionLog log(SettingsThatLogTo(lines));
+    log.Line(std::string(100'000, 'x'));
+    ASSERT_THAT(lines, SizeIs(1));
+    EXPECT_THAT(lines[0], testing::EndsWith("xxx... (cut)"));
+    EXPECT_THAT(lines[0], SizeIs(testing::Le(SessionLog::LongestLine)));
+}
+
 TEST(TopicRegistry, RefusesAnotherTypeAsLongAsTheTopicIsOpen)
 {
     std::vector<std::string> lines;

@@ -83,7 +83,7 @@ void Sink(void *, const dds_log_data_t *data)
     }
     if (log == nullptr)
     {
-        std::fprintf(stderr, "%s\n", line.c_str());
+        std::fprintf(stderr, "%s\n", SessionLog::Printable(line).c_str());
     }
     else if (line.find("malformed packet") != std::string::npos)
     {
