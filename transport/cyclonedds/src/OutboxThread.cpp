@@ -1,6 +1,5 @@
 #include "OutboxThread.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace Rabit::Cyclone
@@ -40,7 +39,7 @@ bool OutboxThread::PutExchange(std::span<const std::uint8_t> datagram, const Key
         }
         _self = what.From;
         _exchanges.SetRate(_turns->KeyRate());
-        if (!_exchanges.Put(datagram, what, NumberOf(route), Clock::now()))
+        if (!_exchanges.Put(datagram, what, _routes.Of(route).first, Clock::now()))
         {
             return false;
         }
@@ -69,28 +68,16 @@ void OutboxThread::SendExchanges(std::unique_lock<std::mutex> &lock)
 {
     for (const KeyExchangeOutbox::Datagram &datagram : _exchanges.TakeDue(Clock::now()))
     {
-        const RabitCycloneRoute route = _routes.at(datagram.Route);
+        const auto *const known = _routes.KeyOf(datagram.Route);
+        if (known == nullptr)
+        {
+            continue;  // thousands of others have come since
+        }
+        const RabitCycloneRoute route = *known;
         lock.unlock();
         _send(route, datagram.Bytes);
         lock.lock();
     }
-}
-
-std::uint64_t OutboxThread::NumberOf(const RabitCycloneRoute &route)
-{
-    const auto found = std::find_if(
-        _routes.begin(), _routes.end(),
-        [&route](const RabitCycloneRoute &other)
-        {
-            return route.connection == other.connection && route.port == other.port &&
-                   std::equal(std::begin(route.address), std::end(route.address), std::begin(other.address));
-        });
-    const auto number = static_cast<std::uint64_t>(found - _routes.begin());
-    if (found == _routes.end())
-    {
-        _routes.push_back(route);
-    }
-    return number;
 }
 
 void OutboxThread::Run()

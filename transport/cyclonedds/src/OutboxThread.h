@@ -9,10 +9,11 @@
 #include <optional>
 #include <span>
 #include <thread>
-#include <vector>
 
+#include "RouteOrder.h"
 #include "VendorTraffic.h"
 #include "common/KeyExchangeOutbox.h"
+#include "common/RecentNumbers.h"
 
 namespace Rabit::Cyclone
 {
@@ -44,7 +45,6 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    std::uint64_t NumberOf(const RabitCycloneRoute &route);
     void SendExchanges(std::unique_lock<std::mutex> &lock);
     void Run();
 
@@ -52,10 +52,10 @@ private:
     const Send _send;
     std::mutex _mutex;
     std::condition_variable _changed;
-    KeyExchangeOutbox _exchanges;            // guarded by _mutex
-    KeyExchange::Prefix _self{};             // known once something was exchanged; guarded by _mutex
-    std::vector<RabitCycloneRoute> _routes;  // by number; guarded by _mutex
-    bool _stop = false;                      // guarded by _mutex
+    KeyExchangeOutbox _exchanges;  // guarded by _mutex
+    KeyExchange::Prefix _self{};   // known once something was exchanged; guarded by _mutex
+    RecentNumbers<RabitCycloneRoute, RouteOrder> _routes;  // guarded by _mutex
+    bool _stop = false;                                    // guarded by _mutex
     std::thread _thread;
 };
 

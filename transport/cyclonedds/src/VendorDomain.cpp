@@ -116,14 +116,9 @@ void VendorDomain::NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup
         _groups.emplace(route.connection, route);
         return;
     }
-    const auto isSame = [&route](const RabitCycloneRoute &other)
+    if (_hasPeers && _listed.size() < most)
     {
-        return other.connection == route.connection && other.port == route.port &&
-               std::equal(std::begin(other.address), std::end(other.address), std::begin(route.address));
-    };
-    if (_hasPeers && _listed.size() < most && std::none_of(_listed.begin(), _listed.end(), isSame))
-    {
-        _listed.push_back(route);
+        _listed.insert(route);
     }
 }
 

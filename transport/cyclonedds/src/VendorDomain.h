@@ -86,7 +86,7 @@ private:
     std::mutex _cardMutex;
     // Guarded by _cardMutex: routes of announcements to groups, and to listed peers; and to each participant.
     std::map<const void *, RabitCycloneRoute> _groups;
-    std::vector<RabitCycloneRoute> _listed;
+    std::set<RabitCycloneRoute, RouteOrder> _listed;
     std::map<Rtps::GuidPrefix, RabitCycloneRoute> _cardRoutes;
     std::vector<std::vector<std::uint8_t>> _delivered;  // for the vendor; guarded by _cardMutex
     DirectAnnouncements _direct;

@@ -21,6 +21,7 @@
 #include "common/HardwareAddresses.h"
 #include "common/HeldDatagrams.h"
 #include "common/KeyExchangeOutbox.h"
+#include "common/RecentNumbers.h"
 #include "common/SendingSamples.h"
 
 namespace Rabit::FastDds
@@ -226,6 +227,7 @@ public:
 
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
+    using Route = std::pair<rtps::SenderResource *, rtps::Locator_t>;
     // The vendor's receiver to which the content of cards is delivered.
     struct Receiver
     {
@@ -256,7 +258,7 @@ private:
         constexpr std::chrono::milliseconds LongestWait{100};
         const auto timeout = std::chrono::steady_clock::now() + LongestWait;
         const std::lock_guard lock(_sending);
-        const auto send = [&](const std::pair<rtps::SenderResource *, rtps::Locator_t> &way)
+        const auto send = [&](const Route &way)
         {
             _chosen.assign(1, way.second);
             SendChosen(way.first, datagram, false, timeout);
@@ -394,9 +396,8 @@ private:
         {
             if (Leaves(socket, *begin))
             {
-                const auto route = static_cast<std::uint64_t>(socket) << 32 | NumberOf(*begin);
-                _routes.insert_or_assign(route, std::pair(sender, *begin));
-                if (!_exchanges.Put(datagram, what, route, now))
+                NumberOf(*begin);
+                if (!_exchanges.Put(datagram, what, _routes.Of({sender, *begin}).first, now))
                 {
                     return false;  // no earlier one was put either
                 }
@@ -410,9 +411,12 @@ private:
         constexpr std::chrono::milliseconds LongestWait{100};
         for (const KeyExchangeOutbox::Datagram &each : _exchanges.TakeDue(now))
         {
-            const auto &[sender, destination] = _routes.at(each.Route);
-            _chosen.assign(1, destination);
-            SendChosen(sender, each.Bytes, false, now + LongestWait);
+            // Null: thousands of other routes have come since.
+            if (const Route *const route = _routes.KeyOf(each.Route))
+            {
+                _chosen.assign(1, route->second);
+                SendChosen(route->first, each.Bytes, false, now + LongestWait);
+            }
         }
         ScheduleOwed();
     }
@@ -459,14 +463,13 @@ private:
     // several share a group.
     std::uint32_t NumberOf(const rtps::Locator_t &destination)
     {
-        const auto number = static_cast<std::uint32_t>(_destinations.size());
-        const auto [found, isNew] = _destinations.emplace(destination, number);
+        const auto [number, isNew] = _destinations.Of(destination);
         if (isNew)
         {
             // Opens no socket: one exists already, and is about to send.
             low_level_transport_->OpenOutputChannel(_noSockets, destination);
         }
-        return found->second;
+        return static_cast<std::uint32_t>(number);
     }
     std::uint32_t NumberOf(const rtps::SenderResource *sender)
     {
@@ -484,14 +487,14 @@ private:
     HeartbeatPace _heartbeats;
     KeyExchangeOutbox _exchanges;
     HardwareAddresses _addresses;
-    GuidPrefix _self{};  // known once something was exchanged
-    std::map<std::uint64_t, std::pair<rtps::SenderResource *, rtps::Locator_t>> _routes;
+    GuidPrefix _self{};            // known once something was exchanged
+    RecentNumbers<Route> _routes;  // of _exchanges
     // Routes of announcements to groups.
-    std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _groups;
+    std::set<Route> _groups;
     // Other routes of announcements.
-    std::set<std::pair<rtps::SenderResource *, rtps::Locator_t>> _listed;
-    std::map<GuidPrefix, std::pair<rtps::SenderResource *, rtps::Locator_t>> _cardRoutes;
-    std::map<rtps::Locator_t, std::uint32_t> _destinations;
+    std::set<Route> _listed;
+    std::map<GuidPrefix, Route> _cardRoutes;
+    RecentNumbers<rtps::Locator_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;
     std::vector<std::uint8_t> _shortened;  // the datagram to send, if shorter than the vendor's

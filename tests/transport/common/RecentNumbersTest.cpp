@@ -1,0 +1,54 @@
+// Numbers of keys, of which those used last are remembered.
+#include "common/RecentNumbers.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace
+{
+
+using Numbers = Rabit::RecentNumbers<std::string>;
+
+TEST(RecentNumbers, AKeyKeepsItsNumber)
+{
+    Numbers numbers;
+    const auto first = numbers.Of("10.0.0.1");
+    EXPECT_TRUE(first.second);
+    EXPECT_NE(numbers.Of("10.0.0.2").first, first.first);
+    EXPECT_EQ(numbers.Of("10.0.0.1"), std::pair(first.first, false));
+    ASSERT_NE(numbers.KeyOf(first.first), nullptr);
+    EXPECT_EQ(*numbers.KeyOf(first.first), "10.0.0.1");
+}
+
+TEST(RecentNumbers, OnlyTheKeysUsedLastAreRemembered)
+{
+    Numbers numbers;
+    const auto kept = numbers.Of("kept").first;
+    const auto forgotten = numbers.Of("forgotten").first;
+    for (int i = 0; i < 10'000; ++i)
+    {
+        numbers.Of(std::to_string(i));
+        EXPECT_EQ(numbers.Of("kept"), std::pair(kept, false));
+    }
+    EXPECT_EQ(numbers.Size(), Numbers::Most);
+    EXPECT_EQ(numbers.KeyOf(forgotten), nullptr);
+}
+
+TEST(RecentNumbers, ANumberIsNeverGivenTwice)
+{
+    Numbers numbers;
+    const auto first = numbers.Of("first").first;
+    std::uint64_t last = first;
+    for (int i = 0; i < 10'000; ++i)
+    {
+        const auto next = numbers.Of(std::to_string(i)).first;
+        EXPECT_GT(next, last);
+        last = next;
+    }
+    const auto again = numbers.Of("first");
+    EXPECT_TRUE(again.second);
+    EXPECT_GT(again.first, last);
+}
+
+}  // namespace
