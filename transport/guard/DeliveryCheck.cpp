@@ -10,9 +10,6 @@ namespace Rabit::Rtps
 namespace
 {
 
-// Each number of a gap costs the vendor a step, and up to 56 bytes while an earlier sample is missing. An
-// honest gap is as wide as the hole in a history.
-constexpr std::int64_t WidestGap = std::int64_t{1} << 20;
 // Smaller fragments have no use, and the vendor writes a mark for each into the sample's buffer.
 constexpr std::uint16_t SmallestFragment = 64;
 constexpr int MostInlineParameters = 64;
@@ -185,8 +182,7 @@ std::optional<Delivery> CheckGap(RtpsReader body)
     const std::int64_t base = body.Sequence();
     delivery.Last = base - 1 + body.Bits();
     const bool sound = body.IsGood() && AreFromWriter(delivery) && IsSequence(delivery.First) &&
-                       base >= delivery.First && base - delivery.First <= WidestGap &&
-                       delivery.Last < LargestSequence;
+                       base >= delivery.First && delivery.Last < LargestSequence;
     return sound ? std::optional(delivery) : std::nullopt;
 }
 

@@ -110,15 +110,33 @@ std::uint64_t StampOf(const Submessage &submessage)
     return seconds << 32 | body.U32();
 }
 
-// 9.4.5.3, 9.4.5.4: offset behind flags, inline QoS offset and two entities; the high half comes first.
-void WriteNumber(const Submessage &submessage, std::int64_t number)
+// The high half comes first (9.3.2).
+void WriteNumber(const Submessage &submessage, std::size_t at, std::int64_t number)
+{
+    const auto bits = static_cast<std::uint64_t>(number);
+    Write(submessage.Body().subspan(at, 4), static_cast<std::uint32_t>(bits >> 32), submessage.LittleEndian);
+    Write(submessage.Body().subspan(at + 4, 4), static_cast<std::uint32_t>(bits), submessage.LittleEndian);
+}
+
+// The number of a sample. 9.4.5.3, 9.4.5.4: offset behind flags, inline QoS offset and two entities.
+void WriteSampleNumber(const Submessage &submessage, std::int64_t number)
 {
     constexpr std::size_t NumberAt = 12;
-    const auto bits = static_cast<std::uint64_t>(number);
-    Write(submessage.Body().subspan(NumberAt, 4), static_cast<std::uint32_t>(bits >> 32),
-          submessage.LittleEndian);
-    Write(submessage.Body().subspan(NumberAt + 4, 4), static_cast<std::uint32_t>(bits),
-          submessage.LittleEndian);
+    WriteNumber(submessage, NumberAt, number);
+}
+
+// Cuts a gap to WidestGap numbers. The reader then requests the next ones, and gets another gap for these.
+void NarrowGap(const Submessage &submessage, const Delivery &delivery)
+{
+    constexpr std::size_t BaseAt = 16;  // 9.4.5.6: behind two entities and the first number
+    constexpr std::size_t BitsAt = 24;
+    RtpsReader body(submessage.Body(), submessage.LittleEndian);
+    body.Skip(BaseAt);
+    if (body.Sequence() - delivery.First > WidestGap)
+    {
+        WriteNumber(submessage, BaseAt, delivery.First + WidestGap);
+        Write(submessage.Body().subspan(BitsAt, 4), 0, submessage.LittleEndian);
+    }
 }
 
 }  // namespace
@@ -321,6 +339,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     {
         verdict = Compare(submessage, delivery, passage);
     }
+    if (verdict == Verdict::Pass && submessage.Kind == SubmessageKind::Gap)
+    {
+        NarrowGap(submessage, delivery);
+    }
     passage.Useful = passage.Useful || verdict == Verdict::Pass;
     return verdict;
 }
@@ -492,14 +514,14 @@ void RtpsGuard::ReplaceNumber(const Submessage &submessage, const Delivery &deli
         _peers.NumberOf(passage.Sender, delivery.Writer, delivery.First, passage.Stamp, passage.Now);
     if (ours != delivery.First)
     {
-        WriteNumber(submessage, ours);
+        WriteSampleNumber(submessage, ours);
     }
 }
 
 void RtpsGuard::ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
                                     const GuidPrefix &sender)
 {
-    WriteNumber(submessage, _peers.AnnouncementOf(sender, delivery.First));
+    WriteSampleNumber(submessage, _peers.AnnouncementOf(sender, delivery.First));
 }
 
 void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender)

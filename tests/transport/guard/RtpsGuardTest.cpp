@@ -115,6 +115,27 @@ TEST_F(RtpsGuardTest, AGapFarBeyondWhatTheWriterWroteIsStopped)
     EXPECT_TRUE(Guard.Stops(Message(Gap, GapBody(11, 300))));
 }
 
+// A late reader of a keyed topic may lack millions of samples between the last of one key and that of the
+// next. Without any gap for them it would wait for ever; the rest of a narrowed one it requests.
+TEST_F(RtpsGuardTest, AnHonestGapThatIsTooWideIsNarrowed)
+{
+    constexpr std::int64_t million = 1 << 20;
+    EXPECT_TRUE(Guard.Passes(ParticipantMessage(Other)));
+    EXPECT_TRUE(Guard.Passes(WriterMessage(UserWriter, 1, Other)));
+    EXPECT_TRUE(Guard.Admit(Join({Header(Other), Submessage(Heartbeat, HeartbeatBody(1, 3 * million, 1))})));
+    const auto gap = [](std::int64_t base, const Bytes &bits)
+    {
+        return Join({Header(Other),
+                     Submessage(Gap, Join({Ids(), Sequence(2), Sequence(base), bits, Bytes(8, 0xff)}))});
+    };
+    EXPECT_TRUE(Guard.Passes(gap(2 + million, U32(64))));
+    for (const std::int64_t base : {3 + million, 3 * million - 64})
+    {
+        EXPECT_TRUE(Guard.Admit(gap(base, U32(64))));
+        EXPECT_EQ(Guard.Handed, std::vector<Bytes>{gap(2 + million, U32(0))}) << base;
+    }
+}
+
 // The assertion at RTPSStatisticsMessages.hpp:128: the vendor rounds the length of a submessage up and finds
 // statistics where none are, or finds them in front of something else.
 TEST_F(RtpsGuardTest, StatisticsNeverGetThrough)
@@ -453,7 +474,8 @@ TEST(RtpsGuardModes, WhereSharedMemoryIsInUseOnlyTheStructureIsChecked)
     Gate guard(RtpsGuard::Mode::StructureOnly);
     EXPECT_TRUE(guard.Passes(Message(Data, DataBody(10), 5)));
     EXPECT_TRUE(guard.Passes(Message(Heartbeat, HeartbeatBody(1, 1'000'000, 7))));
-    EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
+    EXPECT_TRUE(guard.Admit(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
+    EXPECT_EQ(guard.Handed, std::vector<Bytes>{Message(Gap, GapBody(1, 1 + (1 << 20)))});
     EXPECT_TRUE(guard.Stops(Message(Data, DataBody(1, ParticipantData(Other), 0x000100c2), 5)));
     EXPECT_TRUE(guard.Admit(Message(Data, DataBody(1, Bytes(8), 0x000300c3), 5)));
     EXPECT_TRUE(guard.Handed.empty());
@@ -493,7 +515,7 @@ TEST(RtpsGuardModes, WithDdsSecurityItsSubmessagesAndTokensGetThroughAsTheyAre)
     const Bytes data = WithParameter(ParticipantData(), 0x1001, EmptyToken());
     EXPECT_TRUE(guard.Passes(Message(Data, DataBody(1, data, 0x000100c2), 5)));
     EXPECT_TRUE(guard.Passes(Message(Data, Handshake(1), 5)));
-    EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(1, std::int64_t{1} << 32))));
+    EXPECT_TRUE(guard.Stops(Message(Gap, GapBody(5, 3))));
 }
 
 TEST(RtpsGuardModes, WithoutDdsSecurityWhatIsSealedIsStopped)
@@ -515,7 +537,7 @@ TEST(RtpsGuardModes, WithDdsSecurityWhatIsUnsoundOfItIsStopped)
 TEST(RtpsGuardModes, BehindSomethingEncryptedTheRestIsCheckedLikeAnyOther)
 {
     Gate guard(RtpsGuard::Mode::Secured);
-    EXPECT_FALSE(guard.Admit(Join({Header(), Sealed(), Submessage(Gap, GapBody(1, std::int64_t{1} << 32))})));
+    EXPECT_FALSE(guard.Admit(Join({Header(), Sealed(), Submessage(Gap, GapBody(5, 3))})));
     EXPECT_TRUE(guard.Handed.empty());
     const Bytes sealed = Join({Header(), Sealed()});
     EXPECT_TRUE(guard.Admit(Join({sealed, Submessage(Statistics, Bytes(56))})));
