@@ -362,7 +362,22 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
     }
 }
 
-// What a list of parameters is: an announcement, or the key of something that ended.
+// Cuts a sound lease to the longest one.
+void BoundLease(std::span<std::uint8_t> value, bool littleEndian)
+{
+    RtpsReader lease(value, littleEndian);
+    const auto seconds = static_cast<std::int32_t>(lease.U32());
+    if (!IsLease(RtpsReader(value, littleEndian)) || seconds < LongestLease.count())
+    {
+        return;
+    }
+    constexpr auto longest = static_cast<std::uint16_t>(LongestLease.count());
+    std::fill(value.begin(), value.end(), std::uint8_t{0});
+    value[littleEndian ? 0 : 3] = static_cast<std::uint8_t>(longest);
+    value[littleEndian ? 1 : 2] = static_cast<std::uint8_t>(longest >> 8);
+}
+
+// A list of parameters is an announcement, or the key of something that ended.
 enum class Content
 {
     Announcement,
@@ -376,7 +391,8 @@ bool IsComplete(EntityId writer, const Found &found, Content content)
 }
 
 std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &sender,
-                                            std::span<std::uint8_t> payload, bool secured, Content content)
+                                            std::span<std::uint8_t> payload, bool secured, Content content,
+                                            Lease lease)
 {
     constexpr std::size_t EncapsulationSize = 4;
     constexpr std::uint8_t BigEndianList = 2;
@@ -413,6 +429,10 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
                        : std::nullopt;
         }
         const auto value = rest.Bytes(length);
+        if (id == LeaseDuration && lease == Lease::Bounded && rest.IsGood())
+        {
+            BoundLease(list.subspan(at + 4, length), littleEndian);
+        }
         bool wanted = true;
         if (!rest.IsGood() || length % 4 != 0 ||
             !CheckParameter(writer, sender, id, value, littleEndian, found, wanted))
@@ -452,21 +472,21 @@ bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payl
 }  // namespace
 
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
-                                           std::span<std::uint8_t> payload, bool secured)
+                                           std::span<std::uint8_t> payload, bool secured, Lease lease)
 {
     if (writer == LivelinessWriter)
     {
         return IsLivelinessOf(sender, payload, Content::Announcement) ? std::optional(Announcement{})
                                                                       : std::nullopt;
     }
-    return CheckParameters(writer, sender, payload, secured, Content::Announcement);
+    return CheckParameters(writer, sender, payload, secured, Content::Announcement, lease);
 }
 
 bool CheckKey(EntityId writer, const GuidPrefix &sender, std::span<std::uint8_t> payload)
 {
     return writer == LivelinessWriter
                ? IsLivelinessOf(sender, payload, Content::Key)
-               : CheckParameters(writer, sender, payload, false, Content::Key).has_value();
+               : CheckParameters(writer, sender, payload, false, Content::Key, Lease::Bounded).has_value();
 }
 
 EntityId EntityOf(std::span<const std::uint8_t> guid)

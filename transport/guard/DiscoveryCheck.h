@@ -1,6 +1,7 @@
 // Checks the announcements of participants and endpoints before the vendor reads them.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -29,6 +30,16 @@ struct Announcement
     bool HasCard = false;
 };
 
+// The longest lease that a participant may announce: the defaults of DDS programs are 10 s to 5 min. With a
+// longer one, forged participants would be sent to long after the forger has gone. An honest participant
+// renews its lease with each announcement, some seconds to a minute apart.
+constexpr std::chrono::seconds LongestLease{300};
+enum class Lease
+{
+    Bounded,  // a longer one is cut in place
+    OfCard    // the reader of the card has put it there (rtps/Meeting.h)
+};
+
 // Checks the payload of a sample of a discovery or liveliness topic (the known ones of DeliveryCheck.h),
 // written by `sender`. The vendor trusts the lengths, counts and identities in it. Bad ones make it read out
 // of bounds, allocate gigabytes, or fail an assertion. So every parameter that the vendor would read must be
@@ -36,11 +47,12 @@ struct Announcement
 // for instance, which the vendor would parse, and those of DDS Security unless `secured`. Empty if the
 // payload is unsound.
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
-                                           std::span<std::uint8_t> payload, bool secured);
+                                           std::span<std::uint8_t> payload, bool secured,
+                                           Lease lease = Lease::Bounded);
 
 // Checks the payload of a sample that ends something: a key alone. Returns true if it is whole and names the
-// sender itself or one of its endpoints. Fast DDS takes a payload of up to 16 bytes for a key hash, and Cyclone
-// DDS reads 16 bytes of a key of liveliness, present or not. Unused parameters are blanked.
+// sender itself or one of its endpoints. Fast DDS takes a payload of up to 16 bytes for a key hash, and
+// Cyclone DDS reads 16 bytes of a key of liveliness, present or not. Unused parameters are blanked.
 bool CheckKey(EntityId writer, const GuidPrefix &sender, std::span<std::uint8_t> payload);
 // True if a key hash names the sender itself or one of its endpoints.
 bool IsKeyOf(EntityId writer, const GuidPrefix &sender, std::span<const std::uint8_t> keyHash);

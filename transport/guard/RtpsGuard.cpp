@@ -173,6 +173,10 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from,
 
 std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
 {
+    if (_mode != Mode::Full)
+    {
+        _peers.Hears(passage.Sender, passage.Now);
+    }
     auto rest = passage.Datagram.subspan(RtpsHeaderSize);
     auto end = passage.Datagram.size();
     while (!rest.empty())
@@ -379,7 +383,8 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         }
         return Verdict::Pass;
     }
-    const auto announcement = CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload, IsSecured());
+    const auto announcement = CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload, IsSecured(),
+                                             passage.Whence == Origin::Card ? Lease::OfCard : Lease::Bounded);
     if (!announcement)
     {
         return Verdict::Drop;
@@ -410,12 +415,13 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
             return Verdict::Ignore;
         }
     }
+    // In the other modes participants are only counted: addresses come another way, or with a proof later.
+    if (!_peers.Announced(passage.Sender, _mode == Mode::Full ? announcement.Digest : 0, passage.Now))
+    {
+        return Verdict::Refuse;
+    }
     if (_mode == Mode::Full)
     {
-        if (!_peers.Announced(passage.Sender, announcement.Digest, passage.Now))
-        {
-            return Verdict::Refuse;
-        }
         _peers.IsAt(passage.Sender, announcement.Hosts, passage.From);
         _peers.SetListensToGroup(passage.Sender, announcement.ListensToGroup);
     }

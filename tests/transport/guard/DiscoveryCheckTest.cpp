@@ -84,7 +84,27 @@ TEST(DiscoveryCheck, ALeaseOfNothingIsUnsound)
     EXPECT_FALSE(IsSound(ParticipantWriter, with(0, 0)));
     EXPECT_FALSE(IsSound(ParticipantWriter, with(0x80000000, 0)));
     EXPECT_TRUE(IsSound(ParticipantWriter, with(0, 0x80000000)));
-    EXPECT_TRUE(IsSound(ParticipantWriter, with(0x7fffffff, 0xffffffff)));
+}
+
+// Otherwise a forged participant is sent to for ever.
+TEST(DiscoveryCheck, ALeaseIsCutToTheLongestOne)
+{
+    const auto with = [](std::uint32_t seconds, std::uint32_t fraction)
+    {
+        return List({Parameter(0x0050, Guid(Sender, ParticipantEntity)),
+                     Parameter(0x0002, Join({U32(seconds), U32(fraction)}))});
+    };
+    const auto longest = static_cast<std::uint32_t>(LongestLease.count());
+    const auto left = [](Bytes payload, Lease lease = Lease::Bounded)
+    {
+        EXPECT_TRUE(CheckDiscovery(ParticipantWriter, Sender, payload, false, lease));
+        return payload;
+    };
+    EXPECT_EQ(left(with(0x7fffffff, 0xffffffff)), with(longest, 0));
+    EXPECT_EQ(left(with(longest, 1)), with(longest, 0));
+    EXPECT_EQ(left(with(longest, 0)), with(longest, 0));
+    EXPECT_EQ(left(with(100, 7)), with(100, 7));
+    EXPECT_EQ(left(with(4 * 3600, 0), Lease::OfCard), with(4 * 3600, 0));
 }
 
 TEST(DiscoveryCheck, EveryTruncationIsUnsound)

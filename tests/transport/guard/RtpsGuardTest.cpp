@@ -481,6 +481,33 @@ TEST(RtpsGuardModes, WhereSharedMemoryIsInUseOnlyTheStructureIsChecked)
     EXPECT_TRUE(guard.Handed.empty());
 }
 
+TEST(RtpsGuardModes, InEachModeThereAreNotEndlesslyManyParticipants)
+{
+    constexpr int most = 1024;
+    const auto announced = [](int number)
+    {
+        GuidPrefix who = Sender;
+        who[10] = static_cast<std::uint8_t>(number >> 8);
+        who[11] = static_cast<std::uint8_t>(number);
+        return ParticipantMessage(who);
+    };
+    for (const auto mode : {RtpsGuard::Mode::Full, RtpsGuard::Mode::StructureOnly, RtpsGuard::Mode::Secured,
+                            RtpsGuard::Mode::Protected})
+    {
+        Gate guard(mode);
+        for (int i = 0; i < most; ++i)
+        {
+            EXPECT_TRUE(guard.Passes(announced(i)));
+        }
+        EXPECT_TRUE(guard.Stops(announced(most)));
+        guard.Now += 61s;
+        EXPECT_TRUE(guard.Passes(announced(0)));
+        // A silent one gives its place away.
+        EXPECT_TRUE(guard.Admit(announced(most)));
+        EXPECT_EQ(guard.Handed.size(), 1u);
+    }
+}
+
 // A token of DDS Security with nothing but a name.
 Bytes EmptyToken()
 {
@@ -505,6 +532,32 @@ Bytes Handshake(std::uint32_t tokens)
 {
     return DataBody(1, Join({{0, 1, 0, 0}, Bytes(96), Text("dds.sec.auth"), U32(tokens), EmptyToken()}),
                     0x000201c3);
+}
+
+TEST(RtpsGuardModes, WithKeysAParticipantIsHeardWhateverItSends)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    EXPECT_TRUE(guard.Passes(ParticipantMessage()));
+    for (int i = 0; i < 1023; ++i)
+    {
+        GuidPrefix who = Other;
+        who[9] = static_cast<std::uint8_t>(i >> 8);
+        who[10] = static_cast<std::uint8_t>(i);
+        EXPECT_TRUE(guard.Passes(ParticipantMessage(who)));
+    }
+    guard.Now += 61s;
+    EXPECT_TRUE(guard.Passes(Join({Header(), Sealed()})));
+    // The places of the silent ones are given away first.
+    for (int i = 0; i < 1023; ++i)
+    {
+        GuidPrefix who = Other;
+        who[8] = 0;
+        who[9] = static_cast<std::uint8_t>(i >> 8);
+        who[10] = static_cast<std::uint8_t>(i);
+        EXPECT_TRUE(guard.Passes(ParticipantMessage(who)));
+    }
+    EXPECT_TRUE(guard.Passes(ParticipantMessage()));
+    EXPECT_TRUE(guard.Stops(ParticipantMessage({1, 15, 9})));
 }
 
 TEST(RtpsGuardModes, WithDdsSecurityItsSubmessagesAndTokensGetThroughAsTheyAre)

@@ -123,7 +123,7 @@ struct TransportSettings
     std::size_t MaxDatagram = 1400;
     // Use shared memory between processes of one host. Off by default: a killed process leaves files behind.
     bool SharedMemory = false;
-    // A peer that sends nothing for the length of the lease is lost. A session announces itself at least once
+    // A peer that sends nothing for the length of the lease, at most 5 min, is lost. A session announces itself at least once
     // per AnnouncementPeriod, more often at first and to peers that have not heard it. The period costs an
     // idle node some 400 bytes each time. It also bounds how long nodes take to find each other again after a
     // separation longer than the lease.
