@@ -239,7 +239,7 @@ MUTATIONS = [
     guard("a signed message speaks for another one", "RtpsGuard.cpp",
           "PutSource(submessage, header) && SenderOf(header) == passage.Sender", "PutSource(submessage, header)"),
     guard("a signed message has plain samples", "RtpsGuard.cpp",
-          "delivery && IsHeardInPlain(submessage, *delivery) &&", "delivery &&"),
+          "delivery && (IsHeardInPlain(submessage, *delivery) || IsOfTypes(delivery->Writer)) &&", "delivery &&"),
     guard("a signed message announces another one", "RtpsGuard.cpp",
           "&& IsSoundUnchanged(submessage, *delivery, passage.Sender)", ""),
     guard("a signed message is encrypted as a whole", "RtpsGuard.cpp",

@@ -39,6 +39,15 @@ bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
     return is && IsKnownBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
 }
 
+// The writers with which Cyclone DDS would exchange descriptions of types. It sends their state unprotected,
+// too; no node uses them.
+bool IsOfTypes(EntityId writer)
+{
+    constexpr EntityId TypeRequestsWriter = 0x000300c3;
+    constexpr EntityId TypeRepliesWriter = 0x000301c3;
+    return writer == TypeRequestsWriter || writer == TypeRepliesWriter;
+}
+
 // Submessages that nodes with keys accept unprotected.
 bool IsHeardInPlain(const Submessage &submessage, const Delivery &delivery)
 {
@@ -297,7 +306,7 @@ bool RtpsGuard::MayBeInProtected(const Submessage &submessage, const Passage &pa
     if (IsDelivery(submessage.Kind))
     {
         const auto delivery = CheckDelivery(submessage);
-        return delivery && IsHeardInPlain(submessage, *delivery) &&
+        return delivery && (IsHeardInPlain(submessage, *delivery) || IsOfTypes(delivery->Writer)) &&
                IsSoundUnchanged(submessage, *delivery, passage.Sender);
     }
     return submessage.Kind != SubmessageKind::SecureBody;
@@ -321,7 +330,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     const bool isHandshake = IsSecured() && delivery.Writer == HandshakeWriter;
     if (_mode == Mode::Protected && !IsHeardInPlain(submessage, delivery))
     {
-        verdict = Verdict::Refuse;
+        verdict = IsOfTypes(delivery.Writer) ? Verdict::Ignore : Verdict::Refuse;
     }
     else if (isHandshake && submessage.Kind == SubmessageKind::HeartbeatFrag)
     {

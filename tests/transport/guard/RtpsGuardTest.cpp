@@ -619,6 +619,17 @@ TEST(RtpsGuardModes, WhereAllIsProtectedAHeartbeatOfAnIdleBuiltinWriterIsNoForge
     EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(1, 0, 1))));
 }
 
+// Cyclone DDS sends it, and no node uses it.
+TEST(RtpsGuardModes, WhereAllIsProtectedTheStateOfWritersOfTypesIsBlankedInSilence)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    for (const EntityId writer : {0x000300c3, 0x000301c3})
+    {
+        EXPECT_TRUE(guard.Admit(Message(Heartbeat, HeartbeatBody(1, 0, 1, writer))));
+        EXPECT_TRUE(guard.Handed.empty());
+    }
+}
+
 // 52 bytes that need no key: a reader that believes them waits for samples from 1000 on for good.
 TEST(RtpsGuardModes, WhereAllIsProtectedAPlainHeartbeatOfAProtectedBuiltinWriterIsStopped)
 {
@@ -674,6 +685,7 @@ TEST_F(SignedMessage, HasNoPlainSubmessagesOfProtectedWriters)
         EXPECT_TRUE(Guard.Stops(Signed({Submessage(Gap, GapBody(1, 2, 0, writer))})));
     }
     EXPECT_TRUE(Guard.Passes(Signed({Submessage(Heartbeat, HeartbeatBody(1, 0, 1, PublicationsWriter))})));
+    EXPECT_TRUE(Guard.Passes(Signed({Submessage(Heartbeat, HeartbeatBody(1, 0, 1, 0x000300c3))})));
 }
 
 TEST_F(SignedMessage, AnnouncesAndEndsItsSignerAlone)
