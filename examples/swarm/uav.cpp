@@ -81,7 +81,8 @@ void AddOptions(CLI::App &app, Options &options)
                        "`dds:/px4_1` for one whose topics are below that")
             ->check(Swarm::IsPx4);
     app.add_option("--mavlink", options.Mavlink,
-                   "A real autopilot in place of the simulated one: `udp:PORT`, where it sends to, or "
+                   "A real autopilot in place of the simulated one: `udp:PORT` where it sends to on this "
+                   "machine, `udp:ADDRESS:PORT` with the address of the interface that it is on, or "
                    "`serial:DEVICE:BAUD`")
         ->excludes(px4);
     options.Aircraft.AddTo(app);

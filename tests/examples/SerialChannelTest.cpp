@@ -20,6 +20,7 @@
 namespace
 {
 using testing::HasSubstr;
+using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 
 // Returns every byte value, including those that a terminal treats as commands (interrupt, end of line,
@@ -88,7 +89,8 @@ TEST_F(SerialChannel, ReceivesEveryByteAsItIsAndEchoesNothing)
 {
     const Bytes sent = AllValues();
     ASSERT_EQ(write(_far, sent.data(), sent.size()), 256);
-    EXPECT_EQ(Collect(256, [&](std::span<std::uint8_t> buffer) { return _channel->Receive(buffer); }), sent);
+    EXPECT_EQ(Collect(256, [&](std::span<std::uint8_t> buffer) { return _channel->Receive(buffer, 0s); }),
+              sent);
     pollfd ready{_far, POLLIN, 0};
     EXPECT_EQ(poll(&ready, 1, 0), 0);
 }
@@ -96,14 +98,14 @@ TEST_F(SerialChannel, ReceivesEveryByteAsItIsAndEchoesNothing)
 TEST_F(SerialChannel, DoesNotWaitForBytes)
 {
     std::array<std::uint8_t, 10> buffer{};
-    EXPECT_EQ(_channel->Receive(buffer), 0u);
+    EXPECT_EQ(_channel->Receive(buffer, 0s), 0u);
 }
 
 TEST_F(SerialChannel, HasNothingMoreWhenTheDeviceIsGone)
 {
     close(_far);
     std::array<std::uint8_t, 10> buffer{};
-    EXPECT_EQ(_channel->Receive(buffer), 0u);
+    EXPECT_EQ(_channel->Receive(buffer, 0s), 0u);
     EXPECT_FALSE(_channel->Send(AllValues()));
     _far = posix_openpt(O_RDWR | O_NOCTTY);
 }

@@ -1,14 +1,14 @@
 #include "ByteChannel.h"
 
-#include <boost/asio/buffer.hpp>
+#include "UdpChannel.h"
+
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/udp.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/serial_port.hpp>
 
 #include <unistd.h>
 
 #include <charconv>
-#include <optional>
 
 namespace Swarm
 {
@@ -16,45 +16,6 @@ namespace
 {
 
 namespace asio = boost::asio;
-
-class UdpChannel final : public ByteChannel
-{
-public:
-    explicit UdpChannel(std::uint16_t port)
-    {
-        const asio::ip::udp::endpoint local(asio::ip::udp::v4(), port);
-        _socket.open(local.protocol());
-        _socket.bind(local);
-        _socket.non_blocking(true);
-    }
-
-    std::size_t Receive(std::span<std::uint8_t> buffer) override
-    {
-        boost::system::error_code error;
-        asio::ip::udp::endpoint sender;
-        const std::size_t size =
-            _socket.receive_from(asio::buffer(buffer.data(), buffer.size()), sender, 0, error);
-        if (error)
-        {
-            return 0;
-        }
-        _peer = sender;
-        return size;
-    }
-
-    bool Send(std::span<const std::uint8_t> bytes) override
-    {
-        boost::system::error_code error;
-        return _peer &&
-               _socket.send_to(asio::buffer(bytes.data(), bytes.size()), *_peer, 0, error) == bytes.size() &&
-               !error;
-    }
-
-private:
-    asio::io_context _context;
-    asio::ip::udp::socket _socket{_context};
-    std::optional<asio::ip::udp::endpoint> _peer;
-};
 
 class SerialChannel final : public ByteChannel
 {
@@ -71,7 +32,7 @@ public:
 
     // Asio has no non-blocking calls for serial ports, but opens them such that the system's calls do not
     // block.
-    std::size_t Receive(std::span<std::uint8_t> buffer) override
+    std::size_t Receive(std::span<std::uint8_t> buffer, Time) override
     {
         const ssize_t size = ::read(_port.native_handle(), buffer.data(), buffer.size());
         return size > 0 ? static_cast<std::size_t>(size) : 0;
@@ -101,6 +62,28 @@ Number NumberIn(const std::string &text, Number least, const std::string &descri
     return number;
 }
 
+// Returns the address and port in `PORT`, `ADDRESS:PORT` or `[ADDRESS]:PORT`.
+UdpChannel::Endpoint EndpointIn(const std::string &text, const std::string &description)
+{
+    const std::size_t portAt = text.rfind(':');
+    if (portAt == std::string::npos)
+    {
+        return {asio::ip::address_v4::loopback(), NumberIn<std::uint16_t>(text, 1, description)};
+    }
+    std::string address = text.substr(0, portAt);
+    if (address.starts_with('[') && address.ends_with(']'))
+    {
+        address = address.substr(1, address.size() - 2);
+    }
+    boost::system::error_code error;
+    const auto parsed = asio::ip::make_address(address, error);
+    if (error)
+    {
+        throw ChannelError(description + ": `" + address + "` is not an IP address of this machine");
+    }
+    return {parsed, NumberIn<std::uint16_t>(text.substr(portAt + 1), 1, description)};
+}
+
 std::unique_ptr<ByteChannel> Open(const std::string &description)
 {
     const std::size_t kindEnd = description.find(':');
@@ -108,7 +91,7 @@ std::unique_ptr<ByteChannel> Open(const std::string &description)
     const std::string rest = kindEnd == std::string::npos ? "" : description.substr(kindEnd + 1);
     if (kind == "udp")
     {
-        return std::make_unique<UdpChannel>(NumberIn<std::uint16_t>(rest, 1, description));
+        return std::make_unique<UdpChannel>(EndpointIn(rest, description));
     }
     const std::size_t baudAt = rest.rfind(':');
     if (kind == "serial" && baudAt != std::string::npos)
@@ -116,7 +99,7 @@ std::unique_ptr<ByteChannel> Open(const std::string &description)
         return std::make_unique<SerialChannel>(rest.substr(0, baudAt),
                                                NumberIn<unsigned>(rest.substr(baudAt + 1), 1, description));
     }
-    throw ChannelError("`" + description + "` is neither udp:PORT nor serial:DEVICE:BAUD");
+    throw ChannelError("`" + description + "` is neither udp:PORT, udp:ADDRESS:PORT nor serial:DEVICE:BAUD");
 }
 
 }  // namespace

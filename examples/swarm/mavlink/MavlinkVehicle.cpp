@@ -40,7 +40,7 @@ std::optional<Motion> MavlinkVehicle::Update(Time now)
     std::array<std::uint8_t, 4096> buffer;
     for (int reads = 0; reads < MostReads; ++reads)
     {
-        const std::size_t size = _channel->Receive(buffer);
+        const std::size_t size = _channel->Receive(buffer, now);
         if (size == 0)
         {
             break;
