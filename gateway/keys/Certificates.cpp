@@ -6,6 +6,7 @@
 #include <openssl/x509v3.h>
 
 #include <array>
+#include <limits>
 
 namespace Rabit::Keys
 {
@@ -68,6 +69,15 @@ std::string Field(const X509_NAME &name, int field)
             static_cast<std::size_t>(ASN1_STRING_length(text))};
 }
 
+std::string TimeText(std::time_t time, const char *format)
+{
+    std::tm parts = {};
+    std::array<char, 32> text{};
+    ::gmtime_r(&time, &parts);
+    std::strftime(text.data(), text.size(), format, &parts);
+    return text.data();
+}
+
 template <typename Thing>
 Thing Found(Thing thing, const char *what, const std::string &file)
 {
@@ -127,12 +137,13 @@ RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X
     constexpr long version2 = 1;
     RevocationsPtr list = Must(RevocationsPtr(before != nullptr ? X509_CRL_dup(before) : X509_CRL_new()),
                                "make a list of revoked certificates");
-    const TimePtr from = Must(TimePtr(ASN1_TIME_set(nullptr, now)), "make a date");
-    bool done = X509_CRL_set_version(list.get(), version2) == 1 &&
-                X509_CRL_set_issuer_name(list.get(), X509_get_subject_name(&authority)) == 1 &&
-                X509_CRL_set1_lastUpdate(list.get(), from.get()) == 1 &&
-                // Valid as long as the authority: nodes with an expired list would refuse everybody.
-                X509_CRL_set1_nextUpdate(list.get(), X509_get0_notAfter(&authority)) == 1;
+    const TimePtr revokedAt = Must(TimePtr(ASN1_TIME_set(nullptr, now)), "make a date");
+    bool done =
+        X509_CRL_set_version(list.get(), version2) == 1 &&
+        X509_CRL_set_issuer_name(list.get(), X509_get_subject_name(&authority)) == 1 &&
+        // Valid as long as the authority: a node whose clock is outside of that time refuses everybody.
+        X509_CRL_set1_lastUpdate(list.get(), X509_get0_notBefore(&authority)) == 1 &&
+        X509_CRL_set1_nextUpdate(list.get(), X509_get0_notAfter(&authority)) == 1;
     for (const X509 *certificate : revoked)
     {
         if (IsRevoked(*list, *certificate))
@@ -144,7 +155,7 @@ RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X
         done = done &&
                X509_REVOKED_set_serialNumber(
                    entry.get(), const_cast<ASN1_INTEGER *>(X509_get0_serialNumber(certificate))) == 1 &&
-               X509_REVOKED_set_revocationDate(entry.get(), from.get()) == 1 &&
+               X509_REVOKED_set_revocationDate(entry.get(), revokedAt.get()) == 1 &&
                X509_CRL_add0_revoked(list.get(), entry.get()) == 1;
         static_cast<void>(done ? entry.release() : nullptr);  // the list owns it
     }
@@ -204,11 +215,28 @@ Validity ValidityOf(const X509 &certificate)
     return {TimeOf(*X509_get0_notBefore(&certificate)), TimeOf(*X509_get0_notAfter(&certificate))};
 }
 
+Validity ValidityOf(const X509_CRL &revocations)
+{
+    // The end is optional in X.509.
+    const ASN1_TIME *end = X509_CRL_get0_nextUpdate(&revocations);
+    return {TimeOf(*X509_CRL_get0_lastUpdate(&revocations)),
+            end != nullptr ? TimeOf(*end) : std::numeric_limits<std::time_t>::max()};
+}
+
 bool IsSignedBy(const X509 &certificate, const X509 &authority)
 {
     const bool isSigned =
         X509_NAME_cmp(X509_get_issuer_name(&certificate), X509_get_subject_name(&authority)) == 0 &&
         X509_verify(const_cast<X509 *>(&certificate), X509_get0_pubkey(&authority)) == 1;
+    OpenSslError();
+    return isSigned;
+}
+
+bool IsSignedBy(const X509_CRL &revocations, const X509 &authority)
+{
+    const bool isSigned =
+        X509_NAME_cmp(X509_CRL_get_issuer(&revocations), X509_get_subject_name(&authority)) == 0 &&
+        X509_CRL_verify(const_cast<X509_CRL *>(&revocations), X509_get0_pubkey(&authority)) == 1;
     OpenSslError();
     return isSigned;
 }
@@ -237,11 +265,12 @@ std::string FleetOf(const X509 &authority)
 
 std::string DayText(std::time_t time)
 {
-    std::tm parts = {};
-    std::array<char, 16> text{};
-    ::gmtime_r(&time, &parts);
-    std::strftime(text.data(), text.size(), "%Y-%m-%d", &parts);
-    return text.data();
+    return TimeText(time, "%Y-%m-%d");
+}
+
+std::string MinuteText(std::time_t time)
+{
+    return TimeText(time, "%Y-%m-%d %H:%M UTC");
 }
 
 }  // namespace Rabit::Keys

@@ -25,8 +25,8 @@ CertificatePtr MakeAuthority(const std::string &fleet, const std::string &name, 
                              const Validity &validity);
 CertificatePtr MakeCertificate(const SubjectName &subject, EVP_PKEY &key, const Validity &validity,
                                const X509 &authority, EVP_PKEY &authorityKey);
-// Makes a list of revoked certificates: those given, of that authority, and those on the list `before`, which
-// may be null.
+// Makes a list of revoked certificates: those given, of that authority, revoked at `now`, and those on the
+// list `before`, which may be null. The list is valid as long as the authority.
 RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X509 *> &revoked,
                                const X509 &authority, EVP_PKEY &authorityKey, std::time_t now);
 
@@ -40,7 +40,9 @@ KeyPtr ReadKey(std::string_view pem, const std::string &file);
 RevocationsPtr ReadRevocations(std::string_view pem, const std::string &file);
 
 Validity ValidityOf(const X509 &certificate);
+Validity ValidityOf(const X509_CRL &revocations);
 bool IsSignedBy(const X509 &certificate, const X509 &authority);
+bool IsSignedBy(const X509_CRL &revocations, const X509 &authority);
 bool IsRevoked(const X509_CRL &revocations, const X509 &certificate);
 bool IsKeyOf(const EVP_PKEY &key, const X509 &certificate);
 bool AreSame(const X509 &one, const X509 &other);
@@ -49,5 +51,7 @@ std::string FleetOf(const X509 &authority);
 
 // `2026-11-23`, in UTC.
 std::string DayText(std::time_t time);
+// `2026-11-23 12:05 UTC`
+std::string MinuteText(std::time_t time);
 
 }  // namespace Rabit::Keys

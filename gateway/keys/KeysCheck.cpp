@@ -119,21 +119,28 @@ std::vector<KeysFinding> WhatIsTooMuch(const NodeKeys &keys)
 
 std::vector<KeysFinding> WhatEnds(const NodeKeys &keys, std::time_t now, int days)
 {
-    const Validity &validity = keys.ValidityOf();
-    if (now < validity.From)
+    std::vector<KeysFinding> findings;
+    const auto add = [&](const std::string &file, const Validity &validity, const std::string &advice)
     {
-        return {{true, "begins on " + DayText(validity.From) + ", and the clock here says " + DayText(now)}};
-    }
-    if (now > validity.To)
-    {
-        return {{true, "ended on " + DayText(validity.To) + "; renew it"}};
-    }
-    if (validity.To - now < days * Day)
-    {
-        return {{true, "ends on " + DayText(validity.To) + ", in " +
-                           std::to_string((validity.To - now) / Day) + " days; renew it"}};
-    }
-    return {};
+        const auto left = (validity.To - now) / Day;
+        if (now < validity.From)
+        {
+            findings.push_back({true, file + "begins on " + MinuteText(validity.From) +
+                                          ", and the clock here says " + MinuteText(now)});
+        }
+        else if (now > validity.To)
+        {
+            findings.push_back({true, file + "ended on " + DayText(validity.To) + "; " + advice});
+        }
+        else if (left < days)
+        {
+            findings.push_back({true, file + "ends on " + DayText(validity.To) + ", in " +
+                                          std::to_string(left) + " days; " + advice});
+        }
+    };
+    add("", keys.ValidityOf(), "renew it");
+    add("revoked.pem ", keys.ValidityOfRevocations(), "copy the fleet's present one");
+    return findings;
 }
 
 std::vector<std::string> WhoMayWhat(const NodeKeys &keys)

@@ -21,7 +21,8 @@ struct KeysFinding
 // topics.
 std::vector<KeysFinding> WhatIsTooMuch(const NodeKeys &keys);
 
-// Finds a certificate that is not valid yet, has ended, or ends within `days` days.
+// Finds a certificate, or a list of revoked ones, that is not valid yet, has ended, or ends within `days`
+// days.
 std::vector<KeysFinding> WhatEnds(const NodeKeys &keys, std::time_t now, int days);
 
 // Lists the permissions in words, one line each: `writes Pose, MissionState`, `reads Pose of uav*`.

@@ -23,6 +23,13 @@ std::string WordsFor(const char *what, const TopicAccess &access)
     return text + of;
 }
 
+std::string NotYet(const std::string &file, const std::string &begins, const std::string &now)
+{
+    return "the clock says " + now + ", and " + file + " is valid from " + begins +
+           ": set the clock (an aircraft without a battery clock needs GPS or network time before it "
+           "starts), then start again";
+}
+
 }  // namespace
 
 NodeFiles::NodeFiles(const std::string &folder)
@@ -67,6 +74,13 @@ NodeKeys::NodeKeys(const std::string &folder) : _files(folder)
     _subject = SubjectOf(*certificate);
     _validity = Keys::ValidityOf(*certificate);
     const RevocationsPtr revoked = ReadRevocations(ReadFile(_files.Revoked), _files.Revoked);
+    if (!IsSignedBy(*revoked, *identity))
+    {
+        throw KeysError(_files.Revoked +
+                        " is not signed by the identity authority beside it, or was changed; copy the one of "
+                        "this fleet");
+    }
+    _validityOfRevocations = Keys::ValidityOf(*revoked);
     _isRevoked = IsRevoked(*revoked, *certificate);
     for (const Level level : {Level::Sign, Level::Encrypt})
     {
@@ -95,22 +109,37 @@ NodeKeys::NodeKeys(const std::string &folder) : _files(folder)
 std::string NodeKeys::WhyNot(const std::string &node, const std::string &transport, int domain,
                              std::time_t now) const
 {
+    if (std::string why = WhyNever(node, transport, domain); !why.empty())
+    {
+        return why;
+    }
+    if (now < _validity.From)
+    {
+        return NotYet(_files.Certificate, DayText(_validity.From), DayText(now));
+    }
+    if (now < _validityOfRevocations.From)
+    {
+        return NotYet(_files.Revoked, MinuteText(_validityOfRevocations.From), MinuteText(now));
+    }
+    if (now > _validity.To)
+    {
+        return _files.Certificate + " ended on " + DayText(_validity.To) + ", and the clock says " +
+               DayText(now) + "; `rabit keys renew` makes a new one";
+    }
+    if (now > _validityOfRevocations.To)
+    {
+        return _files.Revoked + " ended on " + DayText(_validityOfRevocations.To) + ", and the clock says " +
+               DayText(now) + "; copy the fleet's present one";
+    }
+    return "";
+}
+
+std::string NodeKeys::WhyNever(const std::string &node, const std::string &transport, int domain) const
+{
     const std::string &file = _files.Certificate;
     if (_subject.Node != node)
     {
         return file + " is for the node `" + _subject.Node + "`, and this is `" + node + "`";
-    }
-    if (now < _validity.From)
-    {
-        return "the clock says " + DayText(now) + ", and " + file + " is valid from " +
-               DayText(_validity.From) +
-               ": set the clock (an aircraft without a battery clock needs GPS or network time before it "
-               "starts), then start again";
-    }
-    if (now > _validity.To)
-    {
-        return file + " ended on " + DayText(_validity.To) + ", and the clock says " + DayText(now) +
-               "; `rabit keys renew` makes a new one";
     }
     if (_isRevoked)
     {

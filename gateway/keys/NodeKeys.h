@@ -43,11 +43,15 @@ public:
     const NodeFiles &Files() const { return _files; }
     const SubjectName &Subject() const { return _subject; }
     const Validity &ValidityOf() const { return _validity; }
+    // Outside of this time the node would refuse everybody.
+    const Validity &ValidityOfRevocations() const { return _validityOfRevocations; }
     const Rabit::Keys::Permissions &Permissions() const { return _permissions; }
 
     // Returns, in one line for people, why the node cannot use these keys now; empty if it can.
     std::string WhyNot(const std::string &node, const std::string &transport, int domain,
                        std::time_t now) const;
+    // The same, whatever the clock says.
+    std::string WhyNever(const std::string &node, const std::string &transport, int domain) const;
     // Returns the parts of `access` that the permissions do not allow, each as `write Pose` or `read Pose`.
     std::vector<std::string> Lacks(const Access &access) const;
 
@@ -55,6 +59,7 @@ private:
     NodeFiles _files;
     SubjectName _subject;
     Validity _validity;
+    Validity _validityOfRevocations;
     bool _isRevoked = false;
     Rabit::Keys::Permissions _permissions;
 };

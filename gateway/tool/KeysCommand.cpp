@@ -164,10 +164,7 @@ std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const Gate
     {
         return findings;
     }
-    const Keys::Validity &validity = keys.ValidityOf();
-    const std::time_t then = std::clamp(std::time(nullptr), validity.From, validity.To);
-    if (const std::string why = keys.WhyNot(config->Node, config->Transport, config->Domain, then);
-        !why.empty())
+    if (const std::string why = keys.WhyNever(config->Node, config->Transport, config->Domain); !why.empty())
     {
         findings.push_back({true, why});
     }

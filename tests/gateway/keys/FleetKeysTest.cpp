@@ -181,6 +181,25 @@ TEST_F(FleetKeysTest, WhoIsRevokedIsInTheListOfEachNodeAndHasNoFolder)
     EXPECT_THAT(FleetKeys(Place()).Nodes(), ElementsAre("uav2"));
 }
 
+// Nodes check the dates of the list by clocks that may be as slow as the certificates allow.
+TEST_F(FleetKeysTest, TheListOfRevokedOnesIsValidAsLongAsTheAuthority)
+{
+    Add("uav1");
+    Add("uav2");
+    const CertificatePtr authority = ReadCertificate(ReadFile(Place() + "/authority/identity.pem"), "");
+    const std::string file = NodeFiles(FolderOf("uav2")).Revoked;
+    for (const bool isRevoked : {false, true})
+    {
+        if (isRevoked)
+        {
+            FleetKeys(Place()).Revoke("uav1", TestNow + 100 * TestDay);
+        }
+        const Validity validity = ValidityOf(*ReadRevocations(ReadFile(file), file));
+        EXPECT_EQ(validity.From, ValidityOf(*authority).From);
+        EXPECT_EQ(validity.To, ValidityOf(*authority).To);
+    }
+}
+
 TEST_F(FleetKeysTest, RevokingTheOlderOnesLeavesTheNewestGood)
 {
     Add("uav1");

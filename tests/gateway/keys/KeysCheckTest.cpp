@@ -97,7 +97,25 @@ TEST_F(KeysCheckTest, ThatTheyEndIsSaidAhead)
 
 TEST_F(KeysCheckTest, ThatTheyHaveNotBegunIsSaid)
 {
-    EXPECT_THAT(Texts(WhatEnds(Node(), 0, 30)), ElementsAre(HasSubstr("begins on 2026-11-22")));
+    EXPECT_THAT(Texts(WhatEnds(Node(), 0, 30)), ElementsAre(HasSubstr("begins on 2026-11-22"),
+                                                            HasSubstr("revoked.pem begins on 2026-11-22")));
+}
+
+TEST_F(KeysCheckTest, ThatTheListOfRevokedOnesHasNotBegunIsSaid)
+{
+    Relist(FolderOf("uav1"), Place(), "identity", {.From = TestNow + 600, .To = TestNow + 3650 * TestDay});
+    EXPECT_THAT(Texts(WhatEnds(Node(), TestNow, 30)),
+                ElementsAre("revoked.pem begins on 2026-11-23 12:10 UTC, and the clock here says 2026-11-23 "
+                            "12:00 UTC"));
+}
+
+TEST_F(KeysCheckTest, ThatTheListOfRevokedOnesEndsIsSaidAhead)
+{
+    Relist(FolderOf("uav1"), Place(), "identity", {.From = TestNow - TestDay, .To = TestNow + 10 * TestDay});
+    EXPECT_THAT(Texts(WhatEnds(Node(), TestNow, 30)),
+                ElementsAre("revoked.pem ends on 2026-12-03, in 10 days; copy the fleet's present one"));
+    EXPECT_THAT(Texts(WhatEnds(Node(), TestNow + 11 * TestDay, 30)),
+                ElementsAre("revoked.pem ended on 2026-12-03; copy the fleet's present one"));
 }
 
 TEST_F(KeysCheckTest, WhoMayWhatIsSaidInWords)

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "keys/Certificates.h"
 #include "keys/FleetKeys.h"
 #include "keys/KeyFiles.h"
 #include "keys/KeysError.h"
@@ -67,6 +68,23 @@ protected:
         const CertificatePtr signer = ReadCertificate(ReadFile(place + authority + ".pem"), "");
         const KeyPtr key = ReadKey(ReadSecret(place + authority + "_key.pem"), "");
         WriteFile(file, SignDocument(text, *signer, *key));
+    }
+
+    // Replaces the list of revoked certificates in `folder` by an empty one, which the authority `by` of the
+    // fleet in `fleet` signs.
+    void Relist(const std::string &folder, const std::string &fleet, const std::string &by,
+                const Validity &validity) const
+    {
+        const std::string place = fleet + "/authority/" + by;
+        const CertificatePtr authority = ReadCertificate(ReadFile(place + ".pem"), "");
+        const KeyPtr key = ReadKey(ReadSecret(place + "_key.pem"), "");
+        const RevocationsPtr list = MakeRevocations(nullptr, {}, *authority, *key, TestNow);
+        const TimePtr from(ASN1_TIME_set(nullptr, validity.From));
+        const TimePtr to(ASN1_TIME_set(nullptr, validity.To));
+        ASSERT_EQ(X509_CRL_set1_lastUpdate(list.get(), from.get()), 1);
+        ASSERT_EQ(X509_CRL_set1_nextUpdate(list.get(), to.get()), 1);
+        ASSERT_GT(X509_CRL_sign(list.get(), key.get(), EVP_sha256()), 0);
+        WriteFile(NodeFiles(folder).Revoked, PemOf(*list));
     }
 
     // Returns the error that NodeKeys throws for this folder; empty if it throws none.

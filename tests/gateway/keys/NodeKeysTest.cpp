@@ -170,6 +170,58 @@ TEST_F(NodeKeysTest, ARevokedOneIsRefused)
     EXPECT_THAT(NodeKeys(Root + "/kept").WhyNot("uav1", "fastdds", 7, TestNow), HasSubstr("is revoked"));
 }
 
+constexpr Validity SomeYears{.From = TestNow - TestDay, .To = TestNow + 3650 * TestDay};
+
+TEST_F(NodeKeysTest, AListOfRevokedOnesOfAnotherFleetIsRefused)
+{
+    FleetKeys::Init(Root + "/other", "blue", {.Now = TestNow, .Days = 3650});
+    Relist(FolderOf("uav1"), Root + "/other", "identity", SomeYears);
+    EXPECT_THAT(WhyNoKeys(FolderOf("uav1")),
+                HasSubstr(Files.Revoked + " is not signed by the identity authority"));
+}
+
+TEST_F(NodeKeysTest, AListOfRevokedOnesOfThePermissionsAuthorityIsRefused)
+{
+    Relist(FolderOf("uav1"), Place(), "permissions", SomeYears);
+    EXPECT_THAT(WhyNoKeys(FolderOf("uav1")),
+                HasSubstr(Files.Revoked + " is not signed by the identity authority"));
+}
+
+TEST_F(NodeKeysTest, AChangedListOfRevokedOnesIsRefused)
+{
+    const RevocationsPtr list = ReadRevocations(ReadFile(Files.Revoked), "");
+    const BioPtr binary = EmptyBio();
+    ASSERT_EQ(i2d_X509_CRL_bio(binary.get(), list.get()), 1);
+    std::string bytes = TextOf(*binary);
+    bytes.back() ^= 1;  // of the signature
+    const BioPtr changed = BioOf(bytes);
+    const RevocationsPtr other(d2i_X509_CRL_bio(changed.get(), nullptr));
+    ASSERT_TRUE(other);
+    WriteFile(Files.Revoked, PemOf(*other));
+    EXPECT_THAT(WhyNoKeys(FolderOf("uav1")), HasSubstr(Files.Revoked + " is not signed"));
+}
+
+TEST_F(NodeKeysTest, AListOfRevokedOnesThatHasNotBegunIsOneLineThatSaysWhatToDo)
+{
+    Relist(FolderOf("uav1"), Place(), "identity", {.From = TestNow + 600, .To = SomeYears.To});
+    EXPECT_EQ(WhyNoUse(), "the clock says 2026-11-23 12:00 UTC, and " + Files.Revoked +
+                              " is valid from 2026-11-23 12:10 UTC: set the clock (an aircraft without a "
+                              "battery clock needs GPS or network time before it starts), then start again");
+}
+
+TEST_F(NodeKeysTest, AListOfRevokedOnesThatEndedIsSaid)
+{
+    Relist(FolderOf("uav1"), Place(), "identity", {.From = SomeYears.From, .To = TestNow - 1});
+    EXPECT_THAT(WhyNoUse(), HasSubstr(Files.Revoked + " ended on 2026-11-23"));
+}
+
+TEST_F(NodeKeysTest, AClockADayBehindIsGoodAfterAnotherWasRevoked)
+{
+    Add("uav2");
+    FleetKeys(Place()).Revoke("uav2", TestNow);
+    EXPECT_EQ(WhyNoUse(TestNow - TestDay + 1), "");
+}
+
 TEST_F(NodeKeysTest, WhatTheConfigurationNeedsBesidesIsNamed)
 {
     Access needs = RequestFor("uav1").Access;

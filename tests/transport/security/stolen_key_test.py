@@ -34,13 +34,13 @@ WARNINGS = re.compile("rabit: warning: (.*)")
 class Node:
     """A running node, its ledger and what it said."""
 
-    def __init__(self, case, name, transport, *options):
+    def __init__(self, case, name, transport, *options, env=None):
         self.name, self.transport = name, transport
         self.ledger = case.folder / f"{len(case.started)}.ledger"
         self.ledger.touch()
         self.process = case.processes.start(
             [case.ledger_node, "--node", name, "--transport", transport, "--domain", case.domain, "--interface",
-             "127.0.0.1", "--ledger", self.ledger, *options])
+             "127.0.0.1", "--ledger", self.ledger, *options], env=env)
         case.started.append(self)
 
     def lines(self):
@@ -95,16 +95,17 @@ class Case:
         except Exception as error:  # the others go on
             self.failure = str(error)
 
+    def run_keys(self, *words):
+        done = subprocess.run([self.rabit, "keys", *map(str, words)], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise AssertionError(f"{words}: {done.stdout}{done.stderr}")
+
     def make_keys(self):
-        def keys(*words):
-            done = subprocess.run([self.rabit, "keys", *map(str, words)], capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                raise AssertionError(f"{words}: {done.stdout}{done.stderr}")
-        keys("init", self.folder / "keys")
+        self.run_keys("init", self.folder / "keys")
         for name, transport in self.transports.items():
             config = self.folder / f"{name}.yaml"
             config.write_text(CONFIG.format(name=name, transport=transport, domain=self.domain))
-            keys("add", name, "--keys", self.folder / "keys", "--config", config)
+            self.run_keys("add", name, "--keys", self.folder / "keys", "--config", config)
 
     def node(self, name, *options):
         """One with its own keys."""
