@@ -53,7 +53,7 @@ std::unique_ptr<RecordingDisk::File> FolderDisk::Create(const std::string &name,
     std::error_code error;
     std::filesystem::create_directories(_folder, error);
     const std::string path = _folder + "/" + name;
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640);
     if (descriptor < 0)
     {
         reason = path + ": " + std::generic_category().message(errno);

@@ -1,7 +1,10 @@
 #include "recording/Recorder.h"
 
+#include <rabit/RabitLog.h>
+
 #include <chrono>
 #include <exception>
+#include <string>
 #include <utility>
 
 namespace Rabit
@@ -55,6 +58,10 @@ void Recorder::Run()
         _inbox.Take(batch, Turn);
         Write(batch);
         _inbox.Done(batch);
+        for (const std::string &removal : _files.TakeRemovals())
+        {
+            RabitLog::Write(RabitLogLevel::Warning, "recording: " + removal);
+        }
         const std::lock_guard lock(_mutex);
         _status = _files.Status();
     } while (!batch.IsEnd);

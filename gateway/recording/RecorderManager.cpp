@@ -43,6 +43,7 @@ RecordingSettings SettingsOf(const GatewayConfig &config)
     settings.SplitTime = record.SplitTime;
     settings.KeepBytes = record.Keep;
     settings.FreeBytes = record.Free;
+    settings.RemovesOwnStart = true;
     settings.MemoryBytes = record.Memory;
     if (record.BlackBox)
     {

@@ -23,6 +23,11 @@ std::uint64_t Nanoseconds(std::chrono::nanoseconds duration)
     return static_cast<std::uint64_t>(duration.count());
 }
 
+std::string Mebibytes(std::uint64_t bytes)
+{
+    return std::to_string(bytes >> 20);
+}
+
 std::string DateOf(std::uint64_t time)
 {
     const auto seconds = static_cast<std::time_t>(time / Second);
@@ -213,6 +218,7 @@ bool RecordingFiles::Open(Time now, Time firstLogTime)
     }
     _status.File = name;
     _status.LastFile = name;
+    _begun.push_back(name);
     ++_status.Files;
     _writer = std::make_unique<Mcap::McapWriter>(
         *_file, Mcap::McapWriter::Options{"rabit " RABIT_VERSION_STRING, "rabit", _settings.Compresses});
@@ -358,13 +364,45 @@ std::vector<std::pair<std::string, std::uint64_t>> RecordingFiles::OwnFiles()
     return own;
 }
 
-bool RecordingFiles::RemoveOldest(std::vector<std::pair<std::string, std::uint64_t>> &own)
+bool RecordingFiles::Remove(std::string name, const std::string &why)
 {
-    while (!own.empty() && own.front().first != _status.File)
+    if (!_disk.Remove(name))
     {
-        const std::string name = own.front().first;
-        own.erase(own.begin());
-        if (_disk.Remove(name))
+        return false;
+    }
+    std::erase(_begun, name);  // by value: `name` may have been one of them
+    _removals.push_back("removed " + _settings.Folder + "/" + name + ", the oldest file of " + why);
+    return true;
+}
+
+void RecordingFiles::KeepWithinBytes()
+{
+    const auto own = OwnFiles();
+    std::uint64_t total = 0;
+    for (const auto &[name, bytes] : own)
+    {
+        total += bytes;
+    }
+    for (const auto &[name, bytes] : own)
+    {
+        if (total <= _settings.KeepBytes || name == _status.File)
+        {
+            return;
+        }
+        if (Remove(name, _settings.Name + ": its files took more than the " + Mebibytes(_settings.KeepBytes) +
+                             " MiB that are kept"))
+        {
+            total -= bytes;
+        }
+    }
+}
+
+// Removes the oldest file of this recording, but not its last one: that may be the only one of this flight.
+bool RecordingFiles::RemoveOwnStart()
+{
+    for (std::size_t at = 0; _settings.RemovesOwnStart && at + 1 < _begun.size(); ++at)
+    {
+        if (Remove(_begun[at], "this recording: less than " + Mebibytes(Margin()) + " MiB were free"))
         {
             return true;
         }
@@ -374,30 +412,19 @@ bool RecordingFiles::RemoveOldest(std::vector<std::pair<std::string, std::uint64
 
 bool RecordingFiles::MakeRoom(std::uint64_t margin)
 {
-    auto own = OwnFiles();
-    std::uint64_t total = 0;
-    for (const auto &[name, bytes] : own)
+    if (_settings.KeepBytes != 0)
     {
-        total += bytes;
-    }
-    while (_settings.KeepBytes != 0 && total > _settings.KeepBytes && !own.empty())
-    {
-        const std::uint64_t bytes = own.front().second;
-        if (!RemoveOldest(own))
-        {
-            break;
-        }
-        total -= bytes;
+        KeepWithinBytes();
     }
     std::optional<std::uint64_t> free = _disk.FreeBytes();
-    while (free && *free < margin && RemoveOldest(own))
+    while (free && *free < margin && RemoveOwnStart())
     {
         free = _disk.FreeBytes();
     }
     if (free && *free < margin)
     {
-        _status.Problem = "only " + std::to_string(*free >> 20) + " MiB are free in " + _settings.Folder +
-                          ", and " + std::to_string(Margin() >> 20) + " are to stay free";
+        _status.Problem = "only " + Mebibytes(*free) + " MiB are free in " + _settings.Folder + ", and " +
+                          Mebibytes(Margin()) + " are to stay free; move earlier recordings away";
         return false;
     }
     return true;

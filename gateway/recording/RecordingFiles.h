@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recording/RecordingDisk.h"
@@ -61,6 +63,8 @@ public:
     // Closes the file as it is, and counts unsaved messages as lost. The next file is begun later.
     void Abandon(const std::string &problem, Time now);
     const RecordingStatus &Status() const { return _status; }
+    // Returns the files that were removed since the last call, one line for the log each.
+    std::vector<std::string> TakeRemovals() { return std::exchange(_removals, {}); }
 
 private:
     struct Stream
@@ -83,11 +87,13 @@ private:
     void GiveUp(Time now, const std::string &problem);
     void Finish();
     void Forget();
-    // MakeRoom removes old files until `margin` (Margin()) bytes of the disk are free; false if they are
-    // not even then.
+    // MakeRoom removes old files, as far as the settings allow, until `margin` (Margin()) bytes of the disk
+    // are free; false if they are not even then.
     std::uint64_t Margin() const;
     bool MakeRoom(std::uint64_t margin);
-    bool RemoveOldest(std::vector<std::pair<std::string, std::uint64_t>> &own);
+    void KeepWithinBytes();
+    bool RemoveOwnStart();
+    bool Remove(std::string name, const std::string &why);
     // Returns this node's files, the oldest first.
     std::vector<std::pair<std::string, std::uint64_t>> OwnFiles();
     void WriteLosses();
@@ -101,7 +107,9 @@ private:
     std::unique_ptr<RecordingDisk::File> _file;
     std::unique_ptr<Mcap::McapWriter> _writer;
     std::optional<std::uint64_t> _number;  // of the next file
-    std::string _recording;                // the first file's name, in all of them: they belong together
+    std::deque<std::string> _begun;        // files of this recording that were not removed, the oldest first
+    std::vector<std::string> _removals;
+    std::string _recording;  // the first file's name, in all of them: they belong together
     Time _openedAt = 0;
     Time _flushedAt = 0;
     Time _nextLook = 0;

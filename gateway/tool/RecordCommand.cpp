@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "Command.h"
 #include "CommonOptions.h"
@@ -85,12 +87,18 @@ int Run(const Options &options, Wakeup &wakeup)
         FleetSession session(config, options.Common, wakeup);
         FleetFollower follower(session, options.What, config, config.Record->Except);
         MessageTaps taps(config, session.Workspace(), target);
+        std::string problem;
         while (!wakeup.IsInterrupted() && session.Seconds() < options.For)
         {
             follower.FollowNew();
             taps.Look();
             anybody = anybody || session.IsAnybodyThere();
             anything = follower.Messages() > 0;
+            if (const std::string now = target->Status().Problem;
+                std::exchange(problem, now) != now && !now.empty())
+            {
+                Output::Talk("nothing is recorded: " + now);
+            }
             if (!anybody && session.Seconds() >= options.Common.Wait)
             {
                 target->End();

@@ -1,10 +1,15 @@
 #include "recording/Recorder.h"
 
 #include <gtest/gtest.h>
+#include <rabit/RabitLog.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <future>
+#include <string>
+#include <vector>
 
 #include "FakeDisk.h"
 #include "recording/FolderDisk.h"
@@ -83,6 +88,41 @@ TEST(Recorder, LeavesAWholeFileInAFolderThatItMakes)
     EXPECT_EQ(reason, path.string() + ": File exists");
     EXPECT_TRUE(disk.Remove(disk.List()[0].Name));
     EXPECT_TRUE(disk.List().empty());
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Recorder, NamesEachRemovedFileInTheLog)
+{
+    auto disk = std::make_unique<FakeDisk>();
+    const std::string earlier = "uav1_000001_20250101T000000Z.mcap";
+    disk->Put(earlier, 2U << 20);
+    RecordingSettings settings = SettingsOf("/recordings");
+    settings.KeepBytes = 1U << 20;
+    std::vector<std::string> lines;  // written by the recorder's thread, which has ended when they are read
+    const auto listener =
+        RabitLog::Listen([&](RabitLogLevel, const std::string &line) { lines.push_back(line); });
+    {
+        Recorder recorder(std::move(disk), settings, [] { return std::uint64_t{1000}; });
+        const std::uint32_t stream = recorder.Inbox().AddStream({.Topic = "a", .SchemaName = ""});
+        EXPECT_TRUE(recorder.Inbox().Put({stream, 0, 5, 5, Mcap::Bytes(100)}));
+    }
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_EQ(lines[0].rfind("recording: removed /recordings/" + earlier, 0), 0U) << lines[0];
+}
+
+// With keys, too, the messages in a recording are not encrypted.
+TEST(FolderDisk, MakesFilesThatOtherUsersCannotRead)
+{
+    const auto folder =
+        std::filesystem::path(testing::TempDir()) / ("rabit_folder_disk_" + std::to_string(::getpid()));
+    const mode_t mask = ::umask(0);
+    std::string reason;
+    const bool isMade = FolderDisk(folder).Create("a.mcap", reason) != nullptr;
+    ::umask(mask);
+    ASSERT_TRUE(isMade) << reason;
+    using std::filesystem::perms;
+    EXPECT_EQ(std::filesystem::status(folder / "a.mcap").permissions(),
+              perms::owner_read | perms::owner_write | perms::group_read);
     std::filesystem::remove_all(folder);
 }
 

@@ -10,6 +10,7 @@ namespace
 {
 
 using testing::ElementsAre;
+using testing::IsEmpty;
 
 constexpr std::uint64_t Start = 1763866000 * std::uint64_t{1000000000};
 constexpr std::uint64_t Millisecond = 1000000;
@@ -28,6 +29,23 @@ protected:
         _batch.NewStreams.push_back(std::make_shared<const RecordingStream>(
             RecordingStream{.Topic = "uav1/Health", .SchemaName = "", .IsState = true}));
     }
+
+    // An earlier recording, and three files of this one, the last of which is being written.
+    void RecordThreeFiles()
+    {
+        _disk.Capacity = 1000 * Mebibyte;
+        _disk.Put("uav1_000001_20250101T000000Z.mcap", 6 * Mebibyte);
+        _settings.SplitBytes = 2 * Mebibyte;
+        for (int count = 0; count < 50; ++count)
+        {
+            Record(0, 100000);
+        }
+        ASSERT_THAT(_disk.Names(),
+                    ElementsAre("uav1_000001_20250101T000000Z.mcap", SecondName, ThirdName, FourthName));
+    }
+    const std::string SecondName = "uav1_000002_20251123T024640Z.mcap";
+    const std::string ThirdName = "uav1_000003_20251123T024640Z.mcap";
+    const std::string FourthName = "uav1_000004_20251123T024640Z.mcap";
 
     RecordingFiles &Files()
     {
@@ -155,17 +173,61 @@ TEST_F(RecordingFilesTest, RemovesItsOldestWhenTheyAreTooMuch)
     EXPECT_EQ(_disk.Files.count("uav1_000002_20240101T000000Z.mcap"), 1U);
     EXPECT_EQ(_disk.Files.count("uav2_000001_20230101T000000Z.mcap"), 1U);
     EXPECT_EQ(_disk.Files.count("uav1_000001_20250101T000000Z_recovered.mcap"), 1U);
+    EXPECT_THAT(
+        Files().TakeRemovals(),
+        ElementsAre("removed /recordings/uav1_000001_20250101T000000Z.mcap, the oldest file of uav1: its "
+                    "files took more than the 10 MiB that are kept"));
 }
 
-TEST_F(RecordingFilesTest, RemovesItsOldestToKeepTheMarginFree)
+TEST_F(RecordingFilesTest, RemovesNoEarlierRecordingToKeepTheMarginFree)
 {
+    _settings.RemovesOwnStart = true;
     _disk.Capacity = 1000 * Mebibyte;
     _disk.Put("uav1_000001_20250101T000000Z.mcap", 6 * Mebibyte);
-    _disk.Put("uav1_000002_20250101T000000Z.mcap", 6 * Mebibyte);
-    _disk.UsedByOthers = 892 * Mebibyte;
+    _disk.UsedByOthers = 899 * Mebibyte;
     Record();
-    EXPECT_EQ(_disk.Files.count("uav1_000001_20250101T000000Z.mcap"), 0U);
-    EXPECT_EQ(_disk.Files.count("uav1_000002_20250101T000000Z.mcap"), 1U);
+    EXPECT_THAT(_disk.Names(), ElementsAre("uav1_000001_20250101T000000Z.mcap"));
+    EXPECT_EQ(Files().Status().Problem,
+              "only 95 MiB are free in /recordings, and 100 are to stay free; move earlier recordings away");
+    EXPECT_THAT(Files().TakeRemovals(), IsEmpty());
+}
+
+TEST_F(RecordingFilesTest, RemovesItsOwnOldestToKeepTheMarginFree)
+{
+    _settings.RemovesOwnStart = true;
+    RecordThreeFiles();
+    _disk.UsedByOthers = 890 * Mebibyte;
+    Pass(1500);
+    EXPECT_THAT(_disk.Names(), ElementsAre("uav1_000001_20250101T000000Z.mcap", ThirdName, FourthName));
+    EXPECT_EQ(Files().Status().Problem, "");
+    EXPECT_THAT(Files().TakeRemovals(),
+                ElementsAre("removed /recordings/" + SecondName +
+                            ", the oldest file of this recording: less than 100 MiB were free"));
+    EXPECT_THAT(Files().TakeRemovals(), IsEmpty()) << "each is told once";
+}
+
+TEST_F(RecordingFilesTest, PausesRatherThanRemoveItsLastFile)
+{
+    _settings.RemovesOwnStart = true;
+    RecordThreeFiles();
+    _disk.UsedByOthers = 999 * Mebibyte;
+    Pass(1500);
+    Record();
+    Pass(1500);
+    Record();
+    EXPECT_THAT(_disk.Names(), ElementsAre("uav1_000001_20250101T000000Z.mcap", FourthName));
+    EXPECT_NE(Files().Status().Problem, "");
+}
+
+// As the program `rabit` records.
+TEST_F(RecordingFilesTest, RemovesNothingUnlessItIsToldTo)
+{
+    RecordThreeFiles();
+    _disk.UsedByOthers = 999 * Mebibyte;
+    Pass(1500);
+    Record();
+    EXPECT_EQ(_disk.Files.size(), 4U);
+    EXPECT_NE(Files().Status().Problem, "");
 }
 
 TEST_F(RecordingFilesTest, StopsAtTheMarginAndGoesOnWhenThereIsRoomAgain)
@@ -174,7 +236,8 @@ TEST_F(RecordingFilesTest, StopsAtTheMarginAndGoesOnWhenThereIsRoomAgain)
     Record(1);
     _disk.UsedByOthers = 950 * Mebibyte;
     Pass(1500);
-    EXPECT_EQ(Files().Status().Problem, "only 49 MiB are free in /recordings, and 100 are to stay free");
+    EXPECT_EQ(Files().Status().Problem,
+              "only 49 MiB are free in /recordings, and 100 are to stay free; move earlier recordings away");
     EXPECT_TRUE(Files().Status().File.empty());
     Record();
     Record();

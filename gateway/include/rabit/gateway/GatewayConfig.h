@@ -144,10 +144,13 @@ struct RecordSettings
     std::vector<std::string> Steps{};
     std::uint64_t SplitSize = std::uint64_t{1} << 30;  // a file is ended at this size, 1 MB to 1 TB
     std::chrono::milliseconds SplitTime{600'000};      // or after this time, 1 s to 24 h
-    std::uint64_t Keep = 0;                       // bytes of this node's files that are kept; 0: all that fit
-    std::uint64_t Free = std::uint64_t{1} << 30;  // bytes of the disk that stay free
-    std::uint64_t Memory = 64U << 20;             // bytes that may wait for the disk, 1 MB to 64 GB
-    std::optional<BlackBoxSettings> BlackBox{};   // set: a recording is written only on a trigger
+    // Bytes of this node's files that are kept, earlier recordings included; beyond it the oldest is removed.
+    // 0: none is removed for it.
+    std::uint64_t Keep = 0;
+    // Bytes of the disk that stay free: the oldest files of this recording are removed, then it pauses.
+    std::uint64_t Free = std::uint64_t{1} << 30;
+    std::uint64_t Memory = 64U << 20;            // bytes that may wait for the disk, 1 MB to 64 GB
+    std::optional<BlackBoxSettings> BlackBox{};  // set: a recording is written only on a trigger
     int Line = 0;
 };
 
