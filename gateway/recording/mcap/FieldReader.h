@@ -5,11 +5,14 @@
 namespace Rabit::Mcap
 {
 
-// Reads the fields of one record from untrusted bytes. After the first field that does not fit, IsGood is
-// false, and every further read returns an empty value.
+// Reads the fields of one record from untrusted bytes, which must not become many times their size in memory.
+// After the first field that does not fit, IsGood is false, and every further read returns an empty value.
 class FieldReader
 {
 public:
+    // Texts() fails if its result would take more memory: an entry of 8 bytes becomes one of TextEntrySize.
+    static constexpr std::size_t LargestTexts = 64U << 20;
+
     explicit FieldReader(ByteView bytes) : _left(bytes) {}
 
     bool IsGood() const { return _good; }
@@ -47,10 +50,13 @@ public:
     {
         FieldReader entries(Raw(Number<std::uint32_t>()));
         TextMap texts;
+        std::size_t bytes = 0;
         while (entries.IsGood() && !entries.IsEnd())
         {
             std::string key = entries.Text();
             std::string value = entries.Text();
+            bytes += TextEntrySize + key.size() + value.size();
+            entries._good = entries._good && bytes <= LargestTexts;
             if (entries.IsGood())
             {
                 texts.insert_or_assign(std::move(key), std::move(value));

@@ -17,10 +17,48 @@ namespace
 
 constexpr std::size_t FooterSize = RecordHead + 20;
 
-// Bytes that the entries take in memory besides their texts.
-std::size_t OverheadOf(const TextMap &values)
+// Bytes that these take in memory, about.
+std::size_t SizeOf(const TextMap &values)
 {
-    return values.size() * 2 * sizeof(std::string);
+    std::size_t bytes = 0;
+    for (const auto &[key, value] : values)
+    {
+        bytes += TextEntrySize + key.size() + value.size();
+    }
+    return bytes;
+}
+
+std::size_t SizeOf(const Schema &schema)
+{
+    return sizeof schema + schema.Name.size() + schema.Encoding.size() + schema.Data.size();
+}
+
+std::size_t SizeOf(const Channel &channel)
+{
+    return sizeof channel + channel.Topic.size() + channel.MessageEncoding.size() + SizeOf(channel.Metadata);
+}
+
+std::size_t SizeOf(const Metadata &metadata)
+{
+    return sizeof metadata + metadata.Name.size() + SizeOf(metadata.Values);
+}
+
+std::size_t SizeOf(const ChunkIndex &chunk)
+{
+    constexpr std::size_t offsetEntry = 64;  // the node of the map
+    return sizeof chunk + chunk.Compression.size() + chunk.MessageIndexOffsets.size() * offsetEntry;
+}
+
+std::size_t SizeOf(const AttachmentIndex &attachment)
+{
+    return sizeof attachment + attachment.Name.size() + attachment.MediaType.size();
+}
+
+bool Take(std::size_t bytes, std::size_t &left)
+{
+    const bool fits = bytes <= left;
+    left -= fits ? bytes : 0;
+    return fits;
 }
 
 std::string At(std::uint64_t offset)
@@ -32,7 +70,7 @@ std::string At(std::uint64_t offset)
 class Scan
 {
 public:
-    explicit Scan(ByteSource &source) : _source(source) {}
+    Scan(ByteSource &source, const ContentsLimits &limits) : _source(source), _contents(limits) {}
 
     Contents Run()
     {
@@ -78,8 +116,7 @@ private:
         switch (static_cast<Opcode>(record.Code))
         {
             case Opcode::Header:
-                good = TakeIf(ReadHeader(record.Content),
-                              [this](Header &&header) { _contents.Header = std::move(header); });
+                good = TakeHeader(record.Content);
                 break;
             case Opcode::Schema:
             case Opcode::Channel:
@@ -93,17 +130,10 @@ private:
                 TakeChunk(record);
                 break;
             case Opcode::Attachment:
-                good = TakeIf(ReadAttachment(record.Content),
-                              [this, &record](Attachment &&attachment)
-                              {
-                                  _contents.Attachments.push_back(
-                                      {record.Offset, record.Length, attachment.LogTime,
-                                       attachment.CreateTime, attachment.Data.size(),
-                                       std::move(attachment.Name), std::move(attachment.MediaType)});
-                              });
+                good = TakeAttachment(record);
                 break;
             case Opcode::Metadata:
-                good = TakeMetadata(record.Content);
+                good = AddIf(ReadMetadata(record.Content));
                 break;
             case Opcode::DataEnd:
                 _inSummary = true;
@@ -113,35 +143,37 @@ private:
         }
         if (!good)
         {
-            _contents.AddProblem("the record" + At(record.Offset) + " is malformed");
+            _contents.AddProblem("the record" + At(record.Offset) + " is malformed, or too much to hold");
         }
     }
 
-    template <typename T, typename Use>
-    static bool TakeIf(std::optional<T> &&record, Use use)
+    bool TakeHeader(ByteView content)
     {
-        if (record)
-        {
-            use(std::move(*record));
-        }
-        return record.has_value();
+        auto header = ReadHeader(content);
+        _contents.Header = header ? std::move(*header) : std::move(_contents.Header);
+        return header.has_value();
+    }
+
+    // Adds the record that was read; false if there is none, or it is beyond the limits.
+    template <typename T>
+    bool AddIf(std::optional<T> &&record)
+    {
+        return record && _contents.Add(std::move(*record));
+    }
+
+    bool TakeAttachment(const RecordScanner::Record &record)
+    {
+        auto attachment = ReadAttachment(record.Content);
+        return attachment &&
+               _contents.Add(AttachmentIndex{record.Offset, record.Length, attachment->LogTime,
+                                             attachment->CreateTime, attachment->Data.size(),
+                                             std::move(attachment->Name), std::move(attachment->MediaType)});
     }
 
     bool TakeDefinition(std::uint8_t code, ByteView content)
     {
-        if (code == static_cast<std::uint8_t>(Opcode::Schema))
-        {
-            auto schema = ReadSchema(content);
-            return schema && _contents.AddDefinition(std::move(*schema));
-        }
-        auto channel = ReadChannel(content);
-        return channel && _contents.AddDefinition(std::move(*channel));
-    }
-
-    bool TakeMetadata(ByteView content)
-    {
-        auto metadata = ReadMetadata(content);
-        return metadata && _contents.AddMetadata(std::move(*metadata), content.size());
+        return code == static_cast<std::uint8_t>(Opcode::Schema) ? AddIf(ReadSchema(content))
+                                                                 : AddIf(ReadChannel(content));
     }
 
     bool TakeMessage(ByteView content)
@@ -183,7 +215,8 @@ private:
         }
         if (!good || !inner.WasGood())
         {
-            _contents.AddProblem("the chunk" + At(record.Offset) + " has malformed records");
+            _contents.AddProblem("the chunk" + At(record.Offset) +
+                                 " has records that are malformed, or too much to hold");
         }
         ChunkIndex index;
         index.StartTime = chunk->StartTime;
@@ -193,7 +226,12 @@ private:
         index.Compression = chunk->Compression;
         index.CompressedSize = chunk->Records.size();
         index.UncompressedSize = chunk->UncompressedSize;
-        _contents.Chunks.push_back(std::move(index));
+        if (!_isFull && !_contents.Add(std::move(index)))
+        {
+            _isFull = true;
+            _contents.AddProblem("there are too many chunks: messages from the one" + At(record.Offset) +
+                                 " on can only be read by `recover`");
+        }
     }
 
     void Count()
@@ -216,6 +254,7 @@ private:
     Bytes _room;
     std::uint64_t _outside = 0;
     bool _inSummary = false;
+    bool _isFull = false;  // a chunk was left out
 };
 
 std::optional<Bytes> ReadPart(ByteSource &source, std::uint64_t offset, std::uint64_t length)
@@ -263,79 +302,59 @@ std::optional<Bytes> ReadSummary(ByteSource &source)
     return summary;
 }
 
+// Adds the record that was read; false if there is none, or it is beyond the limits.
+template <typename T>
+bool AddIf(std::optional<T> &&record, Contents &contents)
+{
+    return record && contents.Add(std::move(*record));
+}
+
+std::optional<Metadata> ReadMetadataAt(ByteSource &source, const std::optional<MetadataIndex> &index)
+{
+    const auto bytes = index ? ReadPart(source, index->Offset, index->Length) : std::nullopt;
+    const auto record = bytes ? RecordIterator(*bytes).Next() : std::nullopt;
+    return record && record->Code == static_cast<std::uint8_t>(Opcode::Metadata)
+               ? ReadMetadata(record->Content)
+               : std::nullopt;
+}
+
 bool TakeSummary(ByteSource &source, ByteView summary, Contents &contents)
 {
     RecordIterator records(summary);
     bool hasStatistics = false;
     while (const auto record = records.Next())
     {
+        bool good = true;
         switch (static_cast<Opcode>(record->Code))
         {
             case Opcode::Schema:
-            {
-                auto schema = ReadSchema(record->Content);
-                if (!schema || !contents.AddDefinition(std::move(*schema)))
-                {
-                    return false;
-                }
+                good = AddIf(ReadSchema(record->Content), contents);
                 break;
-            }
             case Opcode::Channel:
-            {
-                auto channel = ReadChannel(record->Content);
-                if (!channel || !contents.AddDefinition(std::move(*channel)))
-                {
-                    return false;
-                }
+                good = AddIf(ReadChannel(record->Content), contents);
                 break;
-            }
             case Opcode::ChunkIndex:
-            {
-                auto index = ReadChunkIndex(record->Content);
-                if (!index)
-                {
-                    return false;
-                }
-                contents.Chunks.push_back(std::move(*index));
+                good = AddIf(ReadChunkIndex(record->Content), contents);
                 break;
-            }
             case Opcode::AttachmentIndex:
-            {
-                auto index = ReadAttachmentIndex(record->Content);
-                if (!index)
-                {
-                    return false;
-                }
-                contents.Attachments.push_back(std::move(*index));
+                good = AddIf(ReadAttachmentIndex(record->Content), contents);
                 break;
-            }
             case Opcode::MetadataIndex:
-            {
-                const auto index = ReadMetadataIndex(record->Content);
-                const auto bytes = index ? ReadPart(source, index->Offset, index->Length) : std::nullopt;
-                const auto inner = bytes ? RecordIterator(*bytes).Next() : std::nullopt;
-                auto metadata = inner && inner->Code == static_cast<std::uint8_t>(Opcode::Metadata)
-                                    ? ReadMetadata(inner->Content)
-                                    : std::nullopt;
-                if (!metadata || !contents.AddMetadata(std::move(*metadata), bytes->size()))
-                {
-                    return false;
-                }
+                good = AddIf(ReadMetadataAt(source, ReadMetadataIndex(record->Content)), contents);
                 break;
-            }
             case Opcode::Statistics:
             {
                 auto statistics = ReadStatistics(record->Content);
-                if (!statistics)
-                {
-                    return false;
-                }
-                contents.Statistics = std::move(*statistics);
-                hasStatistics = true;
+                good = hasStatistics = statistics.has_value();
+                contents.Statistics = good ? std::move(*statistics) : Statistics{};
                 break;
             }
             default:
                 break;
+        }
+        if (!good)
+        {
+            return false;
         }
     }
     return records.WasGood() && hasStatistics &&
@@ -352,67 +371,66 @@ void Contents::AddProblem(std::string problem)
     }
 }
 
-bool Contents::AddMetadata(Metadata metadata, std::size_t recordBytes)
-{
-    if (!HasRoomFor(recordBytes + OverheadOf(metadata.Values)))
-    {
-        return false;
-    }
-    MetadataRecords.push_back(std::move(metadata));
-    return true;
-}
-
-bool Contents::HasRoomFor(std::size_t bytes)
-{
-    _definitionBytes += std::min(bytes, MostDefinitionBytes);
-    return _definitionBytes <= MostDefinitionBytes;
-}
-
-bool Contents::AddDefinition(Schema schema)
+bool Contents::Add(Schema schema)
 {
     if (Schemas.count(schema.Id) != 0)
     {
         return true;  // it is repeated
     }
-    if (!HasRoomFor(schema.Data.size() + schema.Name.size()))
-    {
-        return false;
-    }
     const std::uint16_t id = schema.Id;
-    Schemas.emplace(id, std::move(schema));
-    return true;
+    return Take(SizeOf(schema), _limits.Definitions) && Schemas.emplace(id, std::move(schema)).second;
 }
 
-bool Contents::AddDefinition(Channel channel)
+bool Contents::Add(Channel channel)
 {
     if (Channels.count(channel.Id) != 0)
     {
         return true;
     }
-    std::size_t bytes = channel.Topic.size() + OverheadOf(channel.Metadata);
-    for (const auto &[key, value] : channel.Metadata)
-    {
-        bytes += key.size() + value.size();
-    }
-    if (!HasRoomFor(bytes))
-    {
-        return false;
-    }
     const std::uint16_t id = channel.Id;
-    Channels.emplace(id, std::move(channel));
-    return true;
+    return Take(SizeOf(channel), _limits.Definitions) && Channels.emplace(id, std::move(channel)).second;
 }
 
-Contents ScanContents(ByteSource &source)
+bool Contents::Add(Metadata metadata)
 {
-    return Scan(source).Run();
+    const bool fits = Take(SizeOf(metadata), _limits.Definitions);
+    if (fits)
+    {
+        MetadataRecords.push_back(std::move(metadata));
+    }
+    return fits;
 }
 
-Contents ReadContents(ByteSource &source)
+bool Contents::Add(ChunkIndex chunk)
+{
+    const bool fits = Take(SizeOf(chunk), _limits.Indexes);
+    if (fits)
+    {
+        Chunks.push_back(std::move(chunk));
+    }
+    return fits;
+}
+
+bool Contents::Add(AttachmentIndex attachment)
+{
+    const bool fits = Take(SizeOf(attachment), _limits.Indexes);
+    if (fits)
+    {
+        Attachments.push_back(std::move(attachment));
+    }
+    return fits;
+}
+
+Contents ScanContents(ByteSource &source, const ContentsLimits &limits)
+{
+    return Scan(source, limits).Run();
+}
+
+Contents ReadContents(ByteSource &source, const ContentsLimits &limits)
 {
     if (const auto summary = ReadSummary(source))
     {
-        Contents contents;
+        Contents contents(limits);
         if (TakeSummary(source, *summary, contents))
         {
             RecordScanner scanner(source);
@@ -426,7 +444,7 @@ Contents ReadContents(ByteSource &source)
             return contents;
         }
     }
-    return ScanContents(source);
+    return ScanContents(source, limits);
 }
 
 TextMap MetadataOf(const Contents &contents, const std::string &name)

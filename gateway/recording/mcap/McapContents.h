@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,9 +11,21 @@
 namespace Rabit::Mcap
 {
 
+// Bounds of what Contents holds, in bytes of memory. What is beyond them is left out: a summary may name one
+// record any number of times, and a small file may have many indexes, so the size of the file is no bound.
+struct ContentsLimits
+{
+    std::size_t Definitions = 64U << 20;  // schemas, channels and metadata together
+    // Chunks and attachments together. The chunks of a recording of 40 GB with 100 channels take as much.
+    std::size_t Indexes = 256U << 20;
+};
+
 // The contents of a file, without the messages themselves.
 struct Contents
 {
+    Contents() = default;
+    explicit Contents(const ContentsLimits &limits) : _limits(limits) {}
+
     Mcap::Header Header;
     std::map<std::uint16_t, Schema> Schemas;
     std::map<std::uint16_t, Channel> Channels;
@@ -29,24 +42,22 @@ struct Contents
     static constexpr std::size_t MostProblems = 100;
 
     void AddProblem(std::string problem);
-    bool AddDefinition(Schema schema);
-    bool AddDefinition(Channel channel);
-    // `recordBytes` is the size of its record in the file.
-    bool AddMetadata(Metadata metadata, std::size_t recordBytes);
+    // These return false beyond the limits.
+    bool Add(Schema schema);
+    bool Add(Channel channel);
+    bool Add(Metadata metadata);
+    bool Add(ChunkIndex chunk);
+    bool Add(AttachmentIndex attachment);
 
 private:
-    // Bound of schemas, channels and metadata together; more are refused. A summary may name one record any
-    // number of times, so the size of the file is no bound.
-    static constexpr std::size_t MostDefinitionBytes = 64U << 20;
-    bool HasRoomFor(std::size_t bytes);
-    std::size_t _definitionBytes = 0;
+    ContentsLimits _limits;  // what is left of them
 };
 
 // Reads the contents from the summary, or from all of the file if it has no whole summary. No bytes make it
 // throw. A file that is no MCAP file has no contents, and a problem.
-Contents ReadContents(ByteSource &source);
+Contents ReadContents(ByteSource &source, const ContentsLimits &limits = {});
 // Reads the contents from all of the file, whatever its summary says.
-Contents ScanContents(ByteSource &source);
+Contents ScanContents(ByteSource &source, const ContentsLimits &limits = {});
 
 // Returns the last metadata record of that name; empty if there is none.
 TextMap MetadataOf(const Contents &contents, const std::string &name);

@@ -16,6 +16,8 @@ namespace Rabit::Mcap
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 using TextMap = std::map<std::string, std::string>;
+// Bytes that an entry takes in memory besides its texts, about: the node of the map.
+inline constexpr std::size_t TextEntrySize = 128;
 
 // At the beginning and at the end of a file.
 inline constexpr std::array<std::uint8_t, 8> Magic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};

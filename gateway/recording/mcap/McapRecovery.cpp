@@ -1,5 +1,6 @@
 #include "recording/mcap/McapRecovery.h"
 
+#include <algorithm>
 #include <map>
 
 #include "recording/mcap/ChunkReader.h"
@@ -22,6 +23,10 @@ public:
     Recovered Run()
     {
         _recovered.Problems = _contents.Problems;
+        for (const Metadata &metadata : _contents.MetadataRecords)
+        {
+            _writer.AddMetadata(metadata);
+        }
         RecordScanner scanner(_source);
         while (const auto record = scanner.Next())
         {
@@ -32,7 +37,7 @@ public:
             }
             if (!record->IsPassedOver)
             {
-                Take(code, record->Content);
+                Take(code, *record);
             }
         }
         _recovered.IsWritten = _writer.Finish();
@@ -40,8 +45,9 @@ public:
     }
 
 private:
-    void Take(Opcode code, ByteView content)
+    void Take(Opcode code, const RecordScanner::Record &record)
     {
+        const ByteView content = record.Content;
         if (code == Opcode::Message)
         {
             TakeMessage(content);
@@ -63,20 +69,23 @@ private:
                 }
             }
         }
-        else if (code == Opcode::Metadata)
-        {
-            if (const auto metadata = ReadMetadata(content))
-            {
-                _writer.AddMetadata(*metadata);
-            }
-        }
-        else if (code == Opcode::Attachment)
+        else if (code == Opcode::Attachment && IsListed(record.Offset))
         {
             if (const auto attachment = ReadAttachment(content))
             {
                 _writer.AddAttachment(*attachment);
             }
         }
+    }
+
+    // True for an attachment within the limits of Contents: the writer holds what lists it, too.
+    bool IsListed(std::uint64_t offset) const
+    {
+        const auto found =
+            std::lower_bound(_contents.Attachments.begin(), _contents.Attachments.end(), offset,
+                             [](const AttachmentIndex &attachment, std::uint64_t wanted)
+                             { return attachment.Offset < wanted; });
+        return found != _contents.Attachments.end() && found->Offset == offset;
     }
 
     void TakeMessage(ByteView content)

@@ -188,6 +188,105 @@ TEST(McapReader, RefusesASummaryThatNamesOneLargeRecordAgainAndAgain)
     EXPECT_EQ(contents.MetadataRecords.size(), 1U);
 }
 
+// 5 MB of empty texts that would take 70 MB of memory.
+TEST(McapReader, RefusesMetadataThatTakeFarMoreMemoryThanBytes)
+{
+    constexpr std::uint32_t count = 600'000;
+    Bytes entries;
+    for (std::uint32_t number = 0; number < count; ++number)
+    {
+        const auto byte = [number](unsigned at) { return static_cast<std::uint8_t>(number >> (8 * at)); };
+        entries.insert(entries.end(), {3, 0, 0, 0, byte(0), byte(1), byte(2), 0, 0, 0, 0});
+    }
+    const auto size = [&entries](unsigned at)
+    { return static_cast<std::uint8_t>(entries.size() >> (8 * at)); };
+    Bytes metadata = {0, 0, 0, 0, size(0), size(1), size(2), size(3)};  // without a name
+    metadata.insert(metadata.end(), entries.begin(), entries.end());
+    EXPECT_FALSE(ReadMetadata(metadata));
+    Bytes channel = {1, 0, 0, 0, 0, 0, 0, 0};  // without a topic
+    channel.insert(channel.end(), metadata.begin(), metadata.end());
+    EXPECT_FALSE(ReadChannel(channel));
+}
+
+TEST(McapReader, RecoversMetadataUpToABound)
+{
+    MemoryFile file(Bytes(Magic.begin(), Magic.end()));
+    Append(file.Content, Header{"", "another"});
+    for (const std::string name : {"first", "second"})
+    {
+        Append(file.Content, Metadata{name, {{"key", std::string(40U << 20, 'x')}}});
+    }
+    MemoryFile recovered;
+    McapWriter writer(recovered, {});
+    const Recovered result = Recover(file, writer);
+    EXPECT_TRUE(result.IsWritten);
+    EXPECT_EQ(result.Problems.size(), 2U);
+    const Contents contents = ReadContents(recovered);
+    EXPECT_TRUE(contents.IsIndexed);
+    ASSERT_EQ(contents.MetadataRecords.size(), 1U);
+    EXPECT_EQ(contents.MetadataRecords[0].Name, "first");
+}
+// A file with these records in its summary, and nothing else.
+MemoryFile WithSummary(const Bytes &records)
+{
+    MemoryFile file(Bytes(Magic.begin(), Magic.end()));
+    Append(file.Content, Header{"", "another"});
+    AppendDataEnd(file.Content);
+    Footer footer;
+    footer.SummaryStart = file.Content.size();
+    Bytes summary = records;
+    Append(summary, Statistics{});
+    file.Content.insert(file.Content.end(), summary.begin(), summary.end());
+    AppendFooter(file.Content, footer, summary);
+    file.Content.insert(file.Content.end(), Magic.begin(), Magic.end());
+    return file;
+}
+
+TEST(McapReader, RefusesASummaryWithMoreChunksThanTheLimit)
+{
+    ChunkIndex chunk;
+    for (std::uint16_t channel = 0; channel < 1000; ++channel)
+    {
+        chunk.MessageIndexOffsets[channel] = channel;
+    }
+    Bytes chunks;
+    for (int number = 0; number < 10; ++number)
+    {
+        Append(chunks, chunk);
+    }
+    MemoryFile file = WithSummary(chunks);
+    EXPECT_EQ(ReadContents(file).Chunks.size(), 10U);
+    const Contents contents = ReadContents(file, {.Indexes = 500'000});
+    EXPECT_FALSE(contents.IsIndexed);
+    EXPECT_TRUE(contents.Chunks.empty());
+}
+
+TEST(McapReader, RefusesASummaryWithMoreAttachmentsThanTheLimit)
+{
+    Bytes attachments;
+    for (int number = 0; number < 10; ++number)
+    {
+        Append(attachments, AttachmentIndex{.Name = std::string(1000, 'x'), .MediaType = ""});
+    }
+    MemoryFile file = WithSummary(attachments);
+    EXPECT_EQ(ReadContents(file).Attachments.size(), 10U);
+    EXPECT_FALSE(ReadContents(file, {.Indexes = 9'000}).IsIndexed);
+}
+
+TEST(McapReader, SaysFromWhereOnAFileHasMoreChunksThanTheLimit)
+{
+    SmallRecording recording;
+    const Contents whole = ScanContents(recording.File);
+    ASSERT_GT(whole.Chunks.size(), 2U);
+    const Contents contents =
+        ScanContents(recording.File, {.Indexes = 2 * sizeof(ChunkIndex) + sizeof(AttachmentIndex) + 100});
+    ASSERT_EQ(contents.Chunks.size(), 2U);
+    ASSERT_EQ(contents.Problems.size(), 1U);
+    EXPECT_EQ(contents.Problems[0], "there are too many chunks: messages from the one at byte " +
+                                        std::to_string(whole.Chunks[2].Offset) +
+                                        " on can only be read by `recover`");
+}
+
 // Bytes of a file are changed, cut and moved. In each case reading must end, and must return only bytes
 // within the file.
 TEST(McapReader, SurvivesDamagedBytes)
