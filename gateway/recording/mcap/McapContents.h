@@ -11,8 +11,8 @@
 namespace Rabit::Mcap
 {
 
-// Bounds of what Contents holds, in bytes of memory. What is beyond them is left out: a summary may name one
-// record any number of times, and a small file may have many indexes, so the size of the file is no bound.
+// Bounds of the memory that Contents takes, in bytes. Further records are left out. The size of the file is
+// no bound: a summary may name one record any number of times, and indexes take more memory than bytes.
 struct ContentsLimits
 {
     std::size_t Definitions = 64U << 20;  // schemas, channels and metadata together
