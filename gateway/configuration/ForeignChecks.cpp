@@ -115,6 +115,10 @@ private:
         {
             Fail(rule.Line, "`capacity` is out of range; expected 1 to 1000000");
         }
+        if (rule.CapacityBytes < 1 || rule.CapacityBytes > std::size_t{1} << 40)
+        {
+            Fail(rule.Line, "`capacity_bytes` is out of range; expected 1 to 1099511627776");
+        }
     }
 
     void CheckLocal(const ForeignRule &rule)

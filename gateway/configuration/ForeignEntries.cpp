@@ -11,7 +11,8 @@ namespace
 {
 
 // Keys that only one of the two directions has.
-const std::vector<std::string> OfSubscribe = {"as", "each", "stale_after", "age", "capacity"};
+const std::vector<std::string> OfSubscribe = {"as",  "each",     "stale_after",
+                                              "age", "capacity", "capacity_bytes"};
 const std::vector<std::string> OfPublish = {"topic", "depth", "max_rate"};
 
 std::vector<std::string> AllKeys()
@@ -63,6 +64,7 @@ void ReadSubscribed(const YamlMap &entry, ForeignRule &rule)
     entry.Read("stale_after", rule.StaleAfter);
     rule.SourceTimeIsTrusted = entry.ReadChoice("age", {"arrival", "source_time"}) == 1;
     entry.Read("capacity", rule.Capacity, 1, 1'000'000);
+    entry.Read("capacity_bytes", rule.CapacityBytes, 1, std::size_t{1} << 40);
 }
 
 void ReadPublished(const YamlMap &entry, ForeignRule &rule)

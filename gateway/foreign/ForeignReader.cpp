@@ -192,13 +192,16 @@ void ForeignReader::Keep(SampleBytes bytes)
         const std::lock_guard lock(_mutex);
         _undecodableInARow = 0;
         _shown = Shown{now, {}, false};
-        if (_waiting.size() >= _rule.Capacity)
+        isFirst = _waiting.empty();
+        _wasDropped = _waiting.size() >= _rule.Capacity ||
+                      (!isFirst && _waitingBytes + bytes.size() > _rule.CapacityBytes);
+        if (_wasDropped)
         {
             ++_overflowed;
             return;
         }
-        isFirst = _waiting.empty();
-        _waiting.push_back(std::move(decoded.Message));
+        _waitingBytes += bytes.size();
+        _waiting.push_back({std::move(decoded.Message), bytes.size()});
     }
     if (isFirst)
     {
@@ -262,7 +265,7 @@ void ForeignReader::Deliver()
             {
                 break;
             }
-            message = _waiting.front();
+            message = _waiting.front().Message;
         }
         if (!_queue.Local() || _queue.Deliver({LocalQueueResult::Ok, message}, false) != LocalQueueResult::Ok)
         {
@@ -271,6 +274,7 @@ void ForeignReader::Deliver()
         }
         told = _queue.Local();
         const std::lock_guard lock(_mutex);
+        _waitingBytes -= _waiting.front().Bytes;
         _waiting.pop_front();
         ++_samples;
     }
@@ -374,7 +378,7 @@ std::optional<Gateway::Problem> ForeignReader::Problem() const
     const bool waitsForTheFirst =
         _status.state == Gateway::NodeState::LOST && _matching > 0 && _undecodableInARow == 0;
     std::string reason = _status.reason;
-    if (_waiting.size() >= _rule.Capacity)
+    if (_waiting.size() >= _rule.Capacity || (_wasDropped && !_waiting.empty()))
     {
         reason = "the local queue `" + _rule.Local + "` is full; samples are dropped";
     }

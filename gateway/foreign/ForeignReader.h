@@ -61,6 +61,13 @@ private:
         bool Ended = false;  // its instance was disposed, or its last writer has gone
     };
 
+    // A sample that waits for room in the queue.
+    struct Waiting
+    {
+        std::shared_ptr<RabitMessage> Message;
+        std::size_t Bytes = 0;  // serialized
+    };
+
     bool IsQueue() const { return _rule.Each == ForeignRule::Delivery::Queue; }
     void MakeReader(const TopicQos &qos);
     void OnSample(SampleBytes bytes, const SampleInfo &info);
@@ -86,7 +93,9 @@ private:
 
     mutable std::mutex _mutex;
     ForeignWriters _writers;  // guarded by _mutex, as all down to the next empty line
-    std::deque<std::shared_ptr<RabitMessage>> _waiting;
+    std::deque<Waiting> _waiting;
+    std::size_t _waitingBytes = 0;
+    bool _wasDropped = false;  // the newest sample, because there was no room
     std::optional<Shown> _shown;
     std::uint64_t _undecodable = 0;
     std::uint64_t _undecodableInARow = 0;

@@ -58,7 +58,8 @@ TEST_F(ForeignConfigTest, ReadsEveryKeyOfATopicThatIsRead)
     const ForeignRule rule =
         Load(
             "foreign:\n  - {subscribe: rt/odometry, type: Uav::Pose, as: Autopilot/Odometry, "
-            "names: ros2, each: latest, stale_after: 500ms, age: source_time, capacity: 7, "
+            "names: ros2, each: latest, stale_after: 500ms, age: source_time, capacity: 7, capacity_bytes: "
+            "70, "
             "reliability: best_effort, durability: transient_local}\n")
             .Foreign.at(0);
     EXPECT_EQ(rule.Way, ForeignRule::Direction::Subscribe);
@@ -70,6 +71,7 @@ TEST_F(ForeignConfigTest, ReadsEveryKeyOfATopicThatIsRead)
     EXPECT_EQ(rule.StaleAfter, 500ms);
     EXPECT_TRUE(rule.SourceTimeIsTrusted);
     EXPECT_EQ(rule.Capacity, 7u);
+    EXPECT_EQ(rule.CapacityBytes, 70u);
     EXPECT_EQ(rule.Reliability, Reliability::BestEffort);
     EXPECT_EQ(rule.Durability, Durability::TransientLocal);
     EXPECT_EQ(rule.Line, 3);

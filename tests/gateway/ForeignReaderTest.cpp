@@ -384,6 +384,48 @@ TEST_F(ForeignReaderTest, HoldsSamplesBackWhileTheQueueIsFullAndDropsWhatItCanno
     EXPECT_EQ(ProblemText(), "");
 }
 
+TEST_F(ForeignReaderTest, DropsSamplesWhoseBytesItCannotHold)
+{
+    Contact large = Of(1);
+    large.text = std::string(1000, 'x');
+    rule.CapacityBytes = 3000;
+    const auto queue = QueueOf(1);
+    Reader();
+    for (std::uint32_t i = 1; i <= 4; ++i)
+    {
+        network.Deliver(type, large, i);
+        Reader().Service(Now());
+    }
+    EXPECT_EQ(Reader().Status(Now()).waiting, 2u);
+    EXPECT_EQ(Reader().Status(Now()).overflowed, 1u);
+    EXPECT_EQ(ProblemText(), "foreign contacts: the local queue `Contacts` is full; samples are dropped");
+    std::shared_ptr<RabitMessage> message;
+    for (int taken = 1; taken <= 3; ++taken)
+    {
+        EXPECT_TRUE(queue->GetMessage(message)) << taken;
+        Reader().Service(Now());
+    }
+    EXPECT_EQ(ProblemText(), "");
+    network.Deliver(type, large, 5);
+    EXPECT_EQ(Reader().Status(Now()).waiting, 1u) << "there is room again";
+}
+
+TEST_F(ForeignReaderTest, HoldsASampleAboveTheBytesOnlyAlone)
+{
+    Contact large = Of(1);
+    large.text = std::string(1000, 'x');
+    rule.CapacityBytes = 100;
+    const auto queue = QueueOf(1);
+    Reader();
+    for (std::uint32_t i = 1; i <= 3; ++i)
+    {
+        network.Deliver(type, large, i);
+        Reader().Service(Now());
+    }
+    EXPECT_EQ(Reader().Status(Now()).waiting, 1u);
+    EXPECT_EQ(Reader().Status(Now()).overflowed, 1u);
+}
+
 TEST_F(ForeignReaderTest, KeepsSamplesForAQueueThatIsNotThereYet)
 {
     rule.Each = ForeignRule::Delivery::Queue;

@@ -51,9 +51,10 @@ struct ForeignRule
     // For a topic that is read: true if its age counts from the samples' source time, and not from their
     // arrival. The writer's clock is then believed to show UTC.
     bool SourceTimeIsTrusted = false;
-    // For Delivery::Queue: samples that may wait for room in the queue, 1 to 1,000,000; further samples are
-    // dropped.
+    // For Delivery::Queue: samples that may wait for room in the queue, 1 to 1,000,000, and their serialized
+    // bytes, 1 to 2^40. Further samples are dropped. A sample above CapacityBytes waits only alone.
     std::size_t Capacity = 1000;
+    std::size_t CapacityBytes = 16u << 20;
     int Line = 0;  // where it stands in the file, for error messages; 0: made in code
 };
 
