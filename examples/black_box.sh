@@ -166,8 +166,8 @@ show "$bin/rabit" knew flight.mcap '*' 'uav?/Pose' --plot ages.svg || status=1
 # A tenth of a second before the end of uav1's recording: all clocks are this machine's.
 time_of() { # time_of KEY FILE: in milliseconds
     local time
-    time=$("$bin/rabit" info --json "$2" | grep -o "\"$1\":[0-9]*" | head -n 1)
-    echo $((${time##*:} / 1000000))
+    time=$("$bin/rabit" info --json "$2" | grep -o "\"$1\":\"[0-9]*" | head -n 1)
+    echo $((${time##*:\"} / 1000000))
 }
 at=$(($(time_of end_ns rec/uav1_*_recovered.mcap) - $(time_of begin_ns flight.mcap) - 100))
 show "$bin/rabit" knew flight.mcap uav1 'uav?/Pose' --at "$((at / 1000)).$((at / 100 % 10))" || status=1

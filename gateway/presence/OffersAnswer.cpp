@@ -15,7 +15,22 @@ void OffersAnswer::Begin(std::size_t size)
     _at = Duration(0);
 }
 
-void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now)
+bool OffersAnswer::IsNew(std::uint64_t asker)
+{
+    if (std::find(_askers.begin(), _askers.end(), asker) != _askers.end())
+    {
+        return false;
+    }
+    _askers.push_back(asker);
+    if (_askers.size() > MostAskers)
+    {
+        _askers.pop_front();
+    }
+    return true;
+}
+
+void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now,
+                         std::optional<std::uint64_t> asker)
 {
     if (from >= _size)
     {
@@ -27,9 +42,15 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now)
         _answers = 0;
     }
     _lastAsked = now;
+    if (!_from && _crossedUntil && now < *_crossedUntil)
+    {
+        return;
+    }
+    const Duration notBefore = asker && IsNew(*asker) ? _notBeforeForNew : _notBefore;
     if (_from && _parts == 0)
     {
         _from = std::min(*_from, from);
+        _at = std::min(_at, std::max(_spreadUntil, notBefore));
     }
     else if (_from)
     {
@@ -39,10 +60,11 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now)
             _again = std::min(_again.value_or(from), from);
         }
     }
-    else if (!_crossedUntil || now >= *_crossedUntil)
+    else
     {
         _from = from;
-        _at = std::max(now + SpreadAmong(others, _random), _notBefore);
+        _spreadUntil = now + SpreadAmong(others, _random);
+        _at = std::max(_spreadUntil, notBefore);
     }
 }
 
@@ -58,7 +80,8 @@ void OffersAnswer::Said(std::size_t bytes, Duration now, Duration delay)
     if (*_from >= _size)
     {
         _crossedUntil = now + std::max(ShortestGap, 2 * delay);
-        _notBefore = now + _gap * std::exchange(_parts, 0);
+        _notBefore = now + _gap * _parts;
+        _notBeforeForNew = now + std::min(_gap, QuickGap) * std::exchange(_parts, 0);
         _gap = std::min(2 * _gap, ++_answers < QuickAnswers ? QuickGap : LongestGap);
         _from = std::exchange(_again, std::nullopt);
         _at = _notBefore;

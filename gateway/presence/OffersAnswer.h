@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <optional>
 
 namespace Rabit
@@ -11,7 +13,8 @@ namespace Rabit
 
 // Decides when this node sends which part of its announcement: once at the beginning, and again when nodes
 // request it, once for all of them. Frequent requests lengthen the wait from one time to the next; so does
-// the number of parts.
+// the number of parts. The first request of an asker waits for QuickGap a part at most, however frequent
+// those of others were: a program that starts anew each time, as a tool does, gets its answer.
 //
 // A pure state machine; `now` never goes back.
 class OffersAnswer
@@ -35,8 +38,10 @@ public:
     // Begins to send the announcement, of `size` bytes.
     void Begin(std::size_t size);
     // A node lacks the announcement from byte `from` on. `others`: number of other nodes that may be asked at
-    // the same moment.
-    void Asked(std::size_t from, std::size_t others, Duration now);
+    // the same moment. `asker`: tag of the incarnation that asks; empty: none does, and the wait is that of a
+    // repeated request.
+    void Asked(std::size_t from, std::size_t others, Duration now,
+               std::optional<std::uint64_t> asker = std::nullopt);
     // When a part is to be sent; empty: none is.
     std::optional<Duration> Due() const { return _from ? std::optional(_at) : std::nullopt; }
     // The first byte of that part, and the number of bytes from there to the end.
@@ -47,6 +52,12 @@ public:
     void Said(std::size_t bytes, Duration now, Duration delay = Duration(0));
 
 private:
+    // Askers that are remembered, the latest ones: more than a fleet has nodes. Forged askers can push out
+    // others, and then get one answer each QuickGap.
+    static constexpr std::size_t MostAskers = 256;
+
+    bool IsNew(std::uint64_t asker);
+
     const RandomSource _random;
     std::size_t _size = 0;
     std::optional<std::size_t> _from;
@@ -55,6 +66,9 @@ private:
     Duration _gap = ShortestGap;
     int _answers = 0;  // since the gap was short
     Duration _notBefore{0};
+    Duration _notBeforeForNew{0};  // for the first request of an asker
+    Duration _spreadUntil{0};      // of the first request since the last time
+    std::deque<std::uint64_t> _askers;
     std::optional<Duration> _lastAsked;
     std::optional<Duration> _crossedUntil;  // until then questions are ignored
     int _parts = 0;                         // sent in the present round

@@ -24,11 +24,11 @@ using Gateway::NodeState;
 constexpr int BeatsOfATwin = 3;
 constexpr PeerTable::Duration TwinMemory = std::chrono::seconds(5);
 
-std::string NotHeardFor(PeerTable::Duration silence)
+std::string NoBeatWithin(PeerTable::Duration limit)
 {
     char text[64];
-    std::snprintf(text, sizeof text, "not heard for %g seconds",
-                  std::chrono::duration<double>(silence).count());
+    std::snprintf(text, sizeof text, "no beat within its limit of %g s",
+                  std::chrono::duration<double>(limit).count());
     return text;
 }
 
@@ -396,11 +396,11 @@ PeerTable::Change PeerTable::Advance(Duration now)
         const Duration silence = now - peer.LastHeard;
         if (silence > peer.LostAfter() && peer.State != NodeState::LOST)
         {
-            change.State |= SetState(peer, NodeState::LOST, NotHeardFor(peer.LostAfter()));
+            change.State |= SetState(peer, NodeState::LOST, NoBeatWithin(peer.LostAfter()));
         }
         else if (silence > peer.StaleAfter() && peer.State == NodeState::UP)
         {
-            change.State |= SetState(peer, NodeState::STALE, NotHeardFor(peer.StaleAfter()));
+            change.State |= SetState(peer, NodeState::STALE, NoBeatWithin(peer.StaleAfter()));
         }
     }
     return change;

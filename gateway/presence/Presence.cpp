@@ -223,7 +223,8 @@ void Presence::TakeQuestions(const HeardBeat &heard, Duration now, Served &serve
         }
         if (wanted.offers != BeatFormat::NotLacking)
         {
-            _contents.Answer().Asked(wanted.offers, OthersThan(""), now);
+            _contents.Answer().Asked(wanted.offers, OthersThan(""), now,
+                                     NodeTagOf(heard.Node, heard.Incarnation));
         }
         for (std::size_t state = 0; state < 8 * wanted.states.size() && state < _contents.States(); ++state)
         {

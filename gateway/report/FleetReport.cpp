@@ -103,6 +103,7 @@ void AddNetworkProblems(const std::vector<SettingsProblem> &problems, Gateway::F
         problem.subject = found.Setting.empty() ? "network" : found.Setting;
         problem.subject += found.Entry.empty() ? "" : " " + found.Entry;
         problem.reason = found.Text;
+        problem.certain = true;
         fleet.problems.push_back(problem);
     }
 }

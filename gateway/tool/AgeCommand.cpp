@@ -5,6 +5,7 @@
 
 #include "JsonNumber.h"
 #include "MeterCommand.h"
+#include "TimeText.h"
 
 namespace Rabit::Tool
 {
@@ -35,12 +36,10 @@ void AddAgeCommand(CLI::App &app, Chosen &chosen)
     what.Columns = {"VALUES", "50 %", "90 %", "99 %", "OLDEST", "UNCERTAIN BY"};
     what.Cells = [](const Meter &meter, const std::string &node, FleetSession &session)
     {
-        return std::vector<std::string>{std::to_string(meter.Count()),
-                                        NumberText(1000.0 * meter.Age(0.5), 2, " ms"),
-                                        NumberText(1000.0 * meter.Age(0.9), 2, " ms"),
-                                        NumberText(1000.0 * meter.Age(0.99), 2, " ms"),
-                                        NumberText(1000.0 * meter.Age(1.0), 2, " ms"),
-                                        NumberText(1000.0 * Uncertainty(node, session), 2, " ms")};
+        return std::vector<std::string>{
+            std::to_string(meter.Count()), DurationText(meter.Age(0.5)),
+            DurationText(meter.Age(0.9)),  DurationText(meter.Age(0.99)),
+            DurationText(meter.Age(1.0)),  DurationText(Uncertainty(node, session))};
     };
     what.Members =
         [](const Meter &meter, const std::string &node, FleetSession &session, nlohmann::ordered_json &object)

@@ -227,18 +227,19 @@ void AddCheckCommand(CLI::App &app, Chosen &chosen)
     auto options = std::make_shared<Options>();
     CLI::App *command = app.add_subcommand(
         "check", "What is wrong with configurations, alone and together, and what they put on the air");
-    const auto addList = [command](const char *name, std::vector<std::string> &list, const char *help)
-    { return command->add_option(name, list, help)->allow_extra_args(false); };
     command
         ->add_option("FILE", options->Files,
                      "Configurations of all nodes of a fleet; uav1,uav2=uav.yaml: of several nodes")
         ->required();
-    addList("--rate", options->Rates,
-            "NAME=HZ or NODE/NAME=HZ: how often a message is posted, or sent to each queue of that name");
-    addList("--size", options->Sizes, "NAME=BYTES, of a message, a queue or a type: its CDR");
-    addList("--idl", options->Idl, "IDL file with the types: which there are, and how large");
+    command->add_option(
+        "--rate", options->Rates,
+        "NAME=HZ or NODE/NAME=HZ: how often a message is posted, or sent to each queue of that name");
+    command->add_option("--size", options->Sizes, "NAME=BYTES, of a message, a queue or a type: its CDR");
+    command->add_option("--idl", options->Idl, "IDL file with the types: which there are, and how large");
     command->add_flag("--json", options->Json, "One JSON object a line");
     command->add_flag("-v,--verbose", options->Verbose, "Each thing that goes on the air");
+    AddExamples(*command, {"rabit check uav.yaml", "rabit check uav1,uav2=uav.yaml ground.yaml",
+                           "rabit check uav.yaml ground.yaml --idl uav.idl --rate Pose=10"});
     command->callback(
         [options, &chosen]
         {
@@ -251,7 +252,7 @@ void AddCheckCommand(CLI::App &app, Chosen &chosen)
                     throw CLI::ValidationError("FILE", why);
                 }
             }
-            chosen.Run = [options](Wakeup &) { return Run(*options); };
+            chosen.RunToEnd = [options] { return Run(*options); };
         });
 }
 

@@ -14,10 +14,12 @@ namespace Rabit::Tool
 
 class Wakeup;
 
-// The action of the command line, set by the command that it names.
+// The action of the command line, set by the command that it names: one of the two. Both return the exit code
+// and may throw ConfigError.
 struct Chosen
 {
-    std::function<int(Wakeup &)> Run;  // returns the exit code; may throw NetworkError and ConfigError
+    std::function<int(Wakeup &)> Run;  // ends soon after Wakeup was interrupted; may throw NetworkError
+    std::function<int()> RunToEnd;     // joins no network; a signal ends the program
 };
 
 // Each adds one command.

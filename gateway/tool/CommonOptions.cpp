@@ -39,12 +39,39 @@ void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait)
     options.Wait = wait;
     AddNetworkOptions(app, options.Node);
     app.add_option("--interface", options.Interfaces,
-                   "Network interface to use, by name or address, in place of the file's; may be repeated");
+                   "Network interface to use, by name or address, in place of the file's; may be repeated")
+        ->delimiter(',')
+        ->envname("RABIT_INTERFACE");
+    app.get_option("--domain")->envname("RABIT_DOMAIN");
+    app.get_option("--keys")->envname("RABIT_KEYS");
     app.add_option("--wait", options.Wait, "Seconds to wait for an answer")
         ->check(CLI::Range(0.1, 86400.0))
+        ->each([&options](const std::string &) { options.IsWaitGiven = true; })
         ->capture_default_str();
     app.add_flag("--json", options.Json, "One JSON object a line");
     app.add_flag("-v,--verbose", options.Verbose, "Tell more on standard error");
+}
+
+void AddExamples(CLI::App &command, const std::vector<std::string> &examples)
+{
+    std::string text = "Examples:\n";
+    for (const std::string &example : examples)
+    {
+        text += "  " + example + "\n";
+    }
+    command.footer(text + "\n" + command.get_footer());
+}
+
+void TakeOneValueEach(CLI::App &app)
+{
+    for (CLI::Option *option : app.get_options([](const CLI::Option *one) { return !one->get_positional(); }))
+    {
+        option->allow_extra_args(false);
+    }
+    for (CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+    {
+        TakeOneValueEach(*command);
+    }
 }
 
 namespace

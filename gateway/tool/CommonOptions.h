@@ -25,14 +25,23 @@ struct CommonOptions
 {
     NodeOptions Node;
     std::vector<std::string> Interfaces;
-    double Wait = 0.0;  // seconds
+    double Wait = 0.0;         // seconds
+    bool IsWaitGiven = false;  // --wait was on the command line
     bool Json = false;
     bool Verbose = false;
 };
 
 // Adds --config, --node, --domain, --transport, --keys, --interface, --wait, --json and --verbose. `wait` is
-// the default of --wait, in seconds.
+// the default of --wait, in seconds. RABIT_DOMAIN, RABIT_INTERFACE (several with commas) and RABIT_KEYS of
+// the environment stand for options that the command line lacks.
 void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait);
+
+// Adds examples to the help of a command, each a line for the shell.
+void AddExamples(CLI::App &command, const std::vector<std::string> &examples);
+
+// Makes every option of the program take one value at a time, so that the word after the value is an
+// argument. An option of several values is repeated. To be called once all commands have their options.
+void TakeOneValueEach(CLI::App &app);
 
 // The configuration of this program as a tool. Throws ConfigError.
 GatewayConfig ConfigOf(const CommonOptions &options);

@@ -169,6 +169,7 @@ std::optional<GatewayConfig> NetworkOf(Words line, CommonOptions &options)
     CLI::App app;
     app.allow_extras();
     AddCommonOptions(app, options, 0.0);
+    TakeOneValueEach(app);
     std::reverse(line.begin(), line.end());
     try
     {

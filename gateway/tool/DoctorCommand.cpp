@@ -30,6 +30,9 @@ using Doctor::Level;
 // one. Each question takes some 190 bytes on the air.
 constexpr int CommonDomains = 10;
 
+// Seconds in which participants without a budget announce themselves again: the announcement period is 10 s.
+constexpr double AllAnnounced = 12.0;
+
 void Append(std::vector<Finding> &all, std::vector<Finding> more)
 {
     std::move(more.begin(), more.end(), std::back_inserter(all));
@@ -76,7 +79,14 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         // NetworkTrial listens before DDS does, so that no answer is missed.
         const Doctor::NetworkTrial trial(used, config.Node, domains);
         FleetSession session(config, options, wakeup);
-        session.WaitUntil(options.Wait, [] { return false; });
+        double listened = options.Wait;
+        session.WaitUntil(listened, [] { return false; });
+        if (!session.IsAnybodyThere() && !options.IsWaitGiven)
+        {
+            // The reason may be a domain that is only listened to.
+            listened = AllAnnounced;
+            session.WaitUntil(listened, [] { return false; });
+        }
         const std::vector<FleetSession::Node> nodes = session.Nodes();
         const Gateway::Fleet fleet = session.Fleet();
         const Doctor::NetworkFacts network = trial.Facts();
@@ -84,6 +94,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
         Append(findings, Doctor::OfMulticast(config, used, network));
         Append(findings, Doctor::OfDomains(config, network, anyNode));
+        Append(findings, Doctor::OfSilentDomains(config, network, anyNode, CommonDomains, listened));
         Append(findings, Doctor::OfKeys(config, network, anyNode));
         Append(findings, Doctor::OfNodes(nodes, fleet));
         Append(findings, Doctor::OfTypes(nodes));
@@ -125,6 +136,8 @@ void AddDoctorCommand(CLI::App &app, Chosen &chosen)
     CLI::App *command = app.add_subcommand(
         "doctor", "What is wrong with this machine, the network and the fleet, and what to do");
     AddCommonOptions(*command, *options, 6.0);
+    AddExamples(*command, {"rabit doctor", "rabit doctor --interface wlan0 --domain 7",
+                           "rabit doctor --config uav.yaml --wait 35"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

@@ -77,11 +77,6 @@ Found Follow(const std::string &path, Json value)
     return {std::move(value), ""};
 }
 
-std::string Dump(const Json &value)
-{
-    return value.dump(-1, ' ', true, Json::error_handler_t::replace);
-}
-
 class Printer
 {
 public:
@@ -131,7 +126,7 @@ private:
         }
         if (!_options.Common.Json)
         {
-            return Output::Line(Dump(value));
+            return Output::Line(Output::JsonText(std::move(value)));
         }
         return Output::Object({{"node", sample.Node},
                                {"message", _samples.Message()},
@@ -203,6 +198,8 @@ void AddEchoCommand(CLI::App &app, Chosen &chosen)
     command->add_flag("--once", options->Once, "One value, then end");
     command->add_option("--rate", options->Rate, "So many a second of each node at most")
         ->check(CLI::PositiveNumber);
+    AddExamples(*command, {"rabit echo uav1/Pose --once",
+                           "rabit echo 'uav*/Pose' --field altitude_m --rate 1", "rabit echo Pose --json"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

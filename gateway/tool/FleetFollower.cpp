@@ -67,8 +67,9 @@ std::vector<std::string> FleetFollower::From(const std::string &message) const
     return from;
 }
 
-void FleetFollower::FollowNew()
+std::vector<std::string> FleetFollower::FollowNew()
 {
+    std::vector<std::string> followed;
     for (const FleetSession::Node &node : _session.Nodes())
     {
         if (!node.Offers || node.State == Gateway::NodeState::LOST)
@@ -82,9 +83,14 @@ void FleetFollower::FollowNew()
                 !MatchesAny(_except, name) && Follow(node.Name, published))
             {
                 _seen.insert(name);
+                if (!MatchesAny(_except, name))
+                {
+                    followed.push_back(name);
+                }
             }
         }
     }
+    return followed;
 }
 
 // Returns false if the type did not come, so that the call must be repeated later.

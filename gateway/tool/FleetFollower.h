@@ -27,8 +27,9 @@ public:
     // Returns the nodes (or patterns) whose announcements are needed for `what`.
     static std::vector<std::string> NodesOf(const std::vector<std::string> &what);
 
-    // Looks at new announcements; waits at most two seconds for each missing type.
-    void FollowNew();
+    // Looks at new announcements; waits at most two seconds for each missing type. Returns the messages that
+    // it has begun to follow, as `uav1/Pose`.
+    std::vector<std::string> FollowNew();
     // Number of messages subscribed to.
     std::size_t Messages() const { return _followed.size(); }
 

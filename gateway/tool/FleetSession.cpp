@@ -5,6 +5,9 @@
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
 
+#include <algorithm>
+
+#include "Offers.h"
 #include "Output.h"
 #include "SafeText.h"
 #include "doctor/MachineChecks.h"
@@ -15,7 +18,7 @@ namespace Rabit::Tool
 {
 
 FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup)
-    : _config(config), _wakeup(wakeup)
+    : _config(config), _options(options), _wakeup(wakeup)
 {
     // The commands themselves report the gateway's warnings where they matter, so these are logged only with
     // --verbose.
@@ -57,6 +60,33 @@ bool FleetSession::WaitUntil(double seconds, const std::function<bool()> &holds)
                              holds);
 }
 
+bool FleetSession::WaitForOffers(const std::string &pattern, const std::function<bool()> &holds)
+{
+    // Seconds in which a node that does not save on beats is heard.
+    constexpr double everybody = 1.5;
+    // With --wait the user asks to wait for nodes that are yet to come, or beat more seldom.
+    const bool mayCome = _options.IsWaitGiven;
+    const auto ends = [&]
+    {
+        const bool isEverybodyHeard = !mayCome && Seconds() >= everybody;
+        return holds() || Offers::AreAllThere(Nodes(), pattern, isEverybodyHeard);
+    };
+    if (!WaitUntil(std::min(everybody, _options.Wait), ends))
+    {
+        WaitUntil(_options.Wait, ends);
+    }
+    return holds();
+}
+
+void FleetSession::WaitForRest()
+{
+    constexpr double longer = 3.0;
+    if (IsAnybodyThere() && !_options.IsWaitGiven)
+    {
+        WaitUntil(_options.Wait + longer, [this] { return Offers::AreComplete(Nodes()); });
+    }
+}
+
 double FleetSession::Seconds() const
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count();
@@ -88,13 +118,15 @@ void FleetSession::TellOfKeys()
 
 int FleetSession::NobodyThere()
 {
+    Output::Talk("nobody was heard in domain " + std::to_string(_config.Domain) + " over " +
+                 _config.Transport +
+                 "; `rabit doctor` finds the reason (--domain, --interface, --wait; "
+                 "gateway/CONNECTING.md)");
     for (const Gateway::Problem &problem : Fleet().problems)
     {
         Output::Talk(problem.subject + ": " + problem.reason);
     }
     TellOfKeys();
-    Output::Talk("nobody was heard in domain " + std::to_string(_config.Domain) + " over " +
-                 _config.Transport + " (--domain, --interface, --wait; gateway/CONNECTING.md)");
     return NoNetwork;
 }
 

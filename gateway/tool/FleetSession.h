@@ -45,6 +45,13 @@ public:
     static constexpr double Forever = 1e8;
     // Waits until `holds` returns true, for at most `seconds` from the start of the session.
     bool WaitUntil(double seconds, const std::function<bool()> &holds);
+    // Waits until `holds` returns true, for --wait seconds at most, but not for announcements that cannot
+    // come any more (Offers::AreAllThere). Returns the last result of `holds`. `pattern`: the nodes whose
+    // announcements matter.
+    bool WaitForOffers(const std::string &pattern, const std::function<bool()> &holds);
+    // After --wait seconds: waits for announcements that are still lacking, as a node may be answering
+    // others, for 3 s at most, and not at all if --wait was given.
+    void WaitForRest();
     // Makes WaitUntil ask `holds` again; any thread.
     void Notify() { _wakeup.Notify(); }
     // Seconds since the start of the session. Any thread.
@@ -59,6 +66,7 @@ private:
     void TellOfKeys();
 
     const GatewayConfig _config;
+    const CommonOptions &_options;
     Wakeup &_wakeup;
     RabitWorkspace _workspace;
     RabitReactor _reactor{_workspace};

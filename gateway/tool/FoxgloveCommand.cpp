@@ -121,6 +121,8 @@ void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--port", options->Port, "Port to listen at (default: 8765; 0: any)");
     command->add_option("--origin", options->Origins,
                         "A site whose pages may look, besides Foxglove's, Lichtblick's and this machine's");
+    AddExamples(*command, {"rabit foxglove", "rabit foxglove 'uav*/Pose' --domain 7",
+                           "rabit foxglove --except '*/CameraView' --port 8766"});
     command->callback(
         [options, &chosen]
         {

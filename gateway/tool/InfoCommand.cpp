@@ -203,7 +203,9 @@ void AddInfoCommand(CLI::App &app, Chosen &chosen)
     command->add_option("FILE", options->Files, "Recordings (MCAP)")->required();
     command->add_flag("--scan", options->Scan, "Read all of it, whatever its index says");
     command->add_flag("--json", options->Json, "One object a line");
-    command->callback([options, &chosen] { chosen.Run = [options](Wakeup &) { return Run(*options); }; });
+    AddExamples(*command,
+                {"rabit info flight.mcap", "rabit info *.mcap --json", "rabit info flight.mcap --scan"});
+    command->callback([options, &chosen] { chosen.RunToEnd = [options] { return Run(*options); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "Command.h"
 #include "CommonOptions.h"
@@ -84,27 +85,55 @@ Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &no
     return RequestFrom(config);
 }
 
-// Prints the new keys and their permissions.
-void ShowMade(const Keys::FleetKeys &fleet, const std::string &node, bool isTool = false)
+// Prints the new keys and their permissions. `revoked`: how many older certificates were revoked, if that was
+// asked for.
+void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::string &node,
+              std::optional<std::size_t> revoked = std::nullopt)
 {
     const std::string folder = fleet.FolderOf(node);
     const Keys::NodeKeys keys(folder);
-    Output::Line(folder + ": valid until " + Keys::DayText(keys.ValidityOf().To));
-    for (const std::string &line : Keys::WhoMayWhat(keys))
+    const std::string until = Keys::DayText(keys.ValidityOf().To);
+    const std::vector<std::string> may = Keys::WhoMayWhat(keys);
+    if (options.Json)
     {
-        Output::Line("  " + SafeText(line));
+        Json object{{"node", node}, {"folder", folder}, {"until", until}, {"may", may}};
+        if (revoked)
+        {
+            object["revoked"] = *revoked;
+        }
+        Output::Object(object);
+    }
+    else
+    {
+        Output::Line(folder + ": valid until " + until);
+        for (const std::string &line : may)
+        {
+            Output::Line("  " + SafeText(line));
+        }
     }
     Output::Talk("copy the folder to " + node + " by a way that nobody else can read, and " +
-                 (isTool ? "look at the fleet with `rabit nodes --keys <the folder there>`"
-                         : "write `security: {keys: <the folder there>}` into its configuration"));
+                 (options.ForTool ? "look at the fleet with `rabit nodes --keys <the folder there>`"
+                                  : "write `security: {keys: <the folder there>}` into its configuration"));
+    if (revoked)
+    {
+        Output::Talk(std::to_string(*revoked) + " older certificates of " + node +
+                     " are revoked: copy revoked.pem to all nodes, and start them again");
+    }
 }
 
 int Init(const Options &options)
 {
     Keys::FleetKeys::Init(options.Folder, options.FleetName, PeriodOf(options));
     const Keys::FleetKeys fleet(options.Folder);
-    Output::Line(options.Folder + ": fleet `" + fleet.Fleet() + "`, valid until " +
-                 Keys::DayText(fleet.EndsAt()));
+    const std::string until = Keys::DayText(fleet.EndsAt());
+    if (options.Json)
+    {
+        Output::Object(Json{{"folder", options.Folder}, {"fleet", fleet.Fleet()}, {"until", until}});
+    }
+    else
+    {
+        Output::Line(options.Folder + ": fleet `" + fleet.Fleet() + "`, valid until " + until);
+    }
     Output::Talk("keep " + options.Folder +
                  "/authority where no node and no network reaches it: who has it can make keys for anybody");
     return Good;
@@ -114,7 +143,7 @@ int Add(const Options &options)
 {
     const Keys::FleetKeys fleet(options.Folder);
     fleet.Add(RequestOf(options, options.Node), PeriodOf(options));
-    ShowMade(fleet, options.Node, options.ForTool);
+    ShowMade(options, fleet, options.Node);
     return Good;
 }
 
@@ -130,13 +159,12 @@ int Renew(const Options &options)
             request.Transport = options.Transport;
         }
         fleet.Renew(request, PeriodOf(options));
-        ShowMade(fleet, node);
+        std::optional<std::size_t> revoked;
         if (options.RevokeOld)
         {
-            const std::size_t count = fleet.RevokeOlder(node, std::time(nullptr));
-            Output::Talk(std::to_string(count) + " older certificates of " + node +
-                         " are revoked: copy revoked.pem to all nodes, and start them again");
+            revoked = fleet.RevokeOlder(node, std::time(nullptr));
         }
+        ShowMade(options, fleet, node, revoked);
     }
     return Good;
 }
@@ -145,7 +173,14 @@ int Revoke(const Options &options)
 {
     const Keys::FleetKeys fleet(options.Folder);
     const std::size_t count = fleet.Revoke(options.Node, std::time(nullptr));
-    Output::Line(options.Node + ": " + std::to_string(count) + " certificates are revoked");
+    if (options.Json)
+    {
+        Output::Object(Json{{"node", options.Node}, {"revoked", count}});
+    }
+    else
+    {
+        Output::Line(options.Node + ": " + std::to_string(count) + " certificates are revoked");
+    }
     Output::Talk("every node goes on to believe " + options.Node +
                  " until it has the new revoked.pem and is started again; it is in these folders:");
     for (const std::string &node : fleet.Nodes())
@@ -299,7 +334,8 @@ std::shared_ptr<Options> AddCommand(CLI::App &keys, const char *name, const char
 {
     auto options = std::make_shared<Options>();
     command = keys.add_subcommand(name, help);
-    command->callback([options, run, &chosen] { chosen.Run = [=](Wakeup &) { return run(*options); }; });
+    command->add_flag("--json", options->Json, "One JSON object a line");
+    command->callback([options, run, &chosen] { chosen.RunToEnd = [=] { return run(*options); }; });
     return options;
 }
 
@@ -312,12 +348,17 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     CLI::App *command = nullptr;
 
     auto init = AddCommand(*keys, "init", "Makes the two authorities of a new fleet", &Init, chosen, command);
+    AddExamples(*command, {"rabit keys init", "rabit keys init fleet_keys --name survey",
+                           "rabit keys init --days 365 --json"});
     command->add_option("FOLDER", init->Folder, "Where to")->capture_default_str();
     command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
     AddDays(*command, *init, 3650);
 
     auto add =
         AddCommand(*keys, "add", "Makes a node's key, certificate and permissions", &Add, chosen, command);
+    AddExamples(*command,
+                {"rabit keys add uav1 --config uav1.yaml", "rabit keys add laptop --tool --domain 7",
+                 "rabit keys add uav1 --config uav1.yaml --days 30"});
     command->add_option("NODE", add->Node, "Name of the node")->required();
     AddFolder(*command, *add);
     CLI::Option *config = command->add_option("--config", add->Config,
@@ -337,21 +378,24 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
             {
                 throw CLI::RequiredError("--config or --tool");
             }
-            chosen.Run = [add](Wakeup &) { return Add(*add); };
+            chosen.RunToEnd = [add] { return Add(*add); };
         });
 
     auto check = AddCommand(*keys, "check", "What is wrong with keys, and who may do what", &CheckAll, chosen,
                             command);
+    AddExamples(*command, {"rabit keys check", "rabit keys check keys --config uav1.yaml",
+                           "rabit keys check --ahead 60 --json"});
     command->add_option("FOLDER", check->Folder, "The fleet's folder, or one node's")->capture_default_str();
     command->add_option("--config", check->Configs, "Configurations of nodes, to compare with")
         ->check(CLI::ExistingFile);
     command->add_option("--ahead", check->Ahead, "Days before the end from which on it is a problem")
         ->check(CLI::Range(0, 3650))
         ->capture_default_str();
-    command->add_flag("--json", check->Json, "One JSON object a line");
 
     auto renew = AddCommand(*keys, "renew", "Makes new ones in place of those that nodes have", &Renew,
                             chosen, command);
+    AddExamples(*command, {"rabit keys renew uav1", "rabit keys renew uav1 uav2 --days 30",
+                           "rabit keys renew uav1 --config uav1.yaml --revoke-old"});
     command->add_option("NODE", renew->Nodes, "Names of the nodes")->required();
     AddFolder(*command, *renew);
     command->add_option("--config", renew->Config, "The node's configuration, if it has changed")
@@ -362,6 +406,8 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
 
     auto revoke =
         AddCommand(*keys, "revoke", "A node is not to be believed any more", &Revoke, chosen, command);
+    AddExamples(*command, {"rabit keys revoke uav3", "rabit keys revoke uav3 --keys fleet_keys",
+                           "rabit keys revoke uav3 --json"});
     command->add_option("NODE", revoke->Node, "Name of the node")->required();
     AddFolder(*command, *revoke);
 }

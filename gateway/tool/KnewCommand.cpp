@@ -379,7 +379,9 @@ void AddKnewCommand(CLI::App &app, Chosen &chosen)
                      "Ages over time as a picture (SVG) into that file, which is made")
         ->excludes(at);
     command->add_flag("--json", options->Json, "One object a line");
-    command->callback([options, &chosen] { chosen.Run = [options](Wakeup &) { return Run(*options); }; });
+    AddExamples(*command, {"rabit knew flight.mcap", "rabit knew flight.mcap uav2 uav1/Pose --at 61.5",
+                           "rabit knew flight.mcap --plot ages.svg"});
+    command->callback([options, &chosen] { chosen.RunToEnd = [options] { return Run(*options); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -247,6 +247,9 @@ void AddMergeCommand(CLI::App &app, Chosen &chosen)
     command->add_flag("--wall-clock", options->Wishes.TakesWallClocks,
                       "Take nodes whose clocks nothing relates by their wall clocks, and do not refuse them");
     command->add_flag("--json", options->Json, "One object");
+    AddExamples(*command, {"rabit merge flight.mcap ground_*.mcap uav?_*.mcap",
+                           "rabit merge flight.mcap *.mcap --reference ground",
+                           "rabit merge flight.mcap *.mcap --wall-clock --json"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

@@ -125,6 +125,7 @@ int Run(const Options &all, Wakeup &wakeup)
     session.WaitUntil(std::min(everybody, options.Wait), [] { return false; });
     session.WaitUntil(options.Wait, [&session]
                       { return session.IsAnybodyThere() && Offers::AreComplete(session.Nodes()); });
+    session.WaitForRest();
     if (!session.IsAnybodyThere())
     {
         return session.NobodyThere();
@@ -183,7 +184,7 @@ int Run(const Options &all, Wakeup &wakeup)
     }
     if (!Offers::AreComplete(nodes))
     {
-        Output::Talk("not all nodes have announced themselves yet; --wait waits longer");
+        Output::Talk("not all nodes have announced themselves yet; ask again in 2 s");
     }
     return differences.empty() && Offers::AreComplete(nodes) ? Good : ProblemFound;
 }
@@ -200,6 +201,7 @@ void AddMessagesCommand(CLI::App &app, Chosen &chosen)
         ->add_option("--for", options->For,
                      "Listen to all of them for so many seconds, and tell how often they come")
         ->check(CLI::Range(0.1, 86400.0));
+    AddExamples(*command, {"rabit messages --domain 7", "rabit messages --for 3", "rabit messages --json"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

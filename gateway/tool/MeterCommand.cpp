@@ -104,6 +104,9 @@ void AddMeterCommand(CLI::App &app, Chosen &chosen, MeterCommand what)
     command->add_option("--for", options->For, "Seconds to listen")
         ->check(CLI::Range(0.1, 86400.0))
         ->capture_default_str();
+    const std::string line = "rabit " + std::string(what.Name) + " ";
+    AddExamples(*command,
+                {line + "uav1/Pose", line + "'uav*/Pose' --for 20", line + "Pose --domain 7 --json"});
     command->callback(
         [options, &chosen, what = std::move(what)]
         { chosen.Run = [options, what](Wakeup &wakeup) { return Run(what, *options, wakeup); }; });

@@ -83,7 +83,7 @@ std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
             Gateway::Problem &problem = problems.emplace_back();
             problem.subject = "node " + node.Name;
             problem.node = node.Name;
-            problem.reason = "its announcement has not come";
+            problem.reason = "its announcement has not come; ask again in 2 s";
         }
     }
     for (const std::string &line : Offers::Differences(nodes))
@@ -101,7 +101,7 @@ Json JsonOf(const Gateway::NodeStatus &status, const FleetSession::Node *node)
     object["node"] = status.node;
     object["state"] = ToString(status.state);
     object["reason"] = status.reason;
-    object["incarnation"] = status.incarnation;
+    object["incarnation"] = std::to_string(status.incarnation);
     object["last_heard_s"] = status.last_heard_s;
     object["round_trip_s"] = JsonNumber(status.round_trip_s);
     object["delivery_rate"] = status.delivery_rate > 0.0 ? JsonNumber(status.delivery_rate) : Json(nullptr);
@@ -204,6 +204,7 @@ int Run(const Options &options, Wakeup &wakeup)
     FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
     session.WaitUntil(std::min(everybody, options.Common.Wait), [] { return false; });
     session.WaitUntil(options.Common.Wait, [&session] { return IsWhole(session); });
+    session.WaitForRest();
     if (!session.IsAnybodyThere() && !options.Watch)
     {
         return session.NobodyThere();
@@ -233,6 +234,7 @@ void AddNodesCommand(CLI::App &app, Chosen &chosen)
     CLI::App *command = app.add_subcommand("nodes", "Who is there, what each has, and what is wrong");
     AddCommonOptions(*command, options->Common, 1.8);
     command->add_flag("--watch", options->Watch, "Show it again each second until Ctrl-C");
+    AddExamples(*command, {"rabit nodes --domain 7", "rabit nodes --watch", "rabit nodes --json --wait 5"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

@@ -1,8 +1,13 @@
 #include "Offers.h"
 
+#include <rabit/idl/NearestWord.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <tuple>
+
+#include "names/ListedNames.h"
+#include "names/NamePattern.h"
 
 namespace Rabit::Tool::Offers
 {
@@ -98,6 +103,55 @@ bool AreComplete(const std::vector<FleetSession::Node> &nodes)
     return std::all_of(nodes.begin(), nodes.end(),
                        [](const FleetSession::Node &node)
                        { return node.Offers || node.State == Gateway::NodeState::LOST; });
+}
+
+bool AreAllThere(const std::vector<FleetSession::Node> &nodes, const std::string &pattern,
+                 bool isEverybodyHeard)
+{
+    const auto isLost = [](const FleetSession::Node &node) { return node.State == Gateway::NodeState::LOST; };
+    const auto named = std::find_if(nodes.begin(), nodes.end(),
+                                    [&](const FleetSession::Node &node) { return node.Name == pattern; });
+    if (named != nodes.end() && !isLost(*named))
+    {
+        return named->Offers.has_value();
+    }
+    return isEverybodyHeard && !nodes.empty() &&
+           std::all_of(nodes.begin(), nodes.end(),
+                       [&](const FleetSession::Node &node)
+                       { return node.Offers || isLost(node) || !MatchesPattern(pattern, node.Name); });
+}
+
+std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::Node> &nodes)
+{
+    const auto digits = [](std::string text)
+    {
+        std::erase_if(text, [](char c) { return c < '0' || c > '9'; });
+        return text;
+    };
+    std::vector<std::string> there;
+    std::vector<std::string> similar;
+    std::string text = "there is no node `" + name + "`";
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (node.State == Gateway::NodeState::LOST)
+        {
+            text = node.Name == name ? "node `" + name + "` is LOST" : text;
+            continue;
+        }
+        there.push_back(node.Name);
+        if (digits(node.Name) == digits(name))
+        {
+            similar.push_back(node.Name);
+        }
+    }
+    const std::string hint = NearestWordHint(name, similar);
+    if (hint.starts_with("; did you mean"))
+    {
+        return text + hint;
+    }
+    return text + (there.empty()
+                       ? ""
+                       : "; there: " + ListedNames(there, [](const std::string &one) { return one; }));
 }
 
 std::string HashText(std::uint64_t definition)

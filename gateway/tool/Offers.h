@@ -33,6 +33,16 @@ std::vector<std::string> Differences(const std::vector<FleetSession::Node> &node
 // True if every node that is not LOST has announced itself.
 bool AreComplete(const std::vector<FleetSession::Node> &nodes);
 
+// True if no announcement can come any more from the nodes that `pattern` means: the one node of that name
+// has announced itself, or `isEverybodyHeard`, nodes were heard, and each node that matches and is not LOST
+// has.
+bool AreAllThere(const std::vector<FleetSession::Node> &nodes, const std::string &pattern,
+                 bool isEverybodyHeard);
+
+// Says that there is no node of that name, or that it is LOST, and which nodes are there. A node whose name
+// differs in a digit is not proposed: `uav1` is no typo of `uav2`, but another aircraft.
+std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::Node> &nodes);
+
 // Returns sixteen hexadecimal digits.
 std::string HashText(std::uint64_t definition);
 

@@ -268,6 +268,9 @@ void AddPlayCommand(CLI::App &app, Chosen &chosen)
         "Recordings, once more to the network, as nodes `replay.NAME`; on loopback unless told otherwise");
     command->add_option("FILE", options->Files, "Recordings (MCAP)")->required();
     AddCommonOptions(*command, options->Common, 2.0);
+    // A replay leaves loopback only if the command line says so.
+    command->get_option("--interface")->envname("");
+    command->get_option("--domain")->envname("");
     command->add_option("--rate", options->Rate, "So many recorded seconds in one, 0.1 to 100, or max")
         ->check([](const std::string &text)
                 { return RateOf(text) ? "" : "`" + text + "` is no rate; expected 0.1 to 100, or max"; })
@@ -276,16 +279,14 @@ void AddPlayCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--to", options->To, "Likewise, where it ends");
     command->add_flag("--loop", options->Loops, "Begin again at the end, until Ctrl-C");
     command->add_flag("--start-paused", options->StartPaused, "Wait at the beginning until space is pressed");
-    command
-        ->add_option("--include", options->Plan.Include,
-                     "Only these messages, as uav1/Pose; *, ? stand for any")
-        ->allow_extra_args(false);
-    command->add_option("--exclude", options->Plan.Exclude, "Messages to leave out, as */CameraView")
-        ->allow_extra_args(false);
-    command->add_option("--queues", options->Plan.Queues, "Play messages for these queues, too, as uav1/*")
-        ->allow_extra_args(false);
-    command->add_option("--rename", options->Renames, "OLD=NEW node name, as uav1=sim1 or *=*")
-        ->allow_extra_args(false);
+    command->add_option("--include", options->Plan.Include,
+                        "Only these messages, as uav1/Pose; *, ? stand for any");
+    command->add_option("--exclude", options->Plan.Exclude, "Messages to leave out, as */CameraView");
+    command->add_option("--queues", options->Plan.Queues, "Play messages for these queues, too, as uav1/*");
+    command->add_option("--rename", options->Renames, "OLD=NEW node name, as uav1=sim1 or *=*");
+    AddExamples(*command, {"rabit play flight.mcap",
+                           "rabit play flight.mcap --rate 4 --from 60 --exclude '*/CameraView'",
+                           "rabit play uav1_*.mcap --rename uav1=sim1 --loop"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

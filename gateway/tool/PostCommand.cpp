@@ -3,6 +3,7 @@
 #include <rabit/idl/NearestWord.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -157,8 +158,16 @@ int Post(const Options &options, const std::string &node, const std::string &nam
         }
     }
     const bool anybody = isRead();
-    Output::Line(std::to_string(posts) + (posts == 1 ? " post, " : " posts, ") +
-                 std::to_string(status().readers) + (status().readers == 1 ? " reader" : " readers"));
+    const std::int32_t readers = status().readers;
+    if (options.Common.Json)
+    {
+        Output::Object({{"node", node}, {"message", name}, {"posts", posts}, {"readers", readers}});
+    }
+    else
+    {
+        Output::Line(std::to_string(posts) + (posts == 1 ? " post, " : " posts, ") + std::to_string(readers) +
+                     (readers == 1 ? " reader" : " readers"));
+    }
     if (!anybody)
     {
         Output::Talk("nobody subscribes to `" + name + "`, or nobody from `" + node + "`");
@@ -215,6 +224,9 @@ void AddPostCommand(CLI::App &app, Chosen &chosen)
         ->add_option("--for", options->For, "Seconds after which the node leaves (default: 2 with one post)")
         ->check(CLI::Range(0.1, 86400.0));
     command->add_option("--idl", options->Idl, "A file with the type's IDL, in place of asking for it");
+    AddExamples(*command, {R"(rabit post sim1/Pose Uav::Pose '{"altitude_m": 500}')",
+                           "rabit post sim1/Pose Uav::Pose '{}' --rate 10 --qos telemetry",
+                           "rabit post sim1/Pose Uav::Pose '{}' --idl uav.idl --for 10"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

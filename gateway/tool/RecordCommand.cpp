@@ -4,16 +4,22 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
-#include <utility>
+#include <system_error>
 
 #include "Command.h"
 #include "CommonOptions.h"
 #include "FleetFollower.h"
 #include "FleetSession.h"
 #include "Output.h"
+#include "names/ListedNames.h"
 #include "recording/FolderDisk.h"
 #include "recording/MessageTaps.h"
 #include "recording/QueueStreams.h"
@@ -41,15 +47,64 @@ RecordingSettings SettingsOf(const Options &options)
     return settings;
 }
 
+// Returns why no file can be made in the folder; empty if one can. Makes the folder if it is missing.
+std::string WhyNoFile(const std::string &folder)
+{
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0)
+    {
+        error = std::error_code(errno, std::generic_category());
+    }
+    return error ? folder + ": " + error.message() : "";
+}
+
+std::string Counted(const RecordingStatus &status)
+{
+    return std::to_string(status.Messages) + " messages, " + std::to_string(status.Bytes) + " bytes";
+}
+
+// Reports on standard error what the recording does meanwhile: each file, each change of its problem, and on
+// a terminal how much there is.
+class Progress
+{
+public:
+    explicit Progress(const Options &options) : _options(options) {}
+
+    void Look(const RecordingStatus &status, double seconds)
+    {
+        if (status.LastFile != _file && !status.LastFile.empty())
+        {
+            Output::Talk("recording into " + _options.Folder + "/" + status.LastFile);
+        }
+        if (status.Problem != _problem)
+        {
+            Output::Talk(status.Problem.empty() ? "recording again" : status.Problem);
+        }
+        _file = status.LastFile;
+        _problem = status.Problem;
+        if (_isTerminal && status.Messages > 0 && seconds >= _next)
+        {
+            Output::Talk(Counted(status));
+            _next = seconds + Period;
+        }
+    }
+
+private:
+    static constexpr double Period = 5.0;  // seconds: a line that is read, and does not flood the terminal
+
+    const Options &_options;
+    const bool _isTerminal = ::isatty(STDERR_FILENO) != 0;
+    std::string _file;
+    std::string _problem;
+    double _next = Period;
+};
+
 bool Tell(const Options &options, const RecordingStatus &status)
 {
     for (const auto &[topic, count] : status.Lost)
     {
         Output::Talk(topic + ": " + std::to_string(count) + " messages were not recorded");
-    }
-    if (!status.Problem.empty())
-    {
-        Output::Talk(status.Problem);
     }
     if (options.Common.Json)
     {
@@ -61,17 +116,29 @@ bool Tell(const Options &options, const RecordingStatus &status)
     }
     else
     {
-        Output::Line(std::to_string(status.Messages) + " messages, " + std::to_string(status.Bytes) +
-                     " bytes, " +
+        Output::Line(Counted(status) + ", " +
                      (status.Files == 1 ? options.Folder + "/" + status.LastFile
                                         : std::to_string(status.Files) + " files in " + options.Folder));
     }
     return status.Lost.empty() && status.Problem.empty();
 }
 
+void TellOfNew(const std::vector<std::string> &messages)
+{
+    if (!messages.empty())
+    {
+        Output::Talk("recording " + ListedNames(messages, [](const std::string &name) { return name; }));
+    }
+}
+
 int Run(const Options &options, Wakeup &wakeup)
 {
     GatewayConfig config = ConfigOf(options.Common);
+    if (const std::string why = WhyNoFile(options.Folder); !why.empty())
+    {
+        Output::Talk(why);
+        return ProblemFound;
+    }
     config.Record = RecordSettings{.Folder = options.Folder};
     config.Record->Except = options.Except;
     config.Record->Queues = false;  // queue messages of other nodes cannot be heard
@@ -81,39 +148,42 @@ int Run(const Options &options, Wakeup &wakeup)
     config.Tap = std::make_shared<QueueStreams>(target, *config.Record);
     target->Inbox().SetMetadata("rabit.node", {{"node", config.Node}, {"kind", "rabit record"}});
     config.Tool->AsksOf = FleetFollower::NodesOf(options.What);
+    Progress progress(options);
     bool anybody = false;
-    bool anything = false;
+    // The length counts from the first message that is followed.
+    std::optional<double> begin;
     {
         FleetSession session(config, options.Common, wakeup);
         FleetFollower follower(session, options.What, config, config.Record->Except);
         MessageTaps taps(config, session.Workspace(), target);
-        std::string problem;
-        while (!wakeup.IsInterrupted() && session.Seconds() < options.For)
+        const auto end = [&]
+        { return begin ? *begin + options.For : std::max(options.For, options.Common.Wait); };
+        while (!wakeup.IsInterrupted() && session.Seconds() < end())
         {
-            follower.FollowNew();
+            TellOfNew(follower.FollowNew());
             taps.Look();
             anybody = anybody || session.IsAnybodyThere();
-            anything = follower.Messages() > 0;
-            if (const std::string now = target->Status().Problem;
-                std::exchange(problem, now) != now && !now.empty())
+            if (!begin && follower.Messages() > 0)
             {
-                Output::Talk("nothing is recorded: " + now);
+                begin = session.Seconds();
             }
             if (!anybody && session.Seconds() >= options.Common.Wait)
             {
                 target->End();
                 return session.NobodyThere();
             }
+            progress.Look(target->Status(), session.Seconds());
             // Looks for new names as often as RecorderManager does.
-            session.WaitUntil(std::min(session.Seconds() + 0.1, options.For), [] { return false; });
+            session.WaitUntil(std::min(session.Seconds() + 0.1, end()), [] { return false; });
         }
     }
     target->End();
-    if (!anything)
+    progress.Look(target->Status(), 0.0);
+    if (!begin)
     {
         Output::Talk("nobody publishes such a message");
     }
-    return Tell(options, target->Status()) && anything ? Good : ProblemFound;
+    return Tell(options, target->Status()) && begin ? Good : ProblemFound;
 }
 
 }  // namespace
@@ -128,7 +198,10 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--except", options->Except, "Messages to leave out, as */CameraView");
     command->add_option("--to", options->Folder, "Folder of the files (default: this one)");
     command->add_option("--name", options->Name, "How their names begin (default: fleet)");
-    command->add_option("--for", options->For, "Seconds (default: until Ctrl-C)")->check(CLI::PositiveNumber);
+    command->add_option("--for", options->For, "Seconds from the first message (default: until Ctrl-C)")
+        ->check(CLI::PositiveNumber);
+    AddExamples(*command, {"rabit record --to flights --for 60", "rabit record uav1/Pose 'uav*/Health'",
+                           "rabit record --except '*/CameraView' --name test"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

@@ -2,13 +2,18 @@
 #include <rabit/RabitVersion.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "Command.h"
 #include "CommonOptions.h"
 #include "Output.h"
+#include "Wakeup.h"
 #include "recording/FolderDisk.h"
 #include "recording/mcap/FileSource.h"
 #include "recording/mcap/McapRecovery.h"
@@ -22,7 +27,31 @@ struct Options
 {
     std::string File;
     std::string To;
+    bool Json = false;
 };
+
+// A file that cannot be read any more once a signal has asked the program to end.
+class InterruptibleSource final : public Mcap::ByteSource
+{
+public:
+    InterruptibleSource(Mcap::ByteSource &source, const Wakeup &wakeup) : _source(source), _wakeup(wakeup) {}
+
+    std::uint64_t Size() override { return _source.Size(); }
+    bool Read(std::uint64_t offset, std::span<std::uint8_t> to) override
+    {
+        return !_wakeup.IsInterrupted() && _source.Read(offset, to);
+    }
+
+private:
+    Mcap::ByteSource &_source;
+    const Wakeup &_wakeup;
+};
+
+bool IsRecording(Mcap::ByteSource &source)
+{
+    std::array<std::uint8_t, Mcap::Magic.size()> begin{};
+    return source.Size() >= begin.size() && source.Read(0, begin) && begin == Mcap::Magic;
+}
 
 std::string TargetOf(const Options &options)
 {
@@ -31,9 +60,39 @@ std::string TargetOf(const Options &options)
                               : options.To;
 }
 
-int Run(const Options &options)
+void Tell(const Options &options, const std::string &target, const Mcap::Recovered &recovered)
 {
-    Mcap::FileSource source(options.File);
+    for (const std::string &problem : recovered.Problems)
+    {
+        Output::Talk(problem);
+    }
+    if (recovered.LostMessages > 0)
+    {
+        Output::Talk(std::to_string(recovered.LostMessages) +
+                     " messages are of no channel, and were left out");
+    }
+    if (options.Json)
+    {
+        Output::Object({{"file", target},
+                        {"messages", recovered.Messages},
+                        {"lost", recovered.LostMessages},
+                        {"problems", recovered.Problems}});
+    }
+    else
+    {
+        Output::Line(target + ": " + std::to_string(recovered.Messages) + " messages");
+    }
+}
+
+int Run(const Options &options, const Wakeup &wakeup)
+{
+    Mcap::FileSource whole(options.File);
+    if (!IsRecording(whole))
+    {
+        Output::Talk(options.File + ": is no recording: it does not begin as an MCAP file");
+        return ProblemFound;
+    }
+    InterruptibleSource source(whole, wakeup);
     const std::filesystem::path target = TargetOf(options);
     FolderDisk disk(target.has_parent_path() ? target.parent_path().string() : ".");
     std::string reason;
@@ -46,21 +105,15 @@ int Run(const Options &options)
     Mcap::McapWriter writer(*file, {"rabit " RABIT_VERSION_STRING, "rabit", true});
     const Mcap::Recovered recovered = Mcap::Recover(source, writer);
     const bool isWritten = recovered.IsWritten && file->Sync();
-    for (const std::string &problem : recovered.Problems)
+    if (wakeup.IsInterrupted() || !isWritten)
     {
-        Output::Talk(problem);
+        Output::Talk(target.string() + (wakeup.IsInterrupted() ? ": was not finished, and is removed"
+                                                               : ": the disk takes no more; it is removed"));
+        disk.Remove(target.filename().string());
+        return ProblemFound;
     }
-    if (recovered.LostMessages > 0)
-    {
-        Output::Talk(std::to_string(recovered.LostMessages) +
-                     " messages are of no channel, and were left out");
-    }
-    if (!isWritten)
-    {
-        Output::Talk(target.string() + ": the disk takes no more");
-    }
-    Output::Line(target.string() + ": " + std::to_string(recovered.Messages) + " messages");
-    return isWritten && recovered.Messages > 0 ? Good : ProblemFound;
+    Tell(options, target.string(), recovered);
+    return recovered.Messages > 0 ? Good : ProblemFound;
 }
 
 }  // namespace
@@ -72,7 +125,11 @@ void AddRecoverCommand(CLI::App &app, Chosen &chosen)
         app.add_subcommand("recover", "What can be read of a recording that was cut off, as a whole one");
     command->add_option("FILE", options->File, "A recording (MCAP), which stays as it is")->required();
     command->add_option("--to", options->To, "Where to; else FILE_recovered.mcap. No file is overwritten");
-    command->callback([options, &chosen] { chosen.Run = [options](Wakeup &) { return Run(*options); }; });
+    command->add_flag("--json", options->Json, "One object");
+    AddExamples(*command, {"rabit recover flight.mcap", "rabit recover flight.mcap --to whole.mcap",
+                           "rabit recover flight.mcap --json"});
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -58,13 +58,11 @@ std::vector<const FleetSession::Node *> Samples::Publishers(
 
 int Samples::NobodyPublishes(const std::vector<FleetSession::Node> &nodes) const
 {
-    std::vector<std::string> names;
     std::vector<std::string> matching;
     std::vector<std::string> messages;
     for (const FleetSession::Node &node : nodes)
     {
-        names.push_back(node.Name);
-        if (!MatchesPattern(_pattern, node.Name))
+        if (node.State == Gateway::NodeState::LOST || !MatchesPattern(_pattern, node.Name))
         {
             continue;
         }
@@ -81,20 +79,20 @@ int Samples::NobodyPublishes(const std::vector<FleetSession::Node> &nodes) const
     }
     if (matching.empty())
     {
-        Output::Talk("there is no node `" + _pattern + "`" + NearestWordHint(_pattern, names));
+        Output::Talk(Offers::NoSuchNode(_pattern, nodes));
     }
     else
     {
         const auto same = [](const std::string &name) { return name; };
-        Output::Talk(ListedNames(matching, same) + " does not publish `" + _message + "`" +
-                     NearestWordHint(_message, messages));
+        Output::Talk(ListedNames(matching, same) + (matching.size() == 1 ? " does" : " do") +
+                     " not publish `" + _message + "`" + NearestWordHint(_message, messages));
     }
     return ProblemFound;
 }
 
 int Samples::Open(double until)
 {
-    _session.WaitUntil(until, [this] { return !Publishers(_session.Nodes()).empty(); });
+    _session.WaitForOffers(_pattern, [this] { return !Publishers(_session.Nodes()).empty(); });
     const std::vector<FleetSession::Node> nodes = _session.Nodes();
     if (nodes.empty())
     {

@@ -36,8 +36,8 @@ public:
     Samples(FleetSession &session, const std::string &what);
 
     // Waits until a node publishes the message and its type has come, at most until `until`, in seconds from
-    // the start of the session; then subscribes. Returns Good, or reports the reason and returns the exit
-    // code.
+    // the start of the session, but not for what no node can announce any more; then subscribes. Returns
+    // Good, or reports the reason and returns the exit code.
     int Open(double until);
     const DynamicType &Type() const { return *_type.Type; }
     const std::string &Message() const { return _message; }

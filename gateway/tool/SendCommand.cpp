@@ -15,6 +15,7 @@
 #include "FleetSession.h"
 #include "FleetType.h"
 #include "InputLines.h"
+#include "Offers.h"
 #include "Output.h"
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
@@ -99,15 +100,13 @@ std::vector<Taker> TakersOf(const Destination &to, const std::string &type,
 std::string WhyNobody(const Destination &to, const std::string &type,
                       const std::vector<FleetSession::Node> &nodes)
 {
-    std::vector<std::string> names;
     std::vector<std::string> queues;
     std::vector<std::string> types;
     bool any = false;
     bool anyQueue = false;
     for (const FleetSession::Node &node : nodes)
     {
-        names.push_back(node.Name);
-        if (!IsMeant(to, node))
+        if (!IsMeant(to, node) || node.State == Gateway::NodeState::LOST)
         {
             continue;
         }
@@ -132,7 +131,7 @@ std::string WhyNobody(const Destination &to, const std::string &type,
     const auto same = [](const std::string &name) { return name; };
     if (!any)
     {
-        return "there is no node `" + to.Node + "`" + NearestWordHint(to.Node, names);
+        return Offers::NoSuchNode(to.Node, nodes);
     }
     if (!anyQueue)
     {
@@ -247,7 +246,7 @@ int Run(const Options &options, Wakeup &wakeup)
     {
         session.WaitUntil(1.5, [] { return false; });
     }
-    session.WaitUntil(options.Common.Wait, [&] { return !takers().empty(); });
+    session.WaitForOffers(to->Node, [&] { return !takers().empty(); });
     if (!session.IsAnybodyThere())
     {
         return session.NobodyThere();
@@ -316,6 +315,9 @@ void AddSendCommand(CLI::App &app, Chosen &chosen)
     AddCommonOptions(*command, options->Common, 10.0);
     command->add_option("--expire", options->Expire, "Seconds after which it is not to be delivered any more")
         ->check(CLI::Range(0.1, 86400.0));
+    AddExamples(*command, {"rabit send uav1/MissionControl Uav::GoHome '{}'",
+                           R"(rabit send '*/MissionControl' Uav::GoHome '{"reason": "battery"}' --expire 5)",
+                           "rabit send uav1/MissionControl Uav::Goto - --json"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

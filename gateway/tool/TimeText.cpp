@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -127,6 +128,33 @@ std::optional<std::uint64_t> TimeOf(std::string_view text, std::uint64_t begin)
     const auto fraction = seconds ? FractionIn(text.substr(Form.size())) : std::nullopt;
     constexpr std::uint64_t latest = std::numeric_limits<std::uint64_t>::max() / SecondNs;
     return fraction && *seconds < latest ? std::optional(*seconds * SecondNs + *fraction) : std::nullopt;
+}
+
+std::string DurationText(double seconds)
+{
+    struct Unit
+    {
+        double Below;  // seconds
+        double Length;
+        int Digits;
+        const char *Name;
+    };
+    constexpr double minute = 60.0;
+    constexpr double hour = 60.0 * minute;
+    constexpr std::array<Unit, 4> units = {{{1.0, 0.001, 2, "ms"},
+                                            {2.0 * minute, 1.0, 2, "s"},
+                                            {2.0 * hour, minute, 1, "min"},
+                                            {std::numeric_limits<double>::infinity(), hour, 1, "h"}}};
+    for (const Unit &unit : units)
+    {
+        if (std::abs(seconds) < unit.Below)
+        {
+            std::array<char, 64> text{};
+            std::snprintf(text.data(), text.size(), "%.*f %s", unit.Digits, seconds / unit.Length, unit.Name);
+            return text.data();
+        }
+    }
+    return "-";
 }
 
 std::string TimeText(std::uint64_t time)

@@ -15,6 +15,10 @@ namespace Rabit::Tool
 // neither, if there is no such day, or if the moment does not fit.
 std::optional<std::uint64_t> TimeOf(std::string_view text, std::uint64_t begin);
 
+// Writes a duration in the unit that fits it: `0.35 ms`, `12.40 s`, `38.6 min`, `7.2 h`; `-` if it is not
+// finite.
+std::string DurationText(double seconds);
+
 // Writes a moment as TimeOf reads it, to the millisecond: `2026-11-23T04:04:07.250Z`.
 std::string TimeText(std::uint64_t time);
 

@@ -62,7 +62,7 @@ int Run(const Options &options, Wakeup &wakeup)
         const auto found = types.find(TypeNamed(options.Name, nodes));
         return found == types.end() ? Offers::Definitions() : found->second;
     };
-    session.WaitUntil(options.Common.Wait, [&] { return !definitions().empty(); });
+    session.WaitForOffers("*", [&] { return !definitions().empty(); });
     const auto nodes = session.Nodes();
     if (nodes.empty())
     {
@@ -115,6 +115,8 @@ void AddTypeCommand(CLI::App &app, Chosen &chosen)
     command->add_option("NAME", options->Name, "Of a type, as Uav::Pose, or of a message, as Pose")
         ->required();
     AddCommonOptions(*command, options->Common, 3.0);
+    AddExamples(*command,
+                {"rabit type Uav::Pose", "rabit type uav1/Pose", "rabit type Pose --domain 7 --json"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

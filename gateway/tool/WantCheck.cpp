@@ -127,10 +127,18 @@ void WantCheck::TellNobody(const std::string &pattern, const std::string &what, 
             return;
         }
     }
-    Fail(line, what + ": no other node " +
-                   (IsPattern(pattern)
-                        ? "fits `" + pattern + "`"
-                        : "is called `" + pattern + "`" + NearestWordHint(pattern, NamesOf(_others))));
+    if (IsPattern(pattern))
+    {
+        // The pattern may be for nodes that fly another day.
+        FleetCheck::Add(_findings, {.File = _config.File,
+                                    .Line = line,
+                                    .Nodes = {_config.Node},
+                                    .Text = what + ": no other node fits `" + pattern + "`",
+                                    .IsProblem = false});
+        return;
+    }
+    Fail(line,
+         what + ": no other node is called `" + pattern + "`" + NearestWordHint(pattern, NamesOf(_others)));
 }
 
 // Returns the other nodes that match, and reports patterns without a match: every plain name must match, and

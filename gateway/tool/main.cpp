@@ -1,9 +1,12 @@
 // The program `rabit`: looks at a fleet, and speaks to it. README.md shows it.
 #include <rabit/RabitVersion.h>
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/idl/NearestWord.h>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <csignal>
 #include <exception>
 #include <string>
 #include <vector>
@@ -15,6 +18,43 @@
 
 using namespace Rabit;
 using namespace Rabit::Tool;
+
+namespace
+{
+
+// Says which command or option of the line there is not, with the nearest that there is. Empty if all are
+// known.
+std::string UnknownWord(CLI::App &app)
+{
+    CLI::App *command = &app;
+    while (!command->get_subcommands().empty())
+    {
+        command = command->get_subcommands().front();
+    }
+    const std::vector<std::string> rest = app.remaining(true);
+    const auto isOption = [](const std::string &word) { return word.size() > 1 && word.front() == '-'; };
+    std::vector<std::string> known;
+    if (const auto option = std::find_if(rest.begin(), rest.end(), isOption); option != rest.end())
+    {
+        for (const CLI::Option *one : command->get_options())
+        {
+            for (const std::string &name : one->get_lnames())
+            {
+                known.push_back("--" + name);
+            }
+        }
+        return "there is no option `" + *option + "`" + NearestWordHint(*option, known);
+    }
+    for (const CLI::App *one : command->get_subcommands([](const CLI::App *) { return true; }))
+    {
+        known.push_back(one->get_name());
+    }
+    return rest.empty() || known.empty()
+               ? ""
+               : "there is no command `" + rest.front() + "`" + NearestWordHint(rest.front(), known);
+}
+
+}  // namespace
 
 int main(int argc, char **argv)
 {
@@ -42,6 +82,7 @@ int main(int argc, char **argv)
     AddCheckCommand(app, chosen);
     AddDoctorCommand(app, chosen);
     AddKeysCommand(app, chosen);
+    TakeOneValueEach(app);
     // A line for completion is unfinished, so it cannot be parsed.
     const std::vector<std::string> words(argv + 1, argv + argc);
     const bool completes = words.size() > 1 && words[0] == "complete" && words[1] == "--";
@@ -53,16 +94,28 @@ int main(int argc, char **argv)
             return Complete(app, {words.begin() + 2, words.end()}, wakeup);
         }
         app.parse(argc, argv);
+        if (chosen.RunToEnd)
+        {
+            // A closed pipe shows as an error of the write.
+            static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
+            return chosen.RunToEnd();
+        }
         Wakeup wakeup;
         return chosen.Run(wakeup);
     }
     catch (const CLI::ParseError &error)
     {
-        return app.exit(error) == 0 ? Good : Usage;
+        const std::string unknown = error.get_exit_code() == 0 ? "" : UnknownWord(app);
+        if (unknown.empty())
+        {
+            return app.exit(error) == 0 ? Good : Usage;
+        }
+        Output::Talk(unknown + " (--help)");
+        return Usage;
     }
     catch (const NetworkError &error)
     {
-        Output::Talk(error.what());
+        Output::Talk(std::string(error.what()) + " (`rabit doctor` tells what is wrong with the network)");
         return NoNetwork;
     }
     catch (const ConfigError &error)

@@ -2,8 +2,10 @@
 
 #include "dynamic/JsonText.h"
 
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 namespace Rabit::Dynamic
 {
@@ -20,6 +22,21 @@ std::string Beginning(const std::string &whole, std::size_t size)
         cut.pop_back();
     }
     return IsUtf8(cut) ? cut : "";
+}
+
+// The whole number that the text is in decimal digits; null if it is none, or has more than 64 bits.
+nlohmann::ordered_json NumberIn(const std::string &text)
+{
+    const char *begin = text.data();
+    const char *end = begin + text.size();
+    std::uint64_t positive = 0;
+    if (const auto read = std::from_chars(begin, end, positive); read.ec == std::errc() && read.ptr == end)
+    {
+        return positive;
+    }
+    std::int64_t negative = 0;
+    const auto read = std::from_chars(begin, end, negative);
+    return read.ec == std::errc() && read.ptr == end ? nlohmann::ordered_json(negative) : nullptr;
 }
 
 template <class T>
@@ -87,6 +104,11 @@ bool ReadInteger(const nlohmann::ordered_json &json, const Range &range, std::ui
         const auto value = json.get<std::int64_t>();
         bits = static_cast<std::uint64_t>(value);
         return value < 0 ? value >= range.Least : bits <= range.Most;
+    }
+    if (json.is_string())
+    {
+        const auto number = NumberIn(json.get_ref<const std::string &>());
+        return !number.is_null() && ReadInteger(number, range, bits);
     }
     if (!json.is_number_float())
     {

@@ -23,7 +23,7 @@ struct Range
     std::uint64_t Most;
 };
 Range RangeOfKind(Kind kind);
-// Reads a whole number in the range, as its bits. JSON may also write 1000 as 1e3.
+// Reads a whole number in the range, as its bits. JSON may also write 1000 as 1e3 or "1000".
 bool ReadInteger(const nlohmann::ordered_json &json, const Range &range, std::uint64_t &bits);
 // Reads a char from a text of one character, which JSON has as UTF-8.
 bool ReadChar(const nlohmann::ordered_json &json, char &value);

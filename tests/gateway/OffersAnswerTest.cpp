@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace Rabit
@@ -123,6 +124,42 @@ TEST_F(OffersAnswerTest, ThoseWhoAskWithoutEndAreAnsweredMoreAndMoreSeldom)
     }
     EXPECT_EQ(gaps, (std::vector<Ns>{0ms, 50ms, 100ms, 200ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms,
                                      300ms, 300ms, 600ms, 1200ms, 2s, 2s}));
+}
+
+TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerWaitsForTheQuickGapAtMostHoweverManyOthersAsk)
+{
+    Begin(50);
+    Ns now = 10s;
+    Ns last = now;
+    for (; now < 20s; now += 5ms)
+    {
+        answer.Asked(0, 0, now, 1);
+        if (answer.Due() && *answer.Due() <= now)
+        {
+            answer.Said(50, now);
+            last = now;
+        }
+    }
+    ASSERT_EQ(answer.Due(), last + OffersAnswer::LongestGap);
+    answer.Asked(0, 0, now, 2);
+    EXPECT_EQ(answer.Due(), std::max(now, last + OffersAnswer::QuickGap));
+}
+
+TEST_F(OffersAnswerTest, NewAskersWithoutEndGetOneAnswerEachQuickGap)
+{
+    Begin(50);
+    std::uint64_t asker = 0;
+    int answers = 0;
+    for (Ns now = 10s; now < 40s; now += 5ms)
+    {
+        answer.Asked(0, 0, now, ++asker);
+        if (answer.Due() && *answer.Due() <= now)
+        {
+            answer.Said(50, now);
+            ++answers;
+        }
+    }
+    EXPECT_LE(answers, 30s / OffersAnswer::QuickGap + 4);  // the first gaps are shorter
 }
 
 TEST_F(OffersAnswerTest, TheMorePartsThereAreTheMoreSeldomItIsSaid)

@@ -78,7 +78,7 @@ TEST_F(PeerTableTest, SilenceMakesANodeStaleAndThenLost)
     EXPECT_FALSE(table.Advance(4500ms).State);
     EXPECT_TRUE(table.Advance(4501ms).State);
     EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
-    EXPECT_EQ(table.Find("uav1")->Reason, "not heard for 3.5 seconds");
+    EXPECT_EQ(table.Find("uav1")->Reason, "no beat within its limit of 3.5 s");
 }
 
 TEST_F(PeerTableTest, SaysWhenItNextChanges)
@@ -685,10 +685,10 @@ TEST_F(BeatPeriodTest, ANodeIsJudgedByWhenItsNextBeatIsDue)
     HearMeaning(5000, 1s);
     EXPECT_EQ(StateAt(16s), NodeState::UP);
     EXPECT_EQ(StateAt(16s + 1ns), NodeState::STALE);
-    EXPECT_EQ(table.Find("uav1")->Reason, "not heard for 15 seconds");
+    EXPECT_EQ(table.Find("uav1")->Reason, "no beat within its limit of 15 s");
     EXPECT_EQ(StateAt(36s), NodeState::STALE);
     EXPECT_EQ(StateAt(36s + 1ns), NodeState::LOST);
-    EXPECT_EQ(table.Find("uav1")->Reason, "not heard for 35 seconds");
+    EXPECT_EQ(table.Find("uav1")->Reason, "no beat within its limit of 35 s");
 }
 
 TEST_F(BeatPeriodTest, WhatTheNewestBeatSaysHolds)

@@ -85,7 +85,7 @@ private:
     void Close() override { _inner.reset(); }
     WriteResult NotJoined()
     {
-        _shared->Log->WriteTimedOut(_topic.Name);
+        _shared->Log->WriteWithoutNetwork();
         return WriteResult::TimedOut;
     }
 

@@ -20,6 +20,9 @@ public:
     // Each counts one event, and logs it if it is the 1st, 2nd, 4th, 8th ... of its kind.
     void HandlerThrew(const std::string &what, const char *error) noexcept;
     void WriteTimedOut(const std::string &topic) noexcept;
+    // Counts a write that timed out because the network was not joined, without a line: the network's problem
+    // is reported already.
+    void WriteWithoutNetwork() noexcept { ++_writeTimeouts; }
     void WriteFailed(const std::string &topic, const char *why) noexcept;
     void IncompatibleQos(const std::string &topic) noexcept;
     // `node` is the other side's name; empty if it is unknown or no Rabit node.

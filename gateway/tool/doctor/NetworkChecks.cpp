@@ -1,6 +1,7 @@
 #include "doctor/NetworkChecks.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 
 namespace Rabit::Tool::Doctor
@@ -114,6 +115,29 @@ std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &
                      : "the same `domain` in all files, if they belong to this fleet"});
     }
     return findings;
+}
+
+std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode,
+                                     int asked, double seconds)
+{
+    const bool isFound =
+        std::any_of(facts.Domains.begin(), facts.Domains.end(),
+                    [](const auto &domain)
+                    {
+                        return std::any_of(domain.second.begin(), domain.second.end(),
+                                           [](const auto &voice) { return voice.second.AreNodes; });
+                    });
+    if (anyNode || isFound)
+    {
+        return {};
+    }
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "no node is in domains 0 to %d and %d; the other domains were only listened to, for %g s, and a "
+        "node may announce itself every 10 s, with a budget every 30 s",
+        asked - 1, config.Domain, seconds);
+    return {{Level::Note, "other domains", text, "--wait 35, to hear all that are there"}};
 }
 
 std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)

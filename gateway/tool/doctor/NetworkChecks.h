@@ -17,6 +17,10 @@ std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<
                                  const NetworkFacts &facts);
 // Finds other domains in use. `anyNode`: a node was heard in ours.
 std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
+// If no node was found in any domain: says which domains were only listened to, for so many seconds. In the
+// configured domain and in the first `asked` ones the participants were asked to announce themselves.
+std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode,
+                                     int asked, double seconds);
 // Finds participants of our domain with keys if this program has none, and the reverse.
 std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
 

@@ -86,7 +86,7 @@ def check_merge(rabit, folder):
     # All nodes are on this machine.
     assert about["worst_uncertainty_s"] < 0.05, about
     first, second = recordings["sensor", 1], recordings["sensor", 2]
-    assert first["end_ns"] < second["begin_ns"] and first["incarnation"] != second["incarnation"], about
+    assert int(first["end_ns"]) < int(second["begin_ns"]) and first["incarnation"] != second["incarnation"], about
     assert recordings["display", 1]["files"] > 1, about
     again = run(rabit, "merge", merged, *files)
     assert again.returncode == 1 and "merged.mcap" in again.stderr, again
@@ -115,7 +115,7 @@ def check_knew(rabit, merged, recordings, about):
         ("display", "sensor", "Reading"), ("display2", "sensor", "Reading")}, rows
     # The middle of the second incarnation of the sensor.
     second = recordings["sensor", 2]
-    moment = f"{((second['begin_ns'] + second['end_ns']) / 2 - about['begin_ns']) / 1e9:.6f}"
+    moment = f"{((int(second['begin_ns']) + int(second['end_ns'])) / 2 - int(about['begin_ns'])) / 1e9:.6f}"
     known = lines_of(run(rabit, "knew", "--json", merged, "display", "sensor/Reading", "--at", moment))
     own = lines_of(run(rabit, "knew", "--json", merged, "sensor", "sensor/Reading", "--at", moment))
     assert len(known) == len(own) == 1, (known, own)

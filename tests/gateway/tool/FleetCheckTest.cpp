@@ -9,7 +9,9 @@ namespace
 {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 GatewayConfig NodeOf(const std::string &name)
 {
@@ -78,6 +80,16 @@ TEST(FleetCheck, AFleetThatFitsTogetherIsGood)
     ground.Subscribe = {Wants("Pose", {"uav?", "uav??"})};
     ground.Send = {Sends("*", "MissionControl"), Sends("*", "*")};
     EXPECT_THAT(LinesOf({uav, ground}), IsEmpty());
+}
+
+TEST(FleetCheck, APatternThatNoNodeFitsIsNoProblem)
+{
+    GatewayConfig ground = NodeOf("ground");
+    ground.Subscribe = {Wants("Pose", {"uav?"})};
+    const auto findings = FleetCheck::FindingsOf({NodeOf("camera"), ground});
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_FALSE(findings[0].IsProblem);
+    EXPECT_THAT(findings[0].Text, HasSubstr("no other node fits `uav?`"));
 }
 
 TEST(FleetCheck, OfANodeAloneNothingIsSaidOfWhatItWants)

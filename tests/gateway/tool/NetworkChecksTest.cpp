@@ -110,6 +110,21 @@ TEST_F(NetworkChecks, NodesOfAnotherDomainAreAProblemIfNobodyIsInOurs)
     EXPECT_THAT(OfDomains(config, facts, false)[0].Advice, HasSubstr("--domain 8"));
 }
 
+TEST_F(NetworkChecks, DomainsThatWereOnlyListenedToAreNamedIfNoNodeWasFound)
+{
+    config.Domain = 42;
+    facts.Domains[3]["10.0.0.4"] = {{"rviz"}, false};
+    const auto findings = OfSilentDomains(config, facts, false, 10, 12.0);
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Note);
+    EXPECT_THAT(findings[0].Text,
+                HasSubstr("no node is in domains 0 to 9 and 42; the other domains were only listened "
+                          "to, for 12 s"));
+    EXPECT_THAT(OfSilentDomains(config, facts, true, 10, 12.0), IsEmpty());
+    facts.Domains[8]["10.0.0.4"] = {{"uav2"}, true};
+    EXPECT_THAT(OfSilentDomains(config, facts, false, 10, 12.0), IsEmpty());
+}
+
 TEST_F(NetworkChecks, NodesWithKeysAreAProblemForWhoHasNone)
 {
     config.Domain = 7;

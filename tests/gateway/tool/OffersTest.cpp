@@ -36,6 +36,66 @@ TEST(Offers, AMessageOfSeveralNodesIsOne)
     EXPECT_THAT(messages[0].Publishers, ElementsAre("uav1", "uav2"));
 }
 
+FleetSession::Node Silent(FleetSession::Node node)
+{
+    node.Offers.reset();
+    return node;
+}
+
+FleetSession::Node Lost(FleetSession::Node node)
+{
+    node.State = Gateway::NodeState::LOST;
+    return node;
+}
+
+FleetSession::Node Aircraft(const std::string &name)
+{
+    return NodeOf(name, "Pose", "Uav::Pose", 1);
+}
+
+TEST(Offers, TheAnnouncementOfTheNamedNodeIsAllThatCanCome)
+{
+    EXPECT_TRUE(Offers::AreAllThere({Aircraft("uav1"), Silent(Aircraft("uav2"))}, "uav1", false));
+    EXPECT_FALSE(Offers::AreAllThere({Silent(Aircraft("uav1"))}, "uav1", true));
+}
+
+TEST(Offers, OfANodeThatWasNotHeardNothingCanComeOnceEverybodyWasHeard)
+{
+    EXPECT_FALSE(Offers::AreAllThere({Aircraft("uav1")}, "uav2", false));
+    EXPECT_TRUE(Offers::AreAllThere({Aircraft("uav1")}, "uav2", true));
+    EXPECT_TRUE(Offers::AreAllThere({Aircraft("uav1"), Lost(Aircraft("uav2"))}, "uav2", true));
+    EXPECT_FALSE(Offers::AreAllThere({}, "uav2", true));
+}
+
+TEST(Offers, OfAPatternNothingCanComeOnceAllThatFitHaveAnnouncedThemselves)
+{
+    EXPECT_FALSE(Offers::AreAllThere({Aircraft("uav1")}, "*", false));
+    EXPECT_TRUE(Offers::AreAllThere({Aircraft("uav1"), Silent(Aircraft("ground"))}, "uav*", true));
+    EXPECT_FALSE(Offers::AreAllThere({Aircraft("uav1"), Silent(Aircraft("uav2"))}, "uav*", true));
+}
+
+TEST(Offers, AnotherAircraftIsNotProposedForOneThatIsNotThere)
+{
+    EXPECT_EQ(Offers::NoSuchNode("uav2", {Aircraft("ground"), Aircraft("uav1")}),
+              "there is no node `uav2`; there: `ground`, `uav1`");
+    EXPECT_EQ(Offers::NoSuchNode("uav2.vison", {Aircraft("uav1.vision")}),
+              "there is no node `uav2.vison`; there: `uav1.vision`");
+}
+
+TEST(Offers, AMistypedNameIsAnsweredWithTheNodeThatIsMeant)
+{
+    EXPECT_EQ(Offers::NoSuchNode("uaw1", {Aircraft("ground"), Aircraft("uav1")}),
+              "there is no node `uaw1`; did you mean `uav1`?");
+}
+
+TEST(Offers, ALostNodeIsNamedAsLostAndNeverProposed)
+{
+    EXPECT_EQ(Offers::NoSuchNode("uav2", {Aircraft("uav1"), Lost(Aircraft("uav2"))}),
+              "node `uav2` is LOST; there: `uav1`");
+    EXPECT_EQ(Offers::NoSuchNode("uaw2", {Aircraft("uav1"), Lost(Aircraft("uav2"))}),
+              "there is no node `uaw2`; there: `uav1`");
+}
+
 TEST(Offers, AHundredNodesAreOneLineForEachMessage)
 {
     std::vector<FleetSession::Node> nodes;

@@ -18,6 +18,18 @@ TEST(TimeText, ReadsSecondsSinceTheBeginning)
     EXPECT_EQ(TimeOf("12.5", Begin), Begin + 12 * Second + Second / 2);
 }
 
+TEST(TimeText, WritesADurationInTheUnitThatFits)
+{
+    EXPECT_EQ(DurationText(0.0003456), "0.35 ms");
+    EXPECT_EQ(DurationText(0.9), "900.00 ms");
+    EXPECT_EQ(DurationText(12.4), "12.40 s");
+    EXPECT_EQ(DurationText(119.0), "119.00 s");
+    EXPECT_EQ(DurationText(2313.1382), "38.6 min");
+    EXPECT_EQ(DurationText(7200.0), "2.0 h");
+    EXPECT_EQ(DurationText(std::numeric_limits<double>::quiet_NaN()), "-");
+    EXPECT_EQ(DurationText(std::numeric_limits<double>::infinity()), "-");
+}
+
 TEST(TimeText, ReadsUtc)
 {
     for (const char *text : {"2026-11-23T04:04:07", "2026-11-23T04:04:07Z", "2026-11-23 04:04:07",

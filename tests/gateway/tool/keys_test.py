@@ -110,6 +110,18 @@ def json_is_an_object_for_each_node(shell):
     assert "reads everything of everybody" in objects[0]["may"]
 
 
+def json_is_an_object_for_each_thing_that_was_done(shell):
+    def objects(*words):
+        return [json.loads(line) for line in shell.good(*words, "--json").splitlines()]
+    (made,) = objects("init")
+    assert made["folder"] == "keys" and made["fleet"] == "fleet" and list(made) == ["folder", "fleet", "until"], made
+    (added,) = objects("add", "uav1", "--config", "uav1.yaml")
+    assert list(added) == ["node", "folder", "until", "may"] and "writes Pose" in added["may"], added
+    (renewed,) = objects("renew", "uav1", "--revoke-old")
+    assert list(renewed) == ["node", "folder", "until", "may", "revoked"] and renewed["revoked"] == 1, renewed
+    assert objects("revoke", "uav1") == [{"node": "uav1", "revoked": 1}]
+
+
 def who_is_revoked_is_gone(shell):
     shell.fleet()
     assert "1 certificates are revoked" in shell.good("revoke", "uav1")
@@ -122,7 +134,7 @@ def main():
     tests = [a_fleet_is_made_in_two_commands, what_is_there_is_not_made_again, wrong_usage_is_2,
              a_check_tells_whether_all_is_good, a_configuration_that_has_changed_is_a_problem_until_it_is_renewed,
              a_node_without_keys_is_a_problem, what_ends_soon_is_a_problem, a_key_that_others_may_read_is_a_problem,
-             json_is_an_object_for_each_node, who_is_revoked_is_gone]
+             json_is_an_object_for_each_node, json_is_an_object_for_each_thing_that_was_done, who_is_revoked_is_gone]
     failed = 0
     for test in tests:
         with tempfile.TemporaryDirectory() as folder:

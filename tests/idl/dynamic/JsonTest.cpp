@@ -80,6 +80,9 @@ TEST(Json, KeepsIntegersOf64Bits)
 {
     EXPECT_EQ(Through("big", "18446744073709551615"), "18446744073709551615");
     EXPECT_EQ(Through("low", "-9223372036854775808"), "-9223372036854775808");
+    EXPECT_EQ(Through("big", "\"18446744073709551615\""), "18446744073709551615");
+    EXPECT_EQ(Through("low", "\"-9223372036854775808\""), "-9223372036854775808");
+    EXPECT_EQ(Through("tiny", "\"-5\""), "-5");
     EXPECT_EQ(Through("low", "1e3"), "1000") << "a whole number, however it is written";
 }
 
@@ -141,6 +144,12 @@ TEST(Json, ThatDoesNotFitIsToldByItsPath)
     EXPECT_EQ(Through("raw", "256"), "raw: expected a whole number from 0 to 255, not 256");
     EXPECT_EQ(Through("tiny", "-129"), "tiny: expected a whole number from -128 to 127, not -129");
     EXPECT_EQ(Through("tiny", "1.5"), "tiny: expected a whole number from -128 to 127, not 1.5");
+    for (const char *text :
+         {"\"\"", "\"1e3\"", "\"0x10\"", "\" 1\"", "\"1 \"", "\"18446744073709551616\"", "\"--1\""})
+    {
+        EXPECT_EQ(Through("big", text),
+                  std::string("big: expected a whole number from 0 to 18446744073709551615, not ") + text);
+    }
     EXPECT_EQ(Through("big", "-1"), "big: expected a whole number from 0 to 18446744073709551615, not -1");
     EXPECT_EQ(Through("low", "9223372036854775808"),
               "low: expected a whole number from -9223372036854775808 to 9223372036854775807, not "

@@ -83,6 +83,45 @@ def a_name_that_is_wrong_is_answered_with_the_nearest(rabit):
         assert done.returncode == 1 and hint in done.stderr and done.stdout == "", done
 
 
+def what_a_node_does_not_have_is_told_as_soon_as_its_announcement_is_there(rabit):
+    # Longer than the test may last: only the announcement ends the wait.
+    for arguments in (("echo", "uav1/Poze"), ("send", "uav1/MissionControl", "Uav::GoHom", "{}"),
+                      ("send", "uav1/MissionContro", "Uav::GoHome", "{}")):
+        done = rabit.run(*arguments, "--wait", "86400")
+        assert done.returncode == 1 and "did you mean" in done.stderr, done
+
+
+def another_aircraft_is_not_proposed_for_one_that_is_not_there(rabit):
+    for arguments in (("echo", "uav3/Pose"), ("send", "uav3/MissionControl", "Uav::GoHome", "{}")):
+        done = rabit.run_until_heard(*arguments)
+        assert done.returncode == 1 and "there is no node `uav3`; there: " in done.stderr, done
+
+
+def a_mistyped_command_or_option_is_answered_with_the_nearest(rabit):
+    for words, answer in ((["nods"], "there is no command `nods`; did you mean `nodes`?"),
+                          (["keys", "renw"], "there is no command `renw`; did you mean `renew`?"),
+                          (["nodes", "--domian", "5"], "there is no option `--domian`; did you mean `--domain`?"),
+                          (["echo", "--domian", "5", "uav1/Pose"], "did you mean `--domain`?")):
+        done = subprocess.run([rabit.program, *words], capture_output=True, text=True, timeout=LIMIT, check=False)
+        assert done.returncode == 2 and answer in done.stderr and done.stderr.count("\n") == 1, done
+
+
+def whoever_asks_again_and_again_is_answered(rabit):
+    def both():
+        return set(re.findall(r"^uav\d", rabit.run("nodes").stdout, re.MULTILINE)) == {"uav1", "uav2"}
+    harness.until(both)
+    for number in range(1, 13):
+        done = rabit.run("nodes")
+        assert done.returncode == 0 and "announcement" not in done.stdout, (number, done)
+
+
+def an_interface_that_is_not_there_is_the_reason(rabit):
+    done = subprocess.run([rabit.program, "nodes", "--interface", "nosuch0", "--transport", rabit.transport],
+                          capture_output=True, text=True, timeout=LIMIT, check=False)
+    assert done.returncode == 3 and "nosuch0" in done.stderr and "timed out" not in done.stderr, done
+    assert "`rabit doctor`" in done.stderr.splitlines()[0], done.stderr
+
+
 def a_configuration_of_a_node_serves_for_its_network_alone(rabit):
     done = subprocess.run([rabit.program, "echo", "uav1/Pose", "--once", "--wait", "30",
                            "--config", str(harness.ROOT / "examples/swarm/uav.yaml"),
@@ -105,6 +144,7 @@ def nobody_in_the_domain_is_3(rabit):
     for command in (["nodes"], ["messages"], ["type", "X"], ["echo", "X"]):
         done = Rabit(rabit.program, rabit.transport, harness.domain() + 1).run(*command, "--wait", "1")
         assert done.returncode == 3 and "nobody was heard in domain" in done.stderr and done.stdout == "", done
+        assert "`rabit doctor`" in done.stderr.splitlines()[0], done.stderr
 
 
 def viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means(rabit):
@@ -116,7 +156,10 @@ def viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means(rabit
 TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          messages_are_listed_with_their_types_and_who_publishes_and_reads_them,
          how_often_all_messages_come_is_measured_together, the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
-         a_name_that_is_wrong_is_answered_with_the_nearest, a_configuration_of_a_node_serves_for_its_network_alone,
+         a_name_that_is_wrong_is_answered_with_the_nearest,
+         what_a_node_does_not_have_is_told_as_soon_as_its_announcement_is_there,
+         another_aircraft_is_not_proposed_for_one_that_is_not_there, a_mistyped_command_or_option_is_answered_with_the_nearest, whoever_asks_again_and_again_is_answered,
+         an_interface_that_is_not_there_is_the_reason, a_configuration_of_a_node_serves_for_its_network_alone,
          wrong_usage_is_2, nobody_in_the_domain_is_3,
          viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means]
 

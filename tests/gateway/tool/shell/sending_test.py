@@ -47,6 +47,12 @@ def a_message_is_posted_as_a_node_of_the_given_name(rabit):
         assert re.match(r"[1-9]\d* posts?, [1-9]\d* readers?$", post.lines[-1][1]), post.lines
 
 
+def the_result_of_a_post_is_an_object_for_scripts(rabit):
+    (row,), done = rabit.objects("post", "uav8/Nobody", "Uav::Pose", "{}", "--for", "0.1", "--wait", "4")
+    assert done.returncode == 1, done
+    assert row == {"node": "uav8", "message": "Nobody", "posts": 1, "readers": 0}, row
+
+
 def what_cannot_be_posted_is_told(rabit):
     done = rabit.run("post", "uav1/Pose", "Uav::Pose", "{}", "--wait", "60")
     assert done.returncode == 1 and "there is a node `uav1`" in done.stderr and done.stdout == "", done
@@ -59,6 +65,7 @@ def what_cannot_be_posted_is_told(rabit):
 
 TESTS = [a_message_is_sent_and_its_outcome_is_the_exit_code, lines_of_standard_input_are_sent_each,
          what_cannot_be_sent_is_told_with_the_nearest_right_word, a_message_is_posted_as_a_node_of_the_given_name,
+         the_result_of_a_post_is_an_object_for_scripts,
          what_cannot_be_posted_is_told]
 
 

@@ -4,8 +4,11 @@
 Usage: writing_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 
 import json
+import os
 import pathlib
 import re
+import shlex
+import signal
 import subprocess
 import tempfile
 
@@ -117,9 +120,141 @@ def the_manual_tells_of_every_command_and_every_common_option(rabit):
         assert option in manual, option
 
 
+def run(rabit, *arguments, **environment):
+    """The program without a network of its own, as in a user's shell."""
+    return subprocess.run([rabit.program, *arguments], capture_output=True, text=True, timeout=LIMIT, check=False,
+                          env={**os.environ, **environment})
+
+
+def commands_of(rabit, *before):
+    """All commands of the program, as lists of words."""
+    names = run(rabit, "complete", "--", *before, "").stdout.split()
+    for name in [name for name in names if not name.startswith(":")]:
+        if name == "keys":
+            yield from commands_of(rabit, "keys")
+        else:
+            yield [*before, name]
+
+
+# A value that is right for each option that may be repeated, if not any text is.
+VALUES = {"--interface": "127.0.0.1", "--config": __file__, "--rate": "Pose=1", "--size": "Pose=1", "--rename": "a=b"}
+
+
+def an_option_takes_one_value_wherever_it_stands(rabit):
+    seen = set()
+    for command in commands_of(rabit):
+        text = run(rabit, *command, "--help").stdout
+        options = re.findall(r"^ +(?:-\w,)?(--[a-z-]+) .*\.\.\.", text, re.MULTILINE)
+        needed = re.search(r"^Usage: .*\[OPTIONS\](.*)$", text, re.MULTILINE).group(1)
+        needed = [__file__ for word in re.sub(r"\[[^]]*\]|\.\.\.", "", needed).split()]
+        for option in options:
+            value = [option, VALUES.get(option, "x")]
+            for words in ([*value, *needed], [*needed, *value]):
+                done = run(rabit, *command, *words, "--no-such-option")
+                assert "there is no option `--no-such-option`" in done.stderr, (command, words, done.stderr)
+            seen.add(option)
+    assert seen >= {"--interface", "--except", "--origin", "--config", "--rate", "--include", "--idl"}, seen
+
+
+def what_is_left_out_of_a_recording_takes_no_message_with_it(rabit):
+    for words in (["--except", "*/CameraView", "uav1/Pose"], ["uav1/Pose", "--except", "*/CameraView"]):
+        with tempfile.TemporaryDirectory() as folder:
+            done = rabit.run("record", *words, "--to", folder, "--for", "1", "--wait", "60", "--json")
+            assert done.returncode == 0 and json.loads(done.stdout)["messages"] > 0, done
+            assert "recording `uav1/Pose`" in done.stderr and f"recording into {folder}/fleet_" in done.stderr, done
+
+
+def a_folder_that_cannot_be_written_ends_a_recording_before_it_begins(rabit):
+    done = rabit.run("record", "--to", "/proc/nowhere", "--wait", "86400", "--for", "86400")
+    assert done.returncode == 1 and done.stdout == "", done
+    assert done.stderr == "rabit: /proc/nowhere: No such file or directory\n", done.stderr
+
+
+def each_command_shows_examples_that_it_understands(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        for command in commands_of(rabit):
+            text = run(rabit, *command, "--help").stdout
+            examples = re.search(r"^Examples:\n((?:  .*\n)+)", text, re.MULTILINE)
+            assert examples, (command, text)
+            lines = [shlex.split(line) for line in examples.group(1).splitlines()]
+            assert len(set(map(tuple, lines))) == 3, (command, lines)
+            for line in lines:
+                assert line[:1 + len(command)] == ["rabit", *command], line
+                for word in [word for word in line if word.endswith(".yaml")]:
+                    (pathlib.Path(folder) / word.split("=")[-1]).touch()
+                # An unknown option is told of if all else is understood.
+                done = subprocess.run([rabit.program, *line[1:], "--no-such-option"], capture_output=True, text=True,
+                                      timeout=LIMIT, check=False, cwd=folder)
+                assert "there is no option `--no-such-option`" in done.stderr, (line, done.stderr)
+
+
+def the_environment_stands_for_options_that_the_line_lacks(rabit):
+    words = ["echo", "uav1/Pose", "--once", "--transport", rabit.transport, "--wait", "60"]
+    here = {"RABIT_DOMAIN": str(harness.domain()), "RABIT_INTERFACE": "127.0.0.1"}
+    done = run(rabit, *words, **here)
+    assert done.returncode == 0 and done.stdout.startswith("uav1/Pose"), done
+    done = run(rabit, "nodes", "--wait", "1", "--domain", str(harness.domain() + 1), **here)
+    assert done.returncode == 3 and f"in domain {harness.domain() + 1} " in done.stderr, done
+    done = run(rabit, "nodes", RABIT_KEYS="/no/such/folder")
+    assert done.returncode == 1 and "/no/such/folder" in done.stderr, done
+    assert run(rabit, "nodes", RABIT_DOMAIN="many").returncode == 2
+
+
+def a_signal_ends_commands_that_read_files(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        pipe = pathlib.Path(folder) / "flight.mcap"
+        os.mkfifo(pipe)
+        for command in ("info", "knew", "check"):
+            for number in (signal.SIGTERM, signal.SIGINT):
+                # The program waits for a writer of the pipe.
+                with subprocess.Popen([rabit.program, command, str(pipe)], stdout=subprocess.DEVNULL,
+                                      stderr=subprocess.DEVNULL) as reading:
+                    harness.until(lambda reading=reading: waits_in_open(reading.pid))
+                    reading.send_signal(number)
+                    assert reading.wait(LIMIT) == -number, (command, number)
+
+
+def waits_in_open(process):
+    return pathlib.Path(f"/proc/{process}/wchan").read_text().startswith(("wait_for_partner", "fifo_open"))
+
+
+def what_is_no_recording_is_not_recovered(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        text = pathlib.Path(folder) / "text.mcap"
+        text.write_text("A text, and no recording.\n")
+        done = run(rabit, "recover", str(text))
+        assert done.returncode == 1 and done.stdout == "" and "is no recording" in done.stderr, done
+        assert [file.name for file in pathlib.Path(folder).iterdir()] == ["text.mcap"]
+
+
+def a_recovery_that_does_not_fit_on_the_disk_leaves_no_file(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        done = rabit.run("record", "uav1/Pose", "--to", folder, "--for", "1", "--wait", "60")
+        assert done.returncode == 0, done
+        flight = next(pathlib.Path(folder).iterdir())
+        whole = pathlib.Path(folder) / "whole.mcap"
+
+        def recover(most):
+            return subprocess.run(["prlimit", f"--fsize={most}", rabit.program, "recover", str(flight), "--to",
+                                   str(whole), "--json"], capture_output=True, text=True, timeout=LIMIT, check=False,
+                                  restore_signals=False)
+        done = recover(500)
+        assert done.returncode == 1 and "the disk takes no more; it is removed" in done.stderr, done
+        assert not whole.exists()
+        done = recover("unlimited")
+        assert done.returncode == 0, done
+        row = json.loads(done.stdout)
+        assert keys(row) == ["file", "messages", "lost", "problems"] and row["messages"] > 0, row
+
+
 TESTS = [configurations_of_a_fleet_are_checked_against_each_other,
          what_a_fleet_puts_on_the_air_is_checked_against_its_budgets, shells_complete_commands_and_options,
-         shells_complete_what_the_fleet_has, the_manual_tells_of_every_command_and_every_common_option]
+         shells_complete_what_the_fleet_has, the_manual_tells_of_every_command_and_every_common_option,
+         an_option_takes_one_value_wherever_it_stands, what_is_left_out_of_a_recording_takes_no_message_with_it,
+         a_folder_that_cannot_be_written_ends_a_recording_before_it_begins,
+         each_command_shows_examples_that_it_understands, the_environment_stands_for_options_that_the_line_lacks,
+         a_signal_ends_commands_that_read_files, what_is_no_recording_is_not_recovered,
+         a_recovery_that_does_not_fit_on_the_disk_leaves_no_file]
 
 
 if __name__ == "__main__":
