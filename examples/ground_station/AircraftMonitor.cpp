@@ -47,6 +47,7 @@ AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &worksp
 {
     workspace.AddPublishSubscribeMessage(_node + "/Pose", _pose);
     workspace.AddPublishSubscribeMessage(_node + "/MissionState", _mission);
+    workspace.AddPublishSubscribeMessage(_node + "/Health", _health);
     workspace.AddPublishSubscribeMessage(_node + "/Findings", _findings);
     workspace.AddPublishSubscribeMessage(_node + ".vision/Targets", _targets);
     workspace.AddPublishSubscribeMessage(_node + "/Pose", _arrivals->Pose);
@@ -89,6 +90,10 @@ void AircraftMonitor::Show(FleetRow &row, const CommandTally &tally)
                                   static_cast<double>(_pose->velocity_east_mps),
                                   static_cast<double>(_pose->velocity_down_mps));
     }
+    if (_health->GetGlobalPublishSubscribeMessageRef())
+        _health->FetchMessage();
+    if (_health->WasPosted() && std::isfinite(_health->battery_percent))
+        row.BatteryPercent = static_cast<double>(_health->battery_percent);
     if (!_mission->WasPosted())
         return;
     row.Mission = MissionText(*_mission, tally);

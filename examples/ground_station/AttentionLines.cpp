@@ -72,6 +72,8 @@ std::vector<std::string> AttentionLines(const std::vector<FleetRow> &rows, const
         };
         if (!silent)
             add(WhatIsMissing(row));
+        if (row.IsBatteryBelow(FleetRow::BatteryWarning))
+            add("the battery is at " + std::to_string(static_cast<int>(*row.BatteryPercent)) + " %");
         if (!row.AreaDeclined.empty())
             add("the search area is declined: " + Printable(row.AreaDeclined, LongestReason));
         if (const auto command = last.find(row.Node); command != last.end())

@@ -33,28 +33,29 @@ std::string Right(const std::string &text, std::size_t width)
     return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
-int Urgency(RowState state)
+int Urgency(const FleetRow &row)
 {
-    switch (state)
+    switch (row.State)
     {
         case RowState::Lost:
             return 0;
         case RowState::Stale:
             return 1;
         case RowState::Waiting:
-            return 2;
+            return 4;
         case RowState::Up:
-            return 3;
+            break;
     }
-    return 3;
+    return row.IsBatteryBelow(FleetRow::BatteryAlarm)     ? 2
+           : row.IsBatteryBelow(FleetRow::BatteryWarning) ? 3
+                                                          : 5;
 }
 
 // The most urgent first, so that a small screen cuts off aircraft without problems.
 std::vector<FleetRow> MostUrgentFirst(std::vector<FleetRow> rows)
 {
     std::stable_sort(rows.begin(), rows.end(),
-                     [](const FleetRow &a, const FleetRow &b)
-                     { return Urgency(a.State) < Urgency(b.State); });
+                     [](const FleetRow &a, const FleetRow &b) { return Urgency(a) < Urgency(b); });
     return rows;
 }
 
@@ -67,9 +68,10 @@ std::string AgeText(const FleetRow &row)
 
 Emphasis EmphasisOf(const FleetRow &row)
 {
-    if (row.State == RowState::Lost)
+    if (row.State == RowState::Lost || row.IsBatteryBelow(FleetRow::BatteryAlarm))
         return Emphasis::Alarm;
-    return row.IsFresh() ? Emphasis::None : Emphasis::Warning;
+    return row.IsFresh() && !row.IsBatteryBelow(FleetRow::BatteryWarning) ? Emphasis::None
+                                                                          : Emphasis::Warning;
 }
 
 std::string TableHeading(std::size_t nodeWidth)
@@ -112,6 +114,7 @@ std::string LogLine(const FleetRow &row, double elapsedS)
         line += " no pose yet";
     }
     line += ", mission " + (row.Mission.empty() ? "unknown" : Printable(row.Mission, MissionWidth));
+    line += row.BatteryPercent ? ", battery " + Format("%.0f %%", *row.BatteryPercent) : "";
     const std::string path = PathLogText(row);
     line += path.empty() ? "" : ", " + path;
     return line + ", commands " + std::to_string(row.Sent) + " sent " + std::to_string(row.Acknowledged) +

@@ -32,12 +32,18 @@ struct FleetRow
     double LongitudeDeg = 0;
     double AltitudeM = 0;
     double SpeedMps = 0;
-    std::string Mission;       // empty: not known
-    std::string AreaDeclined;  // reason why it declines the search area; empty if it does not
+    std::string Mission;                   // empty: not known
+    std::string AreaDeclined;              // reason why it declines the search area; empty if it does not
+    std::optional<double> BatteryPercent;  // none: not known
     std::uint64_t Sent = 0;
     std::uint64_t Acknowledged = 0;
     double RoundTripS = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
     double DeliveryRate = 0;  // bytes a second of queue messages that arrive there; 0: not known
+
+    // Below these an aircraft needs attention because of its battery. The web page has the same limits.
+    static constexpr double BatteryAlarm = 10;
+    static constexpr double BatteryWarning = 25;
+    bool IsBatteryBelow(double percent) const { return BatteryPercent && *BatteryPercent < percent; }
 
     // A pose older than this is marked as old even if the aircraft is UP.
     static constexpr double FreshS = 1.0;
@@ -61,9 +67,9 @@ struct TableLine
 };
 
 // The table with a title and a heading, for a screen of `columns` columns: LOST aircraft first, then STALE,
-// WAITING and UP, otherwise in the order of the rows. Old values are in parentheses, and their age has an
-// exclamation mark before it, so that they stand out without colours too. Round trip and delivery rate have
-// columns of their own, or are below the table if there is no room for them.
+// UP with a low battery, WAITING and UP, otherwise in the order of the rows. Old values are in parentheses,
+// and their age has an exclamation mark before it, so that they stand out without colours too. Round trip and
+// delivery rate have columns of their own, or are below the table if there is no room for them.
 std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS,
                                        std::size_t columns = 80);
 

@@ -49,6 +49,13 @@ TEST_F(AttentionLines, AreNoneWhereAllIsWell)
     EXPECT_THAT(Lines(), IsEmpty());
 }
 
+TEST_F(AttentionLines, TellOfALowBattery)
+{
+    _rows[0].BatteryPercent = 25;
+    _rows[1].BatteryPercent = 24.9;
+    EXPECT_THAT(Lines(), ElementsAre("uav2: the battery is at 24 %"));
+}
+
 TEST_F(AttentionLines, TellWhyTheSearchAreaIsDeclined)
 {
     _rows[1].AreaDeclined = "100 m above sea level is below the floor of 460 m";

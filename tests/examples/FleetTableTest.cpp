@@ -73,6 +73,27 @@ TEST(FleetTable, PutsFirstWhatNeedsAttention)
     EXPECT_THAT(nodes, testing::ElementsAre("uav3", "uav5", "uav2", "uav4", "uav1"));
 }
 
+TEST(FleetTable, MarksALowBatteryAndPutsItBeforeWhatIsWell)
+{
+    std::vector<FleetRow> rows{Fresh(), Fresh(), Fresh(), WithState(RowState::Stale, 0.1)};
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        rows[i].Node = "uav" + std::to_string(i + 1);
+    rows[0].BatteryPercent = 25;
+    rows[1].BatteryPercent = 24;
+    rows[2].BatteryPercent = 9;
+    const auto lines = FleetTableLines(rows, 0);
+    std::vector<std::string> nodes;
+    std::vector<Emphasis> shown;
+    for (std::size_t i = 2; i < 6; ++i)
+    {
+        nodes.push_back(lines[i].Text.substr(0, 4));
+        shown.push_back(lines[i].Shown);
+    }
+    EXPECT_THAT(nodes, testing::ElementsAre("uav4", "uav3", "uav2", "uav1"));
+    EXPECT_THAT(shown,
+                testing::ElementsAre(Emphasis::Warning, Emphasis::Alarm, Emphasis::Warning, Emphasis::None));
+}
+
 TEST(FleetTable, SaysWhatIsMissing)
 {
     EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Up, 0.08)), "");

@@ -142,7 +142,7 @@ TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerWaitsForTheQuickGapAtMostHoweve
     }
     ASSERT_EQ(answer.Due(), last + OffersAnswer::LongestGap);
     answer.Asked(0, 0, now, 2);
-    EXPECT_EQ(answer.Due(), std::max(now, last + OffersAnswer::QuickGap));
+    EXPECT_LE(answer.Due(), std::max(now, last + OffersAnswer::QuickGap));
 }
 
 TEST_F(OffersAnswerTest, NewAskersWithoutEndGetOneAnswerEachQuickGap)

@@ -80,6 +80,9 @@ struct FlyingAircraft
     std::string Node;
     NodeState State = NodeState::UP;
     bool Flies = true;
+    bool HasFix = true;  // else its position is 0, 0
+    float Battery = 0;   // percent; 0: the script says nothing of it
+    double UnseenS = 0;  // of its target
     std::shared_ptr<Uav::Pose> Pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::MissionState> Mission = std::make_shared<Uav::MissionState>();
     std::shared_ptr<Uav::Health> Health = std::make_shared<Uav::Health>();
@@ -175,6 +178,12 @@ private:
     {
         if (what == "decline")
             one.Mission->area_declined = text;
+        if (what == "battery")
+            one.Battery = std::stof(text);
+        if (what == "unseen")
+            one.UnseenS = std::stod(text);
+        if (what == "nofix")
+            one.HasFix = false;
         if (what == "up" || what == "stale" || what == "lost" || what == "beatless")
         {
             one.Flies = what == "up" || what == "beatless";
@@ -296,6 +305,8 @@ private:
         const double east = radius * std::sin(angle);
         one.Pose->latitude_deg = 47.3977 + north / 111195;
         one.Pose->longitude_deg = 8.5456 + east / 75270;
+        if (!one.HasFix)
+            one.Pose->latitude_deg = one.Pose->longitude_deg = 0;
         one.Pose->altitude_m = 500 + index;
         one.Pose->velocity_north_mps = static_cast<float>(-std::sin(angle) * 12);
         one.Pose->velocity_east_mps = static_cast<float>(std::cos(angle) * 12);
@@ -316,7 +327,7 @@ private:
         one.Mission->home_latitude_deg = 47.395F;
         one.Mission->home_longitude_deg = 8.5456F;
         one.Mission->PostMessage();
-        one.Health->battery_percent = static_cast<float>(90 - index);
+        one.Health->battery_percent = one.Battery > 0 ? one.Battery : static_cast<float>(90 - index);
         one.Health->wants_home = _hostile;
         one.Health->reason = _hostile ? Markup : "";
         one.Health->PostMessage();
@@ -349,6 +360,7 @@ private:
         target.sigma_minor_m = 4;
         target.seen_by = {_hostile ? "<b>uav</b>" : one.Node};
         one.Targets->items = {target};
+        one.Targets->gps_time_s = target.seen_gps_time_s + one.UnseenS;
         one.Targets->PostMessage();
         Uav::Finding finding;
         finding.name = target.name;

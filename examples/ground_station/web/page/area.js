@@ -153,6 +153,8 @@ export class SearchAreaEditor {
       byId('area-discard').focus();
       return;
     }
+    // The button loses the focus when it is disabled.
+    const hadFocus = byId('area').contains(document.activeElement);
     this.sending = true;
     this.update();
     try {
@@ -165,6 +167,7 @@ export class SearchAreaEditor {
     } finally {
       this.sending = false;
       this.update();
+      if (hadFocus) (this.draft ? byId('area-send') : byId('area-panel').querySelector('summary')).focus();
     }
   }
 

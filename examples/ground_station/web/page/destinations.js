@@ -2,6 +2,7 @@
 import {distance} from './geo.js';
 import {isNumber} from './format.js';
 
+const FOLLOWED_S = 60;  // an order of an aircraft that was LOST for longer is not known to be followed any more
 const UNDER_WAY = new Set(['sent', 'delivered', 'accepted', 'in doubt']);
 
 // The destination of the last command of each aircraft, if that is under way and leads to a place that is known:
@@ -13,13 +14,15 @@ export function destinationsOf(model) {
   for (const command of last.values()) {
     if (!UNDER_WAY.has(command.progress)) continue;
     const aircraft = model.find(command.node);
-    const place = {goto: command, home: aircraft?.home}[command.kind];
+    if (!aircraft || aircraft.without_orders) continue;
+    if (model.state(aircraft) === 'lost' && !(model.age(aircraft.pose?.age_s) <= FOLLOWED_S)) continue;
+    const place = {goto: command, home: aircraft.home}[command.kind];
     if (!place || !isNumber(place.latitude_deg) || !isNumber(place.longitude_deg)) continue;
     const to = {lat: place.latitude_deg, lng: place.longitude_deg};
-    const pose = aircraft?.pose;
+    const {pose} = aircraft;
     const from = pose && isNumber(pose.latitude_deg) && isNumber(pose.longitude_deg) ? {lat: pose.latitude_deg, lng: pose.longitude_deg} : null;
     found.push({node: command.node, kind: command.kind, number: command.number, to, from,
-      left: from ? distance(from, to) : null, fresh: aircraft ? model.isPoseFresh(aircraft) : false});
+      left: from ? distance(from, to) : null, fresh: model.isPoseFresh(aircraft)});
   }
   return found;
 }

@@ -148,7 +148,7 @@ export function drawTargets(painter, targets, space) {
       painter.stroke(colour, 1.5, target.fresh ? [] : [3, 3]);
     }
     const [x, y] = painter.at(middle);
-    const old = target.fresh ? '' : ` ${ageWithUnit(target.age)}`;
+    const old = target.fresh || !isNumber(target.age) ? '' : `, last seen ${ageWithUnit(target.age)} ago`;
     painter.context.textAlign = 'center';
     painter.label(STAGES[target.stage] ?? '?', x, y + 4, colour);
     painter.context.textAlign = 'left';

@@ -2,14 +2,15 @@
 import {ageText, ageWithUnit, fixed, isNumber, STATES} from './format.js';
 import {byId, element, keepList, setAttribute, setClass, setText} from './dom.js';
 import {destinationsOf, wayLeft} from './destinations.js';
+import {batteryLevel} from './model.js';
 import {kilo} from './radio.js';
 
+const BATTERY_SIGNS = {'': '', warning: '▲ ', alarm: '■ '};
 const COLUMNS = ['name', 'state', 'age number', 'rtt number', 'delivery number', 'battery number', 'altitude number', 'speed number', 'mission'];
 
 export class FleetTable {
-  constructor(model, onSelect) {
-    this.model = model;
-    this.onSelect = onSelect;
+  constructor(model, onSelect, onForget) {
+    Object.assign(this, {model, onSelect, onForget});
     this.body = byId('fleet').tBodies[0];
     this.rows = new Map();
     this.body.addEventListener('keydown', (event) => this.onKey(event));
@@ -36,15 +37,35 @@ export class FleetTable {
     const why = element('span', 'why');
     cells[8].append(mission, why);
     root.addEventListener('click', () => this.onSelect(aircraft.node));
-    return {root, cells, mission, why};
+    return {root, cells, mission, why, forget: null};
   }
 
-  fill({root, cells, mission: doing, why}, aircraft) {
+  // A row of an aircraft that is LOST can be dismissed.
+  offerForget(row, aircraft, isLost) {
+    if (isLost === (row.forget !== null)) return;
+    if (row.forget) {
+      row.forget.remove();
+      row.forget = null;
+      return;
+    }
+    row.forget = element('button', 'forget', 'Forget');
+    row.forget.type = 'button';
+    setAttribute(row.forget, 'aria-label', `Forget ${aircraft.node} until it is heard again`);
+    row.forget.addEventListener('click', (event) => {
+      event.stopPropagation();
+      this.onForget(aircraft.node);
+    });
+    row.cells[8].append(row.forget);
+  }
+
+  fill(row, aircraft) {
+    const {root, cells, mission: doing, why} = row;
     const {model} = this;
     const state = model.state(aircraft);
     const {pose, mission, health} = aircraft;
     const fresh = model.isPoseFresh(aircraft);
     const mark = (cell, name, isFresh) => setClass(cell, isFresh ? name : `${name} old`);
+    this.offerForget(row, aircraft, state === 'lost');
     setClass(root, model.shownState(aircraft) === 'stale' && state === 'up' ? 'stale' : state);
     setAttribute(root, 'aria-selected', String(aircraft.node === model.selected));
     setText(cells[1], `${STATES[state].sign} ${STATES[state].word}`);
@@ -58,8 +79,9 @@ export class FleetTable {
     mark(cells[3], 'rtt number', state === 'up');
     setText(cells[4], isNumber(aircraft.delivery_rate) ? kilo(aircraft.delivery_rate) : '–');
     mark(cells[4], 'delivery number', state === 'up');
-    setText(cells[5], health ? fixed(health.battery_percent, 0) : '–');
-    mark(cells[5], 'battery number', !health || model.isFresh(aircraft, 'health'));
+    const level = batteryLevel(health?.battery_percent);
+    setText(cells[5], health ? BATTERY_SIGNS[level] + fixed(health.battery_percent, 0) : '–');
+    mark(cells[5], `battery number ${level}`.trim(), !health || model.isFresh(aircraft, 'health'));
     setText(cells[6], pose ? fixed(pose.altitude_m, 0) : '–');
     mark(cells[6], 'altitude number', fresh);
     setText(cells[7], pose ? fixed(pose.speed_mps, 1) : '–');
@@ -71,6 +93,7 @@ export class FleetTable {
 
   // Arrow keys choose an aircraft.
   onKey(event) {
+    if (event.target instanceof HTMLButtonElement) return;
     const step = {ArrowDown: 1, ArrowUp: -1}[event.key];
     const names = this.model.byUrgency.map((one) => one.node);
     let next = null;

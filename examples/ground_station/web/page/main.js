@@ -34,7 +34,12 @@ const connection = new Connection(receive, (connected) => {
   model.connected = connected;
   show(false);
 });
-const table = new FleetTable(model, select);
+const table = new FleetTable(model, select, (node) => {
+  model.forget(node);
+  say(`${node} is forgotten until it is heard again.`);
+  show(false);
+  table.focus();
+});
 const orders = new Orders(model, connection, map, say);
 const area = new SearchAreaEditor(model, connection, map, say);
 const lists = [new CommandList(model), new TargetList(model), new RadioPanel(model), new ProblemList(model), new EventList(model, say), new Pictures(model, select)];

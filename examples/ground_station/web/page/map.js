@@ -6,10 +6,12 @@ import {destinationsOf, wayLeft} from './destinations.js';
 import {blockTargets, drawArea, drawDestinations, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
 import {byId, element, setAttribute, setText} from './dom.js';
 import {LabelSpace, placesAround} from './labels.js';
-import {corners} from './geo.js';
+import {corners, distance} from './geo.js';
 import {pageNow} from './connection.js';
 
 const SYMBOL_PX = 22;  // what the name of an aircraft keeps away from
+const NO_FIX_DEG = 0.001;
+const OUTLIER_M = 50000;  // farther than any aircraft flies from the others
 const SVG = 'http://www.w3.org/2000/svg';
 
 function svg(tag, attributes) {
@@ -27,6 +29,20 @@ function makeSymbol() {
   const label = element('span', 'label');
   root.append(picture, label);
   return {root, turned, label};
+}
+
+// What the map is fitted to: the search area and the aircraft that are not LOST, without those that cannot be where they
+// say: at 0, 0, which a receiver without a fix tells, or far from the others.
+function placesToFit(model, area) {
+  const places = model.aircraft
+    .filter((one) => one.pose && isNumber(one.pose.latitude_deg) && isNumber(one.pose.longitude_deg) && model.state(one) !== 'lost')
+    .map(({pose}) => ({lat: pose.latitude_deg, lng: pose.longitude_deg}))
+    .filter(({lat, lng}) => Math.abs(lat) > NO_FIX_DEG || Math.abs(lng) > NO_FIX_DEG);
+  const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+  const middle = area ? {lat: area.latitude_deg, lng: area.longitude_deg}
+    : {lat: median(places.map(({lat}) => lat)), lng: median(places.map(({lng}) => lng))};
+  const near = places.filter((place) => distance(middle, place) <= OUTLIER_M);
+  return area ? [...near, ...corners(area)] : near;
 }
 
 export class FleetMap {
@@ -169,11 +185,8 @@ export class FleetMap {
   }
 
   fit() {
-    const points = this.model.aircraft
-      .filter(({pose}) => pose && isNumber(pose.latitude_deg) && isNumber(pose.longitude_deg))
-      .map(({pose}) => [pose.latitude_deg, pose.longitude_deg]);
     const {area} = this.model.snapshot ?? {};
-    if (area) points.push(...corners(area).map(({lat, lng}) => [lat, lng]));
+    const points = placesToFit(this.model, area).map(({lat, lng}) => [lat, lng]);
     if (points.length === 0) return;
     this.fitted = true;
     this.moved = false;

@@ -8,13 +8,26 @@ const FLEET_FRESH_S = 3.0;
 const LIVE_S = 1.5;
 const PART_FRESH_S = {mission: 3.5, health: 3.5, targets: 2.5, camera: 2.5, picture: 10};
 
-const URGENCY = ['lost', 'stale', 'waiting', 'up'];
+// A target that no camera has seen for longer may be anywhere by now.
+const TARGET_SEEN_S = 30;
+
+const URGENCY = ['lost', 'stale', 'alarm', 'warning', 'waiting', 'up'];
+// Below these percentages an aircraft needs attention because of its battery.
+const BATTERY_ALARM = 10;
+const BATTERY_WARNING = 25;
+
+// '', 'warning' or 'alarm'.
+export function batteryLevel(percent) {
+  if (!isNumber(percent) || percent >= BATTERY_WARNING) return '';
+  return percent < BATTERY_ALARM ? 'alarm' : 'warning';
+}
 
 export class Model {
   snapshot = null;
   takenAt = -Infinity;
   connected = false;
   selected = null;
+  forgotten = new Set();  // LOST aircraft that a person has dismissed from this page, until they are heard again
   received = 0;
   skipped = 0;
 
@@ -23,16 +36,25 @@ export class Model {
     this.newLife = last !== null && last.life !== snapshot.life;
     if (last && !this.newLife) this.skipped += Math.max(0, snapshot.number - last.number - 1);
     this.snapshot = snapshot;
+    for (const {node, state} of snapshot.aircraft) if (state !== 'lost') this.forgotten.delete(node);
     this.takenAt = takenAt;
     this.received += 1;
   }
 
   get aircraft() {
-    return this.snapshot?.aircraft ?? [];
+    return (this.snapshot?.aircraft ?? []).filter(({node}) => !this.forgotten.has(node));
   }
-  // What needs attention first: LOST, STALE, WAITING, UP; within each by name.
+  forget(node) {
+    this.forgotten.add(node);
+    if (this.selected === node) this.selected = null;
+  }
+  // What needs attention first: LOST, STALE, a low battery, WAITING, UP; within each by name.
   get byUrgency() {
-    const rank = new Map(this.aircraft.map((one) => [one, URGENCY.indexOf(this.state(one))]));
+    const urgency = (one) => {
+      const state = this.state(one);
+      return URGENCY.indexOf((state === 'up' && batteryLevel(one.health?.battery_percent)) || state);
+    };
+    const rank = new Map(this.aircraft.map((one) => [one, urgency(one)]));
     return [...this.aircraft].sort((a, b) => rank.get(a) - rank.get(b));
   }
   // Nodes whose messages were recorded before.
@@ -95,11 +117,12 @@ export class Model {
   get targets() {
       return (this.snapshot?.targets ?? []).map((one) => {
           const teller = this.find(one.told_by);
+          const age = teller ? this.age(one.age_s + (one.unseen_s ?? 0)) : NaN;
           return {
               ...one,
               validatedBy: one.validated_by,
-              age: teller ? this.age(one.age_s + (one.unseen_s ?? 0)) : NaN,
-              fresh: teller !== null && this.state(teller) === 'up' &&
+              age,
+              fresh: teller !== null && this.state(teller) === 'up' && age <= TARGET_SEEN_S &&
                   this.age(one.age_s) <= PART_FRESH_S.targets,
           };
       });

@@ -2,9 +2,13 @@
 import {byId, setText} from './dom.js';
 import {distance} from './geo.js';
 import {fixed, isNumber, STATES} from './format.js';
+import {wayLeft} from './destinations.js';
 import {describeHeight, knownGround} from './heights.js';
 
 const DEFAULT_SPEED_MPS = 12;
+// A point that is farther from the aircraft is asked about again: this, or so many sides of the search area.
+const FAR_M = 5000;
+const FAR_SIDES = 10;
 const CLEAR_PX = 34;  // around what the form must not cover
 const FIELDS = [
   ['latitude', 'latitude_deg', -90, 90],
@@ -41,7 +45,9 @@ export class Orders {
       this.send();
     });
     byId('order-cancel').addEventListener('click', () => this.close());
-    this.form.addEventListener('input', () => {
+    this.typed = new Set();  // fields that a person has filled in for this order
+    this.form.addEventListener('input', ({target}) => {
+      this.typed.add(target.id);
       this.askedAbout = null;
       this.showPoint();
     });
@@ -59,6 +65,7 @@ export class Orders {
       return;
     }
     if (!this.isOpen) this.cameFrom = document.activeElement;
+    if (!this.isOpen || this.kind !== kind || this.node !== aircraft.node) this.typed.clear();
     this.kind = kind;
     this.node = aircraft.node;
     const titles = {goto: `Send ${this.node} to a point`, home: `Call ${this.node} home?`, search: `Let ${this.node} search?`};
@@ -72,8 +79,9 @@ export class Orders {
       const from = point ?? (pose ? {lat: pose.latitude_deg, lng: pose.longitude_deg} : null);
       byId('order-latitude').value = from ? fixed(from.lat, 6) : '';
       byId('order-longitude').value = from ? fixed(from.lng, 6) : '';
-      byId('order-altitude').value = isNumber(pose?.altitude_m) ? fixed(pose.altitude_m, 0) : '';
-      if (!byId('order-speed').value) byId('order-speed').value = String(DEFAULT_SPEED_MPS);
+      // What was typed for this order holds for another point as well.
+      if (!this.typed.has('order-altitude')) byId('order-altitude').value = isNumber(pose?.altitude_m) ? fixed(pose.altitude_m, 0) : '';
+      if (!this.typed.has('order-speed')) byId('order-speed').value = String(DEFAULT_SPEED_MPS);
     }
     this.form.hidden = false;
     this.update();
@@ -86,12 +94,12 @@ export class Orders {
     }
   }
 
-  close() {
+  close(hadFocus = this.form.contains(document.activeElement)) {
     if (!this.isOpen) return;
-    const hadFocus = this.form.contains(document.activeElement);
     this.form.hidden = true;
     this.map.showGoingTo(null);
-    if (hadFocus) (this.cameFrom?.isConnected ? this.cameFrom : byId('map')).focus();
+    const back = this.cameFrom?.isConnected && this.cameFrom !== document.body ? this.cameFrom : byId('map');
+    if (hadFocus) back.focus();
   }
 
   get point() {
@@ -114,6 +122,19 @@ export class Orders {
       altitude: Number(typed), present: aircraft.pose?.altitude_m, than: fresh ? 'it is now' : 'it is said to have been',
       ground: knownGround([aircraft]), floors: [[this.node, aircraft.floor_m]],
     });
+  }
+
+  // What is asked about again before it is sent; empty if nothing is.
+  get question() {
+    return [this.height.asks, this.distanceAsked].filter((one) => one).join(' ');
+  }
+  get distanceAsked() {
+    const pose = this.model.find(this.node)?.pose;
+    if (this.kind !== 'goto' || !this.point || !pose) return '';
+    const {area} = this.model.snapshot ?? {};
+    const far = Math.max(FAR_M, FAR_SIDES * Math.max(area?.north_m ?? 0, area?.east_m ?? 0));
+    const metres = distance({lat: pose.latitude_deg, lng: pose.longitude_deg}, this.point);
+    return metres > far ? `The point is ${wayLeft(metres)} away from ${this.node}.` : '';
   }
 
   // What the person should know before it is sent. What stands between the page and the aircraft comes first: while that is
@@ -176,26 +197,29 @@ export class Orders {
       if (!values) return;
     }
     if (!this.model.live || this.sending) return;
-    // A large descent is asked about again, and Enter does not answer that by itself.
-    const {asks} = this.height;
-    if (asks && this.askedAbout === null) {
-      this.askedAbout = asks;
+    // A large descent or a long way is asked about again, and Enter does not answer that by itself.
+    const {question} = this;
+    if (question && this.askedAbout === null) {
+      this.askedAbout = question;
       this.update();
       byId('order-cancel').focus();
       return;
     }
     const {kind, node} = this;
+    // The button loses the focus while it is disabled.
+    const hadFocus = this.form.contains(document.activeElement);
     this.sending = true;
     this.update();
     try {
       await this.connection.request({type: 'order', kind, node, ...values});
       this.say(`${kind} for ${node} was given to the ground station.`);
-      this.close();
+      this.close(hadFocus);
     } catch (error) {
       setText(byId('order-error'), error.message);
     } finally {
       this.sending = false;
       this.update();
+      if (hadFocus && this.isOpen) byId('order-send').focus();
     }
   }
 }

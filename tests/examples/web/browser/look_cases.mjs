@@ -237,7 +237,25 @@ async function showsFirstWhatNeedsAttention(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+async function cutsNothingOnAPhoneHeldSideways(programs) {
+  const {url} = await startFixture(programs, 3);
+  await openBrowser({...PHONE, viewport: {width: 844, height: 390}});
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state), 'is UP');
+  await fleet.select('uav1');
+  await page.click('#act-goto');
+  const cut = await page.evaluate(() => [...document.querySelectorAll('#order input, #order button, #order h2')].filter((one) => {
+    one.scrollIntoView({block: 'center'});
+    const {left, top, right, bottom} = one.getBoundingClientRect();
+    return ![[left + 2, top + 2], [right - 2, bottom - 2]].every(([x, y]) => one.contains(document.elementFromPoint(x, y)));
+  }).map((one) => one.id));
+  assert.deepEqual(cut, [], 'all of the form can be reached');
+  assert.deepEqual(fleet.errors, []);
+}
+
 export const cases = {
+  cuts_nothing_on_a_phone_held_sideways: cutsNothingOnAPhoneHeldSideways,
   can_be_read_in_every_theme: canBeReadInEveryTheme,
   can_be_hit_with_fingers: canBeHitWithFingers,
   cuts_nothing_on_a_phone: cutsNothingOnAPhone,

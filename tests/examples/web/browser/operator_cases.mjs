@@ -172,7 +172,198 @@ async function putsTheOrderWhereItCoversNothing(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+async function asksAgainBeforeAFarPoint(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is UP');
+  await fleet.select('uav1');
+  await page.click('#act-goto');
+  await page.fill('#order-latitude', '47.43');
+  await page.click('#order-send');
+  await fixture.says(/order 0 uav1 47.43 /, 'a point 4 km away is not asked about');
+  await becomes(() => page.isHidden('#order'), 'the form is closed');
+  await page.click('#act-goto');
+  await page.fill('#order-latitude', '-47.4');
+  await page.click('#order-send');
+  assert.match(await fleet.text('#order-again'), /The point is 1054\d km away from uav1\. Is it meant so\?/);
+  assert.equal((fixture.output.match(/order/g) ?? []).length, 1, 'it is not sent before it is confirmed');
+  await page.click('#order-send');
+  await fixture.says(/order 0 uav1 -47.4 /, 'it is sent when it was confirmed');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function keepsWhatWasTypedForThisOrderAlone(programs) {
+  const {url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav2', (row) => /UP/.test(row.state) && !row.old, 'is UP');
+  await fleet.select('uav1');
+  await page.click('#act-goto');
+  await page.fill('#order-altitude', '600');
+  await page.fill('#order-speed', '7');
+  const latitude = await page.inputValue('#order-latitude');
+  const box = await page.locator('#map').boundingBox();
+  const clickMap = () => page.mouse.click(box.x + box.width - 100, box.y + 60);
+  await clickMap();
+  assert.notEqual(await page.inputValue('#order-latitude'), latitude, 'another point');
+  assert.deepEqual([await page.inputValue('#order-altitude'), await page.inputValue('#order-speed')], ['600', '7'], 'for another point it stays');
+  await fleet.select('uav2');
+  await clickMap();
+  assert.match(await fleet.text('#order-title'), /uav2/);
+  assert.deepEqual([await page.inputValue('#order-altitude'), await page.inputValue('#order-speed')], ['501', '12'], 'another aircraft gets its own');
+  await page.fill('#order-speed', '9');
+  await page.keyboard.press('Escape');
+  await page.click('#act-goto');
+  assert.equal(await page.inputValue('#order-speed'), '12', 'what was cancelled is forgotten');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function showsAndKeepsTheFocus(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state), 'is UP');
+  // What is drawn around the focused element, and how far inside of its edge.
+  const outline = () => page.evaluate(() => {
+    const style = getComputedStyle(document.activeElement);
+    return {width: parseFloat(style.outlineWidth), offset: parseFloat(style.outlineOffset), style: style.outlineStyle};
+  });
+  await page.keyboard.press('m');
+  const ofMap = await outline();
+  assert.ok(ofMap.style === 'solid' && ofMap.offset <= -ofMap.width, `the frame of the map cuts nothing off: ${JSON.stringify(ofMap)}`);
+  await becomes(async () => {
+    await page.keyboard.press('Tab');
+    return page.evaluate(() => document.activeElement.classList.contains('centre'));
+  }, 'Tab reaches the handle of the area');
+  const ofHandle = await outline();
+  assert.ok(ofHandle.style === 'solid' && ofHandle.width >= 3, JSON.stringify(ofHandle));
+  const focused = () => page.evaluate(() => document.activeElement.id || document.activeElement.tagName);
+  await fleet.select('uav1');
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press('h');
+  await page.keyboard.press('Enter');
+  await fixture.says(/order 1 uav1/);
+  await becomes(() => page.isHidden('#order'), 'the form is closed');
+  await becomes(async () => (await focused()) === 'map', async () => `the focus is on the map: ${await focused()}`);
+  await page.click('#act-home');
+  await page.click('#order-send');
+  await becomes(() => page.isHidden('#order'), 'the form is closed');
+  await becomes(async () => (await focused()) === 'act-home', async () => `the focus is where it was: ${await focused()}`);
+  await page.keyboard.press('a');
+  await page.fill('#area-north_m', '300');
+  await page.keyboard.press('Enter');
+  await fixture.says(/area \S+ \S+ 300 600/);
+  await becomes(async () => (await focused()) === 'SUMMARY', async () => `the focus is on the search area: ${await focused()}`);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function fitsTheMapToWhereTheFleetIs(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  fixture.tell('nofix uav2');
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await becomes(() => fleet.marker('uav2'), 'its marker is somewhere');
+  await page.click('#fit');
+  const seen = async () => {
+    const box = await page.locator('#map').boundingBox();
+    const inside = [];
+    for (const node of ['uav1', 'uav2', 'uav3']) {
+      const {x, y} = await fleet.marker(node);
+      if (x >= box.x && x <= box.x + box.width && y >= box.y && y <= box.y + box.height) inside.push(node);
+    }
+    return inside;
+  };
+  await becomes(async () => (await seen()).join() === 'uav1,uav3', async () => `one without a fix does not widen the map: ${await seen()}`);
+  assert.match(await fleet.text('.leaflet-control-scale-line'), /^\d+ m$/);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function forgetsALostAircraftUntilItIsHeardAgain(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav2', (row) => /UP/.test(row.state), 'is UP');
+  assert.equal(await page.locator('button.forget').count(), 0, 'one that is there cannot be forgotten');
+  fixture.tell('lost uav2');
+  await fleet.rowBecomes('uav2', (row) => /LOST/.test(row.state), 'is LOST');
+  await page.click('button.forget');
+  await becomes(async () => (await fleet.row('uav2')) === null && (await fleet.marker('uav2')) === null, 'it is gone');
+  const before = await fleet.data('snapshot');
+  await becomes(async () => Number(await fleet.data('snapshot')) > Number(before) + 5, 'time goes on');
+  assert.equal(await fleet.row('uav2'), null, 'it stays away');
+  fixture.tell('up uav2');
+  await fleet.rowBecomes('uav2', (row) => /UP/.test(row.state), 'is back');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function marksALowBattery(programs) {
+  const {fixture, url} = await startFixture(programs, 4);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  const names = () => page.locator('#fleet tbody td.name').allTextContents();
+  await becomes(async () => (await names()).join() === 'uav1,uav2,uav3,uav4', 'by name');
+  fixture.tell('battery uav2 24');
+  fixture.tell('battery uav3 9');
+  fixture.tell('lost uav4');
+  await becomes(async () => (await names()).join() === 'uav4,uav3,uav2,uav1', async () => `what needs attention is first: ${await names()}`);
+  const battery = (i) => page.locator('#fleet tbody td.battery').nth(i);
+  assert.equal(await battery(1).textContent(), '■ 9');
+  assert.match(await battery(1).getAttribute('class'), /\balarm\b/);
+  assert.equal(await battery(2).textContent(), '▲ 24');
+  assert.match(await battery(2).getAttribute('class'), /\bwarning\b/);
+  const colour = (i) => battery(i).evaluate((cell) => getComputedStyle(cell).color);
+  assert.equal(new Set([await colour(1), await colour(2), await colour(3)]).size, 3, 'in colours of their own');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function marksATargetThatNobodySees(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  const row = (name) => page.locator('#targets tbody tr', {hasText: name}).first();
+  const isOld = async (name) => /\bold\b/.test((await row(name).getAttribute('class')) ?? '');
+  await becomes(async () => (await row('uav1').count()) === 1 && !(await isOld('uav1')), 'it is seen');
+  fixture.tell('unseen uav1 29');
+  await becomes(async () => /^29|^30/.test(await row('uav1').locator('td.age').textContent()), 'its age is shown');
+  fixture.tell('unseen uav1 1140');
+  await becomes(async () => /^! 19 min/.test(await row('uav1').locator('td.age').textContent()), 'its age is marked');
+  assert.equal(await isOld('uav1'), true);
+  assert.equal(await isOld('uav2'), false);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function dropsOrdersThatDiedWithTheAircraft(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && /SEARCH/.test(row.mission), 'is UP');
+  await fleet.select('uav1');
+  await page.keyboard.press('h');
+  await page.keyboard.press('Enter');
+  await becomes(async () => /^uav1 home/.test(await page.getAttribute('#map', 'data-destinations')), 'the way home is shown');
+  fixture.tell('orders uav1');
+  await becomes(async () => (await page.getAttribute('#map', 'data-destinations')) === '', 'a new life does not follow it');
+  assert.deepEqual(fleet.errors, []);
+}
+
 export const cases = {
+  asks_again_before_a_far_point: asksAgainBeforeAFarPoint,
+  keeps_what_was_typed_for_this_order_alone: keepsWhatWasTypedForThisOrderAlone,
+  shows_and_keeps_the_focus: showsAndKeepsTheFocus,
+  fits_the_map_to_where_the_fleet_is: fitsTheMapToWhereTheFleetIs,
+  forgets_a_lost_aircraft_until_it_is_heard_again: forgetsALostAircraftUntilItIsHeardAgain,
+  marks_a_low_battery: marksALowBattery,
+  marks_a_target_that_nobody_sees: marksATargetThatNobodySees,
+  drops_orders_that_died_with_the_aircraft: dropsOrdersThatDiedWithTheAircraft,
   asks_again_before_a_large_descent: asksAgainBeforeALargeDescent,
   tells_what_is_declined_and_who_is_back_without_orders: tellsWhatIsDeclinedAndWhoIsBackWithoutOrders,
   says_what_is_missing: saysWhatIsMissing,
