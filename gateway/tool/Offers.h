@@ -39,8 +39,8 @@ bool AreComplete(const std::vector<FleetSession::Node> &nodes);
 bool AreAllThere(const std::vector<FleetSession::Node> &nodes, const std::string &pattern,
                  bool isEverybodyHeard);
 
-// Says that there is no node of that name, or that it is LOST, and which nodes are there. A node whose name
-// differs in a digit is not proposed: `uav1` is no typo of `uav2`, but another aircraft.
+// Returns the line for an unknown or LOST node. It proposes a similar name, else it lists the live nodes. A
+// name with other digits is never proposed: `uav1` is no typo of `uav2`, but another aircraft.
 std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::Node> &nodes);
 
 // Returns sixteen hexadecimal digits.

@@ -32,6 +32,19 @@ def a_doctor_tells_of_the_domain_that_the_others_are_in(rabit):
     harness.until(named)
 
 
+def a_doctor_that_hears_nobody_listens_until_nodes_of_all_domains_must_have_announced_themselves(rabit):
+    silent = 57  # it is not asked
+    with harness.Processes() as processes:
+        processes.start([rabit.uav, "--config", SWARM / "uav.yaml", "--node", "away", "--domain", str(silent),
+                         "--transport", rabit.transport])
+
+        def is_there():
+            return "away" in Rabit(rabit.program, rabit.transport, silent).run("nodes").stdout
+        harness.until(is_there)
+        done = Rabit(rabit.program, rabit.transport, silent + 1).run("doctor")
+        assert done.returncode == 3 and f"! domain {silent}: away is in it" in done.stdout, done
+
+
 def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there(rabit):
     with harness.Processes() as processes:
         for _ in range(2):
@@ -48,6 +61,7 @@ def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_ther
 
 
 TESTS = [a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well, a_doctor_tells_of_the_domain_that_the_others_are_in,
+         a_doctor_that_hears_nobody_listens_until_nodes_of_all_domains_must_have_announced_themselves,
          a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there]
 
 
