@@ -158,7 +158,7 @@ int Post(const Options &options, const std::string &node, const std::string &nam
         }
     }
     const bool anybody = isRead();
-    const std::int32_t readers = status().readers;
+    const std::uint32_t readers = status().readers;
     if (options.Common.Json)
     {
         Output::Object({{"node", node}, {"message", name}, {"posts", posts}, {"readers", readers}});
