@@ -1,5 +1,5 @@
-"""What a person reads on the console of real nodes that do not come together: a lonely one, two of one name, and two
-that were built with two versions of a type.
+"""What a person reads on the console of real nodes that do not come together: a lonely one, one whose interface is
+missing, two of one name, and two that were built with two versions of a type.
 
 Usage: node_problems_test.py BIN ROOT TRANSPORT
 """
@@ -40,6 +40,15 @@ def a_lonely_node_says_what_it_can_know(case):
         sensor.wait_for(re.compile("no longer: network: nobody heard").search, LIMIT_S)
 
 
+def a_missing_interface_is_named_before_anything_times_out(case):
+    config = case.folder / "elsewhere.yaml"
+    config.write_text((case.folder / "sensor.yaml").read_text().replace(INTERFACE, "nosuch0"))
+    with harness.Processes() as processes:
+        sensor = case.start(processes, "sensor", "elsewhere")
+        sensor.wait_for(re.compile("gateway: interfaces nosuch0: the interface nosuch0 does not exist").search, LIMIT_S)
+        assert not any("timed out" in text for _, text in sensor.lines), sensor.lines
+
+
 def two_nodes_of_one_name_name_both_processes(case):
     with harness.Processes() as processes:
         first, second = (case.start(processes, "sensor", "sensor") for _ in range(2))
@@ -64,8 +73,8 @@ def two_versions_of_a_type_are_named(case):
 def main():
     programs, root, transport = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
     harness.enter_namespace()
-    for test in a_lonely_node_says_what_it_can_know, two_nodes_of_one_name_name_both_processes, \
-            two_versions_of_a_type_are_named:
+    for test in a_lonely_node_says_what_it_can_know, a_missing_interface_is_named_before_anything_times_out, \
+            two_nodes_of_one_name_name_both_processes, two_versions_of_a_type_are_named:
         with tempfile.TemporaryDirectory(prefix="rabit_node_problems_") as folder:
             test(Case(programs, root, pathlib.Path(folder), transport))
         print(f"ok: {test.__name__} over {transport}")
