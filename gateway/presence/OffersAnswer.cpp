@@ -81,7 +81,7 @@ void OffersAnswer::Said(std::size_t bytes, Duration now, Duration delay)
     {
         _crossedUntil = now + std::max(ShortestGap, 2 * delay);
         _notBefore = now + _gap * _parts;
-        _notBeforeForNew = now + std::min(_gap, QuickGap) * std::exchange(_parts, 0);
+        _notBeforeForNew = now + std::min(_gap, NewAskerGap) * std::exchange(_parts, 0);
         _gap = std::min(2 * _gap, ++_answers < QuickAnswers ? QuickGap : LongestGap);
         _from = std::exchange(_again, std::nullopt);
         _at = _notBefore;

@@ -13,7 +13,7 @@ namespace Rabit
 
 // Decides when this node sends which part of its announcement: once at the beginning, and again when nodes
 // request it, once for all of them. Frequent requests lengthen the wait from one time to the next; so does
-// the number of parts. The first request of an asker waits for QuickGap a part at most, however frequent
+// the number of parts. The first request of an asker waits for NewAskerGap a part at most, however frequent
 // those of others were: a program that starts anew each time, as a tool does, gets its answer.
 //
 // A pure state machine; `now` never goes back.
@@ -28,6 +28,9 @@ public:
     // The first answers follow each other more quickly: an answer may be lost.
     static constexpr Duration QuickGap = std::chrono::milliseconds(100);
     static constexpr int QuickAnswers = 20;
+    // Longest wait of the first request of an asker, for each part. Askers can be forged: three answers a
+    // second are all that they get.
+    static constexpr Duration NewAskerGap = std::chrono::milliseconds(300);
     // After this time without a question the gap is ShortestGap again.
     static constexpr Duration Quiet = std::chrono::seconds(5);
     // Time between two parts.
@@ -52,8 +55,7 @@ public:
     void Said(std::size_t bytes, Duration now, Duration delay = Duration(0));
 
 private:
-    // Askers that are remembered, the latest ones: more than a fleet has nodes. Forged askers can push out
-    // others, and then get one answer each QuickGap.
+    // Askers that are remembered, the latest ones: more than a fleet has nodes.
     static constexpr std::size_t MostAskers = 256;
 
     bool IsNew(std::uint64_t asker);

@@ -126,7 +126,7 @@ TEST_F(OffersAnswerTest, ThoseWhoAskWithoutEndAreAnsweredMoreAndMoreSeldom)
                                      300ms, 300ms, 600ms, 1200ms, 2s, 2s}));
 }
 
-TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerWaitsForTheQuickGapAtMostHoweverManyOthersAsk)
+TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerIsAnsweredSoonHoweverManyOthersAsk)
 {
     Begin(50);
     Ns now = 10s;
@@ -142,10 +142,10 @@ TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerWaitsForTheQuickGapAtMostHoweve
     }
     ASSERT_EQ(answer.Due(), last + OffersAnswer::LongestGap);
     answer.Asked(0, 0, now, 2);
-    EXPECT_LE(answer.Due(), std::max(now, last + OffersAnswer::QuickGap));
+    EXPECT_LE(answer.Due(), std::max(now, last + OffersAnswer::NewAskerGap));
 }
 
-TEST_F(OffersAnswerTest, NewAskersWithoutEndGetOneAnswerEachQuickGap)
+TEST_F(OffersAnswerTest, NewAskersWithoutEndGetThreeAnswersASecond)
 {
     Begin(50);
     std::uint64_t asker = 0;
@@ -159,7 +159,7 @@ TEST_F(OffersAnswerTest, NewAskersWithoutEndGetOneAnswerEachQuickGap)
             ++answers;
         }
     }
-    EXPECT_LE(answers, 30s / OffersAnswer::QuickGap + 4);  // the first gaps are shorter
+    EXPECT_LE(answers, 30s / OffersAnswer::NewAskerGap + OffersAnswer::QuickAnswers);
 }
 
 TEST_F(OffersAnswerTest, TheMorePartsThereAreTheMoreSeldomItIsSaid)
