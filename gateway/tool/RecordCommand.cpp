@@ -79,7 +79,8 @@ public:
         }
         if (status.Problem != _problem)
         {
-            Output::Talk(status.Problem.empty() ? "recording again" : status.Problem);
+            Output::Talk(status.Problem.empty() ? "recording again"
+                                                : "nothing is recorded: " + status.Problem);
         }
         _file = status.LastFile;
         _problem = status.Problem;
