@@ -84,19 +84,19 @@ TEST(BeatPace, WhoAsksWithoutEndHasItsBeatsAtMostOnceAPeriod)
     BeatPace pace;
     pace.Sent(1s);
     std::vector<Ns> gaps;
-    for (Ns now = 1s; gaps.size() < 16;)
+    for (Ns now = 1s; gaps.size() < 24;)
     {
         const Ns next = std::min(pace.EarliestToAsk(), pace.Due());
         gaps.push_back(next - now);
         now = next;
         pace.Sent(now);
     }
-    // Each gap is half as long again as the one before. It grows up to 300 ms for the first twelve, and
-    // then to the period.
-    EXPECT_EQ(std::vector<Ns>(gaps.begin(), gaps.begin() + 5),
-              (std::vector<Ns>{50ms, 75ms, 112'500us, 168'750us, 253'125us}));
-    EXPECT_EQ(std::vector<Ns>(gaps.begin() + 5, gaps.end()),
-              (std::vector<Ns>{300ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms, 450ms, 500ms, 500ms, 500ms}));
+    // Each gap is half as long again as the one before. It grows up to 150 ms for the first twenty, and then
+    // to the period.
+    std::vector<Ns> expected{50ms, 75ms, 112'500us};
+    expected.resize(BeatPace::QuickBeats, 150ms);
+    expected.insert(expected.end(), {225ms, 337'500us, 500ms, 500ms});
+    EXPECT_EQ(gaps, expected);
 }
 
 TEST(BeatPace, AfterSomeQuietABeatMayBeBroughtForwardAtOnceAgain)

@@ -122,8 +122,10 @@ TEST_F(OffersAnswerTest, ThoseWhoAskWithoutEndAreAnsweredMoreAndMoreSeldom)
             last = now;
         }
     }
-    EXPECT_EQ(gaps, (std::vector<Ns>{0ms, 50ms, 100ms, 200ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms, 300ms,
-                                     300ms, 300ms, 600ms, 1200ms, 2s, 2s}));
+    std::vector<Ns> expected{0ms, 50ms};
+    expected.resize(1 + OffersAnswer::QuickAnswers, 100ms);
+    expected.insert(expected.end(), {200ms, 400ms, 800ms, 1600ms, 2s, 2s});
+    EXPECT_EQ(gaps, expected);
 }
 
 TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerIsAnsweredSoonHoweverManyOthersAsk)
