@@ -95,6 +95,8 @@ MUTATIONS = [
     guard("parameters without end", "DiscoveryCheck.cpp", "i < MostParameters", "i < 100000"),
     guard("a participant without a lease", "DiscoveryCheck.cpp", "writer == ParticipantWriter ? found.Lease :",
           "writer == ParticipantWriter ? true :"),
+    guard("the lease of a card is cut", "RtpsGuard.cpp", "passage.Whence == Origin::Card ? Lease::OfCard : Lease::Bounded",
+          "Lease::Bounded"),
     guard("a lease without end", "DiscoveryCheck.cpp", "lease == Lease::Bounded && rest.IsGood()", "false"),
     guard("an endpoint without names", "DiscoveryCheck.cpp", ": found.Topic && found.Type", ": true"),
     guard("types get through", "DiscoveryCheck.cpp", "if (!wanted) { list[at]", "if (false) { list[at]"),

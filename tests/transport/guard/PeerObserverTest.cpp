@@ -41,19 +41,26 @@ protected:
         std::size_t handed = 0;
         EXPECT_TRUE(Guard.Admit(
             datagram, SenderHost, RtpsGuard::TimePoint(std::chrono::hours(1)),
-            [&](std::span<std::uint8_t>) { ++handed; }, origin));
+            [&](std::span<std::uint8_t> message)
+            {
+                ++handed;
+                Handed.assign(message.begin(), message.end());
+            },
+            origin));
         return handed;
     }
-    static Bytes AnnouncementWithCard()
+    static Bytes AnnouncementWithCard(std::uint32_t lease = 30)
     {
         const std::string text = Rabit::MakeUserData(7, true);
         Bytes data = Join({U32(static_cast<std::uint32_t>(text.size())), Bytes(text.begin(), text.end())});
         data.resize((data.size() + 3) / 4 * 4);
         const Bytes guid = Parameter(0x0050, Guid(Sender, Rabit::Rtps::ParticipantEntity));
-        const Bytes list = List({guid, Parameter(0x0002, Join({U32(30), U32(0)})), Parameter(0x002c, data)});
+        const Bytes list =
+            List({guid, Parameter(0x0002, Join({U32(lease), U32(0)})), Parameter(0x002c, data)});
         return Message(Data, DataBody(1, list, Rabit::Rtps::ParticipantWriter), 0x05);
     }
 
+    Bytes Handed;  // the last message that the vendor was given
     Observer Seen;
     RtpsGuard Guard{RtpsGuard::Mode::Full, std::chrono::seconds(10)};
 };
@@ -76,6 +83,14 @@ TEST_F(PeerObserverTest, WhatACardSaysIsHandedOn)
 {
     EXPECT_EQ(Admit(AnnouncementWithCard(), RtpsGuard::Origin::Card), 1u);
     EXPECT_TRUE(Seen.Heard.empty());
+}
+
+// The reader of the card has put it there: it remembers silent nodes for hours.
+TEST_F(PeerObserverTest, TheLeaseInACardIsNotCut)
+{
+    const Bytes announcement = AnnouncementWithCard(4 * 3600);
+    EXPECT_EQ(Admit(announcement, RtpsGuard::Origin::Card), 1u);
+    EXPECT_EQ(Handed, announcement);
 }
 
 TEST_F(PeerObserverTest, ADatagramOfAnUnknownParticipantIsToldOf)
