@@ -1,10 +1,12 @@
-/* A wall clock that a test sets forward and back while a program runs, by LD_PRELOAD. STEPPED_CLOCK names a file of one
- * 64-bit integer: seconds that are added to CLOCK_REALTIME. The monotonic clock stays as it is.
+/* A wall clock that a test sets forward and back while a program runs, by LD_PRELOAD. STEPPED_CLOCK names a
+ * file of one 64-bit integer: seconds that are added to CLOCK_REALTIME. The monotonic clock stays as it is.
  *
- * Absolute waits on the wall clock are translated when they begin. A wait that is under way during a step ends when it
- * would have ended without the step; a real step would move its end. */
+ * A step moves the end of absolute waits on the wall clock that are under way: they are cut into slices of 50
+ * ms, each of which ends as if woken for no reason. A caller of pthread_mutex_timedlock waits for the whole
+ * time. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdint.h>
@@ -17,6 +19,8 @@
 
 /* No monotonic clock since boot is that large, and no wall clock since 2001 is smaller. */
 #define LEAST_WALL_CLOCK 1000000000
+
+#define SLICE_NS 50000000
 
 static const volatile int64_t *offset;
 
@@ -82,6 +86,34 @@ static struct timespec unstepped(const struct timespec *until)
     return real;
 }
 
+/* The end of a wait, or of a slice of it. Returns whether it is the end of the wait. */
+static int slice(clockid_t clock, const struct timespec *until, struct timespec *end)
+{
+    *end = *until;
+    if (until->tv_sec <= LEAST_WALL_CLOCK)
+    {
+        return 1;
+    }
+    struct timespec sliced;
+    syscall(SYS_clock_gettime, clock, &sliced);
+    sliced.tv_nsec += SLICE_NS;
+    sliced.tv_sec += sliced.tv_nsec / 1000000000;
+    sliced.tv_nsec %= 1000000000;
+    *end = unstepped(until);
+    if (end->tv_sec < sliced.tv_sec || (end->tv_sec == sliced.tv_sec && end->tv_nsec <= sliced.tv_nsec))
+    {
+        return 1;
+    }
+    *end = sliced;
+    return 0;
+}
+
+/* The result of a wait, from that of a slice. */
+static int result_of(int result, int isEnd)
+{
+    return result == ETIMEDOUT && !isEnd ? 0 : result;
+}
+
 int pthread_cond_timedwait(pthread_cond_t *restrict condition, pthread_mutex_t *restrict mutex,
                            const struct timespec *restrict until)
 {
@@ -95,8 +127,9 @@ int pthread_cond_timedwait(pthread_cond_t *restrict condition, pthread_mutex_t *
     {
         *(void **)&next = dlsym(RTLD_NEXT, "pthread_cond_timedwait");
     }
-    const struct timespec real = unstepped(until);
-    return next(condition, mutex, &real);
+    struct timespec end;
+    const int isEnd = slice(CLOCK_REALTIME, until, &end);
+    return result_of(next(condition, mutex, &end), isEnd);
 }
 
 int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *mutex, clockid_t clock,
@@ -107,8 +140,9 @@ int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *mutex, cl
     {
         *(void **)&next = dlsym(RTLD_NEXT, "pthread_cond_clockwait");
     }
-    const struct timespec real = unstepped(until);
-    return next(condition, mutex, clock, &real);
+    struct timespec end;
+    const int isEnd = slice(clock, until, &end);
+    return result_of(next(condition, mutex, clock, &end), isEnd);
 }
 
 int pthread_mutex_timedlock(pthread_mutex_t *restrict mutex, const struct timespec *restrict until)

@@ -113,6 +113,40 @@ TEST_F(RecordingFilesTest, HasAllButTheLastSecondOnTheDisk)
     }
 }
 
+// Reads all files as they would be after a loss of power before any write, while some are split and removed.
+TEST_F(RecordingFilesTest, HasAllButTheLastSecondOnTheDiskWhileFilesAreSplit)
+{
+    _settings.SplitBytes = 1 * Mebibyte;
+    _settings.KeepBytes = 4 * Mebibyte;
+    _settings.Compresses = false;
+    std::size_t looks = 0;
+    _disk.BeforeWrite = [&]
+    {
+        std::vector<std::uint64_t> times;
+        for (const auto &[name, content] : _disk.Files)
+        {
+            const auto begin = content->Bytes.begin();
+            const auto some = LogTimesOf(
+                MemoryFile(Mcap::Bytes(begin, begin + static_cast<std::ptrdiff_t>(content->Synced))));
+            times.insert(times.end(), some.begin(), some.end());
+        }
+        ASSERT_LE(_now, (times.empty() ? Start : times.back()) + 500 * Millisecond) << "look " << looks;
+        for (std::size_t at = 1; at < times.size(); ++at)
+        {
+            ASSERT_EQ(times[at], times[at - 1] + 100 * Millisecond) << "look " << looks;
+        }
+        ++looks;
+    };
+    for (int turn = 0; turn < 100; ++turn)
+    {
+        Record(0, turn % 7 == 0 ? 200'000 : 100'000);
+        _now += 100 * Millisecond;
+    }
+    EXPECT_GT(looks, 50U);
+    EXPECT_GT(Files().Status().Files, 8U);
+    EXPECT_LT(_disk.Files.size(), 8U);
+}
+
 TEST_F(RecordingFilesTest, BeginsAFileWhenOneIsLargeEnough)
 {
     _settings.SplitBytes = 2 * Mebibyte;
