@@ -39,13 +39,17 @@ void BeatPace::StateWritten(Duration now)
     }
 }
 
-void BeatPace::Sent(Duration now, Duration delay)
+void BeatPace::Sent(Duration now, Duration delay, bool isWanted)
 {
     if (now < Due())
     {
         const Duration quick = std::min(_gap * 3 / 2, ++_quick < QuickBeats ? QuickGap : LongestPeriod);
         _gap = std::min({std::max(quick, 2 * delay), _period, _longestGap});
-        _broughtForward = now;
+        isWanted = true;
+    }
+    if (isWanted)
+    {
+        _wanted = now;
     }
     else
     {
@@ -62,7 +66,7 @@ void BeatPace::SentEarly(Duration now)
 
 void BeatPace::CalmDown(Duration now)
 {
-    if (!_broughtForward || now - *_broughtForward >= Quiet)
+    if (!_wanted || now - *_wanted >= Quiet)
     {
         _gap = ShortestGap;
         _quick = 0;

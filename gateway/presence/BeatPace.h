@@ -27,7 +27,7 @@ public:
     // be lost.
     static constexpr Duration QuickGap = std::chrono::milliseconds(150);
     static constexpr int QuickBeats = 20;
-    // After this time without a beat brought forward, the next one counts as the first.
+    // After this time without a beat that was wanted, the next one brought forward counts as the first.
     static constexpr Duration Quiet = std::chrono::seconds(5);
     // Each such time without a newcomer makes the beats for the next one twice as quick.
     static constexpr Duration SeriesRest = std::chrono::seconds(1);
@@ -62,8 +62,9 @@ public:
     // A State was written.
     void StateWritten(Duration now);
     // A beat was sent. `delay` is how long datagrams wait in queues now: a question is not asked again before
-    // its answer can have come.
-    void Sent(Duration now, Duration delay = Duration(0));
+    // its answer can have come. `isWanted`: a question or news waited for it. Then it is no sign of quiet,
+    // even if it was not brought forward.
+    void Sent(Duration now, Duration delay = Duration(0), bool isWanted = false);
     // A beat was sent before it was due, because it would have been late otherwise. It does not count as
     // brought forward.
     void SentEarly(Duration now);
@@ -82,7 +83,7 @@ private:
     Duration _series = ShortestGap;  // first step of the last introduction
     std::optional<Duration> _introduced;
     std::optional<Duration> _last;
-    std::optional<Duration> _broughtForward;
+    std::optional<Duration> _wanted;  // the last beat that was wanted
     std::optional<Duration> _stateDue;
 };
 

@@ -391,13 +391,15 @@ std::size_t Presence::SendBeat(Duration now, std::size_t most)
         return 0;
     }
     const bool isDue = now >= BeatDue();
+    const std::optional<Duration> question = _contents.QuestionDue();
+    const bool isWanted = _owesNews || (question && *question <= now);
     const PostTime time = _clock.Now();
     Gateway::Beat beat = MakeBeat(time);
     _contents.Fill(beat, time.Monotonic, most);
     _owesNews = false;
     _peers.NoteSent(beat.source_ns, time.Monotonic);
     static_cast<void>(Write(beat, time));
-    isDue ? _pace.Sent(now, _contents.Delays().Delay(now)) : _pace.SentEarly(now);
+    isDue ? _pace.Sent(now, _contents.Delays().Delay(now), isWanted) : _pace.SentEarly(now);
     return GatewayTopics::TypeOf<Gateway::Beat>().SerializedSize(beat) - Encapsulation;
 }
 

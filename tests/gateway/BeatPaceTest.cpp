@@ -111,6 +111,21 @@ TEST(BeatPace, AfterSomeQuietABeatMayBeBroughtForwardAtOnceAgain)
     EXPECT_EQ(pace.EarliestToAsk(), beats.back() + BeatPace::ShortestGap);
 }
 
+TEST(BeatPace, WhileQuestionsWaitForDueBeatsThereIsNoQuiet)
+{
+    BeatPace pace;
+    pace.Sent(1s);
+    while (pace.EarliestToAsk() < pace.Due())
+    {
+        pace.Sent(pace.EarliestToAsk(), 0s, true);
+    }
+    for (int i = 0; i < 20; ++i)
+    {
+        pace.Sent(pace.Due(), 0s, true);
+        EXPECT_EQ(pace.EarliestToAsk(), pace.Due());
+    }
+}
+
 TEST(BeatPace, AShorterPeriodHoldsAtOnce)
 {
     BeatPace pace;
@@ -231,7 +246,7 @@ TEST(BeatPaceOfATool, BroughtForwardBeatsComeNoMoreSeldomThanItWantsAnswers)
     pace.SetPeriod(std::chrono::seconds(2));
     pace.SetLongestGap(std::chrono::milliseconds(250));
     BeatPace::Duration now{0};
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < BeatPace::QuickBeats + 2; ++i)
     {
         pace.Sent(now);
         now = pace.EarliestToAsk();
