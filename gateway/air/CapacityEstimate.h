@@ -14,9 +14,8 @@ namespace Rabit
 // input is the queueing delay of its datagrams at its peers (delay-based congestion control). Loss is no
 // sign: radios lose datagrams.
 //
-// - Unlimited until the peers agree on a delay above Target. Before any peer reports, the delay of the
-// others'
-//   datagrams here stands in for that of the own ones there: at FirstRate, and less while it is long.
+// - Unlimited until the peers agree on a delay above Target. Before the first report, the delay of the peers'
+//   cards is used instead: at FirstRate, and less while it is long.
 // - Then: the delivery rate while the delay rose, that is the bytes sent between two reported datagrams
 //   divided by the time between their arrivals, less a part to empty the queue.
 // - As long as there is a queue, each report corrects the delivery rate. The rate is below it while the delay
@@ -45,6 +44,7 @@ public:
     using Peer = DelayReports::Peer;
 
     static constexpr Duration Target = std::chrono::milliseconds(100);
+    static constexpr Duration Alone = std::chrono::seconds(30);
     static constexpr double Floor = 300.0;       // bytes a second
     static constexpr double FirstRate = 3000.0;  // a share of a thin radio: 250 kbit/s for ten nodes
 
@@ -61,8 +61,9 @@ public:
     // after the last late datagram.
     void NothingLate(Peer peer, Duration now);
 
-    // The others' datagrams come here by `delay` later than the quickest. While no peer reports, this limits
-    // the node as long as it is above Target: nodes that meet on a full radio do not know each other yet.
+    // The others' datagrams come here by `delay` later than the quickest. This limits the node while it is
+    // above Target and no peer has reported for Alone: nodes that meet on a full radio do not know each other
+    // yet.
     void HeardLate(Duration delay) { _heardLate = delay; }
 
     // Drops the estimate, for instance when DDS discovery has filled the air: unlimited until peers agree on
@@ -96,6 +97,7 @@ private:
     int _doublings = 0;        // for want of use, since the rate was used
     Duration _quietSince{0};   // no delay above the goal since
     Duration _heardLate{0};
+    std::optional<Duration> _lastReport;
 };
 
 }  // namespace Rabit

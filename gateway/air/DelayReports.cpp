@@ -22,6 +22,7 @@ void DelayReports::Add(Peer peer, Duration delay, Duration arrivedAt, Duration n
         entry->Who = peer;
         entry->Said.clear();
     }
+    std::erase_if(entry->Said, [now](const Report &report) { return now - report.CameAt > Oldest; });
     if (entry->Said.size() == MostReports)
     {
         entry->Said.erase(entry->Said.begin());

@@ -14,7 +14,7 @@ namespace Rabit
 // The peers' reports of the delay of this node's datagrams, and their agreement. The lower median of the
 // peers counts, so one late datagram, or one peer that is busy or lies, is no agreement.
 //
-// Bounded: the 64 peers heard last, 8 reports of each. Pure; `now` never goes back.
+// Bounded: the 64 peers heard last, 8 reports of each, none older than 15 s. Pure; `now` never goes back.
 class DelayReports
 {
 public:
@@ -24,6 +24,8 @@ public:
     static constexpr std::size_t MostPeers = 64;
     static constexpr std::size_t MostReports = 8;
     static constexpr Duration Fresh = std::chrono::seconds(5);
+    // Older reports go: what was sent between them is not known any more (SentHistory).
+    static constexpr Duration Oldest = std::chrono::seconds(15);
     static constexpr Duration LongEnough = std::chrono::milliseconds(600);
 
     struct Report

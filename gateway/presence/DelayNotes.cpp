@@ -36,7 +36,10 @@ bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
     entry.Delay = delay;
     entry.Arrival = arrival;
     entry.IsNew = true;
-    return delay >= Large && (!_largeToldAt || arrival - *_largeToldAt >= Rest);
+    const bool isUrgent = delay >= Large && (!entry.LargeToldAt || arrival - *entry.LargeToldAt >= Rest) &&
+                          (!_urgentAt || arrival - *_urgentAt >= UrgentGap);
+    _urgentAt = isUrgent ? arrival : _urgentAt;
+    return isUrgent;
 }
 
 bool DelayNotes::IsDue(const Entry &entry, Duration now) const
@@ -93,7 +96,7 @@ std::vector<Gateway::DelayReport> DelayNotes::Take(Duration now, std::size_t mos
                   reports.push_back(report);
                   entry.IsNew = false;
                   entry.Told = entry.Delay;
-                  _largeToldAt = entry.Delay >= Large ? now : _largeToldAt;
+                  entry.LargeToldAt = entry.Delay >= Large ? now : entry.LargeToldAt;
                   entry.ToldAt = now;
                   return true;
               });

@@ -32,7 +32,7 @@ inline constexpr std::size_t Largest = 900;
 inline constexpr std::size_t MostStates = 64;
 inline constexpr std::size_t MostWants = 8;
 inline constexpr std::size_t MostEchoes = 2;  // and as many as there is room for while peers doubt this node
-// Each node needs some reports a second, whoever sends them; the peers take turns.
+// Each node needs some reports a second, and the peers take turns.
 inline constexpr std::size_t MostDelays = 4;
 
 // The marks of tools and replays (wire/BeatExtensions.h).

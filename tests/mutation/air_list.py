@@ -135,7 +135,7 @@ MUTATIONS = [
          "EmptyingRate(_carried, Queue(now))", "_carried", "CapacityEstimateTest.*"),
     unit("others that come late do not count", "CapacityEstimate.cpp", "_heardLate > Target && ", "false && ",
          "CapacityEstimateTest.WithoutReports*"),
-    unit("reports do not count more than what comes late", "CapacityEstimate.cpp", " && !_reports.Latest(now)", "",
+    unit("reports do not count more than what comes late", "CapacityEstimate.cpp", " && (!_lastReport || now - *_lastReport > Alone)", "",
          "CapacityEstimateTest.ReportsOf*"),
     case("nothing is corrected", "CapacityEstimate.cpp", "Correct(*_reports.Of(peer));", "", "AirCases.*"),
     unit("nothing rises", "CapacityEstimate.cpp", "Rise(now - _quietSince >= QuietTime ? QuickRise : GentleRise, now);", "",

@@ -13,8 +13,8 @@ namespace Rabit::Rtps
 void MeetingThread::Start(Calls calls)
 {
     _calls = std::move(calls);
-    _thread = std::thread([this] { Run(); });
     _turns->SetExchange(*this);
+    _thread = std::thread([this] { Run(); });
 }
 
 void MeetingThread::Stop()

@@ -74,7 +74,9 @@ public:
         {
             return;
         }
-        if (took / 2 > _delay)
+        // Half of the round trip is the delay, path included, where it is longer than what was measured. A
+        // delay longer than the round trip is wrong: the peer's clock stood still, with its computer.
+        if (took / 2 > _delay || took < _delay)
         {
             _delay = took / 2;
             _least = _before = static_cast<std::int32_t>(static_cast<std::uint32_t>(_last) -

@@ -281,6 +281,7 @@ void PathControl::Restart()
     _pacedUntil = LinkTime(0);
     _rate = 0;
     _stalled = 0;
+    _answered = 0;
 }
 
 LinkTime PathControl::AckDelay() const

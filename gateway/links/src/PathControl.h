@@ -37,9 +37,8 @@ public:
     void Forget(std::size_t bytes) { _inFlight -= bytes; }
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
-    // A frame that asks for an answer was answered after that time, which includes the time for which the
-    // peer held the answer back. It is longer, too, if an earlier answer was lost: the shortest of the last
-    // few counts.
+    // So long after the first question there was an answer, which includes the time for which the peer held
+    // it back. It is longer, too, if questions or answers were lost: the shortest of the last few counts.
     void Answered(LinkTime time) { _answers[_answered++ % _answers.size()] = time; }
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();

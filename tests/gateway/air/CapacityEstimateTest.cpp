@@ -442,7 +442,9 @@ TEST_F(CapacityEstimateTest, ReportsOfTheOwnDatagramsCountMoreThanTheLatenessOfO
     Estimate.HeardLate(400ms);
     Estimate.Reported(0, 5ms, 900ms, 1s);
     EXPECT_FALSE(Estimate.Rate(1s));
-    EXPECT_TRUE(Estimate.Rate(1s + DelayReports::Fresh + 1ms));
+    Estimate.Forget();
+    EXPECT_FALSE(Estimate.Rate(1s + CapacityEstimate::Alone));
+    EXPECT_TRUE(Estimate.Rate(1s + CapacityEstimate::Alone + 1ms));
 }
 
 }  // namespace

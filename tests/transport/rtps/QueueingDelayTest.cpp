@@ -49,6 +49,19 @@ TEST(QueueingDelay, FallsWithTheQueueAfterARoundTripToo)
     EXPECT_EQ(delay.At(Start + 5300ms), 300ms);
 }
 
+TEST(QueueingDelay, ADelayLongerThanTheRoundTripWasAClockThatStoodStill)
+{
+    QueueingDelay delay;
+    Arrive(delay, 0s, 5ms);
+    Arrive(delay, 1s, 3s);  // the peer's computer paused
+    EXPECT_EQ(delay.At(Start + 4s), 2995ms);
+    Arrive(delay, 5s, 3s);
+    delay.Answered(QueueingDelay::Stamp(Start + 7990ms), Start + 8s);
+    EXPECT_EQ(delay.At(Start + 8s), 5ms);
+    Arrive(delay, 9s, 3s);
+    EXPECT_EQ(delay.At(Start + 12s), 5ms);
+}
+
 TEST(QueueingDelay, CountsUntilTheAnswerToARequestCanHaveCome)
 {
     QueueingDelay delay;
