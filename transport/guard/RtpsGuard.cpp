@@ -182,10 +182,6 @@ bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from,
 
 std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
 {
-    if (_mode != Mode::Full)
-    {
-        _peers.Hears(passage.Sender, passage.Now);
-    }
     auto rest = passage.Datagram.subspan(RtpsHeaderSize);
     auto end = passage.Datagram.size();
     while (!rest.empty())
@@ -236,6 +232,10 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
     if (!passage.Useful)
     {
         return {};
+    }
+    if (_mode != Mode::Full && passage.Honest)
+    {
+        _peers.Hears(passage.Sender, passage.Now);
     }
     return passage.Datagram.first(end);
 }

@@ -560,6 +560,21 @@ TEST(RtpsGuardModes, WithKeysAParticipantIsHeardWhateverItSends)
     EXPECT_TRUE(guard.Stops(ParticipantMessage({1, 15, 9})));
 }
 
+TEST(RtpsGuardModes, ADatagramThatSaysNothingKeepsNoPlaceForAParticipant)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    EXPECT_TRUE(guard.Passes(ParticipantMessage()));
+    guard.Now += 61s;
+    static_cast<void>(guard.Passes(Join({Header()})));
+    for (int i = 0; i < 1024; ++i)
+    {
+        GuidPrefix who = Other;
+        who[9] = static_cast<std::uint8_t>(i >> 8);
+        who[10] = static_cast<std::uint8_t>(i);
+        EXPECT_TRUE(guard.Passes(ParticipantMessage(who))) << i;
+    }
+}
+
 TEST(RtpsGuardModes, WithDdsSecurityItsSubmessagesAndTokensGetThroughAsTheyAre)
 {
     Gate guard(RtpsGuard::Mode::Secured);
