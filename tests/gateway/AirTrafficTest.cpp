@@ -375,7 +375,7 @@ TEST_F(AirTrafficTest, WhatAStandstillHasTaughtIsForgottenSoonAfter)
 {
     AddAircraft(AircraftConfig("uav1"));
     SimulatedNode &ground = fleet.Add(GroundConfig());
-    ground.AddIdleManager("Commands");
+    IdleManager &commands = ground.AddIdleManager("Commands");
     std::uint32_t number = 0;
     const auto send = [&](Duration period)
     {
@@ -385,6 +385,10 @@ TEST_F(AirTrafficTest, WhatAStandstillHasTaughtIsForgottenSoonAfter)
             {
                 SendReport(++number);
             }
+            std::shared_ptr<RabitMessage> message;
+            while (commands.GetManagerMessageQueue()->GetMessage(message))
+            {
+            }
         };
     };
     Fly(10s, 1s, 1s, send(500ms));
@@ -393,7 +397,7 @@ TEST_F(AirTrafficTest, WhatAStandstillHasTaughtIsForgottenSoonAfter)
     EXPECT_GT(aircraft->Fleet().air.capacity, 0.0) << "or there is nothing to forget";
     fleet.Network.SetFaults("*", "*", {});
     Fly(6s, 1s, 1s, send(500ms));
-    Fly(4600ms, 1s, 1s, send(5ms));
+    Fly(6s, 1s, 1s, send(5ms));
     const auto status = aircraft->Fleet().links;
     ASSERT_EQ(status.size(), 1u);
     EXPECT_LE(status[0].outbox, 50u);
