@@ -50,6 +50,15 @@ protected:
         return bytes;
     }
 
+    // Calls Receive each second of this time, as there is nothing to receive.
+    void Listen(std::chrono::seconds from, std::chrono::seconds to)
+    {
+        for (auto now = from; now <= to; now += 1s)
+        {
+            EXPECT_EQ(Received(now), Bytes{});
+        }
+    }
+
     asio::io_context context;
     UdpChannel channel{{Loopback, 0}};
     Program autopilot{context};
@@ -96,6 +105,7 @@ TEST_F(UdpChannelTest, KeepsAnAutopilotThatIsSilentForAMoment)
 {
     Send(autopilot, {1});
     Received(0s);
+    Listen(1s, UdpChannel::PeerSilentAfter - 1s);
     Send(neighbour, {2});
     EXPECT_EQ(Received(UdpChannel::PeerSilentAfter), Bytes{});
 }
@@ -104,6 +114,7 @@ TEST_F(UdpChannelTest, TakesAnotherSenderOnceTheAutopilotIsSilent)
 {
     Send(autopilot, {1});
     Received(0s);
+    Listen(1s, UdpChannel::PeerSilentAfter);
     Send(neighbour, {2});
     EXPECT_EQ(Received(UdpChannel::PeerSilentAfter + 1ms), Bytes{2});
     EXPECT_TRUE(channel.Send(Bytes{3}));
@@ -114,10 +125,37 @@ TEST_F(UdpChannelTest, ASilenceIsCountedFromTheLastDatagram)
 {
     Send(autopilot, {1});
     Received(0s);
+    Listen(1s, 3s);
     Send(autopilot, {2});
     Received(4s);
+    Listen(5s, 7s);
     Send(neighbour, {3});
     EXPECT_EQ(Received(8s), Bytes{});
+}
+
+TEST_F(UdpChannelTest, AStandstillOfThisProgramIsNoSilenceOfTheAutopilot)
+{
+    Send(autopilot, {1});
+    Received(0s);
+    Send(neighbour, {2});
+    Send(autopilot, {3});
+    EXPECT_EQ(Received(20s), Bytes{3});
+}
+
+TEST_F(UdpChannelTest, ThereIsALimitOfWhatIsDroppedAtOneMoment)
+{
+    Send(autopilot, {1});
+    EXPECT_EQ(Received(0s), Bytes{1});
+    for (std::uint8_t round = 2; round < 4; ++round)
+    {
+        for (int i = 0; i < 150; ++i)
+        {
+            Send(neighbour, {0});
+        }
+        Send(autopilot, {round});
+        EXPECT_EQ(Received(0s), round == 2 ? Bytes{2} : Bytes{});
+    }
+    EXPECT_EQ(Received(20ms), Bytes{3});
 }
 
 // Returns a port that was free a moment ago.

@@ -13,8 +13,7 @@ namespace Swarm
 namespace
 {
 
-// Datagrams of other senders that one Receive drops at most, so that a flood does not hold up the manager.
-constexpr int MostDropped = 200;
+constexpr int MostDroppedAtOnce = 200;
 
 std::string TextOf(const UdpChannel::Endpoint &endpoint)
 {
@@ -34,7 +33,13 @@ UdpChannel::UdpChannel(const Endpoint &local)
 
 std::size_t UdpChannel::Receive(std::span<std::uint8_t> buffer, Time now)
 {
-    for (int tries = 0; tries < MostDropped; ++tries)
+    if (now != _calledAt)
+    {
+        _droppedNow = 0;
+        _heardAt += now - _calledAt > Standstill ? now - _calledAt : Time(0);
+        _calledAt = now;
+    }
+    for (; _droppedNow < MostDroppedAtOnce; ++_droppedNow)
     {
         boost::system::error_code error;
         Endpoint sender;
