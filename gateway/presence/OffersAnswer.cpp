@@ -46,7 +46,8 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now,
     {
         return;
     }
-    const Duration notBefore = asker && IsNew(*asker) ? _notBeforeForNew : _notBefore;
+    const bool isNew = asker && IsNew(*asker);
+    const Duration notBefore = isNew ? _notBeforeForNew : _notBefore;
     if (_from && _parts == 0)
     {
         _from = std::min(*_from, from);
@@ -58,6 +59,7 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now,
         if (from < *_from)
         {
             _again = std::min(_again.value_or(from), from);
+            _isAgainForNew = _isAgainForNew || isNew;
         }
     }
     else
@@ -84,7 +86,7 @@ void OffersAnswer::Said(std::size_t bytes, Duration now, Duration delay)
         _notBeforeForNew = now + std::min(_gap, NewAskerGap) * std::exchange(_parts, 0);
         _gap = std::min(2 * _gap, ++_answers < QuickAnswers ? QuickGap : LongestGap);
         _from = std::exchange(_again, std::nullopt);
-        _at = _notBefore;
+        _at = std::exchange(_isAgainForNew, false) ? _notBeforeForNew : _notBefore;
     }
 }
 

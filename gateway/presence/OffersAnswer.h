@@ -64,6 +64,7 @@ private:
     std::size_t _size = 0;
     std::optional<std::size_t> _from;
     std::optional<std::size_t> _again;  // where to begin again once the end was sent
+    bool _isAgainForNew = false;        // the first request of an asker is among those for _again
     Duration _at{0};
     Duration _gap = ShortestGap;
     int _answers = 0;  // since the gap was short

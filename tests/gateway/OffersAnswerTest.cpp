@@ -144,7 +144,29 @@ TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerIsAnsweredSoonHoweverManyOthers
     }
     ASSERT_EQ(answer.Due(), last + OffersAnswer::LongestGap);
     answer.Asked(0, 0, now, 2);
-    EXPECT_LE(answer.Due(), std::max(now, last + OffersAnswer::NewAskerGap));
+    ASSERT_TRUE(answer.Due());
+    EXPECT_LE(*answer.Due(), std::max(now, last + OffersAnswer::NewAskerGap));
+}
+
+TEST_F(OffersAnswerTest, TheFirstRequestOfAnAskerIsAnsweredSoonAlsoIfItCameBetweenTwoParts)
+{
+    Begin(200);
+    Ns now = 10s;
+    for (; now < 40s; now += 5ms)
+    {
+        answer.Asked(0, 0, now, 1);
+        if (answer.Due() && *answer.Due() <= now)
+        {
+            answer.Said(Part, now);
+        }
+    }
+    answer.Asked(0, 0, now, 1);
+    ASSERT_EQ(answer.From(), 0u);
+    Say();
+    answer.Asked(0, 0, now, 2);
+    const Ns end = Say();
+    ASSERT_TRUE(answer.Due());
+    EXPECT_LE(*answer.Due(), end + 2 * OffersAnswer::NewAskerGap);
 }
 
 TEST_F(OffersAnswerTest, NewAskersWithoutEndGetThreeAnswersASecond)
