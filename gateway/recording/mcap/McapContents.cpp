@@ -150,7 +150,10 @@ private:
     bool TakeHeader(ByteView content)
     {
         auto header = ReadHeader(content);
-        _contents.Header = header ? std::move(*header) : std::move(_contents.Header);
+        if (header)
+        {
+            _contents.Header = std::move(*header);
+        }
         return header.has_value();
     }
 

@@ -226,6 +226,16 @@ TEST(McapReader, RecoversMetadataUpToABound)
     ASSERT_EQ(contents.MetadataRecords.size(), 1U);
     EXPECT_EQ(contents.MetadataRecords[0].Name, "first");
 }
+
+TEST(McapReader, KeepsTheHeaderIfASecondOneIsMalformed)
+{
+    MemoryFile file(Bytes(Magic.begin(), Magic.end()));
+    Append(file.Content, Header{"", "another"});
+    const Bytes malformed = {static_cast<std::uint8_t>(Opcode::Header), 1, 0, 0, 0, 0, 0, 0, 0, 0};
+    file.Content.insert(file.Content.end(), malformed.begin(), malformed.end());
+    EXPECT_EQ(ReadContents(file).Header.Library, "another");
+}
+
 // A file with these records in its summary, and nothing else.
 MemoryFile WithSummary(const Bytes &records)
 {
