@@ -93,6 +93,13 @@ class CostTest(unittest.TestCase):
         self.assertEqual(len(soak.judge_processor(samples([100] * 60, [5] * 60, [2.4] * 40 + [2] * 20))),
                          len(soak.LONG_LIVED))
 
+    def test_leaves_out_samples_without_a_measurement_of_the_yardstick(self):
+        missing = [None] * 20 + [2] * 20 + [None, 2] * 10
+        self.assertEqual(soak.judge_processor(samples([100] * 60, [5] * 40 + [50, 5] * 10, missing)), [])
+
+    def test_judges_nothing_without_a_measurement_of_the_yardstick(self):
+        self.assertEqual(soak.judge_processor(samples([100] * 60, [5] * 60, [None] * 60)), [])
+
     def test_percentiles(self):
         self.assertEqual(soak.percentiles([k / 1000 for k in range(100)]),
                          {"count": 100, "p50_ms": 50.0, "p99_ms": 99.0, "max_ms": 99.0})
