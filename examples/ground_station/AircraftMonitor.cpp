@@ -2,6 +2,7 @@
 
 #include <rabit/PublishSubscribeMessage.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -92,8 +93,9 @@ void AircraftMonitor::Show(FleetRow &row, const CommandTally &tally)
     }
     if (_health->GetGlobalPublishSubscribeMessageRef())
         _health->FetchMessage();
-    if (_health->WasPosted() && std::isfinite(_health->battery_percent))
-        row.BatteryPercent = static_cast<double>(_health->battery_percent);
+    if (_health->WasPosted() && _health->GetAgeSeconds() <= FleetRow::HealthFreshS &&
+        std::isfinite(_health->battery_percent))
+        row.BatteryPercent = std::clamp(static_cast<double>(_health->battery_percent), 0.0, 100.0);
     if (!_mission->WasPosted())
         return;
     row.Mission = MissionText(*_mission, tally);

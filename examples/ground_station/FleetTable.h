@@ -34,7 +34,7 @@ struct FleetRow
     double SpeedMps = 0;
     std::string Mission;                   // empty: not known
     std::string AreaDeclined;              // reason why it declines the search area; empty if it does not
-    std::optional<double> BatteryPercent;  // none: not known
+    std::optional<double> BatteryPercent;  // 0 to 100; none: not known now
     std::uint64_t Sent = 0;
     std::uint64_t Acknowledged = 0;
     double RoundTripS = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
@@ -43,6 +43,8 @@ struct FleetRow
     // Below these an aircraft needs attention because of its battery. The web page has the same limits.
     static constexpr double BatteryAlarm = 10;
     static constexpr double BatteryWarning = 25;
+    // A Health older than this tells nothing of the battery. The web page has the same limit.
+    static constexpr double HealthFreshS = 3.5;
     bool IsBatteryBelow(double percent) const { return BatteryPercent && *BatteryPercent < percent; }
 
     // A pose older than this is marked as old even if the aircraft is UP.

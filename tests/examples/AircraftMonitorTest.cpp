@@ -19,12 +19,14 @@ protected:
     Rabit::RabitWorkspace _workspace{_clock};
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::MissionState> _mission = std::make_shared<Uav::MissionState>();
+    std::shared_ptr<Uav::Health> _health = std::make_shared<Uav::Health>();
     Ground::AircraftMonitor _monitor{"uav1", _workspace};
 
     void SetUp() override
     {
         _workspace.AddPublishSubscribeMessage("uav1/Pose", _pose);
         _workspace.AddPublishSubscribeMessage("uav1/MissionState", _mission);
+        _workspace.AddPublishSubscribeMessage("uav1/Health", _health);
     }
     FleetRow Shown()
     {
@@ -61,6 +63,26 @@ TEST_F(AircraftMonitor, LetsAnOldPoseGrowOld)
     Shown();
     _clock->Advance(20s);
     EXPECT_NEAR(*Shown().AgeS, 20, 1e-9);
+}
+
+TEST_F(AircraftMonitor, ShowsNoBatteryOfAnOldHealth)
+{
+    _health->battery_percent = 20;
+    _health->PostMessage();
+    _clock->Advance(3500ms);
+    EXPECT_EQ(Shown().BatteryPercent, 20);
+    _clock->Advance(1ms);
+    EXPECT_EQ(Shown().BatteryPercent, std::nullopt);
+}
+
+TEST_F(AircraftMonitor, KeepsTheBatteryWithinAHundredPercent)
+{
+    _health->battery_percent = -1e30F;
+    _health->PostMessage();
+    EXPECT_EQ(Shown().BatteryPercent, 0);
+    _health->battery_percent = 1e30F;
+    _health->PostMessage();
+    EXPECT_EQ(Shown().BatteryPercent, 100);
 }
 
 TEST_F(AircraftMonitor, ShowsTheMission)
