@@ -164,11 +164,11 @@ DynamicType::DynamicType(std::string name, std::string idlText, std::unique_ptr<
 
 DynamicType::~DynamicType() = default;
 
-std::optional<std::string> DynamicType::ToJson(std::span<const std::uint8_t> sample) const
+std::optional<std::string> DynamicType::ToJson(std::span<const std::uint8_t> sample, Wide wide) const
 {
     std::string json;
     json.reserve(8 * std::min<std::size_t>(sample.size(), 65536));
-    Dynamic::JsonSink sink(json, MostText(sample.size()));
+    Dynamic::JsonSink sink(json, MostText(sample.size()), wide == Wide::Text);
     return Dynamic::WalkSample(*_shapes->Root, sample, sink) ? std::optional(std::move(json)) : std::nullopt;
 }
 

@@ -82,8 +82,14 @@ void JsonSink::Label(const Shape &discriminator, std::int64_t label)
         case Kind::Uint64:
             Number(static_cast<std::uint64_t>(label));
             break;
-        default:
+        case Kind::Int64:
             Number(label);
+            break;
+        case Kind::Uint32:
+            Number(static_cast<std::uint32_t>(label));
+            break;
+        default:
+            Number(static_cast<std::int32_t>(label));
     }
 }
 

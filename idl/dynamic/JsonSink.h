@@ -16,8 +16,11 @@ namespace Rabit::Dynamic
 class JsonSink
 {
 public:
-    // If the text exceeds maxSize, Ok() is false.
-    JsonSink(std::string &out, std::size_t maxSize) : _out(out), _maxSize(maxSize) {}
+    // If the text exceeds maxSize, Ok() is false. `isWideText`: integers of 64 bits are written as text.
+    JsonSink(std::string &out, std::size_t maxSize, bool isWideText)
+        : _out(out), _maxSize(maxSize), _isWideText(isWideText)
+    {
+    }
 
     void Bool(bool value) { _out += value ? "true" : "false"; }
     void Char(char value);
@@ -47,9 +50,10 @@ public:
                 return;
             }
         }
+        const bool isText = _isWideText && std::is_integral_v<T> && sizeof value == 8;
         char digits[32];
         const auto result = std::to_chars(digits, digits + sizeof digits, value);
-        _out.append(digits, result.ptr);
+        _out.append(isText ? "\"" : "").append(digits, result.ptr).append(isText ? "\"" : "");
     }
     void Text(std::string_view text);
     void Enumerator(const Shape &, const NamedNumber &value)
@@ -90,6 +94,7 @@ private:
 
     std::string &_out;
     std::size_t _maxSize;
+    bool _isWideText;
 };
 
 }  // namespace Rabit::Dynamic

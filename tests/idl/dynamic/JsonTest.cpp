@@ -59,6 +59,26 @@ std::string Through(const std::string &member, const std::string &json)
     return nlohmann::ordered_json::parse(All().ToJson(*encoded.Sample).value())[member].dump();
 }
 
+TEST(Json, CanHaveAllIntegersOf64BitsAsText)
+{
+    const auto type = DynamicType::Parse(
+        "@final union Label switch (long long) { case 1: long small; };"
+        "@final union Narrow switch (long) { case -1: long small; };"
+        "@final struct Wide { unsigned long long big; sequence<long long> low; unsigned long narrow; double "
+        "real;"
+        " Label label; Narrow other; };",
+        "Wide");
+    ASSERT_TRUE(type.Type) << type.Reason;
+    const std::string json =
+        R"({"big":"1","low":["-9007199254740993"],"narrow":4294967295,"real":1,"label":{"_d":"7"},"other":{"_d":-7}})";
+    const auto sample = type.Type->FromJson(json).Sample;
+    ASSERT_TRUE(sample) << type.Type->FromJson(json).Reason;
+    EXPECT_EQ(type.Type->ToJson(*sample, DynamicType::Wide::Text), json);
+    EXPECT_EQ(
+        type.Type->ToJson(*sample),
+        R"({"big":1,"low":[-9007199254740993],"narrow":4294967295,"real":1,"label":{"_d":7},"other":{"_d":-7}})");
+}
+
 TEST(Json, OfANewMessageHasEveryMember)
 {
     EXPECT_EQ(

@@ -54,9 +54,17 @@ public:
     DynamicType(std::string name, std::string idlText, std::unique_ptr<const Dynamic::Shapes> shapes);
     ~DynamicType() override;
 
+    // How ToJson writes integers of 64 bits (long long, int64 and unsigned): as numbers, or always as text,
+    // since most readers of JSON hold numbers as doubles, which round them beyond 2^53. FromJson accepts
+    // both.
+    enum class Wide
+    {
+        Number,
+        Text
+    };
     // A sample as JSON in one line. Nothing if Deserialize would refuse the bytes, or if the JSON would
     // exceed 64 KiB plus 256 bytes for each byte of the sample.
-    std::optional<std::string> ToJson(std::span<const std::uint8_t> sample) const;
+    std::optional<std::string> ToJson(std::span<const std::uint8_t> sample, Wide wide = Wide::Number) const;
     // A sample in the form of the generated ToString: `Uav::Pose {latitude_deg: 47.1, ...}`. Nothing in the
     // same cases as ToJson.
     std::optional<std::string> ToText(std::span<const std::uint8_t> sample) const;
