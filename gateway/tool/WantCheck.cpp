@@ -3,6 +3,8 @@
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstddef>
 #include <iterator>
 #include <set>
 
@@ -39,6 +41,58 @@ std::vector<std::string> NamesOf(const std::vector<const GatewayConfig *> &nodes
         names.push_back(node->Node);
     }
     return names;
+}
+
+// Number of edits (Damerau-Levenshtein, ignoring case) after which the pattern matches the name. Digits are
+// not edited: they number aircraft.
+std::size_t EditsToMatch(const std::string &pattern, const std::string &name)
+{
+    constexpr std::size_t never = 1000;
+    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+    const auto isSame = [](char a, char b)
+    { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); };
+    std::vector<std::vector<std::size_t>> edits(pattern.size() + 1,
+                                                std::vector<std::size_t>(name.size() + 1, never));
+    edits[0][0] = 0;
+    for (std::size_t i = 0; i <= pattern.size(); ++i)
+    {
+        for (std::size_t j = i == 0 ? 1 : 0; j <= name.size(); ++j)
+        {
+            std::size_t &least = edits[i][j];
+            const char p = i > 0 ? pattern[i - 1] : '\0';
+            const char n = j > 0 ? name[j - 1] : '\0';
+            if (i > 0)
+            {
+                least = edits[i - 1][j] + (p == '*' ? 0 : isDigit(p) ? never : 1);
+            }
+            if (j > 0)
+            {
+                least = std::min(least, edits[i][j - 1] + (p == '*' ? 0 : isDigit(n) ? never : 1));
+            }
+            if (i > 0 && j > 0 && p != '*')
+            {
+                const std::size_t other = isDigit(p) || isDigit(n) ? never : 1;
+                least = std::min(least, edits[i - 1][j - 1] + (p == '?' || isSame(p, n) ? 0 : other));
+            }
+            if (i > 1 && j > 1 && !isDigit(p) && !isDigit(n) && isSame(p, name[j - 2]) &&
+                isSame(pattern[i - 2], n))
+            {
+                least = std::min(least, edits[i - 2][j - 2] + 1);
+            }
+        }
+    }
+    return edits[pattern.size()][name.size()];
+}
+
+// Returns a name for which the pattern is probably mistyped; null if there is none.
+const std::string *NearMatch(const std::string &pattern, const std::vector<std::string> &names)
+{
+    const auto letters = static_cast<std::size_t>(
+        std::count_if(pattern.begin(), pattern.end(), [](unsigned char c) { return std::isalpha(c) != 0; }));
+    const auto near =
+        std::find_if(names.begin(), names.end(),
+                     [&](const std::string &name) { return EditsToMatch(pattern, name) <= letters / 3; });
+    return near == names.end() ? nullptr : &*near;
 }
 
 std::string Listed(const std::vector<std::string> &names)
@@ -129,12 +183,15 @@ void WantCheck::TellNobody(const std::string &pattern, const std::string &what, 
     }
     if (IsPattern(pattern))
     {
-        // The pattern may be for nodes that fly another day.
+        // The pattern may be for nodes that fly another day, but not if it is mistyped.
+        const std::vector<std::string> names = NamesOf(_others);
+        const std::string *const near = NearMatch(pattern, names);
         FleetCheck::Add(_findings, {.File = _config.File,
                                     .Line = line,
                                     .Nodes = {_config.Node},
-                                    .Text = what + ": no other node fits `" + pattern + "`",
-                                    .IsProblem = false});
+                                    .Text = what + ": no other node fits `" + pattern + "`" +
+                                            (near != nullptr ? "; did you mean `" + *near + "`?" : ""),
+                                    .IsProblem = near != nullptr});
         return;
     }
     Fail(line,

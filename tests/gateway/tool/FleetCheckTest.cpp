@@ -85,11 +85,27 @@ TEST(FleetCheck, AFleetThatFitsTogetherIsGood)
 TEST(FleetCheck, APatternThatNoNodeFitsIsNoProblem)
 {
     GatewayConfig ground = NodeOf("ground");
-    ground.Subscribe = {Wants("Pose", {"uav?"})};
-    const auto findings = FleetCheck::FindingsOf({NodeOf("camera"), ground});
-    ASSERT_THAT(findings, SizeIs(1));
-    EXPECT_FALSE(findings[0].IsProblem);
-    EXPECT_THAT(findings[0].Text, HasSubstr("no other node fits `uav?`"));
+    for (const std::string pattern : {"uav?", "uav2.*", "camera1?", "c*", "*.vision"})
+    {
+        ground.Subscribe = {Wants("Pose", {pattern})};
+        const auto findings = FleetCheck::FindingsOf({NodeOf("my-camera1"), NodeOf("uav1.sonar"), ground});
+        ASSERT_THAT(findings, SizeIs(1)) << pattern;
+        EXPECT_FALSE(findings[0].IsProblem) << pattern;
+        EXPECT_THAT(findings[0].Text, HasSubstr("no other node fits `" + pattern + "`"));
+    }
+}
+
+TEST(FleetCheck, AMistypedPatternIsAProblem)
+{
+    GatewayConfig ground = NodeOf("ground");
+    for (const std::string pattern : {"uva*", "uaw?", "UAV*"})
+    {
+        ground.Subscribe = {Wants("Pose", {pattern})};
+        const auto findings = FleetCheck::FindingsOf({NodeOf("uav1"), ground});
+        ASSERT_THAT(findings, SizeIs(1)) << pattern;
+        EXPECT_TRUE(findings[0].IsProblem) << pattern;
+        EXPECT_THAT(findings[0].Text, HasSubstr("did you mean `uav1`?")) << pattern;
+    }
 }
 
 TEST(FleetCheck, OfANodeAloneNothingIsSaidOfWhatItWants)
