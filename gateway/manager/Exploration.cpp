@@ -175,7 +175,7 @@ void Exploration::SetNodes(const PeerTable &peers, const PostTime &now)
     {
         nodes.push_back({peer->Node, peer->State, peer->Incarnation, peer->Offers, peer->Twice,
                          ClockAhead(*peer, now), peer->Beats.Heard(), peer->Beats.Missed(),
-                         StrainsOf(*peer, heard)});
+                         std::chrono::duration<double>(peer->Period).count(), StrainsOf(*peer, heard)});
     }
     {
         const std::lock_guard lock(_mutex);

@@ -62,18 +62,21 @@ bool FleetSession::WaitUntil(double seconds, const std::function<bool()> &holds)
 
 bool FleetSession::WaitForOffers(const std::string &pattern, const std::function<bool()> &holds)
 {
-    // Seconds in which a node that does not save on beats is heard.
-    constexpr double everybody = 1.5;
-    // With --wait the user asks to wait for nodes that are yet to come, or beat more seldom.
+    // With --wait the user asks to wait for nodes that are yet to come.
     const bool mayCome = _options.IsWaitGiven;
     const auto ends = [&]
     {
-        const bool isEverybodyHeard = !mayCome && Seconds() >= everybody;
-        return holds() || Offers::AreAllThere(Nodes(), pattern, isEverybodyHeard);
+        const std::vector<Node> nodes = Nodes();
+        const bool isEverybodyHeard = !mayCome && Seconds() >= Offers::SecondsToHearEverybody(nodes);
+        return holds() || Offers::AreAllThere(nodes, pattern, isEverybodyHeard);
     };
-    if (!WaitUntil(std::min(everybody, _options.Wait), ends))
+    // The nodes that are heard meanwhile may announce longer periods.
+    bool hasEnded = false;
+    for (double until = 0.0; !hasEnded && until < _options.Wait;)
     {
-        WaitUntil(_options.Wait, ends);
+        const double everybody = Offers::SecondsToHearEverybody(Nodes());
+        until = everybody > until ? std::min(everybody, _options.Wait) : _options.Wait;
+        hasEnded = WaitUntil(until, ends);
     }
     return holds();
 }

@@ -105,6 +105,16 @@ bool AreComplete(const std::vector<FleetSession::Node> &nodes)
                        { return node.Offers || node.State == Gateway::NodeState::LOST; });
 }
 
+double SecondsToHearEverybody(const std::vector<FleetSession::Node> &nodes)
+{
+    double seconds = 1.5;
+    for (const FleetSession::Node &node : nodes)
+    {
+        seconds = std::max(seconds, 2.0 * node.BeatPeriod);
+    }
+    return seconds;
+}
+
 bool AreAllThere(const std::vector<FleetSession::Node> &nodes, const std::string &pattern,
                  bool isEverybodyHeard)
 {
@@ -121,7 +131,7 @@ bool AreAllThere(const std::vector<FleetSession::Node> &nodes, const std::string
                        { return node.Offers || isLost(node) || !MatchesPattern(pattern, node.Name); });
 }
 
-std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::Node> &nodes)
+std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::Node> &nodes, double seconds)
 {
     const auto digits = [](std::string text)
     {
@@ -130,7 +140,9 @@ std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::
     };
     std::vector<std::string> there;
     std::vector<std::string> similar;
-    std::string text = "there is no node `" + name + "`";
+    char within[32];
+    std::snprintf(within, sizeof within, "%.1f", seconds);
+    std::string text = "node `" + name + "` was not heard within " + within + " s";
     for (const FleetSession::Node &node : nodes)
     {
         if (node.State == Gateway::NodeState::LOST)

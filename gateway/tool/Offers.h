@@ -33,15 +33,20 @@ std::vector<std::string> Differences(const std::vector<FleetSession::Node> &node
 // True if every node that is not LOST has announced itself.
 bool AreComplete(const std::vector<FleetSession::Node> &nodes);
 
+// Seconds from the start of a session in which every node beats: 1.5, or twice the longest period that the
+// nodes announce which were heard. Nodes with a budget beat seldom, and a beat may be lost.
+double SecondsToHearEverybody(const std::vector<FleetSession::Node> &nodes);
+
 // True if no announcement can come any more from the nodes that `pattern` means: the one node of that name
 // has announced itself, or `isEverybodyHeard`, nodes were heard, and each node that matches and is not LOST
 // has.
 bool AreAllThere(const std::vector<FleetSession::Node> &nodes, const std::string &pattern,
                  bool isEverybodyHeard);
 
-// Returns the line for an unknown or LOST node. It proposes a similar name, else it lists the live nodes. A
-// name with other digits is never proposed: `uav1` is no typo of `uav2`, but another aircraft.
-std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::Node> &nodes);
+// Returns the line for a node that is LOST, or was not heard within `seconds`. It proposes a similar name,
+// else it lists the live nodes. A name with other digits is never proposed: `uav1` is no typo of `uav2`, but
+// another aircraft.
+std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::Node> &nodes, double seconds);
 
 // Returns sixteen hexadecimal digits.
 std::string HashText(std::uint64_t definition);

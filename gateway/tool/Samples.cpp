@@ -79,7 +79,7 @@ int Samples::NobodyPublishes(const std::vector<FleetSession::Node> &nodes) const
     }
     if (matching.empty())
     {
-        Output::Talk(Offers::NoSuchNode(_pattern, nodes));
+        Output::Talk(Offers::NoSuchNode(_pattern, nodes, _session.Seconds()));
     }
     else
     {

@@ -97,9 +97,9 @@ std::vector<Taker> TakersOf(const Destination &to, const std::string &type,
 }
 
 // Says why no node takes the message, with the nearest right word.
-std::string WhyNobody(const Destination &to, const std::string &type,
-                      const std::vector<FleetSession::Node> &nodes)
+std::string WhyNobody(const Destination &to, const std::string &type, const FleetSession &session)
 {
+    const std::vector<FleetSession::Node> nodes = session.Nodes();
     std::vector<std::string> queues;
     std::vector<std::string> types;
     bool any = false;
@@ -131,7 +131,7 @@ std::string WhyNobody(const Destination &to, const std::string &type,
     const auto same = [](const std::string &name) { return name; };
     if (!any)
     {
-        return Offers::NoSuchNode(to.Node, nodes);
+        return Offers::NoSuchNode(to.Node, nodes, session.Seconds());
     }
     if (!anyQueue)
     {
@@ -254,7 +254,7 @@ int Run(const Options &options, Wakeup &wakeup)
     const std::vector<Taker> found = takers();
     if (found.empty())
     {
-        Output::Talk(WhyNobody(*to, options.Type, session.Nodes()));
+        Output::Talk(WhyNobody(*to, options.Type, session));
         return ProblemFound;
     }
     std::vector<std::string> holders;

@@ -74,26 +74,37 @@ TEST(Offers, OfAPatternNothingCanComeOnceAllThatFitHaveAnnouncedThemselves)
     EXPECT_FALSE(Offers::AreAllThere({Aircraft("uav1"), Silent(Aircraft("uav2"))}, "uav*", true));
 }
 
+TEST(Offers, EverybodyIsHeardWithinTwoPeriodsOfTheNodeThatBeatsMostSeldom)
+{
+    auto often = Aircraft("uav1");
+    often.BeatPeriod = 0.5;
+    auto seldom = Aircraft("uav2");
+    seldom.BeatPeriod = 2.0;
+    EXPECT_EQ(Offers::SecondsToHearEverybody({}), 1.5);
+    EXPECT_EQ(Offers::SecondsToHearEverybody({often}), 1.5);
+    EXPECT_EQ(Offers::SecondsToHearEverybody({seldom, often}), 4.0);
+}
+
 TEST(Offers, AnotherAircraftIsNotProposedForOneThatIsNotThere)
 {
-    EXPECT_EQ(Offers::NoSuchNode("uav2", {Aircraft("ground"), Aircraft("uav1")}),
-              "there is no node `uav2`; there: `ground`, `uav1`");
-    EXPECT_EQ(Offers::NoSuchNode("uav2.vison", {Aircraft("uav1.vision")}),
-              "there is no node `uav2.vison`; there: `uav1.vision`");
+    EXPECT_EQ(Offers::NoSuchNode("uav2", {Aircraft("ground"), Aircraft("uav1")}, 1.5),
+              "node `uav2` was not heard within 1.5 s; there: `ground`, `uav1`");
+    EXPECT_EQ(Offers::NoSuchNode("uav2.vison", {Aircraft("uav1.vision")}, 1.5),
+              "node `uav2.vison` was not heard within 1.5 s; there: `uav1.vision`");
 }
 
 TEST(Offers, AMistypedNameIsAnsweredWithTheNodeThatIsMeant)
 {
-    EXPECT_EQ(Offers::NoSuchNode("uaw1", {Aircraft("ground"), Aircraft("uav1")}),
-              "there is no node `uaw1`; did you mean `uav1`?");
+    EXPECT_EQ(Offers::NoSuchNode("uaw1", {Aircraft("ground"), Aircraft("uav1")}, 1.5),
+              "node `uaw1` was not heard within 1.5 s; did you mean `uav1`?");
 }
 
 TEST(Offers, ALostNodeIsNamedAsLostAndNeverProposed)
 {
-    EXPECT_EQ(Offers::NoSuchNode("uav2", {Aircraft("uav1"), Lost(Aircraft("uav2"))}),
+    EXPECT_EQ(Offers::NoSuchNode("uav2", {Aircraft("uav1"), Lost(Aircraft("uav2"))}, 1.5),
               "node `uav2` is LOST; there: `uav1`");
-    EXPECT_EQ(Offers::NoSuchNode("uaw2", {Aircraft("uav1"), Lost(Aircraft("uav2"))}),
-              "there is no node `uaw2`; there: `uav1`");
+    EXPECT_EQ(Offers::NoSuchNode("uaw2", {Aircraft("uav1"), Lost(Aircraft("uav2"))}, 1.5),
+              "node `uaw2` was not heard within 1.5 s; there: `uav1`");
 }
 
 TEST(Offers, AHundredNodesAreOneLineForEachMessage)

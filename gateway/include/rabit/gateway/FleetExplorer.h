@@ -54,6 +54,8 @@ public:
         // Beats of its present incarnation that came, and that did not, since its first one came.
         std::uint64_t BeatsHeard = 0;
         std::uint64_t BeatsMissed = 0;
+        // Seconds from its last beat to the next one, as the last one announces.
+        double BeatPeriod = 0.0;
         // Troubles of its queue links to other nodes, as its own beats report them: at most four, the worst
         // first.
         std::vector<Strain> Strains;
