@@ -42,8 +42,17 @@ void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait)
                    "Network interface to use, by name or address, in place of the file's; may be repeated")
         ->delimiter(',')
         ->envname("RABIT_INTERFACE");
-    app.get_option("--domain")->envname("RABIT_DOMAIN");
-    app.get_option("--keys")->envname("RABIT_KEYS");
+    CLI::Option *const domain = app.get_option("--domain")->envname("RABIT_DOMAIN");
+    CLI::Option *const keys = app.get_option("--keys")->envname("RABIT_KEYS");
+    // The environment is read once the whole line is.
+    app.get_option("--config")
+        ->trigger_on_parse()
+        ->each(
+            [domain, keys](const std::string &)
+            {
+                domain->envname("");
+                keys->envname("");
+            });
     app.add_option("--wait", options.Wait, "Seconds to wait for an answer")
         ->check(CLI::Range(0.1, 86400.0))
         ->each([&options](const std::string &) { options.IsWaitGiven = true; })

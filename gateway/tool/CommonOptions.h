@@ -33,7 +33,8 @@ struct CommonOptions
 
 // Adds --config, --node, --domain, --transport, --keys, --interface, --wait, --json and --verbose. `wait` is
 // the default of --wait, in seconds. RABIT_DOMAIN, RABIT_INTERFACE (several with commas) and RABIT_KEYS of
-// the environment stand for options that the command line lacks.
+// the environment stand for options that the command line lacks; a --config on it has precedence over the
+// domain and the keys of the environment.
 void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait);
 
 // Adds examples to the help of a command, each a line for the shell.

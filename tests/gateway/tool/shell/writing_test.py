@@ -200,15 +200,28 @@ def the_environment_stands_for_options_that_the_line_lacks(rabit):
     assert run(rabit, "nodes", RABIT_DOMAIN="many").returncode == 2
 
 
+def a_configuration_on_the_line_has_precedence_over_the_environment(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        config = pathlib.Path(folder) / "ground.yaml"
+        config.write_text(f"node: ground\ndomain: {harness.domain() + 1}\ninterfaces: [127.0.0.1]\n")
+        here = {"RABIT_DOMAIN": str(harness.domain()), "RABIT_KEYS": "/no/such/folder"}
+        done = run(rabit, "nodes", "--wait", "1", "--config", str(config), **here)
+        assert done.returncode == 3 and f"in domain {harness.domain() + 1} " in done.stderr, done
+        done = run(rabit, "nodes", "--wait", "1", "--config", str(config), "--domain", str(harness.domain() + 2), **here)
+        assert done.returncode == 3 and f"in domain {harness.domain() + 2} " in done.stderr, done
+
+
 def a_signal_ends_commands_that_read_files(rabit):
     with tempfile.TemporaryDirectory() as folder:
         pipe = pathlib.Path(folder) / "flight.mcap"
         os.mkfifo(pipe)
         for command in ("info", "knew", "check"):
             for number in (signal.SIGTERM, signal.SIGINT):
-                # The program waits for a writer of the pipe.
+                # A shell has its jobs in the background ignore SIGINT, and their children inherit that. The program waits
+                # for a writer of the pipe.
                 with subprocess.Popen([rabit.program, command, str(pipe)], stdout=subprocess.DEVNULL,
-                                      stderr=subprocess.DEVNULL) as reading:
+                                      stderr=subprocess.DEVNULL,
+                                      preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)) as reading:
                     harness.until(lambda reading=reading: waits_in_open(reading.pid))
                     reading.send_signal(number)
                     assert reading.wait(LIMIT) == -number, (command, number)
@@ -253,7 +266,7 @@ TESTS = [configurations_of_a_fleet_are_checked_against_each_other,
          an_option_takes_one_value_wherever_it_stands, what_is_left_out_of_a_recording_takes_no_message_with_it,
          a_folder_that_cannot_be_written_ends_a_recording_before_it_begins,
          each_command_shows_examples_that_it_understands, the_environment_stands_for_options_that_the_line_lacks,
-         a_signal_ends_commands_that_read_files, what_is_no_recording_is_not_recovered,
+         a_configuration_on_the_line_has_precedence_over_the_environment, a_signal_ends_commands_that_read_files, what_is_no_recording_is_not_recovered,
          a_recovery_that_does_not_fit_on_the_disk_leaves_no_file]
 
 
