@@ -111,7 +111,8 @@ private:
 
     bool PrintJson(const Sample &sample)
     {
-        const auto text = _samples.Type().ToJson(sample.Bytes);
+        const auto text = _samples.Type().ToJson(
+            sample.Bytes, _options.Common.Json ? DynamicType::Wide::Text : DynamicType::Wide::Number);
         Json value = text ? Json::parse(*text, nullptr, false) : Json(nullptr);
         if (!_options.Field.empty())
         {
@@ -126,7 +127,7 @@ private:
         }
         if (!_options.Common.Json)
         {
-            return Output::Line(Output::JsonText(std::move(value)));
+            return Output::Line(Output::JsonText(value));
         }
         return Output::Object({{"node", sample.Node},
                                {"message", _samples.Message()},

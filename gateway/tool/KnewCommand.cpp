@@ -130,7 +130,7 @@ public:
     Json Value(const KnownStream &stream, const KnownValue &value)
     {
         const ParsedType &type = TypeOf(stream);
-        const auto text = type.Type ? type.Type->ToJson(value.Sample) : std::nullopt;
+        const auto text = type.Type ? type.Type->ToJson(value.Sample, DynamicType::Wide::Text) : std::nullopt;
         return text ? Json::parse(*text, nullptr, false) : Json();
     }
 
@@ -162,9 +162,9 @@ bool Show(const Options &options, const Asked &asked, const KnownStream &stream,
              {"incarnation", std::to_string(value.Incarnation)},
              {"message", stream.Message},
              {"type", stream.Type},
-             {"at_ns", at},
-             {"received_ns", value.ReceivedAt},
-             {"posted_ns", value.PostedAt},
+             {"at_ns", std::to_string(at)},
+             {"received_ns", std::to_string(value.ReceivedAt)},
+             {"posted_ns", std::to_string(value.PostedAt)},
              {"age_s", age},
              {"uncertainty_s", value.UncertainBy ? Json(SecondsOf(*value.UncertainBy)) : Json()},
              {"value", decoder.Value(stream, value)}});
@@ -281,7 +281,7 @@ void ShowAges(const Options &options, const Asked &asked, const std::vector<AgeH
                             {"p90_s", SecondsOf(ages.Percentile(0.9))},
                             {"p99_s", SecondsOf(ages.Percentile(0.99))},
                             {"oldest_s", SecondsOf(ages.Oldest())},
-                            {"oldest_at_ns", ages.OldestAt()}});
+                            {"oldest_at_ns", std::to_string(ages.OldestAt())}});
             continue;
         }
         table.push_back(

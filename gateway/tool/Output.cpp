@@ -4,42 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cstdint>
 #include <cstdio>
 
 #include "SafeText.h"
 
 namespace Rabit::Tool::Output
 {
-namespace
+std::string JsonText(const nlohmann::ordered_json &value)
 {
-
-using Json = nlohmann::ordered_json;
-
-void WriteLargeIntegersAsText(Json &value)
-{
-    constexpr std::int64_t exact = std::int64_t{1} << 53;
-    if (value.is_structured())
-    {
-        for (Json &part : value)
-        {
-            WriteLargeIntegersAsText(part);
-        }
-    }
-    else if (value.is_number_unsigned() ? value.get<std::uint64_t>() > std::uint64_t{exact}
-                                        : value.is_number_integer() && (value.get<std::int64_t>() > exact ||
-                                                                        value.get<std::int64_t>() < -exact))
-    {
-        value = value.dump();
-    }
-}
-
-}  // namespace
-
-std::string JsonText(Json value)
-{
-    WriteLargeIntegersAsText(value);
-    return value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return value.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 bool Line(std::string_view line)

@@ -12,10 +12,10 @@ namespace Rabit::Tool::Output
 // Writes the line and a line feed at once. False if nobody reads any more: the program then ends, without an
 // error.
 bool Line(std::string_view line);
-// Returns the text of the value in one line, in ASCII. Integers beyond 2^53 are strings: most readers of JSON
-// hold numbers as doubles, which would round them.
-std::string JsonText(nlohmann::ordered_json value);
-// Writes one object in one line.
+// Returns the text of the value in one line, in ASCII.
+std::string JsonText(const nlohmann::ordered_json &value);
+// Writes one object in one line. Numbers that may be beyond 2^53 belong in it as strings: most readers of
+// JSON hold numbers as doubles, which would round them.
 bool Object(const nlohmann::ordered_json &object);
 // Writes a line for people; the text may have come from the network.
 void Talk(std::string_view text);
