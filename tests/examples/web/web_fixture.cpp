@@ -1,12 +1,14 @@
 // The real web page over a scripted fleet, for the tests in a browser:
-//   web_fixture AIRCRAFT [hostile] [PORT]
+//   web_fixture AIRCRAFT [hostile|secured|noarea] [PORT]
 // Prints the page's address, then each order that it gets. Lines on the standard input change the fleet:
 // `stale NODE`, `lost NODE`, `up NODE`, `beatless NODE` (it is STALE, but its poses arrive), `progress STEP
 // [REASON]` (the last command comes to this step, a number of Ground::CommandProgress), `decline NODE REASON`
 // (the search area), `orders NODE` (it is back without), `problems COUNT` (the number of problems now),
 // `radio held` (it has a budget, and two in five posts of Pose and some messages for uav2 are held back),
-// `radio free` (not limited), `replay NODE` (it plays a recording), `silence` (nothing is posted any more).
-// The program ends when the lines end. The ground is at 430 m, and each aircraft has a floor of 460 m.
+// `nofix NODE` (its position is 0, 0), `noplace NODE` (its position is no number), `far NODE` (it is 60 km
+// away), `noheart NODE` (its Health stops), `radio free` (not limited), `replay NODE` (it plays a recording),
+// `silence` (nothing is posted any more). The program ends when the lines end. The ground is at 430 m, and
+// each aircraft has a floor of 460 m.
 #include "WebPage.h"
 #include "WebServer.h"
 
@@ -80,9 +82,12 @@ struct FlyingAircraft
     std::string Node;
     NodeState State = NodeState::UP;
     bool Flies = true;
-    bool HasFix = true;  // else its position is 0, 0
-    float Battery = 0;   // percent; 0: the script says nothing of it
-    double UnseenS = 0;  // of its target
+    bool HasFix = true;     // else its position is 0, 0
+    bool HasPlace = true;   // else its position is no number
+    double NorthDeg = 0;    // added to its latitude
+    bool HasHealth = true;  // else it posts none any more
+    float Battery = 0;      // percent; 0: the script says nothing of it
+    double UnseenS = 0;     // of its target
     std::shared_ptr<Uav::Pose> Pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::MissionState> Mission = std::make_shared<Uav::MissionState>();
     std::shared_ptr<Uav::Health> Health = std::make_shared<Uav::Health>();
@@ -95,9 +100,10 @@ struct FlyingAircraft
 class ScriptedFleet : public Rabit::RabitManager
 {
 public:
-    ScriptedFleet(int aircraft, bool hostile, Script &script)
+    ScriptedFleet(int aircraft, bool hostile, bool hasArea, Script &script)
         : RabitManager("Commands"),
           _hostile(hostile),
+          _hasArea(hasArea),
           _script(script),
           _aircraft(static_cast<std::size_t>(aircraft))
     {
@@ -129,7 +135,8 @@ public:
         _area->speed_mps = 16;
         _area->lane_m = 60;
         _area->number = 1;
-        _area->PostMessage();
+        if (_hasArea)
+            _area->PostMessage();
     }
 
     void ExecuteUnitOfWork() final
@@ -184,6 +191,12 @@ private:
             one.UnseenS = std::stod(text);
         if (what == "nofix")
             one.HasFix = false;
+        if (what == "noplace")
+            one.HasPlace = false;
+        if (what == "far")
+            one.NorthDeg = 0.54;
+        if (what == "noheart")
+            one.HasHealth = false;
         if (what == "up" || what == "stale" || what == "lost" || what == "beatless")
         {
             one.Flies = what == "up" || what == "beatless";
@@ -307,6 +320,9 @@ private:
         one.Pose->longitude_deg = 8.5456 + east / 75270;
         if (!one.HasFix)
             one.Pose->latitude_deg = one.Pose->longitude_deg = 0;
+        one.Pose->latitude_deg += one.NorthDeg;
+        if (!one.HasPlace)
+            one.Pose->latitude_deg = one.Pose->longitude_deg = std::numeric_limits<double>::quiet_NaN();
         one.Pose->altitude_m = 500 + index;
         one.Pose->velocity_north_mps = static_cast<float>(-std::sin(angle) * 12);
         one.Pose->velocity_east_mps = static_cast<float>(std::cos(angle) * 12);
@@ -330,7 +346,8 @@ private:
         one.Health->battery_percent = one.Battery > 0 ? one.Battery : static_cast<float>(90 - index);
         one.Health->wants_home = _hostile;
         one.Health->reason = _hostile ? Markup : "";
-        one.Health->PostMessage();
+        if (one.HasHealth)
+            one.Health->PostMessage();
         auto picture = std::make_shared<Uav::Picture>();
         picture->taken_by = one.Node;
         picture->number = static_cast<std::uint32_t>(_step);
@@ -374,6 +391,7 @@ private:
     }
 
     const bool _hostile;
+    const bool _hasArea;
     Script &_script;
     std::vector<FlyingAircraft> _aircraft;
     bool _silent = false;
@@ -386,11 +404,11 @@ private:
     std::shared_ptr<Ground::CommandTally> _tally = std::make_shared<Ground::CommandTally>();
 };
 
-void Serve(int aircraft, bool hostile, const std::string &port, bool secured)
+void Serve(int aircraft, const std::string &kind, const std::string &port)
 {
     Ground::WebServer::Settings settings;
     settings.Endpoint = Ground::ParseWebAddress(port);
-    if (secured)
+    if (kind == "secured")
         settings.Secrets = Ground::MakeWebSecrets({{"localhost"}, {"127.0.0.1"}}, std::time(nullptr));
     auto server = std::make_unique<Ground::WebServer>(settings);
     for (const std::string &line : server->Addresses())
@@ -398,7 +416,8 @@ void Serve(int aircraft, bool hostile, const std::string &port, bool secured)
 
     Script script;
     Rabit::RabitReactor reactor;
-    reactor.AddManager(std::make_unique<ScriptedFleet>(aircraft, hostile, script));
+    reactor.AddManager(
+        std::make_unique<ScriptedFleet>(aircraft, kind == "hostile", kind != "noarea", script));
     reactor.AddManager(std::make_unique<Ground::WebPage>(Ground::WebPage::Settings{}, std::move(server)));
     std::thread reader(
         [&]
@@ -417,9 +436,7 @@ int main(int argc, char **argv)
 {
     try
     {
-        const std::string kind = argc > 2 ? argv[2] : "plain";
-        Serve(argc > 1 ? std::atoi(argv[1]) : 3, kind == "hostile", argc > 3 ? argv[3] : "0",
-              kind == "secured");
+        Serve(argc > 1 ? std::atoi(argv[1]) : 3, argc > 2 ? argv[2] : "plain", argc > 3 ? argv[3] : "0");
         return 0;
     }
     catch (const std::exception &error)

@@ -1,12 +1,13 @@
 // The map: aircraft as markers, everything else on a canvas. No tiles: there is no internet in the field.
 /* global L */
-import {ageWithUnit, isNumber, STATES} from './format.js';
+import {ageWithUnit, STATES} from './format.js';
 import {CanvasLayer} from './canvas.js';
 import {destinationsOf, wayLeft} from './destinations.js';
 import {blockTargets, drawArea, drawDestinations, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
 import {byId, element, setAttribute, setText} from './dom.js';
 import {LabelSpace, placesAround} from './labels.js';
 import {corners, distance} from './geo.js';
+import {placeOf} from './model.js';
 import {pageNow} from './connection.js';
 
 const SYMBOL_PX = 22;  // what the name of an aircraft keeps away from
@@ -32,17 +33,20 @@ function makeSymbol() {
 }
 
 // What the map is fitted to: the search area and the aircraft that are not LOST, without those that cannot be where they
-// say: at 0, 0, which a receiver without a fix tells, or far from the others.
+// say: at 0, 0, which a receiver without a fix tells, or far from the area, or without one from most of the others. If
+// nothing remains, all places that are known.
 function placesToFit(model, area) {
-  const places = model.aircraft
-    .filter((one) => one.pose && isNumber(one.pose.latitude_deg) && isNumber(one.pose.longitude_deg) && model.state(one) !== 'lost')
-    .map(({pose}) => ({lat: pose.latitude_deg, lng: pose.longitude_deg}))
-    .filter(({lat, lng}) => Math.abs(lat) > NO_FIX_DEG || Math.abs(lng) > NO_FIX_DEG);
-  const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
-  const middle = area ? {lat: area.latitude_deg, lng: area.longitude_deg}
-    : {lat: median(places.map(({lat}) => lat)), lng: median(places.map(({lng}) => lng))};
-  const near = places.filter((place) => distance(middle, place) <= OUTLIER_M);
-  return area ? [...near, ...corners(area)] : near;
+  const hasFix = ({lat, lng}) => Math.abs(lat) > NO_FIX_DEG || Math.abs(lng) > NO_FIX_DEG;
+  const placesOf = (aircraft) => aircraft.map(placeOf).filter((place) => place);
+  const known = placesOf(model.aircraft);
+  const places = placesOf(model.aircraft.filter((one) => model.state(one) !== 'lost')).filter(hasFix);
+  const isNear = (a, b) => distance(a, b) <= OUTLIER_M;
+  if (area) {
+    const middle = {lat: area.latitude_deg, lng: area.longitude_deg};
+    return [...places.filter((place) => isNear(middle, place)), ...corners(area)];
+  }
+  const near = places.filter((place) => 2 * places.filter((other) => isNear(place, other)).length >= places.length);
+  return [near, places, known.filter(hasFix), known].find(({length}) => length > 0) ?? [];
 }
 
 export class FleetMap {
@@ -145,7 +149,7 @@ export class FleetMap {
   update(isNewSnapshot) {
     const {model} = this;
     if (model.newLife && isNewSnapshot) this.trails.clear();
-    const shown = model.aircraft.filter(({pose}) => pose && isNumber(pose.latitude_deg) && isNumber(pose.longitude_deg));
+    const shown = model.aircraft.filter(placeOf);
     if (isNewSnapshot) for (const aircraft of shown) if (model.isPoseFresh(aircraft)) this.trails.add(this.map, aircraft, pageNow());
     const present = new Set();
     for (const aircraft of shown) {
@@ -198,6 +202,7 @@ export class FleetMap {
   }
 
   centre(aircraft) {
-    if (aircraft?.pose) this.map.panTo([aircraft.pose.latitude_deg, aircraft.pose.longitude_deg], {animate: false});
+    const place = placeOf(aircraft);
+    if (place) this.map.panTo(place, {animate: false});
   }
 }

@@ -22,6 +22,12 @@ export function batteryLevel(percent) {
   return percent < BATTERY_ALARM ? 'alarm' : 'warning';
 }
 
+// Where an aircraft says that it is; null: not known.
+export function placeOf(aircraft) {
+  const {latitude_deg: lat, longitude_deg: lng} = aircraft?.pose ?? {};
+  return isNumber(lat) && isNumber(lng) ? {lat, lng} : null;
+}
+
 export class Model {
   snapshot = null;
   takenAt = -Infinity;
@@ -52,7 +58,7 @@ export class Model {
   get byUrgency() {
     const urgency = (one) => {
       const state = this.state(one);
-      return URGENCY.indexOf((state === 'up' && batteryLevel(one.health?.battery_percent)) || state);
+      return URGENCY.indexOf((this.isFresh(one, 'health') && batteryLevel(one.health.battery_percent)) || state);
     };
     const rank = new Map(this.aircraft.map((one) => [one, urgency(one)]));
     return [...this.aircraft].sort((a, b) => rank.get(a) - rank.get(b));

@@ -4,6 +4,7 @@ import {distance} from './geo.js';
 import {fixed, isNumber, STATES} from './format.js';
 import {wayLeft} from './destinations.js';
 import {describeHeight, knownGround} from './heights.js';
+import {placeOf} from './model.js';
 
 const DEFAULT_SPEED_MPS = 12;
 // A point that is farther from the aircraft is asked about again: this, or so many sides of the search area.
@@ -76,7 +77,7 @@ export class Orders {
     for (const {input} of this.fields) input.removeAttribute('aria-invalid');
     if (kind === 'goto') {
       const {pose} = aircraft;
-      const from = point ?? (pose ? {lat: pose.latitude_deg, lng: pose.longitude_deg} : null);
+      const from = point ?? placeOf(aircraft);
       byId('order-latitude').value = from ? fixed(from.lat, 6) : '';
       byId('order-longitude').value = from ? fixed(from.lng, 6) : '';
       // What was typed for this order holds for another point as well.
@@ -129,11 +130,12 @@ export class Orders {
     return [this.height.asks, this.distanceAsked].filter((one) => one).join(' ');
   }
   get distanceAsked() {
-    const pose = this.model.find(this.node)?.pose;
-    if (this.kind !== 'goto' || !this.point || !pose) return '';
+    if (this.kind !== 'goto' || !this.point) return '';
+    const from = placeOf(this.model.find(this.node));
+    if (!from) return `The position of ${this.node} is not known.`;
     const {area} = this.model.snapshot ?? {};
     const far = Math.max(FAR_M, FAR_SIDES * Math.max(area?.north_m ?? 0, area?.east_m ?? 0));
-    const metres = distance({lat: pose.latitude_deg, lng: pose.longitude_deg}, this.point);
+    const metres = distance(from, this.point);
     return metres > far ? `The point is ${wayLeft(metres)} away from ${this.node}.` : '';
   }
 
@@ -162,8 +164,8 @@ export class Orders {
     if (this.kind === 'goto') said.push(this.height.says);
     const state = aircraft ? this.model.shownState(aircraft) : 'lost';
     if (state !== 'up') said.unshift(`${STATES[state].sign} ${this.node} is ${STATES[state].word}: it may get this late or not at all.`);
-    if (this.kind === 'goto' && this.point && aircraft?.pose) {
-      const from = {lat: aircraft.pose.latitude_deg, lng: aircraft.pose.longitude_deg};
+    const from = placeOf(aircraft);
+    if (this.kind === 'goto' && this.point && from) {
       said.push(`${Math.round(distance(from, this.point))} m from where it is${state === 'up' ? '' : ' said to have been'}.`);
     }
     setText(byId('order-note'), said.filter((one) => one).join(' '));
@@ -174,9 +176,7 @@ export class Orders {
   keepClear() {
     const frame = this.form.parentElement.getBoundingClientRect();
     const {width, height} = this.form.getBoundingClientRect();
-    const aircraft = this.model.find(this.node);
-    const points = [this.kind === 'goto' ? this.point : null,
-      aircraft?.pose ? {lat: aircraft.pose.latitude_deg, lng: aircraft.pose.longitude_deg} : null].filter((one) => one);
+    const points = [this.kind === 'goto' ? this.point : null, placeOf(this.model.find(this.node))].filter((one) => one);
     const places = points.map((point) => this.map.map.latLngToContainerPoint(point));
     const corners = {'bottom-left': [0, 1], 'bottom-right': [1, 1], 'top-right': [1, 0], 'top-left': [0, 0]};
     const covers = (name) => {

@@ -261,6 +261,80 @@ async function showsAndKeepsTheFocus(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+// The aircraft whose markers are within the map.
+async function onTheMap(fleet, nodes) {
+  const box = await fleet.page.locator('#map').boundingBox();
+  const inside = [];
+  for (const node of nodes) {
+    const marker = await fleet.marker(node);
+    if (marker && marker.x >= box.x && marker.x <= box.x + box.width && marker.y >= box.y && marker.y <= box.y + box.height) inside.push(node);
+  }
+  return inside.join();
+}
+
+async function fitsTheMapToLostAircraftIfThereAreNoOthers(programs) {
+  const {fixture, url} = await startFixture(programs, 2, 'noarea');
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await becomes(() => fleet.marker('uav2'), 'it is on the map');
+  fixture.tell('lost uav1');
+  fixture.tell('lost uav2');
+  await fleet.rowBecomes('uav1', (row) => /LOST/.test(row.state), 'is LOST');
+  await fleet.rowBecomes('uav2', (row) => /LOST/.test(row.state), 'is LOST');
+  await page.reload();
+  await becomes(async () => await onTheMap(fleet, ['uav1', 'uav2']) === 'uav1,uav2', 'both are on the map');
+  await becomes(async () => /^\d+ m$/.test(await fleet.text('.leaflet-control-scale-line')), 'the map is fitted');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function fitsTheMapToTwoAircraftThatAreFarApart(programs) {
+  const {fixture, url} = await startFixture(programs, 2, 'noarea');
+  fixture.tell('far uav2');
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await becomes(() => fleet.marker('uav2'), 'it is somewhere');
+  await becomes(async () => {
+    await page.click('#fit');
+    return await onTheMap(fleet, ['uav1', 'uav2']) === 'uav1,uav2' && /^\d+ km$/.test(await fleet.text('.leaflet-control-scale-line'));
+  }, async () => `the map shows both at 60 km: ${await onTheMap(fleet, ['uav1', 'uav2'])} ${await fleet.text('.leaflet-control-scale-line')}`);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function asksAgainIfThePositionIsNotKnown(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is UP');
+  fixture.tell('noplace uav1');
+  await becomes(async () => (await fleet.marker('uav1')) === null, 'its place is not known');
+  await fleet.select('uav1');
+  await page.click('#act-goto');
+  await page.fill('#order-latitude', '47.43');
+  await page.fill('#order-longitude', '8.5456');
+  await page.click('#order-send');
+  assert.match(await fleet.text('#order-again'), /The position of uav1 is not known\. Is it meant so\?/);
+  assert.doesNotMatch(await fleet.text('#order-note'), /from where it is/);
+  assert.doesNotMatch(fixture.output, /order/, 'it is not sent before it is confirmed');
+  await page.click('#order-send');
+  await fixture.says(/order 0 uav1 47.43 /, 'it is sent when it was confirmed');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function ranksNoAircraftByAnOldBattery(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const names = () => fleet.page.locator('#fleet tbody td.name').allTextContents();
+  fixture.tell('battery uav2 9');
+  await becomes(async () => (await names()).join() === 'uav2,uav1', async () => `the low battery is first: ${await names()}`);
+  fixture.tell('noheart uav2');
+  await becomes(async () => (await names()).join() === 'uav1,uav2', async () => `it is not known any more: ${await names()}`);
+  assert.deepEqual(fleet.errors, []);
+}
+
 async function fitsTheMapToWhereTheFleetIs(programs) {
   const {fixture, url} = await startFixture(programs, 3);
   fixture.tell('nofix uav2');
@@ -269,16 +343,8 @@ async function fitsTheMapToWhereTheFleetIs(programs) {
   const {page} = fleet;
   await becomes(() => fleet.marker('uav2'), 'its marker is somewhere');
   await page.click('#fit');
-  const seen = async () => {
-    const box = await page.locator('#map').boundingBox();
-    const inside = [];
-    for (const node of ['uav1', 'uav2', 'uav3']) {
-      const {x, y} = await fleet.marker(node);
-      if (x >= box.x && x <= box.x + box.width && y >= box.y && y <= box.y + box.height) inside.push(node);
-    }
-    return inside;
-  };
-  await becomes(async () => (await seen()).join() === 'uav1,uav3', async () => `one without a fix does not widen the map: ${await seen()}`);
+  const seen = () => onTheMap(fleet, ['uav1', 'uav2', 'uav3']);
+  await becomes(async () => (await seen()) === 'uav1,uav3', async () => `one without a fix does not widen the map: ${await seen()}`);
   assert.match(await fleet.text('.leaflet-control-scale-line'), /^\d+ m$/);
   assert.deepEqual(fleet.errors, []);
 }
@@ -361,6 +427,10 @@ export const cases = {
   shows_and_keeps_the_focus: showsAndKeepsTheFocus,
   fits_the_map_to_where_the_fleet_is: fitsTheMapToWhereTheFleetIs,
   forgets_a_lost_aircraft_until_it_is_heard_again: forgetsALostAircraftUntilItIsHeardAgain,
+  fits_the_map_to_lost_aircraft_if_there_are_no_others: fitsTheMapToLostAircraftIfThereAreNoOthers,
+  fits_the_map_to_two_aircraft_that_are_far_apart: fitsTheMapToTwoAircraftThatAreFarApart,
+  asks_again_if_the_position_is_not_known: asksAgainIfThePositionIsNotKnown,
+  ranks_no_aircraft_by_an_old_battery: ranksNoAircraftByAnOldBattery,
   marks_a_low_battery: marksALowBattery,
   marks_a_target_that_nobody_sees: marksATargetThatNobodySees,
   drops_orders_that_died_with_the_aircraft: dropsOrdersThatDiedWithTheAircraft,
