@@ -176,11 +176,11 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
 void LinkPeer::Measure(const LinkFrame &frame, LinkTime now)
 {
     const LinkTime sentAt(frame.Echo.Time);
-    // The peer heard the first question, or a later frame: this is an answer. It counts from the first
-    // question. From the newest one that was heard it would be short even if the peer holds all answers back.
+    // The peer may echo a later frame that does not ask, such as an acknowledgement, in place of the
+    // question.
     if (frame.Echo.Clock == _context.Clock && sentAt >= _askedSince && sentAt <= now)
     {
-        _path.Answered(now - _askedSince);
+        _path.Answered(now - std::min(sentAt, _askedAt));
         _askedSince = LinkNever;
     }
     const LinkTime roundTrip = now - sentAt - LinkTime(frame.Echo.HeldFor);

@@ -38,6 +38,9 @@ constexpr int StalledRounds = 2;
 // The probe timer first doubles this many times: where much is lost, waiting longer does not help. When there
 // is no path it goes on doubling.
 constexpr int FirstDoublings = 2;
+// While a peer holds its answers back, questions are repeated meanwhile, and the newest that it heard is not
+// old. With this factor the timer grows until it covers the whole time.
+constexpr int PatienceForAnswers = 3;
 // A round trip that was once very long is no reason to wait for the next ones that long.
 constexpr LinkTime LongestProbe = 3s;
 
@@ -131,7 +134,10 @@ void PathControl::Lost(std::size_t bytes)
 // The time after which the peer answers; 0: not known yet.
 LinkTime PathControl::UsualAnswer() const
 {
-    return _answered < _answers.size() ? LinkTime(0) : *std::min_element(_answers.begin(), _answers.end());
+    auto answers = _answers;
+    const auto middle = answers.begin() + answers.size() / 2;
+    std::nth_element(answers.begin(), middle, answers.end());
+    return _answered < answers.size() ? LinkTime(0) : *middle;
 }
 
 // Weight of `bytes` bytes in an average over some tens of datagrams.
@@ -300,7 +306,7 @@ LinkTime PathControl::ProbeTimeout(int doublings) const
     const LinkTime known = std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay(), LongestProbe);
     const LinkTime least = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
     // The round trip is that of the path alone. A peer with a budget may send its answers much later.
-    const LinkTime plain = std::max(least, std::min(2 * UsualAnswer(), _settings.MaxResend));
+    const LinkTime plain = std::max(least, std::min(PatienceForAnswers * UsualAnswer(), _settings.MaxResend));
     const LinkTime longest = std::max(plain, _settings.MaxResend);
     const int shift = doublings < ProbesInVain ? std::min(doublings, FirstDoublings)
                                                : std::min(FirstDoublings + 1 + doublings - ProbesInVain, 10);

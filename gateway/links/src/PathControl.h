@@ -37,8 +37,9 @@ public:
     void Forget(std::size_t bytes) { _inFlight -= bytes; }
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
-    // So long after the first question there was an answer, which includes the time for which the peer held
-    // it back. It is longer, too, if questions or answers were lost: the shortest of the last few counts.
+    // A frame that asks for an answer was answered after that time, which includes the time for which the
+    // peer held the answer back. Where several ask, the newest that was heard counts. If an answer was lost,
+    // the next frame of the peer makes the time longer: the median of the last few counts.
     void Answered(LinkTime time) { _answers[_answered++ % _answers.size()] = time; }
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
@@ -85,7 +86,7 @@ private:
 
     const LinkSettings &_settings;
     RoundTrip _times;
-    std::array<LinkTime, 4> _answers{};
+    std::array<LinkTime, 5> _answers{};
     std::size_t _answered = 0;
     std::size_t _inFlight = 0;
     std::size_t _window;

@@ -59,7 +59,7 @@ MUTATIONS = [
              "frame.Echo.Clock == _context.Clock && sentAt <= now && roundTrip >= LinkTime(0) &&",
              "frame.Echo.Clock == _context.Clock &&", "direct"),
     Mutation("S2 the probe timer knows nothing of answers that the peer holds back", "LinkPeer.cpp",
-             "_path.Answered(now - _askedSince);", "", "direct"),
+             "_path.Answered(now - std::min(sentAt, _askedAt));", "", "direct"),
     Mutation("S2 only the echo of the question itself is an answer", "LinkPeer.cpp",
              "sentAt >= _askedSince && sentAt <= now)", "sentAt >= _askedSince && sentAt <= _askedAt)", "direct"),
     Mutation("S2 the queue is named once only", "LinkSenderFill.cpp",
