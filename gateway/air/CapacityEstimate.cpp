@@ -110,7 +110,7 @@ std::optional<double> CapacityEstimate::CarriedWhileRising(const DelayReports::R
 void CapacityEstimate::Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now)
 {
     _reports.Add(peer, delay, arrivedAt, now);
-    _lastReport = now;
+    _wasReported = true;
     const Duration latest = _reports.Latest(now).value_or(Duration(0));
     if (latest > Goal)
     {
@@ -242,7 +242,7 @@ std::optional<double> CapacityEstimate::Rate(Duration now) const
 {
     if (!_limited)
     {
-        const bool isUnknown = _heardLate > Target && (!_lastReport || now - *_lastReport > Alone);
+        const bool isUnknown = _heardLate > Target && !_wasReported;
         return isUnknown ? std::optional(std::max(EmptyingRate(FirstRate, _heardLate), Floor)) : std::nullopt;
     }
     const double rate = EmptyingRate(_carried, Queue(now));

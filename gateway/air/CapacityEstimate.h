@@ -44,7 +44,6 @@ public:
     using Peer = DelayReports::Peer;
 
     static constexpr Duration Target = std::chrono::milliseconds(100);
-    static constexpr Duration Alone = std::chrono::seconds(30);
     static constexpr double Floor = 300.0;       // bytes a second
     static constexpr double FirstRate = 3000.0;  // a share of a thin radio: 250 kbit/s for ten nodes
 
@@ -62,8 +61,7 @@ public:
     void NothingLate(Peer peer, Duration now);
 
     // The others' datagrams come here by `delay` later than the quickest. This limits the node while it is
-    // above Target and no peer has reported for Alone: nodes that meet on a full radio do not know each other
-    // yet.
+    // above Target and no peer has ever reported: nodes that meet on a full radio do not know each other yet.
     void HeardLate(Duration delay) { _heardLate = delay; }
 
     // Drops the estimate, for instance when DDS discovery has filled the air: unlimited until peers agree on
@@ -97,7 +95,7 @@ private:
     int _doublings = 0;        // for want of use, since the rate was used
     Duration _quietSince{0};   // no delay above the goal since
     Duration _heardLate{0};
-    std::optional<Duration> _lastReport;
+    bool _wasReported = false;
 };
 
 }  // namespace Rabit

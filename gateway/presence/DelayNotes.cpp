@@ -36,10 +36,7 @@ bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
     entry.Delay = delay;
     entry.Arrival = arrival;
     entry.IsNew = true;
-    const bool isUrgent = delay >= Large && (!entry.LargeToldAt || arrival - *entry.LargeToldAt >= Rest) &&
-                          (!_urgentAt || arrival - *_urgentAt >= UrgentGap);
-    _urgentAt = isUrgent ? arrival : _urgentAt;
-    return isUrgent;
+    return delay >= Large;
 }
 
 bool DelayNotes::IsDue(const Entry &entry, Duration now) const
@@ -96,7 +93,6 @@ std::vector<Gateway::DelayReport> DelayNotes::Take(Duration now, std::size_t mos
                   reports.push_back(report);
                   entry.IsNew = false;
                   entry.Told = entry.Delay;
-                  entry.LargeToldAt = entry.Delay >= Large ? now : entry.LargeToldAt;
                   entry.ToldAt = now;
                   return true;
               });

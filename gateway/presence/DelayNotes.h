@@ -14,8 +14,7 @@ namespace Rabit
 {
 
 // The queueing delay of each other node's newest datagram, against its quickest one, for this node's beats to
-// report to that node. A large delay is reported at once if that node was not told of one lately, else with
-// the next beat. A small one is reported now and then.
+// report to that node. A large delay is reported at once, a small one now and then.
 //
 // A pure state machine; `now` never goes back. Bounded.
 class DelayNotes
@@ -33,10 +32,6 @@ public:
     static constexpr int SmallEachBeats = 4;
     // In a large fleet a few small delays are enough.
     static constexpr std::size_t MostSmall = 2;  // at once
-    // For so long after a node was told of a large delay, another one is not urgent: a channel that is full
-    // stays at the limit. And urgent delays are UrgentGap apart, however many nodes there are.
-    static constexpr Duration Rest = std::chrono::seconds(5);
-    static constexpr Duration UrgentGap = std::chrono::seconds(2);
     // An older delay is not reported.
     static constexpr Duration LongestHeld = std::chrono::seconds(60);
     static constexpr std::size_t MostNodes = 1000;
@@ -70,13 +65,11 @@ private:
         bool IsNew = false;
         Duration Told{0};  // the delay told last
         std::optional<Duration> ToldAt;
-        std::optional<Duration> LargeToldAt;
     };
     static bool IsSmall(const Entry &entry) { return entry.Delay < Small && entry.Told < Small; }
     bool IsDue(const Entry &entry, Duration now) const;
 
     Duration _smallPeriod = SmallPeriod;
-    std::optional<Duration> _urgentAt;
     Duration _heardLate{0};
     std::map<Tag, Entry> _notes;
     Tag _last = 0;

@@ -68,24 +68,6 @@ TEST(DelayNotes, ThatADelayCameOrWentIsToldAtOnce)
     EXPECT_EQ(notes.Take(2500ms, 8).size(), 0u);
 }
 
-TEST(DelayNotes, ALargeDelayIsUrgentUnlessTheNodeWasToldOfOneLately)
-{
-    DelayNotes notes;
-    EXPECT_FALSE(notes.Note(7, 40ms, 1s));
-    EXPECT_TRUE(notes.Note(7, 400ms, 1500ms));
-    notes.Take(1500ms, 8);
-    EXPECT_FALSE(notes.Note(7, 500ms, 1499ms + DelayNotes::Rest));
-    EXPECT_TRUE(notes.Note(7, 500ms, 1500ms + DelayNotes::Rest));
-}
-
-TEST(DelayNotes, HoweverManyNodesAreLateUrgentDelaysAreSomeTimeApart)
-{
-    DelayNotes notes;
-    EXPECT_TRUE(notes.Note(7, 400ms, 1s));
-    EXPECT_FALSE(notes.Note(8, 400ms, 999ms + DelayNotes::UrgentGap));
-    EXPECT_TRUE(notes.Note(8, 400ms, 1s + DelayNotes::UrgentGap));
-}
-
 TEST(DelayNotes, BeforeNodesHaveMetDiscoveryTellsOfQueues)
 {
     DelayNotes notes;

@@ -281,7 +281,8 @@ void PathControl::Decide(LinkTime roundTrip)
 
 void PathControl::Restart()
 {
-    _window = std::min(_window, FirstWindow());
+    // The messages of all peers have waited: after an outage they all begin at once.
+    _window = std::min(_window, FirstWindow() / 2);
     _slowStart = true;
     _draining = false;
     _pacedUntil = LinkTime(0);

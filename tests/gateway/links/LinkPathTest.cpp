@@ -139,7 +139,7 @@ TEST_F(PathTest, begins_anew_after_an_outage)
         Round(100ms);
     }
     path.Restart();
-    EXPECT_EQ(path.Window(), 4 * One);
+    EXPECT_EQ(path.Window(), 2 * One);
     EXPECT_LE(path.PacedUntil(), now);
 }
 
