@@ -270,7 +270,7 @@ MUTATIONS = [
              "if (_draining || now - _shortestAt < _settings.PathMemory)", "if (true)", "direct"),
     Mutation("path: nothing is paced", "PathControl.cpp", "if (_times.Smoothed() < PacedFrom || _draining)",
              "if (true)", "direct"),
-    Mutation("path: an outage changes nothing", "PathControl.cpp", "_window = std::min(_window, FirstWindow());", "",
+    Mutation("path: an outage changes nothing", "PathControl.cpp", "_window = std::min(_window, FirstWindow() / 2);", "",
              "direct"),
     Mutation("path: no acknowledgement is asked for", "PathControl.cpp",
              "if (_sinceAsked < std::max(DatagramsToAsk * Datagram(), Window() / PartToAsk) && (HasRoom() || asked))",
