@@ -131,13 +131,16 @@ void PathControl::Lost(std::size_t bytes)
     _lossRate += (1 - _lossRate) * WeightOf(bytes);
 }
 
-// The time after which the peer answers; 0: not known yet.
-LinkTime PathControl::UsualAnswer() const
+void PathControl::Answered(LinkTime time)
 {
-    auto answers = _answers;
-    const auto middle = answers.begin() + answers.size() / 2;
-    std::nth_element(answers.begin(), middle, answers.end());
-    return _answered < answers.size() ? LinkTime(0) : *middle;
+    _answers[_answered++ % _answers.size()] = time;
+    if (_answered >= _answers.size())
+    {
+        auto answers = _answers;
+        const auto middle = answers.begin() + answers.size() / 2;
+        std::nth_element(answers.begin(), middle, answers.end());
+        _usualAnswer = *middle;
+    }
 }
 
 // Weight of `bytes` bytes in an average over some tens of datagrams.
@@ -289,6 +292,7 @@ void PathControl::Restart()
     _rate = 0;
     _stalled = 0;
     _answered = 0;
+    _usualAnswer = LinkTime(0);
 }
 
 LinkTime PathControl::AckDelay() const
@@ -307,7 +311,7 @@ LinkTime PathControl::ProbeTimeout(int doublings) const
     const LinkTime known = std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay(), LongestProbe);
     const LinkTime least = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
     // The round trip is that of the path alone. A peer with a budget may send its answers much later.
-    const LinkTime plain = std::max(least, std::min(PatienceForAnswers * UsualAnswer(), _settings.MaxResend));
+    const LinkTime plain = std::max(least, std::min(PatienceForAnswers * _usualAnswer, _settings.MaxResend));
     const LinkTime longest = std::max(plain, _settings.MaxResend);
     const int shift = doublings < ProbesInVain ? std::min(doublings, FirstDoublings)
                                                : std::min(FirstDoublings + 1 + doublings - ProbesInVain, 10);

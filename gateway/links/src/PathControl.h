@@ -40,7 +40,7 @@ public:
     // A frame that asks for an answer was answered after that time, which includes the time for which the
     // peer held the answer back. Where several ask, the newest that was heard counts. If an answer was lost,
     // the next frame of the peer makes the time longer: the median of the last few counts.
-    void Answered(LinkTime time) { _answers[_answered++ % _answers.size()] = time; }
+    void Answered(LinkTime time);
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
 
@@ -76,7 +76,6 @@ private:
     std::size_t Datagram() const { return _settings.MaxDatagram + _settings.AirOverhead; }
     std::size_t FirstWindow() const { return 4 * Datagram(); }
     LinkTime Target() const;
-    LinkTime UsualAnswer() const;
     double WeightOf(std::size_t bytes) const;
     double Pace() const;  // bytes per second
     void LookForEndOfSlowStart(double rate);
@@ -88,6 +87,7 @@ private:
     RoundTrip _times;
     std::array<LinkTime, 5> _answers{};
     std::size_t _answered = 0;
+    LinkTime _usualAnswer{0};  // the median of _answers; 0: not known yet
     std::size_t _inFlight = 0;
     std::size_t _window;
     bool _slowStart = true;

@@ -218,6 +218,16 @@ TEST_F(PathTest, an_answer_that_came_late_since_an_earlier_one_was_lost_does_not
     }
 }
 
+TEST_F(PathTest, after_an_outage_it_does_not_know_when_the_peer_answers)
+{
+    for (int i = 0; i < 5; ++i)
+    {
+        path.Answered(20s);
+    }
+    path.Restart();
+    EXPECT_EQ(path.ProbeTimeout(), settings.FirstResend);
+}
+
 TEST_F(PathTest, asks_for_an_acknowledgement_in_time_and_not_for_each_datagram)
 {
     for (int i = 0; i < 3; ++i)

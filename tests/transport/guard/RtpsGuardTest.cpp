@@ -638,7 +638,7 @@ TEST(RtpsGuardModes, WhereAllIsProtectedAHeartbeatOfAnIdleBuiltinWriterIsNoForge
 TEST(RtpsGuardModes, WhereAllIsProtectedTheStateOfWritersOfTypesIsBlankedInSilence)
 {
     Gate guard(RtpsGuard::Mode::Protected);
-    for (const EntityId writer : {0x000300c3, 0x000301c3})
+    for (const EntityId writer : {EntityId{0x000300c3}, EntityId{0x000301c3}})
     {
         EXPECT_TRUE(guard.Admit(Message(Heartbeat, HeartbeatBody(1, 0, 1, writer))));
         EXPECT_TRUE(guard.Handed.empty());
