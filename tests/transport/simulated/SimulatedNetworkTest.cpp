@@ -337,6 +337,15 @@ TEST_F(SimulatedNetworkTest, NobodyHearsThatTheObjectsOfACrashedNodeAreDestroyed
     EXPECT_TRUE(Net.Until([&] { return Reader->MatchedWriters() == 0; }));
 }
 
+TEST_F(SimulatedNetworkTest, ANodeThatIsAloneAnnouncesItselfToTheGroupAllTheSame)
+{
+    Ground.reset();
+    Net.Pass(10s);
+    const std::uint64_t before = Uav->Counters().DiscoveryBytes;
+    Net.Pass(10s);
+    EXPECT_GT(Uav->Counters().DiscoveryBytes, before);
+}
+
 TEST_F(SimulatedNetworkTest, AnAnnouncementOvertakenByTheGoodbyeRevivesNobody)
 {
     Net.Settle();

@@ -15,7 +15,7 @@ namespace
 template <typename Call>
 void ForEachReceiver(const Flight &flight, const Call &call)
 {
-    ParticipantId last = 0;
+    ParticipantId last = Nobody;
     for (const Letter &letter : flight.Letters)
     {
         if (std::exchange(last, letter.To) != letter.To)
@@ -99,7 +99,7 @@ void NetworkCore::Land(Flight &flight)
         {
             NoteFragments(*from->second, letter.Content, lost == flight.Lost.end() ? 0 : lost->second);
         }
-        if (lost == flight.Lost.end())
+        if (lost == flight.Lost.end() && letter.To != Nobody)
         {
             const SimulatedFaults &faults =
                 _faults.Between(flight.FromNode, _participants.at(letter.To)->NodeNumber);

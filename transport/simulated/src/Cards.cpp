@@ -63,7 +63,14 @@ bool NetworkCore::SendCard(const ParticipantPtr &me)
             letters.push_back({id, datagram, _timings.DiscoveryDelay});
         }
     }
-    SendTogether(*me, std::move(letters), !outgoing->To && me->Settings.Multicast);
+    if (outgoing->To)
+    {
+        SendTogether(*me, std::move(letters), false);
+    }
+    else
+    {
+        SendToGroup(*me, std::move(letters), datagram);
+    }
     return true;
 }
 

@@ -28,7 +28,7 @@ void NetworkCore::Announce(const ParticipantPtr &participant)
             letters.push_back({id, {}, _timings.DiscoveryDelay});
         }
     }
-    SendTogether(*participant, std::move(letters), participant->Settings.Multicast);
+    SendToGroup(*participant, std::move(letters), {});
     const Time period = participant->Settings.AnnouncementPeriod;
     const int before = participant->Announced++;
     Later(before < InitialRounds ? std::min(FirstGap * (1 << before), period) : period,

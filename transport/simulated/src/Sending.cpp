@@ -16,6 +16,17 @@ void NetworkCore::Send(const ParticipantState &from, ParticipantId to, Datagram 
     SendTogether(from, std::move(letters), false);
 }
 
+// To a multicast group, if the participant uses one. A datagram to the group takes its time on the air even
+// if nobody is in the group.
+void NetworkCore::SendToGroup(const ParticipantState &from, Letters letters, const Datagram &content)
+{
+    if (letters.empty() && from.Settings.Multicast)
+    {
+        letters.push_back({Nobody, content, _timings.DiscoveryDelay});
+    }
+    SendTogether(from, std::move(letters), from.Settings.Multicast);
+}
+
 // With multicast as one datagram, otherwise as one for each participant.
 void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bool multicast,
                                std::uint32_t partsBefore)
@@ -53,6 +64,10 @@ void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bo
 // Used if no medium is in the way.
 void NetworkCore::SendAlone(const ParticipantState &from, Letter letter)
 {
+    if (letter.To == Nobody)
+    {
+        return;
+    }
     const auto target = _participants.find(letter.To);
     std::uint32_t *missing = MissingOf(from, letter.Content);
     const std::uint32_t packets = missing != nullptr ? *missing : 1;

@@ -29,6 +29,7 @@ namespace Rabit::Simulated
 {
 
 using ParticipantId = std::uint32_t;
+constexpr ParticipantId Nobody = 0;
 
 struct EndpointId
 {
