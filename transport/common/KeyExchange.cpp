@@ -38,6 +38,10 @@ constexpr std::string_view Steps = "DDS:Auth:PKI-DH:1.0+";
 // that of the message it answers, each a GUID and a number.
 constexpr std::size_t AddresseeAt = 4 + 2 * (16 + 8);
 constexpr std::size_t LargestControl = 64;
+// Writers of endpoints, of liveliness and of types (OMG DDSI-RTPS 2.3, 9.3.1.3; OMG
+// DDS-XTypes 1.3, 7.6.3.3.4).
+constexpr std::array<std::uint32_t, 5> IdleWriters{0x000003c2, 0x000004c2, 0x000200c2, 0x000300c3,
+                                                   0x000301c3};
 
 bool Has(Bytes bytes, std::size_t at, std::size_t size)
 {
@@ -121,9 +125,11 @@ public:
                 ReadWriter(submessage, 4);
                 break;
             case SecurePrefix:
+                _hasNeeded = true;
                 ReadPrefix(submessage.Body());
                 break;
             case SecureBody:
+                _hasNeeded = true;
                 _isLarge = _isLarge || submessage.Body().size() > LargestControl;
                 break;
             case MessagePrefix:
@@ -135,14 +141,14 @@ public:
     }
     std::optional<KeyExchange> Found()
     {
-        if (!_hasHandshake && !_hasKeys && !_found.IsWhole)
+        _found.IsIdle = _hasIdle && !_hasNeeded;
+        if (!_hasHandshake && !_hasKeys && !_found.IsWhole && !_found.IsIdle)
         {
             return std::nullopt;
         }
         if (!_hasHandshake)
         {
             _found.What = _isLarge ? KeyExchange::Step::Keys : KeyExchange::Step::Control;
-            _found.IsIdle = _found.IsIdle && !_isLarge;
         }
         return _found;
     }
@@ -163,9 +169,9 @@ private:
         {
             return;
         }
-        constexpr std::uint32_t builtin = 0xc0;  // OMG DDSI-RTPS 2.3, 9.3.1.2
         const std::uint32_t writer = Read32(body, writerAt, false);
-        _found.IsIdle = _found.IsWhole && !_hasSource && (writer & builtin) == builtin;
+        const bool isIdle = std::find(IdleWriters.begin(), IdleWriters.end(), writer) != IdleWriters.end();
+        (isIdle ? _hasIdle : _hasNeeded) = true;
         SetSource(writer ^ submessage.Kind);
         if (_found.IsWhole || _hasHandshake ||
             !std::equal(HandshakeWriter.begin(), HandshakeWriter.end(),
@@ -200,6 +206,8 @@ private:
     bool _hasKeys = false;
     bool _hasSource = false;
     bool _isLarge = false;
+    bool _hasIdle = false;    // a submessage of one of IdleWriters
+    bool _hasNeeded = false;  // any other submessage of a writer or reader
 };
 
 }  // namespace

@@ -36,8 +36,9 @@ struct KeyExchange
     // 8.4.2.4: protected as a whole. Once keys were exchanged, all datagrams are but keys, control and
     // handshakes.
     bool IsWhole = false;
-    // Protected as a whole without encryption, and from builtin discovery endpoints for nodes without keys,
-    // which are idle where discovery is protected.
+    // Concerns only those builtin endpoints that no node uses where discovery and liveliness are protected:
+    // their protected counterparts (OMG DDS Security 1.1, 7.4.5) are used instead, and no node looks up
+    // types.
     bool IsIdle = false;
     // For a handshake's message: the sample's number, common to all its fragments.
     std::uint64_t Number = 0;

@@ -24,6 +24,27 @@ bool KeyExchangeOutbox::IsBehindKeys(const Peer &peer, const ControlKind &kind)
     return !peer.KeysWaiting.empty() && peer.KeysWaiting.front().Source == kind.Source;
 }
 
+KeyExchangeOutbox::TimePoint KeyExchangeOutbox::DueOf(const Peer &peer, const Message &message) const
+{
+    TimePoint due = message.Due;
+    if (message.What == Step::Request)
+    {
+        const Duration calm = Calm * _answerTime.value_or(FirstGap);
+        for (const auto &[name, other] : _peers)
+        {
+            const bool hasHandshake = &other != &peer && other.HandshakeAt != TimePoint{};
+            due = hasHandshake ? std::max(due, other.HandshakeAt + calm) : due;
+        }
+    }
+    return due;
+}
+
+KeyExchangeOutbox::TimePoint KeyExchangeOutbox::DueOf(const Peer &peer, const Control &control) const
+{
+    const bool isAhead = static_cast<double>(control.Bytes.size() + Headers) > peer.ControlAhead;
+    return isAhead ? std::max(control.Due, peer.ControlSaidAt + ControlGapNow()) : control.Due;
+}
+
 // Calls visit(choice) for each item that the window allows to go.
 template <typename Visit>
 void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
@@ -39,8 +60,9 @@ void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
             if (!control.Bytes.empty() && !IsBehindKeys(peer, kind))
             {
                 visit(Choice{.What = Step::Control,
+                             .IsWhole = control.IsWhole,
                              .Place = control.Place,
-                             .Due = control.Due,
+                             .Due = DueOf(peer, control),
                              .Of = name,
                              .Kind = kind});
             }
@@ -49,7 +71,7 @@ void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
         {
             visit(Choice{.What = peer.Waiting->What,
                          .Place = peer.Waiting->Place,
-                         .Due = peer.Waiting->Due,
+                         .Due = DueOf(peer, *peer.Waiting),
                          .Of = name,
                          .Kind = {}});
         }
@@ -86,8 +108,8 @@ std::optional<KeyExchangeOutbox::Choice> KeyExchangeOutbox::Next(TimePoint now) 
     VisitChoices(
         [&](const Choice &choice)
         {
-            if (choice.Due <= now &&
-                (!best || std::tie(choice.What, choice.Place) < std::tie(best->What, best->Place)))
+            if (choice.Due <= now && (!best || std::tie(choice.What, choice.IsWhole, choice.Place) <
+                                                   std::tie(best->What, best->IsWhole, best->Place)))
             {
                 best = choice;
             }
@@ -121,10 +143,9 @@ void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Da
         Control &control = peer.Controls.at(*choice.Kind);
         taken.push_back({choice.Kind->Route, std::exchange(control.Bytes, {})});
         control.Gap = std::exchange(control.IsSaid, true)
-                          ? std::min<Duration>(2 * control.Gap, control.IsIdle ? Duration(LongestIdleGap)
-                                                                               : LongControlGapNow())
+                          ? std::min<Duration>(2 * control.Gap, LongControlGapNow())
                           : ControlGapNow();
-        control.SaidAt = now;
+        control.SaidAt = peer.ControlSaidAt = now;
         waits = false;
     }
     else if (choice.What == Step::Keys)
@@ -147,6 +168,8 @@ void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Da
     std::size_t size = 0;
     std::for_each(taken.begin() + from, taken.end(),
                   [&size](const Datagram &datagram) { size += datagram.Bytes.size() + Headers; });
+    peer.ControlAhead += static_cast<double>(size) * (choice.Kind ? -1.0 : ControlShare);
+    peer.ControlAhead = std::clamp(peer.ControlAhead, 0.0, MostControlAhead);
     Charge(peer, size, waits, now);
 }
 
@@ -155,6 +178,7 @@ void KeyExchangeOutbox::TakeMessage(Peer &peer, TimePoint now, std::vector<Datag
     const bool again = peer.Said == peer.Waiting->What;
     peer.Gap = again && peer.Gap > Duration(0) ? std::min<Duration>(2 * peer.Gap, LongestGap) : GapNow();
     peer.Said = peer.Waiting->What;
+    peer.HandshakeAt = peer.Said != Step::Ask ? now : peer.HandshakeAt;
     peer.SaidNumber = peer.Waiting->Number;
     peer.SaidAgainAt = now + peer.Gap;
     peer.IsRepeated = peer.IsRepeated || again;

@@ -61,10 +61,6 @@ void KeyExchangeOutbox::BeginControlAnew(Peer &peer)
 {
     for (auto &[kind, control] : peer.Controls)
     {
-        if (control.IsIdle)
-        {
-            continue;
-        }
         control.Gap = std::min(control.Gap, ControlGapNow());
         control.Due = std::min(control.Due, control.SaidAt + control.Gap);
     }
@@ -97,13 +93,13 @@ KeyExchangeOutbox::Peer &KeyExchangeOutbox::PeerOf(const KeyExchange::Prefix &na
 bool KeyExchangeOutbox::Put(std::span<const std::uint8_t> datagram, const KeyExchange &what,
                             std::uint64_t route, TimePoint now)
 {
+    if (what.IsIdle || what.IsForOther)
+    {
+        return true;
+    }
     if (what.IsWhole ? !IsHeld(what, now) : what.To == KeyExchange::Prefix{})
     {
         return false;
-    }
-    if (what.IsForOther)
-    {
-        return true;
     }
     Peer &peer = PeerOf(what.To, now);
     if (!what.IsWhole && what.What != Step::Control)
@@ -134,10 +130,6 @@ void KeyExchangeOutbox::Exchanged(Peer &peer, TimePoint now)
 
 bool KeyExchangeOutbox::IsHeld(const KeyExchange &what, TimePoint now) const
 {
-    if (what.IsIdle)
-    {
-        return true;
-    }
     if (what.To == KeyExchange::Prefix{})
     {
         return what.What == Step::Control && now - _exchangedAt < Settled;
@@ -189,14 +181,14 @@ void KeyExchangeOutbox::PutControl(Peer &peer, Datagram datagram, const KeyExcha
         control.Place = ++_turn;
         control.Due = control.IsSaid ? std::max(now, control.SaidAt + control.Gap) : now;
     }
-    control.IsIdle = what.IsIdle;
     control.Bytes = std::move(datagram.Bytes);
+    control.IsWhole = what.IsWhole;
 }
 
 bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
 {
     const auto found = _peers.find(what.From);
-    if (found == _peers.end())
+    if (found == _peers.end() || what.IsIdle)
     {
         return true;
     }
@@ -205,6 +197,10 @@ bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
     if (!what.IsWhole && what.What != Step::Control)
     {
         Exchanged(peer, now);
+    }
+    if (what.IsHandshake() && what.What != Step::Ask)
+    {
+        peer.HandshakeAt = now;
     }
     if (peer.Waiting && IsPast(peer.Waiting->What, what.What))
     {

@@ -26,16 +26,21 @@ namespace Rabit
 // - Messages that end an exchange go before those that begin one, in the order of KeyExchange::Step; within a
 //   step, the longest waiting goes first. The last message of a handshake, and control, do not wait for the
 //   window.
+// - One exchange after the other: a request goes when no other handshake has moved for Calm answer times.
+// Many
+//   at once last long, and as long as an exchange lasts, the vendors repeat control.
 // - Of the handshake messages to a peer only the newest waits. A message that the peer has shown not to need
 //   any more is dropped. A repetition goes when an answer had time to arrive, with exponential backoff.
 // - Keys keep their order and are dropped only beyond MostWaiting bytes. Control of each kind has one slot:
 //   the newest goes, with exponential backoff, which is reset when keys come or go. A writer's control stays
-//   behind its keys.
+//   behind its keys. Control about keys goes before other control. All control to a peer together may take
+//   ControlShare of the other bytes that go to it; beyond this, one datagram goes in each interval.
 // - A request for keys that are under way, or may be, is ignored: the vendors would send all of them again
 //   each time. The peer repeats the request.
 // - Datagrams protected as a whole are scheduled in the same way if they are for a peer with a recent
 //   exchange. So is control of this kind to all peers, since the vendors repeat it too quickly as well.
-//   Otherwise they are sent unchanged, except those of idle endpoints, which are always held.
+//   Otherwise they are sent unchanged.
+// - Datagrams of idle endpoints are dropped: the vendors would request data from each other that never comes.
 // - A rate limits all of this, if one is set.
 //
 // The vendors repair datagrams dropped here as if the network had lost them. A pure state machine, not
@@ -64,7 +69,10 @@ public:
     static constexpr Milliseconds LongestFirstControlGap{1000};
     static constexpr Milliseconds ShortestLongControlGap{200};
     static constexpr Milliseconds LongestControlGap{1000};
-    static constexpr Milliseconds LongestIdleGap{4000};  // KeyExchange::IsIdle
+    static constexpr double ControlShare = 0.25;
+    static constexpr double MostControlAhead =
+        2000.0;  // bytes that may go before any others, or after a pause
+    static constexpr int Calm = 4;
     // Time after the last handshake or key until an exchange counts as settled.
     static constexpr Milliseconds Settled{6000};
     static constexpr std::size_t Headers = 20 + 8;  // IPv4, UDP
@@ -118,8 +126,8 @@ private:
     struct Control
     {
         std::vector<std::uint8_t> Bytes;  // waiting; empty: none
-        bool IsIdle = false;
-        bool IsSaid = false;  // if true, the next two are valid
+        bool IsWhole = false;             // KeyExchange::IsWhole
+        bool IsSaid = false;              // if true, the next two are valid
         TimePoint SaidAt;
         Duration Gap{0};  // until the next one
         TimePoint Due;    // of the waiting datagram
@@ -143,16 +151,20 @@ private:
         std::deque<Keys> KeysWaiting;
         TimePoint KeysSaidAt{};
         std::map<ControlKind, Control> Controls;
+        double ControlAhead = MostControlAhead;  // bytes of control that may go now
+        TimePoint ControlSaidAt{};
         std::size_t Unanswered = 0;  // bytes; if not 0, the next three are valid
         TimePoint UnansweredSince;
         TimePoint UnansweredUntil;  // after this they count as lost
         bool IsRepeated = false;    // a repetition is among them, so that an answer tells no time
         TimePoint TouchedAt;
         TimePoint ExchangedAt;
+        TimePoint HandshakeAt{};  // of the last message of a handshake with it
     };
     struct Choice
     {
         Step What = Step::Rest;
+        bool IsWhole = false;  // of control
         Turn Place = 0;
         TimePoint Due;
         KeyExchange::Prefix Of{};
@@ -167,6 +179,8 @@ private:
     bool Fits(std::size_t size) const { return _unanswered == 0 || _unanswered + size <= _window; }
     static std::size_t SizeOf(const Message &message);
     static bool IsBehindKeys(const Peer &peer, const ControlKind &kind);
+    TimePoint DueOf(const Peer &peer, const Message &message) const;
+    TimePoint DueOf(const Peer &peer, const Control &control) const;
     template <typename Visit>
     void VisitChoices(const Visit &visit) const;
     std::optional<Choice> Next(TimePoint now) const;

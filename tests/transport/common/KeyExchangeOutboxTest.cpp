@@ -91,7 +91,7 @@ TEST_F(KeyExchangeOutboxTest, TheWindowBoundsWhatIsNotAnswered)
 {
     for (std::uint8_t peer = 1; peer <= 5; ++peer)
     {
-        Put(peer, Step::Request, peer, 0ms);
+        Put(peer, Step::Reply, peer, 0ms);
     }
     EXPECT_EQ(Take(0ms), (Routes{1, 2}));
     EXPECT_EQ(Take(100ms), Routes{});
@@ -101,10 +101,10 @@ TEST_F(KeyExchangeOutboxTest, AnAnswerMakesRoomForTheNext)
 {
     for (std::uint8_t peer = 1; peer <= 3; ++peer)
     {
-        Put(peer, Step::Request, peer, 0ms);
+        Put(peer, Step::Reply, peer, 0ms);
     }
     Take(0ms);
-    Hear(2, Step::Reply, 500ms);
+    Hear(2, Step::Final, 500ms);
     EXPECT_EQ(Take(500ms), (Routes{3}));
 }
 
@@ -115,17 +115,17 @@ TEST_F(KeyExchangeOutboxTest, QuickAnswersOpenTheWindowAndLateOnesCloseIt)
     Hear(1, Step::Reply, 100ms);
     EXPECT_GT(Outbox.Window(), KeyExchangeOutbox::FirstWindow);
     const std::size_t open = Outbox.Window();
-    Put(2, Step::Request, 2, 100ms);
-    Take(100ms);
+    Put(2, Step::Request, 2, 500ms);
+    Take(500ms);
     Hear(2, Step::Reply, 2s);
     EXPECT_EQ(Outbox.Window(), open / 2);
 }
 
 TEST_F(KeyExchangeOutboxTest, WhatIsNeverAnsweredCountsAsLostAndClosesTheWindow)
 {
-    Put(1, Step::Request, 1, 0ms);
-    Put(2, Step::Request, 2, 0ms);
-    Put(3, Step::Request, 3, 0ms);
+    Put(1, Step::Reply, 1, 0ms);
+    Put(2, Step::Reply, 2, 0ms);
+    Put(3, Step::Reply, 3, 0ms);
     Take(0ms);
     EXPECT_EQ(Next(), 500ms);
     EXPECT_EQ(Outbox.Window(), KeyExchangeOutbox::SmallestWindow);
@@ -159,6 +159,25 @@ TEST_F(KeyExchangeOutboxTest, RepetitionsGoAtDoublingDistancesAndTheNewestAlone)
     EXPECT_EQ(routes, (Routes{0, 500, 1500, 3500, 7500, 15500}));
 }
 
+TEST_F(KeyExchangeOutboxTest, ARequestWaitsUntilNoOtherHandshakeMovesAnyMore)
+{
+    Put(1, Step::Request, 1, 0ms, 100);
+    Put(2, Step::Request, 2, 0ms, 100);
+    EXPECT_EQ(Take(0ms), (Routes{1}));
+    Hear(1, Step::Reply, 100ms);
+    Put(1, Step::Final, 3, 110ms, 100);
+    EXPECT_EQ(Take(110ms), (Routes{3}));
+    EXPECT_EQ(Next(), 510ms) << "after four times the answer time of 100 ms";
+}
+
+TEST_F(KeyExchangeOutboxTest, AReplyDoesNotWaitForOtherHandshakes)
+{
+    Put(1, Step::Request, 1, 0ms, 100);
+    Take(0ms);
+    Put(2, Step::Reply, 2, 1ms, 100);
+    EXPECT_EQ(Take(1ms), (Routes{2}));
+}
+
 TEST_F(KeyExchangeOutboxTest, ARepetitionIsForgottenWhenTheAnswerComes)
 {
     Put(1, Step::Request, 1, 0ms);
@@ -179,15 +198,14 @@ TEST_F(KeyExchangeOutboxTest, AReplyIsKeptUntilTheFinalMessageComes)
 
 TEST_F(KeyExchangeOutboxTest, WhatEndsAnExchangeGoesBeforeWhatBeginsOne)
 {
-    Put(9, Step::Request, 9, 0ms);
-    Take(0ms);
     Put(1, Step::Request, 1, 1ms, 100);
     Put(2, Step::Ask, 2, 1ms, 100);
     Put(3, Step::Reply, 3, 1ms, 100);
     Put(4, Step::Control, 4, 1ms, 100);
     Put(5, Step::Keys, 5, 1ms, 100);
     Put(6, Step::Final, 6, 1ms, 100);
-    EXPECT_EQ(Take(1ms), (Routes{6, 5, 4, 3, 2, 1}));
+    EXPECT_EQ(Take(1ms), (Routes{6, 5, 4, 3, 2}));
+    EXPECT_EQ(Take(10s), (Routes{1}));
 }
 
 TEST_F(KeyExchangeOutboxTest, TheLastMessageDoesNotWaitForTheWindow)
@@ -257,6 +275,31 @@ TEST_F(KeyExchangeOutboxTest, ControlGoesAtDoublingDistancesAndTheNewestAlone)
     EXPECT_EQ(times, (std::vector<int>{0, 50, 150, 350, 750, 1550}));
 }
 
+TEST_F(KeyExchangeOutboxTest, ControlMayTakeAQuarterOfWhatGoesBesides)
+{
+    const auto controls = [this](std::uint32_t first, Milliseconds at)
+    {
+        for (std::uint32_t source = first; source < first + 30; ++source)
+        {
+            Put(1, Step::Control, 1, at, 100 - KeyExchangeOutbox::Headers, source);
+        }
+        return Take(at).size();
+    };
+    EXPECT_EQ(controls(100, 0ms), 20U) << "2000 bytes at first";
+    Put(1, Step::Keys, 2, 1ms, 2000 - KeyExchangeOutbox::Headers);
+    EXPECT_EQ(controls(200, 1ms), 1U + 5U) << "a quarter of the keys' 2000 bytes";
+    EXPECT_EQ(controls(300, 60ms), 1U) << "one in each interval";
+}
+
+TEST_F(KeyExchangeOutboxTest, ControlAboutKeysGoesBeforeOtherControl)
+{
+    Put(1, Step::Keys, 1, 0ms, 600);
+    Take(0ms);
+    Put({.To = Prefix(1), .What = Step::Control, .Source = 3, .IsWhole = true}, 2, 1ms, 100);
+    Put(1, Step::Control, 3, 1ms, 100);
+    EXPECT_EQ(Take(1ms), (Routes{3, 2}));
+}
+
 TEST_F(KeyExchangeOutboxTest, ControlBeginsAnewWhenKeysCome)
 {
     for (int at = 0; at < 1000; at += 10)
@@ -272,26 +315,26 @@ TEST_F(KeyExchangeOutboxTest, ControlBeginsAnewWhenKeysCome)
 
 TEST_F(KeyExchangeOutboxTest, WhatAWriterSaysOfItsKeysStaysBehindThem)
 {
-    Put(9, Step::Request, 9, 0ms);
-    Put(8, Step::Request, 8, 0ms);
+    Put(9, Step::Reply, 9, 0ms);
+    Put(8, Step::Reply, 8, 0ms);
     Take(0ms);
     Put(1, Step::Keys, 1, 1ms, 1000, 5);
     Put(1, Step::Control, 2, 1ms, 100, 5);
     Put(1, Step::Control, 3, 1ms, 100, 6);
     EXPECT_EQ(Take(1ms), (Routes{3}));
-    Hear(9, Step::Reply, 2ms);
+    Hear(9, Step::Final, 2ms);
     EXPECT_EQ(Take(2ms), (Routes{1, 2}));
 }
 
 TEST_F(KeyExchangeOutboxTest, WhoAsksForKeysThatAreOnTheirWayIsNotHeard)
 {
-    Put(9, Step::Request, 9, 0ms);
-    Put(8, Step::Request, 8, 0ms);
+    Put(9, Step::Reply, 9, 0ms);
+    Put(8, Step::Reply, 8, 0ms);
     Take(0ms);
     EXPECT_TRUE(Hear(1, Step::Control, 1ms));
     Put(1, Step::Keys, 1, 1ms, 1000);
     EXPECT_FALSE(Hear(1, Step::Control, 2ms));
-    Hear(9, Step::Reply, 400ms);
+    Hear(9, Step::Final, 400ms);
     EXPECT_EQ(Take(400ms), (Routes{1}));
     EXPECT_FALSE(Hear(1, Step::Control, 700ms));
     EXPECT_TRUE(Hear(1, Step::Control, 800ms));
@@ -306,6 +349,15 @@ TEST_F(KeyExchangeOutboxTest, WhatIsProtectedAsAWholeIsHeldAMomentAfterKeysAlone
     EXPECT_TRUE(Put(control, 1, 10ms, 100));
     EXPECT_TRUE(Put(control, 1, 5990ms, 100));
     EXPECT_FALSE(Put(control, 1, 6010ms, 100));
+}
+
+TEST_F(KeyExchangeOutboxTest, DatagramsOfIdleEndpointsAreDropped)
+{
+    Put(1, Step::Keys, 1, 0ms, 600);
+    Take(0ms);
+    EXPECT_TRUE(Put({.To = Prefix(1), .What = Step::Control, .IsIdle = true}, 2, 1ms, 100));
+    EXPECT_TRUE(Put({.What = Step::Keys, .IsIdle = true}, 3, 1ms, 100)) << "to all as well";
+    EXPECT_EQ(Take(10s), Routes{});
 }
 
 TEST_F(KeyExchangeOutboxTest, ASetRateBoundsAll)

@@ -94,10 +94,27 @@ TEST(KeyExchangeTest, WhatIsProtectedAsAWholeIsTold)
     EXPECT_EQ(Read(Message().Signed().To(7).Encrypted(5, 1, 200))->What, Step::Keys);
 }
 
+TEST(KeyExchangeTest, EndpointsThatHaveAProtectedCounterpartAreIdle)
+{
+    for (const std::uint8_t writer : Message::Bytes{3, 4})
+    {
+        EXPECT_TRUE(Read(Message().To(7).Acknowledge(writer))->IsIdle);
+        EXPECT_TRUE(Read(Message().Signed().To(7).Acknowledge(writer))->IsIdle);
+    }
+    EXPECT_FALSE(Read(Message().Signed().To(7).Acknowledge(1))->IsIdle)
+        << "participants are announced in plain";
+}
+
+TEST(KeyExchangeTest, ADatagramThatHasAnythingElseIsNotIdle)
+{
+    EXPECT_FALSE(Read(Message().To(7).Acknowledge(3).Encrypted(0, 1, 36))->IsIdle);
+    EXPECT_FALSE(Read(Message().Signed().To(7).Acknowledge(3).Acknowledge(1))->IsIdle);
+}
+
 TEST(KeyExchangeTest, OthersAreNone)
 {
     EXPECT_FALSE(Read(Message()).has_value());
-    EXPECT_FALSE(Read(Message().To(7).Acknowledge(3)).has_value());
+    EXPECT_FALSE(Read(Message().To(7).Acknowledge(1)).has_value());
     EXPECT_FALSE(Read(Message().To(7).Encrypted(5, 1, 200)).has_value());
     EXPECT_FALSE(ReadKeyExchange({}).has_value());
 }
