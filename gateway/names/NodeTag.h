@@ -1,10 +1,9 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <string_view>
+#include <rabit/base/Fnv1a.h>
 
-#include "names/Fnv1a.h"
+#include <cstdint>
+#include <string_view>
 
 namespace Rabit
 {
@@ -14,13 +13,7 @@ namespace Rabit
 // by mistake answers in vain.
 inline std::uint32_t NodeTagOf(std::string_view node, std::uint64_t incarnation)
 {
-    std::string bytes(node);
-    for (int shift = 0; shift < 64; shift += 8)
-    {
-        bytes += static_cast<char>(incarnation >> shift);
-    }
-    const std::uint64_t hash = Fnv1a(bytes);
-    const auto tag = static_cast<std::uint32_t>(hash ^ (hash >> 32));
+    const std::uint32_t tag = Fnv1a().Add(node).AddNumber(incarnation).Folded();
     return tag == 0 ? 1 : tag;
 }
 

@@ -1,11 +1,11 @@
 #include "names/TypeDefinition.h"
 
+#include <rabit/base/Fnv1a.h>
+
 #include <cctype>
 #include <cstddef>
 #include <map>
 #include <string>
-
-#include "names/Fnv1a.h"
 
 namespace Rabit
 {
@@ -54,7 +54,7 @@ std::string Normalized(const std::string &idl)
 
 std::uint64_t DefinitionHash(const std::string &name, const std::string &idlText)
 {
-    return Fnv1a(Normalized(name + "\n" + idlText));
+    return Fnv1a().Add(Normalized(name + "\n" + idlText)).Sum();
 }
 
 std::uint64_t DefinitionHash(const MessageType &type)

@@ -163,7 +163,12 @@ void Presence::TakeIn(const PresenceInbox::Contents &inbox, Duration now, Served
     }
     for (const std::string &node : inbox.OtherFormats)
     {
-        _otherFormats.Heard(node, now);
+        Gateway::Problem problem;
+        problem.subject = "node " + node;
+        problem.node = node;
+        problem.reason =
+            "its gateway speaks another version of presence than this one: neither knows what the other has";
+        _otherFormats.Note(problem, now);
     }
     KeepOneOfEach(served.StatesTold);
     KeepOneOfEach(served.StatesAsked);

@@ -20,10 +20,10 @@
 #include "presence/BeatPace.h"
 #include "presence/Introductions.h"
 #include "presence/OriginTable.h"
-#include "presence/OtherFormats.h"
 #include "presence/PeerTable.h"
 #include "presence/PresenceInbox.h"
 #include "presence/ReaderWatch.h"
+#include "presence/RecentProblems.h"
 #include "presence/RemoteQueues.h"
 #include "wire/BeatExtensions.h"
 #include "wire/BeatFormat.h"
@@ -185,7 +185,7 @@ private:
     BeatContents _contents;
     bool _isTool = false;
     bool _owesNews = false;  // a large delay, to be reported before the next beat is due
-    OtherFormats _otherFormats;
+    RecentProblems _otherFormats;
     PresenceInbox _inbox;
 
     std::unique_ptr<TransportWriter> _writer;

@@ -30,7 +30,12 @@ bool IncomingQueues::Accepts(std::string_view source, std::string_view queue)
     const bool accepts = found != _accepted.end() && found->second.AcceptsFrom(source);
     if (!accepts)
     {
-        _unwanted.Refused(source, queue, _workspace.GetClock().Monotonic());
+        Gateway::Problem problem;
+        problem.subject = std::string("accept ").append(queue);
+        problem.node = source;
+        problem.reason = std::string(source) + " sends messages to queue `" + std::string(queue) +
+                         "`, which accepts none of it: they are refused";
+        _unwanted.Note(problem, _workspace.GetClock().Monotonic());
     }
     return accepts;
 }

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "gateway.idl.h"
+#include "presence/RecentProblems.h"
 #include "queues/AcceptedQueue.h"
-#include "queues/UnwantedSenders.h"
 
 namespace Rabit
 {
@@ -93,7 +93,7 @@ private:
     std::vector<Undecoded> _undecoded;
     std::vector<std::shared_ptr<Queue>> _delivered;
     std::vector<Received> _received;
-    UnwantedSenders _unwanted;
+    RecentProblems _unwanted;  // senders without the right, by queue
 };
 
 }  // namespace Rabit

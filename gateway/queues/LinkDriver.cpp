@@ -129,8 +129,13 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
     }
     if (encoded[0] != LinkVersion)
     {
+        Gateway::Problem problem;
+        problem.subject = std::string("node ").append(info.Node);
+        problem.reason = "its gateway speaks version " + std::to_string(encoded[0]) +
+                         " of the queue links, this one version " + std::to_string(LinkVersion) +
+                         ": no queue message passes between them";
         const std::lock_guard lock(_mutex);
-        _versions.Heard(info.Node, encoded[0], Now());
+        _otherVersions.Note(problem, Now());
         return;
     }
     if (!LinkFrameCodec::Decode(encoded, frame) ||
@@ -390,7 +395,7 @@ std::vector<Gateway::Problem> LinkDriver::Problems() const
     const std::string storeError = _incarnations.Error();
     const std::lock_guard lock(_mutex);
     std::vector<Gateway::Problem> problems = _incoming.Problems();
-    for (Gateway::Problem &problem : _versions.Problems(Now()))
+    for (Gateway::Problem &problem : _otherVersions.Problems(Now()))
     {
         problems.push_back(std::move(problem));
     }

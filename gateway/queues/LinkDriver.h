@@ -24,9 +24,9 @@
 #include "air/DelayMeter.h"
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
+#include "presence/RecentProblems.h"
 #include "queues/IncomingQueues.h"
 #include "queues/LinkDatagrams.h"
-#include "queues/LinkVersions.h"
 
 namespace Rabit
 {
@@ -188,7 +188,7 @@ private:
 
     DelayMeter _delays;
     std::atomic<bool> _anyDelays{false};  // changed with the mutex held
-    LinkVersions _versions;
+    RecentProblems _otherVersions;        // nodes that speak another version of the links
     std::atomic<std::uint64_t> _malformed{0};
 
     LinkDatagrams _sending;  // gateway's thread only

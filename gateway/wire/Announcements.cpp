@@ -1,12 +1,12 @@
 #include "wire/Announcements.h"
 
+#include <rabit/base/Fnv1a.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "names/Fnv1a.h"
 #include "names/NamePattern.h"
 #include "names/TypeDefinition.h"
 #include "wire/GatewayTopics.h"
@@ -110,8 +110,7 @@ std::optional<Gateway::Announcement> Decode(std::span<const std::uint8_t> bytes)
 // Folds the halves of the hash into one.
 std::uint32_t DigestOf(std::span<const std::uint8_t> bytes)
 {
-    const std::uint64_t hash = Fnv1a(bytes);
-    return static_cast<std::uint32_t>(hash ^ (hash >> 32));
+    return Fnv1a().Add(bytes).Folded();
 }
 
 std::optional<std::size_t> StateIndexOf(const Gateway::Announcement &announcement, std::string_view message)

@@ -1,10 +1,11 @@
 #include "wire/BeatExtensions.h"
 
+#include <rabit/base/LittleEndian.h>
+
 #include <algorithm>
 #include <span>
 
 #include "wire/BeatNews.h"
-#include "wire/LittleEndian.h"
 
 namespace Rabit::BeatExtensions
 {

@@ -1,6 +1,6 @@
 #include "wire/TypeFrames.h"
 
-#include "wire/LittleEndian.h"
+#include <rabit/base/LittleEndian.h>
 
 namespace Rabit::TypeFrames
 {

@@ -75,7 +75,7 @@ TEST_F(IncomingQueuesTest, ASenderToAQueueThatAcceptsNothingOfItIsNamedForSomeSe
     EXPECT_EQ(strict.Problems()[0].node, "uav2");
     EXPECT_EQ(strict.Problems()[0].reason,
               "uav2 sends messages to queue `Orders`, which accepts none of it: they are refused");
-    clock->Advance(UnwantedSenders::Memory);
+    clock->Advance(RecentProblems::Memory);
     EXPECT_TRUE(strict.Problems()[0].node.empty());
 }
 
@@ -91,19 +91,6 @@ TEST_F(IncomingQueuesTest, AcceptsTheTypesOfTheQueueAlone)
     EXPECT_TRUE(incoming.AcceptsType("Orders", "Uav::Goto"));
     EXPECT_FALSE(incoming.AcceptsType("Orders", "Uav::Pose"));
     EXPECT_FALSE(incoming.AcceptsType("Nowhere", "Uav::Goto"));
-}
-
-TEST(UnwantedSenders, ThereIsRoomForSomeAtATime)
-{
-    using namespace std::chrono_literals;
-    UnwantedSenders senders;
-    for (int i = 0; i < 1000; ++i)
-    {
-        senders.Refused("uav" + std::to_string(i), "Orders", 1s);
-    }
-    EXPECT_EQ(senders.Problems(1s).size(), UnwantedSenders::MostRemembered);
-    senders.Refused("late", "Orders", 1s + UnwantedSenders::Memory);
-    EXPECT_EQ(senders.Problems(1s + UnwantedSenders::Memory).size(), 1u);
 }
 
 // A fixture in which all messages are large.

@@ -42,6 +42,7 @@ OWNERS = [
     *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"guard/", "guard"),
     (r"rtps/", "meeting"),
+    (r"rabit/base/", "base"),
     (r"rabit/idl/", "idl"),
     (r"rabit/dynamic/", "idl dynamic"),
     (r"model/", "idl model"),
@@ -74,6 +75,7 @@ OWNERS = [
 # The owners that the files below a folder may include. The longest folder that fits holds. A header without an owner
 # (the standard library, Boost, the file's own folder) may be included everywhere.
 ALLOWED = {
+    "base": {"base"},
     "core": {"core"},
     "idl/runtime": {"core", "idl", "Fast-CDR"},
     "idl/model": {"idl model", "Cyclone DDS"},
@@ -124,6 +126,11 @@ ALLOWED = {
     "examples/ground_station/web": {"core", "idl", "gateway", "gateway messages", "user messages", "network", "OpenSSL",
                                     "room keys"},
 }
+
+# The rooms of these folders may include base/, which stands below them all.
+for folder, owners in ALLOWED.items():
+    if folder.split("/")[0] in {"idl", "transport", "gateway"}:
+        owners.add("base")
 
 
 def upward_rooms():

@@ -21,6 +21,13 @@ class CheckIncludes(unittest.TestCase):
             self.violations("core/src/A.cpp", "// first\n#include <rabit/gateway/GatewayManager.h>\n"),
             ["core/src/A.cpp:2: core/ must not include <rabit/gateway/GatewayManager.h> (gateway)"])
 
+    def test_all_rooms_but_core_may_know_the_base_which_knows_none(self):
+        text = "#include <rabit/base/Fnv1a.h>\n"
+        self.assertEqual(self.violations("gateway/links/src/A.cpp", text), [])
+        self.assertEqual(self.violations("transport/guard/A.cpp", text), [])
+        self.assertEqual(len(self.violations("core/src/A.cpp", text)), 1)
+        self.assertEqual(len(self.violations("base/include/rabit/base/A.h", "#include <rabit/RabitMessage.h>\n")), 1)
+
     def test_core_may_not_know_a_network(self):
         self.assertEqual(len(self.violations("core/src/A.h", "#include <boost/asio.hpp>\n#include <sys/socket.h>\n")), 2)
 

@@ -1,5 +1,7 @@
 #include "guard/DiscoveryCheck.h"
 
+#include <rabit/base/Fnv1a.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -8,7 +10,6 @@
 
 #include "common/ParticipantIdentity.h"
 #include "guard/DeliveryCheck.h"
-#include "guard/Fnv.h"
 #include "guard/RtpsReader.h"
 #include "guard/TokenCheck.h"
 
@@ -78,8 +79,8 @@ struct Found
     bool Topic = false;
     bool Type = false;
     int Locators = 0;
-    Fnv Digest;
-    Fnv DigestWithoutLease;
+    Fnv1a Digest;
+    Fnv1a DigestWithoutLease;
     std::vector<HostAddress> Hosts;
     bool ListensToGroup = false;
     bool BestEffort = false;

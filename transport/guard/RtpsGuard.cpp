@@ -1,9 +1,10 @@
 #include "guard/RtpsGuard.h"
 
+#include <rabit/base/Fnv1a.h>
+
 #include <algorithm>
 
 #include "guard/DiscoveryCheck.h"
-#include "guard/Fnv.h"
 #include "guard/ProtectionCheck.h"
 #include "guard/RtpsReader.h"
 #include "guard/TokenCheck.h"
@@ -86,10 +87,10 @@ bool IsSoundUnchanged(const Submessage &submessage, Delivery delivery, const Gui
 // in a heartbeat, how far it has come.
 PeerVoice::Saying SayingOf(SubmessageKind kind, const Delivery &delivery)
 {
-    Fnv about;
+    Fnv1a about;
     about.AddNumber(static_cast<std::uint64_t>(kind));
     about.AddNumber(delivery.Writer);
-    Fnv content;
+    Fnv1a content;
     content.AddNumber(static_cast<std::uint64_t>(delivery.First));
     if (kind != SubmessageKind::Heartbeat)
     {

@@ -1,10 +1,11 @@
 #include "rtps/DiscoverySubmessages.h"
 
+#include <rabit/base/Fnv1a.h>
+
 #include <algorithm>
 #include <array>
 
 #include "guard/DiscoveryCheck.h"
-#include "guard/Fnv.h"
 #include "guard/RtpsReader.h"
 
 namespace Rabit::Rtps
@@ -189,10 +190,10 @@ EntityId SubjectOf(std::span<const std::uint8_t> announcement)
 std::uint64_t ContentOf(std::span<const std::uint8_t> announcement)
 {
     constexpr std::size_t from = SubmessageHeaderSize + NumberInData + NumberSize;
-    Fnv content;
-    content.AddByte(announcement[1]);
-    content.Add(announcement.subspan(std::min(from, announcement.size())));
-    return content.Sum();
+    return Fnv1a()
+        .AddByte(announcement[1])
+        .Add(announcement.subspan(std::min(from, announcement.size())))
+        .Sum();
 }
 
 void AppendDestination(std::vector<std::uint8_t> &message, const GuidPrefix &to)

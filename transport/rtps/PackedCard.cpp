@@ -1,8 +1,7 @@
 #include "rtps/PackedCard.h"
 
+#include <rabit/base/Fnv1a.h>
 #include <zstd.h>
-
-#include "guard/Fnv.h"
 
 namespace Rabit::Rtps
 {
@@ -34,9 +33,7 @@ std::optional<std::vector<std::uint8_t>> UnpackCard(std::span<const std::uint8_t
 
 CardSummary SummaryOf(std::span<const std::uint8_t> packed)
 {
-    Fnv digest;
-    digest.Add(packed);
-    return {.Digest = digest.Sum(), .Size = static_cast<std::uint32_t>(packed.size())};
+    return {.Digest = Fnv1a().Add(packed).Sum(), .Size = static_cast<std::uint32_t>(packed.size())};
 }
 
 }  // namespace Rabit::Rtps

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/LittleEndian.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -38,10 +40,8 @@ public:
     template <typename Number>
     void Fixed(Number value)
     {
-        for (std::size_t i = 0; i < sizeof(Number); ++i)
-        {
-            Byte(static_cast<std::uint8_t>(value >> (8 * i)));
-        }
+        LittleEndian::Write(value, _at);
+        _at += sizeof value;
     }
     void Bytes(const void *data, std::size_t size)
     {
@@ -105,13 +105,7 @@ public:
     template <typename Number>
     Number Fixed()
     {
-        const std::span<const std::uint8_t> bytes = Bytes(sizeof(Number));
-        Number value = 0;
-        for (std::size_t i = 0; i < bytes.size(); ++i)
-        {
-            value = static_cast<Number>(value | (static_cast<Number>(bytes[i]) << (8 * i)));
-        }
-        return value;
+        return LittleEndian::Read<Number>(Bytes(sizeof(Number)));
     }
     std::span<const std::uint8_t> Bytes(std::size_t size)
     {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/LittleEndian.h>
+
 #include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Mcap
@@ -21,13 +23,7 @@ public:
     template <typename T>
     T Number()
     {
-        const ByteView bytes = Raw(sizeof(T));
-        T value = 0;
-        for (std::size_t at = 0; at < bytes.size(); ++at)
-        {
-            value = static_cast<T>(value | static_cast<T>(static_cast<T>(bytes[at]) << (8 * at)));
-        }
-        return value;
+        return LittleEndian::Read<T>(Raw(sizeof(T)));
     }
     ByteView Raw(std::uint64_t size)
     {

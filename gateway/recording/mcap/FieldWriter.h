@@ -1,7 +1,6 @@
 #pragma once
 
-#include <bit>
-#include <cstring>
+#include <rabit/base/LittleEndian.h>
 
 #include "recording/mcap/McapRecords.h"
 
@@ -26,8 +25,7 @@ public:
     template <typename T>
     void Number(T value)
     {
-        _to.resize(_to.size() + sizeof value);
-        Put(_to.size() - sizeof value, value);
+        LittleEndian::Put(value, _to);
     }
     void Raw(ByteView bytes) { _to.insert(_to.end(), bytes.begin(), bytes.end()); }
     void Text(const std::string &text)
@@ -75,17 +73,7 @@ private:
     template <typename T>
     void Put(std::size_t at, T value)
     {
-        if constexpr (std::endian::native == std::endian::little)
-        {
-            std::memcpy(_to.data() + at, &value, sizeof value);
-        }
-        else
-        {
-            for (std::size_t byte = 0; byte < sizeof value; ++byte)
-            {
-                _to[at + byte] = static_cast<std::uint8_t>(value >> (8 * byte));
-            }
-        }
+        LittleEndian::Write(value, _to.data() + at);
     }
 
     Bytes &_to;

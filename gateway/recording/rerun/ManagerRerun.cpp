@@ -1,5 +1,6 @@
 #include <rabit/ManualClock.h>
 #include <rabit/RabitSteppedReactor.h>
+#include <rabit/base/Fnv1a.h>
 #include <rabit/recording/ManagerRerun.h>
 
 #include <cstdio>
@@ -98,9 +99,8 @@ private:
 
 RerunResult ManagerRerun::Run(const ManagerRecording &recording, const MakeManager &make)
 {
-    constexpr std::uint64_t startOfDigest = 14695981039346656037U;
     RerunResult result;
-    result.Digest = startOfDigest;
+    result.Digest = Fnv1a().Sum();
     const std::vector<ManagerStep> &steps = *recording._steps;
     if (!steps.empty())
     {

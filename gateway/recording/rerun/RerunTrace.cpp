@@ -1,6 +1,7 @@
 #include "recording/rerun/RerunTrace.h"
 
 #include <rabit/PublishSubscribeMessage.h>
+#include <rabit/base/Fnv1a.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
@@ -14,16 +15,6 @@ namespace
 {
 
 using Kind = StepEvent::Kind;
-
-// FNV-1a, 64 bits.
-void AddTo(std::uint64_t &digest, const void *bytes, std::size_t size)
-{
-    constexpr std::uint64_t prime = 1099511628211U;
-    for (std::size_t i = 0; i < size; ++i)
-    {
-        digest = (digest ^ static_cast<const std::uint8_t *>(bytes)[i]) * prime;
-    }
-}
 
 std::string TitleOf(Kind what, const std::string &name, const std::string &type)
 {
@@ -333,8 +324,7 @@ void RerunTrace::Compare(const StepEvent *recorded, StepEvent::Kind what, const 
         sample.resize(type->SerializedSize(message));
         sample.resize(type->Serialize(message, sample));
     }
-    AddTo(_result.Digest, name.data(), name.size() + 1);
-    AddTo(_result.Digest, sample.data(), sample.size());
+    _result.Digest = Fnv1a(_result.Digest).Add(name).AddByte(0).Add(sample).Sum();
     ++_result.Outputs;
     const std::string typeName = type == nullptr ? "" : type->Name();
     const std::string title = TitleOf(what, name, typeName);

@@ -1,5 +1,6 @@
 #include "live/LiveProtocol.h"
 
+#include <rabit/base/LittleEndian.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -17,15 +18,6 @@ using Json = nlohmann::ordered_json;
 std::string Dump(const Json &json)
 {
     return json.dump(-1, ' ', true, Json::error_handler_t::replace);
-}
-
-template <typename Number>
-void PutLittleEndian(Number number, std::vector<std::uint8_t> &bytes)
-{
-    for (std::size_t i = 0; i < sizeof number; ++i)
-    {
-        bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
-    }
 }
 
 std::optional<std::uint32_t> NumberOf(const Json &value)
@@ -144,8 +136,8 @@ std::vector<std::uint8_t> MessageData(std::uint32_t subscription, std::uint64_t 
     std::vector<std::uint8_t> frame;
     frame.reserve(MessageDataHeader + bytes.size());
     frame.push_back(opcode);
-    PutLittleEndian(subscription, frame);
-    PutLittleEndian(time, frame);
+    LittleEndian::Put(subscription, frame);
+    LittleEndian::Put(time, frame);
     frame.insert(frame.end(), bytes.begin(), bytes.end());
     return frame;
 }
