@@ -1,9 +1,9 @@
 #include "common/RtpsTraffic.h"
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
-#include "common/RtpsSubmessages.h"
+#include "common/RtpsReader.h"
 
 namespace Rabit
 {
@@ -11,43 +11,25 @@ namespace Rabit
 namespace
 {
 
-// OMG DDSI-RTPS 2.3, 9.4.5
-constexpr std::uint8_t Data = 0x15;
-constexpr std::uint8_t DataFrag = 0x16;
-constexpr std::uint8_t HasData = 0x04;  // set in a DATA that carries more than a key
-constexpr std::size_t IdSize = ParticipantWriterId.size();
-constexpr std::size_t WriterInData = 8;
-constexpr std::size_t WriterElsewhere = 4;
-// 9.3.1.2: the two highest bits of an entity's last byte.
-constexpr std::uint8_t Builtin = 0xc0;
+using Rtps::ConstSubmessage;
+using Rtps::EntityId;
+using Rtps::SubmessageKind;
 
-using Submessage = RtpsSubmessage<const std::uint8_t>;
-
-// ACKNACK, HEARTBEAT, GAP, NACK_FRAG, HEARTBEAT_FRAG
-bool NamesWriter(std::uint8_t kind)
+// The writer that the submessage names; empty if it is cut off.
+std::optional<EntityId> WriterOf(const ConstSubmessage &submessage)
 {
-    return (kind >= 0x06 && kind <= 0x08) || kind == 0x12 || kind == 0x13;
+    const bool isData =
+        submessage.Kind == SubmessageKind::Data || submessage.Kind == SubmessageKind::DataFrag;
+    Rtps::RtpsReader body = submessage.Reader();
+    body.Skip(isData ? Rtps::WriterInData : sizeof(EntityId));
+    const EntityId writer = body.Entity();
+    return body.IsGood() ? std::optional(writer) : std::nullopt;
 }
 
-bool Names(const Submessage &submessage)
+bool IsOfParticipant(const ConstSubmessage &submessage)
 {
-    return submessage.Kind == Data || submessage.Kind == DataFrag || NamesWriter(submessage.Kind);
-}
-
-// The identity of the writer that the submessage names; empty if it is cut off.
-std::span<const std::uint8_t> WriterOf(const Submessage &submessage)
-{
-    const bool isData = submessage.Kind == Data || submessage.Kind == DataFrag;
-    const std::size_t at = isData ? WriterInData : WriterElsewhere;
-    return at + IdSize <= submessage.Body().size() ? submessage.Body().subspan(at, IdSize)
-                                                   : std::span<const std::uint8_t>();
-}
-
-bool IsOfParticipant(const Submessage &submessage)
-{
-    const auto writer = WriterOf(submessage);
-    return submessage.Kind == Data && (submessage.Flags & HasData) != 0 &&
-           std::equal(writer.begin(), writer.end(), ParticipantWriterId.begin(), ParticipantWriterId.end());
+    return submessage.Kind == SubmessageKind::Data && (submessage.Flags & Rtps::DataFlag) != 0 &&
+           WriterOf(submessage) == Rtps::ParticipantWriter;
 }
 
 }  // namespace
@@ -56,15 +38,15 @@ bool IsOfSamples(std::span<const std::uint8_t> head)
 {
     bool named = false;
     bool samples = false;
-    VisitSubmessages(head,
-                     [&](const Submessage &submessage)
-                     {
-                         if (!std::exchange(named, named || Names(submessage)) && named)
-                         {
-                             const auto writer = WriterOf(submessage);
-                             samples = !writer.empty() && (writer.back() & Builtin) != Builtin;
-                         }
-                     });
+    Rtps::VisitSubmessages(head,
+                           [&](const ConstSubmessage &submessage)
+                           {
+                               if (!std::exchange(named, named || Rtps::IsDelivery(submessage.Kind)) && named)
+                               {
+                                   const auto writer = WriterOf(submessage);
+                                   samples = writer && !Rtps::IsBuiltin(*writer);
+                               }
+                           });
     return samples;
 }
 
@@ -72,12 +54,13 @@ Announcing AnnouncingOf(std::span<const std::uint8_t> message)
 {
     int announcements = 0;
     int others = 0;
-    VisitSubmessages(message,
-                     [&](const Submessage &submessage)
-                     {
-                         announcements += IsOfParticipant(submessage) ? 1 : 0;
-                         others += Names(submessage) && !IsOfParticipant(submessage) ? 1 : 0;
-                     });
+    Rtps::VisitSubmessages(message,
+                           [&](const ConstSubmessage &submessage)
+                           {
+                               announcements += IsOfParticipant(submessage) ? 1 : 0;
+                               others +=
+                                   Rtps::IsDelivery(submessage.Kind) && !IsOfParticipant(submessage) ? 1 : 0;
+                           });
     return {.Any = announcements > 0, .Alone = announcements > 0 && others == 0};
 }
 

@@ -2,7 +2,7 @@
 
 #include <rabit/transport/Transport.h>
 
-#include "guard/RtpsReader.h"
+#include "common/RtpsReader.h"
 
 namespace Rabit::Rtps
 {
@@ -46,21 +46,17 @@ bool AreFromReader(const Delivery &delivery)
 // The parameters in front of a sample (8.7), up to the sentinel.
 bool ReadInlineQos(RtpsReader &body, Delivery &delivery)
 {
-    constexpr std::uint16_t Sentinel = 0x0001;
-    constexpr std::uint16_t KeyHash = 0x0070;
-    constexpr std::uint16_t StatusInfo = 0x0071;
-    constexpr std::uint16_t RelatedSample = 0x800f;
-    for (int i = 0; i < MostInlineParameters && body.IsGood(); ++i)
+    using namespace Parameters;
+    for (int i = 0; i < MostInlineParameters; ++i)
     {
-        const std::uint16_t id = body.U16();
-        const std::uint16_t length = body.U16();
-        if (id == Sentinel)
+        const auto parameter = TakeParameter(body);
+        if (!parameter)
         {
             return body.IsGood();
         }
-        const auto value = body.Bytes(length);
-        if (length % 4 != 0 || (id == KeyHash && length != 16) || (id == StatusInfo && length != 4) ||
-            (id == RelatedSample && length != 24))
+        const auto [id, value, at] = *parameter;
+        if (value.size() % 4 != 0 || (id == KeyHash && value.size() != 16) ||
+            (id == StatusInfo && value.size() != 4) || (id == RelatedSample && value.size() != 24))
         {
             return false;
         }
@@ -68,7 +64,7 @@ bool ReadInlineQos(RtpsReader &body, Delivery &delivery)
         {
             delivery.KeyHash = value;
         }
-        if (id == StatusInfo && !value.empty() && (value[3] & 3) != 0)
+        if (id == StatusInfo && (value[3] & 3) != 0)
         {
             delivery.Alive = false;
         }
@@ -106,10 +102,9 @@ bool HasItsFragments(const Delivery &delivery)
 
 std::optional<Delivery> CheckSample(const Submessage &submessage, RtpsReader body)
 {
-    constexpr std::uint8_t InlineQos = 0x02;
     const bool fragmented = submessage.Kind == SubmessageKind::DataFrag;
-    const std::uint8_t dataFlag = fragmented ? 0x00 : 0x04;
-    const std::uint8_t keyFlag = fragmented ? 0x04 : 0x08;
+    const std::uint8_t dataFlag = fragmented ? std::uint8_t{0} : DataFlag;
+    const std::uint8_t keyFlag = fragmented ? std::uint8_t{0x04} : KeyFlag;
     // octetsToInlineQos, counted from behind itself: extends over the entities, the number and the fragments.
     // No version of the protocol has had anything else there.
     const std::uint16_t toInlineQos = fragmented ? 28 : 16;
@@ -121,7 +116,7 @@ std::optional<Delivery> CheckSample(const Submessage &submessage, RtpsReader bod
     delivery.First = delivery.Last = body.Sequence();
     if (!sound || !IsSequence(delivery.First) || !AreFromWriter(delivery) ||
         (fragmented && !ReadFragments(body, delivery)) ||
-        ((submessage.Flags & InlineQos) != 0 && !ReadInlineQos(body, delivery)) || !body.IsGood())
+        ((submessage.Flags & InlineQosFlag) != 0 && !ReadInlineQos(body, delivery)) || !body.IsGood())
     {
         return std::nullopt;
     }
@@ -136,7 +131,6 @@ std::optional<Delivery> CheckSample(const Submessage &submessage, RtpsReader bod
     {
         return std::nullopt;
     }
-    constexpr std::size_t EncapsulationSize = 4;
     if ((hasData || delivery.HasKeyPayload) && delivery.Payload.size() < EncapsulationSize)
     {
         return std::nullopt;
@@ -216,11 +210,6 @@ std::optional<Delivery> CheckNackFrag(RtpsReader body)
 
 }  // namespace
 
-bool IsBuiltin(EntityId entity)
-{
-    return (entity & 0xc0) == 0xc0;
-}
-
 bool IsKnownBuiltin(EntityId writer)
 {
     return writer == ParticipantWriter || writer == PublicationsWriter || writer == SubscriptionsWriter ||
@@ -239,26 +228,9 @@ bool IsReader(EntityId entity)
     return kind == 0x04 || kind == 0x07;
 }
 
-bool IsDelivery(SubmessageKind kind)
-{
-    switch (kind)
-    {
-        case SubmessageKind::Data:
-        case SubmessageKind::DataFrag:
-        case SubmessageKind::Heartbeat:
-        case SubmessageKind::HeartbeatFrag:
-        case SubmessageKind::Gap:
-        case SubmessageKind::AckNack:
-        case SubmessageKind::NackFrag:
-            return true;
-        default:
-            return false;
-    }
-}
-
 std::optional<Delivery> CheckDelivery(const Submessage &submessage)
 {
-    const RtpsReader body(submessage.Body(), submessage.LittleEndian);
+    const RtpsReader body = submessage.Reader();
     switch (submessage.Kind)
     {
         case SubmessageKind::Data:

@@ -11,18 +11,7 @@
 namespace Rabit::Rtps
 {
 
-// Entities of discovery and liveliness (RTPS 2.3, 9.3.1.3) that we use.
-constexpr EntityId ParticipantEntity = 0x000001c1;
-constexpr EntityId ParticipantWriter = 0x000100c2;
-constexpr EntityId PublicationsWriter = 0x000003c2;
-constexpr EntityId SubscriptionsWriter = 0x000004c2;
-constexpr EntityId LivelinessWriter = 0x000200c2;
-// DDS Security: writes the messages of handshakes.
-constexpr EntityId HandshakeWriter = 0x000201c3;
-
-// True if the entity is a builtin one of the protocol.
-bool IsBuiltin(EntityId entity);
-// True if the builtin writer is one of those above.
+// True if the builtin writer is one of discovery or liveliness.
 bool IsKnownBuiltin(EntityId writer);
 bool IsWriter(EntityId entity);
 bool IsReader(EntityId entity);
@@ -57,10 +46,7 @@ struct Delivery
     bool HasKeyPayload = false;             // the payload is a key, not a sample
 };
 
-// True for Data, DataFrag, Heartbeat, HeartbeatFrag, Gap, AckNack and NackFrag.
-bool IsDelivery(SubmessageKind kind);
-
-// For submessages of these kinds. Empty if the submessage is unsound: a length that does not fit, an
+// For submessages that IsDelivery. Empty if the submessage is unsound: a length that does not fit, an
 // impossible number, a range that no honest writer sends, entities of the wrong kind.
 std::optional<Delivery> CheckDelivery(const Submessage &submessage);
 

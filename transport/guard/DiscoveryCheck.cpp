@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "common/ParticipantIdentity.h"
+#include "common/RtpsReader.h"
+#include "common/RtpsWriter.h"
 #include "guard/DeliveryCheck.h"
-#include "guard/RtpsReader.h"
 #include "guard/TokenCheck.h"
 
 namespace Rabit::Rtps
@@ -19,53 +20,7 @@ namespace Rabit::Rtps
 namespace
 {
 
-// RTPS 2.3, 9.6.3; the last ones are vendor-specific.
-enum Parameter : std::uint16_t
-{
-    Pad = 0x0000,
-    Sentinel = 0x0001,
-    LeaseDuration = 0x0002,
-    TimeBasedFilter = 0x0004,
-    TopicName = 0x0005,
-    OwnershipStrength = 0x0006,
-    TypeName = 0x0007,
-    ProtocolVersion = 0x0015,
-    VendorId = 0x0016,
-    Reliability = 0x001a,
-    Liveliness = 0x001b,
-    Durability = 0x001d,
-    DurabilityService = 0x001e,
-    Ownership = 0x001f,
-    Presentation = 0x0021,
-    Deadline = 0x0023,
-    DestinationOrder = 0x0025,
-    LatencyBudget = 0x0027,
-    Partition = 0x0029,
-    Lifespan = 0x002b,
-    UserData = 0x002c,
-    GroupData = 0x002d,
-    TopicData = 0x002e,
-    UnicastLocator = 0x002f,
-    MulticastLocator = 0x0030,
-    DefaultUnicastLocator = 0x0031,
-    MetatrafficUnicastLocator = 0x0032,
-    MetatrafficMulticastLocator = 0x0033,
-    ExpectsInlineQos = 0x0043,
-    DefaultMulticastLocator = 0x0048,
-    ParticipantGuid = 0x0050,
-    BuiltinEndpointSet = 0x0058,
-    EndpointGuid = 0x005a,
-    EntityName = 0x0062,
-    KeyHash = 0x0070,
-    DataRepresentation = 0x0073,
-    // OMG DDS Security 1.1, 7.4.1
-    IdentityToken = 0x1001,
-    PermissionsToken = 0x1002,
-    EndpointSecurityInfo = 0x1004,
-    ParticipantSecurityInfo = 0x1005,
-    IdentityStatusToken = 0x1006,
-    DisablePositiveAcks = 0x8005
-};
+using namespace Parameters;
 
 constexpr int MostParameters = 128;
 constexpr int MostLocators = 64;
@@ -372,10 +327,9 @@ void BoundLease(std::span<std::uint8_t> value, bool littleEndian)
     {
         return;
     }
-    constexpr auto longest = static_cast<std::uint16_t>(LongestLease.count());
+    constexpr auto longest = static_cast<std::uint32_t>(LongestLease.count());
     std::fill(value.begin(), value.end(), std::uint8_t{0});
-    value[littleEndian ? 0 : 3] = static_cast<std::uint8_t>(longest);
-    value[littleEndian ? 1 : 2] = static_cast<std::uint8_t>(longest >> 8);
+    Write(value.first(4), longest, littleEndian);
 }
 
 // A list of parameters is an announcement, or the key of something that ended.
@@ -395,7 +349,6 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
                                             std::span<std::uint8_t> payload, bool secured, Content content,
                                             Lease lease)
 {
-    constexpr std::size_t EncapsulationSize = 4;
     constexpr std::uint8_t BigEndianList = 2;
     constexpr std::uint8_t LittleEndianList = 3;
     if (payload.size() < EncapsulationSize || payload[0] != 0 ||
@@ -409,14 +362,12 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
     Found found;
     for (int i = 0; i < MostParameters; ++i)
     {
-        const std::size_t at = rest.Position();
-        const std::uint16_t id = rest.U16();
-        const std::uint16_t length = rest.U16();
+        const auto parameter = TakeParameter(rest);
         if (!rest.IsGood())
         {
             return std::nullopt;
         }
-        if (id == Sentinel)
+        if (!parameter)
         {
             const bool hasCard = writer == ParticipantWriter && found.HasCard;
             return IsComplete(writer, found, content)
@@ -429,14 +380,13 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
                                           .HasCard = hasCard})
                        : std::nullopt;
         }
-        const auto value = rest.Bytes(length);
-        if (id == LeaseDuration && lease == Lease::Bounded && rest.IsGood())
+        const auto [id, value, at] = *parameter;
+        if (id == LeaseDuration && lease == Lease::Bounded)
         {
-            BoundLease(list.subspan(at + 4, length), littleEndian);
+            BoundLease(list.subspan(at + 4, value.size()), littleEndian);
         }
         bool wanted = true;
-        if (!rest.IsGood() || length % 4 != 0 ||
-            !CheckParameter(writer, sender, id, value, littleEndian, found, wanted))
+        if (value.size() % 4 != 0 || !CheckParameter(writer, sender, id, value, littleEndian, found, wanted))
         {
             return std::nullopt;
         }

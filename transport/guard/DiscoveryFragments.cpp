@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/RtpsWriter.h"
+
 namespace Rabit::Rtps
 {
 
@@ -10,22 +12,6 @@ namespace
 
 constexpr std::size_t MostSamples = 64;
 constexpr std::uint32_t LargestAnnouncement = 60000;
-
-void AppendEntity(std::vector<std::uint8_t> &message, EntityId entity)
-{
-    for (int shift = 24; shift >= 0; shift -= 8)
-    {
-        message.push_back(static_cast<std::uint8_t>(entity >> shift));
-    }
-}
-
-void AppendNumber(std::vector<std::uint8_t> &message, std::uint32_t number)
-{
-    for (int shift = 0; shift < 32; shift += 8)
-    {
-        message.push_back(static_cast<std::uint8_t>(number >> shift));
-    }
-}
 
 }  // namespace
 
@@ -78,17 +64,14 @@ std::vector<std::uint8_t> DiscoveryFragments::Add(std::span<const std::uint8_t> 
         return {};
     }
     std::vector<std::uint8_t> message(header.begin(), header.begin() + RtpsHeaderSize);
-    AppendSubmessageHeader(message, SubmessageKind::InfoDestination, destination.size());
-    message.insert(message.end(), destination.begin(), destination.end());
-    constexpr std::uint8_t HasData = 0x04;
+    AppendDestination(message, destination);
     const std::size_t padding = (4 - sample->Bytes.size() % 4) % 4;
-    AppendSubmessageHeader(message, SubmessageKind::Data, 20 + sample->Bytes.size() + padding, HasData);
+    AppendSubmessageHeader(message, SubmessageKind::Data, 20 + sample->Bytes.size() + padding, DataFlag);
     message.insert(message.end(), {0, 0, 16, 0});
     AppendEntity(message, delivery.Reader);
     AppendEntity(message, delivery.Writer);
-    AppendNumber(message, static_cast<std::uint32_t>(delivery.First >> 32));
-    AppendNumber(message, static_cast<std::uint32_t>(delivery.First));
-    message.insert(message.end(), sample->Bytes.begin(), sample->Bytes.end());
+    AppendSequence(message, delivery.First);
+    Append(message, sample->Bytes);
     message.insert(message.end(), padding, 0);
     _samples.erase(std::find_if(_samples.begin(), _samples.end(),
                                 [sample](const Sample &each) { return &each == sample; }));

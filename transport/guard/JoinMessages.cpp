@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "guard/RtpsMessage.h"
+#include "common/RtpsWriter.h"
 
 namespace Rabit::Rtps
 {
@@ -11,19 +11,15 @@ namespace
 {
 
 constexpr std::size_t VersionAt = 4;
-constexpr std::size_t SourceSize = 20;
 
 // Names the sender of the following submessages; destination: all; time: unknown (RTPS 2.3, 9.4.5).
 void AppendSource(std::vector<std::uint8_t> &whole, std::span<const std::uint8_t> message)
 {
-    constexpr std::size_t unused = 4;
-    AppendSubmessageHeader(whole, SubmessageKind::InfoSource, SourceSize);
-    whole.insert(whole.end(), unused, 0);
-    whole.insert(whole.end(), message.begin() + VersionAt, message.begin() + RtpsHeaderSize);
-    AppendSubmessageHeader(whole, SubmessageKind::InfoDestination, GuidPrefix{}.size());
-    whole.insert(whole.end(), GuidPrefix{}.size(), 0);
-    constexpr std::uint8_t invalidate = 0x02;
-    AppendSubmessageHeader(whole, SubmessageKind::InfoTimestamp, 0, invalidate);
+    AppendSubmessageHeader(whole, SubmessageKind::InfoSource, RtpsHeaderSize);
+    Append(whole, 0, 4);  // unused
+    Append(whole, message.first(RtpsHeaderSize).subspan(VersionAt));
+    AppendDestination(whole, {});
+    AppendSubmessageHeader(whole, SubmessageKind::InfoTimestamp, 0, InvalidateFlag);
 }
 
 // Each submessage begins at a multiple of four, so the one before must end there.

@@ -1,33 +1,13 @@
 #include "guard/ProtectionCheck.h"
 
+#include "common/RtpsReader.h"
 #include "guard/DeliveryCheck.h"
-#include "guard/RtpsReader.h"
 
 namespace Rabit::Rtps
 {
 
 namespace
 {
-
-// OMG DDS Security 1.1, 7.3.6.2
-enum Kind : std::uint8_t
-{
-    SecureBody = 0x30,
-    SecurePrefix = 0x31,
-    SecurePostfix = 0x32,
-    MessagePrefix = 0x33,
-    MessagePostfix = 0x34
-};
-
-std::uint8_t KindOf(const Submessage &submessage)
-{
-    return static_cast<std::uint8_t>(submessage.Kind);
-}
-
-bool IsSecure(const Submessage &submessage)
-{
-    return submessage.Kind >= SubmessageKind::FirstSecure && submessage.Kind <= SubmessageKind::LastSecure;
-}
 
 // 9.5.2.3 and 9.5.3.3.1: kind and number of the key, a session, and the rest of the initialization vector.
 bool IsPrefix(const Submessage &submessage)
@@ -47,7 +27,8 @@ bool IsSealed(const Submessage &submessage)
 // True if the vendor may see this submessage between a prefix and a postfix, where all ends are known.
 bool IsContent(const Submessage &submessage)
 {
-    return KindOf(submessage) != 0 && !IsSecure(submessage) && submessage.Kind < SubmessageKind::Statistics;
+    return submessage.Kind != SubmessageKind{0} && !IsSecure(submessage.Kind) &&
+           submessage.Kind < SubmessageKind::Statistics;
 }
 
 // True for a submessage of a writer or a reader, and for the INFO_TS that Fast DDS signs by itself. An
@@ -82,12 +63,12 @@ bool TakeContent(std::span<std::uint8_t> &rest)
     }
     const auto content = TakeSubmessage(rest);
     if (!content || rest.empty() ||
-        (KindOf(*content) == SecureBody ? !IsSealed(*content) : !IsOfGroup(*content)))
+        (content->Kind == SubmessageKind::SecureBody ? !IsSealed(*content) : !IsOfGroup(*content)))
     {
         return false;
     }
     const auto postfix = TakeSubmessage(rest);
-    return postfix && KindOf(*postfix) == SecurePostfix && IsPostfix(*postfix);
+    return postfix && postfix->Kind == SubmessageKind::SecurePostfix && IsPostfix(*postfix);
 }
 
 // Takes everything between the prefix of a message and its postfix, and the postfix. Only statistics may
@@ -101,24 +82,24 @@ bool TakeMessage(std::span<std::uint8_t> &rest, const std::function<bool(const S
         {
             return false;
         }
-        switch (KindOf(*submessage))
+        switch (submessage->Kind)
         {
-            case SecureBody:
+            case SubmessageKind::SecureBody:
             {
                 if (!first || !IsSealed(*submessage) || rest.empty() || !mayContain(*submessage))
                 {
                     return false;
                 }
                 const auto postfix = TakeSubmessage(rest);
-                return postfix && KindOf(*postfix) == MessagePostfix && IsPostfix(*postfix);
+                return postfix && postfix->Kind == SubmessageKind::MessagePostfix && IsPostfix(*postfix);
             }
-            case SecurePrefix:
+            case SubmessageKind::SecurePrefix:
                 if (!IsPrefix(*submessage) || !TakeContent(rest))
                 {
                     return false;
                 }
                 break;
-            case MessagePostfix:
+            case SubmessageKind::MessagePostfix:
                 return !first && IsPostfix(*submessage);
             default:
                 if (!IsContent(*submessage) || !mayContain(*submessage))
@@ -142,9 +123,9 @@ std::optional<std::size_t> ProtectedSize(std::span<std::uint8_t> from, bool whol
     {
         return std::nullopt;
     }
-    const bool sound = KindOf(*prefix) == SecurePrefix || !wholeMessage
-                           ? KindOf(*prefix) == SecurePrefix && TakeContent(rest)
-                           : KindOf(*prefix) == MessagePrefix && TakeMessage(rest, mayContain);
+    const bool sound = prefix->Kind == SubmessageKind::SecurePrefix || !wholeMessage
+                           ? prefix->Kind == SubmessageKind::SecurePrefix && TakeContent(rest)
+                           : prefix->Kind == SubmessageKind::MessagePrefix && TakeMessage(rest, mayContain);
     return sound ? std::optional(from.size() - rest.size()) : std::nullopt;
 }
 

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 
+#include "common/RtpsReader.h"
+#include "common/RtpsWriter.h"
 #include "guard/DiscoveryCheck.h"
 #include "guard/ProtectionCheck.h"
-#include "guard/RtpsReader.h"
 #include "guard/TokenCheck.h"
 
 namespace Rabit::Rtps
@@ -14,20 +15,6 @@ namespace Rabit::Rtps
 
 namespace
 {
-
-bool IsSecure(SubmessageKind kind)
-{
-    return kind >= SubmessageKind::FirstSecure && kind <= SubmessageKind::LastSecure;
-}
-
-void Write(std::span<std::uint8_t> bytes, std::uint32_t value, bool littleEndian)
-{
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-    {
-        const std::size_t shift = 8 * (littleEndian ? i : bytes.size() - 1 - i);
-        bytes[i] = static_cast<std::uint8_t>(value >> shift);
-    }
-}
 
 // Submessages that Cyclone DDS sends unprotected even where all else is protected: its liveliness, and the
 // state of those builtin writers whose samples go by a protected counterpart (0xff...) then.
@@ -115,24 +102,14 @@ bool HasSize(const Submessage &submessage, std::size_t size)
 // Time of an INFO_TS: seconds, and their fractions.
 std::uint64_t StampOf(const Submessage &submessage)
 {
-    RtpsReader body(submessage.Body(), submessage.LittleEndian);
+    RtpsReader body = submessage.Reader();
     const std::uint64_t seconds = body.U32();
     return seconds << 32 | body.U32();
 }
 
-// The high half comes first (9.3.2).
-void WriteNumber(const Submessage &submessage, std::size_t at, std::int64_t number)
-{
-    const auto bits = static_cast<std::uint64_t>(number);
-    Write(submessage.Body().subspan(at, 4), static_cast<std::uint32_t>(bits >> 32), submessage.LittleEndian);
-    Write(submessage.Body().subspan(at + 4, 4), static_cast<std::uint32_t>(bits), submessage.LittleEndian);
-}
-
-// The number of a sample. 9.4.5.3, 9.4.5.4: offset behind flags, inline QoS offset and two entities.
 void WriteSampleNumber(const Submessage &submessage, std::int64_t number)
 {
-    constexpr std::size_t NumberAt = 12;
-    WriteNumber(submessage, NumberAt, number);
+    WriteSequence(submessage.Body().subspan(NumberInData), number, submessage.LittleEndian);
 }
 
 // Cuts a gap to WidestGap numbers. The reader then requests the next ones, and gets another gap for these.
@@ -140,11 +117,11 @@ void NarrowGap(const Submessage &submessage, const Delivery &delivery)
 {
     constexpr std::size_t BaseAt = 16;  // 9.4.5.6: behind two entities and the first number
     constexpr std::size_t BitsAt = 24;
-    RtpsReader body(submessage.Body(), submessage.LittleEndian);
+    RtpsReader body = submessage.Reader();
     body.Skip(BaseAt);
     if (body.Sequence() - delivery.First > WidestGap)
     {
-        WriteNumber(submessage, BaseAt, delivery.First + WidestGap);
+        WriteSequence(submessage.Body().subspan(BaseAt), delivery.First + WidestGap, submessage.LittleEndian);
         Write(submessage.Body().subspan(BitsAt, 4), 0, submessage.LittleEndian);
     }
 }
@@ -254,15 +231,14 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
         // everywhere.
         return IsForOthers(passage) ? Verdict::Ignore : JudgeDelivery(submessage, *delivery, passage);
     }
-    constexpr std::uint8_t Invalidate = 0x02;
     switch (submessage.Kind)
     {
         case SubmessageKind::Pad:
             return Verdict::Pass;
         case SubmessageKind::InfoTimestamp:
-            passage.Stamp = (submessage.Flags & Invalidate) != 0 ? 0 : StampOf(submessage);
-            return (submessage.Flags & Invalidate) != 0 || HasSize(submessage, 8) ? Verdict::Pass
-                                                                                  : Verdict::Drop;
+            passage.Stamp = (submessage.Flags & InvalidateFlag) != 0 ? 0 : StampOf(submessage);
+            return (submessage.Flags & InvalidateFlag) != 0 || HasSize(submessage, 8) ? Verdict::Pass
+                                                                                      : Verdict::Drop;
         case SubmessageKind::InfoSource:
             // Cyclone DDS puts submessages of all participants of a process into one message. The sender
             // named here is as trustworthy as the one in the header.
@@ -278,7 +254,7 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
             {
                 return Verdict::Drop;
             }
-            std::copy_n(submessage.Body().begin(), passage.Destination.size(), passage.Destination.begin());
+            passage.Destination = PrefixOf(submessage.Body());
             if (passage.Destination == _own)
             {
                 _replies.OnAddressed(passage.Sender);

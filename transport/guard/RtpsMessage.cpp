@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "guard/RtpsReader.h"
+#include "common/RtpsWriter.h"
 
 namespace Rabit::Rtps
 {
-
-namespace
-{
-
-constexpr std::size_t PrefixOffset = 8;
-
-}  // namespace
 
 bool HasRtpsHeader(std::span<const std::uint8_t> datagram)
 {
@@ -29,9 +22,7 @@ bool IsWakeUpOfCycloneDds(std::span<const std::uint8_t> datagram)
 
 GuidPrefix SenderOf(std::span<const std::uint8_t> datagram)
 {
-    GuidPrefix prefix;
-    std::copy_n(datagram.begin() + PrefixOffset, prefix.size(), prefix.begin());
-    return prefix;
+    return PrefixOf(datagram.subspan(PrefixAt));
 }
 
 bool PutSource(const Submessage &submessage, std::span<std::uint8_t> header)
@@ -49,7 +40,6 @@ bool PutSource(const Submessage &submessage, std::span<std::uint8_t> header)
 
 std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest)
 {
-    constexpr std::uint8_t LittleEndian = 0x01;
     if (rest.size() < SubmessageHeaderSize)
     {
         return std::nullopt;
@@ -57,7 +47,7 @@ std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest)
     Submessage taken;
     taken.Kind = static_cast<SubmessageKind>(rest[0]);
     taken.Flags = rest[1];
-    taken.LittleEndian = (taken.Flags & LittleEndian) != 0;
+    taken.LittleEndian = (taken.Flags & LittleEndianFlag) != 0;
     const std::size_t left = rest.size() - SubmessageHeaderSize;
     std::size_t length = RtpsReader(rest.subspan(2, 2), taken.LittleEndian).U16();
     if (length == 0 && taken.Kind != SubmessageKind::Pad && taken.Kind != SubmessageKind::InfoTimestamp)
@@ -92,22 +82,11 @@ std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram)
     return EndsLikeStatistics(datagram.first(size)) ? datagram.size() : size;
 }
 
-void AppendSubmessageHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::size_t length,
-                            std::uint8_t flags)
-{
-    constexpr std::uint8_t littleEndian = 0x01;
-    message.insert(message.end(),
-                   {static_cast<std::uint8_t>(kind), static_cast<std::uint8_t>(flags | littleEndian),
-                    static_cast<std::uint8_t>(length), static_cast<std::uint8_t>(length >> 8)});
-}
-
 void Blank(const Submessage &submessage)
 {
     // For padding a length of 0 means 0, for other kinds "to the end": the length is written out here.
-    const auto length = submessage.Whole.size() - SubmessageHeaderSize;
     submessage.Whole[0] = static_cast<std::uint8_t>(SubmessageKind::Pad);
-    submessage.Whole[submessage.LittleEndian ? 2 : 3] = static_cast<std::uint8_t>(length);
-    submessage.Whole[submessage.LittleEndian ? 3 : 2] = static_cast<std::uint8_t>(length >> 8);
+    Write(submessage.Whole.subspan(2, 2), submessage.Body().size(), submessage.LittleEndian);
 }
 
 }  // namespace Rabit::Rtps

@@ -1,56 +1,15 @@
-// The parts of an RTPS message (OMG DDSI-RTPS 2.3, 8.3 and 9.4), parsed as untrusted input.
+// Checks and changes the parts of a whole RTPS message (OMG DDSI-RTPS 2.3, 8.3 and 9.4).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "common/RtpsSubmessages.h"
+#include "common/RtpsReader.h"
 
 namespace Rabit::Rtps
 {
-
-using GuidPrefix = std::array<std::uint8_t, 12>;
-// Its four bytes as one big-endian number: 0x000100c2 writes the announcements of participants.
-using EntityId = std::uint32_t;
-// IPv4 address in reading order: 10.0.0.1 begins with 10.
-using HostAddress = std::array<std::uint8_t, 4>;
-constexpr HostAddress UnknownHost{};
-
-// RTPS 2.3, 9.4.5.1.1; those from 0x80 on are the vendors' own.
-enum class SubmessageKind : std::uint8_t
-{
-    Pad = 0x01,
-    AckNack = 0x06,
-    Heartbeat = 0x07,
-    Gap = 0x08,
-    InfoTimestamp = 0x09,
-    InfoSource = 0x0c,
-    InfoDestination = 0x0e,
-    NackFrag = 0x12,
-    HeartbeatFrag = 0x13,
-    Data = 0x15,
-    DataFrag = 0x16,
-    // DDS Security, 7.3.6.2: encrypted or signed submessages, and their prefixes and postfixes.
-    FirstSecure = 0x30,
-    SecureBody = 0x30,
-    LastSecure = 0x35,
-    // Fast DDS's own, at the end of each message that it sends.
-    Statistics = 0x80
-};
-
-struct Submessage
-{
-    SubmessageKind Kind = SubmessageKind::Pad;
-    std::uint8_t Flags = 0;
-    bool LittleEndian = false;
-    // Includes the header.
-    std::span<std::uint8_t> Whole;
-    std::span<std::uint8_t> Body() const { return Whole.subspan(SubmessageHeaderSize); }
-};
 
 // True if this is an RTPS 2 message with a sender.
 bool HasRtpsHeader(std::span<const std::uint8_t> datagram);
@@ -80,10 +39,6 @@ std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram);
 // True if Fast DDS's sockets would mistake the end of a message for their statistics, and write into it: they
 // check a single byte.
 bool EndsLikeStatistics(std::span<const std::uint8_t> datagram);
-
-// Appends the header of a little-endian submessage to a message; `length` is that of its body.
-void AppendSubmessageHeader(std::vector<std::uint8_t> &message, SubmessageKind kind, std::size_t length,
-                            std::uint8_t flags = 0);
 
 // Turns a submessage into padding, which no parser looks into.
 void Blank(const Submessage &submessage);

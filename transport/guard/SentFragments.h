@@ -26,6 +26,8 @@ public:
     std::size_t Size() const { return _fragments.size(); }
 
 private:
+    void Sent(RtpsReader fragment);
+
     using Sample = std::pair<EntityId, std::int64_t>;
 
     std::map<Sample, std::uint32_t> _fragments;

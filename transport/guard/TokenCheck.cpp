@@ -45,7 +45,6 @@ bool IsToken(RtpsReader &from)
 
 bool IsGenericMessage(std::span<const std::uint8_t> payload)
 {
-    constexpr std::size_t EncapsulationSize = 4;
     if (payload.size() < EncapsulationSize || payload[0] != 0 || payload[1] > 1)
     {
         return false;
@@ -53,8 +52,7 @@ bool IsGenericMessage(std::span<const std::uint8_t> payload)
     RtpsReader body(payload.subspan(EncapsulationSize), payload[1] == 1);
     // Skips the message's identity, that of the related message, and the GUIDs of source and destination.
     constexpr std::size_t GuidSize = 16;
-    constexpr std::size_t NumberSize = 8;
-    body.Skip(2 * (GuidSize + NumberSize) + 3 * GuidSize);
+    body.Skip(2 * (GuidSize + SequenceSize) + 3 * GuidSize);
     if (!TakeBytes(body))
     {
         return false;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "guard/RtpsReader.h"
+#include "common/RtpsReader.h"
 
 namespace Rabit::Rtps
 {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "guard/RtpsReader.h"
+#include "common/RtpsReader.h"
+#include "common/RtpsWriter.h"
 
 namespace Rabit::Rtps
 {
@@ -21,12 +22,6 @@ constexpr std::size_t AnswersSize = GuidPrefix{}.size() + 4;
 constexpr std::size_t Alignment = 4;
 // Enough for padding alone to stand where statistics would begin.
 constexpr std::size_t MostPadding = StatisticsSize + 2 * Alignment;
-
-std::uint64_t U64(RtpsReader &body)
-{
-    const std::uint64_t low = body.U32();
-    return std::uint64_t{body.U32()} << 32 | low;
-}
 
 std::size_t SizeOfPart(const CardSummary &summary, std::size_t part)
 {
@@ -54,8 +49,7 @@ bool IsCardMessage(std::span<const std::uint8_t> datagram)
 
 std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagram)
 {
-    constexpr std::uint8_t littleEndian = 0x01;
-    if (!IsCardMessage(datagram) || datagram[RtpsHeaderSize + 1] != littleEndian)
+    if (!IsCardMessage(datagram) || datagram[RtpsHeaderSize + 1] != LittleEndianFlag)
     {
         return std::nullopt;
     }
@@ -64,7 +58,7 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
     RtpsReader body(head.Rest(), true);
     CardMessage message{.From = SenderOf(datagram)};
     const auto counts = body.Bytes(4);
-    message.Summary.Digest = U64(body);
+    message.Summary.Digest = body.U64();
     message.Summary.Size = body.U32();
     message.SentAt = body.U32();
     if (!body.IsGood() || length != head.Left() || counts[0] != Format || counts[1] > MostCardRequests ||
@@ -75,9 +69,8 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
     for (std::size_t i = 0; i < counts[1]; ++i)
     {
         CardRequest &request = message.Requests.emplace_back();
-        const auto of = body.Bytes(request.Of.size());
-        std::copy(of.begin(), of.end(), request.Of.begin());
-        request.Parts = U64(body);
+        request.Of = body.Prefix();
+        request.Parts = body.U64();
     }
     message.HasPart = counts[3] == 1;
     message.Part = counts[2];
@@ -87,8 +80,7 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
     }
     if (message.HasPart)
     {
-        const auto from = body.Bytes(message.Answers.From.size());
-        std::copy(from.begin(), from.end(), message.Answers.From.begin());
+        message.Answers.From = body.Prefix();
         message.Answers.SentAt = body.U32();
         message.Bytes = body.Bytes(SizeOfPart(message.Summary, message.Part));
     }
@@ -97,53 +89,38 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
 
 std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
 {
-    constexpr std::uint8_t littleEndian = 0x01;
     const std::size_t unpadded = RequestsAt + RequestSize * message.Requests.size() +
                                  (message.HasPart ? AnswersSize + message.Bytes.size() : 0);
     const std::size_t length = (unpadded + Alignment - 1) / Alignment * Alignment;
-    std::vector<std::uint8_t> bytes(RtpsHeaderSize + SubmessageHeaderSize + length);
-    std::size_t at = 0;
-    const auto add = [&](std::span<const std::uint8_t> added)
-    {
-        std::copy(added.begin(), added.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
-        at += added.size();
-    };
-    const auto addNumber = [&](std::uint64_t number, std::size_t size)
-    {
-        for (std::size_t i = 0; i < size; ++i)
-        {
-            bytes[at++] = static_cast<std::uint8_t>(number >> (8 * i));
-        }
-    };
-    add(Header);
-    add(message.From);
-    addNumber(static_cast<std::uint8_t>(Kind), 1);
-    addNumber(littleEndian, 1);
-    addNumber(length, 2);
-    addNumber(Format, 1);
-    addNumber(message.Requests.size(), 1);
-    addNumber(message.Part, 1);
-    addNumber(message.HasPart ? 1 : 0, 1);
-    addNumber(message.Summary.Digest, 8);
-    addNumber(message.Summary.Size, 4);
-    addNumber(message.SentAt, 4);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(RtpsHeaderSize + SubmessageHeaderSize + length + MostPadding);
+    Append(bytes, Header);
+    Append(bytes, message.From);
+    AppendSubmessageHeader(bytes, Kind, length);
+    Append(bytes, Format, 1);
+    Append(bytes, message.Requests.size(), 1);
+    Append(bytes, message.Part, 1);
+    Append(bytes, message.HasPart ? 1 : 0, 1);
+    Append(bytes, message.Summary.Digest, 8);
+    Append(bytes, message.Summary.Size, 4);
+    Append(bytes, message.SentAt, 4);
     for (const CardRequest &request : message.Requests)
     {
-        add(request.Of);
-        addNumber(request.Parts, 8);
+        Append(bytes, request.Of);
+        Append(bytes, request.Parts, 8);
     }
     if (message.HasPart)
     {
-        add(message.Answers.From);
-        addNumber(message.Answers.SentAt, 4);
-        add(message.Bytes);
+        Append(bytes, message.Answers.From);
+        Append(bytes, message.Answers.SentAt, 4);
+        Append(bytes, message.Bytes);
     }
+    bytes.resize(RtpsHeaderSize + SubmessageHeaderSize + length);
     while (EndsLikeStatistics(bytes))
     {
         bytes.resize(bytes.size() + Alignment);
-        const std::size_t padded = bytes.size() - RtpsHeaderSize - SubmessageHeaderSize;
-        bytes[RtpsHeaderSize + 2] = static_cast<std::uint8_t>(padded);
-        bytes[RtpsHeaderSize + 3] = static_cast<std::uint8_t>(padded >> 8);
+        Write(std::span(bytes).subspan(RtpsHeaderSize + 2, 2),
+              bytes.size() - RtpsHeaderSize - SubmessageHeaderSize, true);
     }
     return bytes;
 }

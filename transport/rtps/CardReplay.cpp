@@ -4,7 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "guard/RtpsReader.h"
+#include "common/RtpsReader.h"
+#include "common/RtpsWriter.h"
 
 namespace Rabit::Rtps
 {
@@ -90,7 +91,7 @@ bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card,
     std::vector<std::pair<EntityId, std::span<const std::uint8_t>>> endpoints;
     VisitSubmessages(
         card,
-        [&](const RtpsSubmessage<const std::uint8_t> &part)
+        [&](const ConstSubmessage &part)
         {
             const auto said = ReadAnnouncement(part.Whole);
             if (said && said->Writer == ParticipantWriter && participant.empty())

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 
+#include "common/RtpsReader.h"
+#include "common/RtpsWriter.h"
 #include "guard/DiscoveryCheck.h"
-#include "guard/RtpsReader.h"
 
 namespace Rabit::Rtps
 {
@@ -14,59 +15,22 @@ namespace Rabit::Rtps
 namespace
 {
 
-// RTPS 2.3, 9.4.5
-constexpr std::uint8_t LittleEndian = 0x01;
-constexpr std::uint8_t Final = 0x02;      // of HEARTBEAT and ACKNACK
-constexpr std::uint8_t InlineQos = 0x02;  // of DATA
-constexpr std::uint8_t KeyPayload = 0x08;
-constexpr std::size_t ReaderInData = 4;
-constexpr std::size_t NumberInData = 12;
-constexpr std::size_t NumberSize = 8;
 constexpr std::uint32_t MostBits = 256;
-// 9.6.3: parameters
-constexpr std::uint16_t Sentinel = 0x0001;
-constexpr std::uint16_t ParticipantGuid = 0x0050;
-constexpr std::uint16_t EndpointGuid = 0x005a;
-constexpr std::uint16_t KeyHashParameter = 0x0070;
-constexpr std::uint16_t StatusInfo = 0x0071;
-
-void Append(std::vector<std::uint8_t> &bytes, std::uint64_t number, std::size_t size)
-{
-    for (std::size_t i = 0; i < size; ++i)
-    {
-        bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
-    }
-}
-
-void AppendEntity(std::vector<std::uint8_t> &bytes, EntityId entity)
-{
-    for (int shift = 24; shift >= 0; shift -= 8)
-    {
-        bytes.push_back(static_cast<std::uint8_t>(entity >> shift));
-    }
-}
-
-// The high half comes first.
-void AppendNumber(std::vector<std::uint8_t> &bytes, std::int64_t number)
-{
-    Append(bytes, static_cast<std::uint64_t>(number) >> 32, 4);
-    Append(bytes, static_cast<std::uint64_t>(number), 4);
-}
 
 // Wraps bytes for CheckDelivery, which does not write to them.
 Submessage ToBeRead(std::span<const std::uint8_t> whole)
 {
     return {.Kind = SubmessageKind{whole[0]},
             .Flags = whole[1],
-            .LittleEndian = (whole[1] & LittleEndian) != 0,
+            .LittleEndian = (whole[1] & LittleEndianFlag) != 0,
             .Whole = {const_cast<std::uint8_t *>(whole.data()), whole.size()}};
 }
 
 // 9.4.5.4: from the first number up to the base, and those whose bits are set after it.
 std::vector<std::int64_t> NumbersOfGap(const Submessage &gap, const Delivery &said)
 {
-    RtpsReader body(gap.Body(), gap.LittleEndian);
-    body.Skip(8 + 8);  // entities, first number
+    RtpsReader body = gap.Reader();
+    body.Skip(8 + SequenceSize);  // entities, first number
     const std::int64_t base = body.Sequence();
     std::vector<std::int64_t> numbers;
     for (std::int64_t number = said.First; number < base; ++number)
@@ -96,7 +60,7 @@ bool Read(const Submessage &submessage, EndpointSubmessage &read)
     read.Kind = submessage.Kind;
     read.Said = *delivery;
     read.Whole = submessage.Whole;
-    read.IsFinal = (submessage.Flags & Final) != 0;
+    read.IsFinal = (submessage.Flags & FinalFlag) != 0;
     if (submessage.Kind == SubmessageKind::Gap)
     {
         read.Gone = NumbersOfGap(submessage, *delivery);
@@ -107,27 +71,28 @@ bool Read(const Submessage &submessage, EndpointSubmessage &read)
 // The GUID in a parameter list that names the subject; empty if there is none.
 std::span<const std::uint8_t> GuidIn(std::span<const std::uint8_t> payload)
 {
-    constexpr std::size_t encapsulation = 4;
     constexpr std::uint8_t littleEndianList = 3;
-    if (payload.size() < encapsulation)
+    if (payload.size() < EncapsulationSize)
     {
         return {};
     }
-    RtpsReader list(payload.subspan(encapsulation), payload[1] == littleEndianList);
-    while (list.IsGood() && list.Left() > 0)
+    RtpsReader list(payload.subspan(EncapsulationSize), payload[1] == littleEndianList);
+    while (const auto parameter = TakeParameter(list))
     {
-        const std::uint16_t id = list.U16();
-        const auto value = list.Bytes(list.U16());
-        if (list.IsGood() && (id == EndpointGuid || id == KeyHashParameter) && value.size() == 16)
+        const bool isGuid = parameter->Id == Parameters::EndpointGuid || parameter->Id == Parameters::KeyHash;
+        if (isGuid && parameter->Value.size() == 16)
         {
-            return value;
-        }
-        if (id == Sentinel)
-        {
-            break;
+            return parameter->Value;
         }
     }
     return {};
+}
+
+// Reader and writer.
+void AppendEntities(std::vector<std::uint8_t> &message, EntityId writer)
+{
+    AppendEntity(message, ReaderOf(writer));
+    AppendEntity(message, writer);
 }
 
 }  // namespace
@@ -149,7 +114,7 @@ std::optional<std::vector<EndpointSubmessage>> ReadEndpointSubmessages(std::span
     bool all = datagram.size() > RtpsHeaderSize;
     GuidPrefix to{};
     VisitSubmessages(datagram,
-                     [&](const RtpsSubmessage<const std::uint8_t> &part)
+                     [&](const ConstSubmessage &part)
                      {
                          const Submessage submessage = ToBeRead(part.Whole);
                          if (submessage.Kind == SubmessageKind::Pad ||
@@ -160,7 +125,7 @@ std::optional<std::vector<EndpointSubmessage>> ReadEndpointSubmessages(std::span
                          if (submessage.Kind == SubmessageKind::InfoDestination)
                          {
                              all = submessage.Body().size() == to.size();
-                             std::copy_n(submessage.Body().begin(), all ? to.size() : 0, to.begin());
+                             to = all ? PrefixOf(submessage.Body()) : to;
                              return;
                          }
                          EndpointSubmessage read{.To = to};
@@ -189,58 +154,43 @@ EntityId SubjectOf(std::span<const std::uint8_t> announcement)
 
 std::uint64_t ContentOf(std::span<const std::uint8_t> announcement)
 {
-    constexpr std::size_t from = SubmessageHeaderSize + NumberInData + NumberSize;
+    constexpr std::size_t from = SubmessageHeaderSize + NumberInData + SequenceSize;
     return Fnv1a()
         .AddByte(announcement[1])
         .Add(announcement.subspan(std::min(from, announcement.size())))
         .Sum();
 }
 
-void AppendDestination(std::vector<std::uint8_t> &message, const GuidPrefix &to)
-{
-    AppendSubmessageHeader(message, SubmessageKind::InfoDestination, to.size());
-    message.insert(message.end(), to.begin(), to.end());
-}
-
 void AppendAnnouncement(std::vector<std::uint8_t> &message, std::span<const std::uint8_t> announcement,
                         std::int64_t number)
 {
     const std::size_t at = message.size();
-    message.insert(message.end(), announcement.begin(), announcement.end());
+    Append(message, announcement);
     message.resize((message.size() + 3) / 4 * 4);
-    const bool littleEndian = (announcement[1] & LittleEndian) != 0;
-    const auto put = [&](std::size_t offset, std::uint64_t value, std::size_t size)
-    {
-        for (std::size_t i = 0; i < size; ++i)
-        {
-            const std::size_t shift = 8 * (littleEndian ? i : size - 1 - i);
-            message[at + offset + i] = static_cast<std::uint8_t>(value >> shift);
-        }
-    };
-    put(2, message.size() - at - SubmessageHeaderSize, 2);
-    put(SubmessageHeaderSize + ReaderInData, 0, 4);
-    put(SubmessageHeaderSize + NumberInData, static_cast<std::uint64_t>(number) >> 32, 4);
-    put(SubmessageHeaderSize + NumberInData + 4, static_cast<std::uint64_t>(number), 4);
+    const bool littleEndian = (announcement[1] & LittleEndianFlag) != 0;
+    const std::span<std::uint8_t> whole = std::span(message).subspan(at);
+    const auto body = whole.subspan(SubmessageHeaderSize);
+    Write(whole.subspan(2, 2), body.size(), littleEndian);
+    Write(body.subspan(ReaderInData, sizeof(EntityId)), 0, littleEndian);
+    WriteSequence(body.subspan(NumberInData), number, littleEndian);
 }
 
 void AppendHeartbeat(std::vector<std::uint8_t> &message, EntityId writer, std::int64_t last,
                      std::uint32_t count)
 {
     AppendSubmessageHeader(message, SubmessageKind::Heartbeat, 28);
-    AppendEntity(message, ReaderOf(writer));
-    AppendEntity(message, writer);
-    AppendNumber(message, 1);
-    AppendNumber(message, last);
+    AppendEntities(message, writer);
+    AppendSequence(message, 1);
+    AppendSequence(message, last);
     Append(message, count, 4);
 }
 
 void AppendGap(std::vector<std::uint8_t> &message, EntityId writer, std::int64_t first, std::int64_t end)
 {
     AppendSubmessageHeader(message, SubmessageKind::Gap, 28);
-    AppendEntity(message, ReaderOf(writer));
-    AppendEntity(message, writer);
-    AppendNumber(message, first);
-    AppendNumber(message, end);
+    AppendEntities(message, writer);
+    AppendSequence(message, first);
+    AppendSequence(message, end);
     Append(message, 0, 4);  // no further ones
 }
 
@@ -259,10 +209,9 @@ void AppendAcknowledgement(std::vector<std::uint8_t> &message, EntityId writer, 
         }
     }
     const std::size_t words = (bits + 31) / 32;
-    AppendSubmessageHeader(message, SubmessageKind::AckNack, 24 + 4 * words, Final);
-    AppendEntity(message, ReaderOf(writer));
-    AppendEntity(message, writer);
-    AppendNumber(message, base);
+    AppendSubmessageHeader(message, SubmessageKind::AckNack, 24 + 4 * words, FinalFlag);
+    AppendEntities(message, writer);
+    AppendSequence(message, base);
     Append(message, bits, 4);
     for (std::size_t i = 0; i < words; ++i)
     {
@@ -279,31 +228,20 @@ void AppendEndOfParticipant(std::vector<std::uint8_t> &message, const GuidPrefix
     constexpr std::size_t guidSize = 16;
     constexpr std::size_t inlineSize = 4 + guidSize + 8 + 4;
     constexpr std::size_t keySize = 4 + 4 + guidSize + 4;
-    AppendSubmessageHeader(message, SubmessageKind::Data, 20 + inlineSize + keySize, InlineQos | KeyPayload);
+    AppendSubmessageHeader(message, SubmessageKind::Data, 20 + inlineSize + keySize, InlineQosFlag | KeyFlag);
     Append(message, 0, 2);
     Append(message, 16, 2);
-    AppendEntity(message, ReaderOf(ParticipantWriter));
-    AppendEntity(message, ParticipantWriter);
-    AppendNumber(message, number);
-    const auto appendGuid = [&]
-    {
-        message.insert(message.end(), participant.begin(), participant.end());
-        AppendEntity(message, ParticipantEntity);
-    };
-    Append(message, KeyHashParameter, 2);
-    Append(message, guidSize, 2);
-    appendGuid();
-    Append(message, StatusInfo, 2);
-    Append(message, 4, 2);
-    message.insert(message.end(), {0, 0, 0, disposedAndUnregistered});
-    Append(message, Sentinel, 2);
-    Append(message, 0, 2);
+    AppendEntities(message, ParticipantWriter);
+    AppendSequence(message, number);
+    std::vector<std::uint8_t> guid(participant.begin(), participant.end());
+    AppendEntity(guid, ParticipantEntity);
+    AppendParameter(message, Parameters::KeyHash, guid);
+    AppendParameter(message, Parameters::StatusInfo,
+                    std::to_array<std::uint8_t>({0, 0, 0, disposedAndUnregistered}));
+    AppendParameter(message, Parameters::Sentinel, {});
     message.insert(message.end(), {0, 3, 0, 0});
-    Append(message, ParticipantGuid, 2);
-    Append(message, guidSize, 2);
-    appendGuid();
-    Append(message, Sentinel, 2);
-    Append(message, 0, 2);
+    AppendParameter(message, Parameters::ParticipantGuid, guid);
+    AppendParameter(message, Parameters::Sentinel, {});
 }
 
 }  // namespace Rabit::Rtps

@@ -44,7 +44,6 @@ std::uint64_t ContentOf(std::span<const std::uint8_t> announcement);
 
 // The functions below build messages as if a participant had sent them. A header is the 20 bytes of one of
 // its messages.
-void AppendDestination(std::vector<std::uint8_t> &message, const GuidPrefix &to);
 // Appends the announcement with that number, for all readers.
 void AppendAnnouncement(std::vector<std::uint8_t> &message, std::span<const std::uint8_t> announcement,
                         std::int64_t number);

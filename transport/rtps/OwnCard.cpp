@@ -10,9 +10,9 @@ namespace Rabit::Rtps
 void OwnCard::Announced(std::span<const std::uint8_t> message)
 {
     VisitSubmessages(message,
-                     [&](const RtpsSubmessage<const std::uint8_t> &part)
+                     [&](const ConstSubmessage &part)
                      {
-                         if (SubmessageKind{part.Kind} != SubmessageKind::Data)
+                         if (part.Kind != SubmessageKind::Data)
                          {
                              return;
                          }

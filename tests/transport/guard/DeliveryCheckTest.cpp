@@ -14,7 +14,7 @@ using Rabit::Rtps::LargestSequence;
 bool IsSound(std::uint8_t kind, const Bytes &body, std::uint8_t flags = 1)
 {
     Bytes message = Message(kind, body, flags);
-    auto rest = std::span(message).subspan(Rabit::RtpsHeaderSize);
+    auto rest = std::span(message).subspan(Rabit::Rtps::RtpsHeaderSize);
     const auto submessage = Rabit::Rtps::TakeSubmessage(rest);
     return submessage && Rabit::Rtps::CheckDelivery(*submessage).has_value();
 }

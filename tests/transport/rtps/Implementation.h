@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/RtpsWriter.h"
 #include "guard/RtpsBytes.h"
 #include "rtps/DiscoverySubmessages.h"
 
@@ -47,15 +48,16 @@ public:
         {
             return;
         }
-        Rabit::VisitSubmessages(message,
-                                [&](const Rabit::RtpsSubmessage<const std::uint8_t> &part)
-                                {
-                                    const auto said = Rabit::Rtps::ReadAnnouncement(part.Whole);
-                                    if (said && said->Writer == Rabit::Rtps::ParticipantWriter)
-                                    {
-                                        said->Alive ? Meet(from) : static_cast<void>(_peers.erase(from));
-                                    }
-                                });
+        Rabit::Rtps::VisitSubmessages(message,
+                                      [&](const Rabit::Rtps::ConstSubmessage &part)
+                                      {
+                                          const auto said = Rabit::Rtps::ReadAnnouncement(part.Whole);
+                                          if (said && said->Writer == Rabit::Rtps::ParticipantWriter)
+                                          {
+                                              said->Alive ? Meet(from)
+                                                          : static_cast<void>(_peers.erase(from));
+                                          }
+                                      });
         const auto parts = Rabit::Rtps::ReadEndpointSubmessages(message);
         const auto found = _peers.find(from);
         if (parts && found != _peers.end())

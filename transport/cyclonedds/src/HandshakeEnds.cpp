@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "common/RtpsSubmessages.h"
+#include "common/RtpsReader.h"
 
 namespace Rabit::Cyclone
 {
@@ -14,8 +14,6 @@ namespace
 // OMG DDS Security 1.1, 9.3.2.5: names of the messages of a handshake.
 constexpr std::string_view Reply = "DDS:Auth:PKI-DH:1.0+Reply";
 constexpr std::string_view Final = "DDS:Auth:PKI-DH:1.0+Final";
-constexpr std::size_t PrefixAt = 8;  // in the header
-constexpr std::uint8_t InfoDestination = 0x0e;
 
 bool Contains(std::span<const std::uint8_t> datagram, std::string_view text)
 {
@@ -32,14 +30,15 @@ void HandshakeEnds::Sent(std::span<const std::uint8_t> datagram, const RabitCycl
         return;
     }
     std::optional<Peer> to;
-    VisitSubmessages(datagram,
-                     [&](const RtpsSubmessage<const std::uint8_t> &submessage)
-                     {
-                         if (submessage.Kind == InfoDestination && submessage.Body().size() >= Peer().size())
-                         {
-                             std::copy_n(submessage.Body().begin(), Peer().size(), to.emplace().begin());
-                         }
-                     });
+    Rtps::VisitSubmessages(datagram,
+                           [&](const Rtps::ConstSubmessage &submessage)
+                           {
+                               if (submessage.Kind == Rtps::SubmessageKind::InfoDestination &&
+                                   submessage.Body().size() >= Peer().size())
+                               {
+                                   to = Rtps::PrefixOf(submessage.Body());
+                               }
+                           });
     if (!to)
     {
         return;
@@ -55,15 +54,14 @@ void HandshakeEnds::Sent(std::span<const std::uint8_t> datagram, const RabitCycl
 
 void HandshakeEnds::Received(std::span<const std::uint8_t> datagram, TimePoint now)
 {
-    if (datagram.size() < RtpsHeaderSize || !Contains(datagram, Reply))
+    if (datagram.size() < Rtps::RtpsHeaderSize || !Contains(datagram, Reply))
     {
         return;
     }
-    const auto from = datagram.subspan(PrefixAt, Peer().size());
+    const Peer from = Rtps::PrefixOf(datagram.subspan(Rtps::PrefixAt));
     const std::lock_guard lock(_mutex);
-    const auto found = std::find_if(
-        _ends.begin(), _ends.end(),
-        [&](const End &end) { return std::equal(from.begin(), from.end(), end.To.begin(), end.To.end()); });
+    const auto found =
+        std::find_if(_ends.begin(), _ends.end(), [&](const End &end) { return end.To == from; });
     if (found != _ends.end())
     {
         found->Due = now + Delay;

@@ -91,15 +91,14 @@ void VendorDomain::NoteRoute(std::span<const std::uint8_t> datagram, const Rabit
 {
     constexpr std::size_t most = 4096;
     Rtps::GuidPrefix to{};
-    VisitSubmessages(datagram,
-                     [&to](const RtpsSubmessage<const std::uint8_t> &part)
-                     {
-                         if (Rtps::SubmessageKind{part.Kind} == Rtps::SubmessageKind::InfoDestination &&
-                             part.Body().size() == to.size())
-                         {
-                             std::copy_n(part.Body().begin(), to.size(), to.begin());
-                         }
-                     });
+    Rtps::VisitSubmessages(datagram,
+                           [&to](const Rtps::ConstSubmessage &part)
+                           {
+                               if (part.Kind == Rtps::SubmessageKind::InfoDestination)
+                               {
+                                   to = Rtps::PrefixOf(part.Body());
+                               }
+                           });
     const std::lock_guard lock(_cardMutex);
     if (to != Rtps::GuidPrefix{} && (_cardRoutes.size() < most || _cardRoutes.contains(to)))
     {

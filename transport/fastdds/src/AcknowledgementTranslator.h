@@ -16,6 +16,8 @@
 #include <span>
 #include <utility>
 
+#include "common/RtpsReader.h"
+
 namespace Rabit::FastDds
 {
 
@@ -35,7 +37,6 @@ public:
     std::size_t Exchanges() const { return _exchanges.size(); }
 
 private:
-    using Prefix = std::array<std::uint8_t, 12>;
     // The reader, the writer, and the kind of submessage.
     using Exchange = std::array<std::uint8_t, 9>;
     struct Counts
@@ -45,12 +46,13 @@ private:
         bool HadSomething = false;
     };
 
-    bool HadSomething(const Prefix &sender, const Exchange &exchange) const;
-    std::uint32_t CountOf(const Prefix &sender, const Exchange &exchange, std::uint32_t theirs,
+    void Translate(const Rtps::Submessage &submessage, const Rtps::GuidPrefix &sender);
+    bool HadSomething(const Rtps::GuidPrefix &sender, const Exchange &exchange) const;
+    std::uint32_t CountOf(const Rtps::GuidPrefix &sender, const Exchange &exchange, std::uint32_t theirs,
                           bool something);
-    void Forget(const Prefix &sender);
+    void Forget(const Rtps::GuidPrefix &sender);
 
-    std::map<std::pair<Prefix, Exchange>, Counts> _exchanges;
+    std::map<std::pair<Rtps::GuidPrefix, Exchange>, Counts> _exchanges;
     std::uint32_t _highest = 0;  // highest count given
     std::uint32_t _floor = 0;    // value of _highest when an exchange was last forgotten
 };

@@ -4,8 +4,9 @@
 #include <functional>
 #include <string_view>
 
+#include "common/RtpsReader.h"
+#include "common/RtpsWriter.h"
 #include "guard/DeliveryCheck.h"
-#include "guard/RtpsReader.h"
 #include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::FastDds
@@ -15,13 +16,6 @@ using namespace Rtps;
 
 namespace
 {
-
-constexpr std::uint8_t Final = 0x02;      // in an ACKNACK: no answer is wanted
-constexpr std::uint8_t InlineQos = 0x02;  // in a DATA
-// RTPS 2.3, 9.4.1 and 9.4.5
-constexpr std::size_t PrefixAt = 8;
-constexpr std::size_t ReaderInData = 4;
-constexpr std::size_t EntitySize = 4;
 
 // For all submessages but samples: the reader comes first.
 EntityId WriterOf(RtpsReader body)
@@ -36,20 +30,10 @@ bool Asks(RtpsReader body, std::uint8_t flags, FirstRequest &request)
     request.Writer = body.Entity();
     const std::int64_t base = body.Sequence();
     const std::uint32_t bits = body.Bits();
-    return body.IsGood() && (flags & Final) == 0 && base <= 1 && bits == 0;
+    return body.IsGood() && (flags & FinalFlag) == 0 && base <= 1 && bits == 0;
 }
 
-using Part = RtpsSubmessage<const std::uint8_t>;
-
-GuidPrefix PrefixIn(std::span<const std::uint8_t> bytes)
-{
-    GuidPrefix prefix{};
-    if (bytes.size() >= prefix.size())
-    {
-        std::copy_n(bytes.begin(), prefix.size(), prefix.begin());
-    }
-    return prefix;
-}
+using Part = ConstSubmessage;
 
 // True if the submessage announces a participant as alive.
 bool IsAnnouncement(const Part &part)
@@ -80,14 +64,14 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     std::uint64_t digest = 0;
     const auto visit = [&](const Part &part)
     {
-        RtpsReader body(part.Body(), part.LittleEndian);
-        switch (static_cast<SubmessageKind>(part.Kind))
+        RtpsReader body = part.Reader();
+        switch (part.Kind)
         {
             case SubmessageKind::Pad:
             case SubmessageKind::InfoTimestamp:
                 break;
             case SubmessageKind::InfoDestination:
-                peer = PrefixIn(part.Body());
+                peer = PrefixOf(part.Body());
                 ++destinations;
                 break;
             case SubmessageKind::AckNack:
@@ -97,22 +81,21 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
             case SubmessageKind::Data:
             case SubmessageKind::DataFrag:
             {
-                body.Skip(ReaderInData + EntitySize);
+                body.Skip(WriterInData);
                 const EntityId writer = body.Entity();
                 message.HasSamples = message.HasSamples || !IsBuiltin(writer);
-                const bool whole = SubmessageKind{part.Kind} == SubmessageKind::Data;
+                const bool whole = part.Kind == SubmessageKind::Data;
                 const bool announces = whole && IsAnnouncement(part);
                 (announces ? announcements : others) += 1;
                 samples += whole && !IsBuiltin(writer) ? 1 : 0;
                 // The digest omits the reader that it is for.
                 digest =
-                    31 * digest +
-                    DigestOf(part.Body().subspan(std::min(ReaderInData + EntitySize, part.Body().size())));
+                    31 * digest + DigestOf(part.Body().subspan(std::min(WriterInData, part.Body().size())));
                 break;
             }
             case SubmessageKind::Heartbeat:
                 message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
-                body.Skip(EntitySize);  // the reader
+                body.Skip(sizeof(EntityId));  // the reader
                 heartbeat.Writer = body.Entity();
                 heartbeat.First = body.Sequence();
                 heartbeat.Last = body.Sequence();
@@ -152,26 +135,25 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
 GuidPrefix DestinationOf(std::span<const std::uint8_t> datagram)
 {
     GuidPrefix to{};
-    VisitSubmessages(
-        datagram,
-        [&to](const Part &part)
-        {
-            if (SubmessageKind{part.Kind} == SubmessageKind::InfoDestination && to == GuidPrefix{})
-            {
-                to = PrefixIn(part.Body());
-            }
-        });
+    VisitSubmessages(datagram,
+                     [&to](const Part &part)
+                     {
+                         if (part.Kind == SubmessageKind::InfoDestination && to == GuidPrefix{})
+                         {
+                             to = PrefixOf(part.Body());
+                         }
+                     });
     return to;
 }
 
 void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to)
 {
-    to.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(
-                                                       std::min(Rabit::RtpsHeaderSize, datagram.size())));
+    to.assign(datagram.begin(),
+              datagram.begin() + static_cast<std::ptrdiff_t>(std::min(RtpsHeaderSize, datagram.size())));
     VisitSubmessages(datagram,
                      [&to](const Part &part)
                      {
-                         if (SubmessageKind{part.Kind} != SubmessageKind::InfoDestination)
+                         if (part.Kind != SubmessageKind::InfoDestination)
                          {
                              to.insert(to.end(), part.Whole.begin(), part.Whole.end());
                          }
@@ -180,16 +162,13 @@ void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector
 
 void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to)
 {
-    constexpr std::uint16_t Properties = 0x0059;
     constexpr std::size_t FixedSize = SubmessageHeaderSize + 20;  // up to the inline QoS
-    constexpr std::size_t EncapsulationSize = 4;
-    const auto add = [&to](std::span<const std::uint8_t> bytes)
-    { to.insert(to.end(), bytes.begin(), bytes.end()); };
+    const auto add = [&to](std::span<const std::uint8_t> bytes) { Append(to, bytes); };
     to.clear();
-    add(announcement.first(std::min(Rabit::RtpsHeaderSize, announcement.size())));
+    add(announcement.first(std::min(RtpsHeaderSize, announcement.size())));
     const auto visit = [&](const Part &part)
     {
-        if (SubmessageKind{part.Kind} != SubmessageKind::Data || !IsAnnouncement(part))
+        if (part.Kind != SubmessageKind::Data || !IsAnnouncement(part))
         {
             add(part.Whole);
             return;
@@ -197,27 +176,26 @@ void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vec
         const auto payload = ReadAnnouncement(part.Whole)->Payload;
         const std::size_t begins = to.size();
         add(part.Whole.first(FixedSize));
-        to[begins + 1] = static_cast<std::uint8_t>(to[begins + 1] & ~InlineQos);
+        to[begins + 1] = static_cast<std::uint8_t>(to[begins + 1] & ~InlineQosFlag);
         add(payload.first(EncapsulationSize));
         const bool littleEndianList = (payload[1] & 1) != 0;
-        RtpsReader list(payload.subspan(EncapsulationSize), littleEndianList);
-        while (list.Left() > 0)
+        const std::span<const std::uint8_t> parameters = payload.subspan(EncapsulationSize);
+        RtpsReader list(parameters, littleEndianList);
+        std::size_t copied = 0;
+        while (const auto parameter = TakeParameter(list))
         {
-            const auto rest = list.Rest();
-            const std::uint16_t id = list.U16();
-            const std::uint16_t length = list.U16();
-            list.Skip(length);
-            if (id != Properties || !list.IsGood())
+            if (parameter->Id == Parameters::PropertyList)
             {
-                add(rest.first(rest.size() - list.Left()));
+                add(parameters.subspan(copied, parameter->At - copied));
+                copied = list.Position();
             }
         }
+        add(parameters.subspan(copied));
         // A length of 0 means "to the end of the message", which remains true.
         if (part.Whole[2] != 0 || part.Whole[3] != 0)
         {
-            const std::size_t length = to.size() - begins - SubmessageHeaderSize;
-            to[begins + (part.LittleEndian ? 2 : 3)] = static_cast<std::uint8_t>(length);
-            to[begins + (part.LittleEndian ? 3 : 2)] = static_cast<std::uint8_t>(length >> 8);
+            Write(std::span(to).subspan(begins + 2, 2), to.size() - begins - SubmessageHeaderSize,
+                  part.LittleEndian);
         }
     };
     VisitSubmessages(announcement, visit);
@@ -226,24 +204,24 @@ void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vec
 std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> datagram)
 {
     std::vector<Acknowledgement> found;
-    GuidPrefix sender = PrefixIn(datagram.subspan(std::min(PrefixAt, datagram.size())));
+    GuidPrefix sender = PrefixOf(datagram.subspan(std::min(PrefixAt, datagram.size())));
     VisitSubmessages(datagram,
                      [&](const Part &part)
                      {
-                         if (SubmessageKind{part.Kind} == SubmessageKind::InfoSource)
+                         if (part.Kind == SubmessageKind::InfoSource)
                          {
-                             sender = PrefixIn(part.Body().subspan(std::min(PrefixAt, part.Body().size())));
+                             sender = PrefixOf(part.Body().subspan(std::min(PrefixAt, part.Body().size())));
                          }
-                         if (SubmessageKind{part.Kind} != SubmessageKind::AckNack)
+                         if (part.Kind != SubmessageKind::AckNack)
                          {
                              return;
                          }
-                         RtpsReader body(part.Body(), part.LittleEndian);
+                         RtpsReader body = part.Reader();
                          Acknowledgement said{.Peer = sender};
                          said.Reader = body.Entity();
                          said.Writer = body.Entity();
                          said.Base = body.Sequence();
-                         said.Asks = body.Bits() > 0 || (said.Base <= 1 && (part.Flags & Final) == 0);
+                         said.Asks = body.Bits() > 0 || (said.Base <= 1 && (part.Flags & FinalFlag) == 0);
                          if (body.IsGood())
                          {
                              found.push_back(said);
