@@ -16,8 +16,8 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 # Dependencies of headers and static libraries, which dpkg-shlibdeps does not find.
-set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev libssl-dev libtinyxml2-dev
-    nlohmann-json3-dev cyclonedds-dev)
+set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev zlib1g-dev
+    libssl-dev libtinyxml2-dev nlohmann-json3-dev cyclonedds-dev)
 if(RABIT_WITH_FASTDDS)
   list(APPEND dev_needs libfastrtps-dev)
 endif()

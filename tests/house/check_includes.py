@@ -67,6 +67,7 @@ OWNERS = [
     (r"openssl/", "OpenSSL"),
     (r"tinyxml2\.h", "tinyxml2"),
     (r"zstd\.h", "zstd"),
+    (r"zlib\.h", "zlib"),
     (r"CLI/", "CLI11"),
     (r"boost/asio|boost/beast", "network"),
     (r"sys/socket\.h|netinet/|arpa/|netdb\.h", "network"),
@@ -99,7 +100,7 @@ ALLOWED = {
        | ({"OpenSSL", "tinyxml2"} if room == "keys" else set())
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
     # Only files: no network, no messages.
-    "gateway/recording/mcap": {"room mcap", "zstd"},
+    "gateway/recording/mcap": {"room mcap", "zstd", "zlib"},
     "gateway/recording/merge": {"room mcap", "room merge"},
     # The order of a replay: only files and names.
     "gateway/recording/replay": {"room names", "room mcap", "room replay"},

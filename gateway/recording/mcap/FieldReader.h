@@ -2,6 +2,8 @@
 
 #include <rabit/base/LittleEndian.h>
 
+#include <type_traits>
+
 #include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Mcap
@@ -37,20 +39,32 @@ public:
         _left = _left.subspan(bytes.size());
         return bytes;
     }
-    std::string Text()
+    std::size_t Left() const { return _left.size(); }
+
+    // These read one field each. A ByteView takes all that is left.
+    template <typename T>
+    void Get(T &number) requires(std::is_integral_v<T> || std::is_enum_v<T>)
+    {
+        using Unsigned = typename std::conditional_t<std::is_enum_v<T>, std::underlying_type<T>,
+                                                     std::type_identity<T>>::type;
+        number = static_cast<T>(Number<Unsigned>());
+    }
+    void Get(std::string &text)
     {
         const ByteView bytes = Raw(Number<std::uint32_t>());
-        return {bytes.begin(), bytes.end()};
+        text.assign(bytes.begin(), bytes.end());
     }
-    TextMap Texts()
+    void Get(ByteView &rest) { rest = Raw(_left.size()); }
+    void Get(TextMap &texts)
     {
         FieldReader entries(Raw(Number<std::uint32_t>()));
-        TextMap texts;
         std::size_t bytes = 0;
         while (entries.IsGood() && !entries.IsEnd())
         {
-            std::string key = entries.Text();
-            std::string value = entries.Text();
+            std::string key;
+            std::string value;
+            entries.Get(key);
+            entries.Get(value);
             bytes += TextEntrySize + key.size() + value.size();
             entries._good = entries._good && bytes <= LargestTexts;
             if (entries.IsGood())
@@ -59,11 +73,22 @@ public:
             }
         }
         Join(entries);
-        return texts;
     }
-    // Calls take(first, second) for each pair of an array.
+    // Pairs of numbers: a later one of the same key replaces an earlier one in a map.
+    template <typename First, typename Second>
+    void Get(std::map<First, Second> &pairs)
+    {
+        GetPairs<First, Second>([&pairs](First first, Second second) { pairs[first] = second; });
+    }
+    template <typename First, typename Second>
+    void Get(std::vector<std::pair<First, Second>> &pairs)
+    {
+        GetPairs<First, Second>([&pairs](First first, Second second) { pairs.emplace_back(first, second); });
+    }
+
+private:
     template <typename First, typename Second, typename Take>
-    void NumberPairs(Take take)
+    void GetPairs(Take take)
     {
         FieldReader entries(Raw(Number<std::uint32_t>()));
         while (entries.IsGood() && !entries.IsEnd())
@@ -77,9 +102,6 @@ public:
         }
         Join(entries);
     }
-    ByteView Rest() { return Raw(_left.size()); }
-
-private:
     void Join(const FieldReader &other) { _good = _good && other._good; }
 
     ByteView _left;

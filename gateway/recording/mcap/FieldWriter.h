@@ -2,6 +2,8 @@
 
 #include <rabit/base/LittleEndian.h>
 
+#include <type_traits>
+
 #include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Mcap
@@ -14,45 +16,35 @@ class FieldWriter
 public:
     FieldWriter(Bytes &to, Opcode opcode) : _to(to)
     {
-        Number(static_cast<std::uint8_t>(opcode));
-        Number(std::uint64_t{0});
+        Put(opcode);
+        Put(std::uint64_t{0});
         _begin = _to.size();
     }
-    ~FieldWriter() { Put(_begin - sizeof(std::uint64_t), static_cast<std::uint64_t>(Size() + _beyond)); }
+    ~FieldWriter() { Write(_begin - sizeof(std::uint64_t), static_cast<std::uint64_t>(Size() + _beyond)); }
     FieldWriter(const FieldWriter &) = delete;
     FieldWriter &operator=(const FieldWriter &) = delete;
 
+    // These write one field each. A ByteView is written without its length.
     template <typename T>
-    void Number(T value)
+    void Put(T number) requires(std::is_integral_v<T> || std::is_enum_v<T>)
     {
-        LittleEndian::Put(value, _to);
+        LittleEndian::Put(static_cast<std::make_unsigned_t<T>>(number), _to);
     }
-    void Raw(ByteView bytes) { _to.insert(_to.end(), bytes.begin(), bytes.end()); }
-    void Text(const std::string &text)
+    void Put(ByteView bytes) { _to.insert(_to.end(), bytes.begin(), bytes.end()); }
+    void Put(const std::string &text)
     {
-        Number(static_cast<std::uint32_t>(text.size()));
+        Put(static_cast<std::uint32_t>(text.size()));
         _to.insert(_to.end(), text.begin(), text.end());
     }
-    void Texts(const TextMap &texts)
+    template <typename First, typename Second>
+    void Put(const std::map<First, Second> &pairs)
     {
-        const std::size_t length = BeginArray();
-        for (const auto &[key, value] : texts)
-        {
-            Text(key);
-            Text(value);
-        }
-        EndArray(length);
+        PutPairs(pairs);
     }
-    template <typename Pairs>
-    void NumberPairs(const Pairs &pairs)
+    template <typename First, typename Second>
+    void Put(const std::vector<std::pair<First, Second>> &pairs)
     {
-        const std::size_t length = BeginArray();
-        for (const auto &[first, second] : pairs)
-        {
-            Number(first);
-            Number(second);
-        }
-        EndArray(length);
+        PutPairs(pairs);
     }
     // The caller writes so many further bytes of the record itself.
     void Beyond(std::size_t bytes) { _beyond = bytes; }
@@ -61,17 +53,20 @@ public:
     ByteView Content() const { return ByteView(_to).subspan(_begin); }
 
 private:
-    std::size_t BeginArray()
+    template <typename Pairs>
+    void PutPairs(const Pairs &pairs)
     {
-        Number(std::uint32_t{0});
-        return _to.size();
-    }
-    void EndArray(std::size_t begin)
-    {
-        Put(begin - sizeof(std::uint32_t), static_cast<std::uint32_t>(_to.size() - begin));
+        Put(std::uint32_t{0});
+        const std::size_t begin = _to.size();
+        for (const auto &[first, second] : pairs)
+        {
+            Put(first);
+            Put(second);
+        }
+        Write(begin - sizeof(std::uint32_t), static_cast<std::uint32_t>(_to.size() - begin));
     }
     template <typename T>
-    void Put(std::size_t at, T value)
+    void Write(std::size_t at, T value)
     {
         LittleEndian::Write(value, _to.data() + at);
     }

@@ -133,7 +133,7 @@ private:
                 good = TakeAttachment(record);
                 break;
             case Opcode::Metadata:
-                good = AddIf(ReadMetadata(record.Content));
+                good = AddIf(Read<Metadata>(record.Content));
                 break;
             case Opcode::DataEnd:
                 _inSummary = true;
@@ -149,7 +149,7 @@ private:
 
     bool TakeHeader(ByteView content)
     {
-        auto header = ReadHeader(content);
+        auto header = Read<Header>(content);
         if (header)
         {
             _contents.Header = std::move(*header);
@@ -166,7 +166,7 @@ private:
 
     bool TakeAttachment(const RecordScanner::Record &record)
     {
-        auto attachment = ReadAttachment(record.Content);
+        auto attachment = Read<Attachment>(record.Content);
         return attachment &&
                _contents.Add(AttachmentIndex{record.Offset, record.Length, attachment->LogTime,
                                              attachment->CreateTime, attachment->Data.size(),
@@ -175,13 +175,13 @@ private:
 
     bool TakeDefinition(std::uint8_t code, ByteView content)
     {
-        return code == static_cast<std::uint8_t>(Opcode::Schema) ? AddIf(ReadSchema(content))
-                                                                 : AddIf(ReadChannel(content));
+        return code == static_cast<std::uint8_t>(Opcode::Schema) ? AddIf(Read<Schema>(content))
+                                                                 : AddIf(Read<Channel>(content));
     }
 
     bool TakeMessage(ByteView content)
     {
-        const auto message = ReadMessage(content);
+        const auto message = Read<Message>(content);
         if (!message)
         {
             return false;
@@ -198,7 +198,7 @@ private:
 
     void TakeChunk(const RecordScanner::Record &record)
     {
-        const auto chunk = ReadChunk(record.Content);
+        const auto chunk = Read<Chunk>(record.Content);
         ByteView records;
         const std::string reason = chunk ? OpenChunk(*chunk, _room, records) : "it is malformed";
         if (!reason.empty())
@@ -288,7 +288,7 @@ std::optional<Bytes> ReadSummary(ByteSource &source)
     }
     const auto record = RecordIterator(*end).Next();
     const auto footer = record && record->Code == static_cast<std::uint8_t>(Opcode::Footer)
-                            ? ReadFooter(record->Content)
+                            ? Read<Footer>(record->Content)
                             : std::nullopt;
     const std::uint64_t footerAt = size - Magic.size() - FooterSize;
     if (!footer || footer->SummaryStart == 0 || footer->SummaryStart > footerAt)
@@ -317,7 +317,7 @@ std::optional<Metadata> ReadMetadataAt(ByteSource &source, const std::optional<M
     const auto bytes = index ? ReadPart(source, index->Offset, index->Length) : std::nullopt;
     const auto record = bytes ? RecordIterator(*bytes).Next() : std::nullopt;
     return record && record->Code == static_cast<std::uint8_t>(Opcode::Metadata)
-               ? ReadMetadata(record->Content)
+               ? Read<Metadata>(record->Content)
                : std::nullopt;
 }
 
@@ -331,23 +331,23 @@ bool TakeSummary(ByteSource &source, ByteView summary, Contents &contents)
         switch (static_cast<Opcode>(record->Code))
         {
             case Opcode::Schema:
-                good = AddIf(ReadSchema(record->Content), contents);
+                good = AddIf(Read<Schema>(record->Content), contents);
                 break;
             case Opcode::Channel:
-                good = AddIf(ReadChannel(record->Content), contents);
+                good = AddIf(Read<Channel>(record->Content), contents);
                 break;
             case Opcode::ChunkIndex:
-                good = AddIf(ReadChunkIndex(record->Content), contents);
+                good = AddIf(Read<ChunkIndex>(record->Content), contents);
                 break;
             case Opcode::AttachmentIndex:
-                good = AddIf(ReadAttachmentIndex(record->Content), contents);
+                good = AddIf(Read<AttachmentIndex>(record->Content), contents);
                 break;
             case Opcode::MetadataIndex:
-                good = AddIf(ReadMetadataAt(source, ReadMetadataIndex(record->Content)), contents);
+                good = AddIf(ReadMetadataAt(source, Read<MetadataIndex>(record->Content)), contents);
                 break;
             case Opcode::Statistics:
             {
-                auto statistics = ReadStatistics(record->Content);
+                auto statistics = Read<Statistics>(record->Content);
                 good = hasStatistics = statistics.has_value();
                 contents.Statistics = good ? std::move(*statistics) : Statistics{};
                 break;
@@ -439,7 +439,7 @@ Contents ReadContents(ByteSource &source, const ContentsLimits &limits)
             RecordScanner scanner(source);
             const auto first = scanner.Next();
             auto header = first && first->Code == static_cast<std::uint8_t>(Opcode::Header)
-                              ? ReadHeader(first->Content)
+                              ? Read<Header>(first->Content)
                               : std::nullopt;
             contents.Header = header ? std::move(*header) : Header{};
             contents.IsIndexed = true;

@@ -48,12 +48,14 @@ inline constexpr std::uint8_t LastFormatOpcode = 0x7F;
 
 struct Header
 {
+    static constexpr Opcode Code = Opcode::Header;
     std::string Profile;
     std::string Library;
 };
 
 struct Footer
 {
+    static constexpr Opcode Code = Opcode::Footer;
     std::uint64_t SummaryStart = 0;  // 0: there is none
     std::uint64_t SummaryOffsetStart = 0;
     std::uint32_t SummaryCrc = 0;  // 0: not known
@@ -61,6 +63,7 @@ struct Footer
 
 struct Schema
 {
+    static constexpr Opcode Code = Opcode::Schema;
     std::uint16_t Id = 0;  // from 1
     std::string Name;
     std::string Encoding;
@@ -69,6 +72,7 @@ struct Schema
 
 struct Channel
 {
+    static constexpr Opcode Code = Opcode::Channel;
     std::uint16_t Id = 0;
     std::uint16_t SchemaId = 0;  // 0: none
     std::string Topic;
@@ -78,6 +82,7 @@ struct Channel
 
 struct Message
 {
+    static constexpr Opcode Code = Opcode::Message;
     std::uint16_t ChannelId = 0;
     std::uint32_t Sequence = 0;     // 0: not numbered
     std::uint64_t LogTime = 0;      // when it was recorded
@@ -89,6 +94,7 @@ inline constexpr std::size_t MessageHead = RecordHead + 22;
 
 struct Chunk
 {
+    static constexpr Opcode Code = Opcode::Chunk;
     std::uint64_t StartTime = 0;  // the least log time in it; 0 if it is empty
     std::uint64_t EndTime = 0;
     std::uint64_t UncompressedSize = 0;
@@ -99,12 +105,14 @@ struct Chunk
 
 struct MessageIndex
 {
+    static constexpr Opcode Code = Opcode::MessageIndex;
     std::uint16_t ChannelId = 0;
     std::vector<std::pair<std::uint64_t, std::uint64_t>> Entries;  // log time, offset in the chunk's records
 };
 
 struct ChunkIndex
 {
+    static constexpr Opcode Code = Opcode::ChunkIndex;
     std::uint64_t StartTime = 0;
     std::uint64_t EndTime = 0;
     std::uint64_t Offset = 0;                                    // of the chunk's record in the file
@@ -118,6 +126,7 @@ struct ChunkIndex
 
 struct Attachment
 {
+    static constexpr Opcode Code = Opcode::Attachment;
     std::uint64_t LogTime = 0;
     std::uint64_t CreateTime = 0;
     std::string Name;
@@ -127,6 +136,7 @@ struct Attachment
 
 struct AttachmentIndex
 {
+    static constexpr Opcode Code = Opcode::AttachmentIndex;
     std::uint64_t Offset = 0;
     std::uint64_t Length = 0;
     std::uint64_t LogTime = 0;
@@ -138,6 +148,7 @@ struct AttachmentIndex
 
 struct Statistics
 {
+    static constexpr Opcode Code = Opcode::Statistics;
     std::uint64_t MessageCount = 0;
     std::uint16_t SchemaCount = 0;
     std::uint32_t ChannelCount = 0;
@@ -151,12 +162,14 @@ struct Statistics
 
 struct Metadata
 {
+    static constexpr Opcode Code = Opcode::Metadata;
     std::string Name;
     TextMap Values;
 };
 
 struct MetadataIndex
 {
+    static constexpr Opcode Code = Opcode::MetadataIndex;
     std::uint64_t Offset = 0;
     std::uint64_t Length = 0;
     std::string Name;
@@ -164,6 +177,7 @@ struct MetadataIndex
 
 struct SummaryOffset
 {
+    static constexpr Opcode Code = Opcode::SummaryOffset;
     Opcode Group = Opcode::Schema;
     std::uint64_t Start = 0;
     std::uint64_t Length = 0;

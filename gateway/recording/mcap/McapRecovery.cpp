@@ -54,7 +54,7 @@ private:
         }
         else if (code == Opcode::Chunk)
         {
-            const auto chunk = ReadChunk(content);
+            const auto chunk = Read<Chunk>(content);
             ByteView records;
             if (!chunk || !OpenChunk(*chunk, _room, records).empty())
             {
@@ -71,7 +71,7 @@ private:
         }
         else if (code == Opcode::Attachment && IsListed(record.Offset))
         {
-            if (const auto attachment = ReadAttachment(content))
+            if (const auto attachment = Read<Attachment>(content))
             {
                 _writer.AddAttachment(*attachment);
             }
@@ -90,7 +90,7 @@ private:
 
     void TakeMessage(ByteView content)
     {
-        auto message = ReadMessage(content);
+        auto message = Read<Message>(content);
         const auto channel = message ? ChannelOf(message->ChannelId) : std::nullopt;
         if (!channel)
         {

@@ -71,7 +71,7 @@ std::optional<Message> MessageCursor::Next()
     }
     _current = _loaded.top();
     _loaded.pop();
-    return ReadMessage(RecordIterator(_current->Records.subspan(_current->Front().Offset)).Next()->Content);
+    return Read<Message>(RecordIterator(_current->Records.subspan(_current->Front().Offset)).Next()->Content);
 }
 
 void MessageCursor::Load(const ChunkIndex &index)
@@ -114,7 +114,7 @@ std::string MessageCursor::LoadInto(const ChunkIndex &index, Loaded &loaded)
     }
     const auto record = RecordIterator(loaded.Record).Next();
     const auto chunk = record && record->Code == static_cast<std::uint8_t>(Opcode::Chunk)
-                           ? ReadChunk(record->Content)
+                           ? Read<Chunk>(record->Content)
                            : std::nullopt;
     if (!chunk)
     {
@@ -128,7 +128,7 @@ std::string MessageCursor::LoadInto(const ChunkIndex &index, Loaded &loaded)
     while (const auto inner = records.Next())
     {
         const auto message = inner->Code == static_cast<std::uint8_t>(Opcode::Message)
-                                 ? ReadMessage(inner->Content)
+                                 ? Read<Message>(inner->Content)
                                  : std::nullopt;
         if (message && message->LogTime >= _selection.From && message->LogTime <= _selection.To &&
             (!_selection.Wants || _selection.Wants(message->ChannelId)))

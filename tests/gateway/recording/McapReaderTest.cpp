@@ -202,10 +202,10 @@ TEST(McapReader, RefusesMetadataThatTakeFarMoreMemoryThanBytes)
     { return static_cast<std::uint8_t>(entries.size() >> (8 * at)); };
     Bytes metadata = {0, 0, 0, 0, size(0), size(1), size(2), size(3)};  // without a name
     metadata.insert(metadata.end(), entries.begin(), entries.end());
-    EXPECT_FALSE(ReadMetadata(metadata));
+    EXPECT_FALSE(Read<Metadata>(metadata));
     Bytes channel = {1, 0, 0, 0, 0, 0, 0, 0};  // without a topic
     channel.insert(channel.end(), metadata.begin(), metadata.end());
-    EXPECT_FALSE(ReadChannel(channel));
+    EXPECT_FALSE(Read<Channel>(channel));
 }
 
 TEST(McapReader, RecoversMetadataUpToABound)
@@ -353,20 +353,20 @@ TEST(McapReader, SurvivesRecordsOfAnyLength)
         {
             const Bytes content(record->Content.begin(),
                                 record->Content.begin() + static_cast<std::ptrdiff_t>(size));
-            ReadHeader(content);
-            ReadFooter(content);
-            ReadSchema(content);
-            ReadChannel(content);
-            ReadMessage(content);
-            ReadChunk(content);
-            ReadMessageIndex(content);
-            ReadChunkIndex(content);
-            ReadAttachment(content);
-            ReadAttachmentIndex(content);
-            ReadStatistics(content);
-            ReadMetadata(content);
-            ReadMetadataIndex(content);
-            ReadSummaryOffset(content);
+            Read<Header>(content);
+            Read<Footer>(content);
+            Read<Schema>(content);
+            Read<Channel>(content);
+            Read<Message>(content);
+            Read<Chunk>(content);
+            Read<MessageIndex>(content);
+            Read<ChunkIndex>(content);
+            Read<Attachment>(content);
+            Read<AttachmentIndex>(content);
+            Read<Statistics>(content);
+            Read<Metadata>(content);
+            Read<MetadataIndex>(content);
+            Read<SummaryOffset>(content);
         }
     }
 }
