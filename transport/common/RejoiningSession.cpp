@@ -7,8 +7,7 @@
 
 #include "common/PeerAddress.h"
 #include "common/PeerResolver.h"
-#include "common/RejoiningReader.h"
-#include "common/RejoiningWriter.h"
+#include "common/RejoiningEndpoints.h"
 #include "common/SettingsCheck.h"
 
 namespace Rabit
@@ -365,8 +364,10 @@ void RejoiningSession::CloseAll()
     {
         for (int i = 0; i < count && _onPeer; ++i)
         {
-            _peerGate.Run([this, &identity = peer]
-                          { _onPeer({PeerEvent::Kind::Lost, identity.first, identity.second}); });
+            _peerGate.Run(
+                [this, &identity = peer] {
+                    _onPeer({PeerEvent::Kind::Lost, identity.first, identity.second});
+                });
         }
     }
 }

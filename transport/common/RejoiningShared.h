@@ -7,13 +7,23 @@
 #include <vector>
 
 #include "common/RejoiningBackend.h"
-#include "common/RejoiningEndpoint.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 #include "common/UseGate.h"
 
 namespace Rabit
 {
+
+// A writer or reader that can be made anew in another session of the backend.
+class RejoiningEndpoint
+{
+public:
+    virtual void Open(TransportSession &session) = 0;
+    virtual void Close() = 0;
+
+protected:
+    ~RejoiningEndpoint() = default;
+};
 
 // State that the session shares with its writers and readers.
 struct RejoiningShared

@@ -12,7 +12,7 @@
 #include "common/HostNetworks.h"
 #include "common/RejoiningBackend.h"
 #include "common/RejoiningSession.h"
-#include "common/SettingsCheck.h"
+#include "common/VendorSession.h"
 
 namespace Rabit
 {
@@ -22,40 +22,7 @@ namespace
 
 using namespace Cyclone;
 
-class CycloneSession final : public BackendSession
-{
-public:
-    CycloneSession(const TransportSettings &settings, PeerHandler onPeer,
-                   std::shared_ptr<DiscoveryTurns> turns)
-        : _core(std::make_shared<SessionCore>(settings, std::move(onPeer), std::move(turns)))
-    {
-    }
-    ~CycloneSession() override { _core->Close(); }
-
-    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
-                                                  const std::vector<std::string> &partitions) override
-    {
-        CheckQos(topic, qos);
-        return std::make_unique<CycloneWriter>(_core, topic, qos, partitions);
-    }
-    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
-                                                  const std::vector<std::string> &partitions,
-                                                  SampleHandler handler) override
-    {
-        CheckQos(topic, qos);
-        return std::make_unique<CycloneReader>(_core, topic, qos, partitions, std::move(handler));
-    }
-    TransportCounters Counters() const override { return _core->Log()->Read(); }
-    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
-    {
-        return _core->Topics().RemoteOn(topic);
-    }
-    std::vector<std::string> RemoteTopics() const override { return _core->Topics().RemoteTopics(); }
-    std::vector<PeerPlace> PeerPlaces() const override { return _core->PeerPlaces(); }
-
-private:
-    const std::shared_ptr<SessionCore> _core;
-};
+using CycloneSession = VendorSession<SessionCore, CycloneWriter, CycloneReader>;
 
 class CycloneBackend final : public RejoiningBackend
 {

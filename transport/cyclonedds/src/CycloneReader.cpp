@@ -9,34 +9,10 @@
 namespace Rabit::Cyclone
 {
 
-namespace
-{
-
-constexpr std::size_t HeaderSize = 4;
-
-// The sample without the padding that RTPS added. A submessage's length is a multiple of 4, so a sample of
-// another length came in fragments, which carry its true length.
-SampleBytes WithoutPadding(const OpaqueSample &sample)
-{
-    std::size_t size = sample.Size;
-    if (size > HeaderSize && size % 4 == 0)
-    {
-        size -= std::min<std::size_t>(sample.Data()[3] & 3u, size - HeaderSize);
-    }
-    return {sample.Data(), size};
-}
-
-}  // namespace
-
 CycloneReader::CycloneReader(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
                              const TopicQos &qos, const std::vector<std::string> &partitions,
                              SampleHandler handler)
-    : _core(std::move(core)),
-      _topic(topic),
-      _use(_core->Topics(), topic),
-      _handler(std::move(handler)),
-      _gate(_core->Log(), "the reader of " + topic.Name),
-      _entityTopic(MakeTopic(*_core, topic, _type))
+    : VendorReader(std::move(core), topic, std::move(handler)), _entityTopic(MakeTopic(*_core, topic, _type))
 {
     _cache.Base.common.ops = &CacheOps();
     _cache.Owner = this;
@@ -101,7 +77,13 @@ const dds_rhc_ops &CycloneReader::CacheOps()
         o.rhc_ops.unregister_wr = [](ddsi_rhc *cache, const ddsi_writer_info *writer)
         {
             auto &reader = OwnerOf(cache);
-            reader._gate.Run([&] { reader.WriterGone(ToWriterId(writer->guid)); });
+            reader._gate.Run(
+                [&]
+                {
+                    const WriterId gone = ToWriterId(writer->guid);
+                    reader._inStep.erase(gone);
+                    reader.DeliverEndsOf(gone);
+                });
         };
         o.rhc_ops.relinquish_ownership = [](ddsi_rhc *, std::uint64_t) {};
         o.rhc_ops.set_qos = [](ddsi_rhc *, const dds_qos *) {};
@@ -129,20 +111,14 @@ void CycloneReader::HandOver(const OpaqueSample &sample, const WriterId &writer)
     info.Sequence = sample.Sequence;
     info.Key = sample.Key;
     info.Alive = (sample.Header.statusinfo & (StatusDisposed | StatusUnregistered)) == 0;
-    if (!info.Alive)
+    if (info.Alive)
     {
-        HandOverEnd(sample, info);
-        return;
+        Deliver(WithoutPadding({sample.Data(), sample.Size}), info);
     }
-    if (_lastNode != nullptr)
+    else
     {
-        _lastNode->Hear();
+        DeliverEnd(info, (sample.Header.statusinfo & StatusDisposed) != 0);
     }
-    if (_topic.KeyOf)
-    {
-        _instances.Alive(info.Key, writer);
-    }
-    _handler(WithoutPadding(sample), info);
 }
 
 void CycloneReader::Follow(const WriterId &writer)
@@ -156,57 +132,6 @@ void CycloneReader::Follow(const WriterId &writer)
     {
         _inStep.insert(writer);
     }
-}
-
-void CycloneReader::HandOverEnd(const OpaqueSample &sample, SampleInfo &info)
-{
-    if (!_topic.KeyOf)
-    {
-        return;  // a topic without a key has no instance that could end
-    }
-    if ((sample.Header.statusinfo & StatusDisposed) != 0)
-    {
-        _instances.Disposed(info.Key);
-    }
-    else if (_instances.Unregistered(info.Key, info.Writer))
-    {
-        info.SourceTime = 0;
-        info.Sequence = 0;
-    }
-    else
-    {
-        return;  // other writers still have it
-    }
-    _handler({}, info);
-}
-
-void CycloneReader::WriterGone(const WriterId &writer)
-{
-    _inStep.erase(writer);
-    for (const KeyHash &key : _instances.WriterGone(writer))
-    {
-        SampleInfo info = InfoFor(writer);
-        info.Alive = false;
-        info.Key = key;
-        _handler({}, info);
-    }
-}
-
-SampleInfo CycloneReader::InfoFor(const WriterId &writer)
-{
-    if (_lastWriter != writer || _lastNode == nullptr)
-    {
-        _lastNode = _core->IdentityOf(writer);
-        _lastWriter = writer;
-    }
-    SampleInfo info;
-    info.Writer = writer;
-    if (_lastNode != nullptr)
-    {
-        info.Node = _lastNode->Node;
-        info.Incarnation = _lastNode->Incarnation;
-    }
-    return info;
 }
 
 }  // namespace Rabit::Cyclone

@@ -13,8 +13,7 @@
 #include "Entity.h"
 #include "OpaqueType.h"
 #include "SessionCore.h"
-#include "common/HandlerGate.h"
-#include "common/InstanceTable.h"
+#include "common/VendorReader.h"
 
 namespace Rabit::Cyclone
 {
@@ -26,7 +25,7 @@ namespace Rabit::Cyclone
 // Lifetime: dds_delete returns when no thread of the vendor's uses the reader or its cache any more: it waits
 // until its garbage collector has seen each of its threads leave. So the vendor's entity is the first member
 // to be destroyed.
-class CycloneReader final : public TransportReader
+class CycloneReader final : public VendorReader<SessionCore>
 {
 public:
     CycloneReader(std::shared_ptr<SessionCore> core, const TopicDescription &topic, const TopicQos &qos,
@@ -49,19 +48,8 @@ private:
     void HandOver(const OpaqueSample &sample, const WriterId &writer);
     // Keeps the reader in step with the writer, so that a lost sample costs no other one.
     void Follow(const WriterId &writer);
-    void HandOverEnd(const OpaqueSample &sample, SampleInfo &info);
-    void WriterGone(const WriterId &writer);
-    SampleInfo InfoFor(const WriterId &writer);
 
-    const std::shared_ptr<SessionCore> _core;
-    const TopicDescription _topic;
-    const TopicRegistry::Use _use;
-    const SampleHandler _handler;
-    HandlerGate _gate;
-    InstanceTable _instances;                      // used under the gate
-    std::set<WriterId> _inStep;                    // with this reader; under the gate
-    WriterId _lastWriter{};                        // under the gate
-    std::shared_ptr<const PeerSession> _lastNode;  // of _lastWriter; under the gate
+    std::set<WriterId> _inStep;  // with this reader; under the gate
     Cache _cache{};
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;

@@ -17,15 +17,6 @@ namespace Rabit::Cyclone
 namespace
 {
 
-constexpr std::size_t HeaderSize = 4;
-
-// Tells readers how many padding bytes RTPS will add (OMG DDS-XTypes 1.3, 7.6.3.1.2).
-void MarkPadding(OpaqueSample &sample)
-{
-    const std::size_t padding = (4 - sample.Size % 4) % 4;
-    sample.Data()[3] = static_cast<std::uint8_t>((sample.Data()[3] & ~3u) | padding);
-}
-
 struct Unref
 {
     void operator()(OpaqueSample *sample) const { ddsi_serdata_unref(&sample->Header); }
@@ -36,9 +27,10 @@ struct Unref
 // larger keys, readers of this make that ignore the key hash do not learn of the disposal.
 OpaqueSample *MakeKey(const ddsi_sertype *type, const KeyHash &key)
 {
-    OpaqueSample *sample = NewSample(type, SDK_KEY, HeaderSize + key.size());
-    std::fill_n(sample->Data(), HeaderSize, std::uint8_t{0});
-    std::copy(key.begin(), key.end(), sample->Data() + HeaderSize);
+    constexpr std::size_t header = 4;
+    OpaqueSample *sample = NewSample(type, SDK_KEY, header + key.size());
+    std::fill_n(sample->Data(), header, std::uint8_t{0});
+    std::copy(key.begin(), key.end(), sample->Data() + header);
     return sample;
 }
 
@@ -46,11 +38,7 @@ OpaqueSample *MakeKey(const ddsi_sertype *type, const KeyHash &key)
 
 CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
                              const TopicQos &qos, const std::vector<std::string> &partitions)
-    : _core(std::move(core)),
-      _topic(topic),
-      _qos(qos),
-      _use(_core->Topics(), topic),
-      _entityTopic(MakeTopic(*_core, topic, _type))
+    : VendorWriter(std::move(core), topic, qos), _entityTopic(MakeTopic(*_core, topic, _type))
 {
     const Listener listener = MakeListener(this);
     dds_lset_offered_incompatible_qos(
@@ -70,24 +58,9 @@ CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescr
                      "make a writer of topic " + topic.Name);
 }
 
-WriteResult CycloneWriter::Write(const SampleEncoder &sample, std::int64_t sourceTime)
+WriteResult CycloneWriter::SendTo(const std::string &node, const SampleEncoder &sample,
+                                  std::int64_t sourceTime)
 {
-    return Send(sample, sourceTime, false);
-}
-
-WriteResult CycloneWriter::WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime)
-{
-    HeldDatagrams::Scope holding(_held);
-    return Send(sample, sourceTime, false);
-}
-
-WriteResult CycloneWriter::WriteTo(const std::string &node, const SampleEncoder &sample,
-                                   std::int64_t sourceTime)
-{
-    if (_qos.Reliability != Reliability::BestEffort || _topic.KeyOf)
-    {
-        return Fail("only best-effort writers of topics without a key write to one node");
-    }
     // Directs all datagrams that the vendor sends on this thread until the end of the scope.
     class Direction
     {
@@ -103,15 +76,6 @@ WriteResult CycloneWriter::WriteTo(const std::string &node, const SampleEncoder 
     };
     const Direction direction(_type, VendorGuid(), _core->ParticipantsOf(node));
     return Send(sample, sourceTime, false);
-}
-
-WriteResult CycloneWriter::Dispose(const SampleEncoder &sample, std::int64_t sourceTime)
-{
-    if (!_topic.KeyOf)
-    {
-        return Fail("it has no key, so nothing of it can be disposed");
-    }
-    return Send(sample, sourceTime, true);
 }
 
 int CycloneWriter::MatchedReaders() const
@@ -135,27 +99,12 @@ ddsi_guid_t CycloneWriter::VendorGuid() const
     return ToVendorGuid(ToWriterId(guid));
 }
 
-WriteResult CycloneWriter::Fail(const char *why, WriteResult result)
-{
-    _core->Log()->WriteFailed(_topic.Name, why);
-    return result;
-}
-
 WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool dispose)
 {
-    if (_core->IsClosed())
-    {
-        return Fail("the session is closed");
-    }
-    _held.SendAll();
     const std::size_t size = encoder.EncodedSize();
-    if (size > MaxSample)
+    if (const auto refused = Refuse(size))
     {
-        return Fail("the sample is larger than 64 MiB", WriteResult::TooLarge);
-    }
-    if (size < HeaderSize)
-    {
-        return Fail("the encoded sample is shorter than its header");
+        return *refused;
     }
     std::unique_ptr<OpaqueSample, Unref> sample(NewSample(_type, SDK_DATA, size));
     if (!encoder.Encode({sample->Data(), size}))
@@ -173,7 +122,7 @@ WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourc
     }
     else
     {
-        MarkPadding(*sample);
+        MarkPadding(sample->Data(), size);
     }
     if (_topic.KeyOf)
     {
@@ -187,8 +136,7 @@ WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourc
     const dds_return_t result = dds_forwardcdr(_writer.Get(), &sample.release()->Header);
     if (result == DDS_RETCODE_TIMEOUT)
     {
-        _core->Log()->WriteTimedOut(_topic.Name);
-        return WriteResult::TimedOut;
+        return TimedOut();
     }
     return result == DDS_RETCODE_OK ? WriteResult::Ok : Fail(dds_strretcode(result));
 }

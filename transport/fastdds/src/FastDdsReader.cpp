@@ -18,24 +18,10 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace
 {
 
-constexpr std::size_t HeaderSize = 4;
-
 rtps::HistoryAttributes MakeHistoryAttributes()
 {
     constexpr int ReservedChanges = 8;
     return {rtps::DYNAMIC_RESERVE_MEMORY_MODE, 0, ReservedChanges, 0};
-}
-
-// The payload without the padding that RTPS added. A submessage's length is a multiple of 4, so a payload of
-// another length came in fragments, which carry its true length.
-SampleBytes WithoutPadding(const rtps::SerializedPayload_t &payload)
-{
-    std::size_t size = payload.length;
-    if (size > HeaderSize && size % 4 == 0)
-    {
-        size -= std::min<std::size_t>(payload.data[3] & 3u, size - HeaderSize);
-    }
-    return {payload.data, size};
 }
 
 }  // namespace
@@ -43,11 +29,7 @@ SampleBytes WithoutPadding(const rtps::SerializedPayload_t &payload)
 FastDdsReader::FastDdsReader(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
                              const TopicQos &qos, const std::vector<std::string> &partitions,
                              SampleHandler handler)
-    : _core(std::move(core)),
-      _topic(topic),
-      _use(_core->Topics(), topic),
-      _handler(std::move(handler)),
-      _gate(_core->Log(), "the reader of " + topic.Name),
+    : VendorReader(std::move(core), topic, std::move(handler)),
       _pool(std::make_shared<PayloadPool>([log = _core->Log(), name = topic.Name]
                                           { log->MalformedSample(name, "it is larger than 64 MiB"); })),
       _history(MakeHistoryAttributes())
@@ -92,11 +74,12 @@ void FastDdsReader::onNewCacheChangeAdded(rtps::RTPSReader *reader, const Change
 
 void FastDdsReader::HandOver(const Change &change)
 {
-    SampleInfo info = InfoFor(change.writerGUID);
+    SampleInfo info = InfoFor(ToWriterId(change.writerGUID));
     info.SourceTime = change.sourceTimestamp.to_ns();
     info.Sequence = change.sequenceNumber.to64long();
     info.Alive = change.kind == rtps::ALIVE;
-    const SampleBytes bytes = WithoutPadding(change.serializedPayload);
+    const SampleBytes bytes =
+        WithoutPadding({change.serializedPayload.data, change.serializedPayload.length});
     if (info.Alive && bytes.size() < HeaderSize)
     {
         _core->Log()->MalformedSample(_topic.Name, "it is shorter than its header");
@@ -107,59 +90,14 @@ void FastDdsReader::HandOver(const Change &change)
         _core->Log()->MalformedSample(_topic.Name, "it has no readable key");
         return;
     }
-    if (!info.Alive)
+    if (info.Alive)
     {
-        HandOverEnd(change, info);
-        return;
-    }
-    if (_lastNode != nullptr)
-    {
-        _lastNode->Hear();
-    }
-    if (_topic.KeyOf)
-    {
-        _instances.Alive(info.Key, info.Writer);
-    }
-    _handler(bytes, info);
-}
-
-void FastDdsReader::HandOverEnd(const Change &change, SampleInfo &info)
-{
-    if (!_topic.KeyOf)
-    {
-        return;  // a topic without a key has no instance that could end
-    }
-    if (change.kind == rtps::NOT_ALIVE_UNREGISTERED)
-    {
-        if (!_instances.Unregistered(info.Key, info.Writer))
-        {
-            return;  // other writers still have it
-        }
-        info.SourceTime = 0;
-        info.Sequence = 0;
+        Deliver(bytes, info);
     }
     else
     {
-        _instances.Disposed(info.Key);
+        DeliverEnd(info, change.kind != rtps::NOT_ALIVE_UNREGISTERED);
     }
-    _handler({}, info);
-}
-
-SampleInfo FastDdsReader::InfoFor(const Guid &writer)
-{
-    if (_lastWriter != writer || _lastNode == nullptr)
-    {
-        _lastNode = _core->IdentityOf(writer.guidPrefix);
-        _lastWriter = writer;
-    }
-    SampleInfo info;
-    info.Writer = ToWriterId(writer);
-    if (_lastNode != nullptr)
-    {
-        info.Node = _lastNode->Node;
-        info.Incarnation = _lastNode->Incarnation;
-    }
-    return info;
 }
 
 bool FastDdsReader::KeyFrom(const Change &change, SampleBytes bytes, KeyHash &key) const
@@ -198,18 +136,7 @@ void FastDdsReader::onReaderMatched(rtps::RTPSReader *reader, rtps::MatchingInfo
     }
     if (info.status == rtps::REMOVED_MATCHING && _topic.KeyOf)
     {
-        _gate.Run([&] { WriterGone(writer); });
-    }
-}
-
-void FastDdsReader::WriterGone(const Guid &writer)
-{
-    for (const KeyHash &key : _instances.WriterGone(ToWriterId(writer)))
-    {
-        SampleInfo info = InfoFor(writer);
-        info.Alive = false;
-        info.Key = key;
-        _handler({}, info);
+        _gate.Run([&] { DeliverEndsOf(ToWriterId(writer)); });
     }
 }
 

@@ -12,15 +12,14 @@
 #include "NumberedHistory.h"
 #include "PayloadPool.h"
 #include "SessionCore.h"
-#include "common/HandlerGate.h"
-#include "common/InstanceTable.h"
+#include "common/VendorReader.h"
 
 namespace Rabit::FastDds
 {
 
 // Delivers each sample inside the vendor's "new change" call, out of the buffer that holds it, and drops it
 // from the vendor's history at once. So the history never fills, and no sample pushes out another.
-class FastDdsReader final : public TransportReader, private eprosima::fastrtps::rtps::ReaderListener
+class FastDdsReader final : public VendorReader<SessionCore>, private eprosima::fastrtps::rtps::ReaderListener
 {
 public:
     FastDdsReader(std::shared_ptr<SessionCore> core, const TopicDescription &topic, const TopicQos &qos,
@@ -43,21 +42,10 @@ private:
 
     // These run under the gate.
     void HandOver(const Change &change);
-    void HandOverEnd(const Change &change, SampleInfo &info);
-    void WriterGone(const Guid &writer);
-    SampleInfo InfoFor(const Guid &writer);
     bool KeyFrom(const Change &change, SampleBytes bytes, KeyHash &key) const;
 
-    const std::shared_ptr<SessionCore> _core;
-    const TopicDescription _topic;
-    const TopicRegistry::Use _use;
-    const SampleHandler _handler;
-    HandlerGate _gate;
     const std::shared_ptr<PayloadPool> _pool;
     NumberedHistory _history;
-    InstanceTable _instances;                      // under the gate
-    Guid _lastWriter;                              // under the gate
-    std::shared_ptr<const PeerSession> _lastNode;  // of _lastWriter; under the gate
     mutable std::mutex _mutex;
     std::set<Guid> _matched;  // guarded by _mutex
     eprosima::fastrtps::rtps::RTPSReader *_reader = nullptr;

@@ -9,7 +9,7 @@
 #include "SessionCore.h"
 #include "common/RejoiningBackend.h"
 #include "common/RejoiningSession.h"
-#include "common/SettingsCheck.h"
+#include "common/VendorSession.h"
 
 namespace Rabit
 {
@@ -17,43 +17,7 @@ namespace Rabit
 namespace
 {
 
-class FastDdsSession final : public BackendSession
-{
-public:
-    FastDdsSession(const TransportSettings &settings, PeerHandler onPeer,
-                   std::shared_ptr<DiscoveryTurns> turns)
-        : _core(std::make_shared<FastDds::SessionCore>(settings, std::move(onPeer), std::move(turns)))
-    {
-    }
-    ~FastDdsSession() override { _core->Close(); }
-
-    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
-                                                  const std::vector<std::string> &partitions) override
-    {
-        CheckQos(topic, qos);
-        return std::make_unique<FastDds::FastDdsWriter>(_core, topic, qos, partitions);
-    }
-
-    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
-                                                  const std::vector<std::string> &partitions,
-                                                  SampleHandler handler) override
-    {
-        CheckQos(topic, qos);
-        return std::make_unique<FastDds::FastDdsReader>(_core, topic, qos, partitions, std::move(handler));
-    }
-
-    TransportCounters Counters() const override { return _core->Log()->Read(); }
-
-    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
-    {
-        return _core->Topics().RemoteOn(topic);
-    }
-    std::vector<std::string> RemoteTopics() const override { return _core->Topics().RemoteTopics(); }
-    std::vector<PeerPlace> PeerPlaces() const override { return _core->PeerPlaces(); }
-
-private:
-    const std::shared_ptr<FastDds::SessionCore> _core;
-};
+using FastDdsSession = VendorSession<FastDds::SessionCore, FastDds::FastDdsWriter, FastDds::FastDdsReader>;
 
 class FastDdsBackend final : public RejoiningBackend
 {

@@ -21,23 +21,11 @@ namespace
 {
 
 constexpr std::chrono::milliseconds LongestWait{100};
-constexpr std::size_t HeaderSize = 4;
-
-// Tells readers how many padding bytes RTPS will add (OMG DDS-XTypes 1.3, 7.6.3.1.2).
-void MarkPadding(std::uint8_t *data, std::uint32_t size)
-{
-    const std::uint32_t padding = (4 - size % 4) % 4;
-    data[3] = static_cast<std::uint8_t>((data[3] & ~3u) | padding);
-}
-
 }  // namespace
 
 FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
                              const TopicQos &qos, const std::vector<std::string> &partitions)
-    : _core(std::move(core)),
-      _qos(qos),
-      _topic(topic),
-      _use(_core->Topics(), topic),
+    : VendorWriter(std::move(core), topic, qos),
       _pool(std::make_shared<PayloadPool>([] {})),
       _history(qos.Depth, qos.Durability == Durability::TransientLocal)
 {
@@ -60,59 +48,20 @@ FastDdsWriter::~FastDdsWriter()
     rtps::RTPSDomain::removeRTPSWriter(_writer);
 }
 
-WriteResult FastDdsWriter::Write(const SampleEncoder &sample, std::int64_t sourceTime)
+WriteResult FastDdsWriter::SendTo(const std::string &node, const SampleEncoder &sample,
+                                  std::int64_t sourceTime)
 {
-    return Send(sample, sourceTime, false);
-}
-
-WriteResult FastDdsWriter::WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime)
-{
-    HeldDatagrams::Scope holding(_held);
-    return Send(sample, sourceTime, false);
-}
-
-WriteResult FastDdsWriter::WriteTo(const std::string &node, const SampleEncoder &sample,
-                                   std::int64_t sourceTime)
-{
-    if (_qos.Reliability != Reliability::BestEffort || _topic.KeyOf)
-    {
-        return Fail("only best-effort writers of topics without a key write to one node");
-    }
     const Targets targets = _core->PrefixesOf(node);
     return Send(sample, sourceTime, false, &targets);
-}
-
-WriteResult FastDdsWriter::Dispose(const SampleEncoder &sample, std::int64_t sourceTime)
-{
-    if (!_topic.KeyOf)
-    {
-        return Fail("it has no key, so nothing of it can be disposed");
-    }
-    return Send(sample, sourceTime, true);
-}
-
-WriteResult FastDdsWriter::Fail(const char *why, WriteResult result)
-{
-    _core->Log()->WriteFailed(_topic.Name, why);
-    return result;
 }
 
 WriteResult FastDdsWriter::Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose,
                                 const Targets *to)
 {
-    if (_core->IsClosed())
-    {
-        return Fail("the session is closed");
-    }
-    _held.SendAll();
     const std::size_t size = sample.EncodedSize();
-    if (size > MaxSample)
+    if (const auto refused = Refuse(size))
     {
-        return Fail("the sample is larger than 64 MiB", WriteResult::TooLarge);
-    }
-    if (size < HeaderSize)
-    {
-        return Fail("the encoded sample is shorter than its header");
+        return *refused;
     }
     // Encoded before the vendor's lock is taken, so that several threads encode at the same time.
     const auto size32 = static_cast<std::uint32_t>(size);
@@ -150,8 +99,7 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
     if (!lock.owns_lock())
     {
         _pool->Release(buffer);
-        _core->Log()->WriteTimedOut(_topic.Name);
-        return WriteResult::TimedOut;
+        return TimedOut();
     }
     // Unregistered as well: readers need not keep the instance for this writer.
     rtps::CacheChange_t *change =

@@ -14,12 +14,12 @@
 #include "KeepLastHistory.h"
 #include "PayloadPool.h"
 #include "SessionCore.h"
-#include "common/HeldDatagrams.h"
+#include "common/VendorWriter.h"
 
 namespace Rabit::FastDds
 {
 
-class FastDdsWriter final : public TransportWriter,
+class FastDdsWriter final : public VendorWriter<SessionCore>,
                             private eprosima::fastrtps::rtps::WriterListener,
                             private eprosima::fastdds::rtps::IReaderDataFilter
 {
@@ -28,24 +28,21 @@ public:
                   const std::vector<std::string> &partitions);
     ~FastDdsWriter() override;
 
-    WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override;
-    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime) override;
-    std::size_t HeldBytes() const override { return _held.NextBytes(); }
-    void SendHeld() override { _held.SendNext(); }
-    WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
-                        std::int64_t sourceTime) override;
-    WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override;
     int MatchedReaders() const override;
     int Destinations() const override;
 
 private:
     using Targets = std::set<eprosima::fastrtps::rtps::GuidPrefix_t>;
+    WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose) override
+    {
+        return Send(sample, sourceTime, dispose, nullptr);
+    }
+    WriteResult SendTo(const std::string &node, const SampleEncoder &sample,
+                       std::int64_t sourceTime) override;
     // Sends to the participants in `to`; nullptr: to all.
-    WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose,
-                     const Targets *to = nullptr);
+    WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose, const Targets *to);
     WriteResult SendEncoded(PayloadPool::Buffer buffer, std::uint32_t size, const KeyHash &key,
                             std::int64_t sourceTime, bool dispose, const Targets *to);
-    WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed);
 
     void onWriterMatched(eprosima::fastrtps::rtps::RTPSWriter *writer,
                          eprosima::fastrtps::rtps::MatchingInfo &info) override;
@@ -58,13 +55,8 @@ private:
     bool is_relevant(const eprosima::fastrtps::rtps::CacheChange_t &change,
                      const eprosima::fastrtps::rtps::GUID_t &reader) const override;
 
-    const std::shared_ptr<SessionCore> _core;
-    const TopicQos _qos;
-    const TopicDescription _topic;
-    const TopicRegistry::Use _use;
     const std::shared_ptr<PayloadPool> _pool;
     KeepLastHistory _history;
-    HeldDatagrams _held;
     mutable std::mutex _mutex;
     std::set<eprosima::fastrtps::rtps::GUID_t> _matched;  // guarded by _mutex
     std::atomic<const Targets *> _targets = nullptr;      // during WriteTo, with the vendor's lock held

@@ -31,10 +31,12 @@ constexpr std::size_t MostDeparted = 64;
 constexpr std::uint32_t IsSecured = 1u << 31;
 constexpr std::uint32_t HasDiscoveryEncrypted = 1u << 1;
 
-rtps::GuidPrefix_t ToVendorPrefix(const Rtps::GuidPrefix &prefix)
+// The prefix with which an identity begins.
+template <typename Bytes>
+rtps::GuidPrefix_t ToVendorPrefix(const Bytes &bytes)
 {
     rtps::GuidPrefix_t result;
-    std::copy(prefix.begin(), prefix.end(), result.value);
+    std::copy_n(bytes.begin(), rtps::GuidPrefix_t::size, result.value);
     return result;
 }
 
@@ -143,8 +145,9 @@ bool SessionCore::IsOwn(const GuidPrefix &prefix) const
     return prefix == _participant.load()->getGuid().guidPrefix;
 }
 
-std::shared_ptr<const PeerSession> SessionCore::IdentityOf(const GuidPrefix &prefix) const
+std::shared_ptr<const PeerSession> SessionCore::IdentityOf(const WriterId &endpoint) const
 {
+    const GuidPrefix prefix = ToVendorPrefix(endpoint);
     const std::lock_guard lock(_mutex);
     return _peers.Find(prefix);
 }
@@ -167,9 +170,9 @@ std::vector<PeerPlace> SessionCore::PeerPlaces() const
     return places;
 }
 
-std::string SessionCore::NodeOf(const GuidPrefix &prefix) const
+std::string SessionCore::NodeOf(const WriterId &endpoint) const
 {
-    const auto identity = IdentityOf(prefix);
+    const auto identity = IdentityOf(endpoint);
     return identity != nullptr ? identity->Node : "";
 }
 
@@ -361,7 +364,7 @@ void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtp
     // The vendor also reports our own endpoints.
     if (!IsOwn(info.info.guid().guidPrefix))
     {
-        _topics.RemoteAppeared(Described(info.info, NodeOf(info.info.guid().guidPrefix)));
+        _topics.RemoteAppeared(Described(info.info, NodeOf(ToWriterId(info.info.guid()))));
     }
 }
 
@@ -374,7 +377,7 @@ void SessionCore::onWriterDiscovery(rtps::RTPSParticipant * /*participant*/, rtp
     }
     if (!IsOwn(info.info.guid().guidPrefix))
     {
-        _topics.RemoteAppeared(Described(info.info, NodeOf(info.info.guid().guidPrefix)));
+        _topics.RemoteAppeared(Described(info.info, NodeOf(ToWriterId(info.info.guid()))));
     }
 }
 

@@ -49,8 +49,8 @@ public:
 
     eprosima::fastrtps::rtps::RTPSParticipant &Participant() { return *_participant; }
     bool IsOwn(const GuidPrefix &prefix) const;
-    // Identity of a participant; nullptr if it is not a Rabit node, or unknown.
-    std::shared_ptr<const PeerSession> IdentityOf(const GuidPrefix &prefix) const;
+    // Identity of a writer's or a reader's participant; nullptr if it is not a Rabit node, or unknown.
+    std::shared_ptr<const PeerSession> IdentityOf(const WriterId &endpoint) const;
     // The participants to which samples written to the node go (PeerSessions).
     std::set<GuidPrefix> PrefixesOf(const std::string &node) const;
     // The addresses of the Rabit nodes that it knows.
@@ -70,7 +70,7 @@ private:
     void onParticipantAuthentication(eprosima::fastrtps::rtps::RTPSParticipant *participant,
                                      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo &&info) override;
     // The name, or "" where IdentityOf gives nullptr.
-    std::string NodeOf(const GuidPrefix &prefix) const;
+    std::string NodeOf(const WriterId &endpoint) const;
     // Called on a thread of the network, also before the participant is complete.
     void Announce();
     // True if the participant listens to the discovery group.
