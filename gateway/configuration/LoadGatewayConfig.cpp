@@ -12,6 +12,7 @@
 #include "configuration/PanelEntries.h"
 #include "configuration/ValidateGatewayConfig.h"
 #include "configuration/YamlMap.h"
+#include "names/QosProfileWords.h"
 
 namespace Rabit
 {
@@ -150,9 +151,6 @@ std::optional<TrafficClass> ReadClass(const YamlMap &entry)
     return choice < 0 ? std::nullopt : std::optional(ChosenClass(static_cast<std::size_t>(choice)));
 }
 
-// A profile's index in the list is its value.
-const std::vector<std::string> QosNames = {"state", "telemetry"};
-
 void ReadPublish(const YamlMap &map, GatewayConfig &config)
 {
     for (const YamlMap &entry :
@@ -167,7 +165,7 @@ void ReadPublish(const YamlMap &map, GatewayConfig &config)
         entry.Read("max_rate", rule.MaxRate);
         rule.Class = ReadClass(entry);
         entry.Read("weight", rule.Weight);
-        const int qos = entry.ReadChoice("qos", QosNames);
+        const int qos = entry.ReadChoice("qos", QosProfileWords);
         rule.Qos = qos < 0 ? rule.Qos : static_cast<QosProfile>(qos);
         config.Publish.push_back(rule);
     }
@@ -185,7 +183,7 @@ void ReadSubscribe(const YamlMap &map, GatewayConfig &config)
         entry.Read("message", rule.Message);
         entry.Read("type", rule.Type);
         entry.Read("from", rule.From);
-        const int qos = entry.ReadChoice("qos", QosNames);
+        const int qos = entry.ReadChoice("qos", QosProfileWords);
         if (qos >= 0)
         {
             rule.Qos = static_cast<QosProfile>(qos);

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
 #include "wire/Announcements.h"
-#include "wire/GatewayTopics.h"
 #include "wire/Offers.h"
 
 namespace Rabit
@@ -71,8 +71,9 @@ std::optional<QosProfile> Subscriptions::OfferFor(const SubscribeRule &rule, con
         return std::nullopt;
     }
     const Gateway::PublishedMessage *offer = Offers::Find(*peer.Offers, rule.Message);
-    return offer != nullptr && offer->type == rule.Type ? std::optional(GatewayTopics::ProfileOf(offer->qos))
-                                                        : std::nullopt;
+    return offer != nullptr && offer->type == rule.Type
+               ? std::optional(ProfileOf(offer->qos).value_or(QosProfile::State))
+               : std::nullopt;
 }
 
 std::vector<const PeerTable::Peer *> Subscriptions::OnOffers(const PeerTable &peers)

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
 #include "recording/JsonStreams.h"
 
 namespace Rabit
@@ -29,11 +30,6 @@ const char *StateOf(ManagerStatusMessage::RunningState_e state)
         default:
             return "shutdown";
     }
-}
-
-std::string WordOf(std::optional<QosProfile> qos)
-{
-    return !qos ? "" : *qos == QosProfile::State ? "state" : "telemetry";
 }
 
 bool EncodeManager(const RabitMessage &message, Mcap::Bytes &bytes)
@@ -134,7 +130,8 @@ MessageTaps::Origin MessageTaps::OriginOf(const std::string &name) const
                                        { return one.Message == message && MatchesAny(one.From, node); });
         if (rule != _config.Subscribe.end())
         {
-            return {node, message, true, rule->Qos != QosProfile::Telemetry, WordOf(rule->Qos)};
+            return {node, message, true, rule->Qos != QosProfile::Telemetry,
+                    rule->Qos ? WordOf(*rule->Qos) : ""};
         }
     }
     const auto rule = std::find_if(_config.Publish.begin(), _config.Publish.end(),

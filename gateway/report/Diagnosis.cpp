@@ -7,8 +7,8 @@
 #include "mirrors/Subscriptions.h"
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
 #include "names/TypeDefinition.h"
-#include "wire/GatewayTopics.h"
 #include "wire/Offers.h"
 
 namespace Rabit::Diagnosis
@@ -63,7 +63,7 @@ std::string WhyNoMatch(const SubscribeRule &rule, std::uint64_t definition, cons
     {
         return peer.Node + " was built with another definition of `" + rule.Type + "`";
     }
-    if (rule.Qos == QosProfile::State && GatewayTopics::ProfileOf(found->qos) != rule.Qos)
+    if (rule.Qos == QosProfile::State && ProfileOf(found->qos) == QosProfile::Telemetry)
     {
         return peer.Node + " publishes `" + rule.Message + "` with qos " + found->qos +
                ", this node wants qos state";

@@ -1,5 +1,6 @@
 // rabit complete -- WORD...: lists candidates for the last of the words, for the shells (completion/).
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/transport/TransportFactory.h>
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +18,7 @@
 #include "FleetSession.h"
 #include "Offers.h"
 #include "Output.h"
+#include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
 {
@@ -69,11 +71,12 @@ Candidates ValuesOf(const CLI::Option &option)
     const std::string &name = option.get_lnames().empty() ? option.get_name() : option.get_lnames().front();
     if (name == "transport")
     {
-        return {"cyclonedds", "fastdds"};
+        const auto names = KnownTransports();
+        return {names.begin(), names.end()};
     }
     if (name == "qos")
     {
-        return {"state", "telemetry"};
+        return {QosProfileWords.begin(), QosProfileWords.end()};
     }
     if (name == "config" || name == "idl" || name == "to" || name == "plot" || name == "keys")
     {

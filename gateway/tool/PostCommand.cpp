@@ -17,6 +17,7 @@
 #include "Offers.h"
 #include "Output.h"
 #include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
 {
@@ -30,7 +31,7 @@ struct Options
     std::string Type;
     std::string Value;
     std::string Idl;
-    std::string Qos = "state";
+    std::string Qos = WordOf(QosProfile::State);
     double Rate = 0.0;
     double For = 0.0;
 };
@@ -117,7 +118,7 @@ int Post(const Options &options, const std::string &node, const std::string &nam
     PublishRule rule;
     rule.Message = name;
     rule.Type = options.Type;
-    rule.Qos = options.Qos == "state" ? QosProfile::State : QosProfile::Telemetry;
+    rule.Qos = ProfileOf(options.Qos).value_or(QosProfile::State);
     config.Publish.push_back(rule);
     FleetSession session(config, options.Common, wakeup);
     auto posted = std::make_shared<DynamicMessage>(message);
@@ -216,7 +217,7 @@ void AddPostCommand(CLI::App &app, Chosen &chosen)
     command->add_option("JSON", options->Value, "The value; what it leaves out has its default")->required();
     AddCommonOptions(*command, options->Common, 3.0);
     command->add_option("--qos", options->Qos, "state or telemetry")
-        ->check(CLI::IsMember({"state", "telemetry"}))
+        ->check(CLI::IsMember(QosProfileWords))
         ->capture_default_str();
     command->add_option("--rate", options->Rate, "Posts a second, until Ctrl-C; without it one")
         ->check(CLI::Range(0.001, 1000.0));

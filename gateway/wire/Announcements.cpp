@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
 #include "names/TypeDefinition.h"
 #include "wire/GatewayTopics.h"
 
@@ -30,7 +31,7 @@ std::size_t TypesOf(const Gateway::Announcement &announcement)
 
 bool IsState(const Gateway::PublishedMessage &published)
 {
-    return published.qos == GatewayTopics::NameOf(QosProfile::State);
+    return published.qos == WordOf(QosProfile::State);
 }
 
 bool IsType(const std::string &name)
@@ -46,9 +47,7 @@ std::uint64_t DefinitionOf(const std::string &name)
 
 bool IsPlausible(const Gateway::PublishedMessage &published)
 {
-    return IsMessageName(published.message) && IsType(published.type) &&
-           (published.qos == GatewayTopics::NameOf(QosProfile::State) ||
-            published.qos == GatewayTopics::NameOf(QosProfile::Telemetry));
+    return IsMessageName(published.message) && IsType(published.type) && ProfileOf(published.qos).has_value();
 }
 
 bool IsPlausible(const Gateway::AcceptedQueue &accepted)
@@ -69,7 +68,7 @@ Gateway::Announcement Of(const GatewayConfig &config)
         Gateway::PublishedMessage published;
         published.message = rule.Message;
         published.type = rule.Type;
-        published.qos = GatewayTopics::NameOf(rule.Qos);
+        published.qos = WordOf(rule.Qos);
         published.definition = DefinitionOf(rule.Type);
         announcement.publishes.push_back(published);
     }

@@ -39,14 +39,4 @@ TopicQos QosOf(QosProfile profile)
     return qos;
 }
 
-const char *NameOf(QosProfile profile)
-{
-    return profile == QosProfile::State ? "state" : "telemetry";
-}
-
-QosProfile ProfileOf(const std::string &word)
-{
-    return word == NameOf(QosProfile::Telemetry) ? QosProfile::Telemetry : QosProfile::State;
-}
-
 }  // namespace Rabit::GatewayTopics

@@ -28,9 +28,4 @@ TopicDescription Describe(const std::string &topic, const MessageType &type);
 // The DDS settings of a profile.
 TopicQos QosOf(QosProfile profile);
 
-// The word for a profile in configurations and announcements.
-const char *NameOf(QosProfile profile);
-// The profile of such a word; of another one State.
-QosProfile ProfileOf(const std::string &word);
-
 }  // namespace Rabit::GatewayTopics

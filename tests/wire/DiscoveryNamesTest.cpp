@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/ParticipantIdentity.h"
+#include "names/QosProfileWords.h"
 #include "names/RosNames.h"
 #include "wire/GatewayTopics.h"
 
@@ -38,8 +39,8 @@ TEST(DiscoveryNames, TopicsHaveTheRecordedNames)
 {
     EXPECT_STREQ(GatewayTopics::Beat, "rabit/Beat");
     EXPECT_STREQ(GatewayTopics::Link, "rabit/Link");
-    EXPECT_STREQ(GatewayTopics::NameOf(QosProfile::State), "state");
-    EXPECT_STREQ(GatewayTopics::NameOf(QosProfile::Telemetry), "telemetry");
+    EXPECT_EQ(WordOf(QosProfile::State), "state");
+    EXPECT_EQ(WordOf(QosProfile::Telemetry), "telemetry");
     EXPECT_EQ(RosTopicName("/chatter"), "rt/chatter");
     EXPECT_EQ(RosTypeName("std_msgs::msg::String"), "std_msgs::msg::dds_::String_");
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
 
 namespace Rabit::Replay
 {
@@ -75,7 +76,7 @@ bool FillMessage(const Mcap::Channel &channel, const std::string &recorder, Cand
     const std::string qos = Mcap::ValueOf(channel.Metadata, "rabit.qos");
     stream.Node = topic->first;
     stream.Name = topic->second;
-    stream.IsTelemetry = qos == "telemetry";
+    stream.IsTelemetry = ProfileOf(qos) == QosProfile::Telemetry;
     candidate.IsOwn = kind == "posted";
     candidate.IsPublished = qos != "none";
     const std::string told = Mcap::ValueOf(channel.Metadata, "rabit.recorded_by");

@@ -9,6 +9,7 @@
 #include "Output.h"
 #include "clocks/GpsTime.h"
 #include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
 {
@@ -212,7 +213,7 @@ bool LiveTaps::IsState(const std::string &node, const std::string &message) cons
         {
             if (published.message == message)
             {
-                return published.qos == "state";
+                return ProfileOf(published.qos) == QosProfile::State;
             }
         }
     }
