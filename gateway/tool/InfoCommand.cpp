@@ -51,13 +51,6 @@ std::string DateOf(std::uint64_t time)
     return text.data();
 }
 
-std::string Formatted(const char *format, double value)
-{
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
-}
-
 std::string RateOf(std::uint64_t messages, double seconds)
 {
     return messages < 2 || seconds <= 0 ? "-" : Formatted("%.2f Hz", static_cast<double>(messages) / seconds);

@@ -5,8 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -51,13 +49,6 @@ struct Options
 double SecondsOf(Moment time)
 {
     return 1e-9 * static_cast<double>(time);
-}
-
-std::string Formatted(const char *format, double value)
-{
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
 }
 
 // The file, and those of its streams that the options name.

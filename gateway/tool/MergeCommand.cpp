@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -38,13 +37,6 @@ struct Options
     Merge::MergeWishes Wishes;
     bool Json = false;
 };
-
-std::string Formatted(const char *format, double value)
-{
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
-}
 
 std::string Seconds(Moment time)
 {

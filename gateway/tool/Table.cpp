@@ -1,6 +1,8 @@
 #include "Table.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 namespace Rabit::Tool
 {
@@ -28,6 +30,13 @@ std::vector<std::string> TableLines(const std::vector<std::vector<std::string>> 
         lines.push_back(std::move(line));
     }
     return lines;
+}
+
+std::string Formatted(const char *format, double value)
+{
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
 }
 
 }  // namespace Rabit::Tool

@@ -170,12 +170,6 @@ std::vector<PeerPlace> SessionCore::PeerPlaces() const
     return places;
 }
 
-std::string SessionCore::NodeOf(const WriterId &endpoint) const
-{
-    const auto identity = IdentityOf(endpoint);
-    return identity != nullptr ? identity->Node : "";
-}
-
 void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/,
                                          rtps::ParticipantDiscoveryInfo &&info)
 {
@@ -356,28 +350,27 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
 
 void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::ReaderDiscoveryInfo &&info)
 {
-    if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER)
-    {
-        _topics.RemoteGone(ToWriterId(info.info.guid()));
-        return;
-    }
-    // The vendor also reports our own endpoints.
-    if (!IsOwn(info.info.guid().guidPrefix))
-    {
-        _topics.RemoteAppeared(Described(info.info, NodeOf(ToWriterId(info.info.guid()))));
-    }
+    NoteEndpoint(info.info, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
 }
 
 void SessionCore::onWriterDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::WriterDiscoveryInfo &&info)
 {
-    if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER)
+    NoteEndpoint(info.info, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
+}
+
+// The vendor also reports our own endpoints.
+template <typename Proxy>
+void SessionCore::NoteEndpoint(const Proxy &endpoint, bool isRemoved)
+{
+    const WriterId id = ToWriterId(endpoint.guid());
+    if (isRemoved)
     {
-        _topics.RemoteGone(ToWriterId(info.info.guid()));
-        return;
+        _topics.RemoteGone(id);
     }
-    if (!IsOwn(info.info.guid().guidPrefix))
+    else if (!IsOwn(endpoint.guid().guidPrefix))
     {
-        _topics.RemoteAppeared(Described(info.info, NodeOf(ToWriterId(info.info.guid()))));
+        const auto identity = IdentityOf(id);
+        _topics.RemoteAppeared(Described(endpoint, identity != nullptr ? identity->Node : ""));
     }
 }
 

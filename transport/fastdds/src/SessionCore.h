@@ -69,8 +69,8 @@ private:
                            eprosima::fastrtps::rtps::WriterDiscoveryInfo &&info) override;
     void onParticipantAuthentication(eprosima::fastrtps::rtps::RTPSParticipant *participant,
                                      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo &&info) override;
-    // The name, or "" where IdentityOf gives nullptr.
-    std::string NodeOf(const WriterId &endpoint) const;
+    template <typename Proxy>
+    void NoteEndpoint(const Proxy &endpoint, bool isRemoved);
     // Called on a thread of the network, also before the participant is complete.
     void Announce();
     // True if the participant listens to the discovery group.
