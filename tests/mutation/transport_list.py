@@ -31,7 +31,8 @@ MUTATIONS = [
     guard("what may be taken for statistics is sent", "RtpsMessage.cpp",
           "return EndsLikeStatistics(datagram.first(size)) ? datagram.size() : size;", "return size;"),
     guard("blanking changes the length", "RtpsMessage.cpp",
-          "Write(submessage.Whole.subspan(2, 2), submessage.Body().size(), submessage.LittleEndian);", ""),
+          "Write(submessage.Whole.subspan(2, 2), submessage.Body().size(), submessage.LittleEndian);",
+          "Write(submessage.Whole.subspan(2, 2), 0, submessage.LittleEndian);"),
     # Samples and their delivery
     guard("sequence 0 passes", "DeliveryCheck.cpp", "return number >= 1 && number < LargestSequence;",
           "return number >= 0 && number < LargestSequence;"),
