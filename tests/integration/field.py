@@ -77,6 +77,8 @@ class Field:
     def __enter__(self):
         if os.geteuid() != 0 or not all(map(shutil.which, ("ip", "nft"))):
             raise Unsupported("needs root, iproute2 and nftables")
+        if not harness.can_make_namespaces():
+            raise Unsupported("no network namespaces can be made here")
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, stop)
         sweep()
@@ -173,7 +175,10 @@ class Field:
 
     def _build(self):
         self.folder = tempfile.mkdtemp(prefix=self._prefix)
-        self._connect()
+        try:
+            self._connect()
+        except subprocess.CalledProcessError as error:
+            raise Unsupported(f"no network of namespaces can be made here: {error.stdout}") from error
         try:
             for node in self.nodes:
                 self._write_rules(node)

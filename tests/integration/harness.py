@@ -14,14 +14,21 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 IN_NAMESPACE = "RABIT_TEST_IN_NAMESPACE"
 
 
+def can_make_namespaces():
+    """True if this process may make network namespaces and set up devices in them: it needs two capabilities."""
+    try:
+        return subprocess.run(["unshare", "--net", "ip", "link", "set", "lo", "up", "multicast", "on"],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode == 0
+    except FileNotFoundError:
+        return False
+
+
 def enter_namespace():
     """Starts this script again in a network namespace of its own, which vanishes with it, if that is allowed here;
     otherwise the test goes on with the machine's loopback."""
     if os.environ.get(IN_NAMESPACE):
         return
-    probe = subprocess.run(["unshare", "--net", "ip", "link", "set", "lo", "up", "multicast", "on"],
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-    if probe.returncode != 0:
+    if not can_make_namespaces():
         os.environ[IN_NAMESPACE] = "no"
         return
     os.environ[IN_NAMESPACE] = "yes"
