@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Configures and builds one CMake preset. Usage: build-preset.sh PRESET [TARGET...]
-# Shows progress on a terminal; otherwise prints only on failure.
+# Shows progress on a terminal; otherwise prints a line each minute that it takes, and the compiler's output on failure.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=$1
@@ -17,7 +17,21 @@ if ! cmake --preset "$preset" >"$log" 2>&1; then
 fi
 if [ -t 2 ]; then
     "${build[@]}" >&2
-elif ! "${build[@]}" >"$log" 2>&1; then
+    exit
+fi
+"${build[@]}" >"$log" 2>&1 &
+builder=$!
+trap 'kill "$builder" 2>/dev/null || true; rm -f "$log"' EXIT
+trap 'exit 130' INT TERM
+for ((tick = 1; ; ++tick)); do
+    kill -0 "$builder" 2>/dev/null || break
+    sleep 0.2
+    if ((tick % 300 == 0)); then
+        steps=$(grep -o '^\[[0-9]*/[0-9]*\]' "$log" | tail -n 1) || true
+        echo "building preset $preset for $((tick / 300)) min: steps ${steps:-not known}" >&2
+    fi
+done
+if ! wait "$builder"; then
     grep -v '^\[[0-9]*/[0-9]*\] ' "$log" >&2 || true
     echo "build-preset.sh: building preset $preset failed (the compiler's output is above)" >&2
     exit 1

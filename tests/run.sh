@@ -1,13 +1,57 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, builds the release preset and runs all tests.
-# Arguments go to ctest, for instance: tests/run.sh -L core. Without arguments all tests run, except those with the label
-# mutation, which test the tests, and those with the labels field_long, fuzz_long, package_long and soak: each set takes
-# five minutes or more, soak an hour.
+#   tests/run.sh [ARGUMENT...]   arguments go to ctest, for instance: tests/run.sh -L core
+#   tests/run.sh --quick         only the unit tests of core, idl, transport and gateway, and one exchange of two nodes
+# Without arguments all tests run, except those with the label mutation, which test the tests, and those with the labels
+# field_long, fuzz_long, package_long and soak: each set takes five minutes or more, soak an hour.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+
+# The programs of unit tests; each says itself what it tests.
+unit_tests=(core_test idl_test idl_dynamic_test transport_common_test transport_factory_test links_rules_test links_path_test
+            links_parts_test air_test gateway_parts_test gateway_nodes_test)
+
+# step NUMBER NAME COMMAND...: runs a command and shows a line with its number, name and duration; its output only if it fails.
+step() {
+    local number=$1 name=$2 begin=$SECONDS output result=ok
+    shift 2
+    [ ! -t 1 ] || printf '%2d of %d  %s ...' "$number" "$steps" "$name"
+    output=$("$@" 2>&1) || { result=FAILED; failed=$((failed + 1)); }
+    [ ! -t 1 ] || printf '\r\033[K'
+    printf '%2d of %d  %s: %s, %d s\n' "$number" "$steps" "$name" "$result" $((SECONDS - begin))
+    [ "$result" = ok ] || printf '%s\n' "$output"
+}
+
+quick() {
+    "$root/docker/install-packages.sh"
+    "$root/docker/build-preset.sh" release "${unit_tests[@]}" sensor display
+    local number=0 failed=0 steps=$((${#unit_tests[@]} + 1)) transport=fastdds
+    grep -q '^RABIT_WITH_FASTDDS:BOOL=OFF' build/release/CMakeCache.txt && transport=cyclonedds
+    for test in "${unit_tests[@]}"; do
+        number=$((number + 1))
+        step "$number" "$test" tests/whole_program.sh "build/release/bin/$test"
+    done
+    step "$steps" "two nodes over $transport" env PYTHONDONTWRITEBYTECODE=1 python3 tests/examples/two_nodes_test.py \
+        build/release/bin "$root" "$transport"
+    [ "$failed" -eq 0 ] || { echo "$failed of $steps failed"; exit 1; }
+    echo "all passed"
+}
+
+if [ "${1:-}" = --quick ]; then
+    [ $# -eq 1 ] || { echo "run.sh: --quick takes no other arguments" >&2; exit 2; }
+    echo "The quick tests: about 5 minutes on two cores, and 10 more if nothing is built yet."
+    quick
+    exit
+fi
+if [ $# -eq 0 ]; then
+    echo "All tests: about 20 minutes on two cores, and 30 more if nothing is built yet. --quick: about 5 minutes."
+    set -- -LE 'mutation|field_long|fuzz_long|package_long|soak'
+fi
 "$root/docker/install-packages.sh"
 "$root/docker/install-packages.sh" "$root/docker/packages-check.txt"
 "$root/docker/build-preset.sh" release
-cd "$root"
-[ $# -gt 0 ] || set -- -LE 'mutation|field_long|fuzz_long|package_long|soak'
-exec ctest --preset release -j4 --progress "$@"
+tests=(ctest --preset release -j4 --progress "$@")
+[ ! -t 1 ] || exec "${tests[@]}"
+# One line for each test that has ended, with its number: no line for its start.
+"${tests[@]}" | { grep -Ev '^ *Start +[0-9]+: ' || true; }
