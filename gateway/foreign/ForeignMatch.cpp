@@ -143,7 +143,7 @@ std::vector<RemoteEndpoint> Matching(const ForeignRule &rule, const TopicQos &ou
 
 std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
                     const std::vector<RemoteEndpoint> &endpoints, const std::vector<std::string> &topics,
-                    int domain, bool &isMismatch)
+                    const Network &network, bool &isMismatch)
 {
     isMismatch = false;
     bool nodes = false;
@@ -157,7 +157,7 @@ std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
         nodes = nodes || endpoint.IsWriter == IsRead(rule);
     }
     const std::string does = IsRead(rule) ? "writes `" : "reads `";
-    const std::string where = WireTopicOf(rule) + "` in domain " + std::to_string(domain);
+    const std::string where = WireTopicOf(rule) + "` in domain " + std::to_string(network.Domain);
     if (nodes)
     {
         return "only nodes of Rabit, and no program, " + std::string(IsRead(rule) ? "write `" : "read `") +
@@ -170,7 +170,14 @@ std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
     const std::string hint = NearestWordHint(WireTopicOf(rule), candidates);
     // If this node writes the topic, only a misspelled name is worth a hint: a reader may still come.
     const bool isSlip = hint.rfind("; did you mean", 0) == 0;
-    return "no program " + does + where + (IsRead(rule) || isSlip ? hint : "");
+    const std::string beside = IsRead(rule) || isSlip ? hint : "";
+    if (!beside.empty() || network.Interfaces.empty())
+    {
+        return "no program " + does + where + beside;
+    }
+    return "no program " + does + where + "; a program that listens on other interfaces than " +
+           ListedNames(network.Interfaces, [](const std::string &name) { return name; }) +
+           " cannot be reached";
 }
 
 }  // namespace Rabit::ForeignMatch

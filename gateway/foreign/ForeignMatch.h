@@ -30,11 +30,18 @@ std::string WhyNot(const ForeignRule &rule, const TopicQos &ours, const RemoteEn
 std::vector<RemoteEndpoint> Matching(const ForeignRule &rule, const TopicQos &ours,
                                      const std::vector<RemoteEndpoint> &endpoints);
 
+// Where this node listens.
+struct Network
+{
+    int Domain = 0;
+    std::vector<std::string> Interfaces{};  // empty: all
+};
+
 // Returns, by name, why no program's endpoint matches. Precondition: none does. `topics` are all topics on
 // which others have endpoints. Sets `isMismatch`: true if programs have endpoints on the topic that do not
 // fit.
 std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
                     const std::vector<RemoteEndpoint> &endpoints, const std::vector<std::string> &topics,
-                    int domain, bool &isMismatch);
+                    const Network &network, bool &isMismatch);
 
 }  // namespace Rabit::ForeignMatch

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "foreign/ForeignMatch.h"
 #include "names/ForeignNames.h"
 
 namespace Rabit
@@ -24,10 +23,11 @@ std::unique_ptr<TransportWriter> MakeWriter(const ForeignRule &rule, const Messa
 
 }  // namespace
 
-ForeignPublisher::ForeignPublisher(const ForeignRule &rule, const MessageType &type, int domain,
-                                   const SourceClock &source, TransportSession &session)
+ForeignPublisher::ForeignPublisher(const ForeignRule &rule, const MessageType &type,
+                                   ForeignMatch::Network network, const SourceClock &source,
+                                   TransportSession &session)
     : _rule(rule),
-      _domain(domain),
+      _network(std::move(network)),
       _source(source),
       _session(session),
       _qos(ForeignMatch::WriterQos(rule)),
@@ -97,7 +97,7 @@ void ForeignPublisher::Look(Duration now)
     _isMismatch = false;
     std::string reason =
         any ? ""
-            : ForeignMatch::WhyNone(_rule, _qos, endpoints, _session.RemoteTopics(), _domain, _isMismatch);
+            : ForeignMatch::WhyNone(_rule, _qos, endpoints, _session.RemoteTopics(), _network, _isMismatch);
     if (!_attached)
     {
         reason = "the local message `" + _rule.Local + "` is of another type than `" + _rule.Type + "`";

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "clocks/SourceClock.h"
+#include "foreign/ForeignMatch.h"
 #include "gateway.idl.h"
 #include "mirrors/InstanceWriter.h"
 
@@ -32,8 +33,8 @@ public:
     static constexpr Duration LookPeriod = std::chrono::milliseconds(250);
 
     // Opens the writer; throws TransportError. All arguments must outlive the object.
-    ForeignPublisher(const ForeignRule &rule, const MessageType &type, int domain, const SourceClock &source,
-                     TransportSession &session);
+    ForeignPublisher(const ForeignRule &rule, const MessageType &type, ForeignMatch::Network network,
+                     const SourceClock &source, TransportSession &session);
 
     // Register this message under rule.Local, and have its posts wake the gateway.
     const std::shared_ptr<RabitMessage> &Local() const { return _local; }
@@ -52,7 +53,7 @@ private:
     Duration Gap() const;
 
     const ForeignRule &_rule;
-    const int _domain;
+    const ForeignMatch::Network _network;
     const SourceClock &_source;
     TransportSession &_session;
     const TopicQos _qos;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "clocks/GpsTime.h"
-#include "foreign/ForeignMatch.h"
 #include "names/ForeignNames.h"
 
 namespace Rabit
@@ -47,12 +46,12 @@ AcceptRule QueueRule(const ForeignRule &rule)
 
 }  // namespace
 
-ForeignReader::ForeignReader(const ForeignRule &rule, const MessageType &type, int domain,
+ForeignReader::ForeignReader(const ForeignRule &rule, const MessageType &type, ForeignMatch::Network network,
                              RabitWorkspace &workspace, std::function<void()> wake,
                              RabitHandlerThread *handlers)
     : _rule(rule),
       _type(type),
-      _domain(domain),
+      _network(std::move(network)),
       _workspace(workspace),
       _wake(wake),
       _handlers(handlers),
@@ -302,7 +301,7 @@ void ForeignReader::Look(Duration now)
     _isMismatch = false;
     _whyNone = _matching > 0 ? ""
                              : ForeignMatch::WhyNone(_rule, _qos, endpoints, _session->RemoteTopics(),
-                                                     _domain, _isMismatch);
+                                                     _network, _isMismatch);
 }
 
 void ForeignReader::Judge(Duration now)

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "foreign/ForeignMatch.h"
 #include "foreign/ForeignWriters.h"
 #include "gateway.idl.h"
 #include "mirrors/LogThrottle.h"
@@ -38,8 +39,9 @@ public:
 
     // Rule, type, workspace and handlers must outlive the object. `wake` is called on any thread when Service
     // has work. Without `handlers`, handlers run on the two threads above.
-    ForeignReader(const ForeignRule &rule, const MessageType &type, int domain, RabitWorkspace &workspace,
-                  std::function<void()> wake, RabitHandlerThread *handlers = nullptr);
+    ForeignReader(const ForeignRule &rule, const MessageType &type, ForeignMatch::Network network,
+                  RabitWorkspace &workspace, std::function<void()> wake,
+                  RabitHandlerThread *handlers = nullptr);
     ~ForeignReader();
 
     // Opens the reader; throws TransportError. The session must outlive the object.
@@ -82,7 +84,7 @@ private:
 
     const ForeignRule &_rule;
     const MessageType &_type;
-    const int _domain;
+    const ForeignMatch::Network _network;
     RabitWorkspace &_workspace;
     const std::function<void()> _wake;
     RabitHandlerThread *const _handlers;

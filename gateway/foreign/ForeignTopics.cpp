@@ -9,17 +9,18 @@ namespace Rabit
 
 void ForeignTopics::Open(TransportSession &session, RabitManager &manager, Duration now)
 {
+    const ForeignMatch::Network network{_config.Domain, _config.Interfaces};
     for (const ForeignRule &rule : _config.Foreign)
     {
         const MessageType &type = *MessageTypeRegistry::Find(rule.Type);
         if (rule.Way == ForeignRule::Direction::Subscribe)
         {
-            _readers.emplace_back(rule, type, _config.Domain, manager.GetWorkspace(), manager.WakeUpHandler(),
+            _readers.emplace_back(rule, type, network, manager.GetWorkspace(), manager.WakeUpHandler(),
                                   _handlers);
             _readers.back().Open(session, now);
             continue;
         }
-        ForeignPublisher &publisher = _publishers.emplace_back(rule, type, _config.Domain, _source, session);
+        ForeignPublisher &publisher = _publishers.emplace_back(rule, type, network, _source, session);
         if (manager.AddPublishSubscribeMessage(rule.Local, publisher.Local()))
         {
             manager.WakeUpManagerOnMessagePost(publisher.Local());

@@ -44,13 +44,14 @@ RemoteEndpoint Reader(Reliability reliability = Reliability::BestEffort,
 }
 
 std::string WhyNone(const ForeignRule &rule, const std::vector<RemoteEndpoint> &endpoints,
-                    const std::vector<std::string> &topics = {})
+                    const std::vector<std::string> &topics = {},
+                    const std::vector<std::string> &interfaces = {})
 {
     bool isMismatch = false;
     const TopicQos ours = rule.Way == ForeignRule::Direction::Subscribe
                               ? ForeignMatch::ReaderQos(rule, endpoints, ForeignMatch::FirstReaderQos(rule))
                               : ForeignMatch::WriterQos(rule);
-    const std::string why = ForeignMatch::WhyNone(rule, ours, endpoints, topics, 7, isMismatch);
+    const std::string why = ForeignMatch::WhyNone(rule, ours, endpoints, topics, {7, interfaces}, isMismatch);
     return why + (isMismatch ? " (mismatch)" : "");
 }
 
@@ -152,6 +153,20 @@ TEST(ForeignMatch, SaysThatNobodyWritesItAndWhatIsThereInstead)
     EXPECT_EQ(WhyNone(Written(), {}, {"Pose"}), "no program reads `rt/chatter` in domain 7");
     EXPECT_EQ(WhyNone(Written(), {}, {"rt/chater"}),
               "no program reads `rt/chatter` in domain 7; did you mean `rt/chater`?");
+}
+
+TEST(ForeignMatch, SaysOnWhichInterfacesProgramsAreReached)
+{
+    EXPECT_EQ(
+        WhyNone(Read(), {}, {}, {"lo", "10.0.0.1"}),
+        "no program writes `rt/chatter` in domain 7; a program that listens on other interfaces than `lo`, "
+        "`10.0.0.1` cannot be reached");
+    EXPECT_EQ(
+        WhyNone(Written(), {}, {}, {"lo"}),
+        "no program reads `rt/chatter` in domain 7; a program that listens on other interfaces than `lo` "
+        "cannot be reached");
+    EXPECT_EQ(WhyNone(Read(), {}, {"rt/chatter_v1"}, {"lo"}),
+              "no program writes `rt/chatter` in domain 7; did you mean `rt/chatter_v1`?");
 }
 
 TEST(ForeignMatch, SaysThatOnlyNodesWriteIt)

@@ -35,7 +35,8 @@ protected:
     {
         if (!publisher)
         {
-            publisher = std::make_unique<ForeignPublisher>(rule, type, 7, source, session);
+            publisher =
+                std::make_unique<ForeignPublisher>(rule, type, ForeignMatch::Network{7}, source, session);
             workspace.AddPublishSubscribeMessage("Contact", publisher->Local());
             publisher->SetAttached();
         }

@@ -59,7 +59,7 @@ protected:
         if (!reader)
         {
             reader = std::make_unique<ForeignReader>(
-                rule, type, 7, workspace, [this] { ++wakes; }, &handlers);
+                rule, type, ForeignMatch::Network{7}, workspace, [this] { ++wakes; }, &handlers);
             reader->Open(session, Now());
             reader->Service(Now());
         }
