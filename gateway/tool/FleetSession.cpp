@@ -102,7 +102,7 @@ void FleetSession::TellOfKeys()
     constexpr double twoAnnouncements = 2.2;  // unless a budget makes them rarer
     try
     {
-        const Doctor::NetworkTrial trial(Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces),
+        const Doctor::NetworkTrial trial(Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces), {},
                                          _config.Node, {_config.Domain});
         const auto ends = [this] { return _wakeup.IsInterrupted(); };
         WaitUntil(Seconds() + twoAnnouncements, ends);

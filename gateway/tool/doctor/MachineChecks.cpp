@@ -66,6 +66,20 @@ std::vector<Interface> UsedBy(const GatewayConfig &config, const std::vector<Int
     return used;
 }
 
+std::vector<Interface> UnusedBy(const GatewayConfig &config, const std::vector<Interface> &interfaces)
+{
+    const std::vector<Interface> used = UsedBy(config, interfaces);
+    std::vector<Interface> unused;
+    std::copy_if(interfaces.begin(), interfaces.end(), std::back_inserter(unused),
+                 [&used](const Interface &one)
+                 {
+                     return one.IsUp &&
+                            std::none_of(used.begin(), used.end(),
+                                         [&one](const Interface &other) { return other.Index == one.Index; });
+                 });
+    return unused;
+}
+
 std::vector<Finding> OfInterfaces(const GatewayConfig &config, const std::vector<Interface> &interfaces)
 {
     std::vector<Finding> findings;

@@ -13,6 +13,8 @@ namespace Rabit::Tool::Doctor
 
 // Returns the interfaces that such a node uses: those named, or all that are up.
 std::vector<Interface> UsedBy(const GatewayConfig &config, const std::vector<Interface> &interfaces);
+// Returns the other ones that are up.
+std::vector<Interface> UnusedBy(const GatewayConfig &config, const std::vector<Interface> &interfaces);
 
 std::vector<Finding> OfInterfaces(const GatewayConfig &config, const std::vector<Interface> &interfaces);
 // Finds interfaces whose MTU is too small for the configured datagrams.

@@ -140,6 +140,34 @@ std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkF
     return {{Level::Note, "other domains", text, "--wait 35, to hear all that are there"}};
 }
 
+std::vector<Finding> OfOtherInterfaces(const GatewayConfig &config, const std::vector<Interface> &used,
+                                       const NetworkFacts &facts, bool anyNode)
+{
+    std::vector<Finding> findings;
+    const auto ours = facts.Elsewhere.find(config.Domain);
+    if (ours == facts.Elsewhere.end())
+    {
+        return findings;
+    }
+    std::set<std::string> names;
+    for (const Interface &one : used)
+    {
+        names.insert(one.Name);
+    }
+    for (const auto &[interface, addresses] : ours->second)
+    {
+        findings.push_back(
+            {anyNode ? Level::Note : Level::Problem, "interface " + interface,
+             Listed(addresses) + (addresses.size() == 1 ? " is" : " are") + " heard there in domain " +
+                 std::to_string(config.Domain) + ", and cannot be reached: only " + Listed(names) +
+                 (names.size() == 1 ? " is used" : " are used"),
+             "--interface " + interface +
+                 ", and `interfaces` of the nodes; or the other program's interfaces, if it is "
+                 "of this fleet"});
+    }
+    return findings;
+}
+
 std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)
 {
     std::set<std::string> with;

@@ -21,6 +21,10 @@ std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &
 // configured domain and in the first `asked` ones the participants were asked to announce themselves.
 std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode,
                                      int asked, double seconds);
+// Finds participants of our domain on interfaces that are not used: they hear nothing that is sent on the
+// others. `anyNode`: a node was heard on those that are used.
+std::vector<Finding> OfOtherInterfaces(const GatewayConfig &config, const std::vector<Interface> &used,
+                                       const NetworkFacts &facts, bool anyNode);
 // Finds participants of our domain with keys if this program has none, and the reverse.
 std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
 

@@ -29,6 +29,9 @@ struct NetworkFacts
 {
     std::map<std::string, MulticastTrial> Trials;          // by interface
     std::map<int, std::map<std::string, Voices>> Domains;  // by address
+    // Participants that were heard only on interfaces that are not used: their addresses, by domain and
+    // interface.
+    std::map<int, std::map<std::string, std::set<std::string>>> Elsewhere{};
 };
 
 }  // namespace Rabit::Tool::Doctor

@@ -10,9 +10,11 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <random>
+#include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -28,6 +30,7 @@ namespace
 // Limits of the memory that senders of datagrams can take.
 constexpr std::size_t MostAddresses = 256;
 constexpr std::size_t MostNames = 64;
+constexpr std::size_t MostParticipants = 1024;
 
 sockaddr_in AddressOf(const std::string &address, int port)
 {
@@ -140,8 +143,9 @@ std::optional<Datagram> Receive(const UdpSocket &socket)
 class NetworkTrial::Work
 {
 public:
-    Work(const std::vector<Interface> &interfaces, std::string ownName, const std::vector<int> &callIn)
-        : _interfaces(interfaces), _ownName(std::move(ownName)), _end(::eventfd(0, EFD_CLOEXEC))
+    Work(const std::vector<Interface> &used, const std::vector<Interface> &unused, std::string ownName,
+         const std::vector<int> &callIn)
+        : _interfaces(used), _unused(unused), _ownName(std::move(ownName)), _end(::eventfd(0, EFD_CLOEXEC))
     {
         std::random_device random;
         std::generate(_id.begin(), _id.end(), [&random] { return static_cast<std::uint8_t>(random()); });
@@ -164,7 +168,15 @@ public:
     NetworkFacts Facts() const
     {
         const std::lock_guard lock(_mutex);
-        return _facts;
+        NetworkFacts facts = _facts;
+        for (const auto &[participant, place] : _elsewhere)
+        {
+            if (!_onUsed.contains(participant))
+            {
+                AddTo(facts.Elsewhere[place.Domain][place.Interface], place.Address, MostAddresses);
+            }
+        }
+        return facts;
     }
 
 private:
@@ -174,6 +186,13 @@ private:
         UdpSocket Where;
         int Domain = -1;          // announcements of that domain
         std::string Interface{};  // answers to what was sent there; both unset: this machine's own multicast
+    };
+
+    struct Place
+    {
+        int Domain = 0;
+        std::string Interface;
+        std::string Address;
     };
 
     void AddEars()
@@ -187,6 +206,7 @@ private:
             if (socket.IsOpen())
             {
                 Join(socket, _interfaces);
+                Join(socket, _unused);
                 _ears.push_back({std::move(socket), domain});
             }
         }
@@ -290,10 +310,16 @@ private:
             AddTo(_facts.Trials[ear.Interface].AnsweredFrom, datagram.From, MostAddresses);
             return;
         }
-        if (on != _interfaces.end())
+        if (on == _interfaces.end())
         {
-            AddTo(_facts.Trials[on->Name].HeardFrom, datagram.From, MostAddresses);
+            TakeElsewhere(ear.Domain, datagram, heard->Sender);
+            return;
         }
+        if (_onUsed.size() < MostParticipants)
+        {
+            _onUsed.insert(heard->Sender);
+        }
+        AddTo(_facts.Trials[on->Name].HeardFrom, datagram.From, MostAddresses);
         auto &voices = _facts.Domains[ear.Domain];
         if (voices.size() < MostAddresses || voices.contains(datagram.From))
         {
@@ -307,6 +333,17 @@ private:
         }
     }
 
+    void TakeElsewhere(int domain, const Datagram &datagram, const ParticipantId &sender)
+    {
+        const auto on =
+            std::find_if(_unused.begin(), _unused.end(),
+                         [&datagram](const Interface &one) { return one.Index == datagram.Interface; });
+        if (on != _unused.end() && _elsewhere.size() < MostParticipants)
+        {
+            _elsewhere.try_emplace(sender, Place{domain, on->Name, datagram.From});
+        }
+    }
+
     static void AddTo(std::set<std::string> &set, const std::string &text, std::size_t most)
     {
         if (set.size() < most)
@@ -316,6 +353,7 @@ private:
     }
 
     const std::vector<Interface> _interfaces;
+    const std::vector<Interface> _unused;
     const std::string _ownName;
     ParticipantId _id{};
     const UdpSocket _end;
@@ -323,12 +361,14 @@ private:
     std::vector<Ear> _ears;
     mutable std::mutex _mutex;
     NetworkFacts _facts;
+    std::set<ParticipantId> _onUsed;            // heard on an interface that is used
+    std::map<ParticipantId, Place> _elsewhere;  // heard on another one
     std::thread _thread;
 };
 
-NetworkTrial::NetworkTrial(const std::vector<Interface> &interfaces, std::string ownName,
-                           const std::vector<int> &callIn)
-    : _work(std::make_unique<Work>(interfaces, std::move(ownName), callIn))
+NetworkTrial::NetworkTrial(const std::vector<Interface> &used, const std::vector<Interface> &unused,
+                           std::string ownName, const std::vector<int> &callIn)
+    : _work(std::make_unique<Work>(used, unused, std::move(ownName), callIn))
 {
 }
 

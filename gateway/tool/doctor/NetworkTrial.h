@@ -13,13 +13,15 @@ namespace Rabit::Tool::Doctor
 // Tries the network beside DDS, with sockets of its own. Sends by multicast on each interface, and listens
 // where the participants of all domains announce themselves. Also announces itself once in some domains, so
 // that participants answer. That costs some 190 bytes on the air for each domain and interface, and the
-// answers. Listens from the construction on, on a thread of its own.
+// answers. Listens from the construction on, on a thread of its own. On interfaces that are not used it only
+// listens.
 class NetworkTrial
 {
 public:
-    // `ownName`: the participant of this program, which is ignored. `callIn`: the domains in which to ask.
-    NetworkTrial(const std::vector<Interface> &interfaces, std::string ownName,
-                 const std::vector<int> &callIn);
+    // `used`, `unused`: interfaces of this machine. `ownName`: the participant of this program, which is
+    // ignored. `callIn`: the domains in which to ask.
+    NetworkTrial(const std::vector<Interface> &used, const std::vector<Interface> &unused,
+                 std::string ownName, const std::vector<int> &callIn);
     ~NetworkTrial();
     NetworkTrial(const NetworkTrial &) = delete;
     NetworkTrial &operator=(const NetworkTrial &) = delete;

@@ -69,6 +69,21 @@ TEST(MachineChecks, AnAddressNamesAnInterface)
     EXPECT_EQ(UsedBy(config, all)[0].Name, "wlan0");
 }
 
+TEST(MachineChecks, InterfacesThatAreUpAndNotNamedAreUnused)
+{
+    std::vector<Interface> all{InterfaceOf("lo", "127.0.0.1"), InterfaceOf("eth0", "10.0.0.2"),
+                               InterfaceOf("eth1", "10.1.0.2")};
+    all[0].Index = 1;
+    all[1].Index = 2;
+    all[2].Index = 3;
+    all[2].IsUp = false;
+    EXPECT_THAT(UnusedBy({}, all), IsEmpty());
+    GatewayConfig config;
+    config.Interfaces = {"lo"};
+    ASSERT_EQ(UnusedBy(config, all).size(), 1u);
+    EXPECT_EQ(UnusedBy(config, all)[0].Name, "eth0");
+}
+
 TEST(MachineChecks, LoopbackAloneReachesNobodyUnlessItIsNamed)
 {
     std::vector<Interface> all{InterfaceOf("lo", "127.0.0.1")};

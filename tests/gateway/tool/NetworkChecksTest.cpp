@@ -47,6 +47,22 @@ TEST_F(NetworkChecks, MulticastThatGoesEachWayIsGood)
     EXPECT_EQ(Multicast().Text, "it goes out; answered by 10.0.0.3; heard from 10.0.0.3");
 }
 
+TEST_F(NetworkChecks, ProgramsOnOtherInterfacesCannotBeReached)
+{
+    config.Domain = 7;
+    facts.Elsewhere[8]["eth0"] = {"192.168.0.9"};
+    EXPECT_THAT(OfOtherInterfaces(config, used, facts, false), IsEmpty());
+    facts.Elsewhere[7]["eth0"] = {"192.168.0.9"};
+    const auto findings = OfOtherInterfaces(config, used, facts, false);
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Problem);
+    EXPECT_EQ(findings[0].Subject, "interface eth0");
+    EXPECT_EQ(findings[0].Text,
+              "192.168.0.9 is heard there in domain 7, and cannot be reached: only wlan0 is used");
+    EXPECT_THAT(findings[0].Advice, HasSubstr("--interface eth0"));
+    EXPECT_EQ(OfOtherInterfaces(config, used, facts, true)[0].How, Level::Note);
+}
+
 TEST_F(NetworkChecks, WhatCannotBeSentIsAProblemWithTheRouteThatLacks)
 {
     Trial() = {};
