@@ -233,10 +233,10 @@ YamlMap OpenFile(const std::string &file)
     return {file,
             Parse(file, ReadFile(file)),
             "the configuration",
-            {"node",      "name",         "domain",        "transport", "interfaces",     "peers",
-             "multicast", "max_datagram", "shared_memory", "lease",     "backend_config", "state_dir",
-             "security",  "radio",        "record",        "publish",   "subscribe",      "accept",
-             "send",      "foreign",      "foxglove"}};
+            {"node",      "name",         "domain",        "transport",  "interfaces",     "peers",
+             "multicast", "max_datagram", "shared_memory", "lease",      "backend_config", "state_dir",
+             "security",  "radio",        "record",        "publish",    "subscribe",      "accept",
+             "send",      "foreign",      "foxglove",      "problems_of"}};
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -293,6 +293,7 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     ReadSend(map, config);
     ReadForeign(map, config);
     ReadPanels(map, config);
+    map.Read("problems_of", config.ProblemsOf);
     ValidateGatewayConfig(config, whyNoType);
     return config;
 }

@@ -37,6 +37,7 @@ public:
     {
         CheckNode();
         CheckTool();
+        CheckProblemsOf();
         CheckNetwork();
         CheckRadio();
         CheckRecord();
@@ -89,6 +90,14 @@ private:
         if (_config.Lease < std::chrono::milliseconds(200) || _config.Lease > std::chrono::hours(1))
         {
             Fail(LineOf("lease"), "the lease is out of range; expected 200ms to 3600s");
+        }
+    }
+
+    void CheckProblemsOf() const
+    {
+        if (!_config.ProblemsOf.empty())
+        {
+            CheckPatterns(_config.ProblemsOf, "problems_of", LineOf("problems_of"));
         }
     }
 

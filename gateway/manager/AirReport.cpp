@@ -1,6 +1,7 @@
 #include "manager/AirReport.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "manager/ImportanceOf.h"
@@ -83,6 +84,19 @@ void AirReport::Fill(const TransportCounters &counters, std::optional<double> ca
         divided += link.bytes_per_s;
     }
     air.presence = std::max(0.0, _samples.PerSecond - divided);
+}
+
+std::string AirReport::TextOf(const Gateway::AirStatus &air)
+{
+    std::string text;
+    for (const double rate : {air.budget, air.capacity, air.used, air.discovery, air.presence, air.command,
+                              air.state, air.telemetry, air.bulk})
+    {
+        text += std::to_string(std::llround(rate));
+        text += ' ';
+    }
+    text.pop_back();
+    return text;
 }
 
 void AirReport::Measure(const TransportCounters &counters, const std::deque<TopicPublisher> &publishers,

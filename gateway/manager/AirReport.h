@@ -38,6 +38,9 @@ public:
     void Fill(const TransportCounters &counters, std::optional<double> capacity,
               const std::deque<TopicPublisher> &publishers, Gateway::Fleet &fleet, Duration now);
 
+    // The members of the status in their order, as whole numbers with blanks between.
+    static std::string TextOf(const Gateway::AirStatus &air);
+
 private:
     // All bytes sent, and the rate of late.
     struct Rate

@@ -52,6 +52,15 @@ std::vector<FleetExplorer::Strain> StrainsOf(const PeerTable::Peer &peer,
     return strains;
 }
 
+NodeReports::Kind KindOf(FleetExplorer::Report report)
+{
+    using Report = FleetExplorer::Report;
+    return report == Report::Air         ? NodeReports::Kind::Air
+           : report == Report::LastLines ? NodeReports::Kind::LastLines
+           : report == Report::LinesFrom ? NodeReports::Kind::LinesFrom
+                                         : NodeReports::Kind::Echo;
+}
+
 }  // namespace
 
 std::vector<FleetExplorer::Node> Exploration::Nodes() const
@@ -74,6 +83,24 @@ std::optional<std::string> Exploration::TypeText(std::uint64_t definition) const
     const std::lock_guard lock(_mutex);
     const auto found = _texts.find(definition);
     return found == _texts.end() ? std::nullopt : std::optional(found->second);
+}
+
+void Exploration::AskForReport(const std::string &node, Report what, std::uint32_t argument)
+{
+    const NodeReports::Kind kind = KindOf(what);
+    {
+        const std::lock_guard lock(_mutex);
+        _reports[{node, kind}] = {argument, std::nullopt};
+        _requests.Types.push_back({node, "", NodeReports::NameOf(kind, argument)});
+    }
+    _wake();
+}
+
+std::optional<FleetExplorer::Answer> Exploration::TakeReport(const std::string &node, Report what)
+{
+    const std::lock_guard lock(_mutex);
+    const auto found = _reports.find({node, KindOf(what)});
+    return found == _reports.end() ? std::nullopt : std::exchange(found->second.second, std::nullopt);
 }
 
 void Exploration::LookForSubscribers(const std::vector<std::string> &messages)
@@ -189,6 +216,20 @@ void Exploration::AddText(std::uint64_t definition, std::string text)
     {
         const std::lock_guard lock(_mutex);
         _texts[definition] = std::move(text);
+    }
+    Tell();
+}
+
+void Exploration::AddReport(const std::string &node, NodeReports::Name name, Answer answer)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        const auto found = _reports.find({node, name.What});
+        if (found == _reports.end() || found->second.first != name.Argument)
+        {
+            return;  // another one was requested meanwhile
+        }
+        found->second.second = std::move(answer);
     }
     Tell();
 }

@@ -18,6 +18,7 @@
 
 #include "presence/PeerTable.h"
 #include "types/TypeQuestions.h"
+#include "wire/NodeReports.h"
 
 namespace Rabit
 {
@@ -36,6 +37,8 @@ public:
     std::vector<Node> Nodes() const override;
     void AskForType(const std::string &node, const std::string &type, std::uint64_t definition) override;
     std::optional<std::string> TypeText(std::uint64_t definition) const override;
+    void AskForReport(const std::string &node, Report what, std::uint32_t argument) override;
+    std::optional<Answer> TakeReport(const std::string &node, Report what) override;
     void LookForSubscribers(const std::vector<std::string> &messages) override;
     std::optional<std::map<std::string, Subscribers>> FoundSubscribers() const override;
     void Subscribe(const SubscribeRule &rule) override;
@@ -52,6 +55,7 @@ public:
     Requests TakeRequests();
     void SetNodes(const PeerTable &peers, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
+    void AddReport(const std::string &node, NodeReports::Name name, Answer answer);
     void FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session);
     // Call at the beginning of a unit of work, and pass the result to EndTurn at its end.
     std::uint64_t BeginTurn() const { return _turnsAsked; }
@@ -65,6 +69,9 @@ private:
     mutable std::mutex _mutex;
     std::vector<Node> _nodes;
     std::map<std::uint64_t, std::string> _texts;
+    // By node and kind: the argument of the last request, and the answer to it.
+    std::map<std::pair<std::string, NodeReports::Kind>, std::pair<std::uint32_t, std::optional<Answer>>>
+        _reports;
     std::optional<std::map<std::string, Subscribers>> _subscribers;
     Requests _requests;
     std::function<void()> _onChange;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <ctime>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -28,6 +29,7 @@
 #include "presence/OriginTable.h"
 #include "presence/Presence.h"
 #include "presence/RemoteQueues.h"
+#include "presence/Whereabouts.h"
 #include "queues/LinkDriver.h"
 #include "queues/OutgoingQueues.h"
 #include "report/Diagnosis.h"
@@ -36,8 +38,11 @@
 #include "report/LinkStrains.h"
 #include "report/Loneliness.h"
 #include "report/OtherGateways.h"
+#include "report/OwnLog.h"
 #include "report/ProblemLog.h"
+#include "report/ProblemTexts.h"
 #include "wire/Announcements.h"
+#include "wire/NodeReports.h"
 
 namespace Rabit
 {
@@ -394,6 +399,7 @@ private:
             _presence.Peers().CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
         fleet.malformed = _presence.Malformed() + _links.Malformed() + _types.Malformed();
         FleetReport::FillNodes(_presence.Peers(), now, fleet);
+        _problemTexts.Fill(_presence.Peers(), fleet);
         _air.Report(fleet, now);
         FleetReport::AddNameProblems(_presence.Peers(), fleet);
         FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
@@ -407,6 +413,57 @@ private:
             fleet.PostMessage();
         }
         Log(_problemLog.Look(fleet.problems, now));
+        _lasted = _problemLog.Lasted(now);
+        constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
+        const auto count = static_cast<std::uint16_t>(std::min(_lasted.Problems.size(), most));
+        // Nobody lists a tool, so its problems are its own.
+        _presence.SetProblems(_config.Tool ? ProblemCount() : ProblemCount{count, _lasted.Digest});
+        for (const PeerTable::Peer *peer : _presence.Peers().Heard())
+        {
+            if (_problemTexts.Lacks(*peer) && MatchesAny(_config.ProblemsOf, peer->Node))
+            {
+                // If too many texts are lacking, the next post asks again.
+                static_cast<void>(
+                    _types.Want({peer->Node, "", NodeReports::NameOf(NodeReports::Kind::Problems)}, now));
+            }
+        }
+    }
+
+    // Returns a report of this node, for one that requests it.
+    std::optional<std::string> ReportOf(NodeReports::Name name) const
+    {
+        switch (name.What)
+        {
+            case NodeReports::Kind::Problems:
+                return ProblemTexts::ReportOf(_lasted);
+            case NodeReports::Kind::Air:
+                return AirReport::TextOf(_fleet->air);
+            case NodeReports::Kind::LastLines:
+                return _log.Last(name.Argument);
+            case NodeReports::Kind::LinesFrom:
+                return _log.From(name.Argument);
+            case NodeReports::Kind::Echo:
+                break;
+        }
+        return std::string();
+    }
+
+    void OnText(const std::string &node, std::uint64_t definition, TypeQuestions::Answer answer)
+    {
+        const auto report = NodeReports::NameIn(definition);
+        if (!report)
+        {
+            _exploration.AddText(definition, std::move(answer.Text));
+        }
+        else if (report->What == NodeReports::Kind::Problems)
+        {
+            _problemTexts.Add(node, answer.Text);
+            _nextFleet = std::min(_nextFleet, _earliestFleet);
+        }
+        else
+        {
+            _exploration.AddReport(node, *report, {std::move(answer.Text), Now() - answer.AskedAt});
+        }
     }
 
     void AddProblems(Duration now, Gateway::Fleet &fleet) const
@@ -472,6 +529,9 @@ private:
         _config.Name == GatewayConfig().Name ? "gateway: " : "gateway " + _config.Name + ": ";
     const std::string _fleetName = FleetMessageNameOf(_config);
     ProblemLog _problemLog{_fleetName};
+    ProblemLog::Standing _lasted;
+    ProblemTexts _problemTexts;  // of the others
+    const OwnLog _log{_logName + "node " + _config.Node + ", " + Whereabouts::OfThisProcess()};
     bool _forwards = false;
     Duration _nextFleet{0};
     Duration _earliestFleet{0};
@@ -479,9 +539,13 @@ private:
     std::optional<std::time_t> _keysEndAt;
     std::unique_ptr<TransportSession> _session;
     std::deque<TopicPublisher> _publishers;
-    TypeExchange _types{_config, _presence, _links, _manager.WakeUpHandler(),
-                        [this](std::uint64_t definition, std::string text)
-                        { _exploration.AddText(definition, std::move(text)); }};
+    TypeExchange _types{_config,
+                        _presence,
+                        _links,
+                        _manager.WakeUpHandler(),
+                        [this](const std::string &node, std::uint64_t definition,
+                               TypeQuestions::Answer answer) { OnText(node, definition, std::move(answer)); },
+                        [this](NodeReports::Name name) { return ReportOf(name); }};
     AirTraffic _air{_config, _workspace.GetClock(), _presence, _links, _publishers, _types};
 };
 

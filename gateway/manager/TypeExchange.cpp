@@ -18,13 +18,14 @@ constexpr std::size_t SmallestPart = 64;
 }  // namespace
 
 TypeExchange::TypeExchange(const GatewayConfig &config, Presence &presence, LinkDriver &links,
-                           std::function<void()> wake, OnText onText)
+                           std::function<void()> wake, OnText onText, ReportOf reportOf)
     : _presence(presence),
       _links(links),
       _wake(std::move(wake)),
       _onText(std::move(onText)),
+      _reportOf(std::move(reportOf)),
       _largestFrame(LargestLinkFrame(config.MaxDatagram, config.Security.has_value())),
-      _answers([this](std::uint64_t definition) { return _texts.Find(definition); })
+      _answers([this](std::uint64_t definition) { return TextOf(definition); })
 {
     _links.SetOtherFrames(TypeFrames::FirstByte,
                           [this](std::string_view node, std::span<const std::uint8_t> frame)
@@ -44,7 +45,9 @@ void TypeExchange::OnFrame(std::string_view node, std::span<const std::uint8_t> 
         const std::lock_guard lock(_mutex);
         if (!_lacks || frame.size() > LargestInbox - _inboxBytes)
         {
-            ++_dropped;
+            // A second answer to a question for a report that was repeated is no harm.
+            const auto part = TypeFrames::Decode(frame);
+            _dropped += part && NodeReports::NameIn(part->Definition) ? 0 : 1;
             return;
         }
         _inboxBytes += frame.size();
@@ -77,12 +80,23 @@ void TypeExchange::TakeInNews(const Presence::Served &served, Duration now)
             ++_dropped;
             continue;
         }
-        if (std::optional<std::string> text = _presence.TypesLacking().Add(node, *part))
+        if (std::optional<TypeQuestions::Answer> answer = _presence.TypesLacking().Add(node, *part))
         {
-            _onText(part->Definition, std::move(*text));
+            _onText(node, part->Definition, std::move(*answer));
         }
     }
     _lacks = !_presence.TypesLacking().IsEmpty();
+}
+
+std::shared_ptr<const std::string> TypeExchange::TextOf(std::uint64_t definition)
+{
+    if (const std::string *text = _texts.Find(definition))
+    {
+        return {std::shared_ptr<void>(), text};  // lives as long as the process
+    }
+    const auto name = NodeReports::NameIn(definition);
+    const std::optional<std::string> report = name ? _reportOf(*name) : std::nullopt;
+    return report ? std::make_shared<std::string>(NodeReports::Sealed(*report)) : nullptr;
 }
 
 std::size_t TypeExchange::LargestPart(std::size_t mostBody) const

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -20,25 +21,30 @@
 #include "queues/LinkDriver.h"
 #include "types/KnownTexts.h"
 #include "types/TypeAnswers.h"
+#include "types/TypeQuestions.h"
+#include "wire/NodeReports.h"
 
 namespace Rabit
 {
 
-// Sends the IDL texts of types on request, and collects those that this node has requested
-// (../types/README.md).
+// Sends the IDL texts of types and the reports of this node on request, and collects those that this node has
+// requested (../types/README.md).
 //
 // Threads: the transport's threads put arriving parts into an inbox; all else is for the gateway's thread.
 class TypeExchange
 {
 public:
     using Duration = std::chrono::nanoseconds;
-    // A requested text has come, with that hash.
-    using OnText = std::function<void(std::uint64_t definition, std::string text)>;
+    // A requested text has come, from that node and with that hash, or a report of that name.
+    using OnText =
+        std::function<void(const std::string &node, std::uint64_t definition, TypeQuestions::Answer answer)>;
+    // Returns a report of this node; empty if there is nothing to report.
+    using ReportOf = std::function<std::optional<std::string>(NodeReports::Name name)>;
 
     // References must outlive the object, and the object the opened links. `wake` makes the gateway's thread
     // call TakeIn soon; called on any thread.
     TypeExchange(const GatewayConfig &config, Presence &presence, LinkDriver &links,
-                 std::function<void()> wake, OnText onText);
+                 std::function<void()> wake, OnText onText, ReportOf reportOf);
 
     // Requests a text. False: too many are lacking.
     bool Want(const TypeQuestions::Wanted &wanted, Duration now);
@@ -68,12 +74,14 @@ private:
 
     void TakeInNews(const Presence::Served &served, Duration now);
     void OnFrame(std::string_view node, std::span<const std::uint8_t> frame);
+    std::shared_ptr<const std::string> TextOf(std::uint64_t definition);
     std::size_t LargestPart(std::size_t mostBody) const;
 
     Presence &_presence;
     LinkDriver &_links;
     const std::function<void()> _wake;
     const OnText _onText;
+    const ReportOf _reportOf;
     const std::size_t _largestFrame;
     KnownTexts _texts;
     TypeAnswers _answers;

@@ -80,7 +80,7 @@ std::size_t BeatContents::Size(Duration now) const
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t news = SizeOfMarks() + SizeOfStrains() +
+    const std::size_t news = SizeOfMarks() + SizeOfStrains() + SizeOfProblems() +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
@@ -108,6 +108,11 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     {
         BeatExtensions::Say(beat, _strains);
         room -= SizeOfStrains();
+    }
+    if (SizeOfProblems() > 0 && SizeOfProblems() <= room)
+    {
+        BeatExtensions::Say(beat, _problems);
+        room -= SizeOfProblems();
     }
     AddStates(beat, room);
     if (_isTool)

@@ -15,7 +15,9 @@
 #include "presence/PeerTable.h"
 #include "presence/StateQuestions.h"
 #include "types/TypeQuestions.h"
+#include "wire/BeatFormat.h"
 #include "wire/LinkStrain.h"
+#include "wire/ProblemCount.h"
 
 namespace Rabit
 {
@@ -63,6 +65,9 @@ public:
     // reports them.
     void SetStrains(std::vector<LinkStrain> strains) { _strains = std::move(strains); }
 
+    // Sets the number of this node's problems. From now on each beat with room for it tells it; 0: none does.
+    void SetProblems(const ProblemCount &problems) { _problems = problems; }
+
     // When a question is due, which need not wait for the next period; empty: no question is due.
     std::optional<Duration> QuestionDue() const;
     // When a part of the announcement is to be sent.
@@ -80,6 +85,7 @@ private:
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfMarks() const;
     std::size_t SizeOfStrains() const;
+    std::size_t SizeOfProblems() const { return _problems.Count == 0 ? 0 : BeatFormat::Problems; }
     std::size_t SizeOfPart(Duration now, std::size_t room) const;
     bool IsPlaceDue(Duration now) const;
 
@@ -91,6 +97,7 @@ private:
     bool _isTool = false;
     bool _isReplay = false;
     std::vector<LinkStrain> _strains;
+    ProblemCount _problems;
     std::vector<std::uint8_t> _offers;
     std::uint32_t _digest = 0;
     std::vector<std::uint32_t> _states;  // versions

@@ -248,6 +248,8 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     peer.Beats.Add(heard.Sequence);
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
+    const ProblemCount problems = std::exchange(peer.Problems, BeatExtensions::ProblemsIn(heard.Beat));
+    change.State |= problems != peer.Problems;
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
     {

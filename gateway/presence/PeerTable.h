@@ -17,6 +17,7 @@
 #include "presence/MissingOffers.h"
 #include "presence/SentBeats.h"
 #include "wire/LinkStrain.h"
+#include "wire/ProblemCount.h"
 
 namespace Rabit
 {
@@ -59,6 +60,7 @@ public:
         bool IsTool = false;              // UP as long as it is kept; it has no offers and no states
         bool IsReplay = false;            // it plays a recording
         std::vector<LinkStrain> Strains;  // as its newest beat reports them
+        ProblemCount Problems;            // likewise
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
         Duration FirstHeard{0};

@@ -140,7 +140,9 @@ public:
     }
     // Sets the troubles of this node's links, which the beats report.
     void SetStrains(std::vector<LinkStrain> strains) { _contents.SetStrains(std::move(strains)); }
-    // The texts of types that this node lacks, and its beats request.
+    // Sets the number of this node's problems, which the beats tell.
+    void SetProblems(const ProblemCount &problems) { _contents.SetProblems(problems); }
+    // The texts of types, and the reports of other nodes, that this node lacks, and its beats request.
     TypeQuestions &TypesLacking() { return _contents.Types(); }
     const TypeQuestions &TypesLacking() const { return _contents.Types(); }
     // A datagram of that node, other than a beat, came by `delay` later than its quickest; the beats report

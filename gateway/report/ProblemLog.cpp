@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "names/Fnv1a.h"
+
 namespace Rabit
 {
 namespace
@@ -298,6 +300,30 @@ std::vector<std::string> ProblemLog::Look(const std::vector<Gateway::Problem> &p
     _saidThatSomeWait = waiting > 0;
     Forget(now);
     return lines;
+}
+
+ProblemLog::Standing ProblemLog::Lasted(Duration now) const
+{
+    Standing standing;
+    std::string shapes;
+    for (const auto &[key, entry] : _entries)
+    {
+        const bool lasts = entry.There ? entry.Certain || now - entry.Came >= Lasting
+                                       : entry.Told && now - entry.Went < Lasting;
+        if (!lasts)
+        {
+            continue;
+        }
+        Gateway::Problem &problem = standing.Problems.emplace_back();
+        problem.subject = std::get<0>(key);
+        problem.node = std::get<1>(key);
+        problem.reason = entry.Reason;
+        problem.certain = entry.Certain;
+        shapes += problem.subject + '\n' + problem.node + '\n' + std::get<2>(key) + '\n';
+    }
+    const std::uint64_t hash = Fnv1a(shapes);
+    standing.Digest = static_cast<std::uint32_t>(hash ^ hash >> 32);
+    return standing;
 }
 
 std::vector<std::string> ProblemLog::AtEnd(const std::vector<Gateway::Problem> &present) const

@@ -46,6 +46,14 @@ public:
     // Takes the problems that are present now, and returns lines of printable ASCII. `now` never goes back.
     std::vector<std::string> Look(const std::vector<Gateway::Problem> &present, Duration now);
 
+    // The problems that have lasted, as of the last look. One that comes and goes quickly is among them.
+    struct Standing
+    {
+        std::vector<Gateway::Problem> Problems;
+        std::uint32_t Digest = 0;  // of the problems, without the numbers in their reasons
+    };
+    Standing Lasted(Duration now) const;
+
     // For the end: returns lines for the present problems that were not told, even if they have not lasted.
     std::vector<std::string> AtEnd(const std::vector<Gateway::Problem> &present) const;
 

@@ -2,29 +2,43 @@
 
 #include <algorithm>
 
+#include "wire/NodeReports.h"
 #include "wire/TypeFrames.h"
 
 namespace Rabit
 {
 
+TypeAnswers::Key TypeAnswers::KeyOf(const std::string &node, std::uint64_t definition)
+{
+    const auto report = NodeReports::NameIn(definition);
+    return {node, report ? NodeReports::NameOf(report->What) : definition};
+}
+
 void TypeAnswers::Asked(const std::string &node, std::uint64_t definition, std::size_t from, Duration now)
 {
-    const std::string *text = _textOf(definition);
-    if (text == nullptr || text->size() > TypeFrames::LargestText || from >= text->size())
-    {
-        ++_unknown;
-        return;
-    }
-    const Key key(node, definition);
+    const Key key = KeyOf(node, definition);
     std::erase_if(_memory, [now](const auto &entry)
                   { return now - entry.second.LastAsked >= Quiet && now >= entry.second.NotBefore; });
     const auto waiting =
         std::find_if(_waiting.begin(), _waiting.end(),
-                     [&key](const Part &part) { return Key(part.Node, part.Definition) == key; });
+                     [&key](const Part &part) { return KeyOf(part.Node, part.Definition) == key; });
     if (waiting != _waiting.end())
     {
         // The answer under way brings the rest; the asking node requests lost earlier parts again.
         _memory[key].LastAsked = now;
+        return;
+    }
+    const auto known = _memory.find(key);
+    if (known != _memory.end() && now < known->second.NotBefore)
+    {
+        known->second.LastAsked = now;
+        return;
+    }
+    // A report is written when it is requested, so not for a question that gets no answer.
+    std::shared_ptr<const std::string> text = _textOf(definition);
+    if (text == nullptr || text->size() > TypeFrames::LargestText || from >= text->size())
+    {
+        ++_unknown;
         return;
     }
     if (_waiting.size() >= MostWaiting || (_memory.size() >= MostRemembered && _memory.count(key) == 0))
@@ -34,10 +48,7 @@ void TypeAnswers::Asked(const std::string &node, std::uint64_t definition, std::
     }
     Memory &memory = _memory[key];
     memory.LastAsked = now;
-    if (now >= memory.NotBefore)
-    {
-        _waiting.push_back({.Node = node, .Definition = definition, .First = from, .Text = text});
-    }
+    _waiting.push_back({.Node = node, .Definition = definition, .First = from, .Text = std::move(text)});
 }
 
 std::optional<TypeAnswers::Duration> TypeAnswers::Due() const
@@ -57,9 +68,12 @@ void TypeAnswers::Sent(std::size_t bytes, Duration now)
     part.First += bytes;
     if (part.First >= part.Text->size())
     {
-        Memory &memory = _memory[{part.Node, part.Definition}];
+        Memory &memory = _memory[KeyOf(part.Node, part.Definition)];
         memory.NotBefore = now + memory.Gap;
-        memory.Gap = std::min(2 * memory.Gap, LongestGap);
+        // An answer that is no larger than the question needs no larger interval.
+        const auto report = NodeReports::NameIn(part.Definition);
+        const bool isSmall = report && report->What == NodeReports::Kind::Echo;
+        memory.Gap = isSmall ? ShortestGap : std::min(2 * memory.Gap, LongestGap);
         _waiting.pop_front();
     }
 }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,16 +14,17 @@
 namespace Rabit
 {
 
-// Decides which part of which type's text this node sends next, and to which node. Each answer goes to the
-// asking node alone, part by part, one answer after the other. The interval between repeated answers grows.
+// Decides which part of which text this node sends next, and to which node: texts of types, and reports of
+// this node (wire/NodeReports.h). Each answer goes to the asking node alone, part by part, one answer after
+// the other. The interval between repeated answers grows; all reports of one kind count as one text.
 //
 // A pure state machine; `now` never goes back.
 class TypeAnswers
 {
 public:
     using Duration = std::chrono::nanoseconds;
-    // Returns the text of a type; null if this node does not have it.
-    using TextOf = std::function<const std::string *(std::uint64_t definition)>;
+    // Returns the text of a type, or a report as it is now; null if this node does not have it.
+    using TextOf = std::function<std::shared_ptr<const std::string>(std::uint64_t definition)>;
 
     // Time between two parts.
     static constexpr Duration PartGap = std::chrono::milliseconds(10);
@@ -47,7 +49,7 @@ public:
         std::string Node;
         std::uint64_t Definition = 0;
         std::size_t First = 0;
-        const std::string *Text = nullptr;  // the whole
+        std::shared_ptr<const std::string> Text{};  // the whole
 
         std::size_t Left() const { return Text->size() - First; }
     };
@@ -62,7 +64,8 @@ public:
     std::uint64_t Dropped() const { return _dropped; }
 
 private:
-    using Key = std::pair<std::string, std::uint64_t>;  // node and definition
+    using Key = std::pair<std::string, std::uint64_t>;  // node; definition, of a report without its argument
+    static Key KeyOf(const std::string &node, std::uint64_t definition);
     struct Memory
     {
         Duration LastAsked{0};

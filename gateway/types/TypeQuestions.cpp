@@ -4,13 +4,47 @@
 
 #include "names/TakeTurns.h"
 #include "names/TypeDefinition.h"
+#include "wire/NodeReports.h"
 
 namespace Rabit
 {
+namespace
+{
+
+// True if both are reports of one kind.
+bool AreAlike(std::uint64_t definition, std::uint64_t other)
+{
+    const auto one = NodeReports::NameIn(definition);
+    const auto two = NodeReports::NameIn(other);
+    return one && two && one->What == two->What;
+}
+
+bool IsEcho(std::uint64_t definition)
+{
+    const auto name = NodeReports::NameIn(definition);
+    return name && name->What == NodeReports::Kind::Echo;
+}
+
+}  // namespace
+
+TypeQuestions::Key TypeQuestions::KeyOf(const Wanted &wanted)
+{
+    return {wanted.Definition, wanted.Type.empty() ? wanted.Node : ""};
+}
 
 bool TypeQuestions::Want(const Wanted &wanted, Duration now)
 {
-    const auto found = _wanted.find(wanted.Definition);
+    if (wanted.Type.empty())
+    {
+        std::erase_if(_wanted,
+                      [&wanted](const auto &entry)
+                      {
+                          const auto &[definition, node] = entry.first;
+                          return node == wanted.Node && definition != wanted.Definition &&
+                                 AreAlike(definition, wanted.Definition);
+                      });
+    }
+    const auto found = _wanted.find(KeyOf(wanted));
     if (found != _wanted.end() && found->second.Node == wanted.Node)
     {
         return true;
@@ -20,7 +54,7 @@ bool TypeQuestions::Want(const Wanted &wanted, Duration now)
         return false;
     }
     // Texts of one hash may differ in comments, so parts of two nodes cannot be joined.
-    Entry &entry = _wanted[wanted.Definition];
+    Entry &entry = _wanted[KeyOf(wanted)];
     entry = {};
     entry.Node = wanted.Node;
     entry.Type = wanted.Type;
@@ -31,7 +65,7 @@ bool TypeQuestions::Want(const Wanted &wanted, Duration now)
 std::optional<TypeQuestions::Duration> TypeQuestions::NextDue() const
 {
     std::optional<Duration> next;
-    for (const auto &[definition, entry] : _wanted)
+    for (const auto &[key, entry] : _wanted)
     {
         next = std::min(next.value_or(entry.AskAt), entry.AskAt);
     }
@@ -49,27 +83,30 @@ std::vector<TypeQuestions::Question> TypeQuestions::Take(Duration now, std::size
 {
     std::vector<Question> questions;
     TakeTurns(_wanted, _lastAsked, most,
-              [&](std::uint64_t definition, Entry &entry)
+              [&](const Key &key, Entry &entry)
               {
                   if (entry.AskAt > now)
                   {
                       return false;
                   }
                   questions.push_back(
-                      {entry.Node, definition, static_cast<std::uint32_t>(entry.Collected.FirstLacking())});
-                  entry.AskAt = now + entry.Gap;
+                      {entry.Node, key.first, static_cast<std::uint32_t>(entry.Collected.FirstLacking())});
+                  entry.AskedAt = now;
+                  entry.AskAt = IsEcho(key.first) ? Duration::max() : now + entry.Gap;
                   entry.Gap = std::min(2 * entry.Gap, LongestGap);
                   return true;
               });
     return questions;
 }
 
-std::optional<std::string> TypeQuestions::Add(const std::string &node, const TypeFrames::Part &part)
+std::optional<TypeQuestions::Answer> TypeQuestions::Add(const std::string &node, const TypeFrames::Part &part)
 {
-    const auto found = _wanted.find(part.Definition);
+    const auto report = _wanted.find({part.Definition, node});
+    const auto found = report != _wanted.end() ? report : _wanted.find({part.Definition, ""});
     if (found == _wanted.end() || found->second.Node != node)
     {
-        ++_wrong;
+        // A second answer to a question that was repeated is no harm.
+        _wrong += NodeReports::NameIn(part.Definition) ? 0 : 1;
         return std::nullopt;
     }
     Entry &entry = found->second;
@@ -83,15 +120,24 @@ std::optional<std::string> TypeQuestions::Add(const std::string &node, const Typ
     {
         return std::nullopt;
     }
-    std::string text(collected.Bytes().begin(), collected.Bytes().end());
-    if (DefinitionHash(entry.Type, text) != part.Definition)
+    std::optional<std::string> text(std::in_place, collected.Bytes().begin(), collected.Bytes().end());
+    if (entry.Type.empty())
+    {
+        text = NodeReports::Opened(*text);
+    }
+    else if (DefinitionHash(entry.Type, *text) != part.Definition)
+    {
+        text.reset();
+    }
+    if (!text)
     {
         ++_wrong;
         collected.Begin(0);
         return std::nullopt;
     }
+    Answer answer{std::move(*text), entry.AskedAt};
     _wanted.erase(found);
-    return text;
+    return answer;
 }
 
 }  // namespace Rabit

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "wire/PartsCollector.h"
@@ -14,8 +15,9 @@
 namespace Rabit
 {
 
-// The texts of types that this node lacks: which node to ask and when, and the parts that have come. The
-// interval between questions for a text doubles, until the text has come or LetGo is called.
+// The texts of types and the reports of nodes (wire/NodeReports.h) that this node lacks: which node to ask
+// and when, and the parts that have come. The interval between questions for a text doubles, until the text
+// has come or LetGo is called.
 //
 // A pure state machine; `now` never goes back.
 class TypeQuestions
@@ -31,13 +33,13 @@ public:
     struct Wanted
     {
         std::string Node;  // the node to ask
-        std::string Type;  // IDL name
+        std::string Type;  // IDL name; empty: a report of that node
         std::uint64_t Definition = 0;
     };
-    // Starts to ask that node. If another node was asked for the text, its parts are dropped. False: too many
-    // texts are wanted.
+    // Starts to ask that node. If another node was asked for the text of a type, its parts are dropped. A
+    // report replaces one of that kind and node; an echo is asked for once. False: too many texts are wanted.
     bool Want(const Wanted &wanted, Duration now);
-    void LetGo(std::uint64_t definition) { _wanted.erase(definition); }
+    void LetGo(std::uint64_t definition) { _wanted.erase({definition, ""}); }
     bool IsEmpty() const { return _wanted.empty(); }
 
     struct Question
@@ -52,9 +54,14 @@ public:
     std::size_t Due(Duration now, std::size_t most) const;
     std::vector<Question> Take(Duration now, std::size_t most);
 
+    struct Answer
+    {
+        std::string Text;
+        Duration AskedAt{0};  // the last time
+    };
     // Adds a part that came from a node. Returns the text once it is whole and has the hash; the text is then
     // no longer wanted.
-    std::optional<std::string> Add(const std::string &node, const TypeFrames::Part &part);
+    std::optional<Answer> Add(const std::string &node, const TypeFrames::Part &part);
     // Whole texts with another hash, and parts of texts that this node did not request from their sender.
     std::uint64_t Wrong() const { return _wrong; }
 
@@ -64,12 +71,16 @@ private:
         std::string Node;
         std::string Type;
         Duration AskAt{0};
+        Duration AskedAt{0};
         Duration Gap = ShortestGap;
         PartsCollector Collected;
     };
 
-    std::map<std::uint64_t, Entry> _wanted;
-    std::uint64_t _lastAsked = 0;
+    using Key = std::pair<std::uint64_t, std::string>;  // definition; the node if it is a report
+    static Key KeyOf(const Wanted &wanted);
+
+    std::map<Key, Entry> _wanted;
+    Key _lastAsked;
     std::uint64_t _wrong = 0;
 };
 

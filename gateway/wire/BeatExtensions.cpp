@@ -120,4 +120,28 @@ std::vector<LinkStrain> StrainsIn(const Gateway::Beat &beat)
     return strains;
 }
 
+void Say(Gateway::Beat &beat, const ProblemCount &problems)
+{
+    std::vector<std::uint8_t> bytes;
+    Put(problems.Count, bytes);
+    Put(problems.Digest, bytes);
+    Add(beat, Problems).states.assign(bytes.begin(), bytes.end());
+}
+
+ProblemCount ProblemsIn(const Gateway::Beat &beat)
+{
+    for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
+    {
+        if (wanted.node == Nobody && wanted.offers == Problems && wanted.states.size() >= ProblemBytes)
+        {
+            std::span<const std::uint8_t> bytes(wanted.states.data(), wanted.states.size());
+            ProblemCount problems;
+            problems.Count = Take<std::uint16_t>(bytes);
+            problems.Digest = Take<std::uint32_t>(bytes);
+            return problems;
+        }
+    }
+    return {};
+}
+
 }  // namespace Rabit::BeatExtensions

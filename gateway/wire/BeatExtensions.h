@@ -7,6 +7,7 @@
 
 #include "gateway.idl.h"
 #include "wire/LinkStrain.h"
+#include "wire/ProblemCount.h"
 
 // Extensions of beats that the first gateways of this format do not know: entries of Beat::wants for a node
 // tag that no node has. These gateways ignore them, so that both kinds understand each other.
@@ -19,12 +20,15 @@ inline constexpr std::uint16_t Tool = 1;    // the sender is a tool (ToolSetting
 inline constexpr std::uint16_t Type = 2;    // a TypeQuestion, in Wanted::states
 inline constexpr std::uint16_t Replay = 3;  // the sender plays a recording (GatewayConfig::Replay)
 inline constexpr std::uint16_t Strain = 4;  // LinkStrains of the sender, in Wanted::states
+inline constexpr std::uint16_t Problems =
+    5;  // ProblemCount of the sender, in Wanted::states; none: no problem
 
 // Bytes of Wanted::states.
 inline constexpr std::size_t ToolBytes = 0;
 inline constexpr std::size_t ReplayBytes = 0;
 inline constexpr std::size_t TypeBytes = 16;
 inline constexpr std::size_t StrainBytes = 8;  // of each
+inline constexpr std::size_t ProblemBytes = 6;
 // Most strains that are read from one beat.
 inline constexpr std::size_t MostStrains = 4;
 
@@ -52,5 +56,10 @@ std::vector<TypeQuestion> TypeQuestionsIn(const Gateway::Beat &beat);
 void Say(Gateway::Beat &beat, std::span<const LinkStrain> strains);
 // The strains in a beat; malformed ones and unknown kinds are left out.
 std::vector<LinkStrain> StrainsIn(const Gateway::Beat &beat);
+
+// The sender's own problems, as its log tells them (report/ProblemLog.h). Count must not be 0.
+void Say(Gateway::Beat &beat, const ProblemCount &problems);
+// Count 0 if the beat tells of no problem.
+ProblemCount ProblemsIn(const Gateway::Beat &beat);
 
 }  // namespace Rabit::BeatExtensions

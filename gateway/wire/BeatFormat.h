@@ -39,6 +39,9 @@ inline constexpr std::size_t MostDelays = 4;
 inline constexpr std::size_t ToolMark = Wanted(0);
 inline constexpr std::size_t ReplayMark = Wanted(0);
 
+// A ProblemCount.
+inline constexpr std::size_t Problems = Wanted(6);
+
 // A question for a type.
 inline constexpr std::size_t TypeQuestion = Wanted(16);
 inline constexpr std::size_t MostTypeQuestions = 4;

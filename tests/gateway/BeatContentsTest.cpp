@@ -151,6 +151,19 @@ TEST_F(BeatContentsTest, StrainsAreSaidAsLongAsThereAreAnyAndThenCostNothing)
     EXPECT_EQ(BodyOf(Next(4s)), BeatFormat::Empty);
 }
 
+TEST_F(BeatContentsTest, ProblemsAreSaidAsLongAsThereAreAnyAndThenCostNothing)
+{
+    BeginLongAgo(100, 0);
+    const ProblemCount problems{.Count = 2, .Digest = 7};
+    contents.SetProblems(problems);
+    const std::size_t size = contents.Size(1s);
+    const Gateway::Beat beat = Next(1s, size);
+    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), problems);
+    EXPECT_LE(BodyOf(beat), size);
+    contents.SetProblems({});
+    EXPECT_EQ(BodyOf(Next(2s)), BeatFormat::Empty);
+}
+
 TEST_F(BeatContentsTest, StrainsGoBeforeStatesAndWaitForRoom)
 {
     BeginLongAgo(100, 3);

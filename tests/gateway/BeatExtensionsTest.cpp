@@ -115,5 +115,16 @@ TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
     }
 }
 
+TEST(BeatExtensions, TheCountOfProblemsIsWhatIsUnderstood)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), ProblemCount());
+    BeatExtensions::MarkTool(beat);
+    BeatExtensions::Say(beat, ProblemCount{.Count = 3, .Digest = 0xfedcba98});
+    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), (ProblemCount{.Count = 3, .Digest = 0xfedcba98}));
+    NewsOf(beat).wants.back().states.pop_back();
+    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), ProblemCount());
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -127,6 +127,15 @@ record:
     EXPECT_TRUE(box.Problems);
 }
 
+TEST_F(GatewayConfigTest, ReadsWhoseProblemsAreRequested)
+{
+    EXPECT_TRUE(Load("node: a\n").ProblemsOf.empty());
+    EXPECT_EQ(Load("node: a\nproblems_of: [\"uav*\", b]\n").ProblemsOf,
+              (std::vector<std::string>{"uav*", "b"}));
+    EXPECT_EQ(ErrorOf("node: a\nproblems_of: [\"u v\"]\n"),
+              "node.yaml:2: `u v` in `problems_of` is no node name; `*` and `?` stand for any characters");
+}
+
 TEST_F(GatewayConfigTest, ReadsEveryKey)
 {
     const GatewayConfig config = Load(R"(

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 
+#include "wire/NodeReports.h"
 #include "wire/TypeFrames.h"
 
 namespace Rabit
@@ -37,10 +39,11 @@ protected:
     std::map<std::uint64_t, std::string> texts{{1, std::string(2500, 'a')},
                                                {2, std::string(10, 'b')},
                                                {3, std::string(TypeFrames::LargestText + 1, 'c')}};
-    TypeAnswers answers{[this](std::uint64_t definition) -> const std::string *
+    TypeAnswers answers{[this](std::uint64_t definition) -> std::shared_ptr<const std::string>
                         {
                             const auto found = texts.find(definition);
-                            return found == texts.end() ? nullptr : &found->second;
+                            return found == texts.end() ? nullptr
+                                                        : std::make_shared<std::string>(found->second);
                         }};
 };
 
@@ -128,6 +131,37 @@ TEST_F(TypeAnswersTest, NamesWithoutEndFillNoMemory)
         SendUntil(1s + Ns(i), "tool" + std::to_string(i));
     }
     EXPECT_GE(answers.Dropped(), 100000u - TypeAnswers::MostRemembered);
+}
+
+TEST_F(TypeAnswersTest, ReportsOfOneKindAreLimitedTogether)
+{
+    const auto line = [](std::uint32_t number)
+    { return NodeReports::NameOf(NodeReports::Kind::LinesFrom, number); };
+    texts[line(1)] = texts[line(2)] = std::string(100, 'l');
+    answers.Asked("tool", line(1), 0, 1s);
+    EXPECT_EQ(SendUntil(1s), 100u);
+    answers.Asked("tool", line(2), 0, 1s + TypeAnswers::ShortestGap / 2);
+    EXPECT_FALSE(answers.Due().has_value());
+    answers.Asked("tool", line(2), 0, 1s + TypeAnswers::ShortestGap);
+    EXPECT_TRUE(answers.Due().has_value());
+}
+
+TEST_F(TypeAnswersTest, EchoesAreAnsweredAtAnyTimeButTheShortestGap)
+{
+    for (std::uint32_t i = 0; i < 10; ++i)
+    {
+        const auto echo = NodeReports::NameOf(NodeReports::Kind::Echo, i);
+        texts[echo] = "12345678";
+        answers.Asked("tool", echo, 0, time);
+        EXPECT_EQ(SendUntil(time + TypeAnswers::ShortestGap), 8u) << i;
+    }
+}
+
+TEST_F(TypeAnswersTest, AnAnswerUnderWayIsThatOfItsQuestion)
+{
+    answers.Asked("tool", 1, 0, 1s);
+    texts[1] = "shorter";
+    EXPECT_EQ(answers.Next().Text->size(), 2500u);
 }
 
 }  // namespace

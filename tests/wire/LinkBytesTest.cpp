@@ -12,6 +12,7 @@
 
 #include "Hex.h"
 #include "wire/LinkSampleCodec.h"
+#include "wire/NodeReports.h"
 #include "wire/TypeFrames.h"
 
 namespace Rabit::Test
@@ -32,6 +33,7 @@ constexpr const char *HelloSampleBytes =
     "000100021e0000000300785634121032547698badcfe000000000000000001ef\n"
     "cdab959aef3a0000";
 constexpr const char *TypePartBytes = "540000008877665544332211e803000070110100c0ffee0102";
+constexpr const char *ReportBytes = "e4abf64941436b01370a6c696e650a";
 
 const std::vector<std::uint8_t> Payload = {0xc0, 0xff, 0xee, 0x01, 0x02};
 
@@ -228,6 +230,14 @@ TEST(LinkBytes, OfAPartOfATypesTextAreTheRecordedOnes)
     EXPECT_EQ(HexOf(TypeFrames::Encode(
                   {.Definition = 0x1122334455667788, .First = 1000, .Of = 70000, .Bytes = Payload})),
               TypePartBytes);
+}
+
+TEST(LinkBytes, OfAReportAreTheRecordedOnes)
+{
+    const std::string sealed = NodeReports::Sealed("7\nline\n");
+    EXPECT_EQ(HexOf(std::vector<std::uint8_t>(sealed.begin(), sealed.end())), ReportBytes);
+    EXPECT_EQ(NodeReports::Opened(sealed), "7\nline\n");
+    EXPECT_EQ(NodeReports::NameOf(NodeReports::Kind::LinesFrom, 9), 0x5265700400000009U);
 }
 
 }  // namespace

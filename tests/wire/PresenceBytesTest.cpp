@@ -28,6 +28,9 @@ constexpr const char *FullBeatBytes =
     "887766554433221170110100000000000400000008000000070000000157ffff\n"
     "01000000ddccbbaaefcdab89dc0500000100000044332211fa00140001000000\n"
     "1000140003000000deadbe00";
+constexpr const char *ProblemBeatBytes =
+    "0001000003bef401040302010100000000000000000100000000000001000000\n"
+    "000000000500000006000000030098badcfe0000000000000000000000000000";
 constexpr const char *LastBeatBytes = "0001000103be60eaffffffff010000000000000001000000";
 constexpr const char *AnnouncementBytes =
     "000100030200000005000000506f7365000000000a0000005561763a3a506f73\n"
@@ -70,6 +73,18 @@ Gateway::Beat FullBeat()
     part.first = 16;
     part.of = 20;
     part.bytes = {0xde, 0xad, 0xbe};
+    return beat;
+}
+
+// A beat of a node with problems.
+Gateway::Beat ProblemBeat()
+{
+    Gateway::Beat beat;
+    beat.format = BeatFormat::Present;
+    beat.next_ms = 500;
+    beat.offers = 0x01020304;
+    beat.source_ns = 1;
+    BeatExtensions::Say(beat, ProblemCount{.Count = 3, .Digest = 0xfedcba98});
     return beat;
 }
 
@@ -164,6 +179,17 @@ TEST(PresenceBytes, HashesAreTheRecordedOnes)
     EXPECT_EQ(Announcements::DigestOf(BytesOf("00010203")), 3700778606U);
     EXPECT_EQ(DefinitionHash("Uav::Pose", "module Uav { struct Pose { double x; }; };"),
               8397531700064043858U);
+}
+
+TEST(PresenceBytes, OfABeatWithProblemsAreAccepted)
+{
+    EXPECT_EQ(BeatExtensions::ProblemsIn(Accepted(BytesOf(ProblemBeatBytes))),
+              (ProblemCount{.Count = 3, .Digest = 0xfedcba98}));
+}
+
+TEST(PresenceBytes, OfABeatWithProblemsAreTheRecordedOnes)
+{
+    EXPECT_EQ(HexOf(Encoded(ProblemBeat())), ProblemBeatBytes);
 }
 
 }  // namespace

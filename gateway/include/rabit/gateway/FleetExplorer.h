@@ -69,6 +69,26 @@ public:
     // The text of that hash, once it has come.
     virtual std::optional<std::string> TypeText(std::uint64_t definition) const = 0;
 
+    // A text that a node writes about itself when it is requested. Names and reasons in it come from the
+    // network.
+    enum class Report
+    {
+        Air,        // Gateway::AirStatus of the node: its members in their order, as decimal numbers
+        LastLines,  // the last lines of its log, as many as the argument says
+        LinesFrom,  // its log from the line with that number on; the request waits for such a line
+        Echo        // empty, for the round trip; requested once, with another argument each time
+    };
+    struct Answer
+    {
+        std::string Text;
+        std::chrono::nanoseconds Took{0};  // from the beat with the last request to the answer
+    };
+    // Requests a report of a node, and drops another request for a report of that kind. The gateway repeats
+    // the request, ever more seldom up to 2 s, until the answer comes.
+    virtual void AskForReport(const std::string &node, Report what, std::uint32_t argument = 0) = 0;
+    // Takes the answer to the last request, once it has come.
+    virtual std::optional<Answer> TakeReport(const std::string &node, Report what) = 0;
+
     // The readers of a message, of whatever origin node: the reading nodes, by name and each once, and the
     // number of other readers. Tools are no nodes.
     struct Subscribers

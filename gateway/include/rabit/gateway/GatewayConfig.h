@@ -188,6 +188,9 @@ struct GatewayConfig
     std::vector<SendRule> Send;
     std::vector<ForeignRule> Foreign;
     std::vector<PanelRule> Panels{};  // for `rabit foxglove`
+    // The nodes whose problems are requested in words, for NodeStatus::problem_texts, while they have any;
+    // `*` and `?` are wildcards. The number of their problems is known without it.
+    std::vector<std::string> ProblemsOf{};
 
     // Set: this is recorded.
     std::optional<RecordSettings> Record{};

@@ -1,0 +1,166 @@
+// The reports of nodes about themselves, requested by others: whole nodes on the simulated network.
+#include <gmock/gmock.h>
+#include <rabit/RabitLog.h>
+#include <rabit/gateway/FleetExplorer.h>
+
+#include <optional>
+#include <string>
+
+#include "../core/CapturedLog.h"
+#include "SimulatedFleet.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Report = FleetExplorer::Report;
+
+class NodeReportsTest : public ::testing::Test
+{
+protected:
+    // An aircraft that subscribes to a message that nobody publishes, if it has a problem.
+    SimulatedNode &AddAircraft(bool hasProblem)
+    {
+        GatewayConfig config;
+        config.Node = "uav1";
+        if (hasProblem)
+        {
+            config.Subscribe.push_back({.Message = "Pse", .Type = "Uav::Pose"});
+        }
+        return fleet.Add(config);
+    }
+
+    SimulatedNode &AddGround(const std::vector<std::string> &problemsOf)
+    {
+        GatewayConfig config;
+        config.Node = "ground";
+        config.ProblemsOf = problemsOf;
+        return fleet.Add(config);
+    }
+
+    FleetExplorer &AddTool()
+    {
+        GatewayConfig config;
+        config.Node = "tool";
+        config.Tool.emplace();
+        return fleet.Add(config).Manager->Explorer();
+    }
+
+    static Gateway::NodeStatus RowOfUav(SimulatedNode &node)
+    {
+        for (const Gateway::NodeStatus &status : node.Fleet().nodes)
+        {
+            if (status.node == "uav1")
+            {
+                return status;
+            }
+        }
+        ADD_FAILURE() << "no row of uav1";
+        return {};
+    }
+
+    // Waits for the answer.
+    std::optional<FleetExplorer::Answer> Ask(FleetExplorer &explorer, Report what, std::uint32_t argument = 0,
+                                             std::chrono::nanoseconds limit = 5s)
+    {
+        explorer.AskForReport("uav1", what, argument);
+        std::optional<FleetExplorer::Answer> answer;
+        fleet.RunUntil([&] { return (answer = explorer.TakeReport("uav1", what)).has_value(); }, limit);
+        return answer;
+    }
+
+    RabitTest::CapturedLog log;
+    SimulatedFleet fleet{1};
+};
+
+TEST_F(NodeReportsTest, TheProblemsOfANodeReachThoseWhoAskForThem)
+{
+    AddAircraft(true);
+    SimulatedNode &ground = AddGround({"uav*"});
+    fleet.RunFor(6s);
+    EXPECT_EQ(RowOfUav(ground).problems, 1u);
+    EXPECT_THAT(RowOfUav(ground).problem_texts, ElementsAre("subscribe Pse: ground does not publish `Pse`"));
+}
+
+TEST_F(NodeReportsTest, WhoDoesNotAskForTheProblemsOfANodeKnowsTheirNumber)
+{
+    AddAircraft(true);
+    SimulatedNode &ground = AddGround({"uav9"});
+    fleet.RunFor(6s);
+    EXPECT_EQ(RowOfUav(ground).problems, 1u);
+    EXPECT_THAT(RowOfUav(ground).problem_texts, IsEmpty());
+}
+
+TEST_F(NodeReportsTest, AProblemThatIsGoneIsGoneElsewhere)
+{
+    AddAircraft(true);
+    SimulatedNode &ground = AddGround({"*"});
+    fleet.RunFor(6s);
+    GatewayConfig publisher;
+    publisher.Node = "uav2";
+    publisher.Publish.push_back({.Message = "Pse", .Type = "Uav::Pose"});
+    const auto pose = fleet.Add(publisher).Register<Uav::Pose>("Pse");
+    pose->PostMessage();
+    fleet.RunFor(6s);
+    EXPECT_EQ(RowOfUav(ground).problems, 0u);
+    EXPECT_THAT(RowOfUav(ground).problem_texts, IsEmpty());
+}
+
+TEST_F(NodeReportsTest, TheProblemsOfANodeReachThroughHeavyLoss)
+{
+    SimulatedFaults faults;
+    faults.Loss = 0.4;
+    fleet.Network.SetFaults("*", "*", faults);
+    AddAircraft(true);
+    SimulatedNode &ground = AddGround({"uav*"});
+    EXPECT_TRUE(fleet.RunUntil(
+        [&] { return !ground.Fleet().nodes.empty() && !RowOfUav(ground).problem_texts.empty(); }, 60s));
+}
+
+TEST_F(NodeReportsTest, ANodeThatHasNoLinesYetAnswersWhenThereIsOne)
+{
+    AddAircraft(false);
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    const auto last = Ask(explorer, Report::LastLines, 1);
+    ASSERT_TRUE(last.has_value());
+    const std::uint32_t next = static_cast<std::uint32_t>(std::stoul(last->Text)) + 1;
+    EXPECT_FALSE(Ask(explorer, Report::LinesFrom, next).has_value());
+    RabitLog::Write(RabitLogLevel::Warning, "a motor is hot");
+    std::optional<FleetExplorer::Answer> answer;
+    fleet.RunUntil([&] { return (answer = explorer.TakeReport("uav1", Report::LinesFrom)).has_value(); }, 3s);
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_THAT(answer->Text, HasSubstr(" warning a motor is hot\n"));
+}
+
+TEST_F(NodeReportsTest, TellsItsShareOfTheChannel)
+{
+    AddAircraft(false);
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    const auto air = Ask(explorer, Report::Air);
+    ASSERT_TRUE(air.has_value());
+    EXPECT_THAT(air->Text, ::testing::MatchesRegex("([0-9]+ ){8}[0-9]+"));
+}
+
+TEST_F(NodeReportsTest, AnEchoTakesTheRoundTrip)
+{
+    SimulatedFaults faults;
+    faults.Delay = 30ms;
+    fleet.Network.SetFaults("*", "*", faults);
+    AddAircraft(false);
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(3s);
+    const auto echo = Ask(explorer, Report::Echo, 1);
+    ASSERT_TRUE(echo.has_value());
+    EXPECT_GE(echo->Took, 60ms);
+    EXPECT_LT(echo->Took, 90ms);
+}
+
+}  // namespace
+}  // namespace Rabit

@@ -1,0 +1,111 @@
+#include "report/ProblemTexts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "BeatSamples.h"
+#include "report/FleetReport.h"
+#include "wire/BeatExtensions.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class ProblemTextsTest : public ::testing::Test
+{
+protected:
+    // uav1 has those problems.
+    void Hear(const ProblemCount &problems)
+    {
+        now += 500ms;
+        HeardBeat heard;
+        heard.Node = "uav1";
+        heard.Incarnation = 5;
+        heard.Beat = BeatAt(now);
+        if (problems.Count > 0)
+        {
+            BeatExtensions::Say(heard.Beat, problems);
+        }
+        heard.Arrival = now;
+        peers.OnBeat(heard);
+    }
+
+    Gateway::NodeStatus Row()
+    {
+        Gateway::Fleet fleet;
+        FleetReport::FillNodes(peers, now, fleet);
+        texts.Fill(peers, fleet);
+        return fleet.nodes[0];
+    }
+
+    const PeerTable::Peer &Uav() { return *peers.Find("uav1"); }
+
+    std::chrono::nanoseconds now = 1s;
+    PeerTable peers{"ground", 7};
+    ProblemTexts texts;
+};
+
+TEST_F(ProblemTextsTest, WhatANodeReportsIsWhatItsRowTells)
+{
+    ProblemLog::Standing standing;
+    standing.Digest = 4294967295;
+    standing.Problems.emplace_back();
+    standing.Problems[0].subject = "subscribe Pose";
+    standing.Problems[0].reason = "nobody publishes it";
+    Hear({.Count = 1, .Digest = standing.Digest});
+    EXPECT_TRUE(texts.Lacks(Uav()));
+    EXPECT_EQ(Row().problems, 1u);
+    EXPECT_THAT(Row().problem_texts, IsEmpty());
+    texts.Add("uav1", ProblemTexts::ReportOf(standing));
+    EXPECT_FALSE(texts.Lacks(Uav()));
+    EXPECT_THAT(Row().problem_texts, ElementsAre("subscribe Pose: nobody publishes it"));
+}
+
+TEST_F(ProblemTextsTest, OtherProblemsHaveOtherTexts)
+{
+    Hear({.Count = 1, .Digest = 7});
+    texts.Add("uav1", "7\nold\n");
+    Hear({.Count = 1, .Digest = 8});
+    EXPECT_TRUE(texts.Lacks(Uav()));
+    EXPECT_THAT(Row().problem_texts, IsEmpty());
+    Hear({});
+    EXPECT_FALSE(texts.Lacks(Uav()));
+    EXPECT_EQ(Row().problems, 0u);
+}
+
+TEST_F(ProblemTextsTest, TextsFromTheNetworkAreBoundedAndPrintable)
+{
+    Hear({.Count = 65535, .Digest = 7});
+    std::string report = "7\n";
+    for (int i = 0; i < 100; ++i)
+    {
+        report += "\x1b[2J" + std::string(1000, '\xff') + "\n";
+    }
+    texts.Add("uav1", report);
+    EXPECT_THAT(Row().problem_texts, SizeIs(ProblemTexts::MostTexts));
+    EXPECT_THAT(Row().problem_texts, Each(::testing::StartsWith("?[2J?")));
+    EXPECT_THAT(Row().problem_texts, Each(SizeIs(ProblemTexts::LongestText)));
+    texts.Add("uav1", "");
+    texts.Add("uav1", "no digest\n");
+    EXPECT_THAT(Row().problem_texts, SizeIs(ProblemTexts::MostTexts));
+}
+
+TEST_F(ProblemTextsTest, ALostNodeHasNone)
+{
+    Hear({.Count = 1, .Digest = 7});
+    texts.Add("uav1", "7\nold\n");
+    now += 1min;
+    peers.Advance(now);
+    EXPECT_FALSE(texts.Lacks(Uav()));
+    EXPECT_EQ(Row().problems, 0u);
+}
+
+}  // namespace
+}  // namespace Rabit
