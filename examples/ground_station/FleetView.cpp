@@ -127,7 +127,7 @@ void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
     for (const Seen &seen : _seen)
         for (const FoundTarget &target : seen.Targets)
             lines.push_back({TargetLine(target)});
-    for (TableLine &line : ProblemTableLines(_fleet->problems, _fleet->GetAgeSeconds()))
+    for (TableLine &line : ProblemTableLines(AllProblems(*_fleet), _fleet->GetAgeSeconds()))
         lines.push_back(std::move(line));
     std::vector<std::string> above;
     if (_output.TakeLog)
@@ -148,7 +148,7 @@ void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
     const std::string radio = RadioLogLine(_radio.Use(), _fleet->GetAgeSeconds(), elapsedS);
     if (!radio.empty())
         _output.Stream << radio << '\n';
-    const std::string problems = ProblemLogLine(_fleet->problems, _fleet->GetAgeSeconds(), elapsedS);
+    const std::string problems = ProblemLogLine(AllProblems(*_fleet), _fleet->GetAgeSeconds(), elapsedS);
     if (!problems.empty())
         _output.Stream << problems << '\n';
 }

@@ -41,6 +41,25 @@ std::string Name(const Rabit::Gateway::Problem &problem, const char *before, con
 }
 }  // namespace
 
+std::vector<Rabit::Gateway::Problem> AllProblems(const Rabit::Gateway::Fleet &fleet)
+{
+    std::vector<Rabit::Gateway::Problem> problems = fleet.problems;
+    for (const Rabit::Gateway::NodeStatus &status : fleet.nodes)
+    {
+        if (status.problems == 0)
+            continue;
+        Rabit::Gateway::Problem &problem = problems.emplace_back();
+        problem.subject = status.node + ": " + std::to_string(status.problems) +
+                          (status.problems == 1 ? " problem" : " problems");
+        problem.node = status.node;
+        for (const std::string &text : status.problem_texts)
+            problem.reason += (problem.reason.empty() ? "" : "; ") + text;
+        if (problem.reason.empty())
+            problem.reason = "see its log";
+    }
+    return problems;
+}
+
 std::vector<TableLine> ProblemTableLines(const std::vector<Rabit::Gateway::Problem> &problems,
                                          double fleetAgeS)
 {

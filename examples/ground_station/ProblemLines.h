@@ -16,6 +16,9 @@ namespace Ground
 // Problems shown on the screen; the others are counted.
 inline constexpr std::size_t ProblemsOnScreen = 5;
 
+// The problems that this node's gateway knows, and one row for each node that reports problems of its own.
+std::vector<Rabit::Gateway::Problem> AllProblems(const Rabit::Gateway::Fleet &fleet);
+
 // For a screen: the number of problems, and the first few by name. Empty if there are none. If the list, of
 // the given age, is too old, the lines say so.
 std::vector<TableLine> ProblemTableLines(const std::vector<Rabit::Gateway::Problem> &problems,

@@ -34,6 +34,24 @@ std::vector<std::string> Texts(const std::vector<Ground::TableLine> &lines)
 const std::vector<Problem> Two = {Of("subscribe Pse", "uav1", "uav1 does not publish `Pse`"),
                                   Of("send uav9/Q", "uav9", "no node `uav9` has announced itself")};
 
+TEST(ProblemLines, OwnProblemsOfOtherNodesAreARowForEach)
+{
+    Rabit::Gateway::Fleet fleet;
+    fleet.problems = {Two[0]};
+    fleet.nodes.resize(3);
+    fleet.nodes[0].node = "uav1";
+    fleet.nodes[1].node = "uav2";
+    fleet.nodes[1].problems = 2;
+    fleet.nodes[1].problem_texts = {"publish Pose: it is of another type", "accept Q: there is none"};
+    fleet.nodes[2].node = "uav3";
+    fleet.nodes[2].problems = 1;
+    EXPECT_THAT(
+        Texts(ProblemTableLines(Ground::AllProblems(fleet), 0)),
+        ElementsAre("3 problems:", "  subscribe Pse, uav1: uav1 does not publish `Pse`",
+                    "  uav2: 2 problems: publish Pose: it is of another type; accept Q: there is none",
+                    "  uav3: 1 problem: see its log"));
+}
+
 TEST(ProblemLines, AreNoneWhereNothingIsWrong)
 {
     EXPECT_THAT(ProblemTableLines({}, 0), IsEmpty());

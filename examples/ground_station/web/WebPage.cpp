@@ -1,5 +1,6 @@
 #include "WebPage.h"
 
+#include "ProblemLines.h"
 #include "ReplayLine.h"
 #include "Snapshot.h"
 
@@ -95,7 +96,7 @@ void WebPage::Look()
     _data.Area = Latest(*_area);
     _data.Commands = Latest(*_commands);
     _tally->FetchMessage();
-    _data.Problems = _fleet->problems;
+    _data.Problems = AllProblems(*_fleet);
     _data.Replayed = ReplayedNodes(*_fleet);
     if (_fleet->WasPosted())
         _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
