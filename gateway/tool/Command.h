@@ -40,6 +40,9 @@ void AddFoxgloveCommand(CLI::App &app, Chosen &chosen);
 void AddMergeCommand(CLI::App &app, Chosen &chosen);
 void AddKnewCommand(CLI::App &app, Chosen &chosen);
 void AddCheckCommand(CLI::App &app, Chosen &chosen);
+void AddLogCommand(CLI::App &app, Chosen &chosen);
+void AddPingCommand(CLI::App &app, Chosen &chosen);
+void AddTopCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);
 void AddKeysCommand(CLI::App &app, Chosen &chosen);
 

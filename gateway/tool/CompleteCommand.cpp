@@ -141,6 +141,13 @@ Candidates ArgumentsIn(const std::vector<FleetSession::Node> &nodes, const std::
             addType(type);
         }
     }
+    if ((command == "log" || command == "ping") && before.empty())
+    {
+        for (const FleetSession::Node &node : nodes)
+        {
+            found.insert(node.Name);
+        }
+    }
     if (command != "send" || before.size() > 1)
     {
         return found;
@@ -251,7 +258,7 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     }
     // Nodes that get keys need not be in the network yet.
     const bool isOfKeys = command.get_parent() != nullptr && command.get_parent()->get_parent() != nullptr;
-    if (command.get_name() == "doctor" || isOfKeys)
+    if (command.get_name() == "doctor" || command.get_name() == "top" || isOfKeys)
     {
         return {};
     }

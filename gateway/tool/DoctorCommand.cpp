@@ -59,7 +59,8 @@ bool Show(const Finding &finding, bool json)
 
 int Run(const CommonOptions &options, Wakeup &wakeup)
 {
-    const GatewayConfig config = ConfigOf(options);
+    GatewayConfig config = ConfigOf(options);
+    config.ProblemsOf = {"*"};
     const Doctor::MachineFacts before = Doctor::LookAtMachine();
     const std::vector<Doctor::Interface> used = Doctor::UsedBy(config, before.Interfaces);
     std::vector<int> domains{config.Domain};
@@ -77,7 +78,8 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
     try
     {
         // NetworkTrial listens before DDS does, so that no answer is missed.
-        const Doctor::NetworkTrial trial(used, config.Node, domains);
+        const Doctor::NetworkTrial trial(used, Doctor::UnusedBy(config, before.Interfaces), config.Node,
+                                         domains);
         FleetSession session(config, options, wakeup);
         double listened = options.Wait;
         session.WaitUntil(listened, [] { return false; });
@@ -93,6 +95,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         anyNode = session.IsAnybodyThere();
         Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
         Append(findings, Doctor::OfMulticast(config, used, network));
+        Append(findings, Doctor::OfOtherInterfaces(config, used, network, anyNode));
         Append(findings, Doctor::OfDomains(config, network, anyNode));
         Append(findings, Doctor::OfSilentDomains(config, network, anyNode, CommonDomains, listened));
         Append(findings, Doctor::OfKeys(config, network, anyNode));

@@ -11,6 +11,7 @@
 #include "CommonOptions.h"
 #include "FleetSession.h"
 #include "JsonNumber.h"
+#include "NodeProblems.h"
 #include "Offers.h"
 #include "Output.h"
 #include "SafeText.h"
@@ -76,6 +77,8 @@ std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
             problem.reason = node.reason;
         }
     }
+    const std::vector<Gateway::Problem> own = ProblemsOfNodes(fleet);
+    problems.insert(problems.end(), own.begin(), own.end());
     for (const FleetSession::Node &node : nodes)
     {
         if (!node.Offers && node.State != Gateway::NodeState::LOST)
@@ -181,7 +184,7 @@ bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node
 bool IsWhole(FleetSession &session)
 {
     const Gateway::Fleet fleet = session.Fleet();
-    return !fleet.nodes.empty() && Offers::AreComplete(session.Nodes()) &&
+    return !fleet.nodes.empty() && Offers::AreComplete(session.Nodes()) && AreProblemsKnown(fleet) &&
            std::all_of(fleet.nodes.begin(), fleet.nodes.end(),
                        [](const Gateway::NodeStatus &node) {
                            return node.state == Gateway::NodeState::LOST || std::isfinite(node.round_trip_s);
@@ -201,7 +204,9 @@ int Run(const Options &options, Wakeup &wakeup)
 {
     // Seconds in which most nodes are heard. Nodes that beat more seldom need --wait.
     constexpr double everybody = 1.5;
-    FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
+    GatewayConfig config = ConfigOf(options.Common);
+    config.ProblemsOf = {"*"};
+    FleetSession session(config, options.Common, wakeup);
     session.WaitUntil(std::min(everybody, options.Common.Wait), [] { return false; });
     session.WaitUntil(options.Common.Wait, [&session] { return IsWhole(session); });
     session.WaitForRest();

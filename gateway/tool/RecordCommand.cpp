@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,6 +40,11 @@ struct Options
     std::string Folder = ".";
     std::string Name = "fleet";
     double For = FleetSession::Forever;
+    // As in the section `record` of a configuration: bytes, milliseconds.
+    std::uint64_t SplitSize = RecordSettings().SplitSize;
+    std::uint64_t SplitTime = static_cast<std::uint64_t>(RecordSettings().SplitTime.count());
+    std::uint64_t Keep = RecordSettings().Keep;
+    std::uint64_t Free = RecordSettings().Free;
 };
 
 RecordingSettings SettingsOf(const Options &options)
@@ -44,6 +52,10 @@ RecordingSettings SettingsOf(const Options &options)
     RecordingSettings settings;
     settings.Name = options.Name;
     settings.Folder = options.Folder;
+    settings.SplitBytes = options.SplitSize;
+    settings.SplitTime = std::chrono::milliseconds(options.SplitTime);
+    settings.KeepBytes = options.Keep;
+    settings.FreeBytes = options.Free;
     return settings;
 }
 
@@ -201,8 +213,27 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--name", options->Name, "How their names begin (default: fleet)");
     command->add_option("--for", options->For, "Seconds from the first message (default: until Ctrl-C)")
         ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--split-size", options->SplitSize, "End a file at this size, as 500MB (default: 1 GiB)")
+        ->transform(CLI::AsSizeValue(true))
+        ->check(CLI::Range(std::uint64_t{1'000'000}, std::uint64_t{1'000'000'000'000}));
+    const std::map<std::string, std::uint64_t> units{
+        {"ms", 1}, {"s", 1000}, {"min", 60'000}, {"h", 3'600'000}};
+    command
+        ->add_option("--split-time", options->SplitTime,
+                     "End a file after this time, as 5min (default: 10min)")
+        ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_REQUIRED, "TIME"))
+        ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{86'400'000}));
+    command
+        ->add_option(
+            "--keep", options->Keep,
+            "Size of all files of that name, as 20GB; beyond it the oldest is removed (default: no limit)")
+        ->transform(CLI::AsSizeValue(true));
+    command->add_option("--free", options->Free, "Bytes of the disk that stay free, as 5GB (default: 1 GiB)")
+        ->transform(CLI::AsSizeValue(true));
     AddExamples(*command, {"rabit record --to flights --for 60", "rabit record uav1/Pose 'uav*/Health'",
-                           "rabit record --except '*/CameraView' --name test"});
+                           "rabit record --except '*/CameraView' --name test",
+                           "rabit record --split-time 5min --keep 20GB"});
     command->callback([options, &chosen]
                       { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }

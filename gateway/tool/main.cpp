@@ -80,6 +80,9 @@ int main(int argc, char **argv)
     AddMergeCommand(app, chosen);
     AddKnewCommand(app, chosen);
     AddCheckCommand(app, chosen);
+    AddLogCommand(app, chosen);
+    AddPingCommand(app, chosen);
+    AddTopCommand(app, chosen);
     AddDoctorCommand(app, chosen);
     AddKeysCommand(app, chosen);
     TakeOneValueEach(app);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "NodeProblems.h"
 #include "Offers.h"
 
 namespace Rabit::Tool::Doctor
@@ -95,6 +96,10 @@ std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const
         }
     }
     for (const Gateway::Problem &problem : fleet.problems)
+    {
+        findings.push_back({Level::Problem, problem.subject, problem.reason, "gateway/CONNECTING.md"});
+    }
+    for (const Gateway::Problem &problem : ProblemsOfNodes(fleet))
     {
         findings.push_back({Level::Problem, problem.subject, problem.reason, "gateway/CONNECTING.md"});
     }

@@ -1,0 +1,170 @@
+// rabit log: the log of a node, as it is written.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "LogText.h"
+#include "OneNode.h"
+#include "Output.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Report = FleetExplorer::Report;
+
+struct Options
+{
+    CommonOptions Common;
+    std::string Node;
+    std::uint32_t Lines = 20;
+    bool Follow = false;
+};
+
+// Seconds in which a node that was heard answers, unless its channel is full.
+constexpr double Answers = 10.0;
+
+bool Show(const std::string &node, const LogText &log, bool json)
+{
+    for (const std::string &line : log.Lines)
+    {
+        const LogLine parts = LogLineOf(line);
+        const bool isRead =
+            json ? Output::Object(nlohmann::ordered_json{
+                       {"node", node}, {"time", parts.Time}, {"level", parts.Level}, {"text", parts.Text}})
+                 : Output::Line(line);
+        if (!isRead)
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Follows the log of a node until Ctrl-C.
+class Follower
+{
+public:
+    Follower(FleetSession &session, const Options &options, const LogText &before)
+        : _session(session), _options(options), _next(before.Next()), _incarnation(Incarnation())
+    {
+    }
+
+    void Run(const Wakeup &wakeup)
+    {
+        Ask();
+        while (!wakeup.IsInterrupted())
+        {
+            std::optional<FleetExplorer::Answer> answer;
+            _session.WaitUntil(FleetSession::Forever,
+                               [&]
+                               {
+                                   LookAtNode();
+                                   answer = _session.Explorer().TakeReport(_options.Node, Report::LinesFrom);
+                                   return answer.has_value();
+                               });
+            const std::optional<LogText> log = answer ? LogTextOf(answer->Text) : std::nullopt;
+            if (!log)
+            {
+                continue;
+            }
+            if (log->First != _next && log->First != 0)
+            {
+                Output::Talk(std::to_string(log->First - _next) + " lines were overwritten before they came");
+            }
+            _next = log->Next();
+            if (!Show(_options.Node, *log, _options.Common.Json))
+            {
+                return;
+            }
+            Ask();
+        }
+    }
+
+private:
+    std::uint64_t Incarnation() const
+    {
+        const auto nodes = _session.Nodes();
+        const FleetSession::Node *node = FindNode(nodes, _options.Node);
+        return node == nullptr ? 0 : node->Incarnation;
+    }
+
+    void Ask() { _session.Explorer().AskForReport(_options.Node, Report::LinesFrom, _next); }
+
+    void LookAtNode()
+    {
+        const auto nodes = _session.Nodes();
+        const FleetSession::Node *node = FindNode(nodes, _options.Node);
+        const bool isLost = node == nullptr || node->State == Gateway::NodeState::LOST;
+        if (isLost != _isLost)
+        {
+            _isLost = isLost;
+            Output::Talk(_options.Node + (isLost ? " is LOST" : " is there again"));
+        }
+        if (!isLost && node->Incarnation != _incarnation)
+        {
+            _incarnation = node->Incarnation;
+            _next = 0;
+            Output::Talk(_options.Node + " has restarted");
+            Ask();
+        }
+    }
+
+    FleetSession &_session;
+    const Options &_options;
+    std::uint32_t _next;
+    std::uint64_t _incarnation;
+    bool _isLost = false;
+};
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    FleetSession session(ConfigWithoutOffers(options.Common), options.Common, wakeup);
+    if (const int code = WaitForNode(session, options.Common, options.Node); code != Good)
+    {
+        return code;
+    }
+    FleetExplorer &explorer = session.Explorer();
+    explorer.AskForReport(options.Node, Report::LastLines, options.Lines);
+    std::optional<FleetExplorer::Answer> answer;
+    session.WaitUntil(
+        session.Seconds() + Answers,
+        [&] { return (answer = explorer.TakeReport(options.Node, Report::LastLines)).has_value(); });
+    const std::optional<LogText> log = answer ? LogTextOf(answer->Text) : std::nullopt;
+    if (!log)
+    {
+        Output::Talk(options.Node +
+                     " does not answer; its gateway is of an older version, or does not hear this machine");
+        return ProblemFound;
+    }
+    if (Show(options.Node, *log, options.Common.Json) && options.Follow)
+    {
+        Follower(session, options, *log).Run(wakeup);
+    }
+    return Good;
+}
+
+}  // namespace
+
+void AddLogCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand("log", "The log of a node");
+    command->add_option("NODE", options->Node, "As uav1")->required();
+    AddCommonOptions(*command, options->Common, 5.0);
+    command->add_option("-n,--lines", options->Lines, "So many of its last lines (default: 20)")
+        ->check(CLI::Range(0, 1000));
+    command->add_flag("-f,--follow", options->Follow, "Show further lines as they come, until Ctrl-C");
+    AddExamples(*command, {"rabit log uav1", "rabit log uav1 -f -n 100", "rabit log uav1 --json"});
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,44 @@
+#include "NodeProblems.h"
+
+#include <algorithm>
+#include <string>
+
+namespace Rabit::Tool
+{
+
+std::vector<Gateway::Problem> ProblemsOfNodes(const Gateway::Fleet &fleet)
+{
+    std::vector<Gateway::Problem> problems;
+    const auto add = [&problems](const std::string &node, const std::string &reason)
+    {
+        Gateway::Problem &problem = problems.emplace_back();
+        problem.subject = "node " + node;
+        problem.node = node;
+        problem.reason = reason;
+    };
+    for (const Gateway::NodeStatus &status : fleet.nodes)
+    {
+        for (const std::string &text : status.problem_texts)
+        {
+            add(status.node, text);
+        }
+        const std::size_t told = status.problem_texts.size();
+        if (status.problems > told)
+        {
+            const std::size_t more = status.problems - told;
+            add(status.node, "it has " + std::to_string(more) + (told > 0 ? " more" : "") +
+                                 (more == 1 ? " problem" : " problems") + "; see `rabit log " + status.node +
+                                 "`");
+        }
+    }
+    return problems;
+}
+
+bool AreProblemsKnown(const Gateway::Fleet &fleet)
+{
+    return std::all_of(fleet.nodes.begin(), fleet.nodes.end(),
+                       [](const Gateway::NodeStatus &status)
+                       { return status.problems == 0 || !status.problem_texts.empty(); });
+}
+
+}  // namespace Rabit::Tool

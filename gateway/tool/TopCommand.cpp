@@ -1,0 +1,193 @@
+// rabit top: which node uses the channel, and for what.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "AirText.h"
+#include "Command.h"
+#include "CommonOptions.h"
+#include "FleetSession.h"
+#include "OneNode.h"
+#include "Output.h"
+#include "SafeText.h"
+#include "Table.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+using Report = FleetExplorer::Report;
+
+struct Options
+{
+    CommonOptions Common;
+    double Every = 2.0;
+    bool Once = false;
+};
+
+// A node, and what it sends; empty: it has not answered.
+using Row = std::pair<std::string, std::optional<Gateway::AirStatus>>;
+
+std::string Number(double bytesPerSecond, bool zeroIsNone = false)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0f", bytesPerSecond);
+    return zeroIsNone && bytesPerSecond <= 0.0 ? "-" : text;
+}
+
+std::vector<std::string> CellsOf(const Row &row)
+{
+    std::vector<std::string> cells{SafeText(row.first)};
+    if (!row.second)
+    {
+        cells.resize(10, "?");
+        return cells;
+    }
+    const Gateway::AirStatus &air = *row.second;
+    cells.push_back(Number(air.used));
+    cells.push_back(Number(air.budget, true));
+    cells.push_back(Number(air.capacity, true));
+    for (const double rate : {air.discovery, air.presence, air.command, air.state, air.telemetry, air.bulk})
+    {
+        cells.push_back(Number(rate));
+    }
+    return cells;
+}
+
+Json JsonOf(const Row &row)
+{
+    Json object{{"node", row.first}};
+    const std::optional<Gateway::AirStatus> &air = row.second;
+    const auto add = [&](const char *name, double Gateway::AirStatus::*member, bool zeroIsNone)
+    {
+        object[name] =
+            !air || (zeroIsNone && air.value().*member <= 0.0) ? Json(nullptr) : Json(air.value().*member);
+    };
+    add("bytes_per_s", &Gateway::AirStatus::used, false);
+    add("budget_bytes_per_s", &Gateway::AirStatus::budget, true);
+    add("capacity_bytes_per_s", &Gateway::AirStatus::capacity, true);
+    add("discovery", &Gateway::AirStatus::discovery, false);
+    add("presence", &Gateway::AirStatus::presence, false);
+    add("command", &Gateway::AirStatus::command, false);
+    add("state", &Gateway::AirStatus::state, false);
+    add("telemetry", &Gateway::AirStatus::telemetry, false);
+    add("bulk", &Gateway::AirStatus::bulk, false);
+    return object;
+}
+
+bool Show(std::vector<Row> rows, bool json)
+{
+    const auto used = [](const Row &row)
+    { return row.second ? row.second->used : -std::numeric_limits<double>::infinity(); };
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&used](const Row &one, const Row &other) { return used(one) > used(other); });
+    if (json)
+    {
+        return std::all_of(rows.begin(), rows.end(),
+                           [](const Row &row) { return Output::Object(JsonOf(row)); });
+    }
+    std::vector<std::vector<std::string>> cells{{"NODE", "B/s", "BUDGET", "CAPACITY", "DISCOVERY", "PRESENCE",
+                                                 "COMMAND", "STATE", "TELEMETRY", "BULK"}};
+    double all = 0.0;
+    for (const Row &row : rows)
+    {
+        cells.push_back(CellsOf(row));
+        all += row.second ? row.second->used : 0.0;
+    }
+    cells.push_back({"in all", Number(all)});
+    const std::vector<std::string> lines = TableLines(cells);
+    return std::all_of(lines.begin(), lines.end(),
+                       [](const std::string &line) { return Output::Line(line); });
+}
+
+// Asks all live nodes, and waits for their answers, at most until `until`, in seconds from the start of the
+// session. This program has a row, too.
+std::vector<Row> Ask(FleetSession &session, double until)
+{
+    FleetExplorer &explorer = session.Explorer();
+    std::map<std::string, std::optional<Gateway::AirStatus>> waiting;
+    for (const FleetSession::Node &node : session.Nodes())
+    {
+        if (node.State != Gateway::NodeState::LOST)
+        {
+            explorer.AskForReport(node.Name, Report::Air);
+            waiting.emplace(node.Name, std::nullopt);
+        }
+    }
+    session.WaitUntil(until,
+                      [&]
+                      {
+                          bool all = true;
+                          for (auto &[name, air] : waiting)
+                          {
+                              if (!air)
+                              {
+                                  const auto answer = explorer.TakeReport(name, Report::Air);
+                                  air = answer ? AirStatusOf(answer->Text) : std::nullopt;
+                              }
+                              all = all && air.has_value();
+                          }
+                          return all;
+                      });
+    std::vector<Row> rows(waiting.begin(), waiting.end());
+    const Gateway::Fleet own = session.Fleet();
+    rows.emplace_back(own.node, own.air);
+    return rows;
+}
+
+int Run(const Options &options, Wakeup &wakeup)
+{
+    // Seconds in which most nodes are heard. Nodes that beat more seldom need --wait.
+    constexpr double everybody = 1.5;
+    FleetSession session(ConfigWithoutOffers(options.Common), options.Common, wakeup);
+    session.WaitUntil(options.Common.IsWaitGiven ? options.Common.Wait : everybody, [] { return false; });
+    session.WaitUntil(options.Common.Wait, [&session] { return session.IsAnybodyThere(); });
+    if (!session.IsAnybodyThere())
+    {
+        return session.NobodyThere();
+    }
+    for (;;)
+    {
+        const double end = session.Seconds() + std::max(options.Every, 2.0);
+        const std::vector<Row> rows = Ask(session, end);
+        if (!options.Once && !options.Common.Json)
+        {
+            Output::BeginScreen();
+        }
+        if (!Show(rows, options.Common.Json) || options.Once || wakeup.IsInterrupted())
+        {
+            const bool isWhole =
+                std::all_of(rows.begin(), rows.end(), [](const Row &row) { return row.second.has_value(); });
+            return isWhole || !options.Once ? Good : ProblemFound;
+        }
+        session.WaitUntil(end, [] { return false; });
+    }
+}
+
+}  // namespace
+
+void AddTopCommand(CLI::App &app, Chosen &chosen)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App *command = app.add_subcommand("top", "Which node sends how much, and of which class");
+    AddCommonOptions(*command, options->Common, 3.0);
+    command->add_option("--every", options->Every, "Seconds from one table to the next (default: 2)")
+        ->check(CLI::Range(2.0, 3600.0));
+    command->add_flag("--once", options->Once, "One table instead of one after the other until Ctrl-C");
+    AddExamples(*command, {"rabit top", "rabit top --once --wait 10", "rabit top --every 10 --json"});
+    command->callback([options, &chosen]
+                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+}
+
+}  // namespace Rabit::Tool

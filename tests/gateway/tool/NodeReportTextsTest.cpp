@@ -1,0 +1,104 @@
+// The reports of nodes about themselves, as the tool reads them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "AirText.h"
+#include "LogText.h"
+#include "NodeProblems.h"
+#include "RoundTrips.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using ::testing::ElementsAre;
+
+std::vector<std::string> LinesOf(const Gateway::Fleet &fleet)
+{
+    std::vector<std::string> lines;
+    for (const Gateway::Problem &problem : ProblemsOfNodes(fleet))
+    {
+        lines.push_back(problem.subject + ": " + problem.reason);
+    }
+    return lines;
+}
+
+TEST(NodeProblems, EachIsALineAndTheRestIsCounted)
+{
+    Gateway::Fleet fleet;
+    fleet.nodes.resize(3);
+    fleet.nodes[0].node = "uav1";
+    fleet.nodes[1].node = "uav2";
+    fleet.nodes[1].problems = 3;
+    fleet.nodes[1].problem_texts = {"accept Q: there is none", "publish Pose: it is of another type"};
+    EXPECT_TRUE(AreProblemsKnown(fleet));
+    fleet.nodes[2].node = "uav3";
+    fleet.nodes[2].problems = 2;
+    EXPECT_FALSE(AreProblemsKnown(fleet));
+    EXPECT_THAT(LinesOf(fleet), ElementsAre("node uav2: accept Q: there is none",
+                                            "node uav2: publish Pose: it is of another type",
+                                            "node uav2: it has 1 more problem; see `rabit log uav2`",
+                                            "node uav3: it has 2 problems; see `rabit log uav3`"));
+}
+
+TEST(LogText, IsTheNumberOfItsFirstLineAndPrintableLines)
+{
+    const auto log = LogTextOf("4294967295\none\ntwo \x1b[2J\nunfinished");
+    ASSERT_TRUE(log.has_value());
+    EXPECT_EQ(log->First, 4294967295u);
+    EXPECT_THAT(log->Lines, ElementsAre("one", "two ?[2J"));
+    EXPECT_EQ(log->Next(), 1u) << "numbers wrap around";
+}
+
+TEST(LogText, OfAnythingElseIsNone)
+{
+    for (const char *report : {"", "7", "x\nline\n", "4294967296\nline\n", "7 \nline\n"})
+    {
+        EXPECT_FALSE(LogTextOf(report).has_value()) << report;
+    }
+}
+
+TEST(LogText, ALineHasATimeALevelAndAText)
+{
+    const LogLine line = LogLineOf("2026-11-23T04:04:07.250Z warning a motor is hot");
+    EXPECT_EQ(line.Time, "2026-11-23T04:04:07.250Z");
+    EXPECT_EQ(line.Level, "warning");
+    EXPECT_EQ(line.Text, "a motor is hot");
+    EXPECT_EQ(LogLineOf("word").Text, "word");
+}
+
+TEST(AirText, IsNineNumbers)
+{
+    const auto air = AirStatusOf("5000 0 1234 1 2 3 4 5 6");
+    ASSERT_TRUE(air.has_value());
+    EXPECT_EQ(air->budget, 5000.0);
+    EXPECT_EQ(air->used, 1234.0);
+    EXPECT_EQ(air->bulk, 6.0);
+    EXPECT_FALSE(AirStatusOf("5000 0 1234 1 2 3 4 5").has_value());
+    EXPECT_FALSE(AirStatusOf("").has_value());
+    EXPECT_FALSE(AirStatusOf("1 2 3 4 5 6 7 8 nan").has_value());
+}
+
+TEST(RoundTrips, AreCountedAndRanked)
+{
+    RoundTrips trips;
+    EXPECT_TRUE(std::isnan(trips.Loss()));
+    EXPECT_TRUE(std::isnan(trips.Percentile(0.5)));
+    for (const double seconds : {3.0, 1.0, 2.0})
+    {
+        trips.Answered(seconds);
+    }
+    trips.Lost();
+    EXPECT_EQ(trips.Sent(), 4u);
+    EXPECT_EQ(trips.Loss(), 0.25);
+    EXPECT_EQ(trips.Percentile(0.0), 1.0);
+    EXPECT_EQ(trips.Percentile(0.5), 2.0);
+    EXPECT_EQ(trips.Percentile(0.99), 3.0);
+    EXPECT_EQ(trips.Percentile(1.0), 3.0);
+}
+
+}  // namespace
+}  // namespace Rabit::Tool
