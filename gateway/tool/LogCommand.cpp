@@ -28,9 +28,6 @@ struct Options
     bool Follow = false;
 };
 
-// Seconds in which a node that was heard answers, unless its channel is full.
-constexpr double Answers = 10.0;
-
 bool Show(const std::string &node, const LogText &log, bool json)
 {
     for (const std::string &line : log.Lines)
@@ -131,17 +128,10 @@ int Run(const Options &options, Wakeup &wakeup)
     {
         return code;
     }
-    FleetExplorer &explorer = session.Explorer();
-    explorer.AskForReport(options.Node, Report::LastLines, options.Lines);
-    std::optional<FleetExplorer::Answer> answer;
-    session.WaitUntil(
-        session.Seconds() + Answers,
-        [&] { return (answer = explorer.TakeReport(options.Node, Report::LastLines)).has_value(); });
+    const auto answer = Request(session, options.Node, Report::LastLines, options.Lines);
     const std::optional<LogText> log = answer ? LogTextOf(answer->Text) : std::nullopt;
     if (!log)
     {
-        Output::Talk(options.Node +
-                     " does not answer; its gateway is of an older version, or does not hear this machine");
         return ProblemFound;
     }
     if (Show(options.Node, *log, options.Common.Json) && options.Follow)

@@ -22,6 +22,23 @@ const FleetSession::Node *FindNode(const std::vector<FleetSession::Node> &nodes,
     return found == nodes.end() ? nullptr : &*found;
 }
 
+std::optional<FleetExplorer::Answer> Request(FleetSession &session, const std::string &node,
+                                             FleetExplorer::Report what, std::uint32_t argument)
+{
+    constexpr double longest = 10.0;
+    FleetExplorer &explorer = session.Explorer();
+    explorer.AskForReport(node, what, argument);
+    std::optional<FleetExplorer::Answer> answer;
+    session.WaitUntil(session.Seconds() + longest,
+                      [&] { return (answer = explorer.TakeReport(node, what)).has_value(); });
+    if (!answer)
+    {
+        Output::Talk(node +
+                     " does not answer; its gateway is of an older version, or does not hear this machine");
+    }
+    return answer;
+}
+
 int WaitForNode(FleetSession &session, const CommonOptions &options, const std::string &node)
 {
     const auto isThere = [&]

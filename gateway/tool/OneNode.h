@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "CommonOptions.h"
@@ -16,6 +18,11 @@ GatewayConfig ConfigWithoutOffers(const CommonOptions &options);
 // Waits until the node is heard, for --wait seconds at most, and without --wait for 1.5 s if others are
 // heard. Returns Good, or reports that it is not there and returns the exit code.
 int WaitForNode(FleetSession &session, const CommonOptions &options, const std::string &node);
+
+// Requests a report, and waits for it for 10 s, which is long unless the channel is full. Empty: reports that
+// the node does not answer.
+std::optional<FleetExplorer::Answer> Request(FleetSession &session, const std::string &node,
+                                             FleetExplorer::Report what, std::uint32_t argument = 0);
 
 // The node; null if it is not known.
 const FleetSession::Node *FindNode(const std::vector<FleetSession::Node> &nodes, const std::string &node);

@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -83,6 +83,11 @@ int Run(const Options &options, Wakeup &wakeup)
     if (const int code = WaitForNode(session, options.Common, options.Node); code != Good)
     {
         return code;
+    }
+    // A node's first answer may be lost, since its writer is new. This request is repeated.
+    if (!Request(session, options.Node, Report::Air))
+    {
+        return ProblemFound;
     }
     FleetExplorer &explorer = session.Explorer();
     RoundTrips trips;

@@ -84,7 +84,8 @@ TEST_F(NodeReportsTest, TheProblemsOfANodeReachThoseWhoAskForThem)
     SimulatedNode &ground = AddGround({"uav*"});
     fleet.RunFor(6s);
     EXPECT_EQ(RowOfUav(ground).problems, 1u);
-    EXPECT_THAT(RowOfUav(ground).problem_texts, ElementsAre("subscribe Pse: ground does not publish `Pse`"));
+    EXPECT_THAT(RowOfUav(ground).problem_texts,
+                ElementsAre(::testing::StartsWith("subscribe Pse: ground does not publish `Pse`")));
 }
 
 TEST_F(NodeReportsTest, WhoDoesNotAskForTheProblemsOfANodeKnowsTheirNumber)
@@ -156,6 +157,8 @@ TEST_F(NodeReportsTest, AnEchoTakesTheRoundTrip)
     AddAircraft(false);
     FleetExplorer &explorer = AddTool();
     fleet.RunFor(3s);
+    // The first answer of a node is lost: its writer is new, and not matched.
+    ASSERT_TRUE(Ask(explorer, Report::Air).has_value());
     const auto echo = Ask(explorer, Report::Echo, 1);
     ASSERT_TRUE(echo.has_value());
     EXPECT_GE(echo->Took, 60ms);

@@ -12,11 +12,12 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "shell"))
 import harness  # noqa: E402
+from two_aircraft import aircraft_config  # noqa: E402
 
 # Only keeps a broken program from hanging.
 LIMIT = 120
-CONFIG = harness.ROOT / "examples/swarm/uav.yaml"
 
 
 class Fleet:
@@ -147,10 +148,11 @@ def main():
         maker = Fleet(program, transports[0], domain, folder)
         maker.make("fleet")
         maker.make("other")
+        config = aircraft_config(folder)
         for k in (1, 2):
             transport = transports[(k - 1) % len(transports)]
-            keys = maker.add("fleet", f"uav{k}", transport, "--config", CONFIG)
-            processes.start([uav, "--config", CONFIG, "--node", f"uav{k}", "--domain", domain, "--transport", transport,
+            keys = maker.add("fleet", f"uav{k}", transport, "--config", config)
+            processes.start([uav, "--config", config, "--node", f"uav{k}", "--domain", domain, "--transport", transport,
                              "--keys", keys])
         for transport in transports:
             fleet = Fleet(program, transport, domain, folder)
