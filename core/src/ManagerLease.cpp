@@ -135,6 +135,36 @@ std::shared_ptr<PublishSubscribeMessage> ManagerLease::FindGlobal(const std::str
     return found == _messages.end() ? nullptr : found->Global;
 }
 
+std::string ManagerLease::NameOf(const PublishSubscribeMessage *global) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = std::find_if(_messages.begin(), _messages.end(),
+                                    [&](const Message &message) { return message.Global.get() == global; });
+    return found == _messages.end() ? "" : found->Name;
+}
+
+std::string ManagerLease::NameOfQueue(const void *queue) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = std::find_if(_queues.begin(), _queues.end(),
+                                    [&](const Queue &own) { return own.Handle->Queue().get() == queue; });
+    return found == _queues.end() ? "" : found->Name;
+}
+
+std::vector<std::string> ManagerLease::QueuesWithoutHandlers() const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    std::vector<std::string> names;
+    for (const Queue &queue : _queues)
+    {
+        if (queue.Name != _managerName && !queue.Handle->HasEnqueuedHandlers())
+        {
+            names.push_back(queue.Name);
+        }
+    }
+    return names;
+}
+
 void ManagerLease::ReadQueues(std::vector<QueueStatus_t> &queues) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);

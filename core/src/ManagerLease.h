@@ -35,6 +35,12 @@ public:
     // The global copy of a message that the manager registered under that name, also while it has left; null
     // if there is none.
     std::shared_ptr<PublishSubscribeMessage> FindGlobal(const std::string &name) const;
+    // The name under which the manager registered the message of that global copy, or the queue; empty if it
+    // registered none such.
+    std::string NameOf(const PublishSubscribeMessage *global) const;
+    std::string NameOfQueue(const void *queue) const;
+    // The names of the manager's queues that have no handler for messages added, without its own queue.
+    std::vector<std::string> QueuesWithoutHandlers() const;
     // Fills in the current state of the manager's queues, in the order of registration.
     void ReadQueues(std::vector<QueueStatus_t> &queues) const;
     // Disconnects the handlers that were registered through the manager's messages: they usually call the

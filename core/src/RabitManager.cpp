@@ -128,6 +128,7 @@ void RabitManager::SetWakeupManagerUponMessagePostedToManagersMessageQueue(bool 
 void RabitManager::SetWakeupTimeDelayMSec(int delay_MSec)
 {
     _wakeup->SetDelay(std::chrono::milliseconds(delay_MSec));
+    _delayIsChosen.store(true);
 }
 
 void RabitManager::SetWakeupTimeDelaySec(double delay_Sec)
@@ -137,6 +138,7 @@ void RabitManager::SetWakeupTimeDelaySec(double delay_Sec)
         throw std::invalid_argument("the wake-up delay of manager \"" + _name + "\" cannot be NaN");
     }
     _wakeup->SetDelay(ToDuration(delay_Sec));
+    _delayIsChosen.store(true);
 }
 
 int RabitManager::GetWakeupTimeDelayMSec() const
@@ -162,6 +164,7 @@ void RabitManager::SetPeriodSec(double period_Sec)
         throw std::invalid_argument("the period of manager \"" + _name + "\" cannot be NaN");
     }
     _wakeup->SetPeriod(ToDuration(period_Sec));
+    _settingsChanged.store(true);
 }
 
 double RabitManager::GetPeriodSec() const
@@ -172,6 +175,7 @@ double RabitManager::GetPeriodSec() const
 void RabitManager::SetWakeupBetweenTurns(bool wakeUp)
 {
     _wakeup->SetSignalsBetweenTurns(wakeUp);
+    _betweenTurnsIsChosen.store(true);
 }
 
 bool RabitManager::IsTurn() const
@@ -192,6 +196,7 @@ bool RabitManager::RegisterMessage(const std::string &name, const std::shared_pt
 void RabitManager::RegisterQueue(std::string name, std::shared_ptr<RabitQueueHandle> handle)
 {
     _lease->AddQueue(name, handle);
+    _settingsChanged.store(true);
 }
 
 bool RabitManager::FetchMessage(std::string name, RabitMessage *msg)
@@ -244,6 +249,7 @@ void RabitManager::AddMessageWakeup(const std::shared_ptr<RabitMessage> &msg, co
     {
         _messageWakeups.push_back(
             MessageWakeup{msg, handler, global, global->ConnectSomethingPublished(handler)});
+        _settingsChanged.store(true);
     }
 }
 

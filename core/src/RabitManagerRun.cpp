@@ -23,6 +23,9 @@ constexpr std::chrono::milliseconds PauseAfterFailure(10);
 constexpr std::chrono::milliseconds PauseAfterFailureWithoutDelay(100);
 // The least time between two log lines about a manager that keeps failing.
 constexpr std::chrono::seconds FailureLogPeriod(1);
+// A unit of work that takes this long is warned of: a person waits that long for Ctrl-C, and others for an
+// answer.
+constexpr std::chrono::nanoseconds LongWork = std::chrono::seconds(1);
 
 double InSeconds(std::chrono::nanoseconds duration)
 {
@@ -188,6 +191,14 @@ bool RabitManager::CycleStep()
     SystemTimeClock::GetSystemTimeClock()->ReportSteps();
     _workspace._refusals->Report();
     CountPass(start, end);
+    if (end - start >= LongWork)
+    {
+        WarnOfLongWork(end - start);
+    }
+    if (_settingsChanged.load(std::memory_order_relaxed))
+    {
+        WarnOfSettings();
+    }
     ObeyControlMessages();  // the unit of work may have changed them
     if (good && _lastPassFailed)
     {

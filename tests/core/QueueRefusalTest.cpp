@@ -28,6 +28,7 @@ struct RefusalFixture : SteppedFixture
     RefusalFixture()
     {
         Manager.AddManagerMessageQueue("Small", Small);
+        Manager.SetWakeupTimeDelaySec(1.0);
         Reactor.Start();
     }
     // Tries 3000 adds. Returns how many were accepted.

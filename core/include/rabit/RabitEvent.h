@@ -116,6 +116,7 @@ public:
     void HandOverAllOf(const void *owner, RabitEvent &other);
     // Tells all handlers. Takes no lock if there are none.
     void Fire() const;
+    bool HasHandlers() const;
     // The handlers connected now. The caller holds the mutex that was given to the constructor.
     Handlers Snapshot() const;
 
@@ -163,6 +164,11 @@ struct EventState
 };
 
 }  // namespace Detail
+
+inline bool RabitEvent::HasHandlers() const
+{
+    return _state->Count.load(std::memory_order_acquire) > 0;
+}
 
 inline RabitEvent::Handlers RabitEvent::Snapshot() const
 {

@@ -45,6 +45,9 @@ class ManagerLease;
 // least 10 ms; if it otherwise would not sleep, 100 ms. A manager whose Startup threw does not run its unit
 // of work: it goes on to Shutdown.
 //
+// Warnings, each once for a manager: a wake-up that its period keeps from waking it, a queue of its own that
+// nothing wakes it for, a unit of work of a second and more. They change nothing.
+//
 // Threads: the public methods may be called from any thread unless they say otherwise. The messages and
 // queues that the protected members point to are the manager's own; others attach to the same names.
 // Lifetime: a started manager must be joined before it is destroyed (a reactor does it). Names that it
@@ -112,7 +115,8 @@ public:
     void SetPeriodSec(double period_Sec);
     double GetPeriodSec() const;
     // Lets events wake the manager between turns as well. Its unit of work then asks IsTurn whether to do
-    // the periodic part.
+    // the periodic part. False, the default: registered wake-ups wait for the next turn, which is warned of
+    // unless the program itself called this with false.
     void SetWakeupBetweenTurns(bool wakeUp);
     // For the unit of work: true if it runs because a turn has come, or if there is no period.
     bool IsTurn() const;
@@ -243,6 +247,7 @@ private:
         if (!HasQueueWakeup(queue, event))
         {
             _queueWakeups.push_back(QueueWakeup{queue, event, connect(WakeUpHandler())});
+            _settingsChanged.store(true);
         }
     }
     void RenewMessageWakeups();
@@ -272,6 +277,11 @@ private:
     template <typename Work>
     bool Guard(const char *what, int errorCode, Work work);
     void ReportFailure(const char *what, int errorCode, const std::string &reason);
+    void WarnOfSettings();
+    void WarnOfWakeupsBetweenTurns();
+    void WarnOfQueuesWithoutWakeup();
+    std::string NameOfFirstWakeup();  // empty: there is none but those that every manager has
+    void WarnOfLongWork(std::chrono::nanoseconds took);
     void UpdateStats(std::chrono::nanoseconds now);
     void PostStatus();
     void PostStatusIfDue(std::chrono::nanoseconds now);
@@ -291,6 +301,10 @@ private:
     std::atomic<bool> _loopActive{false};
     std::atomic<std::thread::id> _loopThread{};
     std::atomic<const char *> _step{nullptr};  // which of the three runs just now
+    // Period, wake-ups or queues, since the loop last looked at them.
+    std::atomic<bool> _settingsChanged{true};
+    std::atomic<bool> _delayIsChosen{false};         // by the program
+    std::atomic<bool> _betweenTurnsIsChosen{false};  // by the program
 
     // Used by the loop alone.
     ManagerStats_t _stats;
@@ -304,6 +318,9 @@ private:
     bool _startupFailed = false;
     std::chrono::nanoseconds _failureLoggedAt{0};
     int _failuresNotLogged = 0;
+    bool _warnedOfPeriod = false;
+    bool _warnedOfQueues = false;
+    bool _warnedOfLongWork = false;
 };
 
 }  // namespace Rabit

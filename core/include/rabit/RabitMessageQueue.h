@@ -70,6 +70,8 @@ public:
     {
         return _dequeued.Connect(std::move(handler));
     }
+    // True if a handler is called for each message added.
+    bool HasEnqueuedHandlers() const { return _enqueued.HasHandlers(); }
     // Calls the handler after each message that AddMessage refused because the queue was full.
     RabitConnection ConnectSomethingRefused(RabitHandler handler)
     {

@@ -56,6 +56,7 @@ public:
     virtual QueueAddResult AddPointer(const std::shared_ptr<void> &owner, void (*throwPointer)(void *),
                                       void *object) = 0;
 
+    virtual bool HasEnqueuedHandlers() const = 0;
     virtual RabitConnection ConnectEnqueued(RabitHandler handler) = 0;
     virtual RabitConnection ConnectDequeued(RabitHandler handler) = 0;
     virtual RabitConnection ConnectRefused(RabitHandler handler) = 0;
@@ -157,6 +158,7 @@ public:
         }
     }
 
+    bool HasEnqueuedHandlers() const override { return _queue->HasEnqueuedHandlers(); }
     RabitConnection ConnectEnqueued(RabitHandler handler) override
     {
         return _queue->ConnectSomethingEnqueued(std::move(handler));
