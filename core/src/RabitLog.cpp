@@ -1,9 +1,12 @@
 #include <rabit/RabitLog.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,6 +19,15 @@ namespace Rabit
 namespace
 {
 
+// What stands before a line of each level, by the level's number.
+using Prefixes = std::array<std::string, 4>;
+
+std::shared_ptr<const Prefixes> PrefixesOf(const std::string &name)
+{
+    return std::make_shared<const Prefixes>(
+        Prefixes{name + ": debug: ", name + ": info: ", name + ": warning: ", name + ": error: "});
+}
+
 struct LogState
 {
     std::mutex Mutex;
@@ -23,6 +35,7 @@ struct LogState
     std::vector<std::weak_ptr<const RabitLog::Sink>> Listeners;
     std::atomic<RabitLogLevel> Level{RabitLogLevel::Warning};
     LineWriter Stderr{STDERR_FILENO};
+    std::shared_ptr<const Prefixes> Before = PrefixesOf("rabit");
 };
 
 // Never destroyed: threads may log while the process ends.
@@ -30,21 +43,6 @@ LogState &State()
 {
     static LogState *const state = new LogState();
     return *state;
-}
-
-const char *PrefixOf(RabitLogLevel level)
-{
-    switch (level)
-    {
-        case RabitLogLevel::Debug:
-            return "rabit: debug: ";
-        case RabitLogLevel::Info:
-            return "rabit: info: ";
-        case RabitLogLevel::Warning:
-            return "rabit: warning: ";
-        default:
-            return "rabit: error: ";
-    }
 }
 
 // The listeners that still exist.
@@ -116,6 +114,14 @@ void RabitLog::SetSink(Sink sink)
     // The former sink goes here, outside the lock.
 }
 
+void RabitLog::SetName(const std::string &name)
+{
+    auto prefixes = PrefixesOf(WithoutControls(name));
+    LogState &state = State();
+    const std::lock_guard<std::mutex> lock(state.Mutex);
+    state.Before.swap(prefixes);
+}
+
 void RabitLog::SetLevel(RabitLogLevel level)
 {
     State().Level.store(level);
@@ -145,12 +151,14 @@ void RabitLog::Write(RabitLogLevel level, const std::string &text) noexcept
         return;
     }
     TellListeners(level, text);
+    std::shared_ptr<const Sink> sink;
+    std::shared_ptr<const Prefixes> before;
     try
     {
-        std::shared_ptr<const Sink> sink;
         {
             const std::lock_guard<std::mutex> lock(state.Mutex);
             sink = state.Sink;
+            before = state.Before;
         }
         if (sink)
         {
@@ -161,7 +169,7 @@ void RabitLog::Write(RabitLogLevel level, const std::string &text) noexcept
     catch (...)  // a broken sink must not cost the line, nor end the process
     {
     }
-    state.Stderr.Write(PrefixOf(level), text);
+    state.Stderr.Write(before ? (*before)[static_cast<std::size_t>(level)] : "", text);
 }
 
 void RabitLog::Print(const std::string &line) noexcept

@@ -22,7 +22,7 @@ constexpr double LongestDelay_Sec = 1e9;
 std::chrono::nanoseconds ToDuration(double seconds)
 {
     const std::chrono::duration<double> clamped(std::clamp(seconds, 0.0, LongestDelay_Sec));
-    const auto rounded = std::chrono::duration_cast<std::chrono::nanoseconds>(clamped);
+    const auto rounded = std::chrono::round<std::chrono::nanoseconds>(clamped);
     return seconds > 0.0 ? std::max(rounded, std::chrono::nanoseconds(1)) : rounded;
 }
 
@@ -293,6 +293,17 @@ bool RabitManager::HasQueueWakeup(const void *queue, QueueEvent event) const
     return std::any_of(_queueWakeups.begin(), _queueWakeups.end(),
                        [&](const QueueWakeup &wakeup)
                        { return wakeup.Queue == queue && wakeup.Event == event; });
+}
+
+void RabitManager::WriteLog(RabitLogLevel level, const std::string &text) const noexcept
+{
+    try
+    {
+        RabitLog::Write(level, _name + ": " + text);
+    }
+    catch (...)  // out of memory for the line
+    {
+    }
 }
 
 void RabitManager::WakeUpManagerEH()

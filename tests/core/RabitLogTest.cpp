@@ -1,4 +1,5 @@
 #include "CapturedLog.h"
+#include "TestManagers.h"
 
 #include <rabit/RabitLog.h>
 #include <rabit/RabitReactor.h>
@@ -24,6 +25,29 @@ TEST(RabitLog, WritesWarningsAndErrorsToStderrAndNothingElse)
     RabitLog::Write(RabitLogLevel::Error, "four");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "rabit: warning: three\nrabit: error: four\n");
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(RabitLog, PutsTheNameOfTheProgramBeforeLinesOnStderr)
+{
+    testing::internal::CaptureStderr();
+    RabitLog::SetName("uav1");
+    RabitLog::Write(RabitLogLevel::Warning, "one");
+    RabitLog::SetName("uav\x1b\n2");
+    RabitLog::Write(RabitLogLevel::Error, "two");
+    RabitLog::SetName("rabit");
+    RabitLog::Write(RabitLogLevel::Warning, "three");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "uav1: warning: one\nuav??2: error: two\nrabit: warning: three\n");
+}
+
+TEST(RabitLog, AManagersLineHasItsName)
+{
+    const CapturedLog log;
+    RabitWorkspace workspace;
+    ScriptedManager manager("Pilot", workspace);
+    manager.WriteLog(RabitLogLevel::Info, "below the level");
+    manager.WriteLog(RabitLogLevel::Warning, "no fix");
+    EXPECT_EQ(log.Lines(), std::vector<std::string>{"Pilot: no fix"});
 }
 
 TEST(RabitLog, GivesLinesToTheSinkOfTheProgramAndNotToStderr)

@@ -40,6 +40,9 @@ public:
     // Lines below this level are dropped. The default is Warning.
     static void SetLevel(RabitLogLevel level);
     static RabitLogLevel GetLevel();
+    // The name before each line on stderr, in place of `rabit`: `uav1: warning: ...`. Several programs on one
+    // terminal are told apart by it. RunNode sets it to the node's name. Sinks and listeners do not get it.
+    static void SetName(const std::string &name);
     // Logs one line. Control characters (0x00 to 0x1f, 0x7f) in it become '?': text from elsewhere must not
     // begin another line, or steer a terminal.
     static void Write(RabitLogLevel level, const std::string &text) noexcept;

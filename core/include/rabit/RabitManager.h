@@ -3,6 +3,7 @@
 #include <rabit/ManagerControlMessage.h>
 #include <rabit/ManagerStats.h>
 #include <rabit/ManagerStatusMessage.h>
+#include <rabit/RabitLog.h>
 #include <rabit/RabitMessage.h>
 #include <rabit/RabitMessageQueue.h>
 #include <rabit/RabitNonBlockingSPSCQueue.h>
@@ -196,6 +197,9 @@ public:
     // True: shuts down all managers of the workspace, and posts "ManagerControlMessage" with the flag set.
     // False: only posts that message with its flag cleared.
     void ShutdownAllManagers(bool value);
+    // Logs a line with the manager's name before it: `MissionControl: text` (RabitLog). Lines below the level
+    // of the log, which is Warning unless set, are dropped.
+    void WriteLog(RabitLogLevel level, const std::string &text) const noexcept;
     // Wakes the manager, for the user's own handlers. The handler that WakeUpHandler returns is safe to
     // call after the manager is gone; WakeUpManagerEH is not.
     void WakeUpManagerEH();
