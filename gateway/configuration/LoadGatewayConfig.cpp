@@ -10,6 +10,7 @@
 #include "air/TrafficClassWords.h"
 #include "configuration/ForeignEntries.h"
 #include "configuration/PanelEntries.h"
+#include "configuration/ParameterSection.h"
 #include "configuration/ValidateGatewayConfig.h"
 #include "configuration/YamlMap.h"
 #include "names/QosProfileWords.h"
@@ -233,10 +234,10 @@ YamlMap OpenFile(const std::string &file)
     return {file,
             Parse(file, ReadFile(file)),
             "the configuration",
-            {"node",      "name",         "domain",        "transport",  "interfaces",     "peers",
-             "multicast", "max_datagram", "shared_memory", "lease",      "backend_config", "state_dir",
-             "security",  "radio",        "record",        "publish",    "subscribe",      "accept",
-             "send",      "foreign",      "foxglove",      "problems_of"}};
+            {"node",      "name",         "domain",        "transport",   "interfaces",     "peers",
+             "multicast", "max_datagram", "shared_memory", "lease",       "backend_config", "state_dir",
+             "security",  "radio",        "record",        "publish",     "subscribe",      "accept",
+             "send",      "foreign",      "foxglove",      "problems_of", "parameters"}};
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -294,6 +295,7 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     ReadForeign(map, config);
     ReadPanels(map, config);
     map.Read("problems_of", config.ProblemsOf);
+    ReadParameters(map, config);
     ValidateGatewayConfig(config, whyNoType);
     return config;
 }

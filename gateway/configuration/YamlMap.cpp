@@ -41,6 +41,17 @@ std::string SizeText(std::uint64_t bytes)
 
 YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
                  const std::vector<std::string> &allowedKeys)
+    : YamlMap(std::move(file), node, std::move(what), &allowedKeys)
+{
+}
+
+YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what)
+    : YamlMap(std::move(file), node, std::move(what), nullptr)
+{
+}
+
+YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
+                 const std::vector<std::string> *allowedKeys)
     : _file(std::move(file)), _what(std::move(what)), _line(LineOf(node))
 {
     if (!node.IsMap())
@@ -54,10 +65,11 @@ YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
             Fail(LineOf(entry.first), "a key in " + _what + " must be a word");
         }
         const std::string &key = entry.first.Scalar();
-        if (std::find(allowedKeys.begin(), allowedKeys.end(), key) == allowedKeys.end())
+        if (allowedKeys != nullptr &&
+            std::find(allowedKeys->begin(), allowedKeys->end(), key) == allowedKeys->end())
         {
             Fail(LineOf(entry.first),
-                 "unknown key `" + key + "` in " + _what + NearestWordHint(key, allowedKeys));
+                 "unknown key `" + key + "` in " + _what + NearestWordHint(key, *allowedKeys));
         }
         if (Has(key))
         {
@@ -81,6 +93,16 @@ const YAML::Node *YamlMap::Find(const std::string &key) const
 bool YamlMap::Has(const std::string &key) const
 {
     return Find(key) != nullptr;
+}
+
+std::vector<std::string> YamlMap::Keys() const
+{
+    std::vector<std::string> keys;
+    for (const auto &[key, value] : _entries)
+    {
+        keys.push_back(key);
+    }
+    return keys;
 }
 
 int YamlMap::Line(const std::string &key) const
@@ -293,6 +315,12 @@ std::optional<YamlMap> YamlMap::Map(const std::string &key, const std::string &w
 {
     const YAML::Node *node = Find(key);
     return node == nullptr ? std::nullopt : std::optional(YamlMap(_file, *node, what, allowedKeys));
+}
+
+std::optional<YamlMap> YamlMap::MapOfAnyKeys(const std::string &key, const std::string &what) const
+{
+    const YAML::Node *node = Find(key);
+    return node == nullptr ? std::nullopt : std::optional(YamlMap(_file, *node, what));
 }
 
 std::vector<YamlMap> YamlMap::Maps(const std::string &key, const std::string &what,

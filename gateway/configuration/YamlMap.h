@@ -25,7 +25,12 @@ public:
     YamlMap(std::string file, const YAML::Node &node, std::string what,
             const std::vector<std::string> &allowedKeys);
 
+    // The same with any keys.
+    YamlMap(std::string file, const YAML::Node &node, std::string what);
+
     bool Has(const std::string &key) const;
+    // In the order of the file.
+    std::vector<std::string> Keys() const;
     // Returns the line, from 1, of the key's value, or of the whole mapping if there is no such key.
     int Line(const std::string &key = "") const;
     // The line of each key.
@@ -51,6 +56,7 @@ public:
     // A mapping; empty if the key is missing.
     std::optional<YamlMap> Map(const std::string &key, const std::string &what,
                                const std::vector<std::string> &allowedKeys) const;
+    std::optional<YamlMap> MapOfAnyKeys(const std::string &key, const std::string &what) const;
     // A list of mappings; empty if the key is missing.
     std::vector<YamlMap> Maps(const std::string &key, const std::string &what,
                               const std::vector<std::string> &allowedKeys) const;
@@ -58,6 +64,9 @@ public:
     [[noreturn]] void Fail(int line, const std::string &message) const;
 
 private:
+    // A null pointer allows any key.
+    YamlMap(std::string file, const YAML::Node &node, std::string what,
+            const std::vector<std::string> *allowedKeys);
     const YAML::Node *Find(const std::string &key) const;
     const std::string &Scalar(const YAML::Node &node, const std::string &key, const char *expected) const;
 

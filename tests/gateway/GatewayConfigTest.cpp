@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 
 namespace Rabit
@@ -196,6 +197,92 @@ send:
     EXPECT_TRUE(config.Send[0].RedeliverInDoubt);
     EXPECT_EQ(config.Send[0].Class, TrafficClass::Bulk);
     EXPECT_EQ(config.Send[0].Weight, 0.5);
+}
+
+TEST_F(GatewayConfigTest, ReadsTheParametersOfTheProgramByTheirKinds)
+{
+    const GatewayConfig config = Load(R"(
+node: uav1
+parameters: {spacing_m: 20.5, wingmen: 5, leader: uav1, strict: on, patience: 500ms, route: [a, b]}
+)");
+    double spacing = 0;
+    int wingmen = 0;
+    std::string leader;
+    bool strict = false;
+    std::chrono::milliseconds patience{0};
+    std::vector<std::string> route;
+    double missing = 7;
+    config.Parameters.Read("spacing_m", spacing, 1, 100);
+    config.Parameters.Read("wingmen", wingmen);
+    config.Parameters.Read("leader", leader);
+    config.Parameters.Read("strict", strict);
+    config.Parameters.Read("patience", patience);
+    config.Parameters.Read("route", route);
+    config.Parameters.Read("missing", missing);
+    EXPECT_EQ(spacing, 20.5);
+    EXPECT_EQ(wingmen, 5);
+    EXPECT_EQ(leader, "uav1");
+    EXPECT_TRUE(strict);
+    EXPECT_EQ(patience, 500ms);
+    EXPECT_EQ(route, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(missing, 7);
+    EXPECT_NO_THROW(config.Parameters.RefuseOthers());
+}
+
+// Returns what `use` throws, without the folder.
+std::string ErrorIn(const std::function<void()> &use)
+{
+    try
+    {
+        use();
+    }
+    catch (const ConfigError &error)
+    {
+        const std::string text = error.what();
+        return text.substr(text.rfind('/') + 1);
+    }
+    return "no error";
+}
+
+TEST_F(GatewayConfigTest, AParameterOfAnotherKindOrRangeIsNamedWithItsLine)
+{
+    const GatewayConfig config =
+        Load("node: uav1\nparameters:\n  spacing_m: wide\n  wingmen: 9\n  gap_m: 500\n");
+    double number = 3;
+    int whole = 4;
+    EXPECT_EQ(ErrorIn([&] { config.Parameters.Read("spacing_m", number); }),
+              "node.yaml:3: `spacing_m` is `wide`; expected a number");
+    EXPECT_EQ(ErrorIn([&] { config.Parameters.Read("wingmen", whole, 1, 5); }),
+              "node.yaml:4: `wingmen` is `9`; expected a whole number from 1 to 5");
+    EXPECT_EQ(ErrorIn([&] { config.Parameters.Read("gap_m", number, 5, 200); }),
+              "node.yaml:5: `gap_m` is 500; expected a number from 5 to 200");
+    EXPECT_EQ(number, 3);
+    EXPECT_EQ(ErrorIn([&] { config.Parameters.Fail("gap_m", "too wide for the field"); }),
+              "node.yaml:5: too wide for the field");
+}
+
+TEST_F(GatewayConfigTest, AParameterThatNothingReadsIsRefusedUnlessOthersAreAllowed)
+{
+    const std::string yaml = "node: uav1\nparameters:\n  spacing: 20\n";
+    double spacing = 0;
+    const GatewayConfig config = Load(yaml);
+    EXPECT_EQ(ErrorIn([&] { config.Parameters.RefuseOthers(); }),
+              "node.yaml:3: unknown parameter `spacing`; this program reads none");
+    config.Parameters.Read("spacing_m", spacing);
+    const GatewayConfig copy = config;
+    EXPECT_EQ(ErrorIn([&] { copy.Parameters.RefuseOthers(); }),
+              "node.yaml:3: unknown parameter `spacing`; did you mean `spacing_m`?");
+    copy.Parameters.AllowOthers();
+    EXPECT_NO_THROW(config.Parameters.RefuseOthers());
+}
+
+TEST_F(GatewayConfigTest, ParametersAreAMapping)
+{
+    EXPECT_EQ(ErrorOf("node: uav1\nparameters: [1, 2]\n"),
+              "node.yaml:2: the section `parameters` must be a mapping of keys to values");
+    EXPECT_EQ(ErrorOf("node: uav1\nparameters:\n  a: 1\n  a: 2\n"),
+              "node.yaml:4: key `a` stands twice in the section `parameters`");
+    EXPECT_NO_THROW(Load("node: uav1\n").Parameters.RefuseOthers());
 }
 
 TEST_F(GatewayConfigTest, ABudgetIsInBytesASecondOrAuto)

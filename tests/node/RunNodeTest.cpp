@@ -1,3 +1,4 @@
+#include <rabit/RabitLog.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/node/RunNode.h>
 #include <rabit/transport/TransportFactory.h>
@@ -111,6 +112,32 @@ TEST_F(RunNodeTest, ACheckMakesTheManagersAndRunsNothing)
     EXPECT_EQ(Run({"--check"}), 0);
     EXPECT_EQ(_node, "one");
     EXPECT_EQ(_passes, 0);
+}
+
+TEST_F(RunNodeTest, AParameterThatTheProgramDoesNotReadIsOneLineAndNothingRuns)
+{
+    std::ofstream(_file, std::ios::app) << "parameters:\n  spacing: 20\n";
+    double spacing = 0;
+    const auto addManagers = _program.AddManagers;
+    _program.AddManagers = [&](RabitReactor &reactor, GatewayConfig &config)
+    {
+        config.Parameters.Read("spacing_m", spacing);
+        addManagers(reactor, config);
+    };
+    EXPECT_EQ(Run({}), ExitBadInput);
+    EXPECT_THAT(_err, HasSubstr(":5: unknown parameter `spacing`; did you mean `spacing_m`?\n"));
+    EXPECT_EQ(_passes, 0);
+}
+
+TEST_F(RunNodeTest, LinesOfTheLogBeginWithTheNodesName)
+{
+    _program.AddManagers = [this](RabitReactor &reactor, GatewayConfig &)
+    {
+        RabitLog::Write(RabitLogLevel::Warning, "hello");
+        reactor.AddManager(std::make_unique<OneShot>(_passes));
+    };
+    EXPECT_EQ(Run({"--check", "--node", "two"}), 0);
+    EXPECT_EQ(_err, "two: warning: hello\n");
 }
 
 TEST_F(RunNodeTest, RecordsTheNodeIfTheConfigurationSaysSo)

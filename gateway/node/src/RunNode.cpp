@@ -1,3 +1,4 @@
+#include <rabit/RabitLog.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/node/RunNode.h>
 #include <rabit/recording/RecorderManager.h>
@@ -25,8 +26,10 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
         [&]
         {
             GatewayConfig config = LoadNodeConfig(options);
+            RabitLog::SetName(config.Node);
             RabitReactor reactor;
             program.AddManagers(reactor, config);
+            config.Parameters.RefuseOthers();
             if (options.Check)
             {
                 return 0;

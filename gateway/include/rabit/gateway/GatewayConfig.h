@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/gateway/ForeignRule.h>
+#include <rabit/gateway/NodeParameters.h>
 #include <rabit/gateway/PanelRule.h>
 #include <rabit/gateway/TrafficClass.h>
 
@@ -191,6 +192,9 @@ struct GatewayConfig
     // The nodes whose problems are requested in words, for NodeStatus::problem_texts, while they have any;
     // `*` and `?` are wildcards. The number of their problems is known without it.
     std::vector<std::string> ProblemsOf{};
+
+    // Values of the program's own.
+    NodeParameters Parameters{};
 
     // Set: this is recorded.
     std::optional<RecordSettings> Record{};

@@ -47,9 +47,11 @@ inline std::string FleetMessageNameOf(const GatewayConfig &config)
 // through the gateway that knows the node, "*/<queue>" to the nodes of all gateways. A node that two gateways
 // know is a problem by name; its queue messages go through the gateway that was there first.
 //
-// Errors: the constructor throws ConfigError for a configuration that cannot be used (a TransportError of the
-// backend included), and then nothing has been started. Afterwards nothing from the network throws or ends
-// the process.
+// Errors: the constructor throws ConfigError for a configuration that cannot be used, such as `subscribe`
+// twice for one message, an unknown type or a name taken, and for a TransportError of the backend. Then
+// nothing has been started. RunNode makes it one line and exit code 2; a program that makes the gateway by
+// hand catches it (RunProgram does that for any main()), or the exception ends the process. Afterwards
+// nothing from the network throws or ends the process.
 class GatewayManager : public RabitManager
 {
 public:

@@ -17,8 +17,8 @@ struct NodeProgram
     // The gateway's configuration file, unless the option --config names another.
     std::string ConfigFile;
     // Adds the program's managers to the reactor; the gateway is added after them. May complete the
-    // configuration. Also called with --check, when nothing is run: no manager should start anything before
-    // its Startup.
+    // configuration, and reads its Parameters: those of the file that it does not read are an error. Also
+    // called with --check, when nothing is run: no manager should start anything before its Startup.
     std::function<void(RabitReactor &reactor, GatewayConfig &config)> AddManagers;
     // For --help, which lists the options.
     std::string Description{};
@@ -28,7 +28,7 @@ struct NodeProgram
 
 // main() of such a program: reads options and configuration, runs the managers and the gateway until SIGINT
 // or SIGTERM, and returns the exit code as RunProgram says. Nothing is thrown. The options are those of
-// NodeOptions.
+// NodeOptions. Log lines on stderr begin with the node's name.
 int RunNode(int argc, char **argv, const NodeProgram &program);
 
 // The same for a program without options of its own.
