@@ -41,8 +41,8 @@ public:
     };
 
     // The manager must outlive the object, as a member of it does.
-    FleetValues(RabitManager &manager, std::string message, Wake wake = Wake::No)
-        : _manager(manager), _ending("/" + std::move(message)), _wake(wake)
+    FleetValues(RabitManager &manager, const std::string &message, Wake wake = Wake::No)
+        : _manager(manager), _ending(std::string("/").append(message)), _wake(wake)
     {
     }
 
