@@ -15,6 +15,7 @@ Commander::Commander(Settings settings, Rabit::RabitWorkspace &workspace)
     : RabitManager("Commands", workspace), _settings(std::move(settings)), _log(_settings.FirstId)
 {
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
+    AddPublishSubscribeMessage("Geofence", _fence);
     AddPublishSubscribeMessage("SearchArea", _area);
     AddPublishSubscribeMessage("CommandTally", _tally);
     AddPublishSubscribeMessage("CommandList", _list);
@@ -25,6 +26,8 @@ Commander::Commander(Settings settings, Rabit::RabitWorkspace &workspace)
 void Commander::Startup()
 {
     _start = GetWorkspace().GetClock().Monotonic();
+    *_fence = _settings.Fence;
+    _fence->PostMessage();
     Take(_settings.Area);
 }
 

@@ -26,7 +26,8 @@ namespace Ground
 //          the fleet should search; and Uav::CommandAck, from any aircraft.
 // Sends:   Uav::Goto, Uav::GoHome and Uav::Search to the queue MissionControl of an aircraft: those ordered,
 //          and those that its settings demand.
-// Posts:   SearchArea (Uav::SearchArea), at the start and when it changes; CommandList (Ground::CommandList)
+// Posts:   Geofence (Uav::Geofence) at the start; SearchArea (Uav::SearchArea), at the start and when it
+// changes; CommandList (Ground::CommandList)
 //          and CommandTally (Ground::CommandTally), when they change.
 // Fetches: Gateway/Fleet, and <node>/Pose of each node.
 //
@@ -43,6 +44,8 @@ public:
         std::uint32_t FirstId = 1;
         // The first search area of the fleet. The Commander sets its number.
         Uav::SearchArea Area{};
+        // The fence of the fleet; a radius of 0: none.
+        Uav::Geofence Fence{};
         // Aircraft that get a Search, once in each incarnation, as soon as they are UP with a fresh pose;
         // `*` is all aircraft. Only until the first Order for that aircraft: from then on a person commands
         // it.
@@ -122,6 +125,7 @@ private:
     std::map<std::string, Aircraft> _aircraft;
     std::set<std::string> _ordered;  // those that a person has commanded
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
+    std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
     std::shared_ptr<CommandList> _list = std::make_shared<CommandList>();

@@ -9,6 +9,7 @@
 #include "WebPage.h"
 #include "WebServer.h"
 
+#include <rabit/RabitLog.h>
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/node/NodeOptions.h>
@@ -117,6 +118,26 @@ Uav::SearchArea AreaOf(const Options &options)
     return area;
 }
 
+// The fence of the configuration file. Throws Rabit::ConfigError.
+Uav::Geofence FenceOf(const Rabit::NodeParameters &parameters)
+{
+    constexpr double atMostM = 1'000'000;
+    Uav::Geofence fence;
+    const auto read = [&parameters](const char *name, double &value, const Common::Range &range)
+    {
+        parameters.Read(name, value, range.Lowest, range.Highest);
+        return parameters.Has(name);
+    };
+    const bool hasMiddle = read("geofence_latitude_deg", fence.latitude_deg, Common::LatitudeDeg) &
+                           read("geofence_longitude_deg", fence.longitude_deg, Common::LongitudeDeg);
+    if (read("geofence_radius_m", fence.radius_m, {10, atMostM}) != hasMiddle)
+        parameters.Fail("geofence_radius_m",
+                        "a geofence needs all three of geofence_latitude_deg, "
+                        "geofence_longitude_deg and geofence_radius_m");
+    parameters.RefuseOthers();
+    return fence;
+}
+
 // Different in each second of four days, so that answers to an earlier run are told apart.
 std::uint32_t FirstCommandId()
 {
@@ -170,12 +191,13 @@ std::unique_ptr<Ground::WebPage> MakeWebPage(const Options &options, const Rabit
 }
 
 Ground::Commander::Settings CommanderSettings(const Options &options, const std::string &node,
-                                              const Uav::SearchArea &area)
+                                              const Uav::SearchArea &area, const Uav::Geofence &fence)
 {
     Ground::Commander::Settings settings;
     settings.Node = node;
     settings.FirstId = FirstCommandId();
     settings.Area = area;
+    settings.Fence = fence;
     settings.Searchers.insert(options.Searchers.begin(), options.Searchers.end());
     if (options.CommandPeriodS > 0)
         settings.Period = std::chrono::milliseconds(static_cast<int>(options.CommandPeriodS * 1000));
@@ -233,7 +255,9 @@ int Summarize(const Ground::FleetView &view, const Ground::Commander &commander,
 int Watch(const Options &options)
 {
     Rabit::GatewayConfig config = LoadConfig(options);
+    Rabit::RabitLog::SetName(config.Node);
     const Uav::SearchArea area = AreaOf(options);
+    const Uav::Geofence fence = FenceOf(config.Parameters);
     std::unique_ptr<Ground::WebServer> server = MakeWebServer(options);
     if (options.Node.Check)
         return 0;
@@ -246,7 +270,8 @@ int Watch(const Options &options)
     }
     auto view = std::make_unique<Ground::FleetView>(
         Ground::FleetView::Settings{options.Expected, MaxRatesOf(config)}, output);
-    auto commander = std::make_unique<Ground::Commander>(CommanderSettings(options, config.Node, area));
+    auto commander =
+        std::make_unique<Ground::Commander>(CommanderSettings(options, config.Node, area, fence));
     const Ground::FleetView &theView = *view;  // the reactor keeps both until the end of this function
     Ground::Commander &theCommander = *commander;
 

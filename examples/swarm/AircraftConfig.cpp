@@ -22,7 +22,7 @@ void CompleteAircraftConfig(Rabit::GatewayConfig &config, const std::string &gro
     bool takesTargets = false;
     for (Rabit::SubscribeRule &rule : config.Subscribe)
     {
-        if (rule.Message == "SearchArea")
+        if (rule.Message == "SearchArea" || rule.Message == "Geofence")
             rule.From = {ground};
         if (rule.Message != "Targets")
             continue;

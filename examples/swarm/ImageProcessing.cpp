@@ -16,7 +16,7 @@ ImageProcessing::ImageProcessing(const Names &names, World world, std::uint64_t 
       _names(names),
       _world(std::move(world)),
       _camera(seed),
-      _others(names, workspace)
+      _others(names, *this)
 {
     AddPublishSubscribeMessage(names.Own("Pose"), _pose);
     AddPublishSubscribeMessage(names.OwnVision("CameraView"), _view);
@@ -24,9 +24,9 @@ ImageProcessing::ImageProcessing(const Names &names, World world, std::uint64_t 
 
 void ImageProcessing::ExecuteUnitOfWork()
 {
-    if (_frameTimes.Due(GetWorkspace().GetClock().Monotonic()))
+    if (_frameTimes.IsDue(*this))
         TakeFrame();
-    SetWakeupTimeDelayMSec(_frameTimes.DelayMSec(GetWorkspace().GetClock().Monotonic()));
+    Rabit::RabitTimer::SleepUntilDue(*this, {&_frameTimes});
 }
 
 void ImageProcessing::TakeFrame()
@@ -40,7 +40,7 @@ void ImageProcessing::TakeFrame()
         return;
     PostView(*view);
     SendDetections(*view);
-    if (_pictureTimes.Due(GetWorkspace().GetClock().Monotonic()))
+    if (_pictureTimes.IsDue(*this))
         SendPicture(*view);
 }
 

@@ -2,12 +2,12 @@
 
 #include "Names.h"
 #include "OtherAircraft.h"
-#include "Schedule.h"
 #include "uav.idl.h"
 #include "vision/Camera.h"
 #include "vision/World.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/RabitTimer.h>
 
 #include <chrono>
 #include <cstdint>
@@ -49,8 +49,8 @@ private:
     const World _world;
     Camera _camera;
     OtherAircraft _others;
-    Schedule _frameTimes{FramePeriod};
-    Schedule _pictureTimes{PicturePeriod};
+    Rabit::RabitTimer _frameTimes{FramePeriod};
+    Rabit::RabitTimer _pictureTimes{PicturePeriod};
     std::uint32_t _poseUsed = 0;
     std::uint32_t _pictures = 0;
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();

@@ -1,7 +1,5 @@
 #include "MissionControl.h"
 
-#include <rabit/RabitLog.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -19,8 +17,9 @@ MissionControl::MissionControl(const Names &names, const std::string &ground, co
       _names(names),
       _hasFloor(floor.LowestM().has_value()),
       _mission(names.Aircraft(), *this, floor),
-      _others(names, workspace)
+      _others(names, *this)
 {
+    AddPublishSubscribeMessage(names.Of(ground, "Geofence"), _fence);
     AddPublishSubscribeMessage(names.Of(ground, "SearchArea"), _area);
     AddPublishSubscribeMessage(names.Own("Pose"), _pose);
     AddPublishSubscribeMessage(names.Own("FlightMode"), _mode);
@@ -28,6 +27,7 @@ MissionControl::MissionControl(const Names &names, const std::string &ground, co
     AddPublishSubscribeMessage(names.OwnVision("Targets"), _targets);
     AddPublishSubscribeMessage(names.Own("MissionState"), _state);
     AddPublishSubscribeMessage(names.Own("Findings"), _findings);
+    WakeUpManagerOnMessagePost(_fence);
     WakeUpManagerOnMessagePost(_area);
     WakeUpManagerOnMessagePost(_mode);
     WakeUpManagerOnMessagePost(_targets);
@@ -36,15 +36,14 @@ MissionControl::MissionControl(const Names &names, const std::string &ground, co
 void MissionControl::Startup()
 {
     if (!_hasFloor)
-        Rabit::RabitLog::Write(
-            Rabit::RabitLogLevel::Warning,
-            "mission control: there is no floor: points and search areas of any height are "
-            "accepted");
+        WriteLog(Rabit::RabitLogLevel::Warning,
+                 "there is no floor: points and search areas of any height are accepted");
 }
 
 void MissionControl::ExecuteUnitOfWork()
 {
     _mission.Update(LookAround());
+    TakeFence();
     TakeArea();
     TakeMessages();
     _mission.Act();
@@ -52,8 +51,8 @@ void MissionControl::ExecuteUnitOfWork()
                   [&](const std::string &to, const std::shared_ptr<Uav::CommandAck> &ack)
                   { return AddMessageToQueue(to, ack); });
     PostState();
-    const int delay = _stateTimes.DelayMSec(GetWorkspace().GetClock().Monotonic());
-    SetWakeupTimeDelayMSec(std::min(delay, static_cast<int>(ActPeriod.count())));
+    _acts.IsDue(*this);
+    Rabit::RabitTimer::SleepUntilDue(*this, {&_acts, &_stateTimes});
 }
 
 Situation MissionControl::LookAround()
@@ -76,15 +75,25 @@ Situation MissionControl::LookAround()
     return now;
 }
 
+// Before the area, which may lie in the new fence alone.
+void MissionControl::TakeFence()
+{
+    if (_fence->FetchMessage() && _fence->WasPosted())
+        Warn(_mission.Take(*_fence));
+}
+
 void MissionControl::TakeArea()
 {
     if (!_area->FetchMessage() || !_area->WasPosted())
         return;
-    const std::string problem = _mission.Take(*_area);
+    Warn(_mission.Take(*_area));
+}
+
+void MissionControl::Warn(const std::string &problem)
+{
     if (!problem.empty())
-        Rabit::RabitLog::Write(
-            Rabit::RabitLogLevel::Warning,
-            "mission control: search area " + std::to_string(_area->number) + " is declined: " + problem);
+        WriteLog(Rabit::RabitLogLevel::Warning,
+                 "search area " + std::to_string(_area->number) + " is declined: " + problem);
 }
 
 void MissionControl::TakeMessages()
@@ -143,7 +152,7 @@ void MissionControl::PostState()
     for (std::string *text : {&state.text, &state.area_declined})
         text->resize(std::min(text->size(), MaxText));
     std::vector<Uav::Finding> findings = _mission.Findings();
-    const bool due = _stateTimes.Due(GetWorkspace().GetClock().Monotonic());
+    const bool due = _stateTimes.IsDue(*this);
     if (due || state != *_state)
     {
         *_state = state;

@@ -2,12 +2,12 @@
 
 #include "Names.h"
 #include "OtherAircraft.h"
-#include "Schedule.h"
 #include "mission/Answers.h"
 #include "mission/Mission.h"
 #include "uav.idl.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/RabitTimer.h>
 
 #include <chrono>
 #include <cstdint>
@@ -23,7 +23,8 @@ namespace Swarm
 // Queue:   MissionControl takes Uav::Goto, Uav::GoHome and Uav::Search, and answers with Uav::CommandAck to
 //          the queue that the command names in reply_to; and from the other aircraft Uav::TargetReport and
 //          Uav::Validation.
-// Fetches: SearchArea of the ground station, Pose, FlightMode, Health and Targets of this aircraft, Pose and
+// Fetches: SearchArea and Geofence of the ground station, Pose, FlightMode, Health and Targets of this
+// aircraft, Pose and
 //          Findings of the others.
 // Posts:   MissionState (Uav::MissionState) and Findings (Uav::Findings), when they change and every second.
 // Sends:   Uav::Course to the queue Autopilot; TargetReport and Validation to the queue MissionControl of
@@ -34,7 +35,7 @@ public:
     static constexpr std::chrono::seconds StatePeriod{1};
     static constexpr std::chrono::milliseconds ActPeriod{200};
 
-    // `ground` is the node of the ground station whose SearchArea is used.
+    // `ground` is the node of the ground station whose SearchArea and Geofence are used.
     MissionControl(const Names &names, const std::string &ground = "ground", const Floor &floor = Floor(),
                    Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace());
 
@@ -48,7 +49,9 @@ private:
     bool Send(const std::string &aircraft, const Uav::Validation &validation) override;
 
     Situation LookAround();
+    void TakeFence();
     void TakeArea();
+    void Warn(const std::string &problem);
     void TakeMessages();
     void PostState();
 
@@ -57,8 +60,10 @@ private:
     Mission _mission;
     Answers _answers;
     OtherAircraft _others;
-    Schedule _stateTimes{StatePeriod};
+    Rabit::RabitTimer _acts{ActPeriod};
+    Rabit::RabitTimer _stateTimes{StatePeriod};
     std::uint32_t _courses = 0;
+    std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::FlightMode> _mode = std::make_shared<Uav::FlightMode>();

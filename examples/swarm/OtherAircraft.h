@@ -1,16 +1,13 @@
 #pragma once
 
 #include "Names.h"
-#include "Schedule.h"
 #include "uav.idl.h"
 
-#include <rabit/RabitWorkspace.h>
+#include <rabit/gateway/FleetValues.h>
 
-#include <chrono>
 #include <map>
-#include <memory>
 #include <string>
-#include <vector>
+#include <utility>
 
 namespace Swarm
 {
@@ -22,25 +19,40 @@ class OtherAircraft
 public:
     // An aircraft whose pose is older than this counts as absent.
     static constexpr double MaxAgeS = 3;
-    // Interval at which new aircraft are looked for.
-    static constexpr std::chrono::seconds LookPeriod{1};
 
-    // The workspace must outlive this object.
-    OtherAircraft(Names names, Rabit::RabitWorkspace &workspace);
+    // The manager must outlive this object.
+    OtherAircraft(Names names, Rabit::RabitManager &manager)
+        : _names(std::move(names)), _poses(manager, "Pose"), _findings(manager, "Findings")
+    {
+    }
 
     // The poses of the aircraft that are present now, by name.
-    std::map<std::string, Uav::Pose> Poses();
+    std::map<std::string, Uav::Pose> Poses()
+    {
+        _poses.Fetch();
+        return Others<Uav::Pose>(_poses.YoungerThan(MaxAgeS));
+    }
     // The findings of all aircraft that were ever present.
-    std::map<std::string, Uav::Findings> Findings();
+    std::map<std::string, Uav::Findings> Findings()
+    {
+        _findings.Fetch();
+        return Others<Uav::Findings>(_findings.All());
+    }
 
 private:
-    void Look();
+    template <typename T>
+    std::map<std::string, T> Others(const std::map<std::string, const T *> &all) const
+    {
+        std::map<std::string, T> others;
+        for (const auto &[name, value] : all)
+            if (name != _names.Aircraft())
+                others.emplace(name, *value);
+        return others;
+    }
 
     const Names _names;
-    Rabit::RabitWorkspace &_workspace;
-    Schedule _looks{LookPeriod};
-    std::map<std::string, std::shared_ptr<Uav::Pose>> _poses;
-    std::map<std::string, std::shared_ptr<Uav::Findings>> _findings;
+    Rabit::FleetValues<Uav::Pose> _poses;
+    Rabit::FleetValues<Uav::Findings> _findings;
 };
 
 }  // namespace Swarm

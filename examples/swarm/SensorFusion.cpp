@@ -7,23 +7,22 @@ SensorFusion::SensorFusion(const Names &names, Rabit::RabitWorkspace &workspace)
     : RabitManager(names.OwnVision("SensorFusion"), workspace),
       _names(names),
       _table(names.Aircraft()),
-      _others(names, workspace)
+      _others(names, *this)
 {
     AddPublishSubscribeMessage(names.OwnVision("Targets"), _targets);
 }
 
 void SensorFusion::ExecuteUnitOfWork()
 {
-    Rabit::RabitClock &clock = GetWorkspace().GetClock();
-    const bool due = _reportTimes.Due(clock.Monotonic());
+    const bool due = _reportTimes.IsDue(*this);
     if (TakeMessages() || due)
     {
-        const double now = clock.GpsTimeSeconds();
+        const double now = GetWorkspace().GetClock().GpsTimeSeconds();
         TellOthers(now);
         _table.Report(now, *_targets);
         _targets->PostMessage();
     }
-    SetWakeupTimeDelayMSec(_reportTimes.DelayMSec(clock.Monotonic()));
+    Rabit::RabitTimer::SleepUntilDue(*this, {&_reportTimes});
 }
 
 bool SensorFusion::TakeMessages()

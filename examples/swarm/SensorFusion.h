@@ -2,11 +2,11 @@
 
 #include "Names.h"
 #include "OtherAircraft.h"
-#include "Schedule.h"
 #include "uav.idl.h"
 #include "vision/TargetTable.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/RabitTimer.h>
 
 #include <chrono>
 #include <memory>
@@ -37,7 +37,7 @@ private:
     const Names _names;
     TargetTable _table;
     OtherAircraft _others;
-    Schedule _reportTimes{ReportPeriod};
+    Rabit::RabitTimer _reportTimes{ReportPeriod};
     std::shared_ptr<Uav::Targets> _targets = std::make_shared<Uav::Targets>();
 };
 

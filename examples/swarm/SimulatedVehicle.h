@@ -1,7 +1,10 @@
 #pragma once
 
-#include "Schedule.h"
 #include "Vehicle.h"
+
+#include <rabit/RabitTimer.h>
+
+#include <chrono>
 
 namespace Swarm
 {
@@ -18,7 +21,7 @@ public:
     std::optional<Motion> Update(Time now) override
     {
         const Motion motion = _flight.At(SecondsAt(now));
-        return _times.Due(now) ? std::optional<Motion>(motion) : std::nullopt;
+        return _times.IsDue(now) ? std::optional<Motion>(motion) : std::nullopt;
     }
     std::string NotReady(Time /*now*/) const override { return ""; }
     void FlyTo(const GeoPoint &point, double speedMps, Time now) override
@@ -27,13 +30,16 @@ public:
     }
     void Release(Time now) override { _flight.Release(SecondsAt(now)); }
     FlightPhase Phase() const override { return _flight.Phase(); }
-    int DelayMSec(Time now) const override { return _times.DelayMSec(now); }
+    int DelayMSec(Time now) const override
+    {
+        return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(_times.UntilDue(now)).count());
+    }
 
 private:
     double SecondsAt(Time now) const { return std::chrono::duration<double>(now - _start).count(); }
 
     Flight _flight;
-    Schedule _times{Period};
+    Rabit::RabitTimer _times{Period};
     Time _start{0};
 };
 

@@ -352,6 +352,16 @@ TEST_F(OrderedCommander, ShowsAnOrderThatTheGatewayDoesNotTake)
     EXPECT_TRUE(_gateway->All.empty());
 }
 
+TEST_F(Commander, PublishesItsGeofenceAlsoIfThereIsNone)
+{
+    Uav::Geofence fence;
+    fence.radius_m = 7;
+    Start({});
+    ASSERT_TRUE(_workspace.FetchMessage("Geofence", &fence));
+    EXPECT_TRUE(fence.WasPosted());
+    EXPECT_EQ(fence.radius_m, 0);
+}
+
 TEST_F(OrderedCommander, PublishesANewSearchAreaWithANumberOfItsOwn)
 {
     Uav::SearchArea before;

@@ -112,6 +112,22 @@ TEST_F(MissionControl, DeclinesACommandThatCannotBeFlownAndSaysWhy)
     EXPECT_EQ(_gateway->Accepted[0].second.reason, "speed_mps must be from 0.1 to 50, not 0");
 }
 
+TEST_F(MissionControl, KeepsTheGeofenceOfItsGroundStation)
+{
+    const auto fence = std::make_shared<Uav::Geofence>();
+    _workspace.AddPublishSubscribeMessage("ground/Geofence", fence);
+    fence->latitude_deg = Command(5).latitude_deg + 1;
+    fence->longitude_deg = Command(5).longitude_deg;
+    fence->radius_m = 1000;
+    fence->PostMessage();
+    Run(0ms);
+    Receive(Command(5));
+    EXPECT_TRUE(_autopilot->IsEmpty());
+    ASSERT_EQ(_gateway->Accepted.size(), 1u);
+    EXPECT_EQ(_gateway->Accepted[0].second.stage, Uav::CommandStage::COMMAND_DECLINED);
+    EXPECT_EQ(_gateway->Accepted[0].second.reason, "110.2 km outside of the geofence");
+}
+
 TEST_F(MissionControl, DeclinesACommandBelowItsFloorAndSaysWhy)
 {
     Uav::Goto command = Command(5);

@@ -471,6 +471,87 @@ TEST_F(MissionOf2, KeepsItsAreaWhenANewOneMakesNoSense)
     EXPECT_EQ(State().search_area, 1u);
 }
 
+Uav::Geofence FenceOf(double radiusM)
+{
+    Uav::Geofence fence;
+    fence.latitude_deg = Field.LatitudeDeg;
+    fence.longitude_deg = Field.LongitudeDeg;
+    fence.radius_m = radiusM;
+    return fence;
+}
+
+Uav::Goto GotoNorth(double metres, std::uint32_t id)
+{
+    const GeoPoint point = Swarm::Moved(Field, {metres, 0, 0});
+    Uav::Goto command;
+    command.id = id;
+    command.latitude_deg = point.LatitudeDeg;
+    command.longitude_deg = point.LongitudeDeg;
+    command.altitude_m = 500;
+    command.speed_mps = 10;
+    return command;
+}
+
+TEST_F(MissionOf2, DeclinesAPointOutsideOfTheGeofence)
+{
+    _mission->Take(FenceOf(3000));
+    _mission->Take(GotoNorth(2999, 5));
+    EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_ACCEPTED));
+    _mission->Take(GotoNorth(3250, 6));
+    EXPECT_THAT(_output.StagesOf(6), ElementsAre(Stage::COMMAND_DECLINED));
+    EXPECT_EQ(_output.Acks.back().reason, "250 m outside of the geofence");
+    Uav::Goto wrongSign = GotoNorth(0, 7);
+    wrongSign.latitude_deg = -wrongSign.latitude_deg;
+    _mission->Take(wrongSign);
+    EXPECT_EQ(_output.Acks.back().reason, "10538.3 km outside of the geofence");
+    EXPECT_EQ(State().mode, Mode::MISSION_GOTO) << "it flies on to the point inside";
+}
+
+TEST_F(MissionOf2, WithoutAGeofenceFliesAnywhere)
+{
+    _mission->Take(FenceOf(100));
+    _mission->Take(FenceOf(0));
+    _mission->Take(GotoNorth(100'000, 5));
+    EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_ACCEPTED));
+}
+
+TEST_F(MissionOf2, AGeofenceThatIsNoNumberEnclosesNothing)
+{
+    _mission->Take(FenceOf(std::numeric_limits<double>::quiet_NaN()));
+    _mission->Take(GotoNorth(10, 5));
+    EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_DECLINED));
+}
+
+TEST_F(MissionOf2, FliesHomeFromOutsideOfTheGeofence)
+{
+    Uav::Geofence far = FenceOf(100);
+    far.latitude_deg += 1;
+    _mission->Take(far);
+    Uav::GoHome home;
+    home.id = 5;
+    _mission->Take(home);
+    EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_ACCEPTED));
+}
+
+TEST_F(MissionOf2, DeclinesASearchAreaThatReachesOutOfTheGeofenceUntilTheFenceIsWider)
+{
+    _mission->Take(FenceOf(100));
+    Uav::SearchArea area;
+    area.number = 1;
+    area.latitude_deg = Field.LatitudeDeg;
+    area.longitude_deg = Field.LongitudeDeg;
+    area.north_m = area.east_m = 200;
+    area.altitude_m = 510;
+    area.speed_mps = 12;
+    area.lane_m = 50;
+    EXPECT_EQ(_mission->Take(area), "41 m outside of the geofence") << "its corners";
+    EXPECT_EQ(State().area_declined, "41 m outside of the geofence");
+    EXPECT_EQ(_mission->Take(FenceOf(150)), "");
+    EXPECT_EQ(State().area_declined, "");
+    EXPECT_EQ(State().search_area, 1u);
+    EXPECT_EQ(_mission->Take(FenceOf(100)), "41 m outside of the geofence");
+}
+
 TEST_F(MissionOf2, SendsACourseAgainThatTheAutopilotDoesNotFly)
 {
     GiveArea();

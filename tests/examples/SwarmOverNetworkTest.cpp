@@ -47,6 +47,7 @@ protected:
         Rabit::GatewayConfig config;
         config.Node = "ground";
         config.Domain = 7;  // of the files
+        config.Publish.push_back({.Message = "Geofence", .Type = "Uav::Geofence"});
         config.Publish.push_back({.Message = "SearchArea", .Type = "Uav::SearchArea"});
         config.Subscribe.push_back({.Message = "CameraView", .Type = "Uav::CameraView"});
         config.Accept.push_back({.Queue = "Commands", .Types = {"Uav::CommandAck"}});
@@ -56,6 +57,7 @@ protected:
         _pictures = std::make_shared<Rabit::RabitManager::RabitQueue>(100, "Pictures");
         _ground->Workspace.AddManagerMessageQueue("Commands", _answers);
         _ground->Workspace.AddManagerMessageQueue("Pictures", _pictures);
+        _ground->Register<Uav::Geofence>("Geofence")->PostMessage();  // none
         _area = _ground->Register<Uav::SearchArea>("SearchArea");
     }
     void AddAircraft(const std::string &aircraft, double eastM, std::uint64_t seed)

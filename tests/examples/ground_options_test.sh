@@ -49,6 +49,19 @@ refused_area altitude_m 10001 '-500 to 10000' 47.3977 8.5456 400 600 10001
 refused $'--command-period: it must be from 0.1 to 86400, not nan\nRun with --help for more information.' \
     --command-period nan
 
+# refused_parameters LINE PARAMETERS
+refused_parameters() {
+    printf 'node: ground\nparameters: %s\n' "$2" >"$work/fence.yaml"
+    timeout 60 "$ground" --config "$work/fence.yaml" --check >"$work/out" 2>"$work/err"
+    status=$?
+    [ "$status" -eq 2 ] || fail "$2: exit code $status"
+    [ "$(cat "$work/err")" = "$work/fence.yaml:2: $1" ] || fail "$2: not the line '$1'"
+}
+refused_parameters 'unknown parameter `geofence_radius`; did you mean `geofence_radius_m`?' '{geofence_radius: 3000}'
+refused_parameters '`geofence_radius_m` is 5; expected a number from 10 to 1e+06' '{geofence_radius_m: 5}'
+refused_parameters 'a geofence needs all three of geofence_latitude_deg, geofence_longitude_deg and geofence_radius_m' \
+    '{geofence_latitude_deg: 47, geofence_longitude_deg: 8}'
+
 # refused_setting LINE SETTING: a network setting that cannot work, on either backend.
 refused_setting() {
     local transport

@@ -133,6 +133,13 @@ Json ToJson(const Uav::SearchArea &area)
             {"lane_m", Rounded(static_cast<double>(area.lane_m), 10)}};
 }
 
+Json ToJson(const Uav::Geofence &fence)
+{
+    return {{"latitude_deg", Degrees(fence.latitude_deg)},
+            {"longitude_deg", Degrees(fence.longitude_deg)},
+            {"radius_m", Rounded(fence.radius_m, 10)}};
+}
+
 template <typename Message>
 void Add(Json &object, const char *name, const Aged<Message> &message)
 {
@@ -294,6 +301,8 @@ std::string SnapshotText(const StationData &data, const std::deque<StationEvent>
                      {"replayed", data.Replayed},
                      {"radio", ToJson(data.Radio)}};
     Add(snapshot, "area", data.Area);
+    if (data.Fence && data.Fence.Content->radius_m > 0)
+        Add(snapshot, "fence", data.Fence);
     snapshot["commands"] = data.Commands ? ToJson(*data.Commands.Content, data.Commands.AgeS) : Json::array();
     return snapshot.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -80,6 +80,7 @@ struct StationData
                                                                  // aircraft
     std::vector<AircraftData> Aircraft;
     Aged<Uav::SearchArea> Area;
+    Aged<Uav::Geofence> Fence;
     Aged<CommandList> Commands;
     std::vector<Rabit::Gateway::Problem> Problems;
     std::vector<std::string> Replayed;  // present nodes that play a recording

@@ -37,6 +37,7 @@ WebPage::WebPage(Settings settings, std::unique_ptr<WebServer> server, Rabit::Ra
     AddPublishSubscribeMessage("CommandList", _commands);
     AddPublishSubscribeMessage("CommandTally", _tally);
     AddPublishSubscribeMessage("SearchArea", _area);
+    AddPublishSubscribeMessage("Geofence", _fence);
     AddManagerMessageQueue("Pictures", _pictureQueue);
     for (const std::string &node : _settings.Expected)
         _followers[node] = std::make_unique<AircraftFollower>(node, workspace);
@@ -94,6 +95,7 @@ void WebPage::Look()
     _data.Number = ++_number;
     _data.FleetAgeS = _fleet->GetAgeSeconds();
     _data.Area = Latest(*_area);
+    _data.Fence = Latest(*_fence);
     _data.Commands = Latest(*_commands);
     _tally->FetchMessage();
     _data.Problems = AllProblems(*_fleet);

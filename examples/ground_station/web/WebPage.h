@@ -37,7 +37,7 @@ public:
     // Number of nodes that are followed; others are not shown.
     static constexpr std::size_t MaxNodes = 200;
     // Orders and search areas of all pages together within one second; further ones are refused.
-    static constexpr int MaxOrdersPerSecond = 20;
+    static constexpr int MaxOrdersPerSecond = 200;  // an order to all aircraft is one for each
     static constexpr int PicturesWaiting = 64;
 
     struct Settings
@@ -90,6 +90,7 @@ private:
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<CommandList> _commands = std::make_shared<CommandList>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
+    std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     const std::unique_ptr<WebServer> _server;  // last, as its thread uses the others
 };

@@ -51,14 +51,14 @@ std::optional<Motion> MavlinkVehicle::Update(Time now)
             Take(*frame, now);
         }
     }
-    if (_heartbeats.Due(now))
+    if (_heartbeats.IsDue(now))
     {
         Send(MavlinkHeartbeat{.Type = MavlinkHeartbeat::TypeOnboardController,
                               .Autopilot = MavlinkHeartbeat::AutopilotInvalid,
                               .SystemStatus = MavlinkHeartbeat::StatusActive}
                  .Encode());
     }
-    if (_target && IsHeard(now) && _targets.Due(now))
+    if (_target && IsHeard(now) && _targets.IsDue(now))
     {
         SendTarget(now);
     }
@@ -127,7 +127,7 @@ void MavlinkVehicle::FlyTo(const GeoPoint &point, double /*speedMps*/, Time now)
     if (IsHeard(now))
     {
         _target = point;
-        _targets = Schedule(std::chrono::milliseconds(500));
+        _targets = Rabit::RabitTimer(std::chrono::milliseconds(500));
     }
 }
 

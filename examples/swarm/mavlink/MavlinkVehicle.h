@@ -1,10 +1,11 @@
 #pragma once
 
-#include "../Schedule.h"
 #include "../Vehicle.h"
 #include "ByteChannel.h"
 #include "MavlinkFrame.h"
 #include "MavlinkMessages.h"
+
+#include <rabit/RabitTimer.h>
 
 #include <memory>
 #include <optional>
@@ -53,8 +54,8 @@ private:
     const std::unique_ptr<ByteChannel> _channel;
     MavlinkParser _parser;
     std::uint8_t _sequence = 0;
-    Schedule _heartbeats{std::chrono::seconds(1)};
-    Schedule _targets{std::chrono::milliseconds(500)};
+    Rabit::RabitTimer _heartbeats{std::chrono::seconds(1)};
+    Rabit::RabitTimer _targets{std::chrono::milliseconds(500)};
     Time _startedAt{0};
 
     std::optional<std::uint8_t> _system;  // the autopilot's

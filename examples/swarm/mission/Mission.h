@@ -55,9 +55,9 @@ struct Situation
 // A Goto or GoHome ends all that. An aircraft that holds the point of a Goto and has a recorded track goes
 // back to the track after a while.
 //
-// It declines a point and a search area below its floor. It also declines a Search while the last area is
-// declined, as it would search another area than the sender means. On the way home it flies no lower than
-// its floor.
+// It declines a point and a search area below its floor, or outside of the geofence. It also declines a
+// Search while the last area is declined, as it would search another area than the sender means. On the way
+// home it flies no lower than its floor.
 //
 // The owner calls Update, then Take for each input, then Act: each time anything may have changed, and a
 // few times a second. Not thread-safe.
@@ -86,6 +86,9 @@ public:
     // A new area takes effect at once. An invalid or too low area is declined, and the previous one stays
     // in force; returns the reason.
     std::string Take(const Uav::SearchArea &area);
+    // Holds from now on, also for the last search area that was heard. An order that is under way goes on.
+    // Returns the reason if that area is declined now.
+    std::string Take(const Uav::Geofence &fence);
     void Take(const Uav::Goto &command);
     void Take(const Uav::Search &command);
     void Take(const Uav::GoHome &command);
@@ -149,8 +152,10 @@ private:
     Situation _now;
     TargetBook _book;
     std::optional<GeoPoint> _home;
+    Uav::Geofence _fence;
     std::optional<Uav::SearchArea> _area;
-    std::string _areaDeclined;  // why the last area is not in force
+    std::optional<Uav::SearchArea> _heardArea;  // also if it was declined
+    std::string _areaDeclined;                  // why the last area is not in force
     std::optional<LawnMower> _mower;
 
     Uav::MissionMode _mode = Uav::MissionMode::MISSION_IDLE;

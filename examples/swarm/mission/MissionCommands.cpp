@@ -1,4 +1,5 @@
 // Commands from the ground station and the health monitor.
+#include "Fence.h"
 #include "Mission.h"
 #include "WhyNot.h"
 
@@ -34,9 +35,12 @@ void Mission::Update(Situation situation)
 
 std::string Mission::Take(const Uav::SearchArea &area)
 {
+    _heardArea = area;
     std::string problem = WhyNot(area);
     if (problem.empty())
         problem = _floor.WhyTooLow(area.altitude_m);
+    if (problem.empty())
+        problem = WhyOutside(_fence, area);
     _areaDeclined = problem;
     if (!problem.empty())
         return problem;
@@ -45,6 +49,14 @@ std::string Mission::Take(const Uav::SearchArea &area)
     if (_mode == Uav::MissionMode::MISSION_SEARCH)
         _mode = Uav::MissionMode::MISSION_TRANSIT;
     return "";
+}
+
+std::string Mission::Take(const Uav::Geofence &fence)
+{
+    if (fence == _fence)
+        return "";
+    _fence = fence;
+    return _heardArea ? Take(Uav::SearchArea(*_heardArea)) : "";
 }
 
 std::string Mission::WhyNotNow(bool mayBeTired) const
@@ -109,9 +121,11 @@ void Mission::Take(const Uav::Goto &command)
     std::string reason = WhyNot(command);
     if (reason.empty())
         reason = _floor.WhyTooLow(command.altitude_m);
+    const GeoPoint point{command.latitude_deg, command.longitude_deg, command.altitude_m};
+    if (reason.empty())
+        reason = WhyOutside(_fence, point);
     if (reason.empty())
         reason = WhyNotNow(false);
-    const GeoPoint point{command.latitude_deg, command.longitude_deg, command.altitude_m};
     if (reason.empty() && !Fly(point, command.speed_mps))
         reason = "the autopilot takes no commands now";
     if (!reason.empty())

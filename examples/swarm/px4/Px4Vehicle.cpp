@@ -91,7 +91,7 @@ std::optional<Motion> Px4Vehicle::Update(Time now)
 {
     _status->FetchMessage();
     TakeAnswer(now);
-    if (_awaitsAnswer && _attempts > 0 && IsHeard() && _repeats.Due(now))
+    if (_awaitsAnswer && _attempts > 0 && IsHeard() && _repeats.IsDue(now))
     {
         SendCommand(now);
     }
@@ -172,7 +172,7 @@ void Px4Vehicle::FlyTo(const GeoPoint &point, double speedMps, Time now)
     _speedMps = speedMps;
     _awaitsAnswer = true;
     _attempts = MostAttempts;
-    _repeats = Schedule(std::chrono::seconds(1));
+    _repeats = Rabit::RabitTimer(std::chrono::seconds(1));
     _refusal.clear();
 }
 

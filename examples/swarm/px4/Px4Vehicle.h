@@ -1,8 +1,8 @@
 #pragma once
 
-#include "../Schedule.h"
 #include "../Vehicle.h"
 
+#include <rabit/RabitTimer.h>
 #include <rabit/RabitWorkspace.h>
 
 #include <chrono>
@@ -78,7 +78,7 @@ private:
     double _speedMps = 0;
     bool _awaitsAnswer = false;
     int _attempts = 0;  // attempts left for the command
-    Schedule _repeats{std::chrono::seconds(1)};
+    Rabit::RabitTimer _repeats{std::chrono::seconds(1)};
     std::string _refusal;
     Time _refusedAt{0};
 };

@@ -35,6 +35,17 @@ protected:
     Json Shown() const { return Json::parse(Ground::SnapshotText(_data, _events)); }
 };
 
+TEST_F(Snapshot, TellsTheGeofenceIfThereIsOne)
+{
+    Uav::Geofence fence;
+    _data.Fence = {&fence, 1.0};
+    EXPECT_FALSE(Shown().contains("fence"));
+    fence.latitude_deg = 47.5;
+    fence.radius_m = 3000;
+    EXPECT_EQ(Shown()["fence"]["latitude_deg"], 47.5);
+    EXPECT_EQ(Shown()["fence"]["radius_m"], 3000);
+}
+
 TEST_F(Snapshot, TellsWhatIsKnownWithTheAgeOfEachPart)
 {
     _pose.latitude_deg = 47.123456789;

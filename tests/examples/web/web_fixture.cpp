@@ -109,6 +109,7 @@ public:
     {
         AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
         AddPublishSubscribeMessage("SearchArea", _area);
+        AddPublishSubscribeMessage("Geofence", _fence);
         AddPublishSubscribeMessage("CommandList", _commands);
         AddPublishSubscribeMessage("CommandTally", _tally);
         for (std::size_t i = 0; i < _aircraft.size(); ++i)
@@ -168,6 +169,8 @@ private:
                 _held = node == "held";
             if (what == "replay")
                 _replayed = node;
+            if (what == "fence")
+                SetFence(std::stod(node));
             if (what == "problems")
                 SetProblems(std::stoul(node));
             std::string text;
@@ -220,6 +223,13 @@ private:
         step.reason = reason;
         command.steps.push_back(step);
         _commands->PostMessage();
+    }
+    void SetFence(double radiusM)
+    {
+        _fence->latitude_deg = _area->latitude_deg;
+        _fence->longitude_deg = _area->longitude_deg;
+        _fence->radius_m = radiusM;
+        _fence->PostMessage();
     }
     void SetProblems(std::size_t count)
     {
@@ -400,6 +410,7 @@ private:
     int _step = 0;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
+    std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
     std::shared_ptr<Ground::CommandList> _commands = std::make_shared<Ground::CommandList>();
     std::shared_ptr<Ground::CommandTally> _tally = std::make_shared<Ground::CommandTally>();
 };

@@ -1,6 +1,7 @@
 // The search area: a draft that is moved and resized by mouse, keys or numbers, and then sent.
 /* global L */
 import {byId, setText} from './dom.js';
+import {outsideOf} from './fence.js';
 import {corners, moved, offset} from './geo.js';
 import {fixed, isNumber} from './format.js';
 import {describeHeight, knownGround} from './heights.js';
@@ -87,6 +88,12 @@ export class SearchAreaEditor {
     });
   }
 
+  // What is asked about again before it is sent; empty if nothing is.
+  get question() {
+    const outside = this.draft ? outsideOf(this.model.snapshot?.fence, corners(this.draft)) : '';
+    return [this.height.asks, outside && `The area is ${outside}: aircraft will decline it.`].filter((one) => one).join(' ');
+  }
+
   change(values) {
     const from = this.area ?? DEFAULTS;
     const draft = {};
@@ -146,9 +153,9 @@ export class SearchAreaEditor {
     if (!this.draft) return;
     const values = readNumbers(this.fields, byId('area-error'));
     if (!values || !this.model.live || this.sending) return;
-    const {asks} = this.height;
-    if (asks && this.askedAbout == null) {
-      this.askedAbout = asks;
+    const {question} = this;
+    if (question && this.askedAbout == null) {
+      this.askedAbout = question;
       this.update();
       byId('area-discard').focus();
       return;

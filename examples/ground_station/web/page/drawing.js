@@ -1,5 +1,5 @@
 // What is drawn on the canvas of the map, from the bottom up.
-import {corners, ellipse, metresPerDegreeOfLatitude, metresPerDegreeOfLongitude} from './geo.js';
+import {corners, ellipse, metresPerDegreeOfLatitude, metresPerDegreeOfLongitude, moved} from './geo.js';
 import {wayLeft} from './destinations.js';
 import {isNumber, STAGES, ageWithUnit} from './format.js';
 import {placesAround} from './labels.js';
@@ -65,6 +65,18 @@ export function drawArea(painter, area, isDraft, space) {
   const text = `${name}  ${Math.round(area.north_m)} × ${Math.round(area.east_m)} m`;
   space.block(x + 2, y - 7 - TEXT_PX, painter.textWidth(text), TEXT_PX);
   painter.label(text, x + 2, y - 7, colour);
+}
+
+export function drawFence(painter, fence) {
+  if (!fence) return;
+  const steps = 72;
+  const middle = {lat: fence.latitude_deg, lng: fence.longitude_deg};
+  const around = [...Array(steps).keys()].map((i) => {
+    const angle = (2 * Math.PI * i) / steps;
+    return painter.at(moved(middle, fence.radius_m * Math.cos(angle), fence.radius_m * Math.sin(angle)));
+  });
+  painter.path(around, true);
+  painter.stroke(painter.colours.area, 1.5, [2, 5]);
 }
 
 export function drawTrails(painter, trails, model) {

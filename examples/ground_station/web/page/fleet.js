@@ -9,8 +9,9 @@ const BATTERY_SIGNS = {'': '', warning: '▲ ', alarm: '■ '};
 const COLUMNS = ['name', 'state', 'age number', 'rtt number', 'delivery number', 'battery number', 'altitude number', 'speed number', 'mission'];
 
 export class FleetTable {
-  constructor(model, onSelect, onForget) {
-    Object.assign(this, {model, onSelect, onForget});
+  // onSelect(node), onForget(node), onMark(node).
+  constructor(model, {onSelect, onForget, onMark}) {
+    Object.assign(this, {model, onSelect, onForget, onMark});
     this.body = byId('fleet').tBodies[0];
     this.rows = new Map();
     this.body.addEventListener('keydown', (event) => this.onKey(event));
@@ -36,7 +37,7 @@ export class FleetTable {
     const mission = element('span');
     const why = element('span', 'why');
     cells[8].append(mission, why);
-    root.addEventListener('click', () => this.onSelect(aircraft.node));
+    root.addEventListener('click', ({ctrlKey, metaKey}) => (ctrlKey || metaKey ? this.onMark : this.onSelect)(aircraft.node));
     return {root, cells, mission, why, forget: null};
   }
 
@@ -66,7 +67,8 @@ export class FleetTable {
     const fresh = model.isPoseFresh(aircraft);
     const mark = (cell, name, isFresh) => setClass(cell, isFresh ? name : `${name} old`);
     this.offerForget(row, aircraft, state === 'lost');
-    setClass(root, model.shownState(aircraft) === 'stale' && state === 'up' ? 'stale' : state);
+    const marked = model.markedNodes.has(aircraft.node);
+    setClass(root, `${model.shownState(aircraft) === 'stale' && state === 'up' ? 'stale' : state}${marked ? ' marked' : ''}`);
     setAttribute(root, 'aria-selected', String(aircraft.node === model.selected));
     setText(cells[1], `${STATES[state].sign} ${STATES[state].word}`);
     // Where one thing is there and another is not, state and age would seem to contradict each other.
@@ -118,7 +120,11 @@ export class FleetTable {
 export function showSelected(model) {
   const aircraft = model.selectedAircraft;
   const known = aircraft !== null;
-  for (const name of ['goto', 'search', 'home', 'centre']) byId(`act-${name}`).disabled = !known;
+  const {marked} = model;
+  for (const name of ['goto', 'centre']) byId(`act-${name}`).disabled = !known;
+  for (const name of ['search', 'home']) byId(`act-${name}`).disabled = !known && marked.length === 0;
+  byId('act-all-home').disabled = model.aircraft.length === 0;
+  setText(byId('marked-text'), marked.length > 0 ? `✓ Search and Home are for those that are marked: ${marked.join(', ')}.` : '');
   if (!known) {
     setText(byId('selected-title'), 'No aircraft selected');
     setText(byId('selected-text'), 'Choose one in the list or on the map.');

@@ -34,11 +34,21 @@ const connection = new Connection(receive, (connected) => {
   model.connected = connected;
   show(false);
 });
-const table = new FleetTable(model, select, (node) => {
-  model.forget(node);
-  say(`${node} is forgotten until it is heard again.`);
+const mark = (node) => {
+  if (!node) return;
+  model.mark(node);
+  say(`${node} is ${model.markedNodes.has(node) ? 'marked' : 'not marked'}.`);
   show(false);
-  table.focus();
+};
+const table = new FleetTable(model, {
+  onSelect: select,
+  onMark: mark,
+  onForget: (node) => {
+    model.forget(node);
+    say(`${node} is forgotten until it is heard again.`);
+    show(false);
+    table.focus();
+  },
 });
 const orders = new Orders(model, connection, map, say);
 const area = new SearchAreaEditor(model, connection, map, say);
@@ -149,6 +159,7 @@ const step = (by) => {
   table.focus(next);
 };
 const help = () => byId('keys').showModal();
+const allHome = () => orders.open('home', null, model.byUrgency.map(({node}) => node));
 const centre = () => map.centre(model.selectedAircraft);
 
 listenForKeys([
@@ -157,6 +168,8 @@ listenForKeys([
   {key: 'g', what: 'Send the selected aircraft to a point', run: () => orders.open('goto')},
   {key: 's', what: 'Let it search', run: () => orders.open('search')},
   {key: 'h', what: 'Call it home', run: () => orders.open('home')},
+  {key: 'x', what: 'Mark it, or unmark it: Search and Home are for all that are marked', run: () => mark(model.selected)},
+  {key: 'H', what: 'Call all aircraft home', run: allHome},
   {key: 'c', what: 'Centre the map on it', run: centre},
   {key: 'f', what: 'Fit the map to the fleet and the search area', run: () => map.fit()},
   {key: 'm', what: 'Go to the map, which the arrow keys move', run: () => byId('map').focus()},
@@ -169,6 +182,7 @@ listenForKeys([
 byId('act-goto').addEventListener('click', () => orders.open('goto'));
 byId('act-search').addEventListener('click', () => orders.open('search'));
 byId('act-home').addEventListener('click', () => orders.open('home'));
+byId('act-all-home').addEventListener('click', allHome);
 byId('act-centre').addEventListener('click', centre);
 byId('fit').addEventListener('click', () => map.fit());
 byId('theme').addEventListener('click', nextTheme);

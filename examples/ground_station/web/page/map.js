@@ -3,7 +3,7 @@
 import {ageWithUnit, STATES} from './format.js';
 import {CanvasLayer} from './canvas.js';
 import {destinationsOf, wayLeft} from './destinations.js';
-import {blockTargets, drawArea, drawDestinations, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
+import {blockTargets, drawArea, drawDestinations, drawFence, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
 import {byId, element, setAttribute, setText} from './dom.js';
 import {LabelSpace, placesAround} from './labels.js';
 import {corners, distance} from './geo.js';
@@ -80,6 +80,7 @@ export class FleetMap {
     const cell = drawGrid(painter);
     const [area, isDraft] = this.areaToDraw();
     const space = new LabelSpace(painter.size);
+    drawFence(painter, this.model.snapshot?.fence);
     drawArea(painter, this.model.snapshot?.area, false, space);
     if (isDraft) drawArea(painter, area, true, space);
     drawFootprints(painter, this.model);
@@ -94,7 +95,8 @@ export class FleetMap {
     const text = this.destinations.map(({node, kind, left}) => `${node} ${kind} ${wayLeft(left)}`).join(', ');
     setAttribute(byId('map'), 'data-destinations', text);
     const size = cell >= 1000 ? `${cell / 1000} km` : `${cell} m`;
-    setText(byId('legend'), `Grid ${size} · ellipses 2σ · north up`);
+    const fence = this.model.snapshot?.fence ? ' · dotted circle: geofence' : '';
+    setText(byId('legend'), `Grid ${size} · ellipses 2σ · north up${fence}`);
   }
 
   get destinations() {

@@ -33,6 +33,7 @@ export class Model {
   takenAt = -Infinity;
   connected = false;
   selected = null;
+  markedNodes = new Set();  // those that an order to several goes to
   forgotten = new Set();  // LOST aircraft that a person has dismissed from this page, until they are heard again
   received = 0;
   skipped = 0;
@@ -52,6 +53,7 @@ export class Model {
   }
   forget(node) {
     this.forgotten.add(node);
+    this.markedNodes.delete(node);
     if (this.selected === node) this.selected = null;
   }
   // What needs attention first: LOST, STALE, a low battery, WAITING, UP; within each by name.
@@ -69,6 +71,13 @@ export class Model {
   }
   find(node) {
     return this.aircraft.find((one) => one.node === node) ?? null;
+  }
+  // In the order of the list.
+  get marked() {
+    return this.byUrgency.map(({node}) => node).filter((node) => this.markedNodes.has(node));
+  }
+  mark(node) {
+    if (!this.markedNodes.delete(node)) this.markedNodes.add(node);
   }
   get selectedAircraft() {
     return this.find(this.selected);

@@ -1,8 +1,9 @@
-// Sends a command to one aircraft, after a person has confirmed it.
+// Sends a command to one aircraft, or to several at once, after a person has confirmed it.
 import {byId, setText} from './dom.js';
 import {distance} from './geo.js';
 import {fixed, isNumber, STATES} from './format.js';
 import {wayLeft} from './destinations.js';
+import {outsideOf} from './fence.js';
 import {describeHeight, knownGround} from './heights.js';
 import {placeOf} from './model.js';
 
@@ -10,6 +11,7 @@ const DEFAULT_SPEED_MPS = 12;
 // A point that is farther from the aircraft is asked about again: this, or so many sides of the search area.
 const FAR_M = 5000;
 const FAR_SIDES = 10;
+const MOST_NAMED = 4;  // in a title
 const CLEAR_PX = 34;  // around what the form must not cover
 const FIELDS = [
   ['latitude', 'latitude_deg', -90, 90],
@@ -58,19 +60,21 @@ export class Orders {
     return !this.form.hidden;
   }
 
-  // kind: goto, home or search. point: where to; without one a Goto begins at the aircraft.
-  open(kind, point = null) {
+  // kind: goto, home or search. point: where to; without one a Goto begins at the aircraft. nodes: who gets it; without
+  // them those that are marked, or the selected one. A Goto is for the selected one alone: two do not fit at one point.
+  open(kind, point = null, nodes = null) {
     const aircraft = this.model.selectedAircraft;
-    if (!aircraft) {
+    const wanted = nodes ?? (kind === 'goto' ? [] : this.model.marked);
+    const receivers = wanted.length > 0 ? wanted : aircraft ? [aircraft.node] : [];
+    if (receivers.length === 0) {
       this.say('Select an aircraft first.');
       return;
     }
     if (!this.isOpen) this.cameFrom = document.activeElement;
-    if (!this.isOpen || this.kind !== kind || this.node !== aircraft.node) this.typed.clear();
+    if (!this.isOpen || this.kind !== kind || this.node !== receivers[0]) this.typed.clear();
     this.kind = kind;
-    this.node = aircraft.node;
-    const titles = {goto: `Send ${this.node} to a point`, home: `Call ${this.node} home?`, search: `Let ${this.node} search?`};
-    setText(byId('order-title'), titles[kind]);
+    this.nodes = receivers;
+    [this.node] = receivers;
     byId('order-fields').hidden = kind !== 'goto';
     this.askedAbout = null;
     setText(byId('order-error'), '');
@@ -127,7 +131,11 @@ export class Orders {
 
   // What is asked about again before it is sent; empty if nothing is.
   get question() {
-    return [this.height.asks, this.distanceAsked].filter((one) => one).join(' ');
+    return [this.height.asks, this.distanceAsked, this.fenceAsked].filter((one) => one).join(' ');
+  }
+  get fenceAsked() {
+    const outside = this.kind === 'goto' && this.point ? outsideOf(this.model.snapshot?.fence, [this.point]) : '';
+    return outside && `The point is ${outside}: ${this.node} will decline it.`;
   }
   get distanceAsked() {
     if (this.kind !== 'goto' || !this.point) return '';
@@ -139,11 +147,27 @@ export class Orders {
     return metres > far ? `The point is ${wayLeft(metres)} away from ${this.node}.` : '';
   }
 
+  get who() {
+    return this.nodes.length > MOST_NAMED ? `${this.nodes.length} aircraft` : this.nodes.join(', ');
+  }
+  // Who may get it late or not at all.
+  get doubtful() {
+    const states = this.nodes.map((node) => [node, this.stateOf(node)]).filter(([, state]) => state !== 'up');
+    if (states.length > MOST_NAMED) return [`▲ ${states.length} of them are not UP: they may get this late or not at all.`];
+    return states.map(([node, state]) => `${STATES[state].sign} ${node} is ${STATES[state].word}: it may get this late or not at all.`);
+  }
+  stateOf(node) {
+    const aircraft = this.model.find(node);
+    return aircraft ? this.model.shownState(aircraft) : 'lost';
+  }
+
   // What the person should know before it is sent. What stands between the page and the aircraft comes first: while that is
   // broken nobody knows how the aircraft is.
   update() {
     if (!this.isOpen) return;
     const {live, fleetFresh} = this.model;
+    const titles = {goto: `Send ${this.who} to a point`, home: `Call ${this.who} home?`, search: `Let ${this.who} search?`};
+    setText(byId('order-title'), titles[this.kind]);
     const again = this.askedAbout !== null;
     byId('order-send').disabled = !live || this.sending === true;
     setText(byId('order-send'), again ? 'Send it all the same' : {goto: 'Send', home: 'Call home', search: 'Start search'}[this.kind]);
@@ -162,8 +186,8 @@ export class Orders {
     const aircraft = this.model.find(this.node);
     const said = [];
     if (this.kind === 'goto') said.push(this.height.says);
-    const state = aircraft ? this.model.shownState(aircraft) : 'lost';
-    if (state !== 'up') said.unshift(`${STATES[state].sign} ${this.node} is ${STATES[state].word}: it may get this late or not at all.`);
+    const state = this.stateOf(this.node);
+    said.unshift(...this.doubtful);
     const from = placeOf(aircraft);
     if (this.kind === 'goto' && this.point && from) {
       said.push(`${Math.round(distance(from, this.point))} m from where it is${state === 'up' ? '' : ' said to have been'}.`);
@@ -205,14 +229,21 @@ export class Orders {
       byId('order-cancel').focus();
       return;
     }
-    const {kind, node} = this;
+    const {kind, nodes} = this;
     // The button loses the focus while it is disabled.
     const hadFocus = this.form.contains(document.activeElement);
     this.sending = true;
     this.update();
     try {
-      await this.connection.request({type: 'order', kind, node, ...values});
-      this.say(`${kind} for ${node} was given to the ground station.`);
+      const outcomes = await Promise.allSettled(nodes.map((node) => this.connection.request({type: 'order', kind, node, ...values})));
+      const failed = outcomes.map(({reason}, i) => ({node: nodes[i], reason})).filter(({reason}) => reason);
+      if (failed.length > 0) {
+        // Only those that did not get it are asked for again.
+        this.nodes = failed.map(({node}) => node);
+        const what = ({node, reason}) => (nodes.length > 1 ? `${node}: ${reason.message}` : reason.message);
+        throw new Error(failed.map(what).join('; '));
+      }
+      this.say(`${kind} for ${nodes.join(', ')} was given to the ground station.`);
       this.close(hadFocus);
     } catch (error) {
       setText(byId('order-error'), error.message);

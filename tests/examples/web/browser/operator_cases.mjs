@@ -422,6 +422,73 @@ async function dropsOrdersThatDiedWithTheAircraft(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+async function ordersSeveralAircraftAtOnce(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav3', (row) => /UP/.test(row.state), 'is UP');
+  await page.keyboard.press('H');
+  assert.equal(await fleet.text('#order-title'), 'Call uav1, uav2, uav3 home?');
+  assert.doesNotMatch(fixture.output, /order/, 'nothing is sent before it is confirmed');
+  await page.keyboard.press('Enter');
+  for (const node of ['uav1', 'uav2', 'uav3']) await fixture.says(new RegExp(`order 1 ${node} `), `${node} is called home`);
+  await becomes(async () => (await page.locator('#commands li').count()) === 3, 'each has a command of its own');
+  fixture.tell('progress 4 the battery is low');
+  await becomes(async () => /uav\d.*declined: the battery is low/.test(await fleet.text('#commands li')), 'with an outcome of its own');
+
+  // Some of them: marked by a key, and by Ctrl and a click.
+  await fleet.select('uav1');
+  await page.keyboard.press('x');
+  await page.locator('#fleet tbody tr', {hasText: 'uav3'}).first().click({modifiers: ['Control']});
+  assert.match(await fleet.text('#marked-text'), /marked: uav1, uav3\.$/);
+  assert.match(await page.getAttribute('#fleet tbody tr:nth-child(3)', 'class'), /\bmarked\b/);
+  await page.keyboard.press('s');
+  assert.equal(await fleet.text('#order-title'), 'Let uav1, uav3 search?');
+  await page.click('#order-send');
+  for (const node of ['uav1', 'uav3']) await fixture.says(new RegExp(`order 2 ${node} `), `${node} is told to search`);
+  await becomes(async () => (await page.locator('#commands li').count()) === 5, 'and no other');
+  // A point is for one.
+  await page.keyboard.press('g');
+  assert.equal(await fleet.text('#order-title'), 'Send uav1 to a point');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('x');
+  await page.locator('#fleet tbody tr', {hasText: 'uav3'}).first().click({modifiers: ['Control']});
+  assert.equal(await fleet.text('#marked-text'), '');
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function asksAgainOutsideOfTheGeofence(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state), 'is UP');
+  assert.doesNotMatch(await fleet.text('#legend'), /geofence/);
+  fixture.tell('fence 500');
+  await becomes(async () => /dotted circle: geofence/.test(await fleet.text('#legend')), 'the map has the fence');
+  await fleet.select('uav1');
+  const sendTo = async (latitude) => {
+    await page.click('#act-goto');
+    await page.fill('#order-latitude', String(latitude));
+    await page.fill('#order-longitude', '8.5456');
+    await page.click('#order-send');
+  };
+  await sendTo(47.3977 + 0.003);
+  await fixture.says(/order 0 uav1 47.4007/, 'a point inside is not asked about');
+  await becomes(() => page.isHidden('#order'), 'the form is closed');
+  await sendTo(47.3977 + 0.009);
+  assert.match(await fleet.text('#order-again'), /The point is 50\d m outside of the geofence: uav1 will decline it\. Is it meant so\?/);
+  await page.keyboard.press('Escape');
+  // The search area likewise.
+  await page.keyboard.press('a');
+  await page.fill('#area-north_m', '2000');
+  await page.click('#area-send');
+  assert.match(await fleet.text('#area-again'), /The area is 5\d\d m outside of the geofence: aircraft will decline it\./);
+  assert.doesNotMatch(fixture.output, /area/);
+  assert.deepEqual(fleet.errors, []);
+}
+
 export const cases = {
   asks_again_before_a_far_point: asksAgainBeforeAFarPoint,
   keeps_what_was_typed_for_this_order_alone: keepsWhatWasTypedForThisOrderAlone,
@@ -435,6 +502,8 @@ export const cases = {
   marks_a_low_battery: marksALowBattery,
   marks_a_target_that_nobody_sees: marksATargetThatNobodySees,
   drops_orders_that_died_with_the_aircraft: dropsOrdersThatDiedWithTheAircraft,
+  orders_several_aircraft_at_once: ordersSeveralAircraftAtOnce,
+  asks_again_outside_of_the_geofence: asksAgainOutsideOfTheGeofence,
   asks_again_before_a_large_descent: asksAgainBeforeALargeDescent,
   tells_what_is_declined_and_who_is_back_without_orders: tellsWhatIsDeclinedAndWhoIsBackWithoutOrders,
   says_what_is_missing: saysWhatIsMissing,

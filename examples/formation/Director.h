@@ -1,0 +1,116 @@
+// The manager of the ground program.
+#pragma once
+
+#include "Rules.h"
+
+#include <rabit/RabitManager.h>
+#include <rabit/RabitRequests.h>
+#include <rabit/gateway/FleetValues.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+namespace Formation
+{
+
+// Sends the formation back and forth, and prints what becomes of it. Takes LeadReply in its queue.
+class Director : public Rabit::RabitManager
+{
+public:
+    Director(int aircraft, double legM, double spacingM, Rabit::RabitWorkspace &workspace,
+             std::ostream &out = std::cout)
+        : RabitManager("Director", workspace),
+          _aircraft(aircraft),
+          _legM(legM),
+          _spacingM(spacingM),
+          _goal(legM),
+          _out(out)
+    {
+        SetPeriodSec(0.2);
+        SetWakeupBetweenTurns(true);  // replies are handled at once
+    }
+    void ExecuteUnitOfWork() final
+    {
+        TakeReplies();
+        if (!IsTurn())
+            return;
+        LookForCollisions();
+        const std::string leader = LeaderOfAll();
+        if (leader.empty())
+            return;
+        if (leader != _leader)
+            _out << "leader " << (_leader = leader) << std::endl;
+        if (_accepted && std::abs(PlaceOf(*_poses.Of(leader)) - SlotOf(leader, _spacingM) - _goal) < 2)
+        {
+            _out << "reached " << _goal.real() << " m, closest " << _closestM << " m" << std::endl;
+            _goal = _legM - _goal;
+            _accepted = false;
+        }
+        if (!_accepted && _requests.NumberOfOpen() == 0)
+            Send(leader + "/Election");
+    }
+
+private:
+    void Send(const std::string &queue)
+    {
+        auto lead = std::make_shared<Lead>();
+        lead->id = _requests.NextId();
+        lead->reply_to = "ground/Director";
+        lead->north_m = _goal.real();
+        lead->east_m = _goal.imag();
+        _requests.Send(queue, lead);
+    }
+    void TakeReplies()
+    {
+        std::shared_ptr<Rabit::RabitMessage> message;
+        while (GetManagerMessageQueue()->GetMessage(message))
+            if (const auto reply = std::dynamic_pointer_cast<const LeadReply>(message))
+                _requests.Take(reply->id, reply);
+        for (const auto &request : _requests.TakeEnded())
+        {
+            _accepted = request.Answer && request.Answer->leader + "/Election" == request.Queue;
+            _out << request.Queue << ": " << (_accepted ? "accepted" : ToString(request.End)) << std::endl;
+        }
+    }
+    // The one that all follow that are heard; empty while they do not agree, or did not all come yet.
+    std::string LeaderOfAll()
+    {
+        _leaders.Fetch();
+        const auto heard = _poses.YoungerThan(1);
+        _aircraft = heard.size() >= static_cast<std::size_t>(_aircraft) ? 0 : _aircraft;
+        std::string leader;
+        for (const auto &[node, pose] : heard)
+        {
+            const Leader *const said = _leaders.Of(node);
+            if (!said || (!leader.empty() && said->node != leader))
+                return "";
+            leader = said->node;
+        }
+        return _aircraft == 0 && heard.count(leader) == 1 ? leader : "";
+    }
+    void LookForCollisions()
+    {
+        _poses.Fetch();
+        const auto poses = _poses.YoungerThan(0.3);
+        for (const auto &[one, pose] : poses)
+            for (const auto &[other, there] : poses)
+                if (one != other)
+                    _closestM = std::min(_closestM, std::abs(PlaceOf(*pose) - PlaceOf(*there)));
+    }
+
+    int _aircraft;  // to wait for; 0: all came
+    const double _legM;
+    const double _spacingM;
+    Vector _goal;
+    std::ostream &_out;
+    Rabit::FleetValues<Pose> _poses{*this, "Pose"};
+    Rabit::FleetValues<Leader> _leaders{*this, "Leader"};
+    Rabit::RabitRequests<LeadReply> _requests{*this, std::chrono::seconds(3)};
+    std::string _leader;
+    bool _accepted = false;
+    double _closestM = 1e9;
+};
+
+}  // namespace Formation

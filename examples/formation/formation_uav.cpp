@@ -1,0 +1,21 @@
+// An aircraft of the formation. Its name is its place: uav1 to uav6.
+#include "Aircraft.h"
+
+#include <rabit/node/RunNode.h>
+
+int main(int argc, char **argv)
+{
+    Rabit::NodeProgram program;
+    program.ConfigFile = "formation_uav.yaml";
+    program.AddManagers = [](Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config)
+    {
+        Formation::Settings settings;
+        config.Parameters.Read("spacing_m", settings.SpacingM, 5, 200);
+        config.Parameters.Read("cruise_mps", settings.CruiseMps, 0.5, 8);
+        Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace();
+        reactor.AddManager(std::make_unique<Formation::Dynamics>(config.Node, settings, workspace));
+        reactor.AddManager(std::make_unique<Formation::Keeper>(config.Node, settings, workspace));
+        reactor.AddManager(std::make_unique<Formation::Election>(config.Node, workspace));
+    };
+    return Rabit::RunNode(argc, argv, program);
+}
