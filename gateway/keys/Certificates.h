@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ctime>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,11 @@ struct Validity
     std::time_t To = 0;
 };
 
+// Returns the passphrase of an encrypted private key in `file`; may throw KeysError.
+using AskPassphrase = std::function<std::string(const std::string &file)>;
+// The longest passphrase that OpenSSL reads.
+inline constexpr std::size_t LongestPassphrase = 1023;
+
 KeyPtr MakeKey();
 
 // Makes a self-signed authority. Its subject is `CN=<name>,O=<fleet>`.
@@ -31,12 +37,14 @@ RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X
                                const X509 &authority, EVP_PKEY &authorityKey, std::time_t now);
 
 std::string PemOf(const X509 &certificate);
-std::string PemOf(const EVP_PKEY &key);  // the secret half
+// The secret half as PKCS #8, encrypted (scrypt and AES-256) unless the passphrase is empty.
+std::string PemOf(const EVP_PKEY &key, const std::string &passphrase = "");
 std::string PemOf(const X509_CRL &revocations);
 
 // Throw KeysError, which names `file`.
 CertificatePtr ReadCertificate(std::string_view pem, const std::string &file);
-KeyPtr ReadKey(std::string_view pem, const std::string &file);
+// Without `ask`, an encrypted key is refused: at the start of a node no person is there to type.
+KeyPtr ReadKey(std::string_view pem, const std::string &file, const AskPassphrase &ask = {});
 RevocationsPtr ReadRevocations(std::string_view pem, const std::string &file);
 
 Validity ValidityOf(const X509 &certificate);

@@ -18,34 +18,10 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr const char *AuthorityFolder = "authority";
 constexpr const char *IssuedFolder = "issued";
 constexpr const char *RevokedFile = "revoked.pem";
 constexpr const char *OldEnding = ".old";
 constexpr std::time_t Day = 24 * 60 * 60;
-constexpr std::size_t LongestName = 64;  // limit of X.509
-
-// True for letters, digits, `_`, `.` and `-`, and no dot in front: that would be a hidden folder.
-bool IsFolderName(const std::string &name)
-{
-    const auto isGood = [](char c)
-    {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-               c == '.' || c == '-';
-    };
-    return !name.empty() && name.size() <= LongestName && name.front() != '.' &&
-           std::all_of(name.begin(), name.end(), isGood);
-}
-
-void CheckName(const std::string &node)
-{
-    if (!IsFolderName(node) || node == AuthorityFolder)
-    {
-        throw KeysError("`" + node +
-                        "` cannot be the name of a node with keys; expected 1 to 64 of A-Z a-z 0-9 _ . -, no "
-                        "dot in front, and not `authority`");
-    }
-}
 
 // Begins a day before now, for clocks that are slow.
 Validity ValidityFrom(const FleetKeys::Period &period)
@@ -81,7 +57,8 @@ int LockOf(const std::string &folder)
 
 }  // namespace
 
-void FleetKeys::Init(const std::string &folder, const std::string &fleet, const Period &period)
+void FleetKeys::Init(const std::string &folder, const std::string &fleet, const Period &period,
+                     const std::string &passphrase)
 {
     if (!IsFolderName(fleet))
     {
@@ -107,7 +84,7 @@ void FleetKeys::Init(const std::string &folder, const std::string &fleet, const 
         const KeyPtr key = MakeKey();
         const CertificatePtr certificate =
             MakeAuthority(fleet, name + " authority", *key, ValidityFrom(period));
-        WriteSecret(made + "/" + name + "_key.pem", PemOf(*key));
+        WriteSecret(made + "/" + name + "_key.pem", PemOf(*key, passphrase));
         WriteFile(made + "/" + name + ".pem", PemOf(*certificate));
         if (name == "identity")
         {
@@ -123,7 +100,8 @@ bool FleetKeys::IsFleet(const std::string &folder)
     return fs::is_directory(folder + "/" + AuthorityFolder);
 }
 
-FleetKeys::FleetKeys(const std::string &folder) : _folder(folder), _lock(LockOf(folder))
+FleetKeys::FleetKeys(const std::string &folder, AskPassphrase ask)
+    : _folder(folder), _ask(std::move(ask)), _lock(LockOf(folder))
 {
     try
     {
@@ -182,10 +160,15 @@ CertificatePtr FleetKeys::Authority(const char *name) const
     return ReadCertificate(ReadFile(file), file);
 }
 
-KeyPtr FleetKeys::AuthorityKey(const char *name) const
+EVP_PKEY &FleetKeys::AuthorityKey(const char *name) const
 {
-    const std::string file = Place(std::string(name) + "_key.pem");
-    return ReadKey(ReadSecret(file), file);
+    KeyPtr &key = _authorityKeys[name];
+    if (!key)
+    {
+        const std::string file = Place(std::string(name) + "_key.pem");
+        key = ReadKey(ReadSecret(file), file, _ask);
+    }
+    return *key;
 }
 
 std::vector<std::string> FleetKeys::Nodes() const
@@ -206,8 +189,8 @@ std::vector<std::string> FleetKeys::Nodes() const
 
 FleetKeys::Request FleetKeys::RequestOf(const std::string &node) const
 {
-    CheckName(node);
-    const NodeKeys keys(FolderOf(node));
+    CheckNodeName(node);
+    const NodeKeys keys(FolderOf(node), PrivateKeyPlace::HereOrOnNode);
     Request request{
         .Node = node, .Transport = HasSmallGuid(keys.Subject()) ? "cyclonedds" : "fastdds", .Access = {}};
     for (const Permissions::Rule &rule : keys.Permissions().Rules)
@@ -227,16 +210,62 @@ FleetKeys::Request FleetKeys::RequestOf(const std::string &node) const
 std::vector<std::string> FleetKeys::Issued(const std::string &node) const
 {
     std::vector<std::string> files;
-    for (const auto &entry : fs::directory_iterator(Place(IssuedFolder)))
+    for (const std::string &file : Issued())
     {
         // `uav1.7.pem`
-        if (entry.path().extension() == ".pem" && entry.path().stem().stem().string() == node)
+        if (fs::path(file).stem().stem().string() == node)
+        {
+            files.push_back(file);
+        }
+    }
+    return files;
+}
+
+std::vector<std::string> FleetKeys::Issued() const
+{
+    std::vector<std::string> files;
+    for (const auto &entry : fs::directory_iterator(Place(IssuedFolder)))
+    {
+        if (entry.path().extension() == ".pem")
         {
             files.push_back(entry.path().string());
         }
     }
     std::sort(files.begin(), files.end());
     return files;
+}
+
+// A key that two nodes have was copied with a disk, and a key with a revoked certificate may be stolen. The
+// present certificate of the node may have the key of an older, revoked one: renewing keeps the key.
+void FleetKeys::CheckFresh(const SigningRequest &request) const
+{
+    const std::string place = Place(RevokedFile);
+    const RevocationsPtr revoked = ReadRevocations(ReadFile(place), place);
+    const std::string present = NodeFiles(FolderOf(request.Node)).Certificate;
+    if (fs::exists(present) && IsKeyOf(*request.PublicKey, *ReadCertificate(ReadFile(present), present)))
+    {
+        return;
+    }
+    for (const std::string &file : Issued())
+    {
+        const CertificatePtr certificate = ReadCertificate(ReadFile(file), file);
+        if (!IsKeyOf(*request.PublicKey, *certificate))
+        {
+            continue;
+        }
+        if (const std::string owner = SubjectOf(*certificate).Node; owner != request.Node)
+        {
+            throw KeysError("the request of " + request.Node + " has the key of " + owner +
+                            ": each node needs its own; make it with `rabit keys request` on " +
+                            request.Node);
+        }
+        if (IsRevoked(*revoked, *certificate))
+        {
+            throw KeysError("the request of " + request.Node +
+                            " has a key whose certificate is revoked; remove the key on the node, and make "
+                            "another with `rabit keys request`");
+        }
+    }
 }
 
 // Returns a number that no certificate of the node has had: old permissions name the old subject.
@@ -261,7 +290,18 @@ unsigned FleetKeys::NextNumber(const Request &request) const
     return subject.Number;
 }
 
-void FleetKeys::Make(const std::string &folder, const Request &request, const Period &period) const
+EVP_PKEY &FleetKeys::KeyIn(const SigningRequest &signing, const std::string &node) const
+{
+    if (signing.Node != node)
+    {
+        throw KeysError("the request is of `" + signing.Node + "`, not of `" + node + "`");
+    }
+    CheckFresh(signing);
+    return *signing.PublicKey;
+}
+
+void FleetKeys::Make(const std::string &folder, const Request &request, const Period &period,
+                     EVP_PKEY *publicKey) const
 {
     if (request.Access.Domain > LargestDomain)
     {
@@ -276,13 +316,13 @@ void FleetKeys::Make(const std::string &folder, const Request &request, const Pe
     }
     const CertificatePtr identity = Authority("identity");
     const CertificatePtr permissions = Authority("permissions");
-    const KeyPtr permissionsKey = AuthorityKey("permissions");
+    EVP_PKEY &permissionsKey = AuthorityKey("permissions");
     const SubjectName subject{.Fleet = _fleet, .Number = NextNumber(request), .Node = request.Node};
-    const KeyPtr key = MakeKey();
+    const KeyPtr made = publicKey == nullptr ? MakeKey() : nullptr;
     const CertificatePtr certificate =
-        MakeCertificate(subject, *key, validity, *identity, *AuthorityKey("identity"));
+        MakeCertificate(subject, made ? *made : *publicKey, validity, *identity, AuthorityKey("identity"));
     const std::string document =
-        SignDocument(PermissionsText(subject, validity, request.Access), *permissions, *permissionsKey);
+        SignDocument(PermissionsText(subject, validity, request.Access), *permissions, permissionsKey);
     if (document.size() > LargestDocument)
     {
         throw KeysError("the permissions of " + request.Node + " take " + std::to_string(document.size()) +
@@ -296,13 +336,15 @@ void FleetKeys::Make(const std::string &folder, const Request &request, const Pe
     const NodeFiles files(folder);
     WriteFile(files.IdentityAuthority, PemOf(*identity));
     WriteFile(files.PermissionsAuthority, PemOf(*permissions));
-    WriteSecret(files.PrivateKey, PemOf(*key));
+    if (made)
+    {
+        WriteSecret(files.PrivateKey, PemOf(*made));
+    }
     WriteFile(files.Certificate, PemOf(*certificate));
     WriteFile(files.Revoked, ReadFile(Place(RevokedFile)));
     for (const Level level : {Level::Sign, Level::Encrypt})
     {
-        WriteFile(files.Governance(level),
-                  SignDocument(GovernanceText(level), *permissions, *permissionsKey));
+        WriteFile(files.Governance(level), SignDocument(GovernanceText(level), *permissions, permissionsKey));
     }
     WriteFile(files.Permissions, document);
     WriteFile(
@@ -310,22 +352,22 @@ void FleetKeys::Make(const std::string &folder, const Request &request, const Pe
         PemOf(*certificate));
 }
 
-void FleetKeys::Add(const Request &request, const Period &period) const
+void FleetKeys::Add(const Request &request, const Period &period, const SigningRequest *signing) const
 {
-    CheckName(request.Node);
+    CheckNodeName(request.Node);
     const std::string folder = FolderOf(request.Node);
     if (fs::exists(folder))
     {
         throw KeysError(folder + " is there already: nothing is changed; `rabit keys renew` makes new ones");
     }
     const std::string made = _folder + "/." + request.Node + ".new";
-    Make(made, request, period);
+    Make(made, request, period, signing != nullptr ? &KeyIn(*signing, request.Node) : nullptr);
     MoveTo(made, folder);
 }
 
-void FleetKeys::Renew(const Request &request, const Period &period) const
+void FleetKeys::Renew(const Request &request, const Period &period, const SigningRequest *signing) const
 {
-    CheckName(request.Node);
+    CheckNodeName(request.Node);
     const std::string folder = FolderOf(request.Node);
     if (!fs::exists(folder))
     {
@@ -333,7 +375,12 @@ void FleetKeys::Renew(const Request &request, const Period &period) const
     }
     const std::string made = _folder + "/." + request.Node + ".new";
     const std::string old = OldOf(request.Node);
-    Make(made, request, period);
+    KeyPtr kept;
+    if (const NodeFiles files(folder); signing == nullptr && !fs::exists(files.PrivateKey))
+    {
+        kept.reset(X509_get_pubkey(ReadCertificate(ReadFile(files.Certificate), files.Certificate).get()));
+    }
+    Make(made, request, period, signing != nullptr ? &KeyIn(*signing, request.Node) : kept.get());
     std::error_code ignored;
     fs::remove_all(old, ignored);
     MoveTo(folder, old);
@@ -356,8 +403,8 @@ std::size_t FleetKeys::RevokeFiles(const std::vector<std::string> &files, std::t
             certificates.push_back(std::move(certificate));
         }
     }
-    const std::string text = PemOf(
-        *MakeRevocations(before.get(), revoked, *Authority("identity"), *AuthorityKey("identity"), now));
+    const std::string text =
+        PemOf(*MakeRevocations(before.get(), revoked, *Authority("identity"), AuthorityKey("identity"), now));
     WriteFile(place, text);
     for (const std::string &node : Nodes())
     {
@@ -368,7 +415,7 @@ std::size_t FleetKeys::RevokeFiles(const std::vector<std::string> &files, std::t
 
 std::size_t FleetKeys::RevokeOlder(const std::string &node, std::time_t now) const
 {
-    CheckName(node);
+    CheckNodeName(node);
     const std::string file = NodeFiles(FolderOf(node)).Certificate;
     const unsigned current = SubjectOf(*ReadCertificate(ReadFile(file), file)).Number;
     std::vector<std::string> files = Issued(node);
@@ -379,7 +426,7 @@ std::size_t FleetKeys::RevokeOlder(const std::string &node, std::time_t now) con
 
 std::size_t FleetKeys::Revoke(const std::string &node, std::time_t now) const
 {
-    CheckName(node);
+    CheckNodeName(node);
     const std::vector<std::string> files = Issued(node);
     if (files.empty())
     {

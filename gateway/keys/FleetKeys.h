@@ -1,11 +1,14 @@
 #pragma once
 
 #include <ctime>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "keys/Access.h"
+#include "keys/Certificates.h"
 #include "keys/NodeKeys.h"
+#include "keys/SigningRequest.h"
 
 namespace Rabit::Keys
 {
@@ -29,12 +32,15 @@ public:
         int Days = 0;
     };
 
-    // Makes the folder and the authorities. Throws KeysError, as all functions here.
-    static void Init(const std::string &folder, const std::string &fleet, const Period &period);
+    // Makes the folder and the authorities. Encrypts the private keys of the authorities, unless the
+    // passphrase is empty. Throws KeysError, as all functions here.
+    static void Init(const std::string &folder, const std::string &fleet, const Period &period,
+                     const std::string &passphrase = "");
     // True if the folder has authorities.
     static bool IsFleet(const std::string &folder);
 
-    explicit FleetKeys(const std::string &folder);
+    // `ask` is called before the first signature, if the private keys of the authorities are encrypted.
+    explicit FleetKeys(const std::string &folder, AskPassphrase ask = {});
     ~FleetKeys();
     FleetKeys(const FleetKeys &) = delete;
     FleetKeys &operator=(const FleetKeys &) = delete;
@@ -47,10 +53,13 @@ public:
     // The request from which the node's present keys were made.
     Request RequestOf(const std::string &node) const;
 
-    void Add(const Request &request, const Period &period) const;
-    // Replaces the node's key, certificate and permissions by new ones. The old ones stay good to their end,
-    // unless they are revoked.
-    void Renew(const Request &request, const Period &period) const;
+    // Makes the folder of a node. With `signing`, a request of that node, the folder has no private key: the
+    // node has it.
+    void Add(const Request &request, const Period &period, const SigningRequest *signing = nullptr) const;
+    // Replaces the node's certificate and permissions by new ones, and its key by a new one or by that of
+    // `signing`. Without `signing`, a node whose folder has no private key keeps its key. The old ones stay
+    // good to their end, unless they are revoked.
+    void Renew(const Request &request, const Period &period, const SigningRequest *signing = nullptr) const;
     // RevokeOlder revokes every certificate that was made for the node except its present one. Revoke revokes
     // all, and removes the node's folder. Both write the new list into the folder of each node, and return
     // how many certificates they revoked.
@@ -59,19 +68,27 @@ public:
 
 private:
     CertificatePtr Authority(const char *name) const;
-    KeyPtr AuthorityKey(const char *name) const;
+    EVP_PKEY &AuthorityKey(const char *name) const;
     std::string Place(const std::string &name) const { return _folder + "/authority/" + name; }
-    // The files of the certificates that were made for a node.
+    // The files of the certificates that were made for a node, and for all.
     std::vector<std::string> Issued(const std::string &node) const;
+    std::vector<std::string> Issued() const;
+    void CheckFresh(const SigningRequest &request) const;
+    // The key of a request that is of that node, and fresh.
+    EVP_PKEY &KeyIn(const SigningRequest &signing, const std::string &node) const;
     unsigned NextNumber(const Request &request) const;
     // The place of a node's folder while a new one replaces it.
     std::string OldOf(const std::string &node) const;
     void FinishRenewals() const;
-    void Make(const std::string &folder, const Request &request, const Period &period) const;
+    // Makes the folder with a certificate for that public key; null: with a private key of its own.
+    void Make(const std::string &folder, const Request &request, const Period &period,
+              EVP_PKEY *publicKey) const;
     std::size_t RevokeFiles(const std::vector<std::string> &files, std::time_t now) const;
 
     const std::string _folder;
+    const AskPassphrase _ask;
     const int _lock;
+    mutable std::map<std::string, KeyPtr> _authorityKeys;  // read when first needed
     std::string _fleet;
     Validity _validity;
 };

@@ -4,12 +4,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
+#include "keys/Certificates.h"
 #include "keys/KeysError.h"
 
 namespace Rabit::Keys
@@ -54,42 +56,54 @@ std::string ModeText(mode_t mode)
     return text.data();
 }
 
+void CheckMode(const struct stat &status, const std::string &file, const char *remedy)
+{
+    if ((status.st_mode & OfOthers) != 0)
+    {
+        throw KeysError(file + " is not for its owner alone (mode " + ModeText(status.st_mode) +
+                        "): others may have read it. " + remedy);
+    }
+}
+
+// Appends the next bytes of a file, at most a page. Returns false at its end.
+bool ReadPart(const Descriptor &descriptor, const std::string &file, std::string &text)
+{
+    std::array<char, 4096> part{};
+    ssize_t got = 0;
+    do
+    {
+        got = ::read(descriptor.Get(), part.data(), part.size());
+    } while (got < 0 && errno == EINTR);
+    if (got < 0)
+    {
+        throw KeysError("cannot read " + file + ": " + Reason());
+    }
+    text.append(part.data(), static_cast<std::size_t>(got));
+    return got > 0;
+}
+
 std::string Read(const std::string &file, bool secret)
 {
-    const Descriptor descriptor(file, O_RDONLY, 0, "read");
+    // Opening a FIFO must not wait for a writer.
+    const Descriptor descriptor(file, O_RDONLY | O_NONBLOCK, 0, "read");
     struct stat status = {};
     if (::fstat(descriptor.Get(), &status) != 0 || !S_ISREG(status.st_mode))
     {
         throw KeysError(file + " is no file");
     }
-    if (secret && (status.st_mode & OfOthers) != 0)
+    if (secret)
     {
-        throw KeysError(file + " is not for its owner alone (mode " + ModeText(status.st_mode) +
-                        "): others may have read it. Make new keys, or `chmod 600` if you are sure");
+        CheckMode(status, file, "Make new keys, or `chmod 600` if you are sure");
     }
     std::string text;
-    std::array<char, 4096> part{};
-    for (;;)
+    while (ReadPart(descriptor, file, text))
     {
-        const ssize_t got = ::read(descriptor.Get(), part.data(), part.size());
-        if (got < 0 && errno == EINTR)
-        {
-            continue;
-        }
-        if (got < 0)
-        {
-            throw KeysError("cannot read " + file + ": " + Reason());
-        }
-        if (got == 0)
-        {
-            return text;
-        }
-        text.append(part.data(), static_cast<std::size_t>(got));
         if (text.size() > LargestFile)
         {
             throw KeysError(file + " is larger than 1 MiB");
         }
     }
+    return text;
 }
 
 void WriteAll(const Descriptor &descriptor, const std::string &file, std::string_view text)
@@ -141,6 +155,32 @@ std::string ReadFile(const std::string &file)
 std::string ReadSecret(const std::string &file)
 {
     return Read(file, true);
+}
+
+std::string ReadPassphrase(const std::string &file)
+{
+    const Descriptor descriptor(file, O_RDONLY, 0, "read");
+    struct stat status = {};
+    if (::fstat(descriptor.Get(), &status) != 0 || (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)))
+    {
+        throw KeysError(file + " is neither a file nor a pipe");
+    }
+    if (S_ISREG(status.st_mode))
+    {
+        CheckMode(status, file, "Choose another passphrase, or `chmod 600` if you are sure");
+    }
+    std::string text;
+    while (text.find('\n') == std::string::npos && text.size() <= LongestPassphrase + 1 &&
+           ReadPart(descriptor, file, text))
+    {
+    }
+    text.resize(std::min(text.size(), text.find('\n')));
+    if (text.empty() || text.size() > LongestPassphrase)
+    {
+        throw KeysError("the first line of " + file + " is no passphrase: 1 to " +
+                        std::to_string(LongestPassphrase) + " bytes are expected");
+    }
+    return text;
 }
 
 void WriteSecret(const std::string &file, std::string_view text)

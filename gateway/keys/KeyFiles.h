@@ -11,6 +11,9 @@ namespace Rabit::Keys
 std::string ReadFile(const std::string &file);
 // Like ReadFile, but refuses a file that others than its owner may read or write.
 std::string ReadSecret(const std::string &file);
+// Returns the first line of a file, or of a pipe such as /dev/fd/3, of up to 1023 bytes. Refuses an empty
+// line, and a file that others than its owner may read or write.
+std::string ReadPassphrase(const std::string &file);
 // Replace a file of that name as a whole, or not at all. The file of WriteSecret is never readable by anyone
 // but its owner.
 void WriteSecret(const std::string &file, std::string_view text);

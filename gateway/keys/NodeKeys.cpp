@@ -11,6 +11,8 @@ namespace Rabit::Keys
 namespace
 {
 
+namespace fs = std::filesystem;
+
 // Returns `write Pose`, `read Pose of uav1, uav2`.
 std::string WordsFor(const char *what, const TopicAccess &access)
 {
@@ -44,11 +46,19 @@ NodeFiles::NodeFiles(const std::string &folder)
 {
 }
 
-NodeKeys::NodeKeys(const std::string &folder) : _files(folder)
+NodeKeys::NodeKeys(const std::string &folder, PrivateKeyPlace place)
+    : _files(folder), _hasPrivateKey(fs::exists(_files.PrivateKey))
 {
-    if (!std::filesystem::is_directory(folder))
+    if (!fs::is_directory(folder))
     {
         throw KeysError("there is no folder of keys " + folder + "; `rabit keys add` makes one");
+    }
+    if (_hasPrivateKey && !fs::exists(_files.Certificate))
+    {
+        throw KeysError(
+            folder +
+            " has a private key and no certificate; copy the files into it that `rabit keys sign` "
+            "makes of its request");
     }
     const auto certificateIn = [](const std::string &file) { return ReadCertificate(ReadFile(file), file); };
     const CertificatePtr identity = certificateIn(_files.IdentityAuthority);
@@ -66,8 +76,12 @@ NodeKeys::NodeKeys(const std::string &folder) : _files(folder)
                         " is not signed by the identity authority beside it: it is of "
                         "another fleet");
     }
-    const KeyPtr key = ReadKey(ReadSecret(_files.PrivateKey), _files.PrivateKey);
-    if (!IsKeyOf(*key, *certificate))
+    if (!_hasPrivateKey && place == PrivateKeyPlace::Here)
+    {
+        throw KeysError("there is no " + _files.PrivateKey +
+                        "; a node that made a request has it, and needs the other files in the same folder");
+    }
+    if (_hasPrivateKey && !IsKeyOf(*ReadKey(ReadSecret(_files.PrivateKey), _files.PrivateKey), *certificate))
     {
         throw KeysError(_files.PrivateKey + " is not the key of the certificate beside it");
     }

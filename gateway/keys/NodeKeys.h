@@ -32,16 +32,26 @@ struct NodeFiles
     std::string Permissions;
 };
 
+// The place of a node's private key: with the other files, or, if those are for a node that made a request,
+// perhaps on the node alone.
+enum class PrivateKeyPlace
+{
+    Here,
+    HereOrOnNode
+};
+
 // The folder of a node, checked as far as this host can: each file exists and is valid, the files belong
 // together, and only the owner can read the private key.
 class NodeKeys
 {
 public:
     // Throws KeysError.
-    explicit NodeKeys(const std::string &folder);
+    explicit NodeKeys(const std::string &folder, PrivateKeyPlace place = PrivateKeyPlace::Here);
 
     const NodeFiles &Files() const { return _files; }
     const SubjectName &Subject() const { return _subject; }
+    // False only with PrivateKeyPlace::HereOrOnNode.
+    bool HasPrivateKey() const { return _hasPrivateKey; }
     const Validity &ValidityOf() const { return _validity; }
     // Outside of this time the node would refuse everybody.
     const Validity &ValidityOfRevocations() const { return _validityOfRevocations; }
@@ -60,6 +70,7 @@ private:
     SubjectName _subject;
     Validity _validity;
     Validity _validityOfRevocations;
+    bool _hasPrivateKey = true;
     bool _isRevoked = false;
     Rabit::Keys::Permissions _permissions;
 };

@@ -78,7 +78,8 @@ Candidates ValuesOf(const CLI::Option &option)
     {
         return {QosProfileWords.begin(), QosProfileWords.end()};
     }
-    if (name == "config" || name == "idl" || name == "to" || name == "plot" || name == "keys")
+    if (name == "config" || name == "idl" || name == "to" || name == "plot" || name == "keys" ||
+        name == "passphrase-file" || name == "request")
     {
         return {Files};
     }
@@ -251,7 +252,7 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     {
         return OptionsOf(command);
     }
-    static const Candidates ofFiles = {"check", "info", "recover", "play", "merge", "knew", "init"};
+    static const Candidates ofFiles = {"check", "info", "recover", "play", "merge", "knew", "init", "sign"};
     if (ofFiles.contains(command.get_name()))
     {
         return {Files};

@@ -17,8 +17,11 @@
 #include "Output.h"
 #include "SafeText.h"
 #include "keys/FleetKeys.h"
+#include "keys/KeyFiles.h"
 #include "keys/KeysCheck.h"
 #include "keys/KeysError.h"
+#include "keys/Passphrase.h"
+#include "keys/SigningRequest.h"
 #include "manager/NodeSecurity.h"
 
 namespace Rabit::Tool
@@ -36,14 +39,22 @@ struct Options
     std::vector<std::string> Nodes;
     std::string Config;
     std::vector<std::string> Configs;
+    std::vector<std::string> Requests;
+    std::string PassphraseFile;
     std::string Transport;
     int Domain = -1;  // the file's, or for a tool 0
     int Days = 365;
     int Ahead = 30;
     bool ForTool = false;
     bool RevokeOld = false;
+    bool AsksForPassphrase = false;
     bool Json = false;
 };
+
+Keys::FleetKeys FleetOf(const Options &options)
+{
+    return Keys::FleetKeys(options.Folder, Keys::PassphraseFrom(options.PassphraseFile));
+}
 
 Keys::FleetKeys::Period PeriodOf(const Options &options)
 {
@@ -85,18 +96,28 @@ Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &no
     return RequestFrom(config);
 }
 
-// Prints the new keys and their permissions. `revoked`: how many older certificates were revoked, if that was
-// asked for.
+Keys::SigningRequest SigningRequestIn(const std::string &file)
+{
+    return Keys::ReadSigningRequest(Keys::ReadFile(file), file);
+}
+
+// Prints the new keys and their permissions. `signing`: the request of the node, if it made one; `revoked`:
+// how many older certificates were revoked, if that was asked for.
 void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::string &node,
+              const Keys::SigningRequest *signing = nullptr,
               std::optional<std::size_t> revoked = std::nullopt)
 {
     const std::string folder = fleet.FolderOf(node);
-    const Keys::NodeKeys keys(folder);
+    const Keys::NodeKeys keys(folder, Keys::PrivateKeyPlace::HereOrOnNode);
     const std::string until = Keys::DayText(keys.ValidityOf().To);
     const std::vector<std::string> may = Keys::WhoMayWhat(keys);
     if (options.Json)
     {
         Json object{{"node", node}, {"folder", folder}, {"until", until}, {"may", may}};
+        if (signing != nullptr)
+        {
+            object["key"] = Keys::FingerprintOf(*signing->PublicKey);
+        }
         if (revoked)
         {
             object["revoked"] = *revoked;
@@ -110,8 +131,20 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
         {
             Output::Line("  " + SafeText(line));
         }
+        if (signing != nullptr)
+        {
+            Output::Line("  key " + Keys::FingerprintOf(*signing->PublicKey));
+        }
     }
-    Output::Talk("copy the folder to " + node + " by a way that nobody else can read, and " +
+    if (signing != nullptr)
+    {
+        Output::Talk("whoever wrote the request is " + node +
+                     " now: compare the key with the one that `rabit keys request` printed there");
+    }
+    Output::Talk((keys.HasPrivateKey()
+                      ? "copy the folder to " + node + " by a way that nobody else can read, and "
+                      : "copy the files in the folder into the folder on " + node +
+                            " that has its private key (they are not secret), and ") +
                  (options.ForTool ? "look at the fleet with `rabit nodes --keys <the folder there>`"
                                   : "write `security: {keys: <the folder there>}` into its configuration"));
     if (revoked)
@@ -123,16 +156,26 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
 
 int Init(const Options &options)
 {
-    Keys::FleetKeys::Init(options.Folder, options.FleetName, PeriodOf(options));
+    std::optional<std::string> passphrase = Keys::GivenPassphrase(options.PassphraseFile);
+    if (!passphrase && options.AsksForPassphrase)
+    {
+        passphrase =
+            Keys::TypedPassphrase("New passphrase of the authorities in " + options.Folder + ": ", true);
+    }
+    Keys::FleetKeys::Init(options.Folder, options.FleetName, PeriodOf(options), passphrase.value_or(""));
     const Keys::FleetKeys fleet(options.Folder);
     const std::string until = Keys::DayText(fleet.EndsAt());
     if (options.Json)
     {
-        Output::Object(Json{{"folder", options.Folder}, {"fleet", fleet.Fleet()}, {"until", until}});
+        Output::Object(Json{{"folder", options.Folder},
+                            {"fleet", fleet.Fleet()},
+                            {"until", until},
+                            {"encrypted", passphrase.has_value()}});
     }
     else
     {
-        Output::Line(options.Folder + ": fleet `" + fleet.Fleet() + "`, valid until " + until);
+        Output::Line(options.Folder + ": fleet `" + fleet.Fleet() + "`, valid until " + until +
+                     (passphrase ? ", private keys of the authorities encrypted" : ""));
     }
     Output::Talk("keep " + options.Folder +
                  "/authority where no node and no network reaches it: who has it can make keys for anybody");
@@ -141,37 +184,81 @@ int Init(const Options &options)
 
 int Add(const Options &options)
 {
-    const Keys::FleetKeys fleet(options.Folder);
+    const Keys::FleetKeys fleet = FleetOf(options);
     fleet.Add(RequestOf(options, options.Node), PeriodOf(options));
     ShowMade(options, fleet, options.Node);
     return Good;
 }
 
+int Request(const Options &options)
+{
+    const Keys::RequestedKeys made = Keys::RequestKeys(options.Folder, options.Node);
+    if (options.Json)
+    {
+        Output::Object(Json{{"node", options.Node},
+                            {"folder", options.Folder},
+                            {"request", made.File},
+                            {"key", made.Fingerprint}});
+    }
+    else
+    {
+        Output::Line(made.File + ": key " + made.Fingerprint);
+    }
+    Output::Talk(
+        "the private key stays here; copy the request to the fleet's folder of keys, and sign it there "
+        "with `rabit keys sign " +
+        options.Node + ".request.pem --config FILE`");
+    return Good;
+}
+
+int Sign(const Options &options)
+{
+    // All are read before the first is signed.
+    std::vector<Keys::SigningRequest> requests;
+    for (const std::string &file : options.Requests)
+    {
+        requests.push_back(SigningRequestIn(file));
+    }
+    const Keys::FleetKeys fleet = FleetOf(options);
+    for (const Keys::SigningRequest &signing : requests)
+    {
+        fleet.Add(RequestOf(options, signing.Node), PeriodOf(options), &signing);
+        ShowMade(options, fleet, signing.Node, &signing);
+    }
+    return Good;
+}
+
 int Renew(const Options &options)
 {
-    const Keys::FleetKeys fleet(options.Folder);
+    std::optional<Keys::SigningRequest> signing;
+    if (!options.Requests.empty())
+    {
+        signing = SigningRequestIn(options.Requests.front());
+    }
+    const Keys::SigningRequest *request = signing ? &*signing : nullptr;
+    const Keys::FleetKeys fleet = FleetOf(options);
     for (const std::string &node : options.Nodes)
     {
-        Keys::FleetKeys::Request request =
+        Keys::FleetKeys::Request access =
             options.Config.empty() ? fleet.RequestOf(node) : RequestOf(options, node);
         if (!options.Transport.empty())
         {
-            request.Transport = options.Transport;
+            access.Transport = options.Transport;
         }
-        fleet.Renew(request, PeriodOf(options));
+        fleet.Renew(access, PeriodOf(options), request);
         std::optional<std::size_t> revoked;
         if (options.RevokeOld)
         {
             revoked = fleet.RevokeOlder(node, std::time(nullptr));
         }
-        ShowMade(options, fleet, node, revoked);
+        ShowMade(options, fleet, node, request, revoked);
     }
     return Good;
 }
 
 int Revoke(const Options &options)
 {
-    const Keys::FleetKeys fleet(options.Folder);
+    const Keys::FleetKeys fleet = FleetOf(options);
     const std::size_t count = fleet.Revoke(options.Node, std::time(nullptr));
     if (options.Json)
     {
@@ -232,7 +319,8 @@ std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const Gate
     return findings;
 }
 
-// Reports on one node's folder; returns true if it is good.
+// Reports on one node's folder; returns true if it is good. Beside the authorities it may lack the private
+// key.
 bool Check(const std::string &folder, const std::map<std::string, GatewayConfig> &configs,
            const Options &options)
 {
@@ -242,12 +330,19 @@ bool Check(const std::string &folder, const std::map<std::string, GatewayConfig>
     std::string until;
     try
     {
-        const Keys::NodeKeys keys(folder);
+        const std::filesystem::path parent = std::filesystem::weakly_canonical(folder).parent_path();
+        const Keys::NodeKeys keys(folder, Keys::FleetKeys::IsFleet(parent.string())
+                                              ? Keys::PrivateKeyPlace::HereOrOnNode
+                                              : Keys::PrivateKeyPlace::Here);
         name = keys.Subject().Node;
         until = Keys::DayText(keys.ValidityOf().To);
         words = Keys::WhoMayWhat(keys);
         const auto config = configs.find(name);
         findings = FindingsOf(keys, config == configs.end() ? nullptr : &config->second, options.Ahead);
+        if (!keys.HasPrivateKey())
+        {
+            findings.push_back({false, "its private key is on the node alone"});
+        }
     }
     catch (const Keys::KeysError &error)
     {
@@ -327,6 +422,29 @@ void AddDays(CLI::App &command, Options &options, int days)
         ->capture_default_str();
 }
 
+void AddPassphrase(CLI::App &command, Options &options)
+{
+    command.add_option(
+        "--passphrase-file", options.PassphraseFile,
+        "Its first line opens the authorities' private keys, or /dev/fd/3 for a pipe; default: "
+        "RABIT_KEYS_PASSPHRASE of the environment, or the terminal");
+}
+
+// The options that say what a node may do.
+void AddAccess(CLI::App &command, Options &options)
+{
+    CLI::Option *config = command.add_option("--config", options.Config,
+                                             "The node's configuration: what it needs is what it may do");
+    config->check(CLI::ExistingFile);
+    CLI::Option *tool = command.add_flag("--tool", options.ForTool,
+                                         "For this program: it may read everything, and publishes nothing");
+    config->excludes(tool);
+    command.add_option("--domain", options.Domain, "DDS domain, in place of the file's; of a tool: 0")
+        ->check(CLI::Range(0, Keys::LargestDomain));
+    command.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
+    AddDays(command, options, 365);
+}
+
 using Command = int (*)(const Options &);
 
 std::shared_ptr<Options> AddCommand(CLI::App &keys, const char *name, const char *help, Command run,
@@ -339,6 +457,20 @@ std::shared_ptr<Options> AddCommand(CLI::App &keys, const char *name, const char
     return options;
 }
 
+// Runs the command if it is told what the nodes may do.
+void NeedAccess(CLI::App &command, const std::shared_ptr<Options> &options, Command run, Chosen &chosen)
+{
+    command.callback(
+        [options, run, &chosen]
+        {
+            if (options->Config.empty() && !options->ForTool)
+            {
+                throw CLI::RequiredError("--config or --tool");
+            }
+            chosen.RunToEnd = [options, run] { return run(*options); };
+        });
+}
+
 }  // namespace
 
 void AddKeysCommand(CLI::App &app, Chosen &chosen)
@@ -349,10 +481,16 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
 
     auto init = AddCommand(*keys, "init", "Makes the two authorities of a new fleet", &Init, chosen, command);
     AddExamples(*command, {"rabit keys init", "rabit keys init fleet_keys --name survey",
-                           "rabit keys init --days 365 --json"});
+                           "rabit keys init --passphrase", "rabit keys init --days 365 --json"});
     command->add_option("FOLDER", init->Folder, "Where to")->capture_default_str();
     command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
     AddDays(*command, *init, 3650);
+    command->add_flag("--passphrase", init->AsksForPassphrase,
+                      "Asks at the terminal for a passphrase, and encrypts the authorities' private keys");
+    command->add_option(
+        "--passphrase-file", init->PassphraseFile,
+        "Encrypts them with the first line of this file, or of /dev/fd/3 for a pipe; default: "
+        "RABIT_KEYS_PASSPHRASE of the environment, if it is set");
 
     auto add =
         AddCommand(*keys, "add", "Makes a node's key, certificate and permissions", &Add, chosen, command);
@@ -361,25 +499,31 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
                  "rabit keys add uav1 --config uav1.yaml --days 30"});
     command->add_option("NODE", add->Node, "Name of the node")->required();
     AddFolder(*command, *add);
-    CLI::Option *config = command->add_option("--config", add->Config,
-                                              "The node's configuration: what it needs is what it may do");
-    config->check(CLI::ExistingFile);
-    CLI::Option *tool = command->add_flag("--tool", add->ForTool,
-                                          "For this program: it may read everything, and publishes nothing");
-    config->excludes(tool);
-    command->add_option("--domain", add->Domain, "DDS domain, in place of the file's; of a tool: 0")
-        ->check(CLI::Range(0, Keys::LargestDomain));
-    command->add_option("--transport", add->Transport, "DDS implementation, in place of the file's");
-    AddDays(*command, *add, 365);
-    command->callback(
-        [add, &chosen]
-        {
-            if (add->Config.empty() && !add->ForTool)
-            {
-                throw CLI::RequiredError("--config or --tool");
-            }
-            chosen.RunToEnd = [add] { return Add(*add); };
-        });
+    AddAccess(*command, *add);
+    AddPassphrase(*command, *add);
+    NeedAccess(*command, add, &Add, chosen);
+
+    auto request = AddCommand(*keys, "request",
+                              "On a node: makes its private key, which stays there, and a request for a "
+                              "certificate",
+                              &Request, chosen, command);
+    AddExamples(*command, {"rabit keys request uav1", "rabit keys request uav1 --to /etc/rabit/keys",
+                           "rabit keys request uav1 --json"});
+    command->add_option("NODE", request->Node, "Name of the node")->required();
+    command->add_option("--to", request->Folder, "The node's folder of keys, made if it is not there")
+        ->capture_default_str();
+
+    auto sign = AddCommand(*keys, "sign",
+                           "Makes certificates and permissions for nodes that made requests: no secret files",
+                           &Sign, chosen, command);
+    AddExamples(*command, {"rabit keys sign uav1.request.pem --config uav1.yaml",
+                           "rabit keys sign uav1.request.pem uav2.request.pem --config uav.yaml",
+                           "rabit keys sign laptop.request.pem --tool --domain 7"});
+    command->add_option("REQUEST", sign->Requests, "Files that `rabit keys request` made")->required();
+    AddFolder(*command, *sign);
+    AddAccess(*command, *sign);
+    AddPassphrase(*command, *sign);
+    NeedAccess(*command, sign, &Sign, chosen);
 
     auto check = AddCommand(*keys, "check", "What is wrong with keys, and who may do what", &CheckAll, chosen,
                             command);
@@ -395,14 +539,31 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     auto renew = AddCommand(*keys, "renew", "Makes new ones in place of those that nodes have", &Renew,
                             chosen, command);
     AddExamples(*command, {"rabit keys renew uav1", "rabit keys renew uav1 uav2 --days 30",
-                           "rabit keys renew uav1 --config uav1.yaml --revoke-old"});
+                           "rabit keys renew uav1 --config uav1.yaml --revoke-old",
+                           "rabit keys renew uav1 --request uav1.request.pem"});
     command->add_option("NODE", renew->Nodes, "Names of the nodes")->required();
     AddFolder(*command, *renew);
     command->add_option("--config", renew->Config, "The node's configuration, if it has changed")
         ->check(CLI::ExistingFile);
     command->add_option("--transport", renew->Transport, "DDS implementation, if it has changed");
     command->add_flag("--revoke-old", renew->RevokeOld, "The older ones are not to be believed any more");
+    CLI::Option *withRequest =
+        command
+            ->add_option("--request", renew->Requests,
+                         "A request of the node for another key; without it, a node that "
+                         "made a request keeps its key")
+            ->expected(1);
     AddDays(*command, *renew, 365);
+    AddPassphrase(*command, *renew);
+    command->callback(
+        [renew, withRequest, &chosen]
+        {
+            if (withRequest->count() > 0 && renew->Nodes.size() > 1)
+            {
+                throw CLI::ValidationError("--request", "a request is of one node");
+            }
+            chosen.RunToEnd = [renew] { return Renew(*renew); };
+        });
 
     auto revoke =
         AddCommand(*keys, "revoke", "A node is not to be believed any more", &Revoke, chosen, command);
@@ -410,6 +571,7 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
                            "rabit keys revoke uav3 --json"});
     command->add_option("NODE", revoke->Node, "Name of the node")->required();
     AddFolder(*command, *revoke);
+    AddPassphrase(*command, *revoke);
 }
 
 }  // namespace Rabit::Tool
