@@ -21,6 +21,9 @@ constexpr int MostParticipants = 100;
 constexpr int ParticipantsPerPeer = 16;
 // Largest size of the vendor's headers in a datagram with a fragment of a sample.
 constexpr std::size_t HeaderRoom = 100;
+// Size of the protection of a submessage: SEC_PREFIX, SEC_BODY and SEC_POSTFIX. The vendor sends a
+// HEARTBEAT_FRAG behind each fragment of a sample, in a datagram of its own if the fragment leaves no room.
+constexpr std::size_t SubmessageProtection = 56;
 // Largest size of signatures, which the vendor adds to a message that is already full.
 constexpr std::size_t SecurityRoom = 256;
 
@@ -123,7 +126,7 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         << "</AllowMulticast>"
         << "<DontRoute>" << (IsRoutingNeeded(settings) ? "false" : "true") << "</DontRoute>"
         << "<MaxMessageSize>" << largest << "B</MaxMessageSize>"
-        << "<FragmentSize>" << largest - HeaderRoom
+        << "<FragmentSize>" << largest - HeaderRoom - (settings.Security ? 2 * SubmessageProtection : 0)
         << "B</FragmentSize></General>"
         // Between sessions that share a domain, the vendor delivers samples inside Write. So each session has
         // a domain of its own; only on the network it has the configured number.

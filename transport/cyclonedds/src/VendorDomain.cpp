@@ -9,11 +9,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "AnnouncedEndpoints.h"
 #include "DomainConfig.h"
+#include "SampleBurst.h"
 #include "VendorLog.h"
 #include "VendorTraffic.h"
 #include "common/HeldDatagrams.h"
@@ -273,8 +275,21 @@ RabitCycloneWays VendorDomain::WaysTo(void *self, const unsigned char *address)
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
 {
-    SessionLog &log = *static_cast<const VendorDomain *>(self)->_log;
-    IsOfSamplesSent({head, headSize}) ? log.SentSamples(1, size) : log.SentDiscovery(1, size);
+    const auto &domain = *static_cast<const VendorDomain *>(self);
+    if (!IsOfSamplesSent({head, headSize}))
+    {
+        domain._log->SentDiscovery(1, size);
+        return;
+    }
+    domain._log->SentSamples(1, size);
+    if (domain._secured)
+    {
+        thread_local SampleBurst burst;
+        if (const auto pause = burst.Sent(size, std::chrono::steady_clock::now()); pause.count() > 0)
+        {
+            std::this_thread::sleep_for(pause);
+        }
+    }
 }
 
 std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size,
