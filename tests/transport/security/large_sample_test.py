@@ -8,44 +8,21 @@ import collections
 import os
 import pathlib
 import re
-import socket
-import struct
 import sys
 import tempfile
-import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
 import harness  # noqa: E402
+import loopback  # noqa: E402
 from interop_keys import make_keys  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 90
 SKIPPED = 77
-ETHERTYPE_IP = 0x0800
-UDP = 17
 NODES = (("first", "fastdds"), ("second", "cyclonedds"))
 MAX_DATAGRAM = 1400
 FRAME = 4_000_000
-
-
-class Sizes(threading.Thread):
-    """The sizes of the datagrams on loopback, by their source port."""
-
-    def __init__(self):
-        super().__init__(daemon=True)
-        self._socket = socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM, socket.htons(ETHERTYPE_IP))
-        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
-        self._socket.bind(("lo", ETHERTYPE_IP))
-        self.of = collections.defaultdict(list)
-
-    def run(self):
-        while True:
-            packet, (_, _, direction, *_) = self._socket.recvfrom(64)
-            header = (packet[0] & 15) * 4
-            if direction != socket.PACKET_OUTGOING and packet[9] == UDP:
-                port, _, size = struct.unpack_from("!HHH", packet, header)
-                self.of[port].append(size - 8)
 
 
 def main():
@@ -53,8 +30,8 @@ def main():
     harness.enter_namespace()
     if os.environ[harness.IN_NAMESPACE] != "yes":
         sys.exit(SKIPPED)
-    sizes = Sizes()
-    sizes.start()
+    sizes = collections.defaultdict(list)  # of datagrams, by their source port
+    loopback.Watch(lambda source, _, datagram: sizes[source].append(len(datagram)))
     with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
         folder = pathlib.Path(folder)
         make_keys(rabit, folder, NODES, 0)
@@ -63,8 +40,8 @@ def main():
                                   "--interface", "127.0.0.1", "--count", 1, "--keys", folder / "keys" / name])
                  for (name, transport), other in zip(NODES, reversed(names))]
         nodes[0].wait_for(re.compile(r"frame life=\d+").fullmatch, LIMIT_S)
-    cyclone = [found for found in list(sizes.of.values()) if sum(found) > FRAME / 2 and max(found) <= MAX_DATAGRAM]
-    assert len(cyclone) == 1, {port: (len(found), max(found)) for port, found in sizes.of.items()}
+    cyclone = [found for found in list(sizes.values()) if sum(found) > FRAME / 2 and max(found) <= MAX_DATAGRAM]
+    assert len(cyclone) == 1, {port: (len(found), max(found)) for port, found in sizes.items()}
     mean = sum(cyclone[0]) / len(cyclone[0])
     print(f"{len(cyclone[0])} datagrams of {mean:.0f} bytes on average, the largest {max(cyclone[0])}")
     assert mean > 0.7 * MAX_DATAGRAM, "the fragments share their datagrams with nothing"
