@@ -1,22 +1,24 @@
 #!/usr/bin/env python3
-"""Somebody forges the first announcement of a participant: that samples for it go to another port. What is written to it
-alone must reach it all the same, for its endpoints say where they are. Those of Cyclone DDS do not, so the participant is
-one of Fast DDS.
+"""Somebody forges the first announcement of a participant that another one hears: that samples for it go to another port.
+What is written to it alone must reach it all the same, because its endpoints say where they are: in its card, or, with
+keys, in their announcements over Fast DDS. With keys, endpoints of Cyclone DDS do not say it.
 
-Usage: forged_address_test.py NODE TRANSPORT...
-TRANSPORTs are those of the other node. Needs root."""
+Usage: forged_address_test.py RABIT NODE TRANSPORT...
+Needs root."""
 
 import contextlib
 import pathlib
 import re
 import struct
 import sys
+import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1] / "integration"), str(HERE.parent / "security")]
 import field  # noqa: E402
 import harness  # noqa: E402
 import wire as between  # noqa: E402
+from interop_keys import make_keys  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 60
@@ -28,43 +30,56 @@ SKIPPED = 77
 
 
 class Case:
-    """Of alpha's announcements the first is forged."""
+    """bravo hears nothing of alpha before the forged announcement."""
 
-    def __init__(self, node, transports, number):
-        self.node, self.transports, self.number = node, dict(zip(NODES, transports)), number
+    def __init__(self, programs, transports, secured, number):
+        self.rabit, self.node = programs
+        self.transports, self.secured, self.number = dict(zip(NODES, transports)), secured, number
         self.wire = self.failure = None
+        self.listens = False
         self.forged = 0
+
+    def __str__(self):
+        return "+".join(self.transports.values()) + (", with keys" if self.secured else "")
 
     def change(self, node, datagram):
         out = bytearray(datagram)
         for each in between.submessages(out):
-            if node == "alpha" and self.forged == 0 and each.writer == between.ANNOUNCEMENT:
+            if node == "bravo":
+                self.listens |= each.writer == between.ANNOUNCEMENT
+            elif self.forged == 0 and each.writer == between.ANNOUNCEMENT and self.listens:
                 found, order = between.parameters(out, each)
                 for number, at, _ in found:
                     if number == DEFAULT_UNICAST_LOCATOR:
                         struct.pack_into(order + "I", out, at + 8, NOBODYS_PORT)
                         self.forged += 1
-        return [out]
+        return [out] if node == "bravo" or self.forged > 0 else []
 
     def run(self):
         try:
             self.wire.change = self.change
-            nodes = {name: self.wire.start(
-                name, [self.node, "--node", name, "--other", self.wire.other(name), "--transport", transport,
-                       "--interface", "eth0", "--count", ORDERS, "--no-frame"])
-                     for name, transport in reversed(self.transports.items())}
-            for process in nodes.values():
-                process.wait_for(re.compile(f"settled round=1 delivered={ORDERS} in_doubt=0").fullmatch, LIMIT_S)
-            if self.forged == 0:
-                raise AssertionError("nothing was forged")
+            with tempfile.TemporaryDirectory() as folder:
+                self.exchange(pathlib.Path(folder))
         except Exception as error:  # the others go on
             self.failure = str(error)
 
+    def exchange(self, folder):
+        if self.secured:
+            make_keys(self.rabit, folder, self.transports.items(), 0)
+        nodes = [self.wire.start(name, [self.node, "--node", name, "--other", self.wire.other(name), "--transport",
+                                        transport, "--interface", "eth0", "--count", ORDERS, "--no-frame",
+                                        *(["--keys", folder / "keys" / name] if self.secured else [])])
+                 for name, transport in self.transports.items()]
+        for process in nodes:
+            process.wait_for(re.compile(f"settled round=1 delivered={ORDERS} in_doubt=0").fullmatch, LIMIT_S)
+
 
 def main():
-    node, transports = sys.argv[1], sys.argv[2:]
+    programs, transports = sys.argv[1:3], sys.argv[3:]
     harness.enter_namespace()
-    cases = [Case(node, ("fastdds", bravo), number) for number, bravo in enumerate(transports)]
+    kinds = [(alpha, bravo, secured) for alpha in transports for bravo in transports
+             for secured in ((False, True) if alpha == "fastdds" else (False,))]
+    cases = [Case(programs, (alpha, bravo), secured, number) for number, (alpha, bravo, secured) in enumerate(kinds)]
     try:
         with contextlib.ExitStack() as wires:
             for case in cases:
@@ -74,7 +89,7 @@ def main():
         print(f"skipped: {reason}")
         sys.exit(SKIPPED)
     for case in cases:
-        print(f"{'+'.join(case.transports.values())}: {case.failure or 'delivered'}")
+        print(f"{case}: {case.failure or 'delivered'}")
     sys.exit(1 if any(case.failure for case in cases) else 0)
 
 
