@@ -10,12 +10,14 @@
 //   heard <node> <count>     the first sample of this node, and the tenth, the twentieth ...
 //   said <node> <text>       a sample of this node does not have its name as text; the first ten
 //   log <line>
-// Ends with its standard input.
+// Ends with its standard input. The environment variable SECURED_PEER_BACKEND_CONFIG names a file of the
+// vendor's.
 #include <rabit/transport/TransportFactory.h>
 
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -78,6 +80,10 @@ Rabit::TransportSettings SettingsFrom(char **argv, const Options &options)
     settings.Memory = settings.Lease;
     settings.AnnouncementPeriod = std::chrono::milliseconds(500);
     settings.Log = [](const std::string &line) { Say("log " + line); };
+    if (const char *file = std::getenv("SECURED_PEER_BACKEND_CONFIG"))
+    {
+        settings.BackendConfig = file;
+    }
     const std::string folder = argv[4];
     if (folder != "-")
     {

@@ -1,0 +1,215 @@
+// Published faults of Fast DDS that any datagram can reach.
+#include "faults/Datagrams.h"
+#include "guard/DeliveryCheck.h"
+
+namespace Faults
+{
+
+using namespace RtpsBytes;
+using Rabit::Rtps::ParticipantEntity;
+using Rabit::Rtps::ParticipantWriter;
+using Rabit::Rtps::PublicationsWriter;
+
+namespace
+{
+
+constexpr std::uint8_t HasInlineQos = 0x03;
+constexpr std::uint8_t HasData = 0x05;
+// Announcements and requests of types, of XTypes 1.3.
+constexpr std::uint16_t TypeInformation = 0x0075;
+constexpr EntityId TypeRequestsWriter = 0x000300c3;
+constexpr EntityId PublicationsReader = 0x000003c7;
+constexpr EntityId PublicationsAnnouncedHere = 0x000003c2;
+constexpr std::uint16_t PropertyList = 0x0059;
+constexpr std::uint16_t BuiltinEndpoints = 0x0058;
+
+Bytes Announced(const Bytes &more)
+{
+    // Port 9 discards what the vendor answers. The endpoints are those of announcements and liveliness.
+    constexpr std::uint32_t AllBuiltinEndpoints = 0x0c3f;
+    return List({Parameter(0x0015, {2, 3, 0, 0}), Parameter(0x0016, {1, 15, 0, 0}),
+                 Parameter(0x0050, Guid(Sender, ParticipantEntity)),
+                 Parameter(0x0002, Join({U32(20), U32(0)})),
+                 Parameter(0x0032, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
+                 Parameter(0x0031, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
+                 Parameter(BuiltinEndpoints, U32(AllBuiltinEndpoints)), more});
+}
+
+Bytes ParticipantWith(const Bytes &more)
+{
+    return Message(Data, DataBody(2, Announced(more), ParticipantWriter), HasData);
+}
+
+Bytes WriterWith(const Bytes &more)
+{
+    return Message(
+        Data,
+        DataBody(1,
+                 List({Parameter(0x005a, Guid(Sender, UserWriter)), Parameter(0x0005, Text("Pose")),
+                       Parameter(0x0007, Text("Uav::Pose")), more}),
+                 PublicationsWriter, PublicationsReader),
+        HasData);
+}
+
+// A gap of the writer of endpoints, which every participant listens to.
+Bytes Gapped(std::int64_t start, std::int64_t base)
+{
+    return Message(Gap, Join({Ids(PublicationsReader, PublicationsAnnouncedHere), Sequence(start),
+                              Sequence(base), Bits(0)}));
+}
+
+}  // namespace
+
+Bytes Announcement()
+{
+    return Message(Data, DataBody(1, Announced({}), ParticipantWriter), HasData);
+}
+
+// The name of the property says that it has 64 kB; 8 bytes follow.
+Bytes PropertyLongerThanItsList()
+{
+    return ParticipantWith(Parameter(PropertyList, Join({U32(1), U32(0x10000), Bytes(8, 'x')})));
+}
+
+// The list says that it has 65535 properties and has one, whose value is nearly 4 GB long.
+Bytes PropertiesThatAreNotThere()
+{
+    return ParticipantWith(
+        Parameter(PropertyList, Join({U32(0xffff), Text("name"), U32(0xfffffffc), Bytes(4, 'x')})));
+}
+
+// The description of a type begins with a length of 4 GB, which Fast CDR refuses by an exception.
+Bytes DescriptionOfATypeThatIsNone()
+{
+    return WriterWith(Parameter(TypeInformation, Join({U32(0xffffffff), Bytes(12, 0xff)})));
+}
+
+// A sample of the topic of requests for types, which has an encapsulation that Fast CDR does not know.
+Bytes RequestForTypesThatIsNone()
+{
+    return Message(Data, DataBody(1, Join({{0xff, 0xff, 0, 0}, Bytes(24, 0xff)}), TypeRequestsWriter),
+                   HasData);
+}
+
+// Both numbers of the heartbeat are negative.
+Bytes HeartbeatOfNegativeNumbers()
+{
+    return Message(Heartbeat, HeartbeatBody(-5, -9, 1, PublicationsWriter));
+}
+
+// Samples have numbers from 1 on.
+Bytes GapFromNumberZero()
+{
+    return Gapped(0, 0);
+}
+
+// The first number behind the gap is below the gap's first.
+Bytes GapThatEndsBeforeItBegins()
+{
+    return Gapped(9, 2);
+}
+
+// The offset of the inline QoS is 37,392 bytes, in a submessage of 24.
+Bytes SampleWithInlineQosOutside()
+{
+    constexpr std::uint8_t Flags = 0x17;  // as described: inline QoS, data, and one without a meaning here
+    return Message(Data, Join({{0, 0, 0x10, 0x92}, Ids(0, ParticipantWriter), Sequence(2), {1, 0, 0, 0}}),
+                   Flags);
+}
+
+// The same in a fragment.
+Bytes FragmentWithInlineQosOutside()
+{
+    return Message(DataFrag,
+                   Join({{0, 0, 0x1c, 0x92},
+                         Ids(PublicationsReader, PublicationsWriter),
+                         Sequence(1),
+                         U32(1),
+                         U16(1),
+                         U16(64),
+                         U32(64),
+                         {1, 0, 0, 0}}),
+                   HasInlineQos);
+}
+
+// The only parameter of the inline QoS is 256 bytes long and ends in the padding behind the submessage: what
+// is left for the sample is a negative size.
+Bytes SampleWithInlineQosBeyondItsEnd()
+{
+    constexpr std::uint8_t Pad = 0x01;
+    constexpr std::uint8_t QosAndData = 0x07;
+    return Join({Message(Data,
+                         Join({{0, 0, 16, 0},
+                               Ids(PublicationsReader, PublicationsWriter),
+                               Sequence(1),
+                               U16(0x0029),
+                               U16(256)}),
+                         QosAndData),
+                 Submessage(Pad, Join({Bytes(252), {1, 0, 0, 0}, Bytes(64)}))});
+}
+
+// The gap is 2^39 numbers wide: the vendor notes each of them.
+Bytes GapOfBillions()
+{
+    return Gapped(2, std::int64_t{1} << 39);
+}
+
+// A disposal of the participant, in plain: anybody can send it in another's name.
+Bytes Goodbye()
+{
+    constexpr std::uint8_t OnlyInlineQos = 0x03;
+    return Message(Data,
+                   DataBody(3,
+                            Join({Parameter(0x0070, Guid(Sender, ParticipantEntity)),
+                                  Parameter(0x0071, {0, 0, 0, 3}),
+                                  {1, 0, 0, 0}}),
+                            ParticipantWriter),
+                   OnlyInlineQos);
+}
+
+// The name of the partition has no zero byte at its end.
+Bytes PartitionWithoutAnEnd()
+{
+    return WriterWith(Parameter(0x0029, Join({U32(1), U32(8), Bytes(8, 'x')})));
+}
+
+// The set of numbers has 2^31 bits; 256 is the most that a set may have.
+Bytes AcknowledgementOfTooManyBits()
+{
+    return Message(AckNack, Join({Ids(PublicationsReader, PublicationsWriter), Sequence(1), U32(0x80000000),
+                                  Bytes(64, 0xff), U32(1)}));
+}
+
+Bytes HonestHeartbeat()
+{
+    return Message(Heartbeat, HeartbeatBody(1, 1, 1, PublicationsWriter));
+}
+
+// A million samples, of a writer that has written one.
+Bytes HeartbeatFarAhead()
+{
+    return Message(Heartbeat, HeartbeatBody(1'000'000, 1'000'000, 2, PublicationsWriter));
+}
+
+std::vector<Fault> FastDdsFaults()
+{
+    const auto of = [](const char *name, std::vector<Bytes> datagrams)
+    { return Fault{.Name = name, .Vendor = "fastdds", .Datagrams = std::move(datagrams)}; };
+    return {
+        of("CVE-2023-39946", {PropertyLongerThanItsList()}),
+        of("CVE-2023-39947", {PropertiesThatAreNotThere()}),
+        of("CVE-2023-39945", {Announcement(), DescriptionOfATypeThatIsNone(), RequestForTypesThatIsNone()}),
+        of("CVE-2023-39949", {Announcement(), HeartbeatOfNegativeNumbers()}),
+        of("CVE-2023-39534", {Announcement(), GapFromNumberZero(), GapThatEndsBeforeItBegins()}),
+        of("CVE-2023-42459", {SampleWithInlineQosOutside()}),
+        of("CVE-2023-50716", {Announcement(), FragmentWithInlineQosOutside()}),
+        of("CVE-2024-28231", {Announcement(), SampleWithInlineQosBeyondItsEnd()}),
+        of("CVE-2025-64438", {Announcement(), GapOfBillions()}),
+        of("CVE-2023-50257", {Announcement(), Goodbye()}),
+        of("issue-6437", {Announcement(), PartitionWithoutAnEnd()}),
+        of("issue-1337", {Announcement(), AcknowledgementOfTooManyBits()}),
+        of("issue-3931", {Announcement(), HonestHeartbeat(), HeartbeatFarAhead()}),
+    };
+}
+
+}  // namespace Faults

@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+"""Datagrams of published faults of the vendors, sent by a stranger on loopback. Prints for each fault what the installed
+vendor does without the guard: a process of its own, which may end. Fails only if nodes with the guard end, or no longer
+hear each other.
+
+Usage: vendor_faults_test.py DATAGRAMS ODD_KEYS PEER TRANSPORT,... PROGRAM...
+DATAGRAMS lists the faults; ODD_KEYS and PEER are programs of ../security, PROGRAMs the plain ones of ../../foreign.
+Needs to make network namespaces; ends with 77 where it may not."""
+
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "integration"))
+import harness  # noqa: E402
+
+# Only keeps a broken test from hanging.
+LIMIT_S = 60
+# For the report alone: how long a process without the guard may take to end or to grow.
+LOOK_S = 2
+# A process that wants more ends.
+MOST_BYTES = 4 << 30
+AT_ONCE = 4
+SKIPPED = 77
+# A file of profiles that defines transports replaces Rabit's, and so leaves the guard out.
+UNGUARDED = """<?xml version="1.0" encoding="UTF-8" ?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <transport_descriptors>
+    <transport_descriptor><transport_id>plain</transport_id><type>UDPv4</type></transport_descriptor>
+  </transport_descriptors>
+  <participant profile_name="unguarded" is_default_profile="true">
+    <rtps><userTransports><transport_id>plain</transport_id></userTransports>
+      <useBuiltinTransports>false</useBuiltinTransports></rtps>
+  </participant>
+</profiles>
+"""
+
+
+class Fault:
+    def __init__(self, line):
+        self.name, self.vendor, keys, *datagrams = line.split()
+        self.keys = keys == "keys"
+        self.datagrams = [bytes.fromhex(each) for each in datagrams]
+        self.result = self.failure = None
+
+    def send(self, domain):
+        """To all ports that participants of the domain on this host may have (RTPS 2.3, 9.6.1)."""
+        first = 7400 + 250 * domain
+        ends = [("239.255.0.1", first)]
+        ends += [("127.0.0.1", first + 10 + 2 * number + user) for number in range(4) for user in (0, 1)]
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+            stranger.bind(("127.0.0.1", 0))
+            stranger.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton("127.0.0.1"))
+            for datagram in self.datagrams:
+                for end in ends:
+                    try:
+                        stranger.sendto(datagram, end)
+                    except ConnectionRefusedError:  # of the datagram before: nobody has that port
+                        stranger.sendto(datagram, end)
+                # The vendors read an announcement and what follows it from different sockets.
+                time.sleep(0.1)
+
+
+def memory_mb(process):
+    status = pathlib.Path(f"/proc/{process.pid}/status").read_text(encoding="ascii")
+    found = re.search(r"VmHWM:\s+(\d+) kB", status)
+    return int(found.group(1)) // 1024 if found else 0
+
+
+def watch(process):
+    """What becomes of a process that has got a fault."""
+    before = largest = memory_mb(process)
+    end = time.monotonic() + LOOK_S
+    while time.monotonic() < end and process.running():
+        largest = max(largest, memory_mb(process))
+        time.sleep(0.05)
+    if not process.running():
+        code = process.exit_code(LIMIT_S)
+        how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
+        said = [text for _, text in process.lines if re.search("Assert|what|free|corrupt", text)]
+        return f"ends with {how}" + (f": {said[-1][-100:]}" if said else "")
+    return f"lives, and grows from {before} to {largest} MB" if largest > 2 * before else "lives"
+
+
+class Keys:
+    def __init__(self, odd_keys, folder):
+        self.odd_keys, self.fleet = odd_keys, pathlib.Path(folder) / "fleet"
+        subprocess.run([odd_keys, "init", self.fleet, "blue"], check=True)
+
+    def of(self, node, transport, domain):
+        subprocess.run([self.odd_keys, "add", self.fleet, node, transport, str(domain), "0", "365"], check=True)
+        return [self.fleet / node, "encrypt"]
+
+
+def without_guard(fault, domain, programs, plain):
+    """A participant of the vendor alone."""
+    odd_keys, peer = programs
+    bounded = ["prlimit", f"--as={MOST_BYTES}"]
+    with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
+        if fault.keys:
+            profiles = pathlib.Path(folder) / "profiles.xml"
+            profiles.write_text(UNGUARDED, encoding="ascii")
+            victim = processes.start(
+                [*bounded, peer, fault.vendor, "victim", domain, *Keys(odd_keys, folder).of("victim", fault.vendor, domain), "lo"],
+                env={"SECURED_PEER_BACKEND_CONFIG": str(profiles)})
+            victim.wait_for(re.compile("open").fullmatch, LIMIT_S)
+        else:
+            victim = processes.start([*bounded, plain[fault.vendor], domain, "read:State:string:reliable:volatile"])
+            victim.wait_for(re.compile("ready").fullmatch, LIMIT_S)
+        fault.send(domain)
+        return watch(victim)
+
+
+class Unguarded:
+    """Faults one after the other, each in a domain of its own."""
+
+    def __init__(self, faults, domain, programs, plain):
+        self.faults, self.domain, self.programs, self.plain = faults, domain, programs, plain
+
+    def run(self):
+        for number, fault in enumerate(self.faults):
+            try:
+                fault.result = without_guard(fault, self.domain + number, self.programs, self.plain)
+            except Exception as error:  # the others go on
+                fault.result = f"not tried: {error}"
+
+
+class Guarded:
+    """Two nodes over a vendor, with keys or without, which get all faults and hear each other all the while."""
+
+    def __init__(self, faults, transport, keys, domain, programs):
+        self.faults, self.transport, self.keys, self.domain, self.programs = faults, transport, keys, domain, programs
+        self.failure = None
+
+    def run(self):
+        try:
+            with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
+                self.meet(processes, Keys(self.programs[0], folder))
+        except Exception as error:  # the others go on
+            self.failure = str(error)
+
+    def hears_more(self, node, other):
+        heard = [int(text.split()[2]) for _, text in node.lines if text.startswith(f"heard {other} ")]
+        # From the tenth on, every tenth sample is told of.
+        node.wait_for(re.compile(f"heard {other} {(heard[-1] // 10 + 3) * 10 if heard else 20}").fullmatch, LIMIT_S)
+
+    def meet(self, processes, keys):
+        names = ("first", "second")
+        nodes = [processes.start([self.programs[1], self.transport, name, self.domain,
+                                  *(keys.of(name, self.transport, self.domain) if self.keys else ["-", "encrypt"]), "lo"])
+                 for name in names]
+        pairs = list(zip(nodes, reversed(names)))
+        for node, other in pairs:
+            self.hears_more(node, other)
+        for fault in self.faults:
+            fault.send(self.domain)
+            for node, name in zip(nodes, names):
+                if not node.running():
+                    raise AssertionError(f"{name} ended with {node.exit_code(LIMIT_S)} after {fault.name}")
+        for node, other in pairs:
+            self.hears_more(node, other)
+
+
+def main():
+    datagrams, *programs = sys.argv[1:4]
+    transports = sys.argv[4].split(",")
+    plain = {("fastdds" if "fastdds" in path else "cyclonedds"): path for path in sys.argv[5:]}
+    harness.enter_namespace()
+    if os.environ[harness.IN_NAMESPACE] != "yes":
+        print("skipped: no network namespaces can be made here")
+        sys.exit(SKIPPED)
+    listed = subprocess.run([datagrams], check=True, capture_output=True, text=True).stdout
+    faults = [Fault(line) for line in listed.splitlines()]
+    faults = [fault for fault in faults if fault.vendor in transports]
+    # Nodes get the faults of both vendors: the guard is the same.
+    guarded = [Guarded(faults, transport, keys, 60 + 2 * i + keys, programs)
+               for i, transport in enumerate(transports) for keys in (False, True)]
+    harness.run_at_once([*guarded, *(Unguarded(faults[i::AT_ONCE], 1 + 10 * i, programs, plain) for i in range(AT_ONCE))])
+    for fault in faults:
+        print(f"{fault.vendor} {fault.name}{' (keys)' if fault.keys else ''}, without the guard: {fault.result}")
+    for case in guarded:
+        print(f"nodes over {case.transport}{' with keys' if case.keys else ''}: {case.failure or 'live and hear each other'}")
+    sys.exit(1 if any(case.failure for case in guarded) else 0)
+
+
+if __name__ == "__main__":
+    main()
