@@ -362,9 +362,13 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         if (delivery.Writer == ParticipantWriter)
         {
             _replies.OnGone(passage.Sender);
-            if (_observer != nullptr && passage.Whence == Origin::Network)
+            if (passage.Whence == Origin::Network)
             {
-                _observer->Gone(passage.Sender);
+                _goodbyes.Note(passage.Sender, passage.Now);
+                if (_observer != nullptr)
+                {
+                    _observer->Gone(passage.Sender);
+                }
             }
         }
         return Verdict::Pass;
@@ -391,6 +395,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
 
 RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, const Passage &passage)
 {
+    if (_goodbyes.Has(passage.Sender, passage.Now))
+    {
+        return Verdict::Ignore;
+    }
     const bool isFromNetwork = passage.Whence == Origin::Network && passage.Sender != _own;
     if (_observer != nullptr && isFromNetwork)
     {

@@ -18,6 +18,7 @@
 #include "guard/DiscoveryFragments.h"
 #include "guard/KnownPeers.h"
 #include "guard/PeerObserver.h"
+#include "guard/RecentGoodbyes.h"
 #include "guard/RtpsMessage.h"
 #include "guard/SentFragments.h"
 
@@ -146,12 +147,13 @@ private:
     const Mode _mode;
     const Requests _requests;
     PeerObserver *_observer = nullptr;
-    std::mutex _mutex;              // several sockets receive at once
-    KnownPeers _peers;              // guarded by _mutex
-    SentFragments _sent;            // guarded by _mutex
-    DiscoveryFragments _fragments;  // guarded by _mutex
-    AnnouncementReplies _replies;   // guarded by _mutex
-    GuidPrefix _own{};              // set once we have sent; guarded by _mutex
+    std::mutex _mutex;                                    // several sockets receive at once
+    KnownPeers _peers;                                    // guarded by _mutex
+    SentFragments _sent;                                  // guarded by _mutex
+    DiscoveryFragments _fragments;                        // guarded by _mutex
+    AnnouncementReplies _replies;                         // guarded by _mutex
+    RecentGoodbyes _goodbyes{RecentGoodbyes::Overtaken};  // guarded by _mutex
+    GuidPrefix _own{};                                    // set once we have sent; guarded by _mutex
     std::atomic<bool> _replyDue{false};
     std::atomic<std::uint64_t> _announcementsHeard{0};
 };

@@ -97,7 +97,7 @@ bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress
     {
         return false;
     }
-    if (message->From == _self || std::find(_gone.begin(), _gone.end(), message->From) != _gone.end())
+    if (message->From == _self || _goodbyes.Has(message->From, now))
     {
         return true;
     }
@@ -136,7 +136,7 @@ void Meeting::NoteSuccessor(const GuidPrefix &peer)
 
 void Meeting::HeardUnknown(const GuidPrefix &peer, TimePoint now)
 {
-    if (std::find(_gone.begin(), _gone.end(), peer) != _gone.end())
+    if (_goodbyes.Has(peer, now))
     {
         return;
     }
@@ -155,27 +155,19 @@ void Meeting::Announced(const GuidPrefix &peer, bool hasCard, TimePoint now)
     }
 }
 
-void Meeting::Gone(const GuidPrefix &peer, bool forGood)
+void Meeting::SaidGoodbye(const GuidPrefix &peer, TimePoint now)
+{
+    Lost(peer);
+    _goodbyes.Note(peer, now);
+}
+
+void Meeting::Lost(const GuidPrefix &peer)
 {
     _exchange.Forget(peer);
     _replay.Forget(peer);
     _places.erase(peer);
     _programs.erase(peer);
     _superseded.erase(peer);
-    if (forGood)
-    {
-        Remember(_gone, peer);
-    }
-}
-
-void Meeting::Remember(std::deque<GuidPrefix> &peers, const GuidPrefix &peer)
-{
-    constexpr std::size_t most = 64;
-    peers.push_back(peer);
-    if (peers.size() > most)
-    {
-        peers.pop_front();
-    }
 }
 
 std::optional<Meeting::TimePoint> Meeting::LocalDue() const
@@ -217,8 +209,13 @@ std::vector<GuidPrefix> Meeting::Endable() const
 void Meeting::End(const GuidPrefix &peer)
 {
     _replay.End(peer);
-    Gone(peer, false);
-    Remember(_ended, peer);
+    Lost(peer);
+    constexpr std::size_t most = 64;
+    _ended.push_back(peer);
+    if (_ended.size() > most)
+    {
+        _ended.pop_front();
+    }
 }
 
 bool Meeting::WasEnded(const GuidPrefix &peer) const

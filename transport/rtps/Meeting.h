@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "guard/DiscoveryFragments.h"
+#include "guard/RecentGoodbyes.h"
 #include "rtps/CardExchange.h"
 #include "rtps/CardReplay.h"
 #include "rtps/OwnCard.h"
@@ -70,8 +71,10 @@ public:
     void HeardUnknown(const GuidPrefix &peer, TimePoint now);
     // A participant announced itself on the network.
     void Announced(const GuidPrefix &peer, bool hasCard, TimePoint now);
-    // A participant said goodbye (`forGood`), or the implementation has lost it.
-    void Gone(const GuidPrefix &peer, bool forGood);
+    // A participant said goodbye. It is ignored for a while (RecentGoodbyes.h).
+    void SaidGoodbye(const GuidPrefix &peer, TimePoint now);
+    // The implementation has lost a participant.
+    void Lost(const GuidPrefix &peer);
     // True if the implementation learns of that participant here. Endpoint discovery in the participant's
     // name from the network must then be ignored.
     bool IsReplayed(const GuidPrefix &peer) const { return _replay.Has(peer); }
@@ -108,7 +111,6 @@ private:
         int Times = 0;
     };
 
-    static void Remember(std::deque<GuidPrefix> &peers, const GuidPrefix &peer);
     bool IsThere(const GuidPrefix &peer, const HostAddress &from);
     bool IsForPrograms(const GuidPrefix &to, TimePoint now);
     void Say(const EndpointSubmessage &said, std::span<const std::uint8_t> header, TimePoint now);
@@ -124,7 +126,7 @@ private:
     std::map<GuidPrefix, Place> _places;
     std::map<GuidPrefix, TimePoint> _programs;  // without a card: when each was last announced
     std::map<GuidPrefix, std::string> _superseded;
-    std::deque<GuidPrefix> _gone;   // the last that said goodbye
+    RecentGoodbyes _goodbyes{RecentGoodbyes::Overtaken};
     std::deque<GuidPrefix> _ended;  // the last that were ended here
 };
 

@@ -64,7 +64,7 @@ bool MeetingThread::Received(std::span<const std::uint8_t> datagram, const HostA
 
 void MeetingThread::Lost(const GuidPrefix &peer)
 {
-    With([&](auto) { _meeting.Gone(peer, false); });
+    With([&](auto) { _meeting.Lost(peer); });
 }
 
 bool MeetingThread::WasEnded(const GuidPrefix &peer) const
@@ -85,7 +85,7 @@ void MeetingThread::Announced(const GuidPrefix &peer, bool hasCard)
 
 void MeetingThread::Gone(const GuidPrefix &peer)
 {
-    With([&](auto) { _meeting.Gone(peer, true); });
+    With([&](auto now) { _meeting.SaidGoodbye(peer, now); });
 }
 
 bool MeetingThread::IsReplayed(const GuidPrefix &peer) const

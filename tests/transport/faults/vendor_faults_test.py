@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Datagrams of published faults of the vendors, sent by a stranger on loopback. Prints for each fault what the installed
-vendor does without the guard: a process of its own, which may end. Fails only if nodes with the guard end, or no longer
-hear each other.
+vendor does without the guard: a process of its own, which may end. Fails only if nodes with the guard end, or do not hear
+each other afterwards.
 
 Usage: vendor_faults_test.py DATAGRAMS ODD_KEYS PEER TRANSPORT,... PROGRAM...
 DATAGRAMS lists the faults; ODD_KEYS and PEER are programs of ../security, PROGRAMs the plain ones of ../../foreign.
@@ -43,6 +43,10 @@ UNGUARDED = """<?xml version="1.0" encoding="UTF-8" ?>
 """
 
 
+# Its last datagram is the goodbye.
+FORGED_GOODBYE = "CVE-2023-50257"
+
+
 class Fault:
     def __init__(self, line):
         self.name, self.vendor, keys, *datagrams = line.split()
@@ -66,6 +70,27 @@ class Fault:
                         stranger.sendto(datagram, end)
                 # The vendors read an announcement and what follows it from different sockets.
                 time.sleep(0.1)
+
+
+def prefix_of(message):
+    """The participant in the header of a message (RTPS 2.3, 9.4.4)."""
+    return message[8:20]
+
+
+def prefixes(domain, count, stranger):
+    """The participants that announce themselves to all, once there are so many."""
+    found = set()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear:
+        ear.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        ear.bind(("239.255.0.1", 7400 + 250 * domain))
+        ear.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
+                       socket.inet_aton("239.255.0.1") + socket.inet_aton("127.0.0.1"))
+        ear.settimeout(LIMIT_S)
+        while len(found) < count:
+            message = ear.recv(65536)
+            if message.startswith(b"RTPS") and prefix_of(message) != stranger:
+                found.add(prefix_of(message))
+    return found
 
 
 def memory_mb(process):
@@ -133,7 +158,8 @@ class Unguarded:
 
 
 class Guarded:
-    """Two nodes over a vendor, with keys or without, which get all faults and hear each other all the while."""
+    """Two nodes over a vendor, with keys or without, which get all faults, and at last goodbyes in each other's names. They
+    hear each other all the while, or again."""
 
     def __init__(self, faults, transport, keys, domain, programs):
         self.faults, self.transport, self.keys, self.domain, self.programs = faults, transport, keys, domain, programs
@@ -166,6 +192,20 @@ class Guarded:
                     raise AssertionError(f"{name} ended with {node.exit_code(LIMIT_S)} after {fault.name}")
         for node, other in pairs:
             self.hears_more(node, other)
+        self.forge_goodbyes()
+        for node, other in pairs:
+            gone = [when for when, text in node.lines if text == f"gone {other}"]
+            if gone:
+                node.wait_for(f"appeared {other}".__eq__, LIMIT_S, gone[-1])
+            self.hears_more(node, other)
+
+    def forge_goodbyes(self):
+        fault = next(fault for fault in self.faults if fault.name == FORGED_GOODBYE)
+        *_, goodbye = fault.datagrams
+        forged = Fault(f"{fault.name} {fault.vendor} plain")
+        for name in prefixes(self.domain, 2, stranger=prefix_of(goodbye)):
+            forged.datagrams.append(goodbye.replace(prefix_of(goodbye), name))
+        forged.send(self.domain)
 
 
 def main():

@@ -30,6 +30,17 @@ protected:
         EXPECT_TRUE(Guard.Passes(Message(Data, DataBody(10), 5)));
     }
 
+    static Bytes Goodbye()
+    {
+        return Message(Data,
+                       DataBody(2,
+                                Join({Parameter(0x0070, Guid(Sender, 0x000001c1)),
+                                      Parameter(0x0071, {0, 0, 0, 3}),
+                                      {1, 0, 0, 0}}),
+                                0x000100c2),
+                       3);
+    }
+
     Gate Guard;
 };
 
@@ -160,6 +171,27 @@ TEST_F(RtpsGuardTest, AParticipantWithAnotherNameInItsDataIsStopped)
 {
     const Bytes data = ParticipantData(Other);
     EXPECT_TRUE(Guard.Stops(Message(Data, DataBody(1, data, 0x000100c2), 5)));
+}
+
+// A goodbye overtakes announcements that were sent before it on another socket.
+TEST_F(RtpsGuardTest, AnAnnouncementBehindAGoodbyeIsKeptFromTheVendor)
+{
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_TRUE(Guard.Admit(Goodbye()));
+    Guard.Now += 1900ms;
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_TRUE(Guard.Handed.empty());
+}
+
+TEST_F(RtpsGuardTest, AParticipantThatGoesOnAfterAForgedGoodbyeIsHeardAgain)
+{
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_TRUE(Guard.Admit(Goodbye()));
+    Guard.Now += 1900ms;
+    EXPECT_TRUE(Guard.Admit(Goodbye()));
+    Guard.Now += 100ms;
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
 }
 
 TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsIsStopped)

@@ -291,6 +291,22 @@ TEST(Meeting, AnEndpointThatComesLaterIsKnownSoon)
     EXPECT_TRUE(air.Until([&] { return two.Dds->EndpointsOf(one.Self).contains(0x00007703); }, 100ms));
 }
 
+// A goodbye may be forged.
+TEST(Meeting, ANodeThatGoesOnAfterItsGoodbyeIsMetAgain)
+{
+    Air air(1);
+    Air::Node &one = air.Add(1, 3);
+    Air::Node &two = air.Add(2, 3);
+    one.Dds->Announce();
+    two.Dds->Announce();
+    air.Run(20s);
+    two.Meet->SaidGoodbye(one.Self, air.Now);
+    one.Dds->Announce();
+    air.Run(1900ms);
+    EXPECT_FALSE(two.Meet->IsReplayed(one.Self));
+    EXPECT_TRUE(air.Until([&] { return two.Meet->IsReplayed(one.Self); }));
+}
+
 TEST(Meeting, ALostCardIsAskedFor)
 {
     Air air(1);

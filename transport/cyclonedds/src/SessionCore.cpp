@@ -9,6 +9,7 @@
 #include "PeerAddresses.h"
 #include "VendorLog.h"
 #include "common/SettingsCheck.h"
+#include "guard/RecentGoodbyes.h"
 
 namespace Rabit::Cyclone
 {
@@ -298,10 +299,10 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
     const PeerPlace place = PlaceOf(prefix);
     Identity identity;
     {
-        // A participant that left does not return: a prefix belongs to one incarnation of one participant.
         const std::lock_guard lock(_mutex);
         const auto gone = _gone.find(prefix);
-        if (gone != _gone.end() && gone->second.How == PeerEvent::Kind::Left)
+        if (gone != _gone.end() && gone->second.How == PeerEvent::Kind::Left &&
+            std::chrono::steady_clock::now() - gone->second.When < Rtps::RecentGoodbyes::OvertakenInSession)
         {
             return;
         }
@@ -333,7 +334,7 @@ void SessionCore::PeerGone(const Prefix &prefix)
             return;
         }
         _places.erase(prefix);
-        if (_gone.insert_or_assign(prefix, Gone{identity, how}).second)
+        if (_gone.insert_or_assign(prefix, Gone{identity, how, std::chrono::steady_clock::now()}).second)
         {
             _goneOrder.push_back(prefix);
         }

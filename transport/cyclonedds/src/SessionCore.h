@@ -4,6 +4,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <map>
 #include <memory>
@@ -60,6 +61,7 @@ private:
     {
         Identity Who;
         PeerEvent::Kind How;
+        std::chrono::steady_clock::time_point When;
     };
 
     static void OnParticipants(dds_entity_t reader, void *self);

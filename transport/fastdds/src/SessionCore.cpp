@@ -8,6 +8,7 @@
 #include <fastrtps/utils/IPLocator.h>
 
 #include <algorithm>
+#include <chrono>
 #include <type_traits>
 #include <utility>
 
@@ -24,9 +25,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace
 {
 
-// A goodbye overtakes an announcement by milliseconds: no more sessions close in that time.
-constexpr std::size_t MostDeparted = 64;
-
 // OMG DDS Security 1.1, 9.4.2.4: what a participant announces of its protection.
 constexpr std::uint32_t IsSecured = 1u << 31;
 constexpr std::uint32_t HasDiscoveryEncrypted = 1u << 1;
@@ -38,6 +36,13 @@ rtps::GuidPrefix_t ToVendorPrefix(const Bytes &bytes)
     rtps::GuidPrefix_t result;
     std::copy_n(bytes.begin(), rtps::GuidPrefix_t::size, result.value);
     return result;
+}
+
+Rtps::GuidPrefix NameOf(const rtps::GuidPrefix_t &prefix)
+{
+    Rtps::GuidPrefix name{};
+    std::copy_n(prefix.value, name.size(), name.begin());
+    return name;
 }
 
 PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
@@ -286,11 +291,9 @@ void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
         return;
     }
     {
-        // The goodbye may overtake an announcement that was sent before it on another socket. A participant
-        // that left does not return: a prefix belongs to one incarnation of one participant.
         const std::lock_guard lock(_mutex);
-        const auto departed = std::find(_departed.begin(), _departed.end(), prefix);
-        if (departed != _departed.end() || _peers.Add(prefix, *identity) == nullptr)
+        if (_goodbyes.Has(NameOf(prefix), std::chrono::steady_clock::now()) ||
+            _peers.Add(prefix, *identity) == nullptr)
         {
             return;
         }
@@ -308,8 +311,7 @@ void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
 
 void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
 {
-    Rtps::GuidPrefix name{};
-    std::copy_n(prefix.value, name.size(), name.begin());
+    const Rtps::GuidPrefix name = NameOf(prefix);
     if (how == PeerEvent::Kind::Lost)
     {
         _meeting->Lost(name);
@@ -325,11 +327,7 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
         _proven.erase(prefix);
         if (how == PeerEvent::Kind::Left)
         {
-            _departed.push_back(prefix);
-            if (_departed.size() > MostDeparted)
-            {
-                _departed.pop_front();
-            }
+            _goodbyes.Note(name, std::chrono::steady_clock::now());
         }
         session = _peers.Remove(prefix);
         if (session == nullptr)

@@ -6,7 +6,6 @@
 #include <rabit/transport/Transport.h>
 
 #include <atomic>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,6 +23,7 @@
 #include "common/PeerSessions.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
+#include "guard/RecentGoodbyes.h"
 #include "rtps/MeetingThread.h"
 
 namespace Rabit::FastDds
@@ -98,9 +98,10 @@ private:
     std::map<GuidPrefix, PeerPlace> _places;  // of the peers; guarded by _mutex
     // Rabit nodes that are not authenticated yet; guarded by _mutex
     std::map<GuidPrefix, Newcomer> _unproven;
-    std::set<GuidPrefix> _proven;      // authenticated participants; guarded by _mutex
-    std::set<GuidPrefix> _inGroup;     // listeners of the discovery group; guarded by _mutex
-    std::deque<GuidPrefix> _departed;  // the last that said goodbye; guarded by _mutex
+    std::set<GuidPrefix> _proven;   // authenticated participants; guarded by _mutex
+    std::set<GuidPrefix> _inGroup;  // listeners of the discovery group; guarded by _mutex
+    // guarded by _mutex
+    Rtps::RecentGoodbyes _goodbyes{Rtps::RecentGoodbyes::OvertakenInSession};
     const std::shared_ptr<Rtps::MeetingThread> _meeting;
     const ParticipantNumber _number;
     ParticipantTimer _announceTimer;
