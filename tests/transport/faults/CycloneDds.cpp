@@ -24,7 +24,7 @@ Bytes Liveliness(const Bytes &payload)
 }  // namespace
 
 // The submessage reaches to the end of the message, which comes in the middle of the sample's number. Its
-// flags say that inline QoS follows. Neither of its entities can write.
+// flags say that inline QoS follows. No entity in it is a writer.
 Bytes SampleThatEndsBeforeItsInlineQos()
 {
     constexpr std::uint8_t Flags = 0xf2;  // inline QoS, big-endian

@@ -29,7 +29,7 @@ Bytes ParticipantWith(const Bytes &identity, const Bytes &permissions)
 {
     // Those of announcements and liveliness, and the two through which participants authenticate each other.
     constexpr std::uint32_t BuiltinEndpoints = 0x0fc00c3f;
-    // What is protected must be the same for both. Participants announce it in plain, so anybody can copy it.
+    // Both sides must protect the same. Participants announce that in plain, so anybody can copy it.
     return Message(
         Data,
         DataBody(1,

@@ -1,4 +1,4 @@
-// What the guard does with datagrams of published faults of the vendors (README.md).
+// The guard stops or blanks datagrams of published faults of the vendors (README.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+"""Writes the seeds of a target into a folder: the recorded bytes of tests/wire, captured datagrams, and the texts of this
+repository.
+
+Usage: seeds.py TARGET FOLDER"""
+
+import json
+import pathlib
+import re
+import struct
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+LARGEST_TEXT = 8000
+
+
+def recorded(test):
+    """The bytes in a test of tests/wire: string literals of hexadecimal digits alone, joined with their neighbours."""
+    text = (ROOT / "tests" / "wire" / test).read_text(encoding="ascii")
+    for literals in re.findall(r'(?:"[0-9a-f]+(?:\\n)?"\s*)+', text):
+        digits = "".join(re.findall(r"[0-9a-f]+", literals.replace("\\n", " ")))
+        if len(digits) >= 8 and len(digits) % 2 == 0:
+            yield bytes.fromhex(digits)
+
+
+def part(data):
+    return struct.pack("<H", len(data)) + data
+
+
+def captured():
+    """The mode of the guard and a datagram."""
+    for line in (HERE / "seeds" / "datagrams.hex").read_text(encoding="ascii").splitlines():
+        if not line.startswith("#"):
+            mode, digits = line.split()
+            yield int(mode), bytes.fromhex(digits)
+
+
+def guard():
+    """Each datagram, and all of one mode in a row, a second apart."""
+    for mode in range(4):
+        datagrams = [data for of, data in captured() if (of == 0) == (mode < 2)]
+        for data in datagrams:
+            yield bytes([mode, 0]) + part(data)
+        yield bytes([mode | 4]) + b"".join(b"\1" + part(data) for data in datagrams)
+
+
+def cards():
+    for data in recorded("CardBytesTest.cpp"):
+        yield data
+        yield b"\1" + part(data)
+    yield b"".join(b"\1" + part(data) for data in recorded("CardBytesTest.cpp"))
+
+
+def beats():
+    yield from recorded("PresenceBytesTest.cpp")
+
+
+def links():
+    yield from recorded("LinkBytesTest.cpp")
+
+
+def mcap():
+    yield from recorded("RecordingBytesTest.cpp")
+
+
+def idl():
+    """Each file with each of its structs."""
+    for file in sorted([*(ROOT / "idl" / "messages").glob("*.idl"), *(ROOT / "tests" / "idl" / "messages").glob("*.idl")]):
+        text = file.read_text(encoding="utf-8")
+        module = re.search(r"module (\w+)", text)
+        if len(text) <= LARGEST_TEXT:
+            for name in re.findall(r"struct (\w+)", text)[:4]:
+                yield f"{module[1] + '::' if module else ''}{name}\n{text}".encode()
+
+
+EVERY = {
+    "id": 1, "yes": True, "letter": "a", "byte": 255, "tiny": -128, "little": 1, "us": 65535, "ul": 4294967295,
+    "large": "-9223372036854775808", "ull": 18446744073709551615, "real": 1.5, "precise": "NaN", "text": "\u00e9", "texts": ["a"],
+    "colour": "BLUE", "flags": ["FIRST", "LAST"], "nested": [{"bytes": "AAAA", "more": "", "word": "w"}] * 2,
+    "inners": [{}], "choice": {"inner": {"word": "w"}}, "choices": [{"number": 2}, {"_d": 9, "colour": "RED"}],
+    "grid": [[1, 2, 3], [4, 5, 6]]}
+
+
+def json_values():
+    yield b"{}"
+    yield json.dumps(EVERY).encode()
+    for name, value in EVERY.items():
+        yield json.dumps({name: value}).encode()
+    yield b'{"text": {"base64": "/w=="}}'
+
+
+def cdr():
+    for choice in range(4):
+        yield bytes([choice, 0, 1, 0, 0]) + bytes(400)
+        yield bytes([choice, 0, 0, 0, 0]) + bytes(64)
+    for data in recorded("PresenceBytesTest.cpp"):
+        yield b"\1" + data
+
+
+def yaml():
+    for file in sorted([*(ROOT / "examples").glob("**/*.yaml"), *(ROOT / "tests" / "consumer").glob("**/*.yaml")]):
+        yield file.read_bytes()
+    for readme in sorted((ROOT / "gateway").glob("**/*.md")):
+        for text in re.findall(r"```(?:yaml)?\n(node:.*?)```", readme.read_text(encoding="utf-8"), re.S):
+            yield text.encode()
+
+
+def page():
+    for target in ("/", "/live?token=abc", "/pictures/uav1"):
+        for more in ("", "Cookie: rabit=abc\r\n", "Authorization: Bearer abc\r\n",
+                     "Origin: http://127.0.0.1:8080\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"):
+            yield f"\0GET {target} HTTP/1.1\r\nHost: 127.0.0.1:8080\r\n{more}\r\n".encode()
+    yield b'\1{"type": "clock", "page_s": 1.5}'
+    place = '"latitude_deg": 47.4, "longitude_deg": 8.5'
+    yield f'\1{{"type": "order", "ref": 1, "kind": "goto", "node": "uav1", {place}, "altitude_m": 510, "speed_mps": 12}}'.encode()
+    yield b'\1{"type": "order", "ref": 1, "kind": "home", "node": "uav1"}'
+    yield (f'\1{{"type": "area", "ref": 2, {place}, "north_m": 400, "east_m": 600, "altitude_m": 510, "speed_mps": 16, '
+           '"lane_m": 60}').encode()
+    yield b'\2{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 2}]}'
+    yield b'\2{"op": "unsubscribe", "subscriptionIds": [1]}'
+
+
+def mavlink_sum(data):
+    """CRC-16/MCRF4XX."""
+    value = 0xFFFF
+    for byte in data:
+        value ^= byte
+        for _ in range(8):
+            value = value >> 1 ^ (0x8408 if value & 1 else 0)
+    return struct.pack("<H", value)
+
+
+def mavlink():
+    def frame(number, extra, payload):
+        body = struct.pack("<BBBBBBHB", len(payload), 0, 0, 7, 1, 1, number & 0xFFFF, number >> 16) + payload
+        return b"\xfd" + body + mavlink_sum(body + bytes([extra]))
+
+    frames = [frame(0, 50, bytes(range(1, 10))), frame(30, 39, bytes(range(1, 29))), frame(33, 104, bytes(range(1, 29)))]
+    for each in frames:
+        yield part(each)
+    yield part(b"".join(frames)) + part(frames[0][:5]) + part(frames[0][5:])
+
+
+SEEDS = {"guard": guard, "cards": cards, "beats": beats, "announcements": beats, "links": links, "mcap": mcap, "idl": idl,
+         "json": json_values, "cdr": cdr, "yaml": yaml, "page": page, "mavlink": mavlink}
+
+
+def write(target, folder):
+    for number, data in enumerate(SEEDS[target]()):
+        (folder / f"{number:03}").write_bytes(data)
+
+
+if __name__ == "__main__":
+    write(sys.argv[1], pathlib.Path(sys.argv[2]))
