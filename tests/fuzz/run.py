@@ -41,7 +41,10 @@ def main():
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False,
                               env={**os.environ, "ASAN_OPTIONS": "detect_leaks=1:allocator_may_return_null=0"})
     lines = done.stdout.decode(errors="replace").splitlines()
-    print("\n".join(lines if done.returncode != 0 else lines[-12:]))
+    if done.returncode == 0:
+        covered = [line for line in lines if " cov: " in line][-1:]
+        lines = [line for line in lines if line.startswith(("Done", "stat::"))] + covered
+    print("\n".join(lines))
     sys.exit(done.returncode)
 
 
