@@ -6,7 +6,7 @@
 namespace
 {
 
-// What a class accepts, it writes again, and accepts again.
+// A class writes again whatever it accepts, and accepts that, too.
 template <typename Message>
 void Read(const std::vector<std::uint8_t> &bytes)
 {

@@ -5,7 +5,8 @@
 
 using Rabit::Rtps::RtpsGuard;
 
-// Byte 0: the mode. Then datagrams, each behind its size and the seconds since the one before.
+// Byte 0: the mode. Then datagrams, each behind a byte with the seconds since the one before and its source,
+// and behind its size.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
 {
     Fuzz::Input input(data, size);
@@ -14,10 +15,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     const unsigned choice = input.Byte();
     RtpsGuard guard(modes[choice % 4], std::chrono::seconds(1));
     RtpsGuard::TimePoint now{std::chrono::hours(1)};
-    const Rabit::Rtps::HostAddress from = {127, 0, 0, 1};
     while (!input.IsEmpty())
     {
-        now += std::chrono::seconds(input.Byte() % 8);
+        const std::uint8_t how = input.Byte();
+        now += std::chrono::seconds(how % 8);
+        const auto from = (how & 8) == 0
+                              ? Rabit::Rtps::HostAddress{127, 0, 0, 1}
+                              : Rabit::Rtps::HostAddress{10, 0, 0, static_cast<std::uint8_t>(how >> 4)};
         auto datagram = input.Part();
         if ((choice & 4) != 0)
         {

@@ -14,7 +14,7 @@ import tempfile
 
 import seeds
 
-LARGEST = 16384
+LARGEST = 32768
 SLOWEST_S = 10
 MEMORY_MB = 2048
 

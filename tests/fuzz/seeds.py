@@ -36,13 +36,23 @@ def captured():
             yield int(mode), bytes.fromhex(digits)
 
 
+def order(datagram):
+    """Announcements of participants first, then those of endpoints: others count only behind them."""
+    return 0 if b"\x00\x01\x00\xc2" in datagram else 1 if re.search(rb"\x00\x00[\x03\x04]\xc2", datagram) else 2
+
+
 def guard():
-    """Each datagram, and all of one mode in a row, a second apart."""
+    """Each datagram, and all of one mode in a row, a second apart, from their host and from another."""
+    header = b"RTPS\2\3\1\x0f" + bytes(range(12))
+    # NACK_FRAG for fragment 1 of sample 1 of a writer.
+    yield b"\0\0" + part(header + b"\x12\1\x20\0" + b"\0\0\1\4\0\0\1\3" + struct.pack("<iIIIII", 0, 1, 1, 1, 0, 1))
     for mode in range(4):
-        datagrams = [data for of, data in captured() if (of == 0) == (mode < 2)]
+        datagrams = sorted((data for of, data in captured() if (of == 0) == (mode < 2)), key=order)
         for data in datagrams:
             yield bytes([mode, 0]) + part(data)
-        yield bytes([mode | 4]) + b"".join(b"\1" + part(data) for data in datagrams)
+        for how in (b"\1", b"\x19"):
+            yield bytes([mode | 4]) + b"".join(how + part(data) for data in datagrams)
+            yield bytes([mode]) + b"".join(how + part(data) for data in datagrams)
 
 
 def cards():

@@ -13,7 +13,8 @@ namespace Rabit::Rtps
 
 // A goodbye overtakes announcements that were sent before it on another socket, by milliseconds. The
 // participant must not come back by them. But a goodbye may be forged, also where nodes have keys: nothing in
-// it is signed. A participant that still announces itself later is there. Bounded. Not thread-safe.
+// it is signed. So a participant is accepted again if it still announces itself later. Bounded. Not
+// thread-safe.
 class RecentGoodbyes
 {
 public:
