@@ -57,10 +57,11 @@ def flood(fuzzer, nodes, seconds):
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         check_alive(nodes)
+        code = None if fuzzer.running() else fuzzer.exit_code(LIMIT_S)  # then all that it said has been read
         if any(text.startswith("done ") for _, text in list(fuzzer.lines)):
             return fuzzer.wait_for(re.compile(r"done (\d+) dropped (\d+) left out (\d+)").fullmatch, LIMIT_S)[1]
-        if not fuzzer.running():
-            raise AssertionError(f"the fuzzer ended: {fuzzer.lines[-5:]}")
+        if code is not None:
+            raise AssertionError(f"the fuzzer ended with {code}: {fuzzer.lines[-5:]}")
         time.sleep(0.2)
     raise AssertionError(f"the fuzzer is not done: {fuzzer.lines[-1:]}")
 
