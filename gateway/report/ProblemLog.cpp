@@ -1,10 +1,10 @@
 #include "report/ProblemLog.h"
 
+#include <rabit/base/Fnv1a.h>
+
 #include <algorithm>
 #include <iterator>
 #include <utility>
-
-#include "names/Fnv1a.h"
 
 namespace Rabit
 {
@@ -321,8 +321,7 @@ ProblemLog::Standing ProblemLog::Lasted(Duration now) const
         problem.certain = entry.Certain;
         shapes += problem.subject + '\n' + problem.node + '\n' + std::get<2>(key) + '\n';
     }
-    const std::uint64_t hash = Fnv1a(shapes);
-    standing.Digest = static_cast<std::uint32_t>(hash ^ hash >> 32);
+    standing.Digest = Fnv1a().Add(shapes).Folded();
     return standing;
 }
 

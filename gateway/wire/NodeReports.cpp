@@ -1,9 +1,9 @@
 #include "wire/NodeReports.h"
 
-#include <vector>
+#include <rabit/base/Fnv1a.h>
+#include <rabit/base/LittleEndian.h>
 
-#include "names/Fnv1a.h"
-#include "wire/LittleEndian.h"
+#include <vector>
 
 namespace Rabit::NodeReports
 {
@@ -13,7 +13,7 @@ namespace
 std::string SealOf(std::string_view report)
 {
     std::vector<std::uint8_t> bytes;
-    LittleEndian::Put(Fnv1a(report), bytes);
+    LittleEndian::Put(Fnv1a().Add(report).Sum(), bytes);
     return {bytes.begin(), bytes.end()};
 }
 
