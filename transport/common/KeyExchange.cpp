@@ -86,6 +86,7 @@ public:
                 _isLarge = true;
                 break;
             case SubmessageKind::HeartbeatFrag:
+            case SubmessageKind::NackFrag:
             case SubmessageKind::AckNack:
             case SubmessageKind::Heartbeat:
             case SubmessageKind::Gap:

@@ -24,31 +24,46 @@ bool KeyExchangeOutbox::IsBehindKeys(const Peer &peer, const ControlKind &kind)
     return !peer.KeysWaiting.empty() && peer.KeysWaiting.front().Source == kind.Source;
 }
 
-KeyExchangeOutbox::TimePoint KeyExchangeOutbox::DueOf(const Peer &peer, const Message &message) const
+KeyExchangeOutbox::LastProgress KeyExchangeOutbox::FindLastProgress() const
 {
-    TimePoint due = message.Due;
-    if (message.What == Step::Request)
+    LastProgress last;
+    for (const auto &[name, peer] : _peers)
     {
-        const Duration calm = Calm * _answerTime.value_or(FirstGap);
-        for (const auto &[name, other] : _peers)
+        if (peer.HandshakeAt > last.At)
         {
-            const bool hasHandshake = &other != &peer && other.HandshakeAt != TimePoint{};
-            due = hasHandshake ? std::max(due, other.HandshakeAt + calm) : due;
+            last = {&peer, peer.HandshakeAt, last.At};
+        }
+        else
+        {
+            last.NextAt = std::max(last.NextAt, peer.HandshakeAt);
         }
     }
-    return due;
+    return last;
 }
 
-KeyExchangeOutbox::TimePoint KeyExchangeOutbox::DueOf(const Peer &peer, const Control &control) const
+// When the waiting message goes.
+KeyExchangeOutbox::TimePoint KeyExchangeOutbox::DueOf(const Peer &peer, const LastProgress &last) const
 {
-    const bool isAhead = static_cast<double>(control.Bytes.size() + Headers) > peer.ControlAhead;
-    return isAhead ? std::max(control.Due, peer.ControlSaidAt + ControlGapNow()) : control.Due;
+    const Message &message = *peer.Waiting;
+    const TimePoint othersAt = last.Of == &peer ? last.NextAt : last.At;
+    if (message.What != Step::Request || othersAt == TimePoint{})
+    {
+        return message.Due;
+    }
+    const Duration calm = std::min<Duration>(Calm * _answerTime.value_or(FirstGap), LongestFirstGap);
+    return std::max(message.Due, std::min(othersAt + calm, message.Since + LongestWait));
+}
+
+bool KeyExchangeOutbox::IsBeyondShare(const Peer &peer, const Control &control) const
+{
+    return static_cast<double>(control.Bytes.size() + Headers) > peer.ControlAhead;
 }
 
 // Calls visit(choice) for each item that the window allows to go.
 template <typename Visit>
 void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
 {
+    const LastProgress last = FindLastProgress();
     for (const auto &[name, peer] : _peers)
     {
         if (!peer.Rest.empty())
@@ -59,10 +74,12 @@ void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
         {
             if (!control.Bytes.empty() && !IsBehindKeys(peer, kind))
             {
+                const bool isBeyond = IsBeyondShare(peer, control);
+                const TimePoint slot = peer.ControlSaidAt + ControlGapNow();
                 visit(Choice{.What = Step::Control,
-                             .IsWhole = control.IsWhole,
+                             .IsWhole = control.IsWhole && !isBeyond,
                              .Place = control.Place,
-                             .Due = DueOf(peer, control),
+                             .Due = isBeyond ? std::max(control.Due, slot) : control.Due,
                              .Of = name,
                              .Kind = kind});
             }
@@ -71,7 +88,7 @@ void KeyExchangeOutbox::VisitChoices(const Visit &visit) const
         {
             visit(Choice{.What = peer.Waiting->What,
                          .Place = peer.Waiting->Place,
-                         .Due = DueOf(peer, *peer.Waiting),
+                         .Due = DueOf(peer, last),
                          .Of = name,
                          .Kind = {}});
         }
@@ -178,7 +195,7 @@ void KeyExchangeOutbox::TakeMessage(Peer &peer, TimePoint now, std::vector<Datag
     const bool again = peer.Said == peer.Waiting->What;
     peer.Gap = again && peer.Gap > Duration(0) ? std::min<Duration>(2 * peer.Gap, LongestGap) : GapNow();
     peer.Said = peer.Waiting->What;
-    peer.HandshakeAt = peer.Said != Step::Ask ? now : peer.HandshakeAt;
+    peer.HandshakeAt = again || peer.Said == Step::Ask ? peer.HandshakeAt : now;
     peer.SaidNumber = peer.Waiting->Number;
     peer.SaidAgainAt = now + peer.Gap;
     peer.IsRepeated = peer.IsRepeated || again;

@@ -162,9 +162,14 @@ void KeyExchangeOutbox::PutHandshake(Peer &peer, Datagram datagram, const KeyExc
         return;  // a newer message has replaced the one that this fragment belongs to
     }
     const Turn place = peer.Waiting ? peer.Waiting->Place : ++_turn;
+    const TimePoint since = peer.Waiting ? peer.Waiting->Since : now;
     const TimePoint due = peer.Said == what.What ? std::max(now, peer.SaidAgainAt) : now;
-    peer.Waiting =
-        Message{.What = what.What, .Number = what.Number, .Datagrams = {}, .Due = due, .Place = place};
+    peer.Waiting = Message{.What = what.What,
+                           .Number = what.Number,
+                           .Datagrams = {},
+                           .Since = since,
+                           .Due = due,
+                           .Place = place};
     peer.Waiting->Datagrams.push_back(std::move(datagram));
 }
 
@@ -198,16 +203,13 @@ bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
     {
         Exchanged(peer, now);
     }
-    if (what.IsHandshake() && what.What != Step::Ask)
-    {
-        peer.HandshakeAt = now;
-    }
     if (peer.Waiting && IsPast(peer.Waiting->What, what.What))
     {
         peer.Waiting.reset();
     }
     if (Answers(peer.Said, what.What))
     {
+        peer.HandshakeAt = what.IsHandshake() && !what.IsWhole ? now : peer.HandshakeAt;
         Answered(peer, what.IsHandshake() && !what.IsWhole, now);
     }
     if (what.What == Step::Keys)

@@ -26,9 +26,9 @@ namespace Rabit
 // - Messages that end an exchange go before those that begin one, in the order of KeyExchange::Step; within a
 //   step, the longest waiting goes first. The last message of a handshake, and control, do not wait for the
 //   window.
-// - One exchange after the other: a request goes when no other handshake has moved for Calm answer times.
-// Many
-//   at once last long, and as long as an exchange lasts, the vendors repeat control.
+// - One exchange after the other: a request waits until no handshake with another peer has made progress for
+//   Calm answer times, but no longer than LongestWait. The more exchanges are under way at once, the longer
+//   each lasts, and all that time the vendors repeat control.
 // - Of the handshake messages to a peer only the newest waits. A message that the peer has shown not to need
 //   any more is dropped. A repetition goes when an answer had time to arrive, with exponential backoff.
 // - Keys keep their order and are dropped only beyond MostWaiting bytes. Control of each kind has one slot:
@@ -73,6 +73,7 @@ public:
     static constexpr double MostControlAhead =
         2000.0;  // bytes that may go before any others, or after a pause
     static constexpr int Calm = 4;
+    static constexpr Milliseconds LongestWait{15000};
     // Time after the last handshake or key until an exchange counts as settled.
     static constexpr Milliseconds Settled{6000};
     static constexpr std::size_t Headers = 20 + 8;  // IPv4, UDP
@@ -113,6 +114,7 @@ private:
         Step What = Step::Request;
         std::uint64_t Number = 0;
         std::vector<Datagram> Datagrams;
+        TimePoint Since;  // of the first of these messages that one after the other waited
         TimePoint Due;
         Turn Place = 0;
     };
@@ -159,7 +161,7 @@ private:
         bool IsRepeated = false;    // a repetition is among them, so that an answer tells no time
         TimePoint TouchedAt;
         TimePoint ExchangedAt;
-        TimePoint HandshakeAt{};  // of the last message of a handshake with it
+        TimePoint HandshakeAt{};  // when a handshake with it last made progress
     };
     struct Choice
     {
@@ -179,8 +181,16 @@ private:
     bool Fits(std::size_t size) const { return _unanswered == 0 || _unanswered + size <= _window; }
     static std::size_t SizeOf(const Message &message);
     static bool IsBehindKeys(const Peer &peer, const ControlKind &kind);
-    TimePoint DueOf(const Peer &peer, const Message &message) const;
-    TimePoint DueOf(const Peer &peer, const Control &control) const;
+    // The two peers whose handshakes made progress last.
+    struct LastProgress
+    {
+        const Peer *Of = nullptr;
+        TimePoint At{};
+        TimePoint NextAt{};
+    };
+    LastProgress FindLastProgress() const;
+    TimePoint DueOf(const Peer &peer, const LastProgress &last) const;
+    bool IsBeyondShare(const Peer &peer, const Control &control) const;
     template <typename Visit>
     void VisitChoices(const Visit &visit) const;
     std::optional<Choice> Next(TimePoint now) const;

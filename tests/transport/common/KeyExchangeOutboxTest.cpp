@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <vector>
@@ -159,7 +160,7 @@ TEST_F(KeyExchangeOutboxTest, RepetitionsGoAtDoublingDistancesAndTheNewestAlone)
     EXPECT_EQ(routes, (Routes{0, 500, 1500, 3500, 7500, 15500}));
 }
 
-TEST_F(KeyExchangeOutboxTest, ARequestWaitsUntilNoOtherHandshakeMovesAnyMore)
+TEST_F(KeyExchangeOutboxTest, ARequestWaitsUntilNoOtherHandshakeMakesProgress)
 {
     Put(1, Step::Request, 1, 0ms, 100);
     Put(2, Step::Request, 2, 0ms, 100);
@@ -168,6 +169,31 @@ TEST_F(KeyExchangeOutboxTest, ARequestWaitsUntilNoOtherHandshakeMovesAnyMore)
     Put(1, Step::Final, 3, 110ms, 100);
     EXPECT_EQ(Take(110ms), (Routes{3}));
     EXPECT_EQ(Next(), 510ms) << "after four times the answer time of 100 ms";
+}
+
+TEST_F(KeyExchangeOutboxTest, WhatIsOnlyRepeatedIsNoProgress)
+{
+    Put(1, Step::Request, 1, 0ms, 100);
+    Take(0ms);
+    Put(2, Step::Request, 2, 0ms, 100);
+    Put(1, Step::Request, 3, 500ms, 100);
+    EXPECT_EQ(Take(500ms), (Routes{3}));
+    Hear(1, Step::Request, 1900ms);
+    EXPECT_EQ(Next(), 2000ms) << "four times the answer time at first, since the first request to 1";
+}
+
+TEST_F(KeyExchangeOutboxTest, APeerThatGoesOnAnsweringHoldsUpNoRequestForLongerThanTheLongestWait)
+{
+    Put(2, Step::Request, 2, 0ms, 100);
+    Put(1, Step::Request, 1, 0ms, 100);
+    EXPECT_EQ(Take(0ms), (Routes{2}));
+    Milliseconds gone = 0ms;
+    for (auto at = 1000ms; gone == 0ms && at < 60s; at += 1000ms)
+    {
+        Hear(2, Step::Reply, at);
+        gone = Take(at) == Routes{1} ? at : 0ms;
+    }
+    EXPECT_EQ(gone, KeyExchangeOutbox::LongestWait);
 }
 
 TEST_F(KeyExchangeOutboxTest, AReplyDoesNotWaitForOtherHandshakes)
@@ -298,6 +324,28 @@ TEST_F(KeyExchangeOutboxTest, ControlAboutKeysGoesBeforeOtherControl)
     Put({.To = Prefix(1), .What = Step::Control, .Source = 3, .IsWhole = true}, 2, 1ms, 100);
     Put(1, Step::Control, 3, 1ms, 100);
     EXPECT_EQ(Take(1ms), (Routes{3, 2}));
+}
+
+TEST_F(KeyExchangeOutboxTest, BeyondTheShareControlGoesInTheOrderInWhichItCame)
+{
+    Put(1, Step::Keys, 1, 0ms, 600);
+    for (std::uint32_t source = 100; source < 125; ++source)
+    {
+        Put(1, Step::Control, 1, 0ms, 100, source);
+    }
+    Take(0ms);
+    Put({.To = Prefix(1), .What = Step::Control, .Source = 3, .IsWhole = true}, 2, 1ms, 100);
+    Routes gone;
+    for (std::uint32_t i = 0; i < 6000; ++i)
+    {
+        const auto at = 1ms + i * 10ms;
+        Put(1, Step::Control, 4, at, 100, 100 + i % 25);
+        for (const auto route : Take(at))
+        {
+            gone.push_back(route);
+        }
+    }
+    EXPECT_EQ(std::count(gone.begin(), gone.end(), 2U), 1) << "is not passed by ever new control about keys";
 }
 
 TEST_F(KeyExchangeOutboxTest, ControlBeginsAnewWhenKeysCome)
