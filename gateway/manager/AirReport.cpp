@@ -31,14 +31,14 @@ double &RateOf(TrafficClass traffic, Gateway::AirStatus &air)
     return air.presence;
 }
 
-// The words stay the same while sizes differ, so that the log says it once.
-void AddTooLarge(const std::string &message, double budget, Gateway::Fleet &fleet)
+// The words stay the same while sizes and the estimated capacity differ, so that the log says it once.
+void AddTooLarge(const std::string &message, const std::string &limit, const std::string &remedy,
+                 Gateway::Fleet &fleet)
 {
     Gateway::Problem &problem = fleet.problems.emplace_back();
     problem.subject = "publish " + message;
-    problem.reason = "one value takes more than a second of the budget of " +
-                     std::to_string(static_cast<long long>(budget)) +
-                     " B/s, and newer values wait meanwhile; post smaller ones, or raise `radio: budget`";
+    problem.reason = "one value takes more than a second of " + limit +
+                     ", and newer values wait meanwhile; post smaller ones" + remedy;
 }
 
 }  // namespace
@@ -67,9 +67,16 @@ void AirReport::Fill(const TransportCounters &counters, std::optional<double> ca
     double divided = 0.0;
     for (std::size_t i = 0; i < fleet.publications.size() && i < _publications.size(); ++i)
     {
-        if (air.budget > 0.0 && static_cast<double>(publishers[i].SampleBytes(_cost)) > air.budget)
+        const auto bytes = static_cast<double>(publishers[i].SampleBytes(_cost));
+        if (air.budget > 0.0 && bytes > air.budget)
         {
-            AddTooLarge(fleet.publications[i].message, air.budget, fleet);
+            AddTooLarge(fleet.publications[i].message,
+                        "the budget of " + std::to_string(static_cast<long long>(air.budget)) + " B/s",
+                        ", or raise `radio: budget`", fleet);
+        }
+        else if (air.capacity > 0.0 && bytes > air.capacity)
+        {
+            AddTooLarge(fleet.publications[i].message, "what the channel carries", "", fleet);
         }
         const double rate = _publications[i].Sent.PerSecond;
         fleet.publications[i].bytes_per_s = rate;

@@ -33,8 +33,8 @@ public:
 
     // Fills fleet.air, and the rates of its links and publications, which are there already, the latter in
     // the order of the publishers. Adds a problem for each publication whose newest value takes more than a
-    // second of the budget. `capacity`: estimated capacity of the channel in bytes a second; empty: it does
-    // not limit this node.
+    // second of the budget, or of the capacity. `capacity`: estimated capacity of the channel in bytes a
+    // second; empty: it does not limit this node.
     void Fill(const TransportCounters &counters, std::optional<double> capacity,
               const std::deque<TopicPublisher> &publishers, Gateway::Fleet &fleet, Duration now);
 

@@ -404,6 +404,32 @@ TEST_F(AirTrafficTest, WhatAStandstillHasTaughtIsForgottenSoonAfter)
     EXPECT_EQ(status[0].refused_full, 0u);
 }
 
+TEST_F(AirTrafficTest, AValueThatTheChannelTakesSecondsForIsNamedWithoutABudgetToo)
+{
+    GatewayConfig config = AircraftConfig("uav1");
+    config.Publish.push_back({.Message = "Picture", .Type = "Uav::Picture", .Qos = QosProfile::Telemetry});
+    AddAircraft(config);
+    GatewayConfig station = GroundConfig();
+    station.Subscribe.push_back({.Message = "Picture", .Type = "Uav::Picture", .From = {"uav*"}});
+    fleet.Add(station).AddIdleManager("Commands");
+    const auto picture = aircraft->Register<Uav::Picture>("Picture");
+    const auto postPictures = [&](Duration passed)
+    {
+        if (passed % 100ms == 0s)
+        {
+            picture->PostMessage();
+        }
+    };
+    picture->jpeg.assign(50'000, 1);
+    Fly(5s, 5ms, 1s, postPictures);
+    const std::string named =
+        "publish Picture: one value takes more than a second of what the channel carries";
+    EXPECT_EQ(aircraft->Problems().find(named), std::string::npos) << "a wide channel";
+    fleet.Network.SetMedium("*", {.BytesPerSecond = 12'500});
+    Fly(30s, 5ms, 1s, postPictures);
+    EXPECT_NE(aircraft->Problems().find(named), std::string::npos) << aircraft->Problems();
+}
+
 class ThinAirTest : public AirTrafficTest
 {
 protected:
