@@ -22,7 +22,7 @@ namespace Rabit
 //     for (const auto &[node, pose] : _poses.YoungerThan(0.5))
 //         std::cout << node << ' ' << pose->latitude_deg << ' ' << pose->GetAgeSeconds() << '\n';
 //
-// A value stays when its node has gone; its age tells, and Gateway/Fleet says whether the node is there.
+// Values of a node that is gone stay. Their age grows, and Gateway/Fleet has the state of the node.
 // Not thread-safe: for the manager's unit of work.
 template <typename T>
 class FleetValues
