@@ -136,10 +136,11 @@ void PathControl::Answered(LinkTime time)
     _answers[_answered++ % _answers.size()] = time;
     if (_answered >= _answers.size())
     {
-        auto answers = _answers;
-        const auto middle = answers.begin() + answers.size() / 2;
-        std::nth_element(answers.begin(), middle, answers.end());
-        _usualAnswer = *middle;
+        const auto [a, b, c, d, e] = _answers;
+        // Of four, the lowest and the highest cannot be the median of five.
+        const LinkTime one = std::max(std::min(a, b), std::min(c, d));
+        const LinkTime other = std::min(std::max(a, b), std::max(c, d));
+        _usualAnswer = std::clamp(e, std::min(one, other), std::max(one, other));
     }
 }
 
