@@ -55,10 +55,8 @@ NodeKeys::NodeKeys(const std::string &folder, PrivateKeyPlace place)
     }
     if (_hasPrivateKey && !fs::exists(_files.Certificate))
     {
-        throw KeysError(
-            folder +
-            " has a private key and no certificate; copy the files into it that `rabit keys sign` "
-            "makes of its request");
+        throw KeysError("there is no " + _files.Certificate +
+                        "; copy the files to it that `rabit keys sign` makes of the node's request");
     }
     const auto certificateIn = [](const std::string &file) { return ReadCertificate(ReadFile(file), file); };
     const CertificatePtr identity = certificateIn(_files.IdentityAuthority);

@@ -117,7 +117,7 @@ TEST_F(SigningRequestTest, NoRequestIsMadeInTheFolderOfTheFleet)
 TEST_F(SigningRequestTest, BeforeItIsSignedANodeSaysSo)
 {
     RequestOf("uav1");
-    EXPECT_THAT(WhyNoKeys(Root + "/on_uav1"), HasSubstr("no certificate; copy the files"));
+    EXPECT_THAT(WhyNoKeys(Root + "/on_uav1"), HasSubstr("certificate.pem; copy the files"));
 }
 
 TEST_F(SigningRequestTest, WithoutThePrivateKeyTheFolderIsNoKeysOfANode)
