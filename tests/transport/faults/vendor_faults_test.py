@@ -218,12 +218,12 @@ def main():
         sys.exit(SKIPPED)
     listed = subprocess.run([datagrams], check=True, capture_output=True, text=True).stdout
     faults = [Fault(line) for line in listed.splitlines()]
-    faults = [fault for fault in faults if fault.vendor in transports]
+    installed = [fault for fault in faults if fault.vendor in transports]
     # Nodes get the faults of both vendors: the guard is the same.
     guarded = [Guarded(faults, transport, keys, 60 + 2 * i + keys, programs)
                for i, transport in enumerate(transports) for keys in (False, True)]
-    harness.run_at_once([*guarded, *(Unguarded(faults[i::AT_ONCE], 1 + 10 * i, programs, plain) for i in range(AT_ONCE))])
-    for fault in faults:
+    harness.run_at_once([*guarded, *(Unguarded(installed[i::AT_ONCE], 1 + 10 * i, programs, plain) for i in range(AT_ONCE))])
+    for fault in installed:
         print(f"{fault.vendor} {fault.name}{' (keys)' if fault.keys else ''}, without the guard: {fault.result}")
     for case in guarded:
         print(f"nodes over {case.transport}{' with keys' if case.keys else ''}: {case.failure or 'live and hear each other'}")
