@@ -75,12 +75,24 @@ std::size_t BeatContents::SizeOfStrains() const
     return count == 0 ? 0 : BeatFormat::Wanted(count * BeatExtensions::StrainBytes);
 }
 
+void BeatContents::SetProblems(const ProblemCount &problems)
+{
+    _problemBeats = problems == _problems ? _problemBeats : ProblemBeats;
+    _problems = problems;
+}
+
+std::size_t BeatContents::SizeOfProblems(Duration now) const
+{
+    const bool isDue = _problemBeats > 0 || (_problems.Count > 0 && now - _problemsSaid >= ProblemPeriod);
+    return isDue ? BeatFormat::Problems : 0;
+}
+
 std::size_t BeatContents::Size(Duration now) const
 {
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t news = SizeOfMarks() + SizeOfStrains() + SizeOfProblems() +
+    const std::size_t news = SizeOfMarks() + SizeOfStrains() + SizeOfProblems(now) +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
@@ -109,10 +121,13 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
         BeatExtensions::Say(beat, _strains);
         room -= SizeOfStrains();
     }
-    if (SizeOfProblems() > 0 && SizeOfProblems() <= room)
+    const std::size_t problems = SizeOfProblems(now);
+    if (problems > 0 && problems <= room)
     {
         BeatExtensions::Say(beat, _problems);
-        room -= SizeOfProblems();
+        room -= problems;
+        _problemBeats = std::max(_problemBeats - 1, 0);
+        _problemsSaid = now;
     }
     AddStates(beat, room);
     if (_isTool)

@@ -65,8 +65,13 @@ public:
     // reports them.
     void SetStrains(std::vector<LinkStrain> strains) { _strains = std::move(strains); }
 
-    // Sets the number of this node's problems. From now on each beat with room for it tells it; 0: none does.
-    void SetProblems(const ProblemCount &problems) { _problems = problems; }
+    // Time between two beats that tell the number of this node's problems. After a change, or if somebody has
+    // come, some beats in a row tell it.
+    static constexpr Duration ProblemPeriod = std::chrono::seconds(10);
+    static constexpr int ProblemBeats = 3;
+    void SetProblems(const ProblemCount &problems);
+    // Somebody has come.
+    void RepeatProblems() { _problemBeats = _problems.Count > 0 ? ProblemBeats : _problemBeats; }
 
     // When a question is due, which need not wait for the next period; empty: no question is due.
     std::optional<Duration> QuestionDue() const;
@@ -85,7 +90,7 @@ private:
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfMarks() const;
     std::size_t SizeOfStrains() const;
-    std::size_t SizeOfProblems() const { return _problems.Count == 0 ? 0 : BeatFormat::Problems; }
+    std::size_t SizeOfProblems(Duration now) const;
     std::size_t SizeOfPart(Duration now, std::size_t room) const;
     bool IsPlaceDue(Duration now) const;
 
@@ -98,6 +103,8 @@ private:
     bool _isReplay = false;
     std::vector<LinkStrain> _strains;
     ProblemCount _problems;
+    int _problemBeats = 0;  // that tell it in a row
+    Duration _problemsSaid{0};
     std::vector<std::uint8_t> _offers;
     std::uint32_t _digest = 0;
     std::vector<std::uint32_t> _states;  // versions

@@ -154,6 +154,7 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.DoubtsThisNode = false;
     peer.States.clear();
     peer.Place.clear();
+    peer.Problems = {};
 }
 
 bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
@@ -242,14 +243,29 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     return change;
 }
 
+// Returns whether it has changed. The end of the problems may be lost: they are forgotten after some time.
+bool PeerTable::TakeProblems(Peer &peer, const HeardBeat &heard)
+{
+    const ProblemCount before = peer.Problems;
+    if (const std::optional<ProblemCount> told = BeatExtensions::ProblemsIn(heard.Beat))
+    {
+        peer.Problems = *told;
+        peer.ProblemsTold = heard.Arrival;
+    }
+    else if (heard.Arrival - peer.ProblemsTold > std::max(ProblemMemory, 2 * peer.LostAfter()))
+    {
+        peer.Problems = {};
+    }
+    return before != peer.Problems;
+}
+
 void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
 {
     Measure(peer, heard);
     peer.Beats.Add(heard.Sequence);
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
-    const ProblemCount problems = std::exchange(peer.Problems, BeatExtensions::ProblemsIn(heard.Beat));
-    change.State |= problems != peer.Problems;
+    change.State |= TakeProblems(peer, heard);
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
     {

@@ -43,6 +43,8 @@ public:
     // takes its beats for old ones; that peer's beat is echoed with the next beat.
     static constexpr Duration EchoPeriod = std::chrono::seconds(4);
     static constexpr int EchoEachBeats = 8;
+    // Problems that a node has not told again for this time are forgotten (BeatContents::ProblemPeriod).
+    static constexpr Duration ProblemMemory = std::chrono::seconds(60);
     // Least time between two announcements that are accepted in one incarnation.
     static constexpr Duration OffersRest = std::chrono::seconds(1);
     // Names come from the network. When one more node comes, the node LOST for longest is forgotten, never a
@@ -60,7 +62,8 @@ public:
         bool IsTool = false;              // UP as long as it is kept; it has no offers and no states
         bool IsReplay = false;            // it plays a recording
         std::vector<LinkStrain> Strains;  // as its newest beat reports them
-        ProblemCount Problems;            // likewise
+        ProblemCount Problems;            // as its beats told last, now and then
+        Duration ProblemsTold{0};
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
         Duration FirstHeard{0};
@@ -174,6 +177,7 @@ private:
     bool IsEchoDue(const Peer &peer, Duration now) const;
     static bool IsEchoUrgent(const Peer &peer);
     void TakeIn(Peer &peer, const HeardBeat &heard, Change &change);
+    static bool TakeProblems(Peer &peer, const HeardBeat &heard);
     void Measure(Peer &peer, const HeardBeat &heard) const;
     void MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const;
     void TakeStates(Peer &peer, const Gateway::Beat &beat);

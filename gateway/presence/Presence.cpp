@@ -183,6 +183,10 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
         return;
     }
     const PeerTable::Peer &peer = *_peers.Find(heard.Node);
+    if (change.NewLife)
+    {
+        _contents.RepeatProblems();
+    }
     if (peer.IsTool)
     {
         TakeDelays(heard, peer, served);

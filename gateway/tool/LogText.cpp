@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstddef>
 #include <string_view>
+#include <system_error>
 
 #include "SafeText.h"
 
@@ -13,8 +14,12 @@ std::optional<LogText> LogTextOf(const std::string &report)
 {
     LogText log;
     const std::size_t end = report.find('\n');
-    if (end == std::string::npos ||
-        std::from_chars(report.data(), report.data() + end, log.First).ptr != report.data() + end)
+    if (end == std::string::npos)
+    {
+        return std::nullopt;
+    }
+    const auto [after, error] = std::from_chars(report.data(), report.data() + end, log.First);
+    if (error != std::errc() || after != report.data() + end)
     {
         return std::nullopt;
     }

@@ -128,7 +128,7 @@ void Say(Gateway::Beat &beat, const ProblemCount &problems)
     Add(beat, Problems).states.assign(bytes.begin(), bytes.end());
 }
 
-ProblemCount ProblemsIn(const Gateway::Beat &beat)
+std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat)
 {
     for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
     {
@@ -141,7 +141,7 @@ ProblemCount ProblemsIn(const Gateway::Beat &beat)
             return problems;
         }
     }
-    return {};
+    return std::nullopt;
 }
 
 }  // namespace Rabit::BeatExtensions

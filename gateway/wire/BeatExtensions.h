@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -57,9 +58,9 @@ void Say(Gateway::Beat &beat, std::span<const LinkStrain> strains);
 // The strains in a beat; malformed ones and unknown kinds are left out.
 std::vector<LinkStrain> StrainsIn(const Gateway::Beat &beat);
 
-// The sender's own problems, as its log tells them (report/ProblemLog.h). Count must not be 0.
+// The sender's own problems, as its log tells them (report/ProblemLog.h).
 void Say(Gateway::Beat &beat, const ProblemCount &problems);
-// Count 0 if the beat tells of no problem.
-ProblemCount ProblemsIn(const Gateway::Beat &beat);
+// Empty if the beat does not tell.
+std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat);
 
 }  // namespace Rabit::BeatExtensions

@@ -151,17 +151,32 @@ TEST_F(BeatContentsTest, StrainsAreSaidAsLongAsThereAreAnyAndThenCostNothing)
     EXPECT_EQ(BodyOf(Next(4s)), BeatFormat::Empty);
 }
 
-TEST_F(BeatContentsTest, ProblemsAreSaidAsLongAsThereAreAnyAndThenCostNothing)
+TEST_F(BeatContentsTest, ProblemsAreSaidThreeTimesThenSeldomAndTheirEndThreeTimes)
 {
     BeginLongAgo(100, 0);
     const ProblemCount problems{.Count = 2, .Digest = 7};
     contents.SetProblems(problems);
-    const std::size_t size = contents.Size(1s);
-    const Gateway::Beat beat = Next(1s, size);
-    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), problems);
-    EXPECT_LE(BodyOf(beat), size);
+    for (int i = 1; i <= 3; ++i)
+    {
+        const Ns now = std::chrono::seconds(i);
+        const std::size_t size = contents.Size(now);
+        const Gateway::Beat beat = Next(now, size);
+        EXPECT_EQ(BeatExtensions::ProblemsIn(beat), problems);
+        EXPECT_LE(BodyOf(beat), size);
+    }
+    contents.SetProblems(problems);
+    EXPECT_EQ(BodyOf(Next(4s)), BeatFormat::Empty);
+    EXPECT_EQ(BeatExtensions::ProblemsIn(Next(3s + BeatContents::ProblemPeriod)), problems);
+    EXPECT_EQ(BodyOf(Next(14s)), BeatFormat::Empty);
+    contents.RepeatProblems();
+    EXPECT_EQ(BeatExtensions::ProblemsIn(Next(15s)), problems);
     contents.SetProblems({});
-    EXPECT_EQ(BodyOf(Next(2s)), BeatFormat::Empty);
+    for (int i = 16; i <= 18; ++i)
+    {
+        EXPECT_EQ(BeatExtensions::ProblemsIn(Next(std::chrono::seconds(i))), ProblemCount());
+    }
+    contents.RepeatProblems();
+    EXPECT_EQ(BodyOf(Next(60s)), BeatFormat::Empty);
 }
 
 TEST_F(BeatContentsTest, StrainsGoBeforeStatesAndWaitForRoom)

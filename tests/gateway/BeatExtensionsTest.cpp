@@ -118,12 +118,12 @@ TEST(BeatExtensions, TheFirstGatewaysOfTheFormatTakeSuchABeat)
 TEST(BeatExtensions, TheCountOfProblemsIsWhatIsUnderstood)
 {
     Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
-    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), ProblemCount());
+    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), std::nullopt);
     BeatExtensions::MarkTool(beat);
     BeatExtensions::Say(beat, ProblemCount{.Count = 3, .Digest = 0xfedcba98});
     EXPECT_EQ(BeatExtensions::ProblemsIn(beat), (ProblemCount{.Count = 3, .Digest = 0xfedcba98}));
     NewsOf(beat).wants.back().states.pop_back();
-    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), ProblemCount());
+    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), std::nullopt);
 }
 
 }  // namespace

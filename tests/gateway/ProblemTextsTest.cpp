@@ -29,10 +29,7 @@ protected:
         heard.Node = "uav1";
         heard.Incarnation = 5;
         heard.Beat = BeatAt(now);
-        if (problems.Count > 0)
-        {
-            BeatExtensions::Say(heard.Beat, problems);
-        }
+        BeatExtensions::Say(heard.Beat, problems);
         heard.Arrival = now;
         peers.OnBeat(heard);
     }

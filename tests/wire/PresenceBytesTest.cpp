@@ -183,8 +183,8 @@ TEST(PresenceBytes, HashesAreTheRecordedOnes)
 
 TEST(PresenceBytes, OfABeatWithProblemsAreAccepted)
 {
-    EXPECT_EQ(BeatExtensions::ProblemsIn(Accepted(BytesOf(ProblemBeatBytes))),
-              (ProblemCount{.Count = 3, .Digest = 0xfedcba98}));
+    const ProblemCount expected{.Count = 3, .Digest = 0xfedcba98};
+    EXPECT_EQ(BeatExtensions::ProblemsIn(Accepted(BytesOf(ProblemBeatBytes))), expected);
 }
 
 TEST(PresenceBytes, OfABeatWithProblemsAreTheRecordedOnes)

@@ -14,7 +14,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "shell"))
 import harness  # noqa: E402
-from two_aircraft import aircraft_config  # noqa: E402
+from two_aircraft import aircraft_config, is_well  # noqa: E402
 
 # Only keeps a broken program from hanging.
 LIMIT = 120
@@ -53,7 +53,7 @@ def a_tool_with_keys_sees_and_sends(fleet):
     def both():
         done = fleet.run("nodes", "--keys", keys, "--json", "--wait", "10")
         rows = {row["node"]: row["state"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
-        return done.returncode == 0 and rows == {"uav1": "UP", "uav2": "UP"}
+        return is_well(done) and rows == {"uav1": "UP", "uav2": "UP"}
     harness.until(both)
     for node in ("uav1", "uav2"):
         # On a busy machine a handshake may take longer than --wait, so the command is repeated, as a person would.
@@ -90,7 +90,7 @@ def a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some(fle
 
     def well():
         done = fleet.run("doctor", "--keys", keys, "--wait", "4")
-        return done.returncode == 0 and "nodes: uav1 uav2" in done.stdout
+        return is_well(done) and "nodes: uav1 uav2" in done.stdout
     harness.until(well)
 
     def told():

@@ -6,13 +6,13 @@ Usage: doctor_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 import re
 import subprocess
 
-from two_aircraft import LIMIT, SWARM, Rabit, harness, keys, main
+from two_aircraft import LIMIT, SWARM, Rabit, harness, is_well, keys, main
 
 
 def a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well(rabit):
     def well():
         findings, done = rabit.objects("doctor", "--wait", "4")
-        return findings if done.returncode == 0 else None
+        return findings if is_well(done) else None
 
     findings = harness.until(well)
     assert all(keys(finding) == ["level", "subject", "text", "advice"] for finding in findings), findings

@@ -6,7 +6,7 @@ Usage: listing_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 import re
 import subprocess
 
-from two_aircraft import LIMIT, Rabit, harness, keys, main
+from two_aircraft import LIMIT, Rabit, harness, is_well, keys, main
 
 HASH = re.compile(r"^[0-9a-f]{16}$")
 
@@ -15,7 +15,7 @@ def nodes_are_listed_with_what_they_have(rabit):
     def both():
         listed, done = rabit.objects("nodes", "--wait", "10")
         rows = {row["node"]: row for row in listed if "node" in row and "problem" not in row}
-        return (rows, done) if {"uav1", "uav2"} <= set(rows) and done.returncode == 0 else None
+        return (rows, done) if {"uav1", "uav2"} <= set(rows) and is_well(done) else None
 
     rows, done = harness.until(both)
     assert set(rows) == {"uav1", "uav2"}, "a tool is listed"
@@ -112,7 +112,7 @@ def whoever_asks_again_and_again_is_answered(rabit):
     harness.until(both)
     for number in range(1, 13):
         done = rabit.run("nodes")
-        assert done.returncode == 0 and "announcement" not in done.stdout, (number, done)
+        assert is_well(done), (number, done)
 
 
 def an_interface_that_is_not_there_is_the_reason(rabit):

@@ -6,11 +6,12 @@ Usage: reports_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 import contextlib
 import json
 import re
+import subprocess
 import tempfile
 
-from two_aircraft import aircraft_config, harness, keys, main
+from two_aircraft import LIMIT, aircraft_config, harness, keys, main
 
-PROBLEM = "subscribe Pse: uav1 does not publish `Pse`"
+PROBLEM = "subscribe Pse: uav1 does not publish `Pse`"  # it names what uav1 publishes behind that
 
 
 @contextlib.contextmanager
@@ -26,13 +27,14 @@ def the_own_problems_of_a_node_are_listed_and_diagnosed(rabit):
     with troubled(rabit):
         def listed():
             done = rabit.run("nodes", "--wait", "4")
-            return done.returncode == 1 and f"! node uav7: {PROBLEM}" in done.stdout.splitlines()
+            return done.returncode == 1 and f"! node uav7: {PROBLEM}" in done.stdout
         harness.until(listed)
         rows, _ = rabit.objects("nodes", "--wait", "4")
         problems = [row for row in rows if "problem" in row and row["node"] == "uav7"]
-        assert problems == [{"problem": "node uav7", "node": "uav7", "reason": PROBLEM}], problems
+        assert any(keys(row) == ["problem", "node", "reason"] and row["problem"] == "node uav7" and
+                   row["reason"].startswith(PROBLEM) for row in problems), problems
         done = rabit.run("doctor", "--wait", "4")
-        assert done.returncode == 1 and f"! node uav7: {PROBLEM}. Do: " in done.stdout, done
+        assert done.returncode == 1 and f"! node uav7: {PROBLEM}" in done.stdout, done
 
 
 def the_last_lines_of_a_log_are_shown_with_the_node_running_on(rabit):
@@ -53,7 +55,7 @@ def the_last_lines_of_a_log_are_shown_with_the_node_running_on(rabit):
 def a_log_is_followed_while_it_is_written(rabit):
     with troubled(rabit) as uav, harness.Processes() as processes:
         follower = processes.start(rabit.argv("log", "uav7", "-f", "-n", "0", "--wait", "30"))
-        follower.wait_for(re.compile(r".* warning gateway: subscribe Pse.*: uav1 does not publish `Pse`").fullmatch, 60)
+        follower.wait_for(re.compile(r".* warning gateway: subscribe Pse.*: uav1 does not publish `Pse`.*").fullmatch, 60)
         assert uav.terminate() == 0
         follower.wait_for(re.compile(r"rabit: uav7 is LOST").fullmatch, 60)
         assert follower.terminate() == 0
@@ -94,8 +96,9 @@ def the_channel_is_shown_by_node_and_class(rabit):
 
 def nodes_are_offered_to_a_shell(rabit):
     def offered():
-        done = rabit.run("complete", "--", "log", "--domain", str(rabit.domain), "--transport", rabit.transport,
-                         "--interface", "127.0.0.1", "u")
+        done = subprocess.run([rabit.program, "complete", "--", "log", "--domain", str(rabit.domain), "--transport",
+                               rabit.transport, "--interface", "127.0.0.1", "u"], capture_output=True, text=True,
+                              timeout=LIMIT, check=False)
         return {"uav1", "uav2"} <= set(done.stdout.split())
     harness.until(offered)
 
