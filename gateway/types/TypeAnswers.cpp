@@ -24,8 +24,16 @@ void TypeAnswers::Asked(const std::string &node, std::uint64_t definition, std::
                      [&key](const Part &part) { return KeyOf(part.Node, part.Definition) == key; });
     if (waiting != _waiting.end())
     {
-        // The answer under way brings the rest; the asking node requests lost earlier parts again.
         _memory[key].LastAsked = now;
+        // An answer that has begun brings the rest; the asking node requests lost earlier parts again. One
+        // that has not begun is of no use any more if the node asks for another report of that kind.
+        if (waiting->Definition != definition && waiting->First == 0)
+        {
+            if (std::shared_ptr<const std::string> text = TextFrom(definition, from))
+            {
+                *waiting = {.Node = node, .Definition = definition, .First = from, .Text = std::move(text)};
+            }
+        }
         return;
     }
     const auto known = _memory.find(key);
@@ -34,21 +42,31 @@ void TypeAnswers::Asked(const std::string &node, std::uint64_t definition, std::
         known->second.LastAsked = now;
         return;
     }
-    // A report is written when it is requested, so not for a question that gets no answer.
-    std::shared_ptr<const std::string> text = _textOf(definition);
-    if (text == nullptr || text->size() > TypeFrames::LargestText || from >= text->size())
-    {
-        ++_unknown;
-        return;
-    }
     if (_waiting.size() >= MostWaiting || (_memory.size() >= MostRemembered && _memory.count(key) == 0))
     {
         ++_dropped;
         return;
     }
+    // A report is written when it is requested, so not for a question that gets no answer.
+    std::shared_ptr<const std::string> text = TextFrom(definition, from);
+    if (text == nullptr)
+    {
+        return;
+    }
     Memory &memory = _memory[key];
     memory.LastAsked = now;
     _waiting.push_back({.Node = node, .Definition = definition, .First = from, .Text = std::move(text)});
+}
+
+std::shared_ptr<const std::string> TypeAnswers::TextFrom(std::uint64_t definition, std::size_t from)
+{
+    std::shared_ptr<const std::string> text = _textOf(definition);
+    if (text == nullptr || text->size() > TypeFrames::LargestText || from >= text->size())
+    {
+        ++_unknown;
+        return nullptr;
+    }
+    return text;
 }
 
 std::optional<TypeAnswers::Duration> TypeAnswers::Due() const

@@ -66,6 +66,8 @@ public:
 private:
     using Key = std::pair<std::string, std::uint64_t>;  // node; definition, of a report without its argument
     static Key KeyOf(const std::string &node, std::uint64_t definition);
+    // Returns the whole text; null, and counted, if it cannot be sent from that byte on.
+    std::shared_ptr<const std::string> TextFrom(std::uint64_t definition, std::size_t from);
     struct Memory
     {
         Duration LastAsked{0};

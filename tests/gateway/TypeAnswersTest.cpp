@@ -157,6 +157,46 @@ TEST_F(TypeAnswersTest, EchoesAreAnsweredAtAnyTimeButTheShortestGap)
     }
 }
 
+TEST_F(TypeAnswersTest, ALaterReportOfAKindTakesThePlaceOfOneThatHasNotBegun)
+{
+    const auto echo = [](std::uint32_t number)
+    { return NodeReports::NameOf(NodeReports::Kind::Echo, number); };
+    texts[echo(1)] = texts[echo(2)] = std::string(8, 'e');
+    answers.Asked("other", 1, 0, 1s);
+    answers.Asked("tool", echo(1), 0, 1s);
+    answers.Asked("tool", echo(2), 0, 1s);
+    answers.Sent(2500, 1s);
+    EXPECT_EQ(answers.Next().Definition, echo(2));
+    EXPECT_EQ(SendUntil(60s), 8u);
+}
+
+TEST_F(TypeAnswersTest, AReportThatHasBegunIsSentToItsEnd)
+{
+    const auto line = [](std::uint32_t number)
+    { return NodeReports::NameOf(NodeReports::Kind::LinesFrom, number); };
+    texts[line(1)] = texts[line(2)] = std::string(2000, 'l');
+    answers.Asked("tool", line(1), 0, 1s);
+    answers.Sent(1000, 1s);
+    answers.Asked("tool", line(2), 0, 1s);
+    EXPECT_EQ(answers.Next().Definition, line(1));
+}
+
+TEST(TypeAnswers, NoTextIsComposedForAQuestionThatIsDropped)
+{
+    std::size_t composed = 0;
+    TypeAnswers answers(
+        [&composed](std::uint64_t)
+        {
+            ++composed;
+            return std::make_shared<std::string>("text");
+        });
+    for (std::size_t i = 0; i < 3 * TypeAnswers::MostWaiting; ++i)
+    {
+        answers.Asked("tool" + std::to_string(i), 1, 0, 1s);
+    }
+    EXPECT_EQ(composed, TypeAnswers::MostWaiting);
+}
+
 TEST_F(TypeAnswersTest, AnAnswerUnderWayIsThatOfItsQuestion)
 {
     answers.Asked("tool", 1, 0, 1s);
