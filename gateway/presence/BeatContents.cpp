@@ -108,27 +108,29 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
 {
     std::size_t room = std::min(most, BeatFormat::Largest);
     room -= std::min(room, BeatFormat::WithNews + SizeOfMarks());
+    // Reserved, since only a few beats tell of problems.
+    const std::size_t problems = SizeOfProblems(now) <= room ? SizeOfProblems(now) : 0;
+    room -= problems;
     AddWants(beat, now, room);
     AddTypes(beat, now, room);
+    if (problems > 0)
+    {
+        BeatExtensions::Say(beat, _problems);
+        _problemBeats = std::max(_problemBeats - 1, 0);
+        _problemsSaid = now;
+    }
+    // Before all that may fill the beat: receivers take a beat without strains as their end.
+    if (SizeOfStrains() > 0 && SizeOfStrains() <= room)
+    {
+        BeatExtensions::Say(beat, _strains);
+        room -= SizeOfStrains();
+    }
     Gateway::BeatNews &news = NewsOf(beat);
     news.echoes = _peers.NextEchoes(now, BeatFormat::MostEchoes, room / BeatFormat::Echo);
     room -= news.echoes.size() * BeatFormat::Echo;
     news.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
     room -= news.delays.size() * BeatFormat::Delay;
     AddPart(beat, now, room);
-    if (SizeOfStrains() > 0 && SizeOfStrains() <= room)
-    {
-        BeatExtensions::Say(beat, _strains);
-        room -= SizeOfStrains();
-    }
-    const std::size_t problems = SizeOfProblems(now);
-    if (problems > 0 && problems <= room)
-    {
-        BeatExtensions::Say(beat, _problems);
-        room -= problems;
-        _problemBeats = std::max(_problemBeats - 1, 0);
-        _problemsSaid = now;
-    }
     AddStates(beat, room);
     if (_isTool)
     {

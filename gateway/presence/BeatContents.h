@@ -22,10 +22,10 @@
 namespace Rabit
 {
 
-// Collects the contents of this node's beats and fits them in: questions first, then echoes and delays, then
-// a requested part of the announcement, then the versions of States. Contents that do not fit follow in the
-// next beats. While another node has this node's name, a beat without such a part tells now and then where
-// this node runs. Used by the gateway's thread only.
+// Collects the contents of this node's beats and fits them in: the number of problems first, then questions,
+// strains of links, echoes and delays, a requested part of the announcement, and the versions of States.
+// Contents that do not fit follow in the next beats. While another node has this node's name, a beat without
+// such a part tells now and then where this node runs. Used by the gateway's thread only.
 class BeatContents
 {
 public:

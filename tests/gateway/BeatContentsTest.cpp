@@ -6,6 +6,7 @@
 #include <set>
 
 #include "BeatSamples.h"
+#include "air/AirBudget.h"
 #include "air/AirCost.h"
 #include "names/NodeTag.h"
 #include "presence/Whereabouts.h"
@@ -177,6 +178,34 @@ TEST_F(BeatContentsTest, ProblemsAreSaidThreeTimesThenSeldomAndTheirEndThreeTime
     }
     contents.RepeatProblems();
     EXPECT_EQ(BodyOf(Next(60s)), BeatFormat::Empty);
+}
+
+TEST_F(BeatContentsTest, ProblemsAndStrainsAreSaidInBeatsThatAnAnnouncementFills)
+{
+    Begin(4000, 10);
+    const ProblemCount problems{.Count = 2, .Digest = 7};
+    contents.SetProblems(problems);
+    contents.SetStrains(std::vector<LinkStrain>(BeatExtensions::MostStrains));
+    for (Ns now = 1s; now < 1150ms; now += 50ms)
+    {
+        const Gateway::Beat beat = Next(now);
+        ASSERT_THAT(NewsOf(beat).parts, SizeIs(1));
+        EXPECT_EQ(BeatExtensions::ProblemsIn(beat), problems);
+        EXPECT_THAT(BeatExtensions::StrainsIn(beat), SizeIs(BeatExtensions::MostStrains));
+    }
+}
+
+TEST_F(BeatContentsTest, ProblemsAreSaidInTheSmallestBeatOfABudgetBeforeAnythingElse)
+{
+    Begin(4000, 10);
+    for (int i = 0; i < 20; ++i)
+    {
+        Hear("uav" + std::to_string(i), 1s, 99);
+    }
+    const ProblemCount problems{.Count = 2, .Digest = 7};
+    contents.SetProblems(problems);
+    const Gateway::Beat beat = Next(2s, AirCost(1400).BodyWithin(AirBudget::SmallestDatagram, false));
+    EXPECT_EQ(BeatExtensions::ProblemsIn(beat), problems);
 }
 
 TEST_F(BeatContentsTest, StrainsGoBeforeStatesAndWaitForRoom)
