@@ -73,7 +73,7 @@ void Exploration::AskForType(const std::string &node, const std::string &type, s
 {
     {
         const std::lock_guard lock(_mutex);
-        _requests.Types.push_back({node, type, definition});
+        _lacking[{definition, ""}] = {node, type, definition};
     }
     _wake();
 }
@@ -91,7 +91,7 @@ void Exploration::AskForReport(const std::string &node, Report what, std::uint32
     {
         const std::lock_guard lock(_mutex);
         _reports[{node, kind}] = {argument, std::nullopt};
-        _requests.Types.push_back({node, "", NodeReports::NameOf(kind, argument)});
+        _lacking[{NodeReports::NameOf(kind), node}] = {node, "", NodeReports::NameOf(kind, argument)};
     }
     _wake();
 }
@@ -191,7 +191,12 @@ void Exploration::SetOnChange(std::function<void()> onChange)
 Exploration::Requests Exploration::TakeRequests()
 {
     const std::lock_guard lock(_mutex);
-    return std::exchange(_requests, {});
+    Requests requests = std::exchange(_requests, {});
+    for (const auto &[key, wanted] : _lacking)
+    {
+        requests.Lacking.push_back(wanted);
+    }
+    return requests;
 }
 
 void Exploration::SetNodes(const PeerTable &peers, const PostTime &now)
@@ -216,6 +221,7 @@ void Exploration::AddText(std::uint64_t definition, std::string text)
     {
         const std::lock_guard lock(_mutex);
         _texts[definition] = std::move(text);
+        _lacking.erase({definition, ""});
     }
     Tell();
 }
@@ -230,6 +236,7 @@ void Exploration::AddReport(const std::string &node, NodeReports::Name name, Ans
             return;  // another one was requested meanwhile
         }
         found->second.second = std::move(answer);
+        _lacking.erase({NodeReports::NameOf(name.What), node});
     }
     Tell();
 }

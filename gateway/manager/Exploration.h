@@ -47,7 +47,7 @@ public:
 
     struct Requests
     {
-        std::vector<TypeQuestions::Wanted> Types;
+        std::vector<TypeQuestions::Wanted> Lacking;  // each time until AddText or AddReport
         std::vector<SubscribeRule> Subscriptions;
         std::optional<std::vector<std::string>> LookedFor;  // whose subscribers
     };
@@ -74,6 +74,8 @@ private:
         _reports;
     std::optional<std::map<std::string, Subscribers>> _subscribers;
     Requests _requests;
+    // The requested texts that have not come. By definition, or by kind and node of a report.
+    std::map<std::pair<std::uint64_t, std::string>, TypeQuestions::Wanted> _lacking;
     std::function<void()> _onChange;
     std::atomic<std::uint64_t> _turnsAsked{0};  // calls of WaitUntilTaken
     std::uint64_t _turnsDone = 0;               // those before the last whole unit of work began

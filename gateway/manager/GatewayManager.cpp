@@ -287,10 +287,15 @@ private:
             _exploration.SetNodes(_presence.Peers(), _workspace.GetClock().Now());
         }
         const Exploration::Requests requests = _exploration.TakeRequests();
-        for (const TypeQuestions::Wanted &wanted : requests.Types)
+        for (const TypeQuestions::Wanted &wanted : requests.Lacking)
         {
-            static_cast<void>(_types.Want(wanted, now));  // if too many texts are lacking, the requester asks
-                                                          // again
+            // A node that is not there hears no question. If too many texts are wanted, the next turns try
+            // again.
+            const PeerTable::Peer *peer = _presence.Peers().Find(wanted.Node);
+            if (peer != nullptr && peer->State != Gateway::NodeState::LOST)
+            {
+                static_cast<void>(_types.Want(wanted, now));
+            }
         }
         bool any = false;
         for (const SubscribeRule &rule : requests.Subscriptions)
@@ -416,15 +421,20 @@ private:
         _lasted = _problemLog.Lasted(now);
         constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
         const auto count = static_cast<std::uint16_t>(std::min(_lasted.Problems.size(), most));
-        // Nobody lists a tool, so its problems are its own.
+        // No node lists a tool, so a tool does not tell its problems.
         _presence.SetProblems(_config.Tool ? ProblemCount() : ProblemCount{count, _lasted.Digest});
         for (const PeerTable::Peer *peer : _presence.Peers().Heard())
         {
-            if (_problemTexts.Lacks(*peer) && MatchesAny(_config.ProblemsOf, peer->Node))
+            const TypeQuestions::Wanted problems{peer->Node, "",
+                                                 NodeReports::NameOf(NodeReports::Kind::Problems)};
+            if (!_problemTexts.Lacks(*peer))
             {
-                // If too many texts are lacking, the next post asks again.
-                static_cast<void>(
-                    _types.Want({peer->Node, "", NodeReports::NameOf(NodeReports::Kind::Problems)}, now));
+                _presence.TypesLacking().LetGo(problems);
+            }
+            else if (MatchesAny(_config.ProblemsOf, peer->Node))
+            {
+                // If too many texts are wanted, the next post asks again.
+                static_cast<void>(_types.Want(problems, now));
             }
         }
     }

@@ -134,6 +134,10 @@ const Presence::Served &Presence::Service(Duration now)
         for (const PeerTable::Peer *peer : _peers.Heard())
         {
             _remote.Update(*peer);
+            if (peer->State == Gateway::NodeState::LOST)
+            {
+                _contents.Types().Forget(peer->Node);
+            }
         }
     }
     if (now >= _lookAt || _watch.IsExpecting())
@@ -292,6 +296,7 @@ void Presence::Note(const PeerTable::Change &change, const std::string &node, Se
         _remote.Forget(forgotten);
         _origins.Forget(forgotten);
         _contents.Questions().Forget(forgotten);
+        _contents.Types().Forget(forgotten);
         served.Change.Forgotten.push_back(forgotten);
     }
     Publish(node, change);

@@ -17,7 +17,7 @@ namespace Rabit
 
 // The texts of types and the reports of nodes (wire/NodeReports.h) that this node lacks: which node to ask
 // and when, and the parts that have come. The interval between questions for a text doubles, until the text
-// has come or LetGo is called.
+// has come, or LetGo or Forget is called.
 //
 // A pure state machine; `now` never goes back.
 class TypeQuestions
@@ -39,7 +39,14 @@ public:
     // Starts to ask that node. If another node was asked for the text of a type, its parts are dropped. A
     // report replaces one of that kind and node; an echo is asked for once. False: too many texts are wanted.
     bool Want(const Wanted &wanted, Duration now);
-    void LetGo(std::uint64_t definition) { _wanted.erase({definition, ""}); }
+    // That text is no longer wanted.
+    void LetGo(const Wanted &wanted) { _wanted.erase(KeyOf(wanted)); }
+    // Nothing is wanted from that node any more. For a node that does not hear questions: each due question
+    // brings a beat forward.
+    void Forget(const std::string &node)
+    {
+        std::erase_if(_wanted, [&node](const auto &entry) { return entry.second.Node == node; });
+    }
     bool IsEmpty() const { return _wanted.empty(); }
 
     struct Question

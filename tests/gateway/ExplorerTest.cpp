@@ -14,6 +14,7 @@
 #include "wire/BeatExtensions.h"
 #include "wire/LinkSampleCodec.h"
 #include "wire/LinkTopics.h"
+#include "wire/NodeReports.h"
 #include "wire/TypeFrames.h"
 
 namespace Rabit
@@ -81,6 +82,24 @@ TEST(Exploration, WhatWasPostedIsTakenByAUnitOfWorkThatBeginsLater)
     EXPECT_FALSE(exploration.WaitUntilTaken(0s));
     onWake = [&] { exploration.EndTurn(exploration.BeginTurn()); };
     EXPECT_TRUE(exploration.WaitUntilTaken(0s));
+}
+
+TEST(Exploration, AReportIsRequestedAgainAndAgainUntilItHasCome)
+{
+    using Report = FleetExplorer::Report;
+    Exploration exploration([] {});
+    exploration.AskForReport("uav1", Report::Echo, 1);
+    exploration.AskForReport("uav1", Report::Echo, 2);
+    for (int turn = 0; turn < 3; ++turn)
+    {
+        const auto lacking = exploration.TakeRequests().Lacking;
+        ASSERT_THAT(lacking, SizeIs(1));
+        EXPECT_EQ(lacking[0].Definition, NodeReports::NameOf(NodeReports::Kind::Echo, 2));
+    }
+    exploration.AddReport("uav1", {NodeReports::Kind::Echo, 1}, {});
+    EXPECT_THAT(exploration.TakeRequests().Lacking, SizeIs(1));
+    exploration.AddReport("uav1", {NodeReports::Kind::Echo, 2}, {});
+    EXPECT_THAT(exploration.TakeRequests().Lacking, SizeIs(0));
 }
 
 TEST_F(ExplorerTest, TellsWhichNodesReadAMessage)
@@ -276,6 +295,9 @@ TEST_F(ExplorerTest, WhatStrangersAnswerIsCheckedAndBounded)
     HandNode liar(fleet.Network, "liar", 1);
     const auto writer = liar.Session().CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
     fleet.RunFor(2s);
+    Gateway::Beat beat = liar.Beat();
+    beat.next_ms = 20000;
+    liar.Write(beat);
     explorer.AskForType("liar", "Uav::Pose", HashOf("Uav::Pose"));
     fleet.RunFor(1s);
     const auto answer = [&](std::uint64_t definition, const std::string &text, std::uint32_t of)

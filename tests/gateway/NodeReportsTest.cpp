@@ -3,11 +3,16 @@
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/FleetExplorer.h>
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "../core/CapturedLog.h"
+#include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "types/TypeQuestions.h"
+#include "wire/BeatExtensions.h"
 
 namespace Rabit
 {
@@ -121,6 +126,53 @@ TEST_F(NodeReportsTest, TheProblemsOfANodeReachThroughHeavyLoss)
     SimulatedNode &ground = AddGround({"uav*"});
     EXPECT_TRUE(fleet.RunUntil(
         [&] { return !ground.Fleet().nodes.empty() && !RowOfUav(ground).problem_texts.empty(); }, 60s));
+}
+
+TEST_F(NodeReportsTest, NodesThatAreGoneBeforeTheirReportsCameDoNotKeepThoseOfOthersAway)
+{
+    SimulatedNode &ground = AddGround({"*"});
+    fleet.RunFor(1s);
+    std::vector<std::unique_ptr<HandNode>> mute;
+    for (std::size_t i = 0; i < TypeQuestions::MostWanted; ++i)
+    {
+        mute.push_back(std::make_unique<HandNode>(fleet.Network, "mute" + std::to_string(i), 1));
+    }
+    for (int beat = 0; beat < 5; ++beat)
+    {
+        for (const auto &node : mute)
+        {
+            Gateway::Beat told = node->Beat();
+            BeatExtensions::Say(told, ProblemCount{.Count = 1, .Digest = 7});
+            node->Write(told);
+        }
+        fleet.RunFor(500ms);
+    }
+    fleet.RunFor(60s);
+    AddAircraft(true);
+    fleet.RunFor(10s);
+    EXPECT_EQ(RowOfUav(ground).problem_texts.size(), 1u);
+}
+
+TEST_F(NodeReportsTest, MoreNodesThanAreAskedAtOnceAllAnswer)
+{
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < TypeQuestions::MostWanted + 4; ++i)
+    {
+        GatewayConfig config;
+        config.Node = names.emplace_back("n" + std::to_string(i));
+        fleet.Add(config);
+    }
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(3s);
+    for (const std::string &name : names)
+    {
+        explorer.AskForReport(name, Report::Air);
+    }
+    fleet.RunFor(10s);
+    for (const std::string &name : names)
+    {
+        EXPECT_TRUE(explorer.TakeReport(name, Report::Air).has_value()) << name;
+    }
 }
 
 TEST_F(NodeReportsTest, ANodeThatHasNoLinesYetAnswersWhenThereIsOne)

@@ -130,7 +130,7 @@ TEST_F(TypeQuestionsTest, NoMoreAreAskedForThanThereIsRoomFor)
         EXPECT_TRUE(questions.Want({"uav1", "A", definition + i}, 1s));
     }
     EXPECT_FALSE(questions.Want({"uav1", "A", definition + 1000}, 1s));
-    questions.LetGo(definition);
+    questions.LetGo({"uav1", "A", definition});
     EXPECT_TRUE(questions.Want({"uav1", "A", definition + 1000}, 1s));
 }
 
@@ -165,6 +165,27 @@ TEST_F(ReportQuestions, OneReportOfSeveralNodesIsAskedForAtOnce)
     EXPECT_EQ(Answer("uav2", Kind::Air, 0, NodeReports::Sealed("2"))->Text, "2");
     EXPECT_EQ(Answer("uav1", Kind::Air, 0, NodeReports::Sealed("1"))->Text, "1");
     EXPECT_TRUE(questions.IsEmpty());
+}
+
+TEST_F(ReportQuestions, NothingIsAskedOfANodeThatIsForgottenUntilItIsWantedAgain)
+{
+    Want("uav1", Kind::Air, 0, 1s);
+    Want("uav1", Kind::Problems, 0, 1s);
+    Want("uav2", Kind::Air, 0, 1s);
+    questions.Forget("uav1");
+    ASSERT_THAT(questions.Take(1s, 8), SizeIs(1));
+    Want("uav1", Kind::Air, 0, 1s);
+    EXPECT_THAT(questions.Take(1s, 8), SizeIs(1));
+}
+
+TEST_F(ReportQuestions, AReportThatIsLetGoIsNotAskedFor)
+{
+    Want("uav1", Kind::Problems, 0, 1s);
+    Want("uav2", Kind::Problems, 0, 1s);
+    questions.LetGo({"uav1", "", NodeReports::NameOf(Kind::Problems)});
+    const auto asked = questions.Take(1s, 8);
+    ASSERT_THAT(asked, SizeIs(1));
+    EXPECT_EQ(asked[0].Node, "uav2");
 }
 
 TEST_F(ReportQuestions, TellsWhenTheQuestionWasAskedLast)
