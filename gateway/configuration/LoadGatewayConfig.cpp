@@ -99,9 +99,6 @@ void ReadRadio(const YamlMap &map, GatewayConfig &config)
     }
 }
 
-constexpr std::uint64_t Megabyte = 1000 * 1000;
-constexpr std::uint64_t Terabyte = Megabyte * Megabyte;
-
 void ReadRecord(const YamlMap &map, GatewayConfig &config)
 {
     const auto record = map.Map("record", "the section `record`",
@@ -119,11 +116,11 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
     record->Read("except", settings.Except);
     record->Read("queues", settings.Queues);
     record->Read("steps", settings.Steps);
-    record->ReadByteSize("split_size", settings.SplitSize, Megabyte, Terabyte);
+    record->ReadByteSize("split_size", settings.SplitSize, RecordRanges::SplitSize);
     record->Read("split_time", settings.SplitTime);
-    record->ReadByteSize("keep", settings.Keep, 0, 1000 * Terabyte);
-    record->ReadByteSize("free", settings.Free, 0, 1000 * Terabyte);
-    record->ReadByteSize("memory", settings.Memory, Megabyte, 64000 * Megabyte);
+    record->ReadByteSize("keep", settings.Keep, RecordRanges::Keep);
+    record->ReadByteSize("free", settings.Free, RecordRanges::Free);
+    record->ReadByteSize("memory", settings.Memory, RecordRanges::Memory);
     for (const auto &[key, line] : record->Lines())
     {
         config.Lines["record." + key] = line;

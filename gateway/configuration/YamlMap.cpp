@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 
 namespace Rabit
 {
@@ -23,18 +24,6 @@ bool ParseWhole(const std::string &text, Number &value)
 {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc() && end == text.data() + text.size() && !text.empty();
-}
-
-// Returns a size in the largest unit that leaves a whole number.
-std::string SizeText(std::uint64_t bytes)
-{
-    const char *const units[] = {"B", "kB", "MB", "GB", "TB"};
-    std::size_t unit = 0;
-    for (; unit + 1 < std::size(units) && bytes != 0 && bytes % 1000 == 0; ++unit)
-    {
-        bytes /= 1000;
-    }
-    return std::to_string(bytes) + units[unit];
 }
 
 }  // namespace
@@ -247,8 +236,7 @@ void YamlMap::ReadByteRate(const std::string &key, std::optional<double> &value)
     value = number * factor;
 }
 
-void YamlMap::ReadByteSize(const std::string &key, std::uint64_t &value, std::uint64_t least,
-                           std::uint64_t most) const
+void YamlMap::ReadByteSize(const std::string &key, std::uint64_t &value, const ByteRange &range) const
 {
     const YAML::Node *node = Find(key);
     if (node == nullptr)
@@ -256,23 +244,14 @@ void YamlMap::ReadByteSize(const std::string &key, std::uint64_t &value, std::ui
         return;
     }
     const std::string &text = Scalar(*node, key, "bytes such as 64MB or 1GB");
-    const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
-    const std::string unit = text.substr(unitAt);
-    const std::map<std::string, double> factors = {
-        {"B", 1.0}, {"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}};
-    const auto factor = factors.find(unit);
-    double number = 0.0;
-    if (factor == factors.end() || !ParseWhole(text.substr(0, unitAt), number) || !std::isfinite(number))
+    try
     {
-        Fail(LineOf(*node), "`" + key + "` is `" + text + "`; expected bytes such as 64MB or 1GB");
+        value = ParseByteSize(text, range);
     }
-    const double bytes = number * factor->second;
-    if (!(bytes >= static_cast<double>(least) && bytes <= static_cast<double>(most)))
+    catch (const std::invalid_argument &error)
     {
-        Fail(LineOf(*node),
-             "`" + key + "` is `" + text + "`; expected " + SizeText(least) + " to " + SizeText(most));
+        Fail(LineOf(*node), "`" + key + "` is `" + text + "`; " + error.what());
     }
-    value = static_cast<std::uint64_t>(bytes);
 }
 
 void YamlMap::Read(const std::string &key, std::vector<std::string> &value) const

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "names/ByteSize.h"
+
 namespace Rabit
 {
 
@@ -46,9 +48,7 @@ public:
     void Read(const std::string &key, std::chrono::milliseconds &value) const;
     // Bytes a second: `1500B/s`, `5kB/s`, `2MB/s` (of 1000 and 1000000 bytes), or `auto` for an empty value.
     void ReadByteRate(const std::string &key, std::optional<double> &value) const;
-    // `64MB`, `1GB`: of powers of 1000, from B to TB.
-    void ReadByteSize(const std::string &key, std::uint64_t &value, std::uint64_t least,
-                      std::uint64_t most) const;
+    void ReadByteSize(const std::string &key, std::uint64_t &value, const ByteRange &range) const;
     // Reads a list of words, or one word alone.
     void Read(const std::string &key, std::vector<std::string> &value) const;
     // Reads one of the words. Returns its index, or -1 if the key is missing.

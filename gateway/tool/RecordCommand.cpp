@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -22,6 +23,7 @@
 #include "FleetFollower.h"
 #include "FleetSession.h"
 #include "Output.h"
+#include "names/ByteSize.h"
 #include "names/ListedNames.h"
 #include "recording/FolderDisk.h"
 #include "recording/MessageTaps.h"
@@ -136,6 +138,24 @@ bool Tell(const Options &options, const RecordingStatus &status)
     return status.Lost.empty() && status.Problem.empty();
 }
 
+// Replaces a size such as 500MB by its bytes.
+CLI::Validator Size(const ByteRange &range)
+{
+    return {[range](std::string &text)
+            {
+                try
+                {
+                    text = std::to_string(ParseByteSize(text, range));
+                }
+                catch (const std::invalid_argument &error)
+                {
+                    return "`" + text + "`; " + error.what();
+                }
+                return std::string();
+            },
+            "SIZE"};
+}
+
 void TellOfNew(const std::vector<std::string> &messages)
 {
     if (!messages.empty())
@@ -215,8 +235,7 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
         ->check(CLI::PositiveNumber);
     command
         ->add_option("--split-size", options->SplitSize, "End a file at this size, as 500MB (default: 1 GiB)")
-        ->transform(CLI::AsSizeValue(true))
-        ->check(CLI::Range(std::uint64_t{1'000'000}, std::uint64_t{1'000'000'000'000}));
+        ->transform(Size(RecordRanges::SplitSize));
     const std::map<std::string, std::uint64_t> units{
         {"ms", 1}, {"s", 1000}, {"min", 60'000}, {"h", 3'600'000}};
     command
@@ -228,14 +247,24 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
         ->add_option(
             "--keep", options->Keep,
             "Size of all files of that name, as 20GB; beyond it the oldest is removed (default: no limit)")
-        ->transform(CLI::AsSizeValue(true));
+        ->transform(Size(RecordRanges::Keep));
     command->add_option("--free", options->Free, "Bytes of the disk that stay free, as 5GB (default: 1 GiB)")
-        ->transform(CLI::AsSizeValue(true));
+        ->transform(Size(RecordRanges::Free));
     AddExamples(*command, {"rabit record --to flights --for 60", "rabit record uav1/Pose 'uav*/Health'",
                            "rabit record --except '*/CameraView' --name test",
                            "rabit record --split-time 5min --keep 20GB"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
+    command->callback(
+        [options, &chosen]
+        {
+            // Files are removed whole, so a smaller size keeps none but the one that is written.
+            if (options->Keep > 0 && options->Keep < options->SplitSize)
+            {
+                throw CLI::ValidationError("--keep",
+                                           "less than the size of one file; give a larger size, or a smaller "
+                                           "--split-size");
+            }
+            chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); };
+        });
 }
 
 }  // namespace Rabit::Tool

@@ -170,6 +170,21 @@ def a_folder_that_cannot_be_written_ends_a_recording_before_it_begins(rabit):
     assert done.stderr == "rabit: /proc/nowhere: No such file or directory\n", done.stderr
 
 
+def a_size_of_a_recording_needs_a_unit(rabit):
+    for option in ("--keep", "--free", "--split-size"):
+        for size in ("20", "1000000000", "20XB", "-1GB"):
+            done = rabit.run("record", "--to", "/proc/nowhere", f"{option}={size}")
+            assert done.returncode == 2, done
+            assert f"`{size}`; expected bytes such as 64MB or 1GB" in done.stderr, done.stderr
+
+
+def a_recording_does_not_keep_less_than_one_file(rabit):
+    done = rabit.run("record", "--to", "/proc/nowhere", "--keep", "20MB", "--split-size", "21MB")
+    assert done.returncode == 2 and "--keep: less than the size of one file" in done.stderr, done
+    done = rabit.run("record", "--to", "/proc/nowhere", "--keep", "21MB", "--split-size", "21MB")
+    assert done.stderr == "rabit: /proc/nowhere: No such file or directory\n", done.stderr
+
+
 def each_command_shows_examples_that_it_understands(rabit):
     with tempfile.TemporaryDirectory() as folder:
         for command in commands_of(rabit):
@@ -264,7 +279,8 @@ TESTS = [configurations_of_a_fleet_are_checked_against_each_other,
          what_a_fleet_puts_on_the_air_is_checked_against_its_budgets, shells_complete_commands_and_options,
          shells_complete_what_the_fleet_has, the_manual_tells_of_every_command_and_every_common_option,
          an_option_takes_one_value_wherever_it_stands, what_is_left_out_of_a_recording_takes_no_message_with_it,
-         a_folder_that_cannot_be_written_ends_a_recording_before_it_begins,
+         a_folder_that_cannot_be_written_ends_a_recording_before_it_begins, a_size_of_a_recording_needs_a_unit,
+         a_recording_does_not_keep_less_than_one_file,
          each_command_shows_examples_that_it_understands, the_environment_stands_for_options_that_the_line_lacks,
          a_configuration_on_the_line_has_precedence_over_the_environment, a_signal_ends_commands_that_read_files, what_is_no_recording_is_not_recovered,
          a_recovery_that_does_not_fit_on_the_disk_leaves_no_file]

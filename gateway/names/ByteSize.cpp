@@ -1,0 +1,53 @@
+#include "names/ByteSize.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+namespace Rabit
+{
+namespace
+{
+
+// Each is 1000 of the one before it.
+constexpr std::string_view Units[] = {"B", "kB", "MB", "GB", "TB"};
+
+// Returns a size in the largest unit that leaves a whole number.
+std::string SizeText(std::uint64_t bytes)
+{
+    std::size_t unit = 0;
+    for (; unit + 1 < std::size(Units) && bytes != 0 && bytes % 1000 == 0; ++unit)
+    {
+        bytes /= 1000;
+    }
+    return std::to_string(bytes).append(Units[unit]);
+}
+
+}  // namespace
+
+std::uint64_t ParseByteSize(const std::string &text, const ByteRange &range)
+{
+    const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
+    const auto *const unit =
+        std::find(std::begin(Units), std::end(Units), std::string_view(text).substr(unitAt));
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + unitAt, number);
+    if (unit == std::end(Units) || error != std::errc() || end != text.data() + unitAt ||
+        !std::isfinite(number))
+    {
+        throw std::invalid_argument("expected bytes such as 64MB or 1GB");
+    }
+    const double bytes = number * std::pow(1000.0, unit - std::begin(Units));
+    if (!(bytes >= static_cast<double>(range.Least) && bytes <= static_cast<double>(range.Most)))
+    {
+        throw std::invalid_argument("expected " + SizeText(range.Least) + " to " + SizeText(range.Most));
+    }
+    return static_cast<std::uint64_t>(bytes);
+}
+
+}  // namespace Rabit
