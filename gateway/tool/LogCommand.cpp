@@ -28,6 +28,17 @@ struct Options
     bool Follow = false;
 };
 
+// Reads an answer. Empty: reports that it cannot be read.
+std::optional<LogText> Read(const std::string &node, const FleetExplorer::Answer &answer)
+{
+    std::optional<LogText> log = LogTextOf(answer.Text);
+    if (!log)
+    {
+        Output::Talk(node + " sent a log that makes no sense");
+    }
+    return log;
+}
+
 bool Show(const std::string &node, const LogText &log, bool json)
 {
     for (const std::string &line : log.Lines)
@@ -54,7 +65,8 @@ public:
     {
     }
 
-    void Run(const Wakeup &wakeup)
+    // Returns the exit code.
+    int Run(const Wakeup &wakeup)
     {
         Ask();
         while (!wakeup.IsInterrupted())
@@ -67,10 +79,14 @@ public:
                                    answer = _session.Explorer().TakeReport(_options.Node, Report::LinesFrom);
                                    return answer.has_value();
                                });
-            const std::optional<LogText> log = answer ? LogTextOf(answer->Text) : std::nullopt;
-            if (!log)
+            if (!answer)
             {
                 continue;
+            }
+            const std::optional<LogText> log = Read(_options.Node, *answer);
+            if (!log)
+            {
+                return ProblemFound;
             }
             if (log->First != _next && log->First != 0)
             {
@@ -79,10 +95,11 @@ public:
             _next = log->Next();
             if (!Show(_options.Node, *log, _options.Common.Json))
             {
-                return;
+                return Good;
             }
             Ask();
         }
+        return Good;
     }
 
 private:
@@ -129,16 +146,13 @@ int Run(const Options &options, Wakeup &wakeup)
         return code;
     }
     const auto answer = Request(session, options.Node, Report::LastLines, options.Lines);
-    const std::optional<LogText> log = answer ? LogTextOf(answer->Text) : std::nullopt;
+    const std::optional<LogText> log = answer ? Read(options.Node, *answer) : std::nullopt;
     if (!log)
     {
         return ProblemFound;
     }
-    if (Show(options.Node, *log, options.Common.Json) && options.Follow)
-    {
-        Follower(session, options, *log).Run(wakeup);
-    }
-    return Good;
+    const bool isRead = Show(options.Node, *log, options.Common.Json);
+    return isRead && options.Follow ? Follower(session, options, *log).Run(wakeup) : Good;
 }
 
 }  // namespace
@@ -149,7 +163,7 @@ void AddLogCommand(CLI::App &app, Chosen &chosen)
     CLI::App *command = app.add_subcommand("log", "The log of a node");
     command->add_option("NODE", options->Node, "As uav1")->required();
     AddCommonOptions(*command, options->Common, 5.0);
-    command->add_option("-n,--lines", options->Lines, "So many of its last lines (default: 20)")
+    command->add_option("-n,--lines", options->Lines, "Number of last lines (default: 20)")
         ->check(CLI::Range(0, 1000));
     command->add_flag("-f,--follow", options->Follow, "Show further lines as they come, until Ctrl-C");
     AddExamples(*command, {"rabit log uav1", "rabit log uav1 -f -n 100", "rabit log uav1 --json"});

@@ -134,7 +134,7 @@ void AddPingCommand(CLI::App &app, Chosen &chosen)
     CLI::App *command = app.add_subcommand("ping", "Round trips to a node, through its gateway");
     command->add_option("NODE", options->Node, "As uav1")->required();
     AddCommonOptions(*command, options->Common, 5.0);
-    command->add_option("-c,--count", options->Count, "End after so many (default: at Ctrl-C)")
+    command->add_option("-c,--count", options->Count, "Number of round trips (default: until Ctrl-C)")
         ->check(CLI::Range(1u, std::numeric_limits<std::uint32_t>::max()));
     command->add_option("--every", options->Every, "Seconds from one to the next (default: 1)")
         ->check(CLI::Range(0.3, 3600.0));
