@@ -5,7 +5,8 @@
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
-#include <sstream>
+#include <charconv>
+#include <iterator>
 #include <utility>
 
 namespace Rabit
@@ -30,11 +31,11 @@ struct NodeParametersSection
 namespace
 {
 
+// Returns the shortest digits that are this number, whatever the locale.
 std::string Text(double value)
 {
-    std::ostringstream text;
-    text << value;
-    return text.str();
+    char text[32];
+    return {text, std::to_chars(std::begin(text), std::end(text), value).ptr};
 }
 
 }  // namespace
@@ -83,8 +84,10 @@ void NodeParameters::Read(const std::string &name, double &value, double least, 
     _section->Map.Read(name, read);
     if (read < least || read > most)
     {
-        Fail(name, "`" + name + "` is " + Text(read) + "; expected a number from " + Text(least) + " to " +
-                       Text(most));
+        std::string text;
+        _section->Map.Read(name, text);
+        Fail(name,
+             "`" + name + "` is `" + text + "`; expected a number from " + Text(least) + " to " + Text(most));
     }
     value = read;
 }

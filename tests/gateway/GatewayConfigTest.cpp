@@ -255,8 +255,11 @@ TEST_F(GatewayConfigTest, AParameterOfAnotherKindOrRangeIsNamedWithItsLine)
     EXPECT_EQ(ErrorIn([&] { config.Parameters.Read("wingmen", whole, 1, 5); }),
               "node.yaml:4: `wingmen` is `9`; expected a whole number from 1 to 5");
     EXPECT_EQ(ErrorIn([&] { config.Parameters.Read("gap_m", number, 5, 200); }),
-              "node.yaml:5: `gap_m` is 500; expected a number from 5 to 200");
+              "node.yaml:5: `gap_m` is `500`; expected a number from 5 to 200");
     EXPECT_EQ(number, 3);
+    const GatewayConfig close = Load("node: uav1\nparameters:\n  gap_m: 200.0001\n");
+    EXPECT_EQ(ErrorIn([&] { close.Parameters.Read("gap_m", number, 5, 200); }),
+              "node.yaml:3: `gap_m` is `200.0001`; expected a number from 5 to 200");
     EXPECT_EQ(ErrorIn([&] { config.Parameters.Fail("gap_m", "too wide for the field"); }),
               "node.yaml:5: too wide for the field");
 }
