@@ -45,7 +45,7 @@ void TypeExchange::OnFrame(std::string_view node, std::span<const std::uint8_t> 
         const std::lock_guard lock(_mutex);
         if (!_lacks || frame.size() > LargestInbox - _inboxBytes)
         {
-            // A second answer to a question for a report that was repeated is no harm.
+            // A question for a report is repeated, so a second answer is not malformed.
             const auto part = TypeFrames::Decode(frame);
             _dropped += part && NodeReports::NameIn(part->Definition) ? 0 : 1;
             return;

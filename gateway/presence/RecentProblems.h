@@ -13,7 +13,7 @@ namespace Rabit
 {
 
 // Problems that other nodes' traffic shows, such as a gateway of another version. Each is reported for some
-// seconds after its last sign. Bounded: a crowd of names fills no memory. Not thread-safe.
+// seconds after its last sign. At most MostRemembered, however many names there are. Not thread-safe.
 class RecentProblems
 {
 public:

@@ -46,7 +46,8 @@ public:
     // Takes the problems that are present now, and returns lines of printable ASCII. `now` never goes back.
     std::vector<std::string> Look(const std::vector<Gateway::Problem> &present, Duration now);
 
-    // The problems that have lasted, as of the last look. One that comes and goes quickly is among them.
+    // The problems that have lasted, as of the last look. A problem that comes and goes faster than `Lasting`
+    // counts as present all the time.
     struct Standing
     {
         std::vector<Gateway::Problem> Problems;

@@ -105,7 +105,7 @@ std::optional<TypeQuestions::Answer> TypeQuestions::Add(const std::string &node,
     const auto found = report != _wanted.end() ? report : _wanted.find({part.Definition, ""});
     if (found == _wanted.end() || found->second.Node != node)
     {
-        // A second answer to a question that was repeated is no harm.
+        // A question for a report is repeated, so a second answer is not wrong.
         _wrong += NodeReports::NameIn(part.Definition) ? 0 : 1;
         return std::nullopt;
     }

@@ -22,6 +22,9 @@ namespace Rabit
 //     for (const auto &[node, pose] : _poses.YoungerThan(0.5))
 //         std::cout << node << ' ' << pose->latitude_deg << ' ' << pose->GetAgeSeconds() << '\n';
 //
+// Each message `X/Pose` of that type in the workspace counts as the one of a node X. So give a message of the
+// program's own a name without `/`.
+//
 // Values of a node that is gone stay. Their age grows, and Gateway/Fleet has the state of the node.
 // Not thread-safe: for the manager's unit of work.
 template <typename T>
