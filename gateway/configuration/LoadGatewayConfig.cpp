@@ -234,7 +234,7 @@ YamlMap OpenFile(const std::string &file)
             {"node",      "name",         "domain",        "transport",   "interfaces",     "peers",
              "multicast", "max_datagram", "shared_memory", "lease",       "backend_config", "state_dir",
              "security",  "radio",        "record",        "publish",     "subscribe",      "accept",
-             "send",      "foreign",      "foxglove",      "problems_of", "parameters"}};
+             "send",      "foreign",      "foxglove",      "problems_of", "reports",        "parameters"}};
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -292,6 +292,7 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     ReadForeign(map, config);
     ReadPanels(map, config);
     map.Read("problems_of", config.ProblemsOf);
+    map.Read("reports", config.Reports);
     ReadParameters(map, config);
     ValidateGatewayConfig(config, whyNoType);
     return config;

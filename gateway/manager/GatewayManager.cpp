@@ -439,19 +439,22 @@ private:
         }
     }
 
-    // Returns a report of this node, for one that requests it.
+    // Returns a report of this node, for one that requests it; empty: there is none, or it is refused.
     std::optional<std::string> ReportOf(NodeReports::Name name) const
     {
         switch (name.What)
         {
             case NodeReports::Kind::Problems:
-                return ProblemTexts::ReportOf(_lasted);
+                // If words are refused, the digest alone: with it the requests end.
+                return ProblemTexts::ReportOf(
+                    _config.Reports ? _lasted
+                                    : ProblemLog::Standing{.Problems = {}, .Digest = _lasted.Digest});
             case NodeReports::Kind::Air:
                 return AirReport::TextOf(_fleet->air);
             case NodeReports::Kind::LastLines:
-                return _log.Last(name.Argument);
+                return _config.Reports ? std::optional(_log.Last(name.Argument)) : std::nullopt;
             case NodeReports::Kind::LinesFrom:
-                return _log.From(name.Argument);
+                return _config.Reports ? _log.From(name.Argument) : std::nullopt;
             case NodeReports::Kind::Echo:
                 break;
         }

@@ -33,8 +33,10 @@ std::optional<FleetExplorer::Answer> Request(FleetSession &session, const std::s
                       [&] { return (answer = explorer.TakeReport(node, what)).has_value(); });
     if (!answer)
     {
-        Output::Talk(node +
-                     " does not answer; its gateway is of an older version, or does not hear this machine");
+        Output::Talk(
+            node +
+            " does not answer; its gateway has `reports: off`, is of an older version, or does not hear "
+            "this machine");
     }
     return answer;
 }

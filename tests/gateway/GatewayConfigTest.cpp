@@ -128,6 +128,12 @@ record:
     EXPECT_TRUE(box.Problems);
 }
 
+TEST_F(GatewayConfigTest, ReadsWhetherReportsAreSent)
+{
+    EXPECT_TRUE(Load("node: a\n").Reports);
+    EXPECT_FALSE(Load("node: a\nreports: off\n").Reports);
+}
+
 TEST_F(GatewayConfigTest, ReadsWhoseProblemsAreRequested)
 {
     EXPECT_TRUE(Load("node: a\n").ProblemsOf.empty());

@@ -191,6 +191,24 @@ TEST_F(NodeReportsTest, ANodeThatHasNoLinesYetAnswersWhenThereIsOne)
     EXPECT_THAT(answer->Text, HasSubstr(" warning a motor is hot\n"));
 }
 
+TEST_F(NodeReportsTest, ANodeWhoseReportsAreOffTellsItsFiguresAndNoWords)
+{
+    GatewayConfig config;
+    config.Node = "uav1";
+    config.Reports = false;
+    config.Subscribe.push_back({.Message = "Pse", .Type = "Uav::Pose"});
+    fleet.Add(config);
+    SimulatedNode &ground = AddGround({"*"});
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(6s);
+    EXPECT_EQ(RowOfUav(ground).problems, 1u);
+    EXPECT_THAT(RowOfUav(ground).problem_texts, IsEmpty());
+    EXPECT_FALSE(Ask(explorer, Report::LastLines, 20).has_value());
+    EXPECT_FALSE(Ask(explorer, Report::LinesFrom, 0).has_value());
+    EXPECT_TRUE(Ask(explorer, Report::Air).has_value());
+    EXPECT_TRUE(Ask(explorer, Report::Echo, 1).has_value());
+}
+
 TEST_F(NodeReportsTest, TellsItsShareOfTheChannel)
 {
     AddAircraft(false);

@@ -65,6 +65,15 @@ TEST_F(ProblemTextsTest, WhatANodeReportsIsWhatItsRowTells)
     EXPECT_THAT(Row().problem_texts, ElementsAre("subscribe Pose: nobody publishes it"));
 }
 
+TEST_F(ProblemTextsTest, NothingIsLackingOfANodeThatSendsNoWords)
+{
+    Hear({.Count = 1, .Digest = 7});
+    texts.Add("uav1", ProblemTexts::ReportOf({.Problems = {}, .Digest = 7}));
+    EXPECT_FALSE(texts.Lacks(Uav()));
+    EXPECT_EQ(Row().problems, 1u);
+    EXPECT_THAT(Row().problem_texts, IsEmpty());
+}
+
 TEST_F(ProblemTextsTest, OtherProblemsHaveOtherTexts)
 {
     Hear({.Count = 1, .Digest = 7});

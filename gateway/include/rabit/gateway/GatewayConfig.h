@@ -207,6 +207,9 @@ struct GatewayConfig
     // Only in code.
     bool Replay = false;
 
+    // False: this node sends neither its problems in words nor its log to those that request them.
+    bool Reports = true;
+
     // For error messages: the file of the configuration, and the lines of its top-level keys and of the keys
     // in `security`, `radio` and `record` (`radio.budget`). Empty: made in code.
     std::string File;
