@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A run that is ended from outside leaves no namespace, folder or process behind.
+"""A run that is ended from outside leaves no namespace, folder or process behind, and a mistake skips no test.
 
 Usage: field_cleanup_test.py LEDGER_NODE"""
 
@@ -62,6 +62,20 @@ def end_with(number, program, scenario):
     assert not left_of(run.pid), f"left behind after {number.name}: {left_of(run.pid)}"
 
 
+class MistakenField(field.Field):
+    def _switch_on(self, node):
+        field.run("ip", "-n", self.space(node), "link", "set", "nothing", "up")
+
+
+def check_that_a_mistake_skips_no_test():
+    try:
+        with MistakenField(["probe"]):
+            pass
+    except subprocess.CalledProcessError:
+        return
+    raise AssertionError("a command that fails was not reported")
+
+
 def main():
     try:
         with field.Field(["probe"]):
@@ -71,6 +85,7 @@ def main():
     except field.Unsupported as reason:
         print(f"skipped: {reason}")
         sys.exit(77)
+    check_that_a_mistake_skips_no_test()
     for scenario in RUNS:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             end_with(number, sys.argv[1], scenario)
