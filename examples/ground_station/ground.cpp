@@ -123,15 +123,21 @@ Uav::Geofence FenceOf(const Rabit::NodeParameters &parameters)
 {
     constexpr double atMostM = 1'000'000;
     Uav::Geofence fence;
-    const auto read = [&parameters](const char *name, double &value, const Common::Range &range)
+    std::string present;  // the last name that the file has
+    int count = 0;
+    const auto read = [&](const char *name, double &value, const Common::Range &range)
     {
         parameters.Read(name, value, range.Lowest, range.Highest);
-        return parameters.Has(name);
+        if (!parameters.Has(name))
+            return;
+        present = name;
+        ++count;
     };
-    const bool hasMiddle = read("geofence_latitude_deg", fence.latitude_deg, Common::LatitudeDeg) &
-                           read("geofence_longitude_deg", fence.longitude_deg, Common::LongitudeDeg);
-    if (read("geofence_radius_m", fence.radius_m, {10, atMostM}) != hasMiddle)
-        parameters.Fail("geofence_radius_m",
+    read("geofence_latitude_deg", fence.latitude_deg, Common::LatitudeDeg);
+    read("geofence_longitude_deg", fence.longitude_deg, Common::LongitudeDeg);
+    read("geofence_radius_m", fence.radius_m, {10, atMostM});
+    if (count != 0 && count != 3)
+        parameters.Fail(present,
                         "a geofence needs all three of geofence_latitude_deg, "
                         "geofence_longitude_deg and geofence_radius_m");
     parameters.RefuseOthers();

@@ -59,8 +59,11 @@ refused_parameters() {
 }
 refused_parameters 'unknown parameter `geofence_radius`; did you mean `geofence_radius_m`?' '{geofence_radius: 3000}'
 refused_parameters '`geofence_radius_m` is 5; expected a number from 10 to 1e+06' '{geofence_radius_m: 5}'
-refused_parameters 'a geofence needs all three of geofence_latitude_deg, geofence_longitude_deg and geofence_radius_m' \
-    '{geofence_latitude_deg: 47, geofence_longitude_deg: 8}'
+for part in 'latitude_deg: 47' 'longitude_deg: 8' 'radius_m: 3000' 'latitude_deg: 47, geofence_longitude_deg: 8' \
+    'latitude_deg: 47, geofence_radius_m: 3000' 'longitude_deg: 8, geofence_radius_m: 3000'; do
+    refused_parameters 'a geofence needs all three of geofence_latitude_deg, geofence_longitude_deg and geofence_radius_m' \
+        "{geofence_$part}"
+done
 
 # refused_setting LINE SETTING: a network setting that cannot work, on either backend.
 refused_setting() {
