@@ -37,7 +37,8 @@ public:
     // Number of nodes that are followed; others are not shown.
     static constexpr std::size_t MaxNodes = 200;
     // Orders and search areas of all pages together within one second; further ones are refused.
-    static constexpr int MaxOrdersPerSecond = 200;  // an order to all aircraft is one for each
+    // An order to all aircraft is one for each, and a person may correct it at once.
+    static constexpr int MaxOrdersPerSecond = 2 * static_cast<int>(MaxNodes);
     static constexpr int PicturesWaiting = 64;
 
     struct Settings

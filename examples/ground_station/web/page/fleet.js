@@ -123,7 +123,7 @@ export function showSelected(model) {
   const {marked} = model;
   for (const name of ['goto', 'centre']) byId(`act-${name}`).disabled = !known;
   for (const name of ['search', 'home']) byId(`act-${name}`).disabled = !known && marked.length === 0;
-  byId('act-all-home').disabled = model.aircraft.length === 0;
+  byId('act-all-home').disabled = model.allAircraft.length === 0;
   setText(byId('marked-text'), marked.length > 0 ? `✓ Search and Home are for those that are marked: ${marked.join(', ')}.` : '');
   if (!known) {
     setText(byId('selected-title'), 'No aircraft selected');

@@ -159,7 +159,7 @@ const step = (by) => {
   table.focus(next);
 };
 const help = () => byId('keys').showModal();
-const allHome = () => orders.open('home', null, model.byUrgency.map(({node}) => node));
+const allHome = () => orders.open('home', null, model.allAircraft.map(({node}) => node));
 const centre = () => map.centre(model.selectedAircraft);
 
 listenForKeys([

@@ -48,8 +48,12 @@ export class Model {
     this.received += 1;
   }
 
+  // Also those that a person has dismissed: they may still fly.
+  get allAircraft() {
+    return this.snapshot?.aircraft ?? [];
+  }
   get aircraft() {
-    return (this.snapshot?.aircraft ?? []).filter(({node}) => !this.forgotten.has(node));
+    return this.allAircraft.filter(({node}) => !this.forgotten.has(node));
   }
   forget(node) {
     this.forgotten.add(node);

@@ -240,6 +240,7 @@ export class Orders {
       if (failed.length > 0) {
         // Only those that did not get it are asked for again.
         this.nodes = failed.map(({node}) => node);
+        [this.node] = this.nodes;
         const what = ({node, reason}) => (nodes.length > 1 ? `${node}: ${reason.message}` : reason.message);
         throw new Error(failed.map(what).join('; '));
       }

@@ -364,6 +364,9 @@ async function forgetsALostAircraftUntilItIsHeardAgain(programs) {
   const before = await fleet.data('snapshot');
   await becomes(async () => Number(await fleet.data('snapshot')) > Number(before) + 5, 'time goes on');
   assert.equal(await fleet.row('uav2'), null, 'it stays away');
+  await page.keyboard.press('H');
+  assert.equal(await fleet.text('#order-title'), 'Call uav1, uav2 home?', 'it may still fly');
+  await page.keyboard.press('Escape');
   fixture.tell('up uav2');
   await fleet.rowBecomes('uav2', (row) => /UP/.test(row.state), 'is back');
   assert.deepEqual(fleet.errors, []);
