@@ -26,9 +26,9 @@ namespace Ground
 //          the fleet should search; and Uav::CommandAck, from any aircraft.
 // Sends:   Uav::Goto, Uav::GoHome and Uav::Search to the queue MissionControl of an aircraft: those ordered,
 //          and those that its settings demand.
-// Posts:   Geofence (Uav::Geofence) at the start; SearchArea (Uav::SearchArea), at the start and when it
-// changes; CommandList (Ground::CommandList)
-//          and CommandTally (Ground::CommandTally), when they change.
+// Posts:   Geofence (Uav::Geofence), at the start; SearchArea (Uav::SearchArea), at the start and when it
+//          changes; CommandList (Ground::CommandList) and CommandTally (Ground::CommandTally), when they
+//          change.
 // Fetches: Gateway/Fleet, and <node>/Pose of each node.
 //
 // It also ends the run when its time is over or on RequestEnd: it sends nothing more, waits for outstanding

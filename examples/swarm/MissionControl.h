@@ -23,9 +23,8 @@ namespace Swarm
 // Queue:   MissionControl takes Uav::Goto, Uav::GoHome and Uav::Search, and answers with Uav::CommandAck to
 //          the queue that the command names in reply_to; and from the other aircraft Uav::TargetReport and
 //          Uav::Validation.
-// Fetches: SearchArea and Geofence of the ground station, Pose, FlightMode, Health and Targets of this
-// aircraft, Pose and
-//          Findings of the others.
+// Fetches: SearchArea and Geofence of the ground station; Pose, FlightMode, Health and Targets of this
+//          aircraft; Pose and Findings of the others.
 // Posts:   MissionState (Uav::MissionState) and Findings (Uav::Findings), when they change and every second.
 // Sends:   Uav::Course to the queue Autopilot; TargetReport and Validation to the queue MissionControl of
 //          other aircraft.
