@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -116,10 +117,16 @@ void RabitLog::SetSink(Sink sink)
 
 void RabitLog::SetName(const std::string &name)
 {
-    auto prefixes = PrefixesOf(WithoutControls(name));
-    LogState &state = State();
-    const std::lock_guard<std::mutex> lock(state.Mutex);
-    state.Before.swap(prefixes);
+    try
+    {
+        auto prefixes = PrefixesOf(WithoutControls(name));
+        LogState &state = State();
+        const std::lock_guard<std::mutex> lock(state.Mutex);
+        state.Before.swap(prefixes);
+    }
+    catch (...)  // out of memory: the former name stays
+    {
+    }
 }
 
 void RabitLog::SetLevel(RabitLogLevel level)
@@ -169,7 +176,7 @@ void RabitLog::Write(RabitLogLevel level, const std::string &text) noexcept
     catch (...)  // a broken sink must not cost the line, nor end the process
     {
     }
-    state.Stderr.Write(before ? (*before)[static_cast<std::size_t>(level)] : "", text);
+    state.Stderr.Write(before ? std::string_view((*before)[static_cast<std::size_t>(level)]) : "", text);
 }
 
 void RabitLog::Print(const std::string &line) noexcept

@@ -269,17 +269,31 @@ void RabitManager::RenewMessageWakeups()
     }
 }
 
-// A new queue may get the address of a destroyed one.
 void RabitManager::WakeUpManagerOnOutcome(const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     if (!receipt)
     {
         throw std::invalid_argument("WakeUpManagerOnOutcome needs a receipt");
     }
-    AddQueueWakeup(receipt.get(), QueueEvent::Settled,
-                   [&](RabitHandler handler) { return receipt->ConnectOutcomeKnown(std::move(handler)); });
+    const std::lock_guard<std::mutex> lock(_wakeupsMutex);
+    // A manager that sends requests has a new receipt for each: only the first of them changes its settings.
+    const bool isFirst =
+        std::none_of(_queueWakeups.begin(), _queueWakeups.end(),
+                     [](const QueueWakeup &wakeup) { return wakeup.Event == QueueEvent::Settled; });
+    ForgetEndedQueueWakeups();
+    if (HasQueueWakeup(receipt.get(), QueueEvent::Settled))
+    {
+        return;
+    }
+    _queueWakeups.push_back(
+        QueueWakeup{receipt.get(), QueueEvent::Settled, receipt->ConnectOutcomeKnown(WakeUpHandler())});
+    if (isFirst)
+    {
+        _settingsChanged.store(true);
+    }
 }
 
+// A new queue may get the address of a destroyed one.
 void RabitManager::ForgetEndedQueueWakeups()
 {
     _queueWakeups.erase(

@@ -191,13 +191,19 @@ bool RabitManager::CycleStep()
     SystemTimeClock::GetSystemTimeClock()->ReportSteps();
     _workspace._refusals->Report();
     CountPass(start, end);
-    if (end - start >= LongWork)
+    try
     {
-        WarnOfLongWork(end - start);
+        if (end - start >= LongWork)
+        {
+            WarnOfLongWork(end - start);
+        }
+        if (_settingsChanged.load(std::memory_order_relaxed))
+        {
+            WarnOfSettings();
+        }
     }
-    if (_settingsChanged.load(std::memory_order_relaxed))
+    catch (...)  // out of memory for a warning
     {
-        WarnOfSettings();
     }
     ObeyControlMessages();  // the unit of work may have changed them
     if (good && _lastPassFailed)

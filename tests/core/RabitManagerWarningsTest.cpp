@@ -92,6 +92,21 @@ TEST(ManagerWarnings, AWakeupThatIsRegisteredInTheUnitOfWorkIsSeen)
     EXPECT_TRUE(Says(fixture.Run(), "message \"Number\""));
 }
 
+TEST(ManagerWarnings, TheFirstReceiptIsSeenThoughItComesLate)
+{
+    WarningsFixture fixture;
+    fixture.Manager.SetPeriodSec(1.0);
+    const auto receipt = std::make_shared<RabitQueueReceipt>();
+    fixture.Manager.OnWork = [&]
+    {
+        if (fixture.Manager.Passes == 3)
+        {
+            fixture.Manager.WakeUpManagerOnOutcome(receipt);
+        }
+    };
+    EXPECT_TRUE(Says(fixture.Run(), "its wake-up on a receipt"));
+}
+
 TEST(ManagerWarnings, NothingIsSaidOfAPeriodIfTheProgramChoseForTheTimeBetweenTurns)
 {
     for (const bool choice : {true, false})

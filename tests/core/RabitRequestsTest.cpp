@@ -37,7 +37,7 @@ public:
 struct RequestsFixture : SteppedFixture
 {
     ScriptedManager &Manager = Add("Manager");
-    RabitRequests<NumberMessage> Requests{Manager, 2s};
+    RabitRequests<NumberMessage> Requests{Manager, 2s, 1};
     std::shared_ptr<Forwarder> Gateway = std::make_shared<Forwarder>();
 
     RequestsFixture()
@@ -115,6 +115,15 @@ TEST(RabitRequests, ARefusalAtTheCallLeavesNothingOpen)
     EXPECT_FALSE(fixture.Send("nobody"));
     EXPECT_EQ(fixture.Requests.NextId(), 1u);
     EXPECT_EQ(fixture.Requests.NumberOfOpen(), 0u);
+}
+
+TEST(RabitRequests, ALateReplyToAnEarlierRunIsNotTaken)
+{
+    RequestsFixture fixture;
+    RabitRequests<NumberMessage> earlier(fixture.Manager, 2s);
+    RabitRequests<NumberMessage> now(fixture.Manager, 2s);
+    ASSERT_TRUE(now.Send("uav1/Orders", std::make_shared<NumberMessage>()));
+    EXPECT_FALSE(now.Take(earlier.NextId(), std::make_shared<NumberMessage>()));
 }
 
 TEST(RabitRequests, ASecondReplyIsNotTaken)

@@ -1,3 +1,4 @@
+#include "CapturedLog.h"
 #include "SteppedFixture.h"
 
 #include <rabit/RabitTimer.h>
@@ -5,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <string>
 #include <vector>
 
 namespace
@@ -56,6 +58,25 @@ TEST(RabitTimer, WithoutAPeriodIsAlwaysDue)
     EXPECT_TRUE(timer.IsDue(1s));
     EXPECT_TRUE(timer.IsDue(1s));
     EXPECT_EQ(timer.UntilDue(1s), 0ns);
+}
+
+// After a long unit of work a turn has come already.
+TEST(RabitTimer, AUnitOfWorkOfASecondIsWarnedOf)
+{
+    const CapturedLog log;
+    SteppedFixture fixture;
+    ScriptedManager &manager = fixture.Add("Manager");
+    RabitTimer timer(20ms);
+    manager.OnWork = [&]
+    {
+        timer.IsDue(manager);
+        fixture.Clock->Advance(1200ms);
+        RabitTimer::SleepUntilDue(manager, {&timer});
+    };
+    fixture.Reactor.Start();
+    fixture.RunFor(2s);
+    ASSERT_EQ(log.Lines().size(), 1u);
+    EXPECT_NE(log.Lines()[0].find("a unit of work took 1.2 s"), std::string::npos) << log.Lines()[0];
 }
 
 // A manager with two timers that is also woken every 7 ms.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,8 +45,8 @@ inline const char *ToString(RequestEnd end)
 //     for (const auto &request : _requests.TakeEnded())
 //         std::cout << request.Id << ": " << ToString(request.End);
 //
-// A request that was refused on its way wakes the manager. The timeouts do not: the manager needs a period or
-// a delay as short as it wants to learn of them. Not thread-safe: for the manager's unit of work.
+// A request that was refused on its way wakes the manager. A timeout does not: it is seen at the manager's
+// next pass, which its period or delay brings. Not thread-safe: for the manager's unit of work.
 template <typename Reply>
 class RabitRequests
 {
@@ -59,9 +60,15 @@ public:
         std::shared_ptr<const Reply> Answer{};          // null unless it was answered
     };
 
-    // The manager must outlive the object. A program that restarts should begin with a number that its former
-    // requests did not have, or late replies to them count.
-    RabitRequests(RabitManager &manager, std::chrono::nanoseconds timeout, std::uint32_t firstId = 1)
+    // The manager must outlive the object. The first number is random, from 1 to 2^31: late replies to an
+    // earlier run of the program have other numbers.
+    RabitRequests(RabitManager &manager, std::chrono::nanoseconds timeout)
+        : RabitRequests(manager, timeout, 1 + std::random_device()() / 2)
+    {
+    }
+    // The first number is given. A program that restarts begins with one that its former requests did not
+    // have.
+    RabitRequests(RabitManager &manager, std::chrono::nanoseconds timeout, std::uint32_t firstId)
         : _manager(manager), _timeout(timeout), _nextId(firstId)
     {
     }

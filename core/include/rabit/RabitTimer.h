@@ -55,8 +55,11 @@ public:
     }
     Duration UntilDue(const RabitManager &manager) const { return UntilDue(Now(manager)); }
 
-    // Lets the manager sleep until the first turn of these timers, or until something wakes it. Call it at
-    // the end of each unit of work. The manager has no period then.
+    // Calls SetWakeupTimeDelaySec with the time until the first turn of these timers. Until then the manager
+    // sleeps, unless something wakes it. Call it last in each unit of work. The manager has no period then.
+    //
+    // Each unit of work asks IsDue of each of these timers. One that is not asked stays due, and the manager
+    // runs without a pause until it is.
     static void SleepUntilDue(RabitManager &manager, std::initializer_list<const RabitTimer *> timers)
     {
         const Duration now = Now(manager);
@@ -65,6 +68,8 @@ public:
         {
             first = std::min(first, timer->UntilDue(now));
         }
+        // Never 0: that is the delay of a manager that waits for input itself.
+        first = std::max(first, Duration(1));
         manager.SetWakeupTimeDelaySec(std::chrono::duration<double>(first).count());
     }
 
