@@ -552,6 +552,91 @@ TEST_F(MissionOf2, DeclinesASearchAreaThatReachesOutOfTheGeofenceUntilTheFenceIs
     EXPECT_EQ(_mission->Take(FenceOf(100)), "41 m outside of the geofence");
 }
 
+// The search area reaches 224 m far, the target of another aircraft lies farther.
+TEST_F(MissionOf2, DeclinesToLookAtATargetOutsideOfTheGeofence)
+{
+    _mission->Take(FenceOf(250));
+    GiveArea();
+    CommandSearch();
+    BeAsked("uav1", 500);
+    EXPECT_EQ(LastValidation().reason, "250 m outside of the geofence");
+    EXPECT_FALSE(LastValidation().busy) << "it is not to be asked again";
+    EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
+    BeAsked("uav1", 200);
+    EXPECT_EQ(State().mode, Mode::MISSION_VALIDATE);
+}
+
+TEST_F(MissionOf2, EndsAValidationWhenItsPlaceIsOutsideOfTheGeofence)
+{
+    GiveArea();
+    CommandSearch();
+    BeAsked("uav1", 500);
+    ASSERT_EQ(State().mode, Mode::MISSION_VALIDATE);
+    _mission->Take(FenceOf(250));
+    const std::size_t courses = _output.Courses.size();
+    Pass(0.2);
+    EXPECT_EQ(LastValidation().reason, "250 m outside of the geofence");
+    EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
+    EXPECT_EQ(_output.Courses.size(), courses);
+}
+
+TEST_F(MissionOf2, DoesNotTakeUpATargetOutsideOfTheGeofenceAndSearchesOn)
+{
+    _mission->Take(FenceOf(250));
+    GiveArea();
+    CommandSearch();
+    See(500);
+    Pass(0.2);
+    EXPECT_TRUE(State().mode == Mode::MISSION_TRANSIT || State().mode == Mode::MISSION_SEARCH);
+    EXPECT_THAT(_output.Reports, IsEmpty());
+    EXPECT_EQ(StageOfFinding(), Uav::TargetStage::TARGET_REJECTED);
+    for (const Output::Course &course : _output.Courses)
+        EXPECT_LT(Swarm::LevelDistanceM(course.Point, Field), 260) << "the lanes' ends are at 251 m";
+}
+
+TEST_F(MissionOf2, GivesUpATargetThatMovesOutOfTheGeofence)
+{
+    _mission->Take(FenceOf(250));
+    Confirm();
+    See(300);
+    EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
+    EXPECT_EQ(StageOfFinding(), Uav::TargetStage::TARGET_REJECTED);
+}
+
+TEST_F(MissionOf2, FollowsATargetNoFartherThanTheGeofence)
+{
+    _mission->Take(FenceOf(250));
+    Confirm();
+    Answer("uav1", true);
+    See(240);
+    ASSERT_EQ(State().mode, Mode::MISSION_TRACK);
+    See(300);
+    EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
+    EXPECT_EQ(StageOfFinding(), Uav::TargetStage::TARGET_TRACKED);
+    for (const Output::Course &course : _output.Courses)
+        EXPECT_LT(Swarm::LevelDistanceM(course.Point, Field), 260) << "the lanes' ends are at 251 m";
+}
+
+TEST_F(MissionOf2, ASearchUnderWayGoesOnWhenTheGeofenceChanges)
+{
+    GiveArea();
+    CommandSearch();
+    const GeoPoint begin = _output.Courses.back().Point;
+    _now.Position = begin;
+    Pass(0.2);
+    ASSERT_EQ(State().mode, Mode::MISSION_SEARCH);
+    const std::size_t courses = _output.Courses.size();
+    EXPECT_EQ(_mission->Take(FenceOf(3000)), "");
+    EXPECT_EQ(State().mode, Mode::MISSION_SEARCH);
+    _now.Position = Swarm::Moved(Field, {0, 0, 0});
+    Pass(0.2);
+    for (std::size_t i = courses; i < _output.Courses.size(); ++i)
+        EXPECT_GT(Swarm::LevelDistanceM(_output.Courses[i].Point, begin), 1) << "not back to the begin";
+    EXPECT_NE(_mission->Take(FenceOf(100)), "");
+    EXPECT_EQ(State().mode, Mode::MISSION_SEARCH);
+    EXPECT_NE(State().area_declined, "");
+}
+
 TEST_F(MissionOf2, SendsACourseAgainThatTheAutopilotDoesNotFly)
 {
     GiveArea();

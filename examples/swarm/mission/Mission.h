@@ -56,8 +56,9 @@ struct Situation
 // back to the track after a while.
 //
 // It declines a point and a search area below its floor, or outside of the geofence. It also declines a
-// Search while the last area is declined, as it would search another area than the sender means. On the way
-// home it flies no lower than its floor.
+// Search while the last area is declined, as it would search another area than the sender means. It flies to
+// no target outside of the geofence: it rejects its own, follows none out of it, and refuses to look at those
+// of others. On the way home it flies no lower than its floor.
 //
 // The owner calls Update, then Take for each input, then Act: each time anything may have changed, and a
 // few times a second. Not thread-safe.
@@ -121,6 +122,7 @@ private:
     void Accept(const Message &command, Uav::MissionMode mode);
     void Finish(Uav::CommandStage stage, const std::string &reason, std::uint32_t replacedBy = 0);
     std::string WhyNotNow(bool mayBeTired) const;
+    void JudgeArea();  // the last one that was heard
     GeoPoint WhereHomeIs() const;
     void ActOnCommand();
     bool HasArrived() const;
@@ -134,6 +136,7 @@ private:
     void ActOnSearch();
     void LeaveTarget(const std::string &reason);
     void BeginConfirm(std::uint32_t number);
+    void RejectTarget();
     void AskNext();
     std::string NearestToAsk(const GeoPoint &place) const;
     Uav::TargetReport ReportOf(const Uav::Finding &finding) const;

@@ -36,14 +36,9 @@ void Mission::Update(Situation situation)
 std::string Mission::Take(const Uav::SearchArea &area)
 {
     _heardArea = area;
-    std::string problem = WhyNot(area);
-    if (problem.empty())
-        problem = _floor.WhyTooLow(area.altitude_m);
-    if (problem.empty())
-        problem = WhyOutside(_fence, area);
-    _areaDeclined = problem;
-    if (!problem.empty())
-        return problem;
+    JudgeArea();
+    if (!_areaDeclined.empty())
+        return _areaDeclined;
     _area = area;
     _mower.reset();
     if (_mode == Uav::MissionMode::MISSION_SEARCH)
@@ -51,12 +46,26 @@ std::string Mission::Take(const Uav::SearchArea &area)
     return "";
 }
 
+void Mission::JudgeArea()
+{
+    _areaDeclined = WhyNot(*_heardArea);
+    if (_areaDeclined.empty())
+        _areaDeclined = _floor.WhyTooLow(_heardArea->altitude_m);
+    if (_areaDeclined.empty())
+        _areaDeclined = WhyOutside(_fence, *_heardArea);
+}
+
 std::string Mission::Take(const Uav::Geofence &fence)
 {
     if (fence == _fence)
         return "";
     _fence = fence;
-    return _heardArea ? Take(Uav::SearchArea(*_heardArea)) : "";
+    if (!_heardArea)
+        return "";
+    if (_area != _heardArea)
+        return Take(Uav::SearchArea(*_heardArea));  // it was declined; it may be inside now
+    JudgeArea();                                    // a search in that area goes on
+    return _areaDeclined;
 }
 
 std::string Mission::WhyNotNow(bool mayBeTired) const

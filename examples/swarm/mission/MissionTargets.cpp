@@ -2,6 +2,7 @@
 #include "Mission.h"
 
 #include "../Names.h"
+#include "Fence.h"
 #include "TargetName.h"
 #include "WhyNot.h"
 
@@ -80,6 +81,8 @@ void Mission::LeaveTarget(const std::string &reason)
 
 void Mission::BeginConfirm(std::uint32_t number)
 {
+    if (!WhyOutside(_fence, PlaceOf(*_book.Find(number))).empty())
+        return _book.Reject(number, _now.GpsTimeS);
     _mode = Uav::MissionMode::MISSION_CONFIRM;
     _modeSinceS = _now.NowS;
     _target = number;
@@ -120,6 +123,12 @@ Uav::TargetReport Mission::ReportOf(const Uav::Finding &finding) const
     return report;
 }
 
+void Mission::RejectTarget()
+{
+    _book.Reject(_target, _now.GpsTimeS);
+    SearchOn();
+}
+
 // Asks the nearest aircraft that was not asked in this round.
 void Mission::AskNext()
 {
@@ -140,8 +149,7 @@ void Mission::AskNext()
     finding.stage = Uav::TargetStage::TARGET_FOUND;
     if (_anyBusy && _now.NowS - _modeSinceS < PatienceS)
         return;  // ActOnConfirm begins another round
-    _book.Reject(_target, _now.GpsTimeS);
-    SearchOn();
+    RejectTarget();
 }
 
 void Mission::ActOnConfirm()
@@ -150,6 +158,8 @@ void Mission::ActOnConfirm()
     if (own.stage == Uav::TargetStage::TARGET_VALIDATED || own.stage == Uav::TargetStage::TARGET_TRACKED)
         return SearchOn();  // it turned out to be a target that this aircraft has finished
     const GeoPoint place = PlaceOf(own);
+    if (!WhyOutside(_fence, place).empty())
+        return RejectTarget();
     for (const auto &[name, findings] : _now.OthersFindings)
         for (const Uav::Finding &other : findings.items)
             if (name < _aircraft && _now.Others.contains(name) &&
@@ -195,15 +205,18 @@ void Mission::ActOnTrack()
     Uav::Finding &finding = *_book.Find(_target);
     finding.stage = Uav::TargetStage::TARGET_TRACKED;
     finding.tracked_s = static_cast<float>(_trackedBeforeS + _now.NowS - _modeSinceS);
-    FlyIfMoved(InOwnLayer(PlaceOf(finding)), _area->speed_mps);
-    if (_now.NowS - _modeSinceS >= TrackS)
-        SearchOn();
+    const GeoPoint place = PlaceOf(finding);
+    if (_now.NowS - _modeSinceS >= TrackS || !WhyOutside(_fence, place).empty())
+        return SearchOn();
+    FlyIfMoved(InOwnLayer(place), _area->speed_mps);
 }
 
 void Mission::Take(const Uav::TargetReport &report)
 {
     if (!WhyNot(report).empty() || report.seen_by == _aircraft)
         return;  // no sender to answer, or no target to answer about
+    if (const std::string outside = WhyOutside(_fence, PlaceOf(report)); !outside.empty())
+        return Refuse(report, outside, false);
     const std::string reason = WhyNotLook(report);
     if (!reason.empty())
         return Refuse(report, reason, true);
@@ -269,7 +282,13 @@ void Mission::ActOnValidate()
         Refuse(_report, "it was not to be seen", false);
         return SearchOn();
     }
-    FlyIfMoved(InOwnLayer(nearest ? PlaceOf(*nearest) : place), _area->speed_mps);
+    const GeoPoint goal = nearest ? PlaceOf(*nearest) : place;
+    if (const std::string outside = WhyOutside(_fence, goal); !outside.empty())
+    {
+        Refuse(_report, outside, false);
+        return SearchOn();
+    }
+    FlyIfMoved(InOwnLayer(goal), _area->speed_mps);
 }
 
 void Mission::Refuse(const Uav::TargetReport &report, const std::string &reason, bool busy)
