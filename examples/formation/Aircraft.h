@@ -100,7 +100,7 @@ public:
             now = *led;
         TakeOrders(now);
         if (now.node != _leader->node)
-            WriteLog(Rabit::RabitLogLevel::Warning, now.node + " leads");
+            WriteLog(Rabit::RabitLogLevel::Info, now.node + " leads");
         if (now == *_leader)
             return;
         *_leader = now;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <limits>
 #include <memory>
 
 namespace Formation
@@ -45,6 +46,7 @@ public:
         if (_accepted && std::abs(PlaceOf(*_poses.Of(leader)) - SlotOf(leader, _spacingM) - _goal) < 2)
         {
             _out << "reached " << _goal.real() << " m, closest " << _closestM << " m" << std::endl;
+            _closestM = std::numeric_limits<double>::infinity();
             _goal = _legM - _goal;
             _accepted = false;
         }
@@ -110,7 +112,7 @@ private:
     Rabit::RabitRequests<LeadReply> _requests{*this, std::chrono::seconds(3)};
     std::string _leader;
     bool _accepted = false;
-    double _closestM = 1e9;
+    double _closestM = std::numeric_limits<double>::infinity();  // of two aircraft, on the way to this goal
 };
 
 }  // namespace Formation

@@ -1,10 +1,12 @@
 // An aircraft of the formation. Its name is its place: uav1 to uav6.
 #include "Aircraft.h"
 
+#include <rabit/RabitLog.h>
 #include <rabit/node/RunNode.h>
 
 int main(int argc, char **argv)
 {
+    Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Info);  // Election tells who leads
     Rabit::NodeProgram program;
     program.ConfigFile = "formation_uav.yaml";
     program.AddManagers = [](Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config)
