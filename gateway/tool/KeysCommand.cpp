@@ -481,7 +481,7 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
 
     auto init = AddCommand(*keys, "init", "Makes the two authorities of a new fleet", &Init, chosen, command);
     AddExamples(*command, {"rabit keys init", "rabit keys init fleet_keys --name survey",
-                           "rabit keys init --passphrase", "rabit keys init --days 365 --json"});
+                           "rabit keys init --passphrase --days 365"});
     command->add_option("FOLDER", init->Folder, "Where to")->capture_default_str();
     command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
     AddDays(*command, *init, 3650);

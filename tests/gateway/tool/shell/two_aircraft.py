@@ -3,6 +3,7 @@ share."""
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -45,10 +46,10 @@ class Rabit:
 
 
 def aircraft_config(folder, extra=""):
-    """The aircraft's configuration in a file, without the subscription to the ground station: it does not run here, and a
+    """The aircraft's configuration in a file, without the subscriptions to the ground station: it does not run here, and a
     node reports that as a problem. `extra`: further lines of `subscribe`."""
     lines = [line for line in (SWARM / "uav.yaml").read_text().splitlines(keepends=True)
-             if "message: SearchArea" not in line]
+             if not re.search("message: (SearchArea|Geofence)", line)]
     path = pathlib.Path(tempfile.mkstemp(dir=folder, suffix=".yaml")[1])
     path.write_text("".join(lines).replace("accept:\n", extra + "accept:\n", 1))
     return path
