@@ -175,7 +175,7 @@ std::string PemOf(const X509 &certificate)
     return TextOf(*bio);
 }
 
-std::string PemOf(const EVP_PKEY &key, const std::string &passphrase)
+std::string PemOf(const EVP_PKEY &key, std::string_view passphrase)
 {
     const BioPtr bio = EmptyBio();
     if (passphrase.empty())
@@ -214,7 +214,7 @@ std::string PemOf(const X509_CRL &revocations)
 CertificatePtr ReadCertificate(std::string_view pem, const std::string &file)
 {
     const BioPtr bio = BioOf(pem);
-    return Found(CertificatePtr(PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr)), "certificate",
+    return Found(CertificatePtr(PEM_read_bio_X509(bio.get(), nullptr, &NoPassphrase, nullptr)), "certificate",
                  file);
 }
 
@@ -237,10 +237,10 @@ KeyPtr ReadKey(std::string_view pem, const std::string &file, const AskPassphras
     {
         throw KeysError(file + " is encrypted, and nobody is asked for its passphrase here");
     }
-    const std::string passphrase = ask(file);
+    const Secret passphrase = ask(file);
     const auto give = [](char *buffer, int size, int, void *data)
     {
-        const std::string &given = *static_cast<const std::string *>(data);
+        const std::string_view given = static_cast<const Secret *>(data)->Text();
         if (given.size() > static_cast<std::size_t>(size))
         {
             return -1;
@@ -249,7 +249,7 @@ KeyPtr ReadKey(std::string_view pem, const std::string &file, const AskPassphras
         return static_cast<int>(given.size());
     };
     const BioPtr again = BioOf(pem);
-    key.reset(PEM_read_bio_PrivateKey(again.get(), nullptr, give, const_cast<std::string *>(&passphrase)));
+    key.reset(PEM_read_bio_PrivateKey(again.get(), nullptr, give, const_cast<Secret *>(&passphrase)));
     if (!key)
     {
         OpenSslError();
@@ -261,7 +261,7 @@ KeyPtr ReadKey(std::string_view pem, const std::string &file, const AskPassphras
 RevocationsPtr ReadRevocations(std::string_view pem, const std::string &file)
 {
     const BioPtr bio = BioOf(pem);
-    return Found(RevocationsPtr(PEM_read_bio_X509_CRL(bio.get(), nullptr, nullptr, nullptr)),
+    return Found(RevocationsPtr(PEM_read_bio_X509_CRL(bio.get(), nullptr, &NoPassphrase, nullptr)),
                  "list of revoked certificates", file);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "keys/OpenSsl.h"
+#include "keys/Secret.h"
 #include "keys/SubjectName.h"
 
 namespace Rabit::Keys
@@ -20,9 +21,7 @@ struct Validity
 };
 
 // Returns the passphrase of an encrypted private key in `file`; may throw KeysError.
-using AskPassphrase = std::function<std::string(const std::string &file)>;
-// The longest passphrase that OpenSSL reads.
-inline constexpr std::size_t LongestPassphrase = 1023;
+using AskPassphrase = std::function<Secret(const std::string &file)>;
 
 KeyPtr MakeKey();
 
@@ -38,7 +37,7 @@ RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X
 
 std::string PemOf(const X509 &certificate);
 // The secret half as PKCS #8, encrypted (scrypt and AES-256) unless the passphrase is empty.
-std::string PemOf(const EVP_PKEY &key, const std::string &passphrase = "");
+std::string PemOf(const EVP_PKEY &key, std::string_view passphrase = {});
 std::string PemOf(const X509_CRL &revocations);
 
 // Throw KeysError, which names `file`.

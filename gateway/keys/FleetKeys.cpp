@@ -58,7 +58,7 @@ int LockOf(const std::string &folder)
 }  // namespace
 
 void FleetKeys::Init(const std::string &folder, const std::string &fleet, const Period &period,
-                     const std::string &passphrase)
+                     std::string_view passphrase)
 {
     if (!IsFolderName(fleet))
     {
@@ -235,33 +235,26 @@ std::vector<std::string> FleetKeys::Issued() const
     return files;
 }
 
-// A key that two nodes have was copied with a disk, and a key with a revoked certificate may be stolen. The
-// present certificate of the node may have the key of an older, revoked one: renewing keeps the key.
-void FleetKeys::CheckFresh(const SigningRequest &request) const
+// A key that two nodes have was copied with a disk, and a key with a revoked certificate may be stolen.
+void FleetKeys::CheckFresh(const std::string &node, const EVP_PKEY &key) const
 {
     const std::string place = Place(RevokedFile);
     const RevocationsPtr revoked = ReadRevocations(ReadFile(place), place);
-    const std::string present = NodeFiles(FolderOf(request.Node)).Certificate;
-    if (fs::exists(present) && IsKeyOf(*request.PublicKey, *ReadCertificate(ReadFile(present), present)))
-    {
-        return;
-    }
     for (const std::string &file : Issued())
     {
         const CertificatePtr certificate = ReadCertificate(ReadFile(file), file);
-        if (!IsKeyOf(*request.PublicKey, *certificate))
+        if (!IsKeyOf(key, *certificate))
         {
             continue;
         }
-        if (const std::string owner = SubjectOf(*certificate).Node; owner != request.Node)
+        if (const std::string owner = SubjectOf(*certificate).Node; owner != node)
         {
-            throw KeysError("the request of " + request.Node + " has the key of " + owner +
-                            ": each node needs its own; make it with `rabit keys request` on " +
-                            request.Node);
+            throw KeysError("the request of " + node + " has the key of " + owner +
+                            ": each node needs its own; make it with `rabit keys request` on " + node);
         }
         if (IsRevoked(*revoked, *certificate))
         {
-            throw KeysError("the request of " + request.Node +
+            throw KeysError(node +
                             " has a key whose certificate is revoked; remove the key on the node, and make "
                             "another with `rabit keys request`");
         }
@@ -290,14 +283,51 @@ unsigned FleetKeys::NextNumber(const Request &request) const
     return subject.Number;
 }
 
-EVP_PKEY &FleetKeys::KeyIn(const SigningRequest &signing, const std::string &node) const
+KeyPtr FleetKeys::KeyFor(const std::string &node, const SigningRequest *signing) const
 {
-    if (signing.Node != node)
+    KeyPtr key;
+    const NodeFiles files(FolderOf(node));
+    if (signing != nullptr)
     {
-        throw KeysError("the request is of `" + signing.Node + "`, not of `" + node + "`");
+        if (signing->Node != node)
+        {
+            throw KeysError("the request is of `" + signing->Node + "`, not of `" + node + "`");
+        }
+        EVP_PKEY_up_ref(signing->PublicKey.get());
+        key.reset(signing->PublicKey.get());
     }
-    CheckFresh(signing);
-    return *signing.PublicKey;
+    else if (fs::exists(files.Certificate) && !fs::exists(files.PrivateKey))
+    {
+        key.reset(X509_get_pubkey(ReadCertificate(ReadFile(files.Certificate), files.Certificate).get()));
+    }
+    if (key)
+    {
+        CheckFresh(node, *key);
+    }
+    return key;
+}
+
+void FleetKeys::CheckIsNotKeyOf(const std::vector<std::string> &files, const std::string &node,
+                                const EVP_PKEY &key) const
+{
+    for (const std::string &file : files)
+    {
+        if (IsKeyOf(key, *ReadCertificate(ReadFile(file), file)))
+        {
+            throw KeysError(node +
+                            " keeps its key, so revoking the older certificates protects nothing: "
+                            "nothing is revoked; renew it with `--request`");
+        }
+    }
+}
+
+void FleetKeys::CheckNewKey(const std::string &node, const SigningRequest *signing) const
+{
+    CheckNodeName(node);
+    if (const KeyPtr key = KeyFor(node, signing))
+    {
+        CheckIsNotKeyOf(Issued(node), node, *key);
+    }
 }
 
 void FleetKeys::Make(const std::string &folder, const Request &request, const Period &period,
@@ -361,7 +391,7 @@ void FleetKeys::Add(const Request &request, const Period &period, const SigningR
         throw KeysError(folder + " is there already: nothing is changed; `rabit keys renew` makes new ones");
     }
     const std::string made = _folder + "/." + request.Node + ".new";
-    Make(made, request, period, signing != nullptr ? &KeyIn(*signing, request.Node) : nullptr);
+    Make(made, request, period, KeyFor(request.Node, signing).get());
     MoveTo(made, folder);
 }
 
@@ -375,12 +405,7 @@ void FleetKeys::Renew(const Request &request, const Period &period, const Signin
     }
     const std::string made = _folder + "/." + request.Node + ".new";
     const std::string old = OldOf(request.Node);
-    KeyPtr kept;
-    if (const NodeFiles files(folder); signing == nullptr && !fs::exists(files.PrivateKey))
-    {
-        kept.reset(X509_get_pubkey(ReadCertificate(ReadFile(files.Certificate), files.Certificate).get()));
-    }
-    Make(made, request, period, signing != nullptr ? &KeyIn(*signing, request.Node) : kept.get());
+    Make(made, request, period, KeyFor(request.Node, signing).get());
     std::error_code ignored;
     fs::remove_all(old, ignored);
     MoveTo(folder, old);
@@ -417,10 +442,11 @@ std::size_t FleetKeys::RevokeOlder(const std::string &node, std::time_t now) con
 {
     CheckNodeName(node);
     const std::string file = NodeFiles(FolderOf(node)).Certificate;
-    const unsigned current = SubjectOf(*ReadCertificate(ReadFile(file), file)).Number;
+    const CertificatePtr present = ReadCertificate(ReadFile(file), file);
     std::vector<std::string> files = Issued(node);
     std::erase_if(files, [&](const std::string &one)
-                  { return SubjectOf(*ReadCertificate(ReadFile(one), one)).Number == current; });
+                  { return AreSame(*ReadCertificate(ReadFile(one), one), *present); });
+    CheckIsNotKeyOf(files, node, *X509_get0_pubkey(present.get()));
     return RevokeFiles(files, now);
 }
 

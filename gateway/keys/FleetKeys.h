@@ -3,6 +3,7 @@
 #include <ctime>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "keys/Access.h"
@@ -35,7 +36,7 @@ public:
     // Makes the folder and the authorities. Encrypts the private keys of the authorities, unless the
     // passphrase is empty. Throws KeysError, as all functions here.
     static void Init(const std::string &folder, const std::string &fleet, const Period &period,
-                     const std::string &passphrase = "");
+                     std::string_view passphrase = {});
     // True if the folder has authorities.
     static bool IsFleet(const std::string &folder);
 
@@ -60,9 +61,12 @@ public:
     // `signing`. Without `signing`, a node whose folder has no private key keeps its key. The old ones stay
     // good to their end, unless they are revoked.
     void Renew(const Request &request, const Period &period, const SigningRequest *signing = nullptr) const;
-    // RevokeOlder revokes every certificate that was made for the node except its present one. Revoke revokes
-    // all, and removes the node's folder. Both write the new list into the folder of each node, and return
-    // how many certificates they revoked.
+    // Throws if the certificate that Renew would make has the key of an older one. RevokeOlder would protect
+    // nothing then: a thief of the private key uses the new certificate, which is public.
+    void CheckNewKey(const std::string &node, const SigningRequest *signing = nullptr) const;
+    // RevokeOlder revokes every certificate that was made for the node except its present one, and throws if
+    // one of these has the key of the present one. Revoke revokes all, and removes the node's folder. Both
+    // write the new list into the folder of each node, and return how many certificates they revoked.
     std::size_t RevokeOlder(const std::string &node, std::time_t now) const;
     std::size_t Revoke(const std::string &node, std::time_t now) const;
 
@@ -73,9 +77,12 @@ private:
     // The files of the certificates that were made for a node, and for all.
     std::vector<std::string> Issued(const std::string &node) const;
     std::vector<std::string> Issued() const;
-    void CheckFresh(const SigningRequest &request) const;
-    // The key of a request that is of that node, and fresh.
-    EVP_PKEY &KeyIn(const SigningRequest &signing, const std::string &node) const;
+    void CheckFresh(const std::string &node, const EVP_PKEY &key) const;
+    void CheckIsNotKeyOf(const std::vector<std::string> &files, const std::string &node,
+                         const EVP_PKEY &key) const;
+    // Returns the key, which is fresh, that the node's next certificate will have: that of the request, if
+    // there is one, else the node's own; null: the authorities make a new one.
+    KeyPtr KeyFor(const std::string &node, const SigningRequest *signing) const;
     unsigned NextNumber(const Request &request) const;
     // The place of a node's folder while a new one replaces it.
     std::string OldOf(const std::string &node) const;

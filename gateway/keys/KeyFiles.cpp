@@ -9,9 +9,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <system_error>
 
-#include "keys/Certificates.h"
 #include "keys/KeysError.h"
 
 namespace Rabit::Keys
@@ -33,7 +33,11 @@ class Descriptor
 {
 public:
     Descriptor(const std::string &file, int flags, mode_t mode, const char *what)
-        : _number(::open(file.c_str(), flags | O_CLOEXEC, mode))
+        : Descriptor(::open(file.c_str(), flags | O_CLOEXEC, mode), what, file)
+    {
+    }
+    // Owns an open file; negative: throws the reason.
+    Descriptor(int number, const char *what, const std::string &file) : _number(number)
     {
         if (_number < 0)
         {
@@ -65,21 +69,19 @@ void CheckMode(const struct stat &status, const std::string &file, const char *r
     }
 }
 
-// Appends the next bytes of a file, at most a page. Returns false at its end.
-bool ReadPart(const Descriptor &descriptor, const std::string &file, std::string &text)
+// Reads up to `size` next bytes of a file. Returns their number; 0 at its end.
+std::size_t ReadSome(const Descriptor &descriptor, const std::string &file, char *to, std::size_t size)
 {
-    std::array<char, 4096> part{};
     ssize_t got = 0;
     do
     {
-        got = ::read(descriptor.Get(), part.data(), part.size());
+        got = ::read(descriptor.Get(), to, size);
     } while (got < 0 && errno == EINTR);
     if (got < 0)
     {
         throw KeysError("cannot read " + file + ": " + Reason());
     }
-    text.append(part.data(), static_cast<std::size_t>(got));
-    return got > 0;
+    return static_cast<std::size_t>(got);
 }
 
 std::string Read(const std::string &file, bool secret)
@@ -96,8 +98,10 @@ std::string Read(const std::string &file, bool secret)
         CheckMode(status, file, "Make new keys, or `chmod 600` if you are sure");
     }
     std::string text;
-    while (ReadPart(descriptor, file, text))
+    std::array<char, 4096> part{};
+    while (const std::size_t got = ReadSome(descriptor, file, part.data(), part.size()))
     {
+        text.append(part.data(), got);
         if (text.size() > LargestFile)
         {
             throw KeysError(file + " is larger than 1 MiB");
@@ -157,7 +161,7 @@ std::string ReadSecret(const std::string &file)
     return Read(file, true);
 }
 
-std::string ReadPassphrase(const std::string &file)
+Secret ReadPassphrase(const std::string &file)
 {
     const Descriptor descriptor(file, O_RDONLY, 0, "read");
     struct stat status = {};
@@ -169,23 +173,52 @@ std::string ReadPassphrase(const std::string &file)
     {
         CheckMode(status, file, "Choose another passphrase, or `chmod 600` if you are sure");
     }
-    std::string text;
-    while (text.find('\n') == std::string::npos && text.size() <= LongestPassphrase + 1 &&
-           ReadPart(descriptor, file, text))
+    Secret passphrase;
+    const std::span<char> room(passphrase.Room(), LongestPassphrase + 1);
+    std::size_t size = 0;
+    std::size_t got = 0;
+    do
     {
-    }
-    text.resize(std::min(text.size(), text.find('\n')));
-    if (text.empty() || text.size() > LongestPassphrase)
+        got = ReadSome(descriptor, file, room.data() + size, room.size() - size);
+        size += got;
+    } while (got > 0 && size < room.size() && std::count(room.begin(), room.end(), '\n') == 0);
+    const auto lineEnd = std::find(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size), '\n');
+    try
     {
-        throw KeysError("the first line of " + file + " is no passphrase: 1 to " +
-                        std::to_string(LongestPassphrase) + " bytes are expected");
+        passphrase.Resize(static_cast<std::size_t>(lineEnd - room.begin()));
     }
-    return text;
+    catch (const KeysError &error)
+    {
+        throw KeysError("the first line of " + file + " is " + error.what());
+    }
+    return passphrase;
 }
 
 void WriteSecret(const std::string &file, std::string_view text)
 {
     Write(file, text, OwnerOnly);
+}
+
+bool WriteNewSecret(const std::string &file, std::string_view text)
+{
+    // A name of its own: another program may be writing the same secret.
+    std::string temporary = file + ".XXXXXX";
+    const Descriptor descriptor(::mkostemp(temporary.data(), O_CLOEXEC), "write", file);
+    const struct Unlink
+    {
+        const std::string &Name;
+        ~Unlink() { ::unlink(Name.c_str()); }
+    } unlink{temporary};
+    WriteAll(descriptor, file, text);
+    if (::link(temporary.c_str(), file.c_str()) == 0)
+    {
+        return true;
+    }
+    if (errno != EEXIST)
+    {
+        throw KeysError("cannot write " + file + ": " + Reason());
+    }
+    return false;
 }
 
 void WriteFile(const std::string &file, std::string_view text)

@@ -8,6 +8,11 @@
 namespace Rabit::Keys
 {
 
+int NoPassphrase(char * /*buffer*/, int /*size*/, int /*isNew*/, void * /*data*/)
+{
+    return -1;
+}
+
 std::string OpenSslError()
 {
     const unsigned long code = ERR_get_error();

@@ -35,6 +35,9 @@ using BioPtr = std::unique_ptr<BIO, FreedBy<&BIO_free_all>>;
 using IntegerPtr = std::unique_ptr<ASN1_INTEGER, FreedBy<&ASN1_INTEGER_free>>;
 using TimePtr = std::unique_ptr<ASN1_TIME, FreedBy<&ASN1_TIME_free>>;
 
+// For OpenSSL's readers, in place of the default, which asks at the terminal: no passphrase is given.
+int NoPassphrase(char *buffer, int size, int isNew, void *data);
+
 // Returns the first error of OpenSSL on this thread, and clears the others.
 std::string OpenSslError();
 

@@ -1,12 +1,11 @@
 #include "keys/Passphrase.h"
 
 #include <fcntl.h>
-#include <openssl/crypto.h>
 #include <openssl/evp.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
 #include "keys/KeyFiles.h"
@@ -32,7 +31,7 @@ bool HasTerminal()
 
 }  // namespace
 
-std::optional<std::string> GivenPassphrase(const std::string &file)
+std::optional<Secret> GivenPassphrase(const std::string &file)
 {
     if (!file.empty())
     {
@@ -43,15 +42,17 @@ std::optional<std::string> GivenPassphrase(const std::string &file)
     {
         return std::nullopt;
     }
-    if (const std::string passphrase = text; !passphrase.empty() && passphrase.size() <= LongestPassphrase)
+    try
     {
-        return passphrase;
+        return Secret(text);
     }
-    throw KeysError(std::string(Variable) + " is no passphrase: 1 to " + std::to_string(LongestPassphrase) +
-                    " bytes are expected");
+    catch (const KeysError &error)
+    {
+        throw KeysError(std::string(Variable) + " is " + error.what());
+    }
 }
 
-std::string TypedPassphrase(const std::string &prompt, bool isNew)
+Secret TypedPassphrase(const std::string &prompt, bool isNew)
 {
     if (!HasTerminal())
     {
@@ -60,27 +61,27 @@ std::string TypedPassphrase(const std::string &prompt, bool isNew)
             "--passphrase-file, or set " +
             std::string(Variable));
     }
-    std::array<char, LongestPassphrase + 1> typed{};
-    // Restores the terminal also after Ctrl-C.
-    const int result =
-        EVP_read_pw_string(typed.data(), static_cast<int>(typed.size()), prompt.c_str(), isNew ? 1 : 0);
-    std::string passphrase = typed.data();
-    OPENSSL_cleanse(typed.data(), typed.size());
-    if (result != 0)
+    Secret passphrase;
+    // Restores the terminal also after Ctrl-C. Writes a zero behind the bytes, which its limit does not
+    // count.
+    if (EVP_read_pw_string(passphrase.Room(), static_cast<int>(LongestPassphrase), prompt.c_str(),
+                           isNew ? 1 : 0) != 0)
     {
         throw KeysError(isNew ? "no passphrase was typed, or not the same one twice"
                               : "no passphrase was typed");
     }
-    if (passphrase.empty())
+    const std::size_t size = ::strnlen(passphrase.Room(), LongestPassphrase);
+    if (size == 0)
     {
         throw KeysError("an empty passphrase protects nothing");
     }
+    passphrase.Resize(size);
     return passphrase;
 }
 
 AskPassphrase PassphraseFrom(const std::string &file)
 {
-    const auto known = std::make_shared<std::optional<std::string>>();
+    const auto known = std::make_shared<std::optional<Secret>>();
     return [file, known](const std::string &key)
     {
         if (!*known)

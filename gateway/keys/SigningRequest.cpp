@@ -86,7 +86,7 @@ SigningRequest ReadSigningRequest(std::string_view pem, const std::string &file)
         throw KeysError(file + " is larger than 16 KiB: no request of a node");
     }
     const BioPtr bio = BioOf(pem);
-    const RequestPtr request(PEM_read_bio_X509_REQ(bio.get(), nullptr, nullptr, nullptr));
+    const RequestPtr request(PEM_read_bio_X509_REQ(bio.get(), nullptr, &NoPassphrase, nullptr));
     if (!request)
     {
         throw KeysError(file + " is no request of a node: " + OpenSslError());
@@ -142,16 +142,12 @@ RequestedKeys RequestKeys(const std::string &folder, const std::string &node)
         MakeSecretFolder(folder);
     }
     const std::string place = NodeFiles(folder).PrivateKey;
-    KeyPtr key;
-    if (fs::exists(place))
+    if (!fs::exists(place))
     {
-        key = ReadKey(ReadSecret(place), place);
+        WriteNewSecret(place, PemOf(*MakeKey()));
     }
-    else
-    {
-        key = MakeKey();
-        WriteSecret(place, PemOf(*key));
-    }
+    // Another program may have made the key first.
+    const KeyPtr key = ReadKey(ReadSecret(place), place);
     RequestedKeys made{folder + "/" + node + ".request.pem", FingerprintOf(*key)};
     WriteFile(made.File, MakeSigningRequest(node, *key));
     return made;

@@ -138,8 +138,8 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
     }
     if (signing != nullptr)
     {
-        Output::Talk("whoever wrote the request is " + node +
-                     " now: compare the key with the one that `rabit keys request` printed there");
+        Output::Talk("the author of the request is now " + node +
+                     ": compare the key with the one that `rabit keys request` printed there");
     }
     Output::Talk((keys.HasPrivateKey()
                       ? "copy the folder to " + node + " by a way that nobody else can read, and "
@@ -156,13 +156,14 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
 
 int Init(const Options &options)
 {
-    std::optional<std::string> passphrase = Keys::GivenPassphrase(options.PassphraseFile);
+    std::optional<Keys::Secret> passphrase = Keys::GivenPassphrase(options.PassphraseFile);
     if (!passphrase && options.AsksForPassphrase)
     {
         passphrase =
             Keys::TypedPassphrase("New passphrase of the authorities in " + options.Folder + ": ", true);
     }
-    Keys::FleetKeys::Init(options.Folder, options.FleetName, PeriodOf(options), passphrase.value_or(""));
+    Keys::FleetKeys::Init(options.Folder, options.FleetName, PeriodOf(options),
+                          passphrase ? passphrase->Text() : std::string_view());
     const Keys::FleetKeys fleet(options.Folder);
     const std::string until = Keys::DayText(fleet.EndsAt());
     if (options.Json)
@@ -237,6 +238,11 @@ int Renew(const Options &options)
     }
     const Keys::SigningRequest *request = signing ? &*signing : nullptr;
     const Keys::FleetKeys fleet = FleetOf(options);
+    if (options.RevokeOld)
+    {
+        std::for_each(options.Nodes.begin(), options.Nodes.end(),
+                      [&](const std::string &node) { fleet.CheckNewKey(node, request); });
+    }
     for (const std::string &node : options.Nodes)
     {
         Keys::FleetKeys::Request access =
@@ -546,7 +552,8 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--config", renew->Config, "The node's configuration, if it has changed")
         ->check(CLI::ExistingFile);
     command->add_option("--transport", renew->Transport, "DDS implementation, if it has changed");
-    command->add_flag("--revoke-old", renew->RevokeOld, "The older ones are not to be believed any more");
+    command->add_flag("--revoke-old", renew->RevokeOld,
+                      "Revokes the older ones; refused for a node that would keep its key");
     CLI::Option *withRequest =
         command
             ->add_option("--request", renew->Requests,

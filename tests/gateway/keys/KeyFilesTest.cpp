@@ -37,6 +37,17 @@ TEST_F(KeyFilesTest, ASecretIsNotWrittenThroughALink)
     EXPECT_FALSE(fs::exists(Root + "/elsewhere"));
 }
 
+TEST_F(KeyFilesTest, ANewSecretDoesNotReplaceAnother)
+{
+    EXPECT_TRUE(WriteNewSecret(Root + "/secret", "first"));
+    EXPECT_FALSE(WriteNewSecret(Root + "/secret", "second"));
+    EXPECT_EQ(ReadSecret(Root + "/secret"), "first");
+    const fs::directory_iterator files(Root);
+    EXPECT_EQ(
+        std::count_if(begin(files), end(files), [](const auto &entry) { return entry.is_regular_file(); }),
+        1);
+}
+
 TEST_F(KeyFilesTest, ASecretThatOthersMayReadIsRefused)
 {
     WriteFile(Root + "/secret", "text");

@@ -1,6 +1,11 @@
 #include <gmock/gmock.h>
 #include <openssl/pem.h>
 
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <new>
+
 #include "KeysFolder.h"
 
 namespace Rabit::Keys
@@ -24,7 +29,7 @@ protected:
         return [this, passphrase](const std::string &file)
         {
             _asked.push_back(file);
-            return passphrase;
+            return Secret(passphrase);
         };
     }
     void AddWith(AskPassphrase ask) const
@@ -79,9 +84,19 @@ TEST_F(PassphraseTest, WithoutAPassphraseNothingIsMade)
     EXPECT_FALSE(IsMade());
 }
 
-TEST_F(PassphraseTest, APassphraseThatIsTooLongOpensNothing)
+TEST_F(PassphraseTest, APassphraseThatIsTooLongIsRefused)
 {
-    EXPECT_THAT(WhyNot([&] { AddWith(Answer(std::string(100'000, 'x'))); }), HasSubstr("does not open"));
+    EXPECT_THAT(WhyNot([&] { AddWith(Answer(std::string(LongestPassphrase + 1, 'x'))); }),
+                HasSubstr("no passphrase"));
+    EXPECT_FALSE(IsMade());
+}
+
+TEST_F(PassphraseTest, NothingOfASecretStaysInMemoryAfterItsEnd)
+{
+    alignas(Secret) std::array<unsigned char, sizeof(Secret)> place{};
+    const std::string text = "open sesame";
+    std::destroy_at(new (place.data()) Secret(text));
+    EXPECT_EQ(std::search(place.begin(), place.end(), text.begin(), text.end()), place.end());
 }
 
 TEST_F(PassphraseTest, NothingIsRevokedWithoutThePassphrase)

@@ -161,11 +161,30 @@ TEST_F(SigningRequestTest, ANodeWithAKeyOfTheAuthoritiesMayChangeToItsOwn)
     EXPECT_FALSE(fs::exists(NodeFiles(FolderOf("uav1")).PrivateKey));
 }
 
-TEST_F(SigningRequestTest, TheOlderCertificateOfTheSameKeyIsRevokedAloneOnDemand)
+TEST_F(SigningRequestTest, AnOlderCertificateOfTheSameKeyIsNotRevoked)
 {
     Sign(RequestOf("uav1"));
     const FleetKeys fleet(Place());
     fleet.Renew(fleet.RequestOf("uav1"), {.Now = TestNow, .Days = 10});
+    EXPECT_THAT(WhyNot([&] { fleet.RevokeOlder("uav1", TestNow); }), HasSubstr("uav1 keeps its key"));
+}
+
+TEST_F(SigningRequestTest, ARevocationThatProtectsNothingIsRefusedBeforeARenewal)
+{
+    const SigningRequest same = RequestOf("uav1");
+    Sign(same);
+    const FleetKeys fleet(Place());
+    EXPECT_THAT(WhyNot([&] { fleet.CheckNewKey("uav1"); }), HasSubstr("renew it with `--request`"));
+    EXPECT_THAT(WhyNot([&] { fleet.CheckNewKey("uav1", &same); }), HasSubstr("uav1 keeps its key"));
+}
+
+TEST_F(SigningRequestTest, TheOlderCertificateOfAnotherKeyIsRevokedAloneOnDemand)
+{
+    Sign(RequestOf("uav1", "old"));
+    const SigningRequest fresh = RequestOf("uav1");
+    const FleetKeys fleet(Place());
+    fleet.CheckNewKey("uav1", &fresh);
+    fleet.Renew(fleet.RequestOf("uav1"), {.Now = TestNow, .Days = 10}, &fresh);
     EXPECT_EQ(fleet.RevokeOlder("uav1", TestNow), 1U);
     EXPECT_EQ(NodeKeys(Installed("uav1")).WhyNot("uav1", "fastdds", 7, TestNow), "");
 }
@@ -186,6 +205,23 @@ TEST_F(SigningRequestTest, ARevokedKeyIsNotSignedAgain)
     FleetKeys(Place()).Revoke("uav1", TestNow);
     EXPECT_THAT(WhyNot([&] { Sign(request); }), HasSubstr("revoked"));
     EXPECT_FALSE(fs::exists(FolderOf("uav1")));
+}
+
+// A list of revoked certificates on which one of a key is that the node still has.
+TEST_F(SigningRequestTest, TheRevokedKeyOfThePresentCertificateIsNotRenewed)
+{
+    const SigningRequest request = RequestOf("uav1");
+    Sign(request);
+    const std::string place = Place() + "/authority/";
+    const CertificatePtr authority = ReadCertificate(ReadFile(place + "identity.pem"), "");
+    const CertificatePtr present = ReadCertificate(ReadFile(NodeFiles(FolderOf("uav1")).Certificate), "");
+    const KeyPtr key = ReadKey(ReadSecret(place + "identity_key.pem"), "");
+    WriteFile(place + "revoked.pem",
+              PemOf(*MakeRevocations(nullptr, {present.get()}, *authority, *key, TestNow)));
+    const FleetKeys fleet(Place());
+    const FleetKeys::Request access = fleet.RequestOf("uav1");
+    EXPECT_THAT(WhyNot([&] { fleet.Renew(access, {TestNow, 365}, &request); }), HasSubstr("revoked"));
+    EXPECT_THAT(WhyNot([&] { fleet.Renew(access, {TestNow, 365}); }), HasSubstr("revoked"));
 }
 
 TEST_F(SigningRequestTest, TheKeyOfAnotherNodeIsNotSigned)
@@ -282,6 +318,22 @@ TEST_F(SigningRequestTest, OtherTextIsRefused)
     EXPECT_THAT(WhyUnread(""), HasSubstr("no request of a node"));
     EXPECT_THAT(WhyUnread(ReadFile(Place() + "/authority/identity.pem")), HasSubstr("no request of a node"));
     EXPECT_THAT(WhyUnread(std::string(17 * 1024, 'x')), HasSubstr("larger than 16 KiB"));
+}
+
+// OpenSSL would ask for a passphrase at the terminal.
+TEST_F(SigningRequestTest, NobodyIsAskedForThePassphraseOfFilesThatAreNotSecret)
+{
+    const auto closed = [](const std::string &kind)
+    {
+        return "-----BEGIN " + kind + "-----\nProc-Type: 4,ENCRYPTED\nDEK-Info: " +
+               "AES-256-CBC,00112233445566778899AABBCCDDEEFF\n\nAAAAAAAAAAAAAAAAAAAAAA==\n-----END " + kind +
+               "-----\n";
+    };
+    EXPECT_THAT(WhyUnread(closed("CERTIFICATE REQUEST")), HasSubstr("bad password read"));
+    EXPECT_THAT(WhyNot([&] { ReadCertificate(closed("CERTIFICATE"), "c.pem"); }),
+                HasSubstr("bad password read"));
+    EXPECT_THAT(WhyNot([&] { ReadRevocations(closed("X509 CRL"), "l.pem"); }),
+                HasSubstr("bad password read"));
 }
 
 TEST_F(SigningRequestTest, NoByteOfARequestMayBeChanged)
