@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <mutex>
 
 #include "guard/RtpsMessage.h"
 
@@ -13,36 +14,39 @@ namespace Rabit::Rtps
 
 // A goodbye overtakes announcements that were sent before it on another socket, by milliseconds. The
 // participant must not come back by them. But a goodbye may be forged, also where nodes have keys: nothing in
-// it is signed. So a participant is accepted again if it still announces itself later. Bounded. Not
-// thread-safe.
+// it is signed. So a participant is accepted again if it still announces itself later. Times are those of the
+// receipt, so a session that shares the guard's goodbyes drops no announcement that the guard has let through
+// after one: implementations report a participant once. Bounded: a full table forgets the oldest.
+// Thread-safe.
 class RecentGoodbyes
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    // How long the network's part ignores announcements behind a goodbye.
+    // How long announcements behind a goodbye are ignored.
     static constexpr std::chrono::seconds Overtaken{2};
-    // The same for sessions, behind that part. Shorter, so that a session accepts whatever the network's part
-    // has let through: implementations report a participant once.
-    static constexpr std::chrono::seconds OvertakenInSession{1};
-
-    explicit RecentGoodbyes(std::chrono::milliseconds overtaken) : _overtaken(overtaken) {}
+    // As many as the guard knows participants (KnownPeers).
+    static constexpr std::size_t Most = 1024;
 
     // A repeated goodbye does not count, so that repetitions cannot keep a participant away for longer.
     void Note(const GuidPrefix &peer, TimePoint now)
     {
-        constexpr std::size_t most = 64;  // no more sessions close at a time
-        std::erase_if(_goodbyes, [&](const Goodbye &each) { return now - each.At >= _overtaken; });
-        if (!Has(peer, now) && _goodbyes.size() < most)
+        const std::lock_guard lock(_mutex);
+        std::erase_if(_goodbyes, [&](const Goodbye &each) { return now - each.At >= Overtaken; });
+        if (IsNoted(peer, now))
         {
-            _goodbyes.push_back({peer, now});
+            return;
         }
+        if (_goodbyes.size() >= Most)
+        {
+            _goodbyes.pop_front();
+        }
+        _goodbyes.push_back({peer, now});
     }
     bool Has(const GuidPrefix &peer, TimePoint now) const
     {
-        return std::any_of(_goodbyes.begin(), _goodbyes.end(),
-                           [&](const Goodbye &each)
-                           { return each.Peer == peer && now - each.At < _overtaken; });
+        const std::lock_guard lock(_mutex);
+        return IsNoted(peer, now);
     }
 
 private:
@@ -52,8 +56,15 @@ private:
         TimePoint At{};
     };
 
-    const std::chrono::milliseconds _overtaken;
-    std::deque<Goodbye> _goodbyes;
+    bool IsNoted(const GuidPrefix &peer, TimePoint now) const
+    {
+        return std::any_of(_goodbyes.begin(), _goodbyes.end(),
+                           [&](const Goodbye &each)
+                           { return each.Peer == peer && now - each.At < Overtaken; });
+    }
+
+    mutable std::mutex _mutex;
+    std::deque<Goodbye> _goodbyes;  // guarded by _mutex; the oldest first
 };
 
 }  // namespace Rabit::Rtps

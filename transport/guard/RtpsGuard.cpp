@@ -364,7 +364,11 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
             _replies.OnGone(passage.Sender);
             if (passage.Whence == Origin::Network)
             {
-                _goodbyes.Note(passage.Sender, passage.Now);
+                // Anybody can say goodbye for participants that never were.
+                if (_peers.LastHeard(passage.Sender))
+                {
+                    _goodbyes->Note(passage.Sender, passage.Now);
+                }
                 if (_observer != nullptr)
                 {
                     _observer->Gone(passage.Sender);
@@ -395,7 +399,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
 
 RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, const Passage &passage)
 {
-    if (_goodbyes.Has(passage.Sender, passage.Now))
+    if (_goodbyes->Has(passage.Sender, passage.Now))
     {
         return Verdict::Ignore;
     }

@@ -9,8 +9,10 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "guard/AnnouncementReplies.h"
@@ -56,9 +58,11 @@ public:
         AsTheyCome
     };
 
-    // `period`: announcement period of all participants.
-    RtpsGuard(Mode mode, std::chrono::milliseconds period, Requests requests = Requests::Checked)
-        : _mode(mode), _requests(requests), _replies(period)
+    // `period`: announcement period of all participants. `goodbyes`: where to note those of known
+    // participants; a session behind the guard shares them.
+    RtpsGuard(Mode mode, std::chrono::milliseconds period, Requests requests = Requests::Checked,
+              std::shared_ptr<RecentGoodbyes> goodbyes = std::make_shared<RecentGoodbyes>())
+        : _mode(mode), _requests(requests), _goodbyes(std::move(goodbyes)), _replies(period)
     {
     }
 
@@ -146,14 +150,14 @@ private:
 
     const Mode _mode;
     const Requests _requests;
+    const std::shared_ptr<RecentGoodbyes> _goodbyes;
     PeerObserver *_observer = nullptr;
-    std::mutex _mutex;                                    // several sockets receive at once
-    KnownPeers _peers;                                    // guarded by _mutex
-    SentFragments _sent;                                  // guarded by _mutex
-    DiscoveryFragments _fragments;                        // guarded by _mutex
-    AnnouncementReplies _replies;                         // guarded by _mutex
-    RecentGoodbyes _goodbyes{RecentGoodbyes::Overtaken};  // guarded by _mutex
-    GuidPrefix _own{};                                    // set once we have sent; guarded by _mutex
+    std::mutex _mutex;              // several sockets receive at once
+    KnownPeers _peers;              // guarded by _mutex
+    SentFragments _sent;            // guarded by _mutex
+    DiscoveryFragments _fragments;  // guarded by _mutex
+    AnnouncementReplies _replies;   // guarded by _mutex
+    GuidPrefix _own{};              // set once we have sent; guarded by _mutex
     std::atomic<bool> _replyDue{false};
     std::atomic<std::uint64_t> _announcementsHeard{0};
 };

@@ -126,7 +126,7 @@ private:
     std::map<GuidPrefix, Place> _places;
     std::map<GuidPrefix, TimePoint> _programs;  // without a card: when each was last announced
     std::map<GuidPrefix, std::string> _superseded;
-    RecentGoodbyes _goodbyes{RecentGoodbyes::Overtaken};
+    RecentGoodbyes _goodbyes;
     std::deque<GuidPrefix> _ended;  // the last that were ended here
 };
 

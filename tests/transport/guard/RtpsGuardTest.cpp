@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <random>
 
 #include "guard/Gate.h"
@@ -192,6 +193,65 @@ TEST_F(RtpsGuardTest, AParticipantThatGoesOnAfterAForgedGoodbyeIsHeardAgain)
     Guard.Now += 100ms;
     EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
     EXPECT_EQ(Guard.Handed.size(), 1u);
+}
+
+// The vendor reports a participant once: what the session drops never comes again.
+TEST_F(RtpsGuardTest, ASessionThatSharesTheGoodbyesDropsNoAnnouncementThatWasLetThrough)
+{
+    const auto goodbyes = std::make_shared<Rabit::Rtps::RecentGoodbyes>();
+    RtpsGuard guard(RtpsGuard::Mode::Full, 10s, RtpsGuard::Requests::Checked, goodbyes);
+    auto now = Guard.Now;
+    bool isHeard = false;
+    const auto admit = [&](Bytes datagram)
+    {
+        isHeard = false;
+        guard.Admit(datagram, SenderHost, now, [&](auto) { isHeard = true; });
+    };
+    admit(ParticipantMessage());
+    admit(Goodbye());
+    EXPECT_TRUE(goodbyes->Has(Sender, now));
+    do
+    {
+        now += 100ms;
+        admit(ParticipantMessage());
+    } while (!isHeard);
+    EXPECT_FALSE(goodbyes->Has(Sender, now));
+}
+
+// With keys, too, anybody can send goodbyes: nothing in them is signed.
+TEST(RtpsGuardWithKeys, GoodbyesOfParticipantsThatNeverWereDisplaceNoOther)
+{
+    Gate guard(RtpsGuard::Mode::Protected);
+    const auto announcement = [](const GuidPrefix &who) {
+        return Join({Header(who), Submessage(Data, DataBody(1, ParticipantData(who), ParticipantWriter), 5)});
+    };
+    const auto goodbye = [](const GuidPrefix &who)
+    {
+        return Join({Header(who), Submessage(Data,
+                                             DataBody(2,
+                                                      Join({Parameter(0x0070, Guid(who, ParticipantEntity)),
+                                                            Parameter(0x0071, {0, 0, 0, 3}),
+                                                            {1, 0, 0, 0}}),
+                                                      ParticipantWriter),
+                                             3)});
+    };
+    const auto forge = [&](std::uint8_t round)
+    {
+        GuidPrefix forged = Other;
+        forged[0] = round;
+        for (std::size_t i = 0; i < Rabit::Rtps::RecentGoodbyes::Most; ++i)
+        {
+            forged[10] = static_cast<std::uint8_t>(i / 256);
+            forged[11] = static_cast<std::uint8_t>(i % 256);
+            guard.Admit(goodbye(forged));
+        }
+    };
+    EXPECT_TRUE(guard.Passes(announcement(Sender)));
+    forge(1);
+    EXPECT_TRUE(guard.Passes(goodbye(Sender)));
+    forge(2);
+    EXPECT_TRUE(guard.Admit(announcement(Sender)));
+    EXPECT_TRUE(guard.Handed.empty());
 }
 
 TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsIsStopped)

@@ -9,7 +9,6 @@
 #include "PeerAddresses.h"
 #include "VendorLog.h"
 #include "common/SettingsCheck.h"
-#include "guard/RecentGoodbyes.h"
 
 namespace Rabit::Cyclone
 {
@@ -205,7 +204,7 @@ std::shared_ptr<const PeerSession> SessionCore::IdentityOf(const WriterId &write
         return known;
     }
     const auto gone = _gone.find(prefix);
-    return gone == _gone.end() ? nullptr : gone->second.Who;
+    return gone == _gone.end() ? nullptr : gone->second;
 }
 
 std::vector<ddsi_guid_t> SessionCore::ParticipantsOf(const std::string &node) const
@@ -296,16 +295,15 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
     {
         return;
     }
+    // The vendor may handle an announcement after a goodbye that overtook it.
+    if (_domain.HasSaidGoodbye(prefix))
+    {
+        return;
+    }
     const PeerPlace place = PlaceOf(prefix);
     Identity identity;
     {
         const std::lock_guard lock(_mutex);
-        const auto gone = _gone.find(prefix);
-        if (gone != _gone.end() && gone->second.How == PeerEvent::Kind::Left &&
-            std::chrono::steady_clock::now() - gone->second.When < Rtps::RecentGoodbyes::OvertakenInSession)
-        {
-            return;
-        }
         identity = _peers.Add(prefix, announced);
         if (identity == nullptr)
         {
@@ -334,7 +332,7 @@ void SessionCore::PeerGone(const Prefix &prefix)
             return;
         }
         _places.erase(prefix);
-        if (_gone.insert_or_assign(prefix, Gone{identity, how, std::chrono::steady_clock::now()}).second)
+        if (_gone.insert_or_assign(prefix, identity).second)
         {
             _goneOrder.push_back(prefix);
         }

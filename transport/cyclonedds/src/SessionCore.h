@@ -57,13 +57,6 @@ public:
 private:
     using Identity = std::shared_ptr<const PeerSession>;
 
-    struct Gone
-    {
-        Identity Who;
-        PeerEvent::Kind How;
-        std::chrono::steady_clock::time_point When;
-    };
-
     static void OnParticipants(dds_entity_t reader, void *self);
     template <bool isWriter>
     static void OnEndpoints(dds_entity_t reader, void *self);
@@ -81,7 +74,7 @@ private:
     mutable std::mutex _mutex;
     PeerSessions<Prefix> _peers;          // Rabit nodes; guarded by _mutex
     std::map<Prefix, PeerPlace> _places;  // of the peers; guarded by _mutex
-    std::map<Prefix, Gone> _gone;         // the last peers that went; guarded by _mutex
+    std::map<Prefix, Identity> _gone;     // the last peers that went; guarded by _mutex
     std::deque<Prefix> _goneOrder;        // guarded by _mutex
     // Runs the peer handler, because the vendor reports peers with its own locks held.
     Worker _worker;

@@ -382,7 +382,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                 .IsMulticast = _multicast},
                turns),
       // The vendor itself checks which fragments it has sent.
-      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome),
+      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome,
+             _goodbyes),
       _outbox(std::move(turns), [this](const auto &route, auto datagram)
               { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); })
 {

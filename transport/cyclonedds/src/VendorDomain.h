@@ -51,6 +51,11 @@ public:
     void Lost(const Rtps::GuidPrefix &participant);
     // True if the vendor was told here that the participant is gone, because it was silent.
     bool WasEnded(const Rtps::GuidPrefix &participant) const { return _meeting.WasEnded(participant); }
+    // True if another participant has said goodbye a moment ago (guard/RecentGoodbyes.h).
+    bool HasSaidGoodbye(const Rtps::GuidPrefix &participant) const
+    {
+        return _goodbyes->Has(participant, std::chrono::steady_clock::now());
+    }
 
 private:
     static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
@@ -91,6 +96,7 @@ private:
     std::vector<std::vector<std::uint8_t>> _delivered;  // for the vendor; guarded by _cardMutex
     DirectAnnouncements _direct;
     HandshakeEnds _handshakes;
+    const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;
     OutboxThread _outbox;

@@ -80,7 +80,8 @@ public:
     explicit GuardedUdp(const GuardedUdpDescriptor &descriptor)
         : ChainingTransport(descriptor),
           _descriptor(descriptor),
-          _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod),
+          _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod,
+                 RtpsGuard::Requests::Checked, descriptor.Chosen().Goodbyes),
           _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr)
     {
         _descriptor.Chosen().Owed->Set([this] { SendOwed(); });

@@ -163,6 +163,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.Owed = std::move(calls.Owed);
     guarded.Turns = std::move(calls.Turns);
     guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? std::move(calls.Meeting) : nullptr;
+    guarded.Goodbyes = std::move(calls.Goodbyes);
     guarded.HasPeers = !settings.Peers.empty();
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
     // GuardedUdp requests the first announcements after the very first, at doubling intervals.

@@ -31,6 +31,8 @@ struct NetworkCalls
     std::shared_ptr<DeferredCall> Owed;
     std::shared_ptr<DiscoveryTurns> Turns;
     std::shared_ptr<Rtps::MeetingThread> Meeting;
+    // Where the guard notes the goodbyes of known participants.
+    std::shared_ptr<Rtps::RecentGoodbyes> Goodbyes;
 };
 
 // In `settings`, Interfaces are addresses of this host (empty: all), and the hosts of Peers are addresses.

@@ -107,7 +107,8 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
          .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
          .Owed = _owed,
          .Turns = std::move(turns),
-         .Meeting = _meeting});
+         .Meeting = _meeting,
+         .Goodbyes = _goodbyes});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
@@ -292,7 +293,7 @@ void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
     }
     {
         const std::lock_guard lock(_mutex);
-        if (_goodbyes.Has(NameOf(prefix), std::chrono::steady_clock::now()) ||
+        if (_goodbyes->Has(NameOf(prefix), std::chrono::steady_clock::now()) ||
             _peers.Add(prefix, *identity) == nullptr)
         {
             return;
@@ -325,10 +326,6 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
         const std::lock_guard lock(_mutex);
         _unproven.erase(prefix);
         _proven.erase(prefix);
-        if (how == PeerEvent::Kind::Left)
-        {
-            _goodbyes.Note(name, std::chrono::steady_clock::now());
-        }
         session = _peers.Remove(prefix);
         if (session == nullptr)
         {

@@ -100,8 +100,8 @@ private:
     std::map<GuidPrefix, Newcomer> _unproven;
     std::set<GuidPrefix> _proven;   // authenticated participants; guarded by _mutex
     std::set<GuidPrefix> _inGroup;  // listeners of the discovery group; guarded by _mutex
-    // guarded by _mutex
-    Rtps::RecentGoodbyes _goodbyes{Rtps::RecentGoodbyes::OvertakenInSession};
+    // The guard notes them, before the vendor sees them.
+    const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
     const std::shared_ptr<Rtps::MeetingThread> _meeting;
     const ParticipantNumber _number;
     ParticipantTimer _announceTimer;
