@@ -9,7 +9,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     if (announcement)
     {
         Fuzz::Require(Rabit::Announcements::IsPlausible(*announcement));
-        Fuzz::Require(Rabit::Announcements::Decode(Rabit::Announcements::Encode(*announcement)).has_value());
+        const auto again = Rabit::Announcements::Encode(*announcement);
+        const auto same = Rabit::Announcements::Decode(again);
+        Fuzz::Require(same.has_value() && Rabit::Announcements::Encode(*same) == again);
         Rabit::Announcements::StatesIn(*announcement);
     }
     return 0;

@@ -16,7 +16,11 @@ void Decode(std::span<const std::uint8_t> bytes)
         std::vector<std::uint8_t> again(Rabit::LinkFrameCodec::EncodedSize(frame));
         Rabit::LinkFrameCodec::Encode(frame, again);
         Rabit::LinkFrame same;
-        Fuzz::Require(Rabit::LinkFrameCodec::Decode(again, same));
+        Fuzz::Require(Rabit::LinkFrameCodec::Decode(again, same) &&
+                      Rabit::LinkFrameCodec::EncodedSize(same) == again.size());
+        std::vector<std::uint8_t> once(again.size());
+        Rabit::LinkFrameCodec::Encode(same, once);
+        Fuzz::Require(once == again);
     }
     if (const auto part = Rabit::TypeFrames::Decode(bytes))
     {

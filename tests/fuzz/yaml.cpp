@@ -3,7 +3,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <exception>
 #include <string>
 
 #include "Input.h"
@@ -18,9 +17,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     {
         Rabit::LoadGatewayConfig(path);
     }
-    catch (const std::exception &)
+    catch (const Rabit::ConfigError &error)
     {
-        // The reason why it is refused.
+        Fuzz::Require(*error.what() != '\0');
     }
     return 0;
 }
