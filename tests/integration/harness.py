@@ -52,6 +52,11 @@ def until(holds, limit_s=120):
         assert time.monotonic() < end, f"{holds.__name__} did not come true"
 
 
+def reason(error):
+    """Returns an error in words, which are never empty: an error without a text must not pass for none."""
+    return str(error) or repr(error)
+
+
 def run_at_once(cases):
     """Runs each case's `run` on a thread of its own, and returns when all have. A case keeps what went wrong itself."""
     threads = [threading.Thread(target=case.run) for case in cases]

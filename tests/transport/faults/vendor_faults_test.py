@@ -170,7 +170,7 @@ class Guarded:
             with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
                 self.meet(processes, Keys(self.programs[0], folder))
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def hears_more(self, node, other):
         heard = [int(text.split()[2]) for _, text in node.lines if text.startswith(f"heard {other} ")]

@@ -61,7 +61,7 @@ class Case:
             with tempfile.TemporaryDirectory() as folder:
                 self.exchange(pathlib.Path(folder))
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def exchange(self, folder):
         if self.secured:

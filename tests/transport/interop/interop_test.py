@@ -48,7 +48,7 @@ class Row:
             with harness.Processes() as processes:
                 self.exchange(processes)
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     @staticmethod
     def all_orders(sender, sender_life, receiver, number=1):

@@ -225,7 +225,7 @@ class Case:
             with harness.Processes() as processes:
                 self.check(place, processes)
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
         finally:
             place.close()
 

@@ -81,7 +81,7 @@ class Case:
             with harness.Processes() as processes:
                 self.check(ends, processes)
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
         finally:
             for end in ends:
                 end.close()

@@ -34,7 +34,7 @@ class Case:
             with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
                 self.fly(processes, pathlib.Path(folder) / "fleet")
         except Exception as error:  # the other goes on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def fly(self, processes, fleet):
         subprocess.run([self.odd_keys, "init", fleet, "blue"], check=True)

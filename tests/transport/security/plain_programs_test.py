@@ -34,7 +34,7 @@ class Case:
             with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
                 self.meet(processes, pathlib.Path(folder) / "fleet")
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def start(self, processes, fleet, node, transport):
         keys = ["-", "encrypt"]

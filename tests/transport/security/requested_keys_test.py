@@ -40,7 +40,7 @@ class Fleet:
                 self.make_keys()
                 self.exchange(processes)
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def make_keys(self):
         fleet = self.folder / "keys"

@@ -40,7 +40,7 @@ class Fleet:
                 make_keys(self.rabit, pathlib.Path(folder), zip(("first", "second"), self.transports), self.domain)
                 self.exchange(processes, pathlib.Path(folder))
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def exchange(self, processes, folder):
         nodes = [self.start(processes, folder, index) for index in (0, 1)]

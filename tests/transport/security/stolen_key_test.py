@@ -93,7 +93,7 @@ class Case:
                     self.make_keys()
                 self.act(self)
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def run_keys(self, *words):
         done = subprocess.run([self.rabit, "keys", *map(str, words)], capture_output=True, text=True, check=False)

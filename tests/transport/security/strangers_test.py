@@ -45,7 +45,7 @@ class Case:
             with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
                 self.meet(processes, pathlib.Path(folder))
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def meet(self, processes, folder):
         self.fleet = folder / "fleet"

@@ -70,7 +70,7 @@ class Case:
                 subprocess.run([self.odd_keys, "add", self.fleet, node, transport, str(DOMAIN), "0", "365"], check=True)
             self.act(self)
         except Exception as error:  # the others go on
-            self.failure = str(error)
+            self.failure = harness.reason(error)
 
     def pass_on(self, node, datagram):
         out = self._change(node, bytearray(datagram)) if self._change else [datagram]
