@@ -50,8 +50,8 @@ KeyExchangeOutbox::TimePoint KeyExchangeOutbox::DueOf(const Peer &peer, const La
     {
         return message.Due;
     }
-    const Duration calm = std::min<Duration>(Calm * _answerTime.value_or(FirstGap), LongestFirstGap);
-    return std::max(message.Due, std::min(othersAt + calm, message.Since + LongestWait));
+    const TimePoint calm = othersAt + Calm * _answerTime.value_or(FirstGap);
+    return std::max(message.Due, std::min({calm, _requestedAt + LongestCalm, message.Since + LongestWait}));
 }
 
 bool KeyExchangeOutbox::IsBeyondShare(const Peer &peer, const Control &control) const
@@ -195,7 +195,11 @@ void KeyExchangeOutbox::TakeMessage(Peer &peer, TimePoint now, std::vector<Datag
     const bool again = peer.Said == peer.Waiting->What;
     peer.Gap = again && peer.Gap > Duration(0) ? std::min<Duration>(2 * peer.Gap, LongestGap) : GapNow();
     peer.Said = peer.Waiting->What;
-    peer.HandshakeAt = again || peer.Said == Step::Ask ? peer.HandshakeAt : now;
+    if (!again)
+    {
+        peer.HandshakeAt = peer.Said == Step::Ask ? peer.HandshakeAt : now;
+        _requestedAt = peer.Said == Step::Request ? now : _requestedAt;
+    }
     peer.SaidNumber = peer.Waiting->Number;
     peer.SaidAgainAt = now + peer.Gap;
     peer.IsRepeated = peer.IsRepeated || again;

@@ -27,8 +27,9 @@ namespace Rabit
 //   step, the longest waiting goes first. The last message of a handshake, and control, do not wait for the
 //   window.
 // - One exchange after the other: a request waits until no handshake with another peer has made progress for
-//   Calm answer times, but no longer than LongestWait. The more exchanges are under way at once, the longer
-//   each lasts, and all that time the vendors repeat control.
+//   Calm answer times. It waits no longer than LongestCalm after the first request to another peer, and in
+//   all no longer than LongestWait. The more exchanges are under way at once, the longer each lasts, and all
+//   that time the vendors repeat control.
 // - Of the handshake messages to a peer only the newest waits. A message that the peer has shown not to need
 //   any more is dropped. A repetition goes when an answer had time to arrive, with exponential backoff.
 // - Keys keep their order and are dropped only beyond MostWaiting bytes. Control of each kind has one slot:
@@ -73,6 +74,7 @@ public:
     static constexpr double MostControlAhead =
         2000.0;  // bytes that may go before any others, or after a pause
     static constexpr int Calm = 4;
+    static constexpr Milliseconds LongestCalm{3000};
     static constexpr Milliseconds LongestWait{15000};
     // Time after the last handshake or key until an exchange counts as settled.
     static constexpr Milliseconds Settled{6000};
@@ -216,6 +218,7 @@ private:
     std::optional<Duration> _answerTime;  // the longest; each shorter one halves it at most
     TimePoint _loweredAt{};
     TimePoint _exchangedAt{};  // with any peer
+    TimePoint _requestedAt{};  // when a first request went to any peer
     std::map<KeyExchange::Prefix, Peer> _peers;
     Turn _turn = 0;
 };
