@@ -21,8 +21,8 @@ constexpr double LongestDelay_Sec = 1e9;
 // Converts seconds given by a caller; a positive value never becomes 0.
 std::chrono::nanoseconds ToDuration(double seconds)
 {
-    const std::chrono::duration<double> clamped(std::clamp(seconds, 0.0, LongestDelay_Sec));
-    const auto rounded = std::chrono::round<std::chrono::nanoseconds>(clamped);
+    const double nanoseconds = std::clamp(seconds, 0.0, LongestDelay_Sec) * 1e9;
+    const std::chrono::nanoseconds rounded(static_cast<std::chrono::nanoseconds::rep>(nanoseconds + 0.5));
     return seconds > 0.0 ? std::max(rounded, std::chrono::nanoseconds(1)) : rounded;
 }
 

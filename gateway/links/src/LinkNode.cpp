@@ -124,6 +124,12 @@ LinkRefusal LinkNode::FindOrAddSender(std::string_view destination, std::string_
                                       const LinkOptions &options, LinkTime now, LinkPeer *&peer,
                                       LinkSender *&sender)
 {
+    peer = FindPeer(destination);
+    sender = peer != nullptr ? peer->FindSender(queue) : nullptr;
+    if (sender != nullptr)
+    {
+        return LinkRefusal::None;
+    }
     if (!IsPossiblePeer(destination) || !IsPossibleName(queue))
     {
         return LinkRefusal::BadName;
@@ -133,15 +139,11 @@ LinkRefusal LinkNode::FindOrAddSender(std::string_view destination, std::string_
     {
         return LinkRefusal::TooManyPeers;
     }
-    sender = peer->FindSender(queue);
-    if (sender == nullptr)
+    if (peer->AllSenders().size() >= _context->Settings.MaxLinksPerPeer)
     {
-        if (peer->AllSenders().size() >= _context->Settings.MaxLinksPerPeer)
-        {
-            return LinkRefusal::TooManyLinks;
-        }
-        sender = &peer->AddSender(queue, options);
+        return LinkRefusal::TooManyLinks;
     }
+    sender = &peer->AddSender(queue, options);
     return LinkRefusal::None;
 }
 
