@@ -544,7 +544,7 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
 
     auto renew = AddCommand(*keys, "renew", "Makes new ones in place of those that nodes have", &Renew,
                             chosen, command);
-    AddExamples(*command, {"rabit keys renew uav1", "rabit keys renew uav1 uav2 --days 30",
+    AddExamples(*command, {"rabit keys renew uav1 uav2 --days 30",
                            "rabit keys renew uav1 --config uav1.yaml --revoke-old",
                            "rabit keys renew uav1 --request uav1.request.pem"});
     command->add_option("NODE", renew->Nodes, "Names of the nodes")->required();

@@ -250,9 +250,9 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
         ->transform(Size(RecordRanges::Keep));
     command->add_option("--free", options->Free, "Bytes of the disk that stay free, as 5GB (default: 1 GiB)")
         ->transform(Size(RecordRanges::Free));
-    AddExamples(*command, {"rabit record --to flights --for 60", "rabit record uav1/Pose 'uav*/Health'",
+    AddExamples(*command, {"rabit record uav1/Pose 'uav*/Health' --for 60",
                            "rabit record --except '*/CameraView' --name test",
-                           "rabit record --split-time 5min --keep 20GB"});
+                           "rabit record --to flights --split-time 5min --keep 20GB"});
     command->callback(
         [options, &chosen]
         {
