@@ -58,7 +58,7 @@ refused_parameters() {
     [ "$(cat "$work/err")" = "$work/fence.yaml:2: $1" ] || fail "$2: not the line '$1'"
 }
 refused_parameters 'unknown parameter `geofence_radius`; did you mean `geofence_radius_m`?' '{geofence_radius: 3000}'
-refused_parameters '`geofence_radius_m` is 5; expected a number from 10 to 1e+06' '{geofence_radius_m: 5}'
+refused_parameters '`geofence_radius_m` is `5`; expected a number from 10 to 1e+06' '{geofence_radius_m: 5}'
 for part in 'latitude_deg: 47' 'longitude_deg: 8' 'radius_m: 3000' 'latitude_deg: 47, geofence_longitude_deg: 8' \
     'latitude_deg: 47, geofence_radius_m: 3000' 'longitude_deg: 8, geofence_radius_m: 3000'; do
     refused_parameters 'a geofence needs all three of geofence_latitude_deg, geofence_longitude_deg and geofence_radius_m' \

@@ -75,12 +75,13 @@ wait_for "$work/ground.out" ' 5 problems: '
 # Each problem is logged once, and shown as long as it lasts.
 lines=$(wc -l <"$work/ground.out")
 for ((tries = 0; tries < 600 && $(wc -l <"$work/ground.out") < lines + 20; tries++)); do sleep 0.1; done
-tail -n 4 "$work/ground.out" | grep -q ' 5 problems: ' || fail "the problems are not shown any more"
+# To its own four at least come those that the aircraft reports of itself.
+tail -n 4 "$work/ground.out" | grep -q ' [5-9] problems: ' || fail "the problems are not shown any more"
 [ "$(grep -c 'subscribe Pse' "$work/ground.err")" -eq 1 ] || fail "it was said more than once"
 
 # On a terminal the log stands above the table, and the present problems below it.
 script -qefc "${ground[*]} --node ground2 --seconds 6" /dev/null >"$work/terminal.out" 2>"$work/terminal.err" </dev/null
-grep -qF '5 problems:' "$work/terminal.out" || fail "the terminal shows no problems"
+grep -q '[5-9] problems:' "$work/terminal.out" || fail "the terminal shows no problems"
 grep -qF '  subscribe Pse, uav1: uav1 does not publish' "$work/terminal.out" || fail "the terminal names no problem"
 [ "$(grep -c 'gateway: subscribe Pse, uav1' "$work/terminal.out")" -eq 1 ] || fail "the log is not on the terminal once"
 echo passed
