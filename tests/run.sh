@@ -40,12 +40,12 @@ quick() {
 
 if [ "${1:-}" = --quick ]; then
     [ $# -eq 1 ] || { echo "run.sh: --quick takes no other arguments" >&2; exit 2; }
-    echo "The quick tests: about 5 minutes on two cores, and 10 more if nothing is built yet."
+    echo "The quick tests: unit tests and one exchange of two nodes. If nothing is built yet, compiling takes longest."
     quick
     exit
 fi
 if [ $# -eq 0 ]; then
-    echo "All tests: about 20 minutes on two cores, and 30 more if nothing is built yet. --quick: about 5 minutes."
+    echo "All tests: about 20 minutes on two cores, and 30 more if nothing is built yet. --quick: a part of them."
     set -- -LE 'mutation|field_long|fuzz_long|package_long|soak'
 fi
 "$root/docker/install-packages.sh"

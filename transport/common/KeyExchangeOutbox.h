@@ -71,8 +71,8 @@ public:
     static constexpr Milliseconds ShortestLongControlGap{200};
     static constexpr Milliseconds LongestControlGap{1000};
     static constexpr double ControlShare = 0.25;
-    static constexpr double MostControlAhead =
-        2000.0;  // bytes that may go before any others, or after a pause
+    // Bytes of control that may go before any others, or after a pause.
+    static constexpr double MostControlAhead = 2000.0;
     static constexpr int Calm = 4;
     static constexpr Milliseconds LongestCalm{3000};
     static constexpr Milliseconds LongestWait{15000};
@@ -116,7 +116,7 @@ private:
         Step What = Step::Request;
         std::uint64_t Number = 0;
         std::vector<Datagram> Datagrams;
-        TimePoint Since;  // of the first of these messages that one after the other waited
+        TimePoint Since;  // when a message began to wait, which newer ones have replaced since
         TimePoint Due;
         Turn Place = 0;
     };

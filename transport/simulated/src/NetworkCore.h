@@ -111,8 +111,8 @@ private:
 
     // Sending.cpp
     void Send(const ParticipantState &from, ParticipantId to, Datagram datagram, Time processing = Time(0));
-    // `partsBefore`: datagrams of each letter that were sent earlier, and are not counted again.
     void SendToGroup(const ParticipantState &from, Letters letters, const Datagram &content);
+    // `partsBefore`: datagrams of each letter that were sent earlier, and are not counted again.
     void SendTogether(const ParticipantState &from, Letters letters, bool multicast,
                       std::uint32_t partsBefore = 0);
     void SendAlone(const ParticipantState &from, Letter letter);

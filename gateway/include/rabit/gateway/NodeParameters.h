@@ -21,7 +21,7 @@ namespace Rabit
 // expected. A name in the file that the program does not read is most likely mistyped: RunNode refuses it,
 // unless the program calls AllowOthers.
 //
-// Copies share what was read. For one thread at a time, usually that of main().
+// Copies share what was read. Only one thread may use it at a time, usually main().
 class NodeParameters
 {
 public:
