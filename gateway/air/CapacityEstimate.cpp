@@ -142,8 +142,27 @@ void CapacityEstimate::Reported(Peer peer, Duration delay, Duration arrivedAt, D
     LoosenIfUnused(now);
 }
 
-void CapacityEstimate::NothingLate(Peer peer, Duration now)
+void CapacityEstimate::HeardLate(Duration discovery, Duration all, Duration now)
 {
+    _discoveryLate = discovery;
+    _allLate = all;
+    _longWaitSince = all > LongWait ? _longWaitSince : now;
+}
+
+std::optional<double> CapacityEstimate::RateWhileHeardLate() const
+{
+    const bool isLong = _allLate > LongWait && _nothingLateAt < _longWaitSince;
+    const bool isUnknown = _discoveryLate > Target && !_wasReported;
+    if (!isLong && !isUnknown)
+    {
+        return std::nullopt;
+    }
+    return std::max(EmptyingRate(FirstRate, isLong ? _allLate : _discoveryLate), Floor);
+}
+
+void CapacityEstimate::NothingLate(Peer peer, Duration sentAt, Duration now)
+{
+    _nothingLateAt = std::max(_nothingLateAt, sentAt);
     const DelayReports::Reports *const said = _reports.Of(peer);
     if (!_limited || said == nullptr || said->back().Delay > Standing ||
         now - said->back().CameAt < NotCrowdedOut)
@@ -242,8 +261,7 @@ std::optional<double> CapacityEstimate::Rate(Duration now) const
 {
     if (!_limited)
     {
-        const bool isUnknown = _heardLate > Target && !_wasReported;
-        return isUnknown ? std::optional(std::max(EmptyingRate(FirstRate, _heardLate), Floor)) : std::nullopt;
+        return RateWhileHeardLate();
     }
     const double rate = EmptyingRate(_carried, Queue(now));
     const double silence = std::max(Seconds(now - _reportedAt - SilentAfter), 0.0);

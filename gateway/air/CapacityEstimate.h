@@ -14,8 +14,11 @@ namespace Rabit
 // input is the queueing delay of its datagrams at its peers (delay-based congestion control). Loss is no
 // sign: radios lose datagrams.
 //
-// - Unlimited until the peers agree on a delay above Target. Before the first report, the delay of the peers'
-//   cards is used instead: at FirstRate, and less while it is long.
+// - Unlimited until the peers agree on a delay above Target.
+// - In two cases the delay of what others send limits the node, to FirstRate and to less while the delay is
+//   long. Before the first report this is the delay of discovery, if it is above Target. Later it is a delay
+//   of all above LongWait, since reports then wait as long. It limits the node until a peer says, later than
+//   the long wait began, that nothing of ours is late.
 // - Then: the delivery rate while the delay rose, that is the bytes sent between two reported datagrams
 //   divided by the time between their arrivals, less a part to empty the queue.
 // - As long as there is a queue, each report corrects the delivery rate. The rate is below it while the delay
@@ -44,6 +47,7 @@ public:
     using Peer = DelayReports::Peer;
 
     static constexpr Duration Target = std::chrono::milliseconds(100);
+    static constexpr Duration LongWait = std::chrono::seconds(1);
     static constexpr double Floor = 300.0;       // bytes a second
     static constexpr double FirstRate = 3000.0;  // a share of a thin radio: 250 kbit/s for ten nodes
 
@@ -56,13 +60,13 @@ public:
     // sent at arrivedAt - delay.
     void Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now);
 
-    // A beat of a peer came without a report of our datagrams' delay. Beats carry reports until three seconds
-    // after the last late datagram.
-    void NothingLate(Peer peer, Duration now);
+    // A beat of a peer, sent at `sentAt` by our clock, came without a report of our datagrams' delay. Beats
+    // carry reports until three seconds after the last late datagram.
+    void NothingLate(Peer peer, Duration sentAt, Duration now);
 
-    // The others' datagrams come here by `delay` later than the quickest. This limits the node while it is
-    // above Target and no peer has ever reported: nodes that meet on a full radio do not know each other yet.
-    void HeardLate(Duration delay) { _heardLate = delay; }
+    // The others' messages of discovery, and all of their datagrams, come here by so much later than the
+    // quickest.
+    void HeardLate(Duration discovery, Duration all, Duration now);
 
     // Drops the estimate, for instance when DDS discovery has filled the air: unlimited until peers agree on
     // a delay anew.
@@ -81,6 +85,7 @@ private:
     void Congested(Duration now);
     void Correct(const DelayReports::Reports &said);
     void Rise(double share, Duration now);
+    std::optional<double> RateWhileHeardLate() const;
     bool IsUsed(Duration now) const;
     bool IsUnused(Duration now) const;
     void LoosenIfUnused(Duration now);
@@ -94,7 +99,10 @@ private:
     Duration _unusedSince{0};  // at the earliest
     int _doublings = 0;        // for want of use, since the rate was used
     Duration _quietSince{0};   // no delay above the goal since
-    Duration _heardLate{0};
+    Duration _discoveryLate{0};
+    Duration _allLate{0};
+    Duration _longWaitSince{0};  // no earlier
+    Duration _nothingLateAt = Duration::min();
     bool _wasReported = false;
 };
 

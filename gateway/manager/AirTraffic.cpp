@@ -178,9 +178,9 @@ void AirTraffic::SetBeatPeriod(std::optional<double> budget, std::optional<doubl
 void AirTraffic::SetLimit(Duration now)
 {
     _limitSetAt = now;
-    const Duration heardLate = _turns != nullptr ? _turns->QueueingDelay() : Duration(0);
-    _estimate.HeardLate(heardLate);
-    _presence.HeardLate(heardLate);
+    const Duration discoveryLate = _turns != nullptr ? _turns->QueueingDelay() : Duration(0);
+    _presence.HeardLate(discoveryLate);
+    _estimate.HeardLate(discoveryLate, _presence.QueueingDelay(now), now);
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
     SetBeatPeriod(budget, carried);

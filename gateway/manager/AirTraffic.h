@@ -67,7 +67,10 @@ public:
     Duration Serve(Duration now);
     // A peer reported the delay of a datagram of this node.
     void Reported(CapacityEstimate::Peer peer, Duration delay, Duration arrivedAt, Duration now);
-    void NothingLate(CapacityEstimate::Peer peer, Duration now) { _estimate.NothingLate(peer, now); }
+    void NothingLate(CapacityEstimate::Peer peer, Duration sentAt, Duration now)
+    {
+        _estimate.NothingLate(peer, sentAt, now);
+    }
 
     // Fills the part about the air, and the rates of links and publications, whose rows are in the message
     // already.

@@ -147,9 +147,9 @@ public:
             const Duration known = std::max(ways - ShortWays, Duration(0));
             _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt - known, now);
         }
-        for (const std::uint32_t peer : served.NothingLate)
+        for (const auto &[peer, sentAt] : served.NothingLate)
         {
-            _air.NothingLate(peer, now);
+            _air.NothingLate(peer, sentAt, now);
         }
         if (_links.HasDelays())
         {

@@ -264,7 +264,7 @@ void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, S
             return;
         }
     }
-    served.NothingLate.push_back(peer.Tag);
+    served.NothingLate.emplace_back(peer.Tag, heard.Arrival - peer.Clock.LastDelay());
 }
 
 void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)

@@ -78,8 +78,8 @@ public:
         // States of this node that others have requested, by index (Announcements::StateIndexOf).
         std::vector<std::size_t> StatesAsked;
         std::vector<DelayHeard> Delays;
-        // Tags of nodes whose beats report no delay of this node's datagrams.
-        std::vector<std::uint32_t> NothingLate;
+        // Nodes whose beats report no delay of this node's datagrams, and when they sent these beats.
+        std::vector<std::pair<std::uint32_t, Duration>> NothingLate;
         // Nodes that request the text of a type, and the type.
         std::vector<std::pair<std::string, BeatExtensions::TypeQuestion>> TypesAsked;
 
@@ -150,6 +150,8 @@ public:
     void NoteDelay(std::string_view node, Duration delay, Duration arrivedAt);
     // DelayNotes::HeardLate
     void HeardLate(Duration delay) { _contents.Delays().HeardLate(delay); }
+    // DelayNotes::Delay
+    Duration QueueingDelay(Duration now) { return _contents.Delays().Delay(now); }
 
     const PeerTable &Peers() const { return _peers; }
     // Number of samples of the gateways' topics that were malformed, or found the inbox full.

@@ -31,6 +31,8 @@ struct LinkContext
     LinkFrame Frame;
     // Bytes of parts that wait for earlier ones, on all links.
     std::size_t ReorderBytes = 0;
+    // Bytes under way on all paths that start.
+    std::size_t Starting = 0;
     Rabit::AssemblyMemory AssemblyMemory;
 };
 

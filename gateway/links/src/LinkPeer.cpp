@@ -24,7 +24,7 @@ LinkPeer::LinkPeer(LinkContext &context, std::string name, LinkTime now)
       _ownLife(context.Incarnation),
       _heardAt(now),
       _helloGap(context.Settings.HelloGap),
-      _path(context.Settings)
+      _path(context.Settings, context.Starting)
 {
 }
 

@@ -165,6 +165,10 @@ void LinkSender::FindLost(LinkTime echo, LinkTime now)
 {
     _lastEcho = std::max(_lastEcho, echo);
     _lostAt = LinkNever;
+    if (_outbox.FirstSequence() == _outbox.NextSequence())
+    {
+        return;
+    }
     const LinkTime patience =
         std::max(_path.Times().Latest(), _path.Times().Smoothed()) + _path.ReorderingTime();
     for (std::uint64_t sequence = _outbox.FirstSequence(); sequence < _outbox.NextSequence(); ++sequence)

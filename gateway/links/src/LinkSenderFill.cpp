@@ -334,7 +334,10 @@ bool LinkSender::FillNew(Filling &filling)
 
 void LinkSender::OnPartSent(Filling &filling, SentPart &part, std::size_t bytes)
 {
-    LeavePath(part);
+    if (part.Cost > 0)
+    {
+        LeavePath(part);
+    }
     _lost -= part.IsLost ? 1 : 0;
     part.IsLost = false;
     part.SentAt = filling.SentAt;

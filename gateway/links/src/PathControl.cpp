@@ -51,7 +51,24 @@ std::size_t Scaled(std::size_t bytes, double factor)
 
 }  // namespace
 
-PathControl::PathControl(const LinkSettings &settings) : _settings(settings), _window(FirstWindow()) {}
+PathControl::PathControl(const LinkSettings &settings, std::size_t &starting)
+    : _settings(settings),
+      _datagram(settings.MaxDatagram + settings.AirOverhead),
+      _starting(starting),
+      _window(FirstWindow())
+{
+}
+
+// To be called after each change of the window or of slow start.
+void PathControl::LookIfStarts()
+{
+    const bool starts = _slowStart && _window <= FirstWindow();
+    if (starts != _starts)
+    {
+        _starts = starts;
+        _starting += starts ? _inFlight : -_inFlight;
+    }
+}
 
 // While the shortest round trip is measured there is one datagram at a time.
 std::size_t PathControl::Window() const
@@ -61,7 +78,8 @@ std::size_t PathControl::Window() const
 
 bool PathControl::HasRoom() const
 {
-    return _inFlight == 0 || _inFlight + Datagram() / 2 < Window();
+    return _inFlight == 0 || (_inFlight + Datagram() / 2 < Window() &&
+                              (!_starts || _starting + Datagram() / 2 < FirstWindow()));
 }
 
 bool PathControl::TakeAsk(LinkTime now)
@@ -83,7 +101,11 @@ bool PathControl::IsShort() const
 
 void PathControl::Sent(std::size_t bytes, LinkTime now)
 {
-    _inFlight += bytes;
+    if (_inFlight == 0 && _starts)
+    {
+        _window = FirstWindow() - std::min(_starting, FirstWindow() - Datagram());
+    }
+    Enter(bytes);
     _sinceAsked += bytes;
     _wasFull = _wasFull || _inFlight + Datagram() >= Window();
     if (_times.Smoothed() < PacedFrom || _draining)
@@ -115,7 +137,7 @@ double PathControl::Pace() const
 
 void PathControl::Acknowledged(std::size_t bytes, LinkTime now)
 {
-    _inFlight -= bytes;
+    Leave(bytes);
     _roundAcknowledged += bytes;
     _lossRate -= _lossRate * WeightOf(bytes);
     if (_draining && _drainedAt == LinkNever && _inFlight == 0)
@@ -126,7 +148,7 @@ void PathControl::Acknowledged(std::size_t bytes, LinkTime now)
 
 void PathControl::Lost(std::size_t bytes)
 {
-    _inFlight -= bytes;
+    Leave(bytes);
     _roundLost += bytes;
     _lossRate += (1 - _lossRate) * WeightOf(bytes);
 }
@@ -194,6 +216,7 @@ void PathControl::EndRound(LinkTime now)
     {
         Decide(_roundShortest);
     }
+    LookIfStarts();
     _roundStart = now;
     _roundShortest = LinkNever;
     _roundAcknowledged = 0;
@@ -285,9 +308,9 @@ void PathControl::Decide(LinkTime roundTrip)
 
 void PathControl::Restart()
 {
-    // The messages of all peers have waited: after an outage they all begin at once.
-    _window = std::min(_window, FirstWindow() / 2);
+    _window = std::min(_window, FirstWindow());
     _slowStart = true;
+    LookIfStarts();
     _draining = false;
     _pacedUntil = LinkTime(0);
     _rate = 0;
@@ -307,9 +330,22 @@ LinkTime PathControl::ReorderingTime() const
     return std::clamp(2 * _times.Variation(), std::min(_shortest / 4, _times.Smoothed()), _times.Smoothed());
 }
 
+// The bytes of the other paths that start may delay the answer, by as much as a medium does on which an empty
+// frame and its answer take the shortest round trip.
+LinkTime PathControl::StartDelay() const
+{
+    if (!_starts || _starting <= _inFlight)
+    {
+        return LinkTime(0);
+    }
+    const std::size_t emptyFrames = (_starting - _inFlight) / (2 * _settings.AirOverhead);
+    return std::min(_shortest * static_cast<LinkTime::rep>(emptyFrames), _settings.MaxResend);
+}
+
 LinkTime PathControl::ProbeTimeout(int doublings) const
 {
-    const LinkTime known = std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay(), LongestProbe);
+    const LinkTime known =
+        std::min(_times.Smoothed() + 4 * _times.Variation() + AckDelay() + StartDelay(), LongestProbe);
     const LinkTime least = _times.IsKnown() ? std::max(known, _settings.MinResend) : _settings.FirstResend;
     // The round trip is that of the path alone. A peer with a budget may send its answers much later.
     const LinkTime plain = std::max(least, std::min(PatienceForAnswers * _usualAnswer, _settings.MaxResend));

@@ -24,17 +24,25 @@ namespace Rabit
 // well. Where the round trip is that of a wire, what is lost has overflowed a socket's buffer, and the window
 // shrinks by a third, down to what a radio needs.
 //
+// Paths of one node that start at the same time may lead over one medium: they share the first window, as in
+// RFC 9040, and each may have one datagram under way.
+//
 // Bytes are as on the air, all headers included.
 class PathControl
 {
 public:
-    explicit PathControl(const LinkSettings &settings);
+    // `starting`: the bytes under way on all paths of this node that start. All of them count there, and it
+    // outlives them.
+    PathControl(const LinkSettings &settings, std::size_t &starting);
+    ~PathControl() { Leave(_inFlight); }
+    PathControl(const PathControl &) = delete;
+    PathControl &operator=(const PathControl &) = delete;
 
     // That many bytes were sent / acknowledged / found to be lost / are not waited for any more.
     void Sent(std::size_t bytes, LinkTime now);
     void Acknowledged(std::size_t bytes, LinkTime now);
     void Lost(std::size_t bytes);
-    void Forget(std::size_t bytes) { _inFlight -= bytes; }
+    void Forget(std::size_t bytes) { Leave(bytes); }
     // A frame sent at that time was answered.
     void Measured(LinkTime roundTrip, LinkTime sentAt, LinkTime now);
     // A frame that asks for an answer was answered after that time, which includes the time for which the
@@ -73,8 +81,20 @@ public:
     bool IsShort() const;
 
 private:
-    std::size_t Datagram() const { return _settings.MaxDatagram + _settings.AirOverhead; }
-    std::size_t FirstWindow() const { return 4 * Datagram(); }
+    void Enter(std::size_t bytes)
+    {
+        _inFlight += bytes;
+        _starting += _starts ? bytes : 0;
+    }
+    void Leave(std::size_t bytes)
+    {
+        _inFlight -= bytes;
+        _starting -= _starts ? bytes : 0;
+    }
+    void LookIfStarts();
+    LinkTime StartDelay() const;
+    std::size_t Datagram() const { return _datagram; }
+    std::size_t FirstWindow() const { return 4 * _datagram; }
     LinkTime Target() const;
     double WeightOf(std::size_t bytes) const;
     double Pace() const;  // bytes per second
@@ -84,13 +104,17 @@ private:
     void RememberShortest(LinkTime roundTrip, LinkTime now);
 
     const LinkSettings &_settings;
+    const std::size_t _datagram;  // the largest
     RoundTrip _times;
     std::array<LinkTime, 5> _answers{};
     std::size_t _answered = 0;
     LinkTime _usualAnswer{0};  // the median of _answers; 0: not known yet
     std::size_t _inFlight = 0;
+    std::size_t &_starting;
     std::size_t _window;
     bool _slowStart = true;
+    // True until the path has shown that it carries more than the first window, or less.
+    bool _starts = true;
     int _stalled = 0;  // round trips in which slow start came no further
     LinkTime _pacedUntil{0};
     std::size_t _sinceAsked = 0;

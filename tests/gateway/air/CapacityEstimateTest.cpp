@@ -347,7 +347,7 @@ TEST_F(CapacityEstimateTest, WhereNobodySaysAnyMoreThatSomethingIsLateAUsedRateD
     for (Duration now = 22s; now < 26s; now += 500ms)
     {
         RunUntil(now);
-        Estimate.NothingLate(0, now);
+        Estimate.NothingLate(0, now, now);
     }
     EXPECT_GE(Rate(), 4.0 * before);
 }
@@ -362,8 +362,8 @@ TEST_F(CapacityEstimateTest, SilenceAfterALateDatagramIsNoGoodNews)
     for (Duration now = 20s; now < 30s; now += 500ms)
     {
         RunUntil(now);
-        Estimate.NothingLate(0, now);
-        Estimate.NothingLate(1, now);
+        Estimate.NothingLate(0, now, now);
+        Estimate.NothingLate(1, now, now);
     }
     EXPECT_LE(Rate(), 1.1 * before);
 }
@@ -422,24 +422,47 @@ TEST_F(CapacityEstimateTest, BetweenTwoDatagramsOfOneBurstNothingIsMeasured)
 // Nodes that meet on a full radio: nobody has reported yet, but what others send comes late here.
 TEST_F(CapacityEstimateTest, WithoutReportsTheLatenessOfOthersLimitsTheNode)
 {
-    Estimate.HeardLate(150ms);
+    Estimate.HeardLate(150ms, 0s, 1s);
     const double slightly = Estimate.Rate(1s).value_or(1e9);
     EXPECT_LE(slightly, CapacityEstimate::FirstRate);
-    Estimate.HeardLate(400ms);
+    Estimate.HeardLate(400ms, 0s, 1s);
     EXPECT_LT(Estimate.Rate(1s).value_or(1e9), slightly);
-    Estimate.HeardLate(10s);
+    Estimate.HeardLate(10s, 0s, 1s);
     EXPECT_EQ(Estimate.Rate(1s), CapacityEstimate::Floor);
+}
+
+// A radio has become slow, and its queues are full of what was sent before: reports wait in them, too.
+TEST_F(CapacityEstimateTest, WhenAllDatagramsOfOthersComeVeryLateTheNodeDoesNotWaitForReports)
+{
+    Estimate.Reported(0, 5ms, 900ms, 1s);
+    Estimate.HeardLate(0s, CapacityEstimate::LongWait, 2s);
+    EXPECT_FALSE(Estimate.Rate(2s));
+    Estimate.HeardLate(0s, CapacityEstimate::LongWait + 1ms, 3s);
+    EXPECT_EQ(Estimate.Rate(3s), CapacityEstimate::Floor);
+    Estimate.HeardLate(0s, 20ms, 4s);
+    EXPECT_FALSE(Estimate.Rate(4s));
+}
+
+// Only the way from the others is slow.
+TEST_F(CapacityEstimateTest, APeerThatSaysLaterThatNothingIsLateCountsMoreThanTheLatenessOfOthers)
+{
+    Estimate.HeardLate(0s, 0s, 2s);
+    Estimate.HeardLate(0s, 3s, 3s);
+    Estimate.NothingLate(0, 1s, 4s);
+    EXPECT_TRUE(Estimate.Rate(4s)) << "that was said before";
+    Estimate.NothingLate(0, 2s, 5s);
+    EXPECT_FALSE(Estimate.Rate(5s));
 }
 
 TEST_F(CapacityEstimateTest, OthersThatComeInTimeDoNotLimitTheNode)
 {
-    Estimate.HeardLate(CapacityEstimate::Target);
+    Estimate.HeardLate(CapacityEstimate::Target, 0s, 1s);
     EXPECT_FALSE(Estimate.Rate(1s));
 }
 
 TEST_F(CapacityEstimateTest, ReportsOfTheOwnDatagramsCountMoreThanTheLatenessOfOthers)
 {
-    Estimate.HeardLate(400ms);
+    Estimate.HeardLate(400ms, 0s, 1s);
     Estimate.Reported(0, 5ms, 900ms, 1s);
     EXPECT_FALSE(Estimate.Rate(1s));
     Estimate.Forget();

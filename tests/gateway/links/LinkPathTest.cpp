@@ -31,7 +31,8 @@ protected:
     }
 
     LinkSettings settings;
-    PathControl path{settings};
+    std::size_t starting = 0;
+    PathControl path{settings, starting};
     LinkTime now{1s};
 };
 
@@ -48,6 +49,55 @@ TEST_F(PathTest, doubles_in_each_round_trip_while_nothing_waits_on_the_way)
         EXPECT_LT(path.Window(), (datagrams + 1) * One);
         Round(100ms);
     }
+}
+
+TEST_F(PathTest, shares_the_first_window_with_paths_that_start_at_the_same_time)
+{
+    PathControl other(settings, starting);
+    path.Sent(One, now);
+    path.Sent(One, now);
+    path.Sent(One, now);
+    other.Sent(One, now);
+    EXPECT_FALSE(other.HasRoom());
+    EXPECT_FALSE(path.HasRoom());
+    PathControl third(settings, starting);
+    EXPECT_TRUE(third.HasRoom()) << "a datagram in any case";
+    third.Sent(One, now);
+    EXPECT_FALSE(third.HasRoom());
+}
+
+TEST_F(PathTest, a_path_that_was_used_in_full_no_longer_takes_part_of_the_first_window)
+{
+    Round(100ms);
+    Round(100ms);
+    while (path.HasRoom())
+    {
+        path.Sent(One, now);
+    }
+    EXPECT_EQ(starting, 0U);
+    path.Restart();
+    EXPECT_EQ(starting, path.InFlight()) << "until it starts anew";
+}
+
+TEST_F(PathTest, a_path_that_is_gone_takes_no_part_of_the_first_window)
+{
+    {
+        PathControl other(settings, starting);
+        other.Sent(One, now);
+    }
+    EXPECT_EQ(starting, 0U);
+}
+
+TEST_F(PathTest, the_first_probe_waits_for_what_other_paths_have_sent_at_the_same_time)
+{
+    path.Measured(10ms, now, now);
+    const LinkTime alone = path.ProbeTimeout();
+    path.Sent(One, now);
+    EXPECT_EQ(path.ProbeTimeout(), alone);
+    PathControl other(settings, starting);
+    other.Sent(One, now);
+    const int emptyFrames = static_cast<int>(One / (2 * settings.AirOverhead));
+    EXPECT_EQ(path.ProbeTimeout(), alone + emptyFrames * 10ms);
 }
 
 TEST_F(PathTest, does_not_grow_while_it_is_not_used)
@@ -139,7 +189,7 @@ TEST_F(PathTest, begins_anew_after_an_outage)
         Round(100ms);
     }
     path.Restart();
-    EXPECT_EQ(path.Window(), 2 * One);
+    EXPECT_EQ(path.Window(), 4 * One);
     EXPECT_LE(path.PacedUntil(), now);
 }
 
@@ -176,13 +226,13 @@ TEST_F(PathTest, the_probe_timer_follows_the_round_trip_within_its_bounds)
     EXPECT_EQ(path.ProbeTimeout(), 100ms + 4 * 50ms + 125ms);
     EXPECT_EQ(path.ProbeTimeout(1), 2 * 425ms);
     EXPECT_EQ(path.ProbeTimeout(9), 1s);
-    PathControl fast(settings);
+    PathControl fast(settings, starting);
     for (int i = 0; i < 100; ++i)
     {
         fast.Measured(100us, now, now);
     }
     EXPECT_EQ(fast.ProbeTimeout(), settings.MinResend);
-    PathControl slow(settings);
+    PathControl slow(settings, starting);
     slow.Measured(90s, now, now);
     EXPECT_EQ(slow.ProbeTimeout(), 3s) << "one straggler is no reason to fall silent";
 }
