@@ -3,8 +3,6 @@
 #include <rabit/RabitManagerTrace.h>
 #include <rabit/RabitMessage.h>
 
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <typeinfo>
@@ -40,9 +38,7 @@ PublishSubscribeMessage::PublishSubscribeMessage(std::unique_ptr<RabitMessage> s
       _mutex(std::make_shared<std::mutex>()),
       _published(_mutex),
       _message(NotNull(std::move(stMessage))),
-      _type(_message->GetTypeIndex()),
-      _lastReading{-std::numeric_limits<double>::infinity(), std::chrono::nanoseconds::min()},
-      _lastStamp(-std::numeric_limits<double>::infinity())
+      _type(_message->GetTypeIndex())
 {
     // The global copy must hold neither another global copy nor itself.
     _message->_globalPublishSubscribeMessageRef.reset();
@@ -65,6 +61,7 @@ inline void PublishSubscribeMessage::Mark(RabitMessage &msg, const PostTime &tim
                                           std::uint64_t sequence) const
 {
     msg._timeStamp = time.GpsTimeSeconds;
+    msg._exactStamp = time.GpsTime;
     msg._postedAt = time.Monotonic;
     msg._seenSource = _identity;
     msg._seenSequence = sequence;
@@ -73,7 +70,7 @@ inline void PublishSubscribeMessage::Mark(RabitMessage &msg, const PostTime &tim
 
 inline void PublishSubscribeMessage::MarkAsCurrent(RabitMessage &msg) const
 {
-    Mark(msg, PostTime{_message->_timeStamp, _message->_postedAt}, Sequence());
+    Mark(msg, PostTime{_message->_timeStamp, _message->_postedAt, _message->_exactStamp}, Sequence());
 }
 
 std::unique_ptr<RabitMessage> PublishSubscribeMessage::GetCopyOfMessage()
@@ -111,7 +108,7 @@ void PublishSubscribeMessage::PostMessage(RabitMessage *msg)
         PostTraced(*msg, nullptr);
         return;
     }
-    const PostTime now = Now();
+    PostTime now = Now();
     if (_usesSystemClock)
     {
         SystemTimeClock::GetSystemTimeClock()->ReportSteps();
@@ -130,24 +127,22 @@ void PublishSubscribeMessage::PostMessage(RabitMessage *msg, const PostTime &tim
         PostTraced(*msg, &time);
         return;
     }
-    Post(*msg, time, false);
+    PostTime given = time;
+    Post(*msg, given, false);
 }
 
 // A post by a traced manager. The handlers of the post are not traced.
 void PublishSubscribeMessage::PostTraced(RabitMessage &msg, const PostTime *time)
 {
     const RabitManagerTrace::Pause trace;
-    if (time != nullptr)
-    {
-        Post(msg, *time, false);
-    }
-    else if (const std::optional<PostTime> known = trace->Posting(*this))
+    std::optional<PostTime> known = time != nullptr ? std::optional(*time) : trace->Posting(*this);
+    if (known)
     {
         Post(msg, *known, false);
     }
     else
     {
-        const PostTime now = Now();
+        PostTime now = Now();
         if (_usesSystemClock)
         {
             SystemTimeClock::GetSystemTimeClock()->ReportSteps();
@@ -181,19 +176,23 @@ inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
 // the stamp would be too far ahead of the clock, releases the lock and reads the clock again.
 void PublishSubscribeMessage::PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock)
 {
+    if (!_usesSystemClock)
+    {
+        time.GpsTime = RabitClock::ToNanoseconds(time.GpsTimeSeconds);
+    }
     const PostTime *latest = &time;
-    double stamp = time.GpsTimeSeconds;
-    while (time.GpsTimeSeconds <= _lastStamp)
+    std::chrono::nanoseconds stamp = time.GpsTime;
+    while (time.GpsTime <= _lastStamp)
     {
         // A post of another thread may have overtaken this one: then this time is old, but the clock was
         // not set back.
         const bool overtaken = time.Monotonic < _lastReading.Monotonic;
-        if (!overtaken && time.GpsTimeSeconds < _lastReading.GpsTimeSeconds - SystemTimeClock::LeastStepBack)
+        if (!overtaken && time.GpsTime < _lastReading.GpsTime - SystemTimeClock::LeastStepBack)
         {
             break;
         }
-        stamp = std::nextafter(_lastStamp, std::numeric_limits<double>::infinity());
-        if (!_usesSystemClock || stamp <= time.GpsTimeSeconds + SystemTimeClock::MaxAhead)
+        stamp = _lastStamp + std::chrono::nanoseconds(1);
+        if (!_usesSystemClock || stamp <= time.GpsTime + SystemTimeClock::MaxAhead)
         {
             latest = overtaken ? &_lastReading : &time;
             break;
@@ -201,14 +200,18 @@ void PublishSubscribeMessage::PutAfterLast(PostTime &time, std::unique_lock<std:
         lock.unlock();
         time = Now();
         lock.lock();
-        stamp = time.GpsTimeSeconds;
+        stamp = time.GpsTime;
     }
     _lastReading = *latest;
     _lastStamp = stamp;
-    time.GpsTimeSeconds = stamp;
+    if (stamp != time.GpsTime)
+    {
+        time.GpsTime = stamp;
+        time.GpsTimeSeconds = RabitClock::ToSeconds(stamp);
+    }
 }
 
-void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime time, bool byOwnClock)
+void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime &time, bool byOwnClock)
 {
     RabitEvent::Handlers handlers;
     {
@@ -233,6 +236,7 @@ void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime time, bool byOwnC
         }
         const std::uint64_t sequence = _sequence.load(std::memory_order_relaxed) + 1;
         _message->_timeStamp = time.GpsTimeSeconds;
+        _message->_exactStamp = time.GpsTime;
         _message->_postedAt = time.Monotonic;
         Mark(msg, time, sequence & ~Exposed);
         _sequence.store(sequence, std::memory_order_release);
@@ -261,7 +265,7 @@ bool PublishSubscribeMessage::FetchIfChanged(RabitMessage *msg)
         throw std::invalid_argument("cannot fetch to a null message");
     }
     std::unique_lock<std::mutex> lock(*_mutex);
-    const bool stampsEqual = msg->_timeStamp == _message->_timeStamp;
+    const bool stampsEqual = msg->CompareTime(_message.get());
     const bool samePost = msg->_seenSource == _identity && msg->_seenSequence == Sequence();
     // If nothing was posted yet, a copy that was never registered differs only by its time stamp.
     const bool neverPosted = Sequence() == 0 && msg->_seenSource == 0;

@@ -4,6 +4,9 @@
 #include <rabit/SystemTimeClock.h>
 #include <rabit/UptimeClock.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 namespace Rabit
@@ -65,6 +68,15 @@ const std::shared_ptr<RabitClock> &RabitClock::System()
     // Never destroyed: messages may be stamped while the process ends.
     static const auto *const clock = new std::shared_ptr<RabitClock>(std::make_shared<SystemRabitClock>());
     return *clock;
+}
+
+std::chrono::nanoseconds RabitClock::ToNanoseconds(double gpsTimeSeconds)
+{
+    constexpr double most = 9e9;  // the nanoseconds of it fit 63 bits
+    const double bounded = std::isnan(gpsTimeSeconds) ? 0.0 : std::clamp(gpsTimeSeconds, -most, most);
+    const double whole = std::floor(bounded);
+    return std::chrono::seconds(static_cast<std::int64_t>(whole)) +
+           std::chrono::nanoseconds(std::llround((bounded - whole) * 1e9));
 }
 
 ManualClock::ManualClock(double gpsTimeSeconds, std::chrono::nanoseconds monotonic)

@@ -1,6 +1,7 @@
 #include <rabit/RabitMessage.h>
 
 #include <rabit/GlobalPublishSubscribeException.h>
+#include <rabit/RabitManagerTrace.h>
 
 #include <boost/core/demangle.hpp>
 
@@ -10,8 +11,9 @@
 namespace Rabit
 {
 
-RabitMessage::RabitMessage() : _timeStamp(SystemTimeClock::GetSystemTimeClock()->GetCurrentGpsTimeInSeconds())
+RabitMessage::RabitMessage()
 {
+    Stamp(SystemTimeClock::GetSystemTimeClock()->Now());
 }
 
 RabitMessage::~RabitMessage() = default;
@@ -34,7 +36,7 @@ void RabitMessage::Clear()
     MessageType = 0;
     MessageSource = 0;
     MessageDestination = 0;
-    _timeStamp = 0.0;
+    SetTimeStamp(0.0);
     _seenSource = 0;
     _seenSequence = 0;
     _postedAt = NeverPosted;
@@ -76,9 +78,30 @@ std::type_index RabitMessage::GetTypeIndex()
 
 void RabitMessage::SetTimeNow()
 {
-    _timeStamp = _globalPublishSubscribeMessageRef
-                     ? _globalPublishSubscribeMessageRef->GetClock().GpsTimeSeconds()
-                     : SystemTimeClock::GetSystemTimeClock()->GetCurrentGpsTimeInSeconds();
+    const RabitClock *const clock =
+        _globalPublishSubscribeMessageRef ? &_globalPublishSubscribeMessageRef->GetClock() : nullptr;
+    if (clock == nullptr || (clock == RabitClock::System().get() && RabitManagerTrace::Current() == nullptr))
+    {
+        Stamp(SystemTimeClock::GetSystemTimeClock()->Now());
+    }
+    else
+    {
+        SetTimeStamp(clock->GpsTimeSeconds());
+    }
+    // Makes the next fetch compare the nanoseconds, too.
+    _seenTimeStamp = std::numeric_limits<double>::quiet_NaN();
+}
+
+void RabitMessage::Stamp(const PostTime &time)
+{
+    _timeStamp = time.GpsTimeSeconds;
+    _exactStamp = time.GpsTime;
+}
+
+// Zero if the time stamp is known as a double only.
+std::chrono::nanoseconds RabitMessage::ExactStamp() const
+{
+    return RabitClock::ToSeconds(_exactStamp) == _timeStamp ? _exactStamp : std::chrono::nanoseconds::zero();
 }
 
 double RabitMessage::GetTimeStamp() const
@@ -88,7 +111,7 @@ double RabitMessage::GetTimeStamp() const
 
 void RabitMessage::SetTimeStamp(double gpsTimeSeconds)
 {
-    _timeStamp = gpsTimeSeconds;
+    Stamp(PostTime{gpsTimeSeconds, {}});
 }
 
 double RabitMessage::TimeStampSeconds() const
@@ -98,7 +121,13 @@ double RabitMessage::TimeStampSeconds() const
 
 bool RabitMessage::CompareTime(RabitMessage *msg)
 {
-    return msg != nullptr && _timeStamp == msg->_timeStamp;
+    if (msg == nullptr || _timeStamp != msg->_timeStamp)
+    {
+        return false;
+    }
+    const std::chrono::nanoseconds mine = ExactStamp();
+    const std::chrono::nanoseconds theirs = msg->ExactStamp();
+    return mine == theirs || mine == mine.zero() || theirs == theirs.zero();
 }
 
 double RabitMessage::GetAgeSeconds() const
@@ -118,7 +147,7 @@ double RabitMessage::GetAgeSeconds(const RabitClock &clock) const
 
 PostTime RabitMessage::GetPostTime() const
 {
-    return PostTime{_timeStamp, WasPosted() ? _postedAt : std::chrono::nanoseconds::zero()};
+    return PostTime{_timeStamp, WasPosted() ? _postedAt : std::chrono::nanoseconds::zero(), ExactStamp()};
 }
 
 void RabitMessage::ThrowNotRegistered() const
@@ -170,7 +199,7 @@ int RabitMessage::DeSerializeMsgHeader(ByteArrayReader &reader)
     MessageType = reader.readInt32();
     MessageSource = reader.readInt32();
     MessageDestination = reader.readInt32();
-    _timeStamp = reader.readDouble();
+    SetTimeStamp(reader.readDouble());
     return getSerializedMsgHeaderSize();
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
 #include <ratio>
 
 namespace Rabit
@@ -126,23 +125,25 @@ void SystemTimeClock::WriteSteps()
     }
 }
 
-// Handles a reading that is not later than the thread's last time stamp.
-PostTime SystemTimeClock::ReadAfter(PostTime time)
+// Reads again if a reading is not later than the thread's last time stamp.
+PostTime SystemTimeClock::ReadAfterLast()
 {
     LastOfThread &last = _last;
-    for (;; time = Read())
+    for (;;)
     {
-        const double reading = time.GpsTimeSeconds;
+        PostTime time = Read();
+        const nanoseconds reading = time.GpsTime;
         if (reading <= last.Given && reading >= last.Reading - LeastStepBack)
         {
-            const double next = std::nextafter(last.Given, std::numeric_limits<double>::infinity());
+            const nanoseconds next = last.Given + nanoseconds(1);
             if (next > reading + MaxAhead)
             {
                 continue;
             }
-            time.GpsTimeSeconds = next;
+            time.GpsTime = next;
+            time.GpsTimeSeconds = RabitClock::ToSeconds(next);
         }
-        last = LastOfThread{time.GpsTimeSeconds, reading};
+        last = LastOfThread{time.GpsTime, reading};
         return time;
     }
 }
@@ -187,13 +188,13 @@ void SystemTimeClock::SetTimeSyncOffset(double seconds)
         return;
     }
     const std::lock_guard<std::mutex> lock(_mutex);
-    _syncSeconds = seconds;
+    _syncSeconds = std::clamp(seconds, -5e9, 5e9);  // the current time still fits 63 bits of nanoseconds
     UpdateAddedSeconds();
 }
 
 void SystemTimeClock::UpdateAddedSeconds()
 {
-    _addedSeconds.store(_leapSeconds + _syncSeconds, std::memory_order_relaxed);
+    _added.store(RabitClock::ToNanoseconds(_leapSeconds + _syncSeconds).count(), std::memory_order_relaxed);
 }
 
 double SystemTimeClock::ConvertTimePointToGpsTimeInSeconds(system_clock::time_point timePoint)

@@ -68,15 +68,41 @@ TEST_F(SystemClockTest, AgreesWithTheClocksOfTheComputer)
 
 TEST_F(SystemClockTest, DoesNotGoBackFromReadingToReading)
 {
-    double last = 0.0;
+    std::chrono::nanoseconds last{0};
     for (int i = 0; i < 200000; ++i)
     {
-        const double now = Clock.GetCurrentGpsTimeInSeconds();
+        const std::chrono::nanoseconds now = Clock.Now().GpsTime;
         // A new measurement of the wall clock may set the time back by at most its uncertainty.
-        ASSERT_GT(now, last - 1e-3);
+        ASSERT_GT(now, last - 1ms);
         ASSERT_NE(now, last);
         last = now;
     }
+}
+
+TEST(RabitClock, ASecondsDoubleIsTheNearestOfItsNanoseconds)
+{
+    EXPECT_EQ(RabitClock::ToSeconds(0ns), 0.0);
+    EXPECT_EQ(RabitClock::ToSeconds(1500ms), 1.5);
+    EXPECT_EQ(RabitClock::ToSeconds(1400000000250000000ns), 1400000000.25);
+    EXPECT_EQ(RabitClock::ToSeconds(1400000000250000100ns), 1400000000.25);
+    EXPECT_EQ(RabitClock::ToSeconds(-1500ms), -1.5);
+}
+
+TEST(RabitClock, SecondsOfTodayComeBackFromTheirNanoseconds)
+{
+    double seconds = 1.48e9;
+    for (int i = 0; i < 1000; ++i)
+    {
+        ASSERT_EQ(RabitClock::ToSeconds(RabitClock::ToNanoseconds(seconds)), seconds);
+        seconds = std::nextafter(seconds, 2e9);
+    }
+}
+
+TEST(RabitClock, SecondsBeyondAllCalendarsBecomeTheNearestBoundOfNanoseconds)
+{
+    EXPECT_EQ(RabitClock::ToNanoseconds(1e300), 9000000000s);
+    EXPECT_EQ(RabitClock::ToNanoseconds(-1e300), -9000000000s);
+    EXPECT_EQ(RabitClock::ToNanoseconds(std::numeric_limits<double>::quiet_NaN()), 0ns);
 }
 
 TEST_F(SystemClockTest, OffsetsTakeEffectAtOnce)

@@ -81,7 +81,7 @@ TEST(Stress, AFetchAgainstAPosterGetsWholeValuesThatNeverGoBackAndMissesNoLastOn
                     if (reader->FetchMessage())
                     {
                         if (!reader->IsWhole() || (reader->Value != 0 && reader->Value <= last) ||
-                            reader->GetTimeStamp() <= lastStamp)
+                            reader->GetTimeStamp() < lastStamp)
                         {
                             wrong = true;
                             return;

@@ -17,6 +17,8 @@ namespace
 {
 
 // Nanoseconds. Each reading of a clock takes 10 ns, less than on any computer.
+constexpr std::int64_t shortestTick = 10;
+std::int64_t tick = shortestTick;
 std::int64_t uptime = 1000000000;
 std::int64_t wallAhead = 1800000000000000000;
 
@@ -25,7 +27,7 @@ std::int64_t wallAhead = 1800000000000000000;
 // Replaces the C library's function.
 extern "C" int clock_gettime(clockid_t clock, std::timespec *time) noexcept
 {
-    uptime += 10;
+    uptime += tick;
     const std::int64_t now = clock == CLOCK_REALTIME ? uptime + wallAhead : uptime;
     time->tv_sec = now / 1000000000;
     time->tv_nsec = now % 1000000000;
@@ -37,6 +39,7 @@ namespace
 
 using namespace Rabit;
 using namespace RabitTest;
+using namespace std::chrono_literals;
 
 constexpr std::int64_t Second = 1000000000;
 constexpr double OneStep = 2.5e-7;  // of a time stamp, at most
@@ -51,6 +54,7 @@ protected:
         Pass(Second);
         Message.PostMessage();  // measures the wall clock
     }
+    ~WallClock() override { tick = shortestTick; }
     static void Pass(std::int64_t time) { uptime += time; }
     // Returns the correct time stamp of now.
     static double WallTime()
@@ -70,13 +74,22 @@ protected:
 
 TEST_F(WallClock, TimeStampsOfAThreadAreNeverEqual)
 {
-    double last = Clock().GetCurrentGpsTimeInSeconds();
+    PostTime last = Clock().Now();
     for (int i = 0; i < 1000; ++i)
     {
-        const double next = Clock().GetCurrentGpsTimeInSeconds();
-        ASSERT_GT(next, last) << "reading " << i;
+        const PostTime next = Clock().Now();
+        ASSERT_GT(next.GpsTime, last.GpsTime) << "reading " << i;
+        ASSERT_GE(next.GpsTimeSeconds, last.GpsTimeSeconds) << "reading " << i;
         last = next;
     }
+}
+
+TEST_F(WallClock, TimeStampsOfAThreadAreNotEqualWhileItStandsStill)
+{
+    tick = 0;
+    const PostTime first = Clock().Now();
+    EXPECT_EQ(Clock().Now().GpsTime, first.GpsTime + 1ns);
+    EXPECT_EQ(Clock().Now().GpsTime, first.GpsTime + 2ns);
 }
 
 TEST_F(WallClock, MessagesThatAThreadMakesOneAfterTheOtherHaveDifferentStamps)
@@ -87,6 +100,37 @@ TEST_F(WallClock, MessagesThatAThreadMakesOneAfterTheOtherHaveDifferentStamps)
     first.SetTimeNow();
     second.SetTimeNow();
     EXPECT_FALSE(first.CompareTime(&second));
+}
+
+TEST_F(WallClock, ATimeStampThatIsGivenAsADoubleEqualsTheOneItWasTakenFrom)
+{
+    const NumberMessage first;
+    NumberMessage second;
+    second.SetTimeStamp(first.GetTimeStamp());
+    NumberMessage third = first;
+    EXPECT_TRUE(third.CompareTime(&second));
+    EXPECT_TRUE(second.CompareTime(&third));
+}
+
+TEST_F(WallClock, ASetTimeNowAfterAPostCountsAsNewAtTheNextFetch)
+{
+    for (int i = 0; i < 100; ++i)  // some of them within one step of a double
+    {
+        Message.PostMessage();
+        Message.SetTimeNow();
+        ASSERT_TRUE(Message.FetchMessage()) << "post " << i;
+        ASSERT_FALSE(Message.FetchMessage()) << "post " << i;
+    }
+}
+
+TEST_F(WallClock, ABurstOfPostsReadsItOnceForEachPost)
+{
+    const std::int64_t before = uptime;
+    for (int i = 0; i < 1000; ++i)
+    {
+        Message.PostMessage();
+    }
+    EXPECT_EQ(uptime - before, 1000 * tick);
 }
 
 TEST_F(WallClock, ABurstOfTimeStampsRunsAheadOfItByTwoMicrosecondsAtMost)
@@ -100,13 +144,14 @@ TEST_F(WallClock, ABurstOfTimeStampsRunsAheadOfItByTwoMicrosecondsAtMost)
 
 TEST_F(WallClock, ABurstOfPostsRunsAheadOfItByFourMicrosecondsAtMost)
 {
-    double last = 0.0;
+    NumberMessage last;
     for (int i = 0; i < 1000; ++i)
     {
         const double stamp = Post();
-        ASSERT_GT(stamp, last) << "post " << i;
+        ASSERT_FALSE(Message.CompareTime(&last)) << "post " << i;
+        ASSERT_GE(stamp, last.GetTimeStamp()) << "post " << i;
         ASSERT_LE(stamp, WallTime() + 4e-6 + OneStep) << "post " << i;
-        last = stamp;
+        last = Message;
     }
 }
 
@@ -127,6 +172,7 @@ TEST_F(WallClock, PostsAfterItWasSetBackRiseAgain)
     double last = Post();
     for (int i = 0; i < 100; ++i)
     {
+        Pass(1000);
         const double stamp = Post();
         ASSERT_GT(stamp, last) << "post " << i;
         last = stamp;
@@ -141,7 +187,7 @@ TEST_F(WallClock, TimeStampsDoNotGoBackForAStepOfAFewMicroseconds)
         wallAhead -= 5000;
         Clock().SetGpsTimeOffset();
         const double stamp = Post();
-        ASSERT_GT(stamp, last) << "step " << i;
+        ASSERT_GE(stamp, last) << "step " << i;
         ASSERT_LE(stamp, WallTime() + 4e-6 + OneStep) << "step " << i;
         last = stamp;
     }

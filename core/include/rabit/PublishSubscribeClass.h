@@ -9,6 +9,7 @@
 #include <boost/function.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -56,12 +57,11 @@ public:
     std::unique_ptr<RabitMessage> GetCopyOfMessage();
 
     // Stamps the message with the current time, copies it to the global copy, then calls the handlers. Time
-    // stamps of one name strictly increase, by the least step of a double if the clock did not move on. If
-    // the wall clock was set back, they follow it. Under the system's clock a burst of posts, from any
-    // number of threads, runs ahead by at most 4 us, then a post waits. (Another clock may stand still, so
-    // there is no such limit.) Throws std::invalid_argument, changing nothing, if the message is of another
-    // type and refuses the copy. If CopyMessage throws, that passes to the caller and the post did not
-    // happen.
+    // stamps of one name strictly increase, by 1 ns if the clock did not move on; as doubles, two that are
+    // less than 238 ns apart may be equal. If the wall clock was set back, they follow it. Under the system's
+    // clock they run ahead by at most 4 us, then a post waits. (Another clock may stand still, so there is no
+    // such limit.) Throws std::invalid_argument, changing nothing, if the message is of another type and
+    // refuses the copy. If CopyMessage throws, that passes to the caller and the post did not happen.
     void PostMessage(RabitMessage *msg);
     // Posts with a time given by the caller: for messages from other nodes, which keep the time of their
     // origin. Readers see the post even if its time repeats or goes back.
@@ -92,7 +92,7 @@ private:
     // Set in _sequence once GetTestMessage was called: then no sequence that a message remembers equals it.
     static constexpr std::uint64_t Exposed = std::uint64_t{1} << 63;
 
-    void Post(RabitMessage &msg, PostTime time, bool byOwnClock);
+    void Post(RabitMessage &msg, PostTime &time, bool byOwnClock);
     void PostTraced(RabitMessage &msg, const PostTime *time);
     void TellFetched(const RabitMessage &msg) const;
     void PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock);
@@ -120,7 +120,7 @@ private:
     const std::type_index _type;
     // The last post that was stamped here: its time by the clock, and its stamp.
     PostTime _lastReading;
-    double _lastStamp;
+    std::chrono::nanoseconds _lastStamp = std::chrono::nanoseconds::min();
 };
 
 }  // namespace Rabit

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 
 namespace Rabit
@@ -13,6 +14,9 @@ struct PostTime
     double GpsTimeSeconds = 0.0;
     // The same moment by the monotonic clock of the workspace: what ages are computed from.
     std::chrono::nanoseconds Monotonic{0};
+    // The time stamp in whole nanoseconds. GpsTimeSeconds is the nearest double, so times that differ here
+    // may be equal there. Zero if only the double is known. Ignored if GpsTimeSeconds is not its double.
+    std::chrono::nanoseconds GpsTime{0};
 };
 
 // A source of time. A RabitWorkspace has one, and everything in the workspace takes its time from it. A
@@ -36,6 +40,21 @@ public:
 
     // The clocks of this computer: UptimeClock, and SystemTimeClock for GPS seconds.
     static const std::shared_ptr<RabitClock> &System();
+
+    // The double nearest to a GPS time; a later time never gives a smaller double. Today's GPS seconds are so
+    // large that their doubles are 238 ns apart.
+    static double ToSeconds(std::chrono::nanoseconds gpsTime)
+    {
+        constexpr std::int64_t second = 1'000'000'000;
+        return ToSeconds(gpsTime.count() / second, gpsTime.count() % second);
+    }
+    // The same of whole seconds and further nanoseconds: a double cannot hold the nanoseconds since 1980.
+    static double ToSeconds(std::int64_t seconds, std::int64_t nanoseconds)
+    {
+        return static_cast<double>(seconds) + static_cast<double>(nanoseconds) * 1e-9;
+    }
+    // The nearest GPS time. Seconds outside of +/- 9e9 give the nearest bound, NaN gives zero.
+    static std::chrono::nanoseconds ToNanoseconds(double gpsTimeSeconds);
 
 protected:
     RabitClock() = default;

@@ -71,11 +71,16 @@ public:
     std::type_index GetTypeIndex();
 
     // The time stamp is in GPS seconds since 1980-01-06. A post sets it.
+    //
+    // A double holds it in steps of 238 ns, so two posts within a step may have equal doubles. The stamps
+    // that Rabit sets are kept in nanoseconds as well, and there they differ. Programs learn from
+    // FetchMessage whether there was a post, not from the double.
     void SetTimeNow();
     double GetTimeStamp() const;
     void SetTimeStamp(double gpsTimeSeconds);
     double TimeStampSeconds() const;
-    // True when the time stamps are equal.
+    // True when the time stamps are equal: in nanoseconds, or as doubles if one of them was set as a double
+    // (SetTimeStamp, a message of another node).
     bool CompareTime(RabitMessage *msg);
 
     // Seconds since the contents were posted, by the monotonic clock of the workspace (the system's, if the
@@ -127,6 +132,8 @@ private:
     PublishSubscribeMessage &GlobalOrThrow() const;
     [[noreturn]] void ThrowNotRegistered() const;
     void CopyStampFrom(const RabitMessage &msg);
+    void Stamp(const PostTime &time);
+    std::chrono::nanoseconds ExactStamp() const;
 
     // In _seenSource: attached, and not fetched yet. The first fetch then copies, even if the time stamps
     // are equal.
@@ -138,6 +145,8 @@ private:
     std::uint64_t _seenSequence = 0;
     double _seenTimeStamp = 0.0;
     std::chrono::nanoseconds _postedAt = NeverPosted;
+    // PostTime::GpsTime of the time stamp. Void if _timeStamp is not its double: then that was set since.
+    std::chrono::nanoseconds _exactStamp{0};
     bool _redelivered = false;
 };
 
@@ -183,6 +192,7 @@ inline void RabitMessage::CopyStampFrom(const RabitMessage &msg)
     _seenSequence = msg._seenSequence;
     _seenTimeStamp = msg._seenTimeStamp;
     _postedAt = msg._postedAt;
+    _exactStamp = msg._exactStamp;
 }
 
 inline bool RabitMessage::CopyMessage(RabitMessage *msg)

@@ -43,22 +43,23 @@ public:
     void SetLeapSecondOffset(double seconds);
     // Seconds that are added to the current time, to agree with a better clock; 0 unless set.
     double GetTimeSyncOffset();
-    // Takes effect at once. A value that is not finite is ignored.
+    // Takes effect at once. A value that is not finite is ignored; one beyond +/- 5e9 becomes the nearest
+    // bound.
     void SetTimeSyncOffset(double seconds);
 
-    // In seconds. MaxAhead: how far a time stamp may run ahead of the clock. LeastStepBack: up to here a
-    // backward step of the wall clock is bridged, beyond it is followed.
-    static constexpr double MaxAhead = 2e-6;
-    static constexpr double LeastStepBack = 1e-5;
+    // MaxAhead: how far a time stamp may run ahead of the clock. LeastStepBack: up to here a backward step of
+    // the wall clock is bridged, beyond it is followed.
+    static constexpr std::chrono::nanoseconds MaxAhead{2000};
+    static constexpr std::chrono::nanoseconds LeastStepBack{10000};
 
     // The current time: both clocks at one moment, for one clock read.
     //
-    // A double holds GPS seconds in steps of 238 ns. Still, two consecutive readings of one thread are
-    // never equal: if the clock moved on by less than a step, the second is one step later. A burst of
-    // readings thereby runs ahead of the clock, by MaxAhead at most. Then a reading waits for the clock, so
-    // that a thread gets at most one reading each 238 ns. A wall clock that is set back by more than
-    // LeastStepBack is followed; a smaller step is bridged like a burst.
+    // Of two consecutive readings of one thread, the second is later, by 1 ns at least (PostTime::GpsTime).
+    // As doubles (GpsTimeSeconds) both may be equal, because doubles are 238 ns apart. A wall clock that is
+    // set back by more than LeastStepBack is followed. If a smaller step puts readings ahead of it by more
+    // than MaxAhead, a reading waits for the clock.
     PostTime Now();
+    // The same as a double, which may be equal to the last one.
     double GetCurrentGpsTimeInSeconds();
     double GetCurrentUTCTimeInSeconds();
 
@@ -108,24 +109,24 @@ private:
     // The last time stamp that a thread got, and the clock reading behind it.
     struct LastOfThread
     {
-        double Given;
-        double Reading;
+        std::chrono::nanoseconds Given;
+        std::chrono::nanoseconds Reading;
     };
 
     SystemTimeClock();
     PostTime Read();
-    PostTime ReadAfter(PostTime time);
+    PostTime ReadAfterLast();
     void MeasureWallOffset();
     void UpdateAddedSeconds();
     void WriteSteps();
 
-    static inline thread_local LastOfThread _last{0.0, 0.0};
+    static inline thread_local LastOfThread _last{};
 
     std::mutex _mutex;
     double _leapSeconds = 18.0;
     double _syncSeconds = 0.0;
-    // Leap plus sync offset: what is added to UTC since 1980 to give GPS time.
-    std::atomic<double> _addedSeconds{18.0};
+    // Leap plus sync offset: what is added to UTC since 1980 to give GPS time, in nanoseconds.
+    std::atomic<std::int64_t> _added{18000000000};
     // Wall clock minus monotonic clock in nanoseconds, and when it was measured by the monotonic clock.
     std::atomic<std::int64_t> _wallOffset{0};
     std::atomic<std::int64_t> _measuredAt{0};
@@ -136,26 +137,37 @@ private:
 // Inline because it is the largest part of a post.
 inline PostTime SystemTimeClock::Read()
 {
-    const std::chrono::nanoseconds monotonic = UptimeClock::now().time_since_epoch();
+    const std::timespec uptime = UptimeClock::Read();
+    const std::chrono::nanoseconds monotonic = UptimeClock::ToTimePoint(uptime).time_since_epoch();
     if (monotonic.count() - _measuredAt.load(std::memory_order_acquire) >= MeasurementLifetime)
     {
         MeasureWallOffset();
     }
-    const std::int64_t sinceGpsEpoch =
-        monotonic.count() + _wallOffset.load(std::memory_order_relaxed) - GpsEpochUnixSeconds * 1000000000;
-    return PostTime{static_cast<double>(sinceGpsEpoch) * 1e-9 + _addedSeconds.load(std::memory_order_relaxed),
-                    monotonic};
+    // Whole seconds and nanoseconds are added separately: so the division of the sum, which the double needs,
+    // does not wait for the clock.
+    constexpr std::int64_t second = 1000000000;
+    const std::int64_t offset = _wallOffset.load(std::memory_order_relaxed) - GpsEpochUnixSeconds * second +
+                                _added.load(std::memory_order_relaxed);
+    std::int64_t seconds = uptime.tv_sec + offset / second;
+    std::int64_t nanoseconds = uptime.tv_nsec + offset % second;
+    if (nanoseconds >= second)
+    {
+        ++seconds;
+        nanoseconds -= second;
+    }
+    return PostTime{RabitClock::ToSeconds(seconds, nanoseconds), monotonic,
+                    std::chrono::nanoseconds(seconds * second + nanoseconds)};
 }
 
 inline PostTime SystemTimeClock::Now()
 {
     const PostTime time = Read();
-    if (time.GpsTimeSeconds > _last.Given)
+    if (time.GpsTime > _last.Given)
     {
-        _last = LastOfThread{time.GpsTimeSeconds, time.GpsTimeSeconds};
-        return time;
+        _last = LastOfThread{time.GpsTime, time.GpsTime};
+        return PostTime{time.GpsTimeSeconds, time.Monotonic, time.GpsTime};
     }
-    return ReadAfter(time);
+    return ReadAfterLast();
 }
 
 }  // namespace Rabit

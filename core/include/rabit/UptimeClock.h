@@ -17,10 +17,16 @@ struct UptimeClock
     using time_point = std::chrono::time_point<UptimeClock>;
     static constexpr bool is_steady = true;
 
-    static time_point now() noexcept
+    static time_point now() noexcept { return ToTimePoint(Read()); }
+    // The same, as the system gives it.
+    static std::timespec Read() noexcept
     {
         std::timespec time{};
         clock_gettime(CLOCK_BOOTTIME, &time);
+        return time;
+    }
+    static time_point ToTimePoint(const std::timespec &time) noexcept
+    {
         return time_point(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
     }
 };
